@@ -34,6 +34,7 @@ def drive(track: AnyTrack | None = None, *, car: str | None = None, preset: str 
     step_limit_s: longest time of one step of a Controller or a Plant of your own by the wall clock [s]; 0: none.
 
     The same arguments give the same run, bit for bit: run["state_hash"] tells. ValueError for what cannot be driven."""
+    _refuse_classes(controller=controller, plant=plant)
     own = controller if isinstance(controller, Controller) or hasattr(controller, "step") else None
     own_plant = plant if not isinstance(plant, str) else None
     named: dict[str, Any] = {"track": track, "car": car, "preset": preset, "laps": laps, "latency_ms": latency_ms, "seed": seed,
@@ -48,6 +49,12 @@ def drive(track: AnyTrack | None = None, *, car: str | None = None, preset: str 
     again = None if own is not None or own_plant is not None else dict(named=named, settings=dict(settings), faults=_listed(faults), scenario=scenario,
                                               speed_mps=speed_mps)
     return Run(json.loads(told["report"]), told["table"], Frames(told["frames"]), told["road"], error, os.fspath(record), again)
+
+
+def _refuse_classes(**given: object) -> None:
+    for name, value in given.items():
+        if isinstance(value, type):
+            raise ValueError(f"{name}: got the class {value.__name__}, expected an instance of it: {value.__name__}()")
 
 
 def _make_room(record: str | os.PathLike[str]) -> None:
@@ -75,4 +82,5 @@ def verify(path: str | os.PathLike[str], controller: Controller | None = None, s
 
     controller: a new instance of the Controller that drove; None: the library's controller that did.
     Returns "steps", "identical", "different", "first_difference" (a cycle, or None), "is_verified" and "error"."""
+    _refuse_classes(controller=controller)
     return _chicane.verify(os.fspath(path), controller, step_limit_s)

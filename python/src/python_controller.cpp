@@ -37,9 +37,11 @@ void check_finite(const model::Command& command) {
   check("throttle", command.throttle);
 }
 
+/// An error of the call itself, such as a wrong number of arguments, has no trace.
 std::string traceback_of(py::error_already_set& error) {
+  const py::object trace = error.trace() ? py::object(error.trace()) : py::none();
   const py::object lines =
-      py::module_::import("traceback").attr("format_exception")(error.type(), error.value(), error.trace());
+      py::module_::import("traceback").attr("format_exception")(error.type(), error.value(), trace);
   return py::str("").attr("join")(lines).cast<std::string>();
 }
 

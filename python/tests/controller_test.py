@@ -104,6 +104,22 @@ class Controllers(unittest.TestCase):
                 self.assertLess(run["duration_s"], 15.0)
                 self.assertIn("its controller failed", repr(run))
 
+    def test_what_is_called_wrongly_is_told_too(self):
+        class TooFew(ch.Controller):
+            def step(self):
+                return 0.0, 0.0
+
+        class TooMany(ch.Controller):
+            def reset(self, seed):
+                pass
+        for controller, message in ((TooFew(), r"TooFew\.step\(\) takes 1 positional argument but 2 were given"),
+                                    (TooMany(), r"TooMany\.reset\(\) missing 1 required positional argument")):
+            run, printed = drive(controller)                # errors without a trace: no line of Python has run
+            self.assertRegex(run.error, "TypeError: .*" + message)
+            self.assertIn(run.error, printed)
+        with self.assertRaisesRegex(ValueError, r"^controller: got the class Chase, expected an instance of it: Chase\(\)$"):
+            ch.drive("oval", controller=Chase)
+
     def test_says_what_is_not_written(self):
         run, _ = drive(ch.Controller())
         self.assertIn("NotImplementedError: Controller.step(seen) is not written yet", run.error)
