@@ -147,8 +147,8 @@ class VecEnv(BaseVecEnv):
                  faults: Iterable[str] = (), random_faults: Iterable[str] = (),
                  randomise: Mapping[str, tuple[float, float]] = {}, starts_anywhere: bool = False, ends_off_road: bool = True,
                  off_road_cost: float = 10.0, episode_s: float = 0.0, settings: Settings = {}) -> None:
-        if count < 1:
-            raise ValueError(f"count: got {count}, expected at least 1")
+        if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 1:
+            raise ValueError(f"count: got {count!r}, expected a whole number of environments from 1 on: VecEnv(16, \"oval\")")
         options = _options(observation, randomise, random_faults, starts_anywhere, ends_off_road, off_road_cost, episode_s)
         self._core = _chicane.Batch(_request(track, car, rate_hz, noise, seed, faults, settings), options, count, threads)
         self._seed = seed

@@ -143,9 +143,7 @@ class Problem:
         start: an earlier solution, in the place of both, with its multipliers.
         tolerance: of the conditions of optimality, (0, 1e-2]. budget_s: when to stop, best answer so far [s]; 0: never.
         log: the turns are in the solution's log, one row each (Turns); the problem is interpreted then."""
-        state = self._array("x0", x0, (self.nx,))
-        if not np.isfinite(state).all():
-            raise ValueError(f"x0: got {state}, expected finite numbers")
+        state = self._state(x0)
         inputs = self._array("u", 0.0 if start is None and u is None else start.u if start is not None else u, (self.horizon, self.nu))
         has_states = start is not None or x is not None
         states = self._array("x", (start.x if start is not None else x) if has_states else 0.0, (self.horizon + 1, self.nx))
@@ -163,7 +161,7 @@ class Problem:
             full = self._with_shifts(values, shift)
             solver = self._solver(options, must_interpret=log)
             told = solver.solve(state, full, states, inputs, start is not None and start is self._last, turns)
-            if told["status"] >= 0 or not self._has_rest():
+            if told["status"] >= 0 or not self.has_expression_cost:
                 break
         told["cost"] += self._offset(full)
         self._solved_by, self._prepared = solver, None
@@ -201,9 +199,7 @@ class Problem:
         derivatives. May be called again and again."""
         if self._prepared is None:
             raise ValueError("feedback: got no preparation, expected prepare() after the last solve() or change")
-        state = self._array("x0", x0, (self.nx,))
-        if not np.isfinite(state).all():
-            raise ValueError(f"x0: got {state}, expected finite numbers")
+        state = self._state(x0)
         told = self._prepared.feedback(state)
         self._course = Feedback(told | {"u": np.ascontiguousarray(told["u"][:, :self.nu])}, state)
         return self._course
@@ -319,7 +315,11 @@ class Problem:
         return np.tile(ends, (1, self.unknowns // self.nx))
 
     def _listed(self, result: Any, kind: str) -> list[Symbol]:
-        return [self._symbol(value, kind) for value in np.ravel(np.array(result, dtype=object))]
+        rows = [self._symbol(value, kind) for value in np.ravel(np.array(result, dtype=object))]
+        if any(row.is_comparison() for row in rows):
+            wanted = "what has to be <= 0: a - b for a <= b" if kind.endswith("constraint") else "a value: ch.where(comparison, a, b)"
+            raise ValueError(f"{kind}: got a comparison, expected {wanted}")
+        return rows
 
     def _symbol(self, value: Any, kind: str) -> Symbol:
         if isinstance(value, Symbol):
@@ -373,16 +373,28 @@ class Problem:
             raise ValueError(f"bounds: {name}: got a lower bound above the upper one, expected low <= high")
         return low, high
 
+    def _state(self, x0: npt.ArrayLike) -> Array:
+        given = np.atleast_1d(x0)
+        state = self._array("x0", given, (self.nx,))
+        if given.shape != state.shape:
+            raise ValueError(f"x0: got shape {given.shape}, expected numbers of shape {state.shape}")
+        if not np.isfinite(state).all():
+            raise ValueError(f"x0: got {state}, expected finite numbers")
+        return state
+
     @staticmethod
     def _array(name: str, given: Any, shape: tuple[int, ...]) -> Array:
+        """A number, or an array of that shape or of its last dimensions."""
         try:
             array = np.asarray(given, float)
             if array.ndim == 0:
                 return np.full(shape, array)
-            return np.ascontiguousarray(array if array.shape == shape else np.broadcast_to(array, shape))
+            if array.shape == shape[-array.ndim:]:
+                return np.ascontiguousarray(array if array.ndim == len(shape) else np.broadcast_to(array, shape))
         except (ValueError, TypeError):
-            got = f"shape {np.shape(given)}" if isinstance(given, (np.ndarray, list, tuple, float, int)) else repr(given)
-            raise ValueError(f"{name}: got {got}, expected numbers of shape {shape}") from None
+            pass
+        got = f"shape {np.shape(given)}" if isinstance(given, (np.ndarray, list, tuple, float, int)) else repr(given)
+        raise ValueError(f"{name}: got {got}, expected numbers of shape {shape}")
 
     @staticmethod
     def _number(name: str, value: float, least: float, most: float) -> float:
@@ -405,15 +417,17 @@ class Problem:
             raise ValueError("p: got a number that is not finite")
         return self._array("p", values, (self.horizon + 1, self.parameters))
 
-    def _has_rest(self) -> bool:
+    @property
+    def has_expression_cost(self) -> bool:
+        """Whether there is a cost that is no sum of squares."""
         return any(rest is not None for rest in self._rest.values())
 
     def _shifts(self) -> tuple[float, ...]:
         """What is added to a cost that is no sum of squares, beyond its least value, until it works."""
-        return (1.0, 100.0, 1e4) if self._has_rest() else (0.0,)
+        return (1.0, 100.0, 1e4) if self.has_expression_cost else (0.0,)
 
     def _with_shifts(self, values: Array, shift: float) -> Array:
-        if not self._has_rest():
+        if not self.has_expression_cost:
             return values
         own = [shift - self._at_least["residual"], shift - self._at_least["terminal_residual"]]
         return np.ascontiguousarray(np.hstack([values, np.broadcast_to(own, (len(values), 2))]))
@@ -467,7 +481,7 @@ class Problem:
     @property
     def full_count(self) -> int:
         """Parameters with those that the problem has of its own."""
-        return self.parameters + (2 if self._has_rest() else 0)
+        return self.parameters + (2 if self.has_expression_cost else 0)
 
     def hidden_parameters(self) -> list[float]:
         """Of its own, as a solve begins with them."""

@@ -39,6 +39,8 @@ class Solution:
         self.status: str
         self.status, self._sentence = _chicane.SOLVE_STATUSES[told["status"]]
         self.is_usable: bool = told["status"] >= 0
+        if problem.has_expression_cost:
+            self._sentence += "; a cost that is no sum of squares has to stay above its at_least"
         self.cost: float = told["cost"]
         self.iterations: int = told["iterations"]
         self.residual: float = max(told["stationarity"], told["defect"], told["complementarity"])

@@ -131,6 +131,11 @@ class Symbol:
     def __rtruediv__(self, other: Any) -> Any: return self._binary("divide", other, True)
     def __neg__(self) -> Symbol: return self._make("negate", self.node)
     def __pos__(self) -> Symbol: return self
+    def is_comparison(self) -> bool:
+        """Whether it is the 1 or 0 of a < b or a <= b."""
+        op, _, b = self.graph.nodes[self.node][:3]
+        return op == "less" or (op == "subtract" and self.graph.nodes[b][0] == "less")
+
     def __abs__(self) -> Any: return where(self < 0.0, -self, self)
 
     def __pow__(self, exponent: Any) -> Any:

@@ -138,6 +138,11 @@ class Many(unittest.TestCase):
         self.assertGreater(ends, 3)
         self.assertEqual(episodes(3), (ends, told))
 
+    def test_refuses_no_number_of_them(self):
+        for count in ("oval", 0, 2.5):
+            with self.assertRaisesRegex(ValueError, "count: got .*expected a whole number of environments"):
+                ch.VecEnv(count, "oval")
+
     def test_works_in_a_process_that_was_forked(self):
         envs = ch.VecEnv(4, "oval", threads=2)
         envs.reset()

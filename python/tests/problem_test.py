@@ -77,6 +77,12 @@ class Solving(unittest.TestCase):
         self.assertAlmostEqual(solution.u[0, 0], math.log(2.0), places=6)
         self.assertAlmostEqual(solution.cost, 2.0 - 2.0 * math.log(2.0), places=9)
 
+    def test_a_cost_without_a_floor_says_what_it_lacks(self):
+        ocp = ch.Problem(1, 1, 5)
+        ocp.dynamics(lambda x, u: [x[0] + u[0]])
+        ocp.cost(lambda x, u: -x[0])
+        self.assertRegex(repr(ocp.solve([0.0])), "not usable, .*; a cost that is no sum of squares has to stay above its at_least")
+
     def test_what_is_convex_over_a_nonlinear_function_is_a_cost(self):
         ocp = ch.Problem(1, 1, 1)
         ocp.dynamics(lambda x, u: [x[0] + u[0]])
@@ -436,9 +442,15 @@ class Misuses(unittest.TestCase):
         self.refuse("dynamics: got a function that returns nothing", lambda: ocp.dynamics(lambda x, u: None))
         self.refuse("cost: .*expected x of 2 entries|residual: .*expected x of 2 entries", lambda: ocp.cost(lambda x, u: x[2]))
         ocp.dynamics(lambda x, u: x)
+        self.refuse("constraint: got a comparison, expected what has to be <= 0: a - b for a <= b", lambda: ocp.subject_to(lambda x, u: x[0] <= 1))
+        self.refuse("constraint: got a comparison", lambda: ocp.subject_to(lambda x, u: x < np.ones(2), at_end=False))
+        self.refuse("residual: got a comparison, expected a value: ch.where", lambda: ocp.cost(lambda x, u: x[0] > u[0]))
         self.refuse("got no cost", lambda: ocp.solve([0, 0]))
         ocp.cost(lambda x, u: x @ x)
         self.refuse(r"x0: got shape \(3,\), expected numbers of shape \(2,\)", lambda: ocp.solve([0, 0, 0]))
+        self.refuse(r"x0: got shape \(1,\), expected numbers of shape \(2,\)", lambda: ocp.solve([0]))
+        self.refuse(r"x0: got shape \(1,\)", lambda: ocp.solve(0.0))
+        self.refuse(r"u: got shape \(10,\), expected numbers of shape \(10, 1\)", lambda: ocp.solve([0, 0], u=np.zeros(10)))
         self.refuse("x0: got .*expected finite numbers", lambda: ocp.solve([0, np.nan]))
         self.refuse("p: got numbers, expected none", lambda: ocp.solve([0, 0], [1.0]))
         self.refuse("got a lower bound above the upper one", lambda: ocp.bounds(u=(1, -1)))
