@@ -61,7 +61,8 @@ void check_action(double steer, double throttle) {
 void check_shape(const Numbers& actions, std::size_t count) {
   if (actions.ndim() == 2 && static_cast<std::size_t>(actions.shape(0)) == count && actions.shape(1) == 2)
     return;
-  throw py::value_error("actions: got an array of another shape, expected (" + std::to_string(count) + ", 2)");
+  throw py::value_error("actions: got an array of another shape, expected (" + std::to_string(count) +
+                        ", 2)");
 }
 
 Numbers observation_of(const Environment& environment) {
@@ -80,7 +81,7 @@ py::dict info_of(const Environment& environment) {
   const run::ClosedLoop& loop = environment.loop();
   const sim::WorldState& world = loop.world();
   const std::array<py::object, keys.size()> values{
-      py::float_(loop.time()),         py::float_(world.s),        py::float_(world.lateral_error),
+      py::float_(loop.time()),         py::float_(world.s),       py::float_(world.lateral_error),
       py::float_(world.edge_distance), py::float_(loop.car().vx), py::int_(world.lap),
       py::bool_(world.is_off_track)};
   py::dict info;
@@ -119,8 +120,7 @@ int repeat(Environment& environment, const Numbers& actions) {
 /// Many environments that are stepped together on threads; the bits do not depend on how many.
 class Batch {
  public:
-  Batch(const protocol::Request& request, const py::dict& given, int count, int threads)
-      : crew_{threads} {
+  Batch(const protocol::Request& request, const py::dict& given, int count, int threads) : crew_{threads} {
     const auto roads = std::make_shared<run::Roads>();
     for (int i = 0; i < count; ++i) environments_.push_back(make_environment(request, given, roads));
   }

@@ -18,8 +18,8 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kOfEpisodes = 0x65706973;  // keeps the draws apart from the noise of the same seed
 constexpr double kCrossing = 10.0;                 // [m] within which roads that cross are told apart
-constexpr double kNear = 5.0;                      // [m] of road that are searched first, beyond what is driven
-constexpr double kRounding = 1e-6;                 // [m]
+constexpr double kNear = 5.0;       // [m] of road that are searched first, beyond what is driven
+constexpr double kRounding = 1e-6;  // [m]
 
 std::size_t size_of(Observation observation, const scenario::Scenario& scenario) {
   const auto waypoints = static_cast<std::size_t>(scenario.waypoints_sent);

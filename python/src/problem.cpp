@@ -52,9 +52,8 @@ void number_as_in(const SizeClass& sizes, TracedProblem& problem) {
 }
 /// The smallest size class that a problem fits in; -1 when none is large enough.
 int size_class(const TracedProblem& problem) {
-  const auto* const found =
-      std::find_if(kSizeClasses.begin(), kSizeClasses.end(),
-                   [&](const SizeClass& sizes) { return fits(problem, sizes); });
+  const auto* const found = std::find_if(kSizeClasses.begin(), kSizeClasses.end(),
+                                         [&](const SizeClass& sizes) { return fits(problem, sizes); });
   return found == kSizeClasses.end() ? -1 : static_cast<int>(found - kSizeClasses.begin());
 }
 

@@ -83,8 +83,8 @@ struct SizeClass {
   int nx, nu, nr, ne, nc, nh, neh, nec;
 };
 inline constexpr std::array kSizeClasses{
-    SizeClass{2, 2, 8, 8, 6, 2, 2, 4},      SizeClass{4, 2, 16, 12, 8, 2, 4, 4},
-    SizeClass{6, 2, 16, 12, 8, 2, 6, 6},    SizeClass{8, 4, 24, 16, 12, 4, 8, 8},
+    SizeClass{2, 2, 8, 8, 6, 2, 2, 4},       SizeClass{4, 2, 16, 12, 8, 2, 4, 4},
+    SizeClass{6, 2, 16, 12, 8, 2, 6, 6},     SizeClass{8, 4, 24, 16, 12, 4, 8, 8},
     SizeClass{24, 8, 48, 48, 48, 8, 24, 48}, SizeClass{52, 8, 64, 64, 112, 8, 52, 104}};
 
 /// A solver of kSizeClasses[Class] for the instruction set `Arch`. `problem` and `workspace` must outlive it.
