@@ -96,9 +96,6 @@ class OcpSolver {
   /// From the next solve on, turns are added to `log`, which must live as long; null: none.
   void record_turns(TurnLog* log) noexcept { log_ = log; }
 
-  /// From the next solve on: gives up where full steps lose their way.
-  void use_full_steps_only(bool do_so) noexcept { has_full_steps_only_ = do_so; }
-
   // ---- the filter method from barrier to barrier, for who changes the problem on the way
 
   /// Begins it at a guess. False when that is of no use.
@@ -113,6 +110,15 @@ class OcpSolver {
   [[nodiscard]] bool is_path_done() const noexcept { return filter_.is_at_last_barrier(); }
   /// There: solve_again() goes on with full steps.
   void end_path() noexcept;
+
+  // ---- the primal-dual method of rows that must hold (detail/hard_rows.hpp), for HardSolver
+
+  /// Follows the barrier from a guess to its end, in at most `most` turns, counted in `report`. True where it
+  /// gets there: `problem` has the multipliers, and solve_again() goes on with full steps after reprice().
+  bool follow_rows(P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline, int most,
+                   SolveReport& report) noexcept;
+  /// Slacks of hard constraints to prices that have changed.
+  void reprice(const P& problem) noexcept { barrier_.reprice(problem, t_.horizon); }
 
   /// After a solve: the price of state i of x_{k+1}, i.e. d(cost)/dx of what follows; k < horizon.
   [[nodiscard]] double adjoint(int k, int i) const noexcept {
@@ -363,7 +369,6 @@ class OcpSolver {
   /// What to do where full steps have lost their way. False when nothing helps.
   bool recover(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept {
     if constexpr (kCanFilter) {
-      if (has_full_steps_only_) return false;
       if (options_.may_start_short) return begin_filter(problem, trajectory, report);
     }
     return may_grow() ? start_short(problem, trajectory) : go_back(problem);
@@ -480,7 +485,6 @@ class OcpSolver {
   bool is_filtering_ = false;  ///< steps are the filter method's
   bool has_filtered_ = false;  ///< it has been used in this solve
   bool stands_still_ = false;  ///< the start could not be simulated
-  bool has_full_steps_only_ = false;
   bool is_again_ = false;   ///< the start is near the solution
   bool is_fresh_ = true;    ///< slacks and working set are to be guessed anew
   std::size_t target_ = 0;  ///< horizon asked for

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "chicane/base/math.hpp"
 #include "chicane/base/math_pack.hpp"
 #include "chicane/solver/detail/problem_pattern.hpp"
+#include "chicane/solver/detail/soft_constraint.hpp"
 #include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/sparse_row.hpp"
@@ -68,6 +70,7 @@ class Augmented : public detail::PreviousInputs<P> {
   static constexpr int kEqualities = equality_count<P>();
   static constexpr int kEndEqualities = terminal_equality_count<P>();
   static constexpr int kEndConstraints = terminal_constraint_count<P>();
+  static constexpr int kOwnResiduals = P::kNr, kOwnEnd = P::kNe;
   static constexpr int kNr = P::kNr + kEqualities;
   static constexpr int kNe = P::kNe + kEndEqualities + kEndConstraints;
   static constexpr bool kGaussNewton = !has_hessians<P>();
@@ -75,6 +78,7 @@ class Augmented : public detail::PreviousInputs<P> {
   static constexpr bool kHasSparseRows = solver::kHasSparseRows<P>;
 
   static constexpr double kNearlyNone = 1e-6;
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   /// One row that must hold: √ρ, ρ and y/ρ.
   struct Weight {
     double root = 1.0;
@@ -92,6 +96,8 @@ class Augmented : public detail::PreviousInputs<P> {
   std::array<double, kEndEqualities + kEndConstraints> terminal_shift{};
   std::array<double, kNc> price_factor{};  ///< of soft constraints, hard ones among them
   double square_price = 0.0;               ///< of hard ones in their place, if any: of ½ violation²
+  double hard_price = 0.0;      ///< of hard ones in their place, if any: so high that none is violated
+  bool is_primal_dual = false;  ///< rows are those of the primal-dual method (detail/hard_rows.hpp)
 
   template <class K, class X, class U>
   requires requires(const P& p, K k, const X& x, const U& u) { p.dynamics(k, x, u); }
@@ -125,6 +131,10 @@ class Augmented : public detail::PreviousInputs<P> {
     return problem->constraint(k, x, u);
   }
 
+  [[nodiscard]] bool keeps(std::size_t c) const noexcept {
+    if constexpr (detail::SaysWhatIsHard<P>) return problem->is_hard(static_cast<int>(c));
+    return false;
+  }
   [[nodiscard]] std::size_t constraint_count() const noexcept { return solver::constraint_count(*problem); }
   [[nodiscard]] SoftPenalty soft_penalty(int c) const requires(kNc > 0) {
     SoftPenalty price = problem->soft_penalty(c);
@@ -133,6 +143,7 @@ class Augmented : public detail::PreviousInputs<P> {
     if constexpr (detail::SaysWhatIsHard<P>) {
       if (problem->is_hard(c)) {
         price.cap = 1e30;
+        if (is_primal_dual) price = {hard_price, 0.0, SoftConstraint<>::kMustHold};
         if (square_price > 0.0) price = {kNearlyNone * square_price, square_price, price.cap};
       }
     }
@@ -161,13 +172,21 @@ class Augmented : public detail::PreviousInputs<P> {
   template <class X>
   CHICANE_INLINE auto constraints_at_end(const X& x) const {
     if constexpr (kEndConstraints > 0) {
-      return detail::map_row(problem->terminal_constraint(x),
-                             [&](std::size_t n, const auto& g) CHICANE_INLINE {
-                               return terminal_weight[kEndEqualities + n].root *
-                                      positive_part(g + terminal_shift[kEndEqualities + n]);
-                             });
+      return detail::map_row(problem->terminal_constraint(x), [&](std::size_t n,
+                                                                  const auto& g) CHICANE_INLINE {
+        return terminal_weight[kEndEqualities + n].root * active_part(g + terminal_shift[kEndEqualities + n]);
+      });
     } else {
       return nothing(x);
+    }
+  }
+  /// What counts of an inequality: all of it in the primal-dual method, else what is above zero.
+  template <class T>
+  CHICANE_INLINE auto active_part(const T& value) const {
+    if constexpr (AnySparseRow<T>) {
+      return is_primal_dual ? value : positive_part(value);
+    } else {
+      return select(value > (is_primal_dual ? -kInfinity : 0.0), value, 0.0);
     }
   }
   /// No entries, of the kind that goes with others.

@@ -75,6 +75,18 @@ class Barrier {
     }
   }
 
+  /// Constraints that must hold, whose slack is next to none, to their prices of now.
+  void reprice(const P& problem, std::size_t horizon) noexcept {
+    for (std::size_t c = 0; c < count(); ++c) {
+      if (!problem.keeps(c)) continue;
+      const double price = price_of(problem, c).linear;
+      for (std::size_t k = 0; k < horizon; ++k) {
+        n_[c][k] = std::max(price - z_[c][k], 1e-3 * price);
+        s_[c][k] = mu_ / n_[c][k];
+      }
+    }
+  }
+
   // ---- constraint c of the eight stages from k on
   [[nodiscard]] CHICANE_INLINE SoftConstraint<V> load(std::size_t c, std::size_t k) const noexcept {
     return {V::load(value_[c] + k), V::load(s_[c] + k), V::load(t_[c] + k), V::load(n_[c] + k),

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "chicane/base/inlining.hpp"
+#include "chicane/solver/detail/hard_rows.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/problem_pattern.hpp"
 #include "chicane/solver/problem.hpp"
@@ -76,10 +77,12 @@ class Evaluation {
     return to_array<One>(problem.dynamics(static_cast<int>(k), x, u));
   }
 
+  static constexpr std::size_t kHardRows = static_cast<std::size_t>(P::kNr) - own_residuals<P>();
   /// One stage, or one in each lane, without derivatives: what a line search needs.
   template <class T>
   struct ValuesOf {
-    T cost;  ///< ½‖r‖²
+    T cost;                         ///< ½‖r‖² of the problem's own residuals
+    std::array<T, kHardRows> hard;  ///< the others
     std::array<T, kNc> constraint;
     std::array<T, kNx> next;
   };
@@ -93,29 +96,40 @@ class Evaluation {
       for (std::size_t m = 0; m < u.size(); ++m) u[m] = V::load(t.u[m] + k0);
       return values_of<V>(problem, StageLanes<V>{static_cast<int>(k0)}, x, u);
     } else {
-      alignas(64) double numbers[1 + kNc + kNx][8] = {};
+      alignas(64) double numbers[1 + kHardRows + kNc + kNx][8] = {};
       for (std::size_t lane = 0; lane < 8 && k0 + lane < t.horizon; ++lane) {
         const auto one = values_of<One>(problem, static_cast<int>(k0 + lane),
                                         t.template state<One>(k0 + lane), t.template input<One>(k0 + lane));
         std::size_t at = 0;
         numbers[at++][lane] = number(one.cost);
+        for (const One& h : one.hard) numbers[at++][lane] = number(h);
         for (const One& c : one.constraint) numbers[at++][lane] = number(c);
         for (const One& next : one.next) numbers[at++][lane] = number(next);
       }
       Values result;
       std::size_t at = 0;
       result.cost = V::load(numbers[at++]);
+      for (V& h : result.hard) h = V::load(numbers[at++]);
       for (V& c : result.constraint) c = V::load(numbers[at++]);
       for (V& next : result.next) next = V::load(numbers[at++]);
       return result;
     }
   }
-  /// ½‖r‖² of the end.
+  /// ½‖r‖² of the end; of the problem's own residuals alone with `hard`, which takes the others.
   template <class Point>
-  static double end_cost(const P& problem, const Point& t) noexcept {
+  static double end_cost(const P& problem, const Point& t, double* hard = nullptr) noexcept {
     double sum = 0.0;
-    for (const One& r : to_array<One>(problem.terminal_residual(t.template state<One>(t.horizon))))
-      sum += 0.5 * number(r) * number(r);
+    std::size_t own = static_cast<std::size_t>(P::kNe);
+    if constexpr (kHasHardRows<P>) own = hard != nullptr ? static_cast<std::size_t>(P::kOwnEnd) : own;
+    const auto residuals = to_array<One>(problem.terminal_residual(t.template state<One>(t.horizon)));
+    for (std::size_t n = 0; n < residuals.size(); ++n) {
+      const double r = number(residuals[n]);
+      if (n < own) {
+        sum += 0.5 * r * r;
+      } else {
+        hard[n - own] = r;
+      }
+    }
     return sum;
   }
 
@@ -250,8 +264,10 @@ class Evaluation {
   template <class T, class K>
   static ValuesOf<T> values_of(const P& problem, K k, const std::array<T, kNx>& x,
                                const std::array<T, kNu>& u) noexcept {
-    ValuesOf<T> values{T(0.0), {}, to_array<T>(problem.dynamics(k, x, u))};
-    for (const T& r : to_array<T>(problem.residual(k, x, u))) values.cost += r * r;
+    ValuesOf<T> values{T(0.0), {}, {}, to_array<T>(problem.dynamics(k, x, u))};
+    const auto residuals = to_array<T>(problem.residual(k, x, u));
+    for (std::size_t n = 0; n < own_residuals<P>(); ++n) values.cost += residuals[n] * residuals[n];
+    for (std::size_t n = 0; n < kHardRows; ++n) values.hard[n] = residuals[own_residuals<P>() + n];
     values.cost = 0.5 * values.cost;
     if constexpr (kNc > 0) values.constraint = to_array<T>(problem.constraint(k, x, u));
     return values;

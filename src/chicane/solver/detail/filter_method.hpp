@@ -14,6 +14,7 @@
 #include "chicane/solver/detail/bound_barrier.hpp"
 #include "chicane/solver/detail/evaluation.hpp"
 #include "chicane/solver/detail/filter.hpp"
+#include "chicane/solver/detail/hard_rows.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/linearisation.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
@@ -62,7 +63,14 @@ class FilterMethod {
     has_prices_ = false;
     is_exact_ = is_exact;
     is_fresh_ = is_new_barrier_ = are_sides_new_ = true;
+    mu_ = kFirstBarrier;
     slacks.set_mu(kFirstBarrier);
+    if constexpr (kHasHardRows<P>) {
+      if (rows_ != nullptr) {
+        rows_->hard_price = kHardPrice;
+        now.hard.begin(*rows_);
+      }
+    }
     look<1>(problem, now, lq, slacks, t, report);
     double steepest = 0.0;
     keep_gradient(lq, t.horizon);
@@ -75,11 +83,21 @@ class FilterMethod {
     final_mu_ = std::min(final_mu, mu_);
     slacks.set_mu(mu_);
     is_fresh_ = true;
+    if constexpr (kHasHardRows<P>) {
+      if (rows_ != nullptr) {
+        rows_->hard_price = kHardPrice * unit_;
+        now.hard.weigh(*rows_, kRowWeight * unit_);
+      }
+    }
     last_shift_ = forced_shift_ = 0.0;
     failures_ = simulations_ = 0;
     stops_at_barriers_ = false;
     candidate_ = t;
+    short_steps_ = 0;
   }
+  /// Before start(): rows that must hold are unknowns' equations, with slacks and multipliers of their own,
+  /// and `rows`, the problem itself, keeps them. Null: they are residuals like others.
+  void take_rows(P* rows) noexcept { rows_ = rows; }
   /// After start(): turn() returns kSolved at the solution of each barrier's problem.
   void stop_at_barriers() noexcept { stops_at_barriers_ = true; }
   /// Goes on from there with the next barrier; the problem may have changed, with `centre` also the prices of
@@ -108,6 +126,8 @@ class FilterMethod {
     return true;
   }
   /// The longest move of an input in the last step that was taken.
+  /// Of the last turns this many in succession have taken a small share of their step.
+  [[nodiscard]] int short_steps() const noexcept { return short_steps_; }
   [[nodiscard]] double moved() const noexcept { return moved_; }
   /// The point where it stands; after start().
   [[nodiscard]] const Point& point() const noexcept { return candidate_; }
@@ -124,9 +144,14 @@ class FilterMethod {
       candidate_ = t;
       if (mu_ <= final_mu_ || stops_at_barriers_) return Outcome::kSolved;
       lower_barrier(slacks);
+      if constexpr (kHasHardRows<P>) {
+        if (rows_ != nullptr) {
+          now.hard.set_ends(*rows_, mu_);
+        }
+      }
       look(problem, now, lq, slacks, t, report);
     }
-    const Merit here = measure(problem, slacks, t, 0.0);
+    const Merit here = measure(problem, now, slacks, t, 0.0);
     if (!here.is_finite()) return Outcome::kStuck;
     if (is_new_barrier_) {
       filter_.reset(1e4 * std::max(1.0, here.miss));
@@ -149,6 +174,9 @@ class FilterMethod {
   static constexpr double kNearBarrier = 1e-3;
   static constexpr double kFirstBarrier = 0.1;  ///< where gradients are at most kSteep
   static constexpr double kSteep = 100.0;
+  static constexpr double kShort = 0.1;
+  static constexpr double kRowWeight = 1e6;  ///< ρ of rows that must hold, and the price of hard limits, in
+  static constexpr double kHardPrice = 1e6;  ///< the unit of costs
   static constexpr double kSolvedAt = 10.0;  ///< a barrier's problem is solved at this many times the barrier
 
   static constexpr std::size_t z(std::size_t i) noexcept { return i < kNx ? i : i + 1; }
@@ -158,6 +186,9 @@ class FilterMethod {
   template <int Order>
   void look(const P& problem, Look& now, Lq& lq, Slacks& slacks, const Point& t,
             SolveReport& report) noexcept {
+    if constexpr (kHasHardRows<P>) {
+      if (rows_ != nullptr && is_fresh_) now.hard.centre(*rows_, end_rows(problem, t), mu_);
+    }
     now.state_residual = has_prices_ ? residual_ : nullptr;
     now.template look<Order>(problem, t, is_fresh_, 1.0, slacks, lq.lq, report);
     now.state_residual = nullptr;
@@ -186,7 +217,9 @@ class FilterMethod {
         dual = std::max(dual, std::fabs(sum));
         prices += std::fabs(now.adjoint[i][k]);
       }
-      dual = std::max(dual, std::fabs(lq.lq.terminal[kNx][i] - now.adjoint[i][t.horizon - 1]));
+      double end = lq.lq.terminal[kNx][i] - now.adjoint[i][t.horizon - 1];
+      if constexpr (kHasHardRows<P>) end -= rows_ != nullptr ? now.hard.excess(*rows_, i) : 0.0;
+      dual = std::max(dual, std::fabs(end));
     }
     for (std::size_t m = 0; m < kNu; ++m) {
       for (std::size_t k = 0; k < t.horizon; ++k) {
@@ -197,7 +230,11 @@ class FilterMethod {
     const auto sides = bounds_.residual(mu_);
     const double count = static_cast<double>(t.horizon * kNx) + sides.count;
     const double scale = std::max(kSteep, (prices + sides.multipliers) / count / unit_) / kSteep;
-    return std::max(std::max({dual, sides.product, report.complementarity}) / scale, report.defect * unit_);
+    double missed = report.defect * unit_;
+    if constexpr (kHasHardRows<P>) {
+      if (rows_ != nullptr) missed = std::max(missed, now.hard.residual(*rows_, mu_, unit_, t.horizon));
+    }
+    return std::max(std::max({dual, sides.product, report.complementarity}) / scale, missed);
   }
   void lower_barrier(Slacks& slacks) noexcept {
     const double share = mu_ / unit_;
@@ -255,27 +292,40 @@ class FilterMethod {
     const double fraction = std::max(0.99, 1.0 - mu_ / unit_);
     const StepLengths own = bounds_.find(lq, step_, mu_, fraction);
     const StepLengths soft = soft_.find(problem, slacks, step_, fraction);
-    const double dual = std::min(own.dual, soft.dual);
-    const double slope = slope_along(lq, t.horizon);
-    const double least = least_length(here, slope);
+    double dual = std::min(own.dual, soft.dual);
     double length = std::min(own.primal, soft.primal);
+    double slope = slope_along(lq, t.horizon);
+    if constexpr (kHasHardRows<P>) {
+      if (rows_ != nullptr) {
+        const StepLengths hard = now.hard.find(problem, step_, mu_, fraction);
+        dual = std::min(dual, hard.dual);
+        length = std::min(length, hard.primal);
+        slope += now.hard.slope();
+      }
+    }
+    const double least = least_length(here, slope);
     for (int trial = 0; trial == 0 || length >= least; ++trial, length *= 0.5) {
       if (deadline.spent()) return Outcome::kSpent;
       add_step<Arch>(t, length, step_, candidate_);
       now.chains.keep_previous(candidate_);
-      Merit there = measure(problem, slacks, candidate_, length);
+      Merit there = measure(problem, now, slacks, candidate_, length);
       bool is_good = is_acceptable(here, there, slope, length);
       if (!is_good && trial >= kPatience && simulate(problem, now, lq, t, length)) {
-        there = measure(problem, slacks, candidate_, length, &lq, &t);
+        there = measure(problem, now, slacks, candidate_, length, &lq, &t);
         is_good = is_acceptable(here, there, slope, length);
       }
       if (!is_good) continue;
       if (length >= 0.05 || there.miss <= 0.9 * here.miss) failures_ = 0;
+      short_steps_ = length < kShort ? short_steps_ + 1 : 0;
       moved_ = longest_move(t, candidate_);
       t = candidate_;
       bounds_.move(dual, mu_);
       soft_.move(slacks, t.horizon, dual);
-      take_prices(lq, now, t.horizon, has_prices_ ? length : 1.0);
+      const double share = has_prices_ ? length : 1.0;
+      if constexpr (kHasHardRows<P>) {
+        if (rows_ != nullptr) now.hard.move(*rows_, share, dual, mu_, t.horizon);
+      }
+      take_prices(lq, now, t.horizon, share);
       has_prices_ = true;
       return Outcome::kGoing;
     }
@@ -319,8 +369,8 @@ class FilterMethod {
 
   /// Miss and cost of `point` with the slacks at `length` of their direction (0: where they are). With
   /// `from`, whose bounds are in `lq`: slacks of bounds as they are.
-  Merit measure(const P& problem, const Slacks& slacks, const Point& point, double length,
-                const Lq* lq = nullptr, const Point* from = nullptr) noexcept {
+  Merit measure(const P& problem, [[maybe_unused]] Look& now, const Slacks& slacks, const Point& point,
+                double length, const Lq* lq = nullptr, const Point* from = nullptr) noexcept {
     V cost(0.0);
     V miss(0.0);
     for (std::size_t k = 0; k < point.horizon; k += 8) {
@@ -332,14 +382,48 @@ class FilterMethod {
         soft_.measure(price_of(problem, c), slacks, c, k, values.constraint[c], length, live, miss, cost);
       for (std::size_t i = 0; i < kNx; ++i)
         miss += select(live, abs(values.next[i] - V::load_unaligned(point.x[i] + k + 1)), V(0.0));
+      if constexpr (Evaluate::kHardRows > 0) {
+        for (std::size_t n = 0; n < Evaluate::kHardRows; ++n) {
+          const V missed = rows_ != nullptr ? Look::Hard::miss(problem, n, k, values.hard[n]) : V(0.0);
+          const V square = rows_ != nullptr ? V(0.0) : 0.5 * values.hard[n] * values.hard[n];
+          miss += select(live, missed, V(0.0));
+          cost += select(live, square, V(0.0));
+        }
+      }
     }
-    Merit merit{sum(miss), sum(cost) + Evaluate::end_cost(problem, point)};
+    Merit merit{sum(miss), sum(cost)};
+    if constexpr (kHasHardRows<P>) {
+      if (rows_ != nullptr) {
+        double ends[P::kNe + 1];
+        merit.cost += Evaluate::end_cost(problem, point, ends);
+        now.hard.measure_end(unshifted(problem, ends), length, mu_, merit.miss, merit.cost);
+      } else {
+        merit.cost += Evaluate::end_cost(problem, point);
+      }
+    } else {
+      merit.cost += Evaluate::end_cost(problem, point);
+    }
     if (from == nullptr) {
       bounds_.measure(length, mu_, merit.miss, merit.cost);
     } else {
       bounds_.measure_at(*lq, mu_, point, *from, merit.miss, merit.cost);
     }
     return merit;
+  }
+
+  /// Values of the end's rows that must hold, of their residuals.
+  static auto unshifted(const P& problem, const double* residuals) noexcept {
+    std::array<double, static_cast<std::size_t>(P::kNe) + 1> values{};
+    if constexpr (kHasHardRows<P>) {
+      for (std::size_t n = 0; n < Look::Hard::kEndRows; ++n)
+        values[n] = residuals[n] / problem.terminal_weight[n].root - problem.terminal_shift[n];
+    }
+    return values;
+  }
+  static auto end_rows(const P& problem, const Point& t) noexcept {
+    double residuals[P::kNe + 1];
+    Evaluate::end_cost(problem, t, residuals);
+    return unshifted(problem, residuals);
   }
 
   // ---- when no step is good
@@ -425,6 +509,8 @@ class FilterMethod {
   bool is_new_barrier_ = true;  ///< the filter is of another problem
   bool are_sides_new_ = true;   ///< the slacks of bounds do not belong to the present point
   bool stops_at_barriers_ = false;
+  int short_steps_ = 0;  ///< in succession
+  P* rows_ = nullptr;    ///< the problem, where its rows that must hold are unknowns' equations
   double moved_ = 0.0;
   int failures_ = 0;
   int simulations_ = 0;

@@ -10,18 +10,16 @@ namespace chicane::solver {
 
 // How the solver of HardProblems begins.
 
-/// Full steps; where they lose their way, multipliers follow the barrier; where that gets nowhere, either,
-/// a solve like any other.
+/// The primal-dual method; where its steps get short, multipliers follow the barrier of the augmented
+/// Lagrangian; where that gets nowhere, either, a solve like any other.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& trajectory,
                                                 const Deadline& deadline, int& left,
                                                 HardReport& report) noexcept {
   if constexpr (has_filter_method<P>()) {
     if (options_.may_start_short) {
-      inner_.use_full_steps_only(true);
-      const bool converged = round(x0, trajectory, deadline, left, report);
-      inner_.use_full_steps_only(false);
-      if (converged || left <= 0 || report.status == SolveStatus::kNotFinite) return converged;
+      if (follow(x0, trajectory, deadline, left, report))
+        return round(x0, trajectory, deadline, left, report);
       begin_again(trajectory, 1.0);
       if (!track(x0, trajectory, deadline, left, report)) {
         begin_again(trajectory, 1.0);
@@ -31,6 +29,33 @@ bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& tra
   }
   return round(x0, trajectory, deadline, left, report);
 }
+/// The primal-dual method (eq. 50–56). True when it has got to the end of its barrier: multipliers and prices
+/// are those of its point, and full steps may go on from there.
+template <HardProblem P, int Capacity, class Arch>
+bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajectory, const Deadline& deadline,
+                                           int& left, HardReport& report) noexcept {
+  constexpr int kMostTurns = 60;
+  constexpr double kDearer = 4.0;  // than the highest multiplier: the constraint is kept
+  SolveReport seen;
+  const int most = std::max(1, std::min({left, kMostTurns, options_.max_iterations / 4}));
+  const bool is_solved = inner_.follow_rows(problem_, x0, trajectory, deadline, most, seen);
+  report.iterations += seen.iterations;
+  report.sweeps += seen.sweeps;
+  left -= seen.iterations;
+  if (!is_solved) return false;
+  for (std::size_t c = 0; c < kNc; ++c) {
+    if (!is_hard(*problem_.problem, c)) continue;
+    double highest = 0.0;
+    for (int k = 0; k < trajectory.horizon; ++k)
+      highest = std::max(highest, inner_.constraint_multiplier(k, static_cast<int>(c)));
+    const double price = std::max(1e-12, price_of(problem_, c).linear);
+    problem_.price_factor[c] *= std::max(1.0, kDearer * highest / price);
+  }
+  inner_.reprice(problem_);
+  keep_prices(trajectory.horizon);
+  return can_go_on_ = true;
+}
+
 /// Follows the filter method's barrier down, and brings multipliers, weights and prices up to date at the
 /// solution of each barrier's problem. True when it has got to the end within a trial's turns.
 template <HardProblem P, int Capacity, class Arch>

@@ -188,6 +188,8 @@ class HardSolver {
                    HardReport& report) noexcept;
   bool track(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
              HardReport& report) noexcept;
+  bool follow(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
+              HardReport& report) noexcept;
   /// From the guess, with the first weights times `factor`.
   void begin_again(Trajectory& trajectory, double factor) noexcept {
     trajectory = guess_;

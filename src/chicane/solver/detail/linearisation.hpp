@@ -12,6 +12,7 @@
 #include "chicane/base/inlining.hpp"
 #include "chicane/solver/detail/barrier.hpp"
 #include "chicane/solver/detail/evaluation.hpp"
+#include "chicane/solver/detail/hard_rows.hpp"
 #include "chicane/solver/detail/input_chains.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/pattern.hpp"
@@ -44,8 +45,10 @@ class Linearisation {
   alignas(64) double lower[kNu][kStageStride<Capacity>]{};    ///< bounds of the inputs
   alignas(64) double upper[kNu][kStageStride<Capacity>]{};
   InputChains<P, Capacity> chains;  ///< inputs whose changes are bounded, with all their bounds
-  double merit = 0.0;               ///< cost with the barrier's smoothed penalties; when slacks were centred
-  double defect_excess = 0.0;       ///< largest defect beyond its tolerance; <= 0: all are small enough
+  using Hard = typename HardRowsOf<P, Capacity, Arch>::Type;
+  Hard hard;                   ///< rows that must hold, for the primal-dual method
+  double merit = 0.0;          ///< cost with the barrier's smoothed penalties; when slacks were centred
+  double defect_excess = 0.0;  ///< largest defect beyond its tolerance; <= 0: all are small enough
   /// Not null: prices of the dynamics are unknowns, too. Looks leave `adjoint` as it is and put here what is
   /// missing to optimality in the states: [i][k] of x_k, k = 1 … horizon.
   double (*state_residual)[kStageStride<Capacity>] = nullptr;
@@ -123,24 +126,67 @@ class Linearisation {
     for (auto& row : lq.terminal) std::fill(std::begin(row), std::end(row), 0.0);
     const auto rows = Evaluate::template end<Order>(problem, t);
     double cost = 0.0;
-    each_row<typename Evaluate::EndValue, Order>(rows, [&](auto, const auto& r) CHICANE_INLINE {
+    each_row<typename Evaluate::EndValue, Order>(rows, [&](auto n, const auto& r) CHICANE_INLINE {
       const double value = Evaluate::number(r.v);
+      double weight = value;  // of the curvature
+      if constexpr (kHasHardRows<P>) {
+        if (n >= std::size_t{P::kOwnEnd})
+          weight = keep_end_row(problem, n - std::size_t{P::kOwnEnd}, r, value);
+      }
       cost += 0.5 * value * value;
       if constexpr (AnySparseRow<std::remove_cvref_t<decltype(r)>>) {
-        add_sparse_end_row<Order>(r, value, lq);
+        add_sparse_end_row<Order>(r, value, weight, lq);
       } else if constexpr (Layout::is_large()) {
         add_large_end_row(r, value, lq);
       } else {
-        add_end_row(r, value, lq);
+        add_end_row(r, value, weight, lq);
       }
     });
     std::copy(lq.terminal[kNx], lq.terminal[kNx] + kNx, lambda);
     return cost;
   }
 
+  /// Stores a row of the end that must hold; the multiplier that belongs to its curvature.
+  template <class R>
+  double keep_end_row(const P& problem, std::size_t n, const R& r, double value) noexcept {
+    hard.store_end(n, value);
+    if constexpr (AnySparseRow<R>) {
+      r.each_slope([&](std::size_t i, double share) { hard.store_end_slope(n, i, share); });
+    } else if constexpr (Layout::is_large()) {
+      for (std::size_t i = 0; i < kNx; ++i) hard.store_end_slope(n, i, r.slopes[i]);
+    } else {
+      each_state<R>([&](auto i) CHICANE_INLINE {
+        hard.store_end_slope(n, i, Evaluate::slope_number(jet::slope<i>(r)));
+      });
+    }
+    return problem.is_primal_dual ? hard.end_weight(problem, n) : value;
+  }
+  /// The same of the stages, whose residuals count in `gradient` with their multipliers alone.
+  template <int Order, class Row>
+  void keep_rows(const P& problem, const Row& residual, std::size_t k0, Gradient& gradient) noexcept {
+    each_row<V, Order>(residual, [&](auto n, const auto& r) CHICANE_INLINE {
+      if (n < own_residuals<P>()) return;
+      hard.store(n - own_residuals<P>(), k0, r);
+      if (problem.is_primal_dual)
+        Entries::template add_gradient<void>(n, r, curvature_weight(problem, n, k0, r.v) - r.v, gradient);
+    });
+  }
+  /// What the curvature of residual n counts by: its value, or a multiplier.
+  static V curvature_weight([[maybe_unused]] const P& problem, [[maybe_unused]] std::size_t n,
+                            [[maybe_unused]] std::size_t k0, const V& value) noexcept {
+    if constexpr (kHasHardRows<P>) {
+      if (n >= own_residuals<P>() && problem.is_primal_dual) {
+        const std::size_t row = n - own_residuals<P>();
+        return problem.equality_weight[row].root *
+               problem.equality_shift[row].at(StageLanes<V>{static_cast<int>(k0)});
+      }
+    }
+    return value;
+  }
+
   /// The share of one terminal residual: its gradient, Gauss–Newton's Hessian, and with Order 2 the rest.
   template <class R>
-  CHICANE_INLINE static void add_end_row(const R& r, double value, Lq& lq) noexcept {
+  CHICANE_INLINE static void add_end_row(const R& r, double value, double weight, Lq& lq) noexcept {
     each_state<R>([&](auto i) CHICANE_INLINE {
       const double slope_i = Evaluate::slope_number(jet::slope<i>(r));
       lq.terminal[kNx][i] += value * slope_i;
@@ -151,22 +197,22 @@ class Linearisation {
     jet::repeat<R::kSecond.size()>([&](auto n) CHICANE_INLINE {
       constexpr Pair p = members<R::kSecond>()[n];
       if constexpr (p.i < P::kNx && p.j < P::kNx) {
-        const double share = value * Evaluate::number(r.curvatures[n]);
+        const double share = weight * Evaluate::number(r.curvatures[n]);
         lq.terminal[p.i][p.j] += share;
         if constexpr (p.i != p.j) lq.terminal[p.j][p.i] += share;
       }
     });
   }
   template <int Order, class R>
-  static void add_sparse_end_row(const R& r, double value, Lq& lq) noexcept {
+  static void add_sparse_end_row(const R& r, double value, [[maybe_unused]] double weight, Lq& lq) noexcept {
     r.each_slope([&](std::size_t i, double slope) {
       lq.terminal[kNx][i] += value * slope;
       r.each_slope([&](std::size_t j, double other) { lq.terminal[i][j] += slope * other; });
     });
     if constexpr (Order == 2) {
       r.each_curvature([&](std::size_t i, std::size_t j, double curvature) {
-        lq.terminal[i][j] += value * curvature;
-        if (i != j) lq.terminal[j][i] += value * curvature;
+        lq.terminal[i][j] += weight * curvature;
+        if (i != j) lq.terminal[j][i] += weight * curvature;
       });
     }
   }
@@ -201,6 +247,8 @@ class Linearisation {
 
     collect_dynamics<Order>(rows.next, t, k0, live, how.defect_share, f, sums);
     add_residuals<Order>(rows.residual, live, gradient, l, sums);
+    if constexpr (kHasHardRows<P> && Evaluate::kHardRows > 0)
+      keep_rows<Order>(problem, rows.residual, k0, gradient);
     if constexpr (kNc > 0)
       add_soft<Order>(problem, rows.constraint, k0, live, how.centre, slacks, gradient, l, sums);
     if (!has_filter_method<P>() || state_residual == nullptr) [[likely]] {
@@ -211,7 +259,7 @@ class Linearisation {
     }
     measure(t, k0, live, f, gradient, lq, sums);
     if constexpr (Order == 2) {
-      if (how.is_exact) add_curvature(rows, k0, slacks, l);
+      if (how.is_exact) add_curvature(problem, rows, k0, slacks, l);
     }
     if constexpr (is_compact<Pattern>()) {
       lq.set_by_tables(k0, f, l);
@@ -381,12 +429,13 @@ class Linearisation {
 
   /// What Gauss–Newton leaves out: Σ r ∇²r + λ ∇²f + z ∇²c (eq. 22).
   template <class StageRows>
-  CHICANE_INLINE void add_curvature(const StageRows& rows, std::size_t k0, const Slacks& slacks,
-                                    Costs& l) const noexcept {
+  CHICANE_INLINE void add_curvature(const P& problem, const StageRows& rows, std::size_t k0,
+                                    const Slacks& slacks, Costs& l) const noexcept {
     each_row<V, 2>(rows.next, [&](auto i, const auto& f)
                                   CHICANE_INLINE { Entries::add_curvature(f, V::load(adjoint[i] + k0), l); });
-    each_row<V, 2>(rows.residual,
-                   [&](auto, const auto& r) CHICANE_INLINE { Entries::add_curvature(r, r.v, l); });
+    each_row<V, 2>(rows.residual, [&](auto n, const auto& r) CHICANE_INLINE {
+      Entries::add_curvature(r, curvature_weight(problem, n, k0, r.v), l);
+    });
     if constexpr (kNc > 0) {
       each_row<V, 2>(rows.constraint, [&](auto n, const auto& c) CHICANE_INLINE {
         Entries::add_curvature(c, slacks.load(n, k0).z, l);

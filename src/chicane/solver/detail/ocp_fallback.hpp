@@ -57,6 +57,34 @@ bool OcpSolver<P, Capacity, Arch>::filter_turn(const P& problem, const Deadline&
 }
 
 template <OcpProblem P, int Capacity, class Arch>
+bool OcpSolver<P, Capacity, Arch>::follow_rows(P& problem, const State& x0, Trajectory& trajectory,
+                                               const Deadline& deadline, int most,
+                                               SolveReport& report) noexcept {
+  using Outcome = typename Filter::Outcome;
+  constexpr int kPatience = 3;  // short steps in succession
+  filter_.take_rows(&problem);
+  SolveReport unused;
+  bool is_solved = false;
+  if (start(problem, x0, trajectory) && begin_filter(problem, trajectory, unused)) {
+    for (; report.iterations < most && !is_solved; ++report.iterations) {
+      const Outcome outcome = filter_.turn(problem, now_, lq_, barrier_, t_, deadline, report);
+      record_filter_turn(report);
+      if (outcome == Outcome::kGoing && filter_.short_steps() < kPatience) continue;
+      is_solved = outcome == Outcome::kSolved;
+      break;
+    }
+  }
+  filter_.take_rows(nullptr);
+  is_filtering_ = false;
+  if constexpr (kHasHardRows<P>) now_.hard.end(problem);
+  if (!is_solved) return false;
+  t_.write(trajectory);
+  filter_.hand_over(now_, lq_);
+  barrier_.set_mu(std::max(barrier_.mu(), options_.tolerance));
+  return true;
+}
+
+template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::begin_path(const P& problem, const State& x0,
                                               const Trajectory& trajectory) noexcept {
   SolveReport unused;

@@ -15,6 +15,8 @@ namespace chicane::solver {
 /// V is double, or a pack with one stage, or one problem, in each lane; μ is one number, or a pack as well.
 template <class V = double>
 struct SoftConstraint {
+  static constexpr double kMustHold = -1.0;  ///< the cap of constraints whose price keeps them from violation
+
   V value{0.0};  ///< c at the iterate
   V s{1.0};
   V t{1.0};
@@ -31,6 +33,13 @@ struct SoftConstraint {
   /// no memory. Newton's method for linear + quadratic · s = μ/s + μ/t on the smaller slack, from the
   /// solution for quadratic = 0.
   void centre(const SoftPenalty& price, const auto& mu) noexcept {
+    if (price.cap == kMustHold) {  // no room for a violation: what is missed stays a residual
+      s = V(1.0) * (mu / price.linear);
+      t = max(-value, 1e-2 * max(abs(value), V(1.0)));
+      n = mu / s;
+      z = mu / t;
+      return;
+    }
     const auto is_violated = value > V(0.0);
     const V gap = abs(value);
     const V beyond = max(value, V(0.0));
