@@ -37,7 +37,8 @@ References read(const std::string& file) {
     if (tab == std::string::npos || std::sscanf(line.c_str() + tab + 1, "%d %lf %lf %d", &is_solved,
                                                 &answer.cost, &answer.time, &answer.turns) != 4)
       continue;
-    answer.is_solved = is_solved != 0;
+    answer.is_solved = is_solved == 1;
+    answer.is_impossible = is_solved == 2;
     references[line.substr(0, tab)] = answer;
   }
   return references;
@@ -46,7 +47,7 @@ void write(const References& references, const std::string& file) {
   std::ofstream out(file);
   for (const auto& [key, answer] : references) {
     char numbers[96];
-    std::snprintf(numbers, sizeof numbers, "%d %.17g %.6g %d", answer.is_solved ? 1 : 0, answer.cost,
+    std::snprintf(numbers, sizeof numbers, "%d %.17g %.6g %d", answer.is_impossible ? 2 : (answer.is_solved ? 1 : 0), answer.cost,
                   answer.time, answer.turns);
     out << key << '\t' << numbers << '\n';
   }
@@ -79,6 +80,18 @@ void print(const FamilyRow& row, bool is_markdown) {
                 row.worst_residual);
   }
   std::fflush(stdout);
+}
+/// What cannot hold: how often it is said where Ipopt says it, and from how far a point.
+void print_infeasible(const std::vector<FamilyRow>& rows) {
+  bool is_first = true;
+  for (const FamilyRow& row : rows) {
+    if (row.reference_infeasible == 0) continue;
+    if (is_first)
+      std::printf("\n| family | from | infeasible | of Ipopt's | further |\n|---|---|--:|--:|--:|\n");
+    is_first = false;
+    std::printf("| %s | %s | %d of %d | %d of %d | %d |\n", row.family.data(), to_string(row.start).data(),
+                row.infeasible, row.instances, row.both_infeasible, row.reference_infeasible, row.further);
+  }
 }
 
 bool is_wanted(const Family& family, const std::vector<std::string_view>& names) {
@@ -195,6 +208,7 @@ int main(int argc, char** argv) {
   References references = read(file);
   print_head(is_markdown);
   int both = 0, reference = 0, wrong = 0;
+  std::vector<FamilyRow> impossible;
   for (const Family& family : all_families()) {
     if (!is_wanted(family, names)) continue;
     for (const NaiveStart start : {NaiveStart::kIdle, NaiveStart::kLine}) {
@@ -206,6 +220,14 @@ int main(int argc, char** argv) {
       if (!file.empty()) write(references, file);
     }
   }
+  request.is_impossible = true;
+  for (const Family& family : all_families()) {
+    if (!is_wanted(family, names) || !family.has_impossible) continue;
+    for (const NaiveStart start : {NaiveStart::kIdle, NaiveStart::kLine})
+      impossible.push_back(family.measure(request, start, references));
+  }
+  if (!file.empty()) write(references, file);
+  print_infeasible(impossible);
   std::printf("%d of the %d that Ipopt solves, %d false\n", both, reference, wrong);
   return wrong == 0 ? 0 : 1;
 }

@@ -17,7 +17,8 @@ enum class NaiveStart { kIdle, kLine };
 /// What Ipopt found of one instance.
 struct ReferenceAnswer {
   bool is_solved = false;
-  double cost = 0.0;
+  bool is_impossible = false;  ///< it ended where the misses have a local minimum
+  double cost = 0.0;           ///< then: the sum of the misses of its inputs, simulated
   double time = 0.0;
   int turns = 0;
 };
@@ -31,6 +32,7 @@ struct FamilyRequest {
   int max_iterations = 1000;
   bool with_ipopt = false;
   int ipopt_instances = 1 << 30;  ///< Ipopt solves the first so many, and what is not solved
+  bool is_impossible = false;     ///< the instances that leave no solution
   bool each = false;              ///< a line for each instance
 };
 
@@ -42,6 +44,8 @@ struct FamilyRow {
   int reference = 0, both = 0;  ///< solved by Ipopt; by both
   int lower = 0, higher = 0;    ///< costs more than 1 % (and 1e-6) from Ipopt's
   int false_optimal = 0;
+  int infeasible = 0, reference_infeasible = 0, both_infeasible = 0;
+  int further = 0;  ///< of both: a sum of misses more than 1e-4 above that of Ipopt's point
   double turns = 0.0, time = 0.0, most_time = 0.0, ratio = 0.0, least_ratio = 0.0;
   double worst_residual = 0.0;  ///< of those that are optimal, by the independent check
   double floor_residual = 0.0;  ///< and of those at the floor

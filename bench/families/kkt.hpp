@@ -40,19 +40,19 @@ struct OverArrays : P {
     return {};
   }
   template <class T>
-  std::array<T, solver::equality_count<P>()> equality(int k, const X<T>& x, const U<T>& u) const {
-    if constexpr (solver::equality_count<P>() > 0) return solver::to_array<T>(P::equality(k, x, u));
+  std::array<T, kNh> equality(int k, const X<T>& x, const U<T>& u) const {
+    if constexpr (kNh > 0) return solver::to_array<T>(P::equality(k, x, u));
     return {};
   }
   template <class T>
-  std::array<T, solver::terminal_equality_count<P>()> terminal_equality(const X<T>& x) const {
-    if constexpr (solver::terminal_equality_count<P>() > 0)
+  std::array<T, kNeh> terminal_equality(const X<T>& x) const {
+    if constexpr (kNeh > 0)
       return solver::to_array<T>(P::terminal_equality(x));
     return {};
   }
   template <class T>
-  std::array<T, solver::terminal_constraint_count<P>()> terminal_constraint(const X<T>& x) const {
-    if constexpr (solver::terminal_constraint_count<P>() > 0)
+  std::array<T, kNec> terminal_constraint(const X<T>& x) const {
+    if constexpr (kNec > 0)
       return solver::to_array<T>(P::terminal_constraint(x));
     return {};
   }
@@ -71,6 +71,7 @@ struct KktResidual {
   double subgradient = 0.0;   ///< how far each price is from belonging to its constraint's value
   double outside = 0.0;       ///< of the bounds of inputs and of their changes
   double miss = 0.0;          ///< of what must hold
+  double total = 0.0;         ///< sum of its misses
   double rounding = 0.0;  ///< what it may leave of the stationarity here: one ulp in each product, added up
                           ///< along the horizon
   double cost = 0.0;      ///< with the exact penalties
@@ -114,12 +115,14 @@ KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::
     int n = 0;
     for (const D& h : problem.template terminal_equality<D>(x)) {
       result.miss = std::max(result.miss, std::fabs(h.v));
+      result.total += std::fabs(h.v);
       add(h, hard.terminal_equality_multiplier(n++));
     }
     n = 0;
     for (const D& g : problem.template terminal_constraint<D>(x)) {
       const double y = hard.terminal_constraint_multiplier(n++);
       result.miss = std::max(result.miss, g.v);
+      result.total += std::max(0.0, g.v);
       result.subgradient = std::max({result.subgradient, -y, std::min(-g.v, y)});
       add(g, y);
     }
@@ -156,6 +159,7 @@ KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::
     for (const D& h : problem.template equality<D>(stage, x, u)) {
       if (std::isnan(h.v)) result.miss = HUGE_VAL;
       result.miss = std::max(result.miss, std::fabs(h.v));
+      result.total += std::fabs(h.v);
       add(h, hard.equality_multiplier(stage, row++));
     }
     if constexpr (P::kNc > 0) {
@@ -167,6 +171,7 @@ KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::
         const double beyond = std::max(value, 0.0);
         if (is_hard(problem, c)) {
           result.miss = std::max(result.miss, beyond);
+          result.total += beyond;
           result.subgradient = std::max({result.subgradient, std::min(-std::min(value, 0.0), z), -z});
           add(values[static_cast<std::size_t>(c)], z);
           continue;

@@ -28,6 +28,12 @@ Family crane_in_least_time_family();
 Family periodic_pendulum_family();
 Family goddard_rocket_family();
 Family lorry_family();
+Family bryson_denham_family();
+Family gates_family();
+Family tanks_family();
+Family brachistochrone_family();
+Family orbit_raising_family();
+Family tube_family();
 
 std::span<const Family> all_families() {
   static const std::array families{cart_pole_family(),
@@ -50,7 +56,13 @@ std::span<const Family> all_families() {
                                    crane_in_least_time_family(),
                                    periodic_pendulum_family(),
                                    goddard_rocket_family(),
-                                   lorry_family()};
+                                   lorry_family(),
+                                   bryson_denham_family(),
+                                   gates_family(),
+                                   tanks_family(),
+                                   brachistochrone_family(),
+                                   orbit_raising_family(),
+                                   tube_family()};
   return families;
 }
 

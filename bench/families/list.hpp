@@ -13,6 +13,7 @@ struct Family {
   std::string_view name;
   FamilyRow (*measure)(const FamilyRequest&, NaiveStart, References&);
   LoopRow (*drive)(const FamilyRequest&);  ///< null: no problem that goes on
+  bool has_impossible = false;             ///< FamilyRequest::is_impossible
 };
 [[nodiscard]] std::span<const Family> all_families();
 

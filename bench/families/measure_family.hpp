@@ -31,14 +31,23 @@ inline double at_share(std::vector<double> values, double share) {
 }
 }  // namespace detail
 
+/// Whether a family has instances that leave no solution.
+template <class P>
+inline constexpr bool kHasImpossible = requires(Random& random) {
+  P::make_impossible(random);
+};
+
 template <class P>
 class FamilyMeasurement {
  public:
   static constexpr int kHorizon = P::kHorizon;
   using Trajectory = solver::Trajectory<P::kNx, P::kNu, kHorizon>;
 
-  static FamilyInstance<P> instance(int seed) {
+  static FamilyInstance<P> instance(int seed, bool is_impossible = false) {
     Random random{static_cast<std::uint64_t>(seed) * 7919U + 17U};
+    if constexpr (kHasImpossible<P>) {
+      if (is_impossible) return P::make_impossible(random);
+    }
     return P::make(random);
   }
   /// The guess that belongs to a start.
@@ -77,7 +86,7 @@ class FamilyMeasurement {
     FamilyRow row{.family = P::kName, .start = start, .instances = request.instances};
     std::vector<double> times, turns, ratios;
     for (int i = request.first; i < request.first + request.instances; ++i) {
-      const FamilyInstance<P> one = instance(i);
+      const FamilyInstance<P> one = instance(i, request.is_impossible);
       const auto t = std::make_unique<Trajectory>();
       solver::SolveReport report;
       double time = 1e30;
@@ -99,6 +108,13 @@ class FamilyMeasurement {
       row.optimal += is_optimal ? 1 : 0;
       const bool is_at_floor = report.status == solver::SolveStatus::kAtFloor;
       row.at_floor += is_at_floor ? 1 : 0;
+      const bool is_infeasible = report.status == solver::SolveStatus::kInfeasible;
+      row.infeasible += is_infeasible ? 1 : 0;
+      row.reference_infeasible += reference.is_impossible ? 1 : 0;
+      if (is_infeasible && reference.is_impossible) {
+        ++row.both_infeasible;
+        row.further += kkt.total > reference.cost * (1.0 + 1e-4) + 1e-6 ? 1 : 0;
+      }
       row.usable += solver::usable(report.status) ? 1 : 0;
       row.reference += reference.is_solved ? 1 : 0;
       row.both += reference.is_solved && is_optimal ? 1 : 0;
@@ -117,10 +133,11 @@ class FamilyMeasurement {
       if (request.each) {
         std::printf(
             "%s %s %d: %s turns %d sweeps %d cost %.8g stat %.2e defect %.2e | check stat %.2e defect %.2e "
-            "sub %.2e miss %.2e | ipopt %d cost %.8g turns %d%s\n",
+            "sub %.2e miss %.2e total %.6g | ipopt %s %.8g turns %d%s\n",
             P::kName.data(), to_string(start).data(), i, to_string(report.status).data(), report.iterations,
             report.sweeps, kkt.cost, report.stationarity, report.defect, kkt.stationarity, kkt.defect,
-            kkt.subgradient, kkt.miss, reference.is_solved ? 1 : 0, reference.cost, reference.turns,
+            kkt.subgradient, kkt.miss, kkt.total,
+            reference.is_solved ? "cost" : (reference.is_impossible ? "infeasible total" : "none"), reference.cost, reference.turns,
             is_false ? " FALSE" : "");
       }
     }
@@ -138,17 +155,25 @@ class FamilyMeasurement {
                                       [[maybe_unused]] const OverArrays<P>& arrays, NaiveStart start,
                                       int seed, [[maybe_unused]] bool is_asked) {
     const std::string key =
-        std::string(P::kName) + "|" + std::string(to_string(start)) + "|" + std::to_string(seed);
+        std::string(P::kName) + (request.is_impossible ? " impossible|" : "|") + std::string(to_string(start)) + "|" + std::to_string(seed);
     if (const auto known = references.find(key); known != references.end()) return known->second;
 #if defined(CHICANE_HAVE_IPOPT)
     if (!request.with_ipopt || !is_asked) return {};
     static IpoptSolver<OverArrays<P>> ipopt;
     const auto t = std::make_unique<Trajectory>(guess(one, start));
     const IpoptReport report = ipopt.solve(arrays, one.start, *t);
-    const double cost = check_kkt(
-                            arrays, *t, [](int, int) { return 0.0; }, [](int, int) { return 0.0; })
-                            .cost;
-    return references[key] = {report.is_solved, cost, report.time, report.iterations};
+    if (report.is_impossible) {
+      for (int k = 0; k < kHorizon; ++k) {
+        const auto low = one.problem.input_lower(k), high = one.problem.input_upper(k);
+        auto& u = t->u[static_cast<std::size_t>(k)];
+        for (std::size_t m = 0; m < u.size(); ++m) u[m] = std::clamp(u[m], low[m], high[m]);
+      }
+      solver::roll_out(one.problem, one.start, *t);
+    }
+    const KktResidual kkt =
+        check_kkt(arrays, *t, [](int, int) { return 0.0; }, [](int, int) { return 0.0; });
+    return references[key] = {report.is_solved, report.is_impossible,
+                              report.is_impossible ? kkt.total : kkt.cost, report.time, report.iterations};
 #else
     return {};
 #endif

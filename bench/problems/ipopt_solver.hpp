@@ -15,6 +15,7 @@ namespace chicane::bench {
 
 struct IpoptReport {
   bool is_solved = false;
+  bool is_impossible = false;      ///< a local minimum of what is missed: the trajectory is that
   int iterations = 0;
   double time = 0.0;               ///< CPU time from the call to the answer [s]
   double time_in_functions = 0.0;  ///< values and derivatives of the problem in it [s]
@@ -66,7 +67,8 @@ class IpoptSolver {
     report.time_in_functions = nlp_->time_in_functions;
     report.is_solved = status == Ipopt::Solve_Succeeded || status == Ipopt::Solved_To_Acceptable_Level;
     if (Ipopt::IsValid(app.Statistics())) report.iterations = app.Statistics()->IterationCount();
-    if (report.is_solved) nlp_->give_solution(t);
+    report.is_impossible = status == Ipopt::Infeasible_Problem_Detected;
+    if (report.is_solved || report.is_impossible) nlp_->give_solution(t);
     return report;
   }
 

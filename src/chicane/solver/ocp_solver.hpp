@@ -69,6 +69,10 @@ class OcpSolver {
     CHICANE_ASSERT(trajectory.horizon >= 1 && trajectory.horizon <= Capacity);
     SolveReport report;
     if (!start(problem, x0, trajectory)) return give_up(problem, x0, trajectory, report);
+    if constexpr (kCanFilter) {
+      if (begins_with_filter_ && !begin_filter(problem, trajectory, report))
+        return give_up(problem, x0, trajectory, report);
+    }
     return run(problem, x0, trajectory, deadline, report);
   }
   /// The same after a small change of the problem's functions, from where the last solve ended: iterate,
@@ -95,6 +99,9 @@ class OcpSolver {
 
   /// From the next solve on, turns are added to `log`, which must live as long; null: none.
   void record_turns(TurnLog* log) noexcept { log_ = log; }
+
+  /// From the next solve on: no full steps before the filter method has brought the iterate near a solution.
+  void begin_with_filter(bool do_so) noexcept { begins_with_filter_ = do_so; }
 
   // ---- the filter method from barrier to barrier, for who changes the problem on the way
 
@@ -485,6 +492,7 @@ class OcpSolver {
   bool is_filtering_ = false;  ///< steps are the filter method's
   bool has_filtered_ = false;  ///< it has been used in this solve
   bool stands_still_ = false;  ///< the start could not be simulated
+  bool begins_with_filter_ = false;
   bool is_again_ = false;   ///< the start is near the solution
   bool is_fresh_ = true;    ///< slacks and working set are to be guessed anew
   std::size_t target_ = 0;  ///< horizon asked for

@@ -21,6 +21,15 @@ bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& tra
       if (follow(x0, trajectory, deadline, left, report))
         return round(x0, trajectory, deadline, left, report);
       begin_again(trajectory, 1.0);
+      if (is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report)) {
+        report.status = SolveStatus::kInfeasible;
+        return false;
+      }
+      start_with_weights(trajectory.horizon, 1.0);
+      inner_.start_from_states(true);
+      if (follow(x0, trajectory, deadline, left, report))
+        return round(x0, trajectory, deadline, left, report);
+      begin_again(trajectory, 1.0);
       if (!track(x0, trajectory, deadline, left, report)) {
         begin_again(trajectory, 1.0);
         trial_ = most_of_a_trial();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -14,35 +15,37 @@ namespace chicane::solver {
 // What cannot hold: the parts of the solver of HardProblems that find out.
 
 /// Minimises the misses with ever less of the cost (eq. 41). True when they have a minimum above zero that
-/// does not depend on how much, nor on how steep they are, nor on whether hard constraints may give way.
-/// Else weights and multipliers are those of the point that was found.
+/// does not depend on how much, nor on whether hard constraints may give way: `trajectory` is there. Else
+/// weights and multipliers are those of the point that was found.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                                                   const Deadline& deadline, int& left,
                                                   HardReport& report) noexcept {
-  constexpr double kShare = 1e-5, kLess = 1e-3, kFiner = 1e4;
-  constexpr int kSteep = 2, kSquares = 3;
+  constexpr double kFirstUnit = 0.1;
+  constexpr std::array kShares{1e-5, 1e-8, 1e-8};
+  constexpr std::size_t kSquares = 1, kPhases = kShares.size();
   const auto factors = problem_.price_factor;
-  const double unit = std::max(options_.tolerance, measure(problem, trajectory, nullptr).worst());
-  double factor = 1.0;
-  double share = kShare / unit_;
+  double unit = std::max(kFirstUnit, measure(problem, trajectory, nullptr).worst());
+  double share = 1.0;
   double last = std::numeric_limits<double>::infinity();
   for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
   problem_.terminal_shift.fill(0.0);
   ask_for(finest_tolerance(problem, trajectory.horizon));
   bool is_minimum = false;
-  for (int turn = 0; turn <= (kNc > 0 ? kSquares : kSteep); ++turn) {
-    if (turn == 1) share *= kLess;
-    if (turn == kSteep) factor = kFiner;
-    weigh_misses(problem, share, unit, factor);
-    if (turn == kSquares) problem_.square_price = factor / (unit * unit);
+  inner_.begin_with_filter(true);
+  for (std::size_t phase = 0; phase < kPhases; ++phase) {
+    share = kShares[phase] / unit_;
+    weigh_misses(problem, share, unit);
+    problem_.square_price = phase == kSquares ? 1.0 / (unit * unit) : 0.0;
     can_go_on_ = false;
     const bool converged = round(x0, trajectory, deadline, left, report);
     const double worst = measure(problem, trajectory, &report).worst();
-    is_minimum = turn >= kSteep && converged && worst > options_.tolerance && worst > 0.5 * last;
+    is_minimum = converged && worst > options_.tolerance && (phase == 0 || worst > 0.5 * last);
+    if (!is_minimum || left <= 0) break;
     last = worst;
-    if (!converged || worst <= options_.tolerance || left <= 0 || (turn >= kSteep && !is_minimum)) break;
+    if (phase + 1 < kPhases) unit = worst;
   }
+  inner_.begin_with_filter(false);
   problem_.square_price = 0.0;
   ask_for(round_tolerance());
   if (is_minimum) return true;
@@ -50,7 +53,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   can_go_on_ = false;
   problem_.cost_root = 1.0;
   problem_.price_factor = factors;
-  const double multiplier = factor / (share * unit * unit);  // times a miss: of the same point
+  const double multiplier = 1.0 / (share * unit * unit);  // times a miss: of the same point
   const double weight = std::min(multiplier, kHeavy * unit_ / (0.5 * unit * unit));
   for (std::size_t n = 0; n < kNh; ++n) {
     problem_.equality_weight[n].set(weight);
@@ -78,16 +81,15 @@ double HardSolver<P, Capacity, Arch>::finest_tolerance(const P& problem, int hor
   }
   return std::max(kLeast, kFiner * width);
 }
-/// The cost by `share`, misses in multiples of `unit`, by `factor`: what is small counts, too.
+/// The cost by `share`, misses in multiples of `unit`: what is small counts, too.
 template <HardProblem P, int Capacity, class Arch>
-void HardSolver<P, Capacity, Arch>::weigh_misses(const P& problem, double share, double unit,
-                                                 double factor) noexcept {
+void HardSolver<P, Capacity, Arch>::weigh_misses(const P& problem, double share, double unit) noexcept {
   problem_.cost_root = std::sqrt(share);
-  for (auto& weight : problem_.equality_weight) weight.set(factor / (unit * unit));
-  for (auto& weight : problem_.terminal_weight) weight.set(factor / (unit * unit));
+  for (auto& weight : problem_.equality_weight) weight.set(1.0 / (unit * unit));
+  for (auto& weight : problem_.terminal_weight) weight.set(1.0 / (unit * unit));
   for (std::size_t c = 0; c < kNc; ++c)
     problem_.price_factor[c] =
-        is_hard(problem, c) ? factor / (unit * std::max(1e-12, price_of(problem, c).linear)) : share;
+        is_hard(problem, c) ? 1.0 / (unit * std::max(1e-12, price_of(problem, c).linear)) : share;
 }
 
 }  // namespace chicane::solver

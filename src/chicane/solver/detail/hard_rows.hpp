@@ -57,6 +57,7 @@ class HardRows {
   }
   void store_end(std::size_t n, double value) noexcept {
     end_value_[n] = value;
+    is_there_[n] = true;
     std::fill(std::begin(end_row_[n]), std::end(end_row_[n]), 0.0);
   }
   void store_end_slope(std::size_t n, std::size_t i, double slope) noexcept { end_row_[n][i] = slope; }
@@ -70,6 +71,11 @@ class HardRows {
     for (auto& weight : problem.terminal_weight) weight.set(kNearlyNone);
     for (auto& shift : problem.equality_shift) shift.values.fill(0.0);
     problem.terminal_shift.fill(0.0);
+    std::fill(std::begin(is_there_), std::end(is_there_), false);
+    std::fill(std::begin(end_value_), std::end(end_value_), 0.0);
+    for (auto& row : end_row_) std::fill(std::begin(row), std::end(row), 0.0);
+    value_ = {};
+    row_ = {};
   }
   /// From now on with ρ, multipliers as they are.
   void weigh(P& problem, double rho) noexcept {
@@ -128,6 +134,7 @@ class HardRows {
       double change = 0.0;
       for (std::size_t i = 0; i < kNx; ++i) change += end_row_[n][i] * step.x[i][step.horizon];
       const double root = problem.terminal_weight[n].root, shift = problem.terminal_shift[n];
+      if (!is_there_[n]) continue;
       slope_ -= end_value_[n] * change;
       const double linear = (end_value_[n] + change) / root - shift;  // h + J δx
       dend_[n] = linear;
@@ -153,6 +160,7 @@ class HardRows {
   void measure_end(const Values& h, double length, double mu, double& miss, double& cost) noexcept {
     for (std::size_t n = 0; n < kEqualities; ++n) miss += std::fabs(h[n]);
     for (std::size_t n = kEqualities; n < kEndRows; ++n) {
+      if (!is_there_[n]) continue;
       t_at_[n] = t_[n];
       if (length > 0.0) t_at_[n] = std::max(t_[n] + length * dt_[n], -h[n]);  // more room costs nothing
       miss += std::fabs(h[n] + t_at_[n]);
@@ -170,6 +178,7 @@ class HardRows {
       }
     }
     for (std::size_t n = 0; n < kEndRows; ++n) {
+      if (!is_there_[n]) continue;
       const double h = end_value_[n] / problem.terminal_weight[n].root - problem.terminal_shift[n];
       worst = std::max(worst, unit * std::fabs(n < kEqualities ? h : h + t_[n]));
       if (n >= kEqualities) worst = std::max(worst, std::fabs(t_[n] * z_[n] - mu));
@@ -198,6 +207,7 @@ class HardRows {
     }
     for (std::size_t n = 0; n < kEqualities; ++n) problem.terminal_shift[n] += length * dend_[n];
     for (std::size_t n = kEqualities; n < kEndRows; ++n) {
+      if (!is_there_[n]) continue;
       t_[n] = t_at_[n];
       const double z = z_[n] + dual_length * dz_[n];
       z_[n] = std::min(std::max(z, mu / (kFar * t_[n])), kFar * mu / t_[n]);
@@ -209,7 +219,7 @@ class HardRows {
     problem.is_primal_dual = false;
     for (std::size_t n = kEqualities; n < kEndRows; ++n) {
       problem.terminal_weight[n].set(rho_);
-      problem.terminal_shift[n] = z_[n] / rho_;
+      problem.terminal_shift[n] = is_there_[n] ? z_[n] / rho_ : 0.0;
     }
   }
 
@@ -231,6 +241,7 @@ class HardRows {
   double dend_[kEndRows + 1]{};
   double t_[kEndRows + 1]{}, z_[kEndRows + 1]{}, dt_[kEndRows + 1]{}, dz_[kEndRows + 1]{},
       t_at_[kEndRows + 1]{};
+  bool is_there_[kEndRows + 1]{};  ///< sparse rows may be absent: rows that the problem does not have
   double slope_ = 0.0;
   double rho_ = 1.0;
 };

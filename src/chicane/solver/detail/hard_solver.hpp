@@ -135,8 +135,10 @@ class HardSolver {
     for (;;) {
       const bool converged = has_begun ? round(x0, trajectory, deadline, left, report)
                                        : first_round(x0, trajectory, deadline, left, report);
-      has_begun = true;
       Misses now = measure(problem, trajectory, &report);
+      if (!has_begun && !converged && report.status == SolveStatus::kInfeasible)
+        return finish(SolveStatus::kInfeasible, now, report);
+      has_begun = true;
       if (report.status == SolveStatus::kNotFinite) return report;
       update(now, progress.is_first() ? nullptr : &before, trajectory.horizon);
       if (converged && now.worst() <= options_.tolerance) return finish(report.status, now, report);
@@ -378,7 +380,7 @@ class HardSolver {
   bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
                      int& left, HardReport& report) noexcept;
   double finest_tolerance(const P& problem, int horizon) const noexcept;
-  void weigh_misses(const P& problem, double share, double unit, double factor) noexcept;
+  void weigh_misses(const P& problem, double share, double unit) noexcept;
 
   // ---- values
 
