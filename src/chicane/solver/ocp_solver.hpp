@@ -69,10 +69,6 @@ class OcpSolver {
     CHICANE_ASSERT(trajectory.horizon >= 1 && trajectory.horizon <= Capacity);
     SolveReport report;
     if (!start(problem, x0, trajectory)) return give_up(problem, x0, trajectory, report);
-    if constexpr (kCanFilter) {
-      if (begins_with_filter_ && !begin_filter(problem, trajectory, report))
-        return give_up(problem, x0, trajectory, report);
-    }
     return run(problem, x0, trajectory, deadline, report);
   }
   /// The same after a small change of the problem's functions, from where the last solve ended: iterate,
@@ -100,9 +96,6 @@ class OcpSolver {
   /// From the next solve on, turns are added to `log`, which must live as long; null: none.
   void record_turns(TurnLog* log) noexcept { log_ = log; }
 
-  /// From the next solve on: no full steps before the filter method has brought the iterate near a solution.
-  void begin_with_filter(bool do_so) noexcept { begins_with_filter_ = do_so; }
-
   // ---- the filter method from barrier to barrier, for who changes the problem on the way
 
   /// Begins it at a guess. False when that is of no use.
@@ -118,12 +111,13 @@ class OcpSolver {
   /// There: solve_again() goes on with full steps.
   void end_path() noexcept;
 
-  // ---- the primal-dual method of rows that must hold (detail/hard_rows.hpp), for HardSolver
+  // ---- the filter method alone, for HardSolver
 
   /// Follows the barrier from a guess to its end, in at most `most` turns, counted in `report`. True where it
-  /// gets there: `problem` has the multipliers, and solve_again() goes on with full steps after reprice().
-  bool follow_rows(P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline, int most,
-                   SolveReport& report) noexcept;
+  /// gets there: solve_again() goes on with full steps. `rows`: the problem itself, whose rows that must hold
+  /// are equations then (detail/hard_rows.hpp), and which gets their multipliers; null: residuals.
+  bool follow_barrier(const P& problem, P* rows, const State& x0, Trajectory& trajectory,
+                      const Deadline& deadline, int most, SolveReport& report) noexcept;
   /// Slacks of hard constraints to prices that have changed.
   void reprice(const P& problem) noexcept { barrier_.reprice(problem, t_.horizon); }
 
@@ -492,7 +486,6 @@ class OcpSolver {
   bool is_filtering_ = false;  ///< steps are the filter method's
   bool has_filtered_ = false;  ///< it has been used in this solve
   bool stands_still_ = false;  ///< the start could not be simulated
-  bool begins_with_filter_ = false;
   bool is_again_ = false;   ///< the start is near the solution
   bool is_fresh_ = true;    ///< slacks and working set are to be guessed anew
   std::size_t target_ = 0;  ///< horizon asked for

@@ -310,7 +310,9 @@ class FilterMethod {
       now.chains.keep_previous(candidate_);
       Merit there = measure(problem, now, slacks, candidate_, length);
       bool is_good = is_acceptable(here, there, slope, length);
-      if (!is_good && trial >= kPatience && simulate(problem, now, lq, t, length)) {
+      // A step whose second order opens defects (Maratos): the same direction without them.
+      const bool opens_defects = kHasHardRows<P> && there.miss > here.miss;
+      if (!is_good && (trial >= kPatience || opens_defects) && simulate(problem, now, lq, t, length)) {
         there = measure(problem, now, slacks, candidate_, length, &lq, &t);
         is_good = is_acceptable(here, there, slope, length);
       }

@@ -47,7 +47,7 @@ bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajecto
   constexpr double kDearer = 4.0;  // than the highest multiplier: the constraint is kept
   SolveReport seen;
   const int most = std::max(1, std::min({left, kMostTurns, options_.max_iterations / 4}));
-  const bool is_solved = inner_.follow_rows(problem_, x0, trajectory, deadline, most, seen);
+  const bool is_solved = inner_.follow_barrier(problem_, &problem_, x0, trajectory, deadline, most, seen);
   report.iterations += seen.iterations;
   report.sweeps += seen.sweeps;
   left -= seen.iterations;

@@ -23,32 +23,48 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
                                                   HardReport& report) noexcept {
   constexpr double kFirstUnit = 0.1;
   constexpr std::array kShares{1e-5, 1e-8, 1e-8};
-  constexpr std::size_t kSquares = 1, kPhases = kShares.size();
+  constexpr std::array kKept{0.0, 0.5, 0.01};  // of the largest miss; squares spread it
+  constexpr std::size_t kSquares = 2, kPhases = kShares.size();
   const auto factors = problem_.price_factor;
   double unit = std::max(kFirstUnit, measure(problem, trajectory, nullptr).worst());
   double share = 1.0;
-  double last = std::numeric_limits<double>::infinity();
+  double last = 0.0;
   for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
   problem_.terminal_shift.fill(0.0);
   ask_for(finest_tolerance(problem, trajectory.horizon));
   bool is_minimum = false;
-  inner_.begin_with_filter(true);
   for (std::size_t phase = 0; phase < kPhases; ++phase) {
     share = kShares[phase] / unit_;
     weigh_misses(problem, share, unit);
     problem_.square_price = phase == kSquares ? 1.0 / (unit * unit) : 0.0;
-    can_go_on_ = false;
-    const bool converged = round(x0, trajectory, deadline, left, report);
+    if (phase == kSquares) kept_ = trajectory;
+    SolveReport seen;
+    const int most = std::min(std::max(1, left), most_of_a_trial());
+    const bool converged = inner_.follow_barrier(problem_, nullptr, x0, trajectory, deadline, most, seen);
+    inner_.start_from_states(true);
+    report.iterations += seen.iterations;
+    report.sweeps += seen.sweeps;
+    left -= seen.iterations;
     const double worst = measure(problem, trajectory, &report).worst();
-    is_minimum = converged && worst > options_.tolerance && (phase == 0 || worst > 0.5 * last);
+    is_minimum = converged && worst > options_.tolerance && worst > kKept[phase] * last;
     if (!is_minimum || left <= 0) break;
-    last = worst;
-    if (phase + 1 < kPhases) unit = worst;
+    last = unit = worst;
   }
-  inner_.begin_with_filter(false);
   problem_.square_price = 0.0;
   ask_for(round_tolerance());
-  if (is_minimum) return true;
+  if (is_minimum) {
+    trajectory = kept_;
+    problem_.square_price = 0.0;
+    measure(problem, trajectory, nullptr);
+    for (std::size_t n = 0; n < kNh; ++n) {
+      for (std::size_t k = 0; k < static_cast<std::size_t>(trajectory.horizon); ++k)
+        problem_.equality_shift[n][k] = equality_[n][k];
+    }
+    for (std::size_t n = 0; n < kEnd; ++n)
+      problem_.terminal_shift[n] = n < kNeh ? terminal_[n] : std::max(0.0, terminal_[n]);
+    keep_prices(trajectory.horizon);
+    return true;
+  }
   report.status = SolveStatus::kStalled;  // it converged, but not with the whole cost
   can_go_on_ = false;
   problem_.cost_root = 1.0;
@@ -67,12 +83,12 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   }
   return false;
 }
-/// A ten thousandth of the narrowest bounds' distance, where that is less: steps from one to the other are
+/// A ten thousandth of the narrowest bounds' distance, at most 1e-8: steps from one to the other are
 /// no longer than the distance, whatever the slope.
 template <HardProblem P, int Capacity, class Arch>
 double HardSolver<P, Capacity, Arch>::finest_tolerance(const P& problem, int horizon) const noexcept {
-  constexpr double kFiner = 1e-4, kLeast = 1e-13;
-  double width = options_.tolerance;
+  constexpr double kFiner = 1e-4, kLeast = 1e-13, kUsual = 1e-4;
+  double width = kUsual;
   for (int k = 0; k < horizon; ++k) {
     const auto low = problem.input_lower(k), high = problem.input_upper(k);
     for (std::size_t m = 0; m < low.size(); ++m) {

@@ -57,26 +57,28 @@ bool OcpSolver<P, Capacity, Arch>::filter_turn(const P& problem, const Deadline&
 }
 
 template <OcpProblem P, int Capacity, class Arch>
-bool OcpSolver<P, Capacity, Arch>::follow_rows(P& problem, const State& x0, Trajectory& trajectory,
-                                               const Deadline& deadline, int most,
-                                               SolveReport& report) noexcept {
+bool OcpSolver<P, Capacity, Arch>::follow_barrier(const P& problem, P* rows, const State& x0,
+                                                  Trajectory& trajectory, const Deadline& deadline, int most,
+                                                  SolveReport& report) noexcept {
   using Outcome = typename Filter::Outcome;
-  constexpr int kPatience = 3;  // short steps in succession
-  filter_.take_rows(&problem);
+  const int patience = rows != nullptr ? 3 : most;  // short steps in succession
+  filter_.take_rows(rows);
   SolveReport unused;
   bool is_solved = false;
   if (start(problem, x0, trajectory) && begin_filter(problem, trajectory, unused)) {
     for (; report.iterations < most && !is_solved; ++report.iterations) {
       const Outcome outcome = filter_.turn(problem, now_, lq_, barrier_, t_, deadline, report);
       record_filter_turn(report);
-      if (outcome == Outcome::kGoing && filter_.short_steps() < kPatience) continue;
+      if (outcome == Outcome::kGoing && filter_.short_steps() < patience) continue;
       is_solved = outcome == Outcome::kSolved;
       break;
     }
   }
   filter_.take_rows(nullptr);
   is_filtering_ = false;
-  if constexpr (kHasHardRows<P>) now_.hard.end(problem);
+  if constexpr (kHasHardRows<P>) {
+    if (rows != nullptr) now_.hard.end(*rows);
+  }
   if (!is_solved) return false;
   t_.write(trajectory);
   filter_.hand_over(now_, lq_);
