@@ -93,7 +93,7 @@ class FilterMethod {
     failures_ = simulations_ = 0;
     stops_at_barriers_ = false;
     candidate_ = t;
-    short_steps_ = 0;
+    short_steps_ = leaps_ = 0;
   }
   /// Before start(): rows that must hold are unknowns' equations, with slacks and multipliers of their own,
   /// and `rows`, the problem itself, keeps them. Null: they are residuals like others.
@@ -125,7 +125,7 @@ class FilterMethod {
     is_fresh_ = is_new_barrier_ = true;
     return true;
   }
-  /// The longest move of an input in the last step that was taken.
+
   /// Of the last turns this many in succession have taken a small share of their step.
   [[nodiscard]] int short_steps() const noexcept { return short_steps_; }
   [[nodiscard]] double moved() const noexcept { return moved_; }
@@ -174,7 +174,9 @@ class FilterMethod {
   static constexpr double kNearBarrier = 1e-3;
   static constexpr double kFirstBarrier = 0.1;  ///< where gradients are at most kSteep
   static constexpr double kSteep = 100.0;
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr double kShort = 0.1;
+  static constexpr int kShortInTurn = 3, kMostLeaps = 4;
   static constexpr double kRowWeight = 1e6;  ///< ρ of rows that must hold, and the price of hard limits, in
   static constexpr double kHardPrice = 1e6;  ///< the unit of costs
   static constexpr double kSolvedAt = 10.0;  ///< a barrier's problem is solved at this many times the barrier
@@ -304,6 +306,8 @@ class FilterMethod {
       }
     }
     const double least = least_length(here, slope);
+    // Short steps in succession: the filter hinders what would converge (Maratos). One whole step without it.
+    const bool crawls = kHasHardRows<P> && short_steps_ >= kShortInTurn && leaps_ < kMostLeaps;
     for (int trial = 0; trial == 0 || length >= least; ++trial, length *= 0.5) {
       if (deadline.spent()) return Outcome::kSpent;
       add_step<Arch>(t, length, step_, candidate_);
@@ -312,9 +316,14 @@ class FilterMethod {
       bool is_good = is_acceptable(here, there, slope, length);
       // A step whose second order opens defects (Maratos): the same direction without them.
       const bool opens_defects = kHasHardRows<P> && there.miss > here.miss;
-      if (!is_good && (trial >= kPatience || opens_defects) && simulate(problem, now, lq, t, length)) {
-        there = measure(problem, now, slacks, candidate_, length, &lq, &t);
-        is_good = is_acceptable(here, there, slope, length);
+      if (!is_good && (trial >= kPatience || opens_defects)) {
+        const bool is_there = simulate(problem, now, lq, t, length);
+        there = is_there ? measure(problem, now, slacks, candidate_, length, &lq, &t) : Merit{kInfinity, kInfinity};
+        is_good = is_there && is_acceptable(here, there, slope, length);
+      }
+      if (!is_good && crawls && trial == 0 && there.is_finite()) {
+        is_good = is_new_barrier_ = true;
+        ++leaps_;
       }
       if (!is_good) continue;
       if (length >= 0.05 || there.miss <= 0.9 * here.miss) failures_ = 0;
@@ -512,6 +521,7 @@ class FilterMethod {
   bool are_sides_new_ = true;   ///< the slacks of bounds do not belong to the present point
   bool stops_at_barriers_ = false;
   int short_steps_ = 0;  ///< in succession
+  int leaps_ = 0;        ///< whole steps that the filter had refused
   P* rows_ = nullptr;    ///< the problem, where its rows that must hold are unknowns' equations
   double moved_ = 0.0;
   int failures_ = 0;

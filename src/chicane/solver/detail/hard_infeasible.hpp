@@ -54,7 +54,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   ask_for(round_tolerance());
   if (is_minimum) {
     trajectory = kept_;
-    problem_.square_price = 0.0;
+    look_at(x0, kept_, true, report);
     measure(problem, trajectory, nullptr);
     for (std::size_t n = 0; n < kNh; ++n) {
       for (std::size_t k = 0; k < static_cast<std::size_t>(trajectory.horizon); ++k)

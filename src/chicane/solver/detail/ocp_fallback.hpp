@@ -61,7 +61,7 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(const P& problem, P* rows, con
                                                   Trajectory& trajectory, const Deadline& deadline, int most,
                                                   SolveReport& report) noexcept {
   using Outcome = typename Filter::Outcome;
-  const int patience = rows != nullptr ? 3 : most;  // short steps in succession
+  const int patience = rows != nullptr ? 6 : most;  // short steps in succession
   filter_.take_rows(rows);
   SolveReport unused;
   bool is_solved = false;
