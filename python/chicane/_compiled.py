@@ -43,7 +43,7 @@ class _Report(ctypes.Structure):
     _fields_ = [("status", ctypes.c_int), ("is_usable", ctypes.c_int), ("iterations", ctypes.c_int), ("cost", ctypes.c_double),
                 ("stationarity", ctypes.c_double), ("defect", ctypes.c_double), ("complementarity", ctypes.c_double),
                 ("violation", ctypes.c_double), ("worst_stage", ctypes.c_int), ("worst_constraint", ctypes.c_int), ("miss", ctypes.c_double),
-                ("miss_kind", ctypes.c_int), ("miss_stage", ctypes.c_int), ("miss_row", ctypes.c_int), ("time", ctypes.c_double)]
+                ("miss_kind", ctypes.c_int), ("miss_stage", ctypes.c_int), ("miss_row", ctypes.c_int), ("time", ctypes.c_double), ("gap", ctypes.c_double)]
 
 
 _PARAMETERS, _LOWER, _UPPER, _STATES, _INPUTS = range(5)

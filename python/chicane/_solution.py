@@ -26,7 +26,8 @@ class Solution:
     violation: the largest amount by which something that should hold does not, in its own unit, and `violated`, what and where.
     multipliers: "dynamics" (horizon, nx), the price of each next state; "bounds" (horizon, nu); "constraints" and "equalities",
     (horizon, rows); "terminal_equality", "terminal_constraint", (rows,).
-    unknowns: states inside the intervals of an implicit method, (horizon, count). iterations: turns of the solver. residual: how far from optimal. time: how long C++ worked [s]. log: the turns, where solve() was
+    unknowns: states inside the intervals of an implicit method, (horizon, count). iterations: turns of the solver. residual: how far from optimal. gap: what
+    the barrier of soft and hard limits costs, at most in a convex problem. time: how long C++ worked [s]. log: the turns, where solve() was
     asked for them (Turns), else None."""
 
     def __init__(self, problem: Problem, told: dict[str, Any], x0: Array, parameters: Array, full: Array) -> None:
@@ -44,6 +45,7 @@ class Solution:
         self.cost: float = told["cost"]
         self.iterations: int = told["iterations"]
         self.residual: float = max(told["stationarity"], told["defect"], told["complementarity"])
+        self.gap: float = told["gap"]
         self.time: float = told["time"]
         self.log = Turns(told["log"]) if "log" in told else None
         self.multipliers: dict[str, Array] = {name: told[name] for name in ("dynamics", "bounds", "constraints", "equalities",

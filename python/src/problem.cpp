@@ -390,6 +390,7 @@ class Interpreter {
     told["stationarity"] = report.stationarity;
     told["defect"] = report.defect;
     told["complementarity"] = report.complementarity;
+    told["gap"] = report.gap;
     told["violation"] = report.violation;
     told["worst_stage"] = report.worst_stage;
     told["worst_constraint"] = report.worst_constraint;

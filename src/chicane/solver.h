@@ -85,6 +85,7 @@ typedef struct chicane_report {
   int miss_kind;                                /* 0 none, 1 equality, 2 terminal equality, 3 terminal constraint, 4 constraint */
   int miss_stage, miss_row;                     /* where that is; -1: nowhere */
   double seconds;
+  double gap;                                   /* complementarity gap: what the barrier of constraints costs, at most if convex */
 } chicane_report;
 
 chicane_error chicane_sizes_of(const chicane_problem* problem, chicane_sizes* sizes);

@@ -158,7 +158,8 @@ class CSolver final : public chicane_solver {
               0,
               -1,
               -1,
-              0.0};
+              0.0,
+              done.gap};
     if constexpr (HardProblem<P>) {
       report.miss = done.miss;
       report.miss_kind = static_cast<int>(done.kind);

@@ -36,8 +36,9 @@ namespace chicane::solver {
 /// One turn: linearise all stages, eight at a time; measure optimality with the exact adjoint; solve the
 /// stage-structured quadratic program by an active set over Riccati sweeps; step. Soft constraints enter by a
 /// primal-dual interior point whose slacks are eliminated stage by stage. Steps are full, first
-/// Gauss–Newton's, near the solution Newton's; when they stop improving, the solver goes back to its best
-/// iterate and descends by nonlinear roll-outs with line search until full steps work again.
+/// Gauss–Newton's, near the solution Newton's. When they stop improving, a primal-dual interior point method
+/// with a filter line search begins again from the guess (detail/filter_method.hpp). Problems with kRealTime
+/// do without it: they solve growing horizons, then descend by simulations with a line search.
 ///
 /// One plain object holding its workspace; no allocation, lock, exception, and no clock but the deadline's.
 /// Nothing is remembered from solve to solve: the trajectory is the warm start, so a failure cannot poison
@@ -109,7 +110,7 @@ class OcpSolver {
   [[nodiscard]] double path_barrier() const noexcept { return filter_.mu(); }
   [[nodiscard]] bool is_path_done() const noexcept { return filter_.is_at_last_barrier(); }
   /// There: solve_again() goes on with full steps.
-  void end_path() noexcept;
+  void end_path(const P& problem) noexcept;
 
   // ---- the filter method alone, for HardSolver
 
@@ -229,8 +230,15 @@ class OcpSolver {
     }
     if (!now_.chains.set(problem, x0, target_)) return false;
     const bool is_good = take_guess(problem, trajectory);
-    barrier_.start(problem, options_.tolerance, Evaluate::violation(problem, t_));
+    barrier_.start(problem, final_barrier(problem), Evaluate::violation(problem, t_));
     return is_good;
+  }
+  /// Where the barrier of soft constraints ends; of problems with rows that must hold so low that all of it
+  /// together costs no more than the tolerance.
+  [[nodiscard]] double final_barrier([[maybe_unused]] const P& problem) const noexcept {
+    if constexpr (!kHasHardRows<P>) return options_.tolerance;
+    const double products = 2.0 * static_cast<double>(target_ * constraint_count(problem));
+    return options_.tolerance / std::max(1.0, products);
   }
   /// The inputs of the warm start; its states or those of a simulation, of inputs of zero where that
   /// diverges.
@@ -258,7 +266,7 @@ class OcpSolver {
     fill_inputs(0);
     hold_states();
     is_fresh_ = true;
-    barrier_.start(problem, options_.tolerance, Evaluate::violation(problem, t_));
+    barrier_.start(problem, final_barrier(problem), Evaluate::violation(problem, t_));
     return true;
   }
   /// Inputs whose changes are bounded become the nearest admissible ones.

@@ -50,8 +50,8 @@ struct SolveReport {
   int iterations = 0;            ///< turns of the outer (SQP) loop
   int sweeps = 0;                ///< Riccati sweeps, active-set flips included
   double cost = 0.0;             ///< objective at the returned trajectory
-  double stationarity = 0.0;     ///< ‖u − Proj(u − ∇L)‖∞ from the exact adjoint
-  double defect = 0.0;           ///< ‖x_{k+1} − f(x_k, u_k)‖∞
+  double stationarity = 0.0;     ///< dual residual: ‖u − Proj(u − ∇L)‖∞ from the exact adjoint
+  double defect = 0.0;           ///< primal residual: ‖x_{k+1} − f(x_k, u_k)‖∞
   double complementarity = 0.0;  ///< largest residual of the soft constraints' KKT block
   double violation = 0.0;  ///< largest soft-constraint violation, in the constraint's own unit; of those
                            ///< above their caps, where one is
@@ -61,6 +61,8 @@ struct SolveReport {
                              ///< the input's unit
   int rate_stage = -1;       ///< where that is; -1 when nothing is overruled
   int rate_input = -1;
+  double gap = 0.0;  ///< complementarity gap Σ (t z + s n) of the soft constraints: what the barrier costs, at
+                     ///< most in a convex problem
 };
 
 /// What OcpSolver::feedback did.

@@ -129,6 +129,15 @@ class Barrier {
   /// Its multiplier: what a unit more room would save.
   [[nodiscard]] double multiplier(std::size_t c, std::size_t k) const noexcept { return z_[c][k]; }
 
+  /// Sum of the products of slacks and multipliers.
+  [[nodiscard]] double gap(std::size_t horizon) const noexcept {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < count(); ++c) {
+      for (std::size_t k = 0; k < horizon; ++k) sum += t_[c][k] * z_[c][k] + s_[c][k] * n_[c][k];
+    }
+    return sum;
+  }
+
   /// Smoothed penalty of the constraint values of one stage.
   double merit(const P& problem, const std::array<double, kNc>& values) const noexcept {
     double sum = 0.0;

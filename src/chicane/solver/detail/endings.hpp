@@ -30,7 +30,7 @@ CHICANE_INLINE inline void leave_admissible(const P& problem, const std::array<d
   }
 }
 
-/// The worst violation of a soft constraint at the last look.
+/// The worst violation of a soft constraint at the last look, and the complementarity gap.
 template <OcpProblem P, class Slacks>
 void tell_violation(const P& problem, const Slacks& slacks, std::size_t horizon,
                     SolveReport& report) noexcept {
@@ -40,6 +40,7 @@ void tell_violation(const P& problem, const Slacks& slacks, std::size_t horizon,
       worst.consider(slacks.value(c, k), price_of(problem, c).cap, k, c);
   }
   worst.tell(report);
+  report.gap = slacks.gap(horizon);
 }
 
 }  // namespace chicane::solver

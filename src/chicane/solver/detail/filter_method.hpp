@@ -26,7 +26,7 @@
 namespace chicane::solver {
 
 /// A primal-dual interior point method with a filter line search over multiple shooting (docs/solver.md, eq.
-/// 30–39; after Wächter, Biegler 2006). States, inputs, slacks and prices of the dynamics are all unknowns;
+/// 30–37; after Wächter, Biegler 2006). States, inputs, slacks and prices of the dynamics are all unknowns;
 /// Hessians are exact, and shifted until the quadratic program is convex. Slower than full steps with a
 /// working set, and works from where those fail.
 template <OcpProblem P, std::size_t Capacity, class Arch>
@@ -252,7 +252,7 @@ class FilterMethod {
       for (std::size_t i = 0; i < kNz; ++i) gradient_[k][i] = lq.lq.cost(k, z(i), Layout::kOne);
     }
   }
-  /// Shifts Hessians until the quadratic program is convex (eq. 36). False when it takes too much.
+  /// Shifts Hessians until the quadratic program is convex (eq. 33). False when it takes too much.
   bool factorise(Lq& lq, std::size_t horizon, int& sweeps) noexcept {
     const double most = 1e10 * unit_;
     shift_ = forced_shift_;

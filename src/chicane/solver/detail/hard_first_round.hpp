@@ -89,7 +89,7 @@ bool HardSolver<P, Capacity, Arch>::track(const State& x0, Trajectory& trajector
     inner_.lower_path(!can_go_on_);
     before = now;
   }
-  inner_.end_path();
+  inner_.end_path(problem_);
   return can_go_on_ = true;
 }
 

@@ -14,7 +14,7 @@ namespace chicane::solver {
 
 // What cannot hold: the parts of the solver of HardProblems that find out.
 
-/// Minimises the misses with ever less of the cost (eq. 41). True when they have a minimum above zero that
+/// Minimises the misses with ever less of the cost (docs/solver_hard.md, eq. 55). True when they have a minimum above zero that
 /// does not depend on how much, nor on whether hard constraints may give way: `trajectory` is there. Else
 /// weights and multipliers are those of the point that was found.
 template <HardProblem P, int Capacity, class Arch>

@@ -16,11 +16,11 @@
 
 namespace chicane::solver {
 
-/// OcpSolver for problems with something that must hold beside dynamics and bounds (hard_constraints.hpp): an
-/// augmented Lagrangian around the solver for problems without (docs/solver.md, eq. 38–41). Each round is one
-/// solve, from the second on from the point before, and an update of multipliers, weights and prices. Where
-/// that gets nowhere, the misses alone are minimised: what cannot hold is reported, else the rounds go on
-/// from the point that keeps everything.
+/// OcpSolver for problems with something that must hold beside dynamics and bounds (hard_constraints.hpp): the
+/// primal-dual method of detail/hard_rows.hpp, then full steps from its multipliers (docs/solver_hard.md).
+/// Where that gets nowhere, the misses alone are minimised: what cannot hold is reported. Else the method
+/// begins again from the point that keeps everything, and then an augmented Lagrangian: each round is one
+/// solve and an update of multipliers, weights and prices.
 template <HardProblem P, int Capacity, class Arch>
 class HardSolver {
  public:
@@ -287,7 +287,7 @@ class HardSolver {
     inner_.start_from_states(options_.start_from_states);
     put_prices(trajectory.horizon);
   }
-  /// No multipliers, and the first weights of the guess, times `factor` (eq. 40).
+  /// No multipliers, and the first weights of the guess, times `factor` (eq. 58).
   void start_with_weights(int horizon, double factor) noexcept {
     can_go_on_ = false;
     ask_for(round_tolerance());
@@ -308,7 +308,7 @@ class HardSolver {
     return std::isfinite(weight) ? std::min(std::max(weight, kLeastWeight), kMostFirstWeight) : 1.0;
   }
 
-  /// y ← y + ρ h; a weight or price whose row has not come down enough rises (eq. 39, 40). `mu`: the barrier,
+  /// y ← y + ρ h; a weight or price whose row has not come down enough rises (eq. 57). `mu`: the barrier,
   /// which leaves soft constraints a violation of mu over their price.
   void update(Misses& now, const Misses* before, int horizon, double mu = 0.0) noexcept {
     constexpr double kEnough = 0.1;

@@ -52,7 +52,7 @@ bool OcpSolver<P, Capacity, Arch>::filter_turn(const P& problem, const Deadline&
   has_best_ = full_steps_ = true;
   is_exact_ = options_.second_order;
   progress_.restart();
-  barrier_.set_mu(std::max(barrier_.mu(), options_.tolerance));
+  barrier_.set_mu(std::max(barrier_.mu(), final_barrier(problem)));
   return true;
 }
 
@@ -82,7 +82,7 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(const P& problem, P* rows, con
   if (!is_solved) return false;
   t_.write(trajectory);
   filter_.hand_over(now_, lq_);
-  barrier_.set_mu(std::max(barrier_.mu(), options_.tolerance));
+  barrier_.set_mu(std::max(barrier_.mu(), final_barrier(problem)));
   return true;
 }
 
@@ -109,9 +109,9 @@ bool OcpSolver<P, Capacity, Arch>::follow_path(const P& problem, Trajectory& tra
   return false;
 }
 template <OcpProblem P, int Capacity, class Arch>
-void OcpSolver<P, Capacity, Arch>::end_path() noexcept {
+void OcpSolver<P, Capacity, Arch>::end_path(const P& problem) noexcept {
   filter_.hand_over(now_, lq_);
-  barrier_.set_mu(std::max(barrier_.mu(), options_.tolerance));
+  barrier_.set_mu(std::max(barrier_.mu(), final_barrier(problem)));
 }
 
 /// The second rung: a short horizon first.
@@ -121,7 +121,7 @@ bool OcpSolver<P, Capacity, Arch>::start_short(const P& problem, const Trajector
   t_.horizon = kFirstHorizon;
   has_grown_ = true;
   const bool is_good = restart(problem);
-  barrier_.start(problem, options_.tolerance, Evaluate::violation(problem, t_));
+  barrier_.start(problem, final_barrier(problem), Evaluate::violation(problem, t_));
   return is_good;
 }
 template <OcpProblem P, int Capacity, class Arch>

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "families/hard_limits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "chicane/solver/ocp_solver.hpp"
+#include "families/measure_family.hpp"
+
+namespace chicane::bench {
+namespace {
+
+using solver::HardReport;
+using solver::SolveStatus;
+
+template <class P>
+struct Solved {
+  FamilyInstance<P> instance;
+  typename FamilyMeasurement<P>::Trajectory answer;
+  HardReport report;
+};
+template <class P>
+std::unique_ptr<Solved<P>> solve(int seed, bool is_impossible, NaiveStart start, double tolerance = 1e-6) {
+  using M = FamilyMeasurement<P>;
+  auto solved = std::make_unique<Solved<P>>();
+  solved->instance = M::instance(seed, is_impossible);
+  solved->answer = M::guess(solved->instance, start);
+  const auto ocp = std::make_unique<solver::OcpSolver<P, P::kHorizon>>(
+      solver::SolverOptions{.tolerance = tolerance, .start_from_states = start == NaiveStart::kLine});
+  solved->report = ocp->solve(solved->instance.problem, solved->instance.start, solved->answer);
+  return solved;
+}
+
+TEST(HardLimits, TakeFewIterationsInAConvexProgram) {
+  for (const NaiveStart start : {NaiveStart::kIdle, NaiveStart::kLine}) {
+    std::vector<int> iterations;
+    for (int seed = 0; seed < 21; ++seed) {
+      const auto solved = solve<BrysonDenham>(seed, false, start);
+      ASSERT_EQ(solved->report.status, SolveStatus::kOptimal) << seed;
+      iterations.push_back(solved->report.iterations);
+    }
+    std::sort(iterations.begin(), iterations.end());
+    EXPECT_LE(iterations[10], 20) << to_string(start);
+    EXPECT_LE(iterations.back(), 40) << to_string(start);
+  }
+}
+
+TEST(HardLimits, CostNoMoreThanTheToleranceByTheirBarrier) {
+  for (int seed = 0; seed < 5; ++seed) {
+    const auto solved = solve<BrysonDenham>(seed, false, NaiveStart::kIdle);
+    const auto exact = solve<BrysonDenham>(seed, false, NaiveStart::kIdle, 1e-9);
+    EXPECT_GT(solved->report.gap, 0.0);
+    EXPECT_LE(solved->report.gap, 2e-6);
+    EXPECT_LE(exact->report.gap, 2e-9);
+    EXPECT_NEAR(solved->report.cost, exact->report.cost, 2e-6 + 2e-6 * exact->report.cost);
+  }
+}
+
+TEST(HardLimits, ThatBoundedInputsCannotKeepAreInfeasible) {
+  for (const NaiveStart start : {NaiveStart::kIdle, NaiveStart::kLine}) {
+    for (int seed = 0; seed < 20; ++seed) {
+      const auto solved = solve<BrysonDenham>(seed, true, start);
+      const BrysonDenham& p = solved->instance.problem;
+      const HardReport& report = solved->report;
+      ASSERT_EQ(report.status, SolveStatus::kInfeasible) << seed << to_string(start);
+      EXPECT_EQ(report.kind, HardReport::Kind::kConstraint) << seed;
+      EXPECT_EQ(report.miss_row, 0);
+      const auto stage = static_cast<std::size_t>(report.miss_stage);
+      EXPECT_NEAR(solved->answer.x[stage][0] - p.limit, report.miss, 1e-9) << seed;
+      const double stop = p.speed * p.speed / (2.0 * p.most);  // by braking all the time
+      EXPECT_GE(report.miss, 0.98 * (stop - p.limit)) << seed;
+      EXPECT_LE(report.miss, stop - p.limit + 0.05 * p.speed) << seed;
+      EXPECT_LE(report.iterations, 200) << seed;
+    }
+  }
+}
+
+double total_violation(const Tanks& problem, const std::array<double, 2>& start,
+                       FamilyMeasurement<Tanks>::Trajectory t) {
+  solver::roll_out(problem, start, t);
+  double total = 0.0;
+  for (int k = 0; k < t.horizon; ++k) {
+    const auto stage = static_cast<std::size_t>(k);
+    for (const double c : problem.constraint(k, t.x[stage], t.u[stage])) total += std::max(0.0, c);
+  }
+  return total;
+}
+
+TEST(HardLimits, ComeBackWithTheLeastViolation) {
+  for (int seed = 0; seed < 5; ++seed) {
+    const auto solved = solve<Tanks>(seed, true, NaiveStart::kIdle);
+    const Tanks& p = solved->instance.problem;
+    ASSERT_EQ(solved->report.status, SolveStatus::kInfeasible) << seed;
+    const double least = total_violation(p, solved->instance.start, solved->answer);
+    for (std::size_t k = 0; k < Tanks::kHorizon; ++k) {
+      for (const std::size_t m : {std::size_t{0}, std::size_t{1}}) {
+        for (const double change : {-1e-2, 1e-2}) {
+          auto other = solved->answer;
+          const int stage = static_cast<int>(k);
+          other.u[k][m] = std::clamp(other.u[k][m] + change, p.input_lower(stage)[m], p.input_upper(stage)[m]);
+          EXPECT_GE(total_violation(p, solved->instance.start, other), least - 1e-5) << seed << " " << k;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chicane::bench
