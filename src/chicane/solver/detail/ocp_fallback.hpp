@@ -27,7 +27,7 @@ bool OcpSolver<P, Capacity, Arch>::begin_filter(const P& problem, const Trajecto
     fill_inputs(0);
     hold_states();
   }
-  filter_.start(problem, options_.tolerance, options_.second_order, is_again_, now_, lq_, barrier_, t_,
+  filter_.start(problem, final_barrier(problem), options_.second_order, is_again_, now_, lq_, barrier_, t_,
                 report);
   return true;
 }
