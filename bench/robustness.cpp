@@ -47,8 +47,9 @@ void write(const References& references, const std::string& file) {
   std::ofstream out(file);
   for (const auto& [key, answer] : references) {
     char numbers[96];
-    std::snprintf(numbers, sizeof numbers, "%d %.17g %.6g %d", answer.is_impossible ? 2 : (answer.is_solved ? 1 : 0), answer.cost,
-                  answer.time, answer.turns);
+    std::snprintf(numbers, sizeof numbers, "%d %.17g %.6g %d",
+                  answer.is_impossible ? 2 : (answer.is_solved ? 1 : 0), answer.cost, answer.time,
+                  answer.turns);
     out << key << '\t' << numbers << '\n';
   }
 }

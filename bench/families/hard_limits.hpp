@@ -12,7 +12,8 @@
 
 namespace chicane::bench {
 
-// Families of the literature whose limits along the way must hold, each with instances that leave no solution.
+// Families of the literature whose limits along the way must hold, each with instances that leave no
+// solution.
 
 /// Bryson and Denham's problem: a mass comes back after a second with its speed reversed, and goes no further
 /// than a limit on the way. Convex. States: position, speed; input: acceleration.
@@ -365,7 +366,8 @@ struct Tube {
     p.goal = random.uniform(3.0, 5.0);
     p.bend = random.uniform(-0.6, 0.6);
     p.radius = random.uniform(0.15, 0.4);
-    instance.start = {0.0, 0.0, random.uniform(-0.2, 0.2), random.uniform(0.0, 1.0), random.uniform(-0.3, 0.3)};
+    instance.start = {0.0, 0.0, random.uniform(-0.2, 0.2), random.uniform(0.0, 1.0),
+                      random.uniform(-0.3, 0.3)};
     instance.goal = {p.goal, 0.0, 0.0, 0.0, 0.0};
     instance.idle = {kGravity, 0.0};
     return instance;

@@ -46,14 +46,12 @@ struct OverArrays : P {
   }
   template <class T>
   std::array<T, kNeh> terminal_equality(const X<T>& x) const {
-    if constexpr (kNeh > 0)
-      return solver::to_array<T>(P::terminal_equality(x));
+    if constexpr (kNeh > 0) return solver::to_array<T>(P::terminal_equality(x));
     return {};
   }
   template <class T>
   std::array<T, kNec> terminal_constraint(const X<T>& x) const {
-    if constexpr (kNec > 0)
-      return solver::to_array<T>(P::terminal_constraint(x));
+    if constexpr (kNec > 0) return solver::to_array<T>(P::terminal_constraint(x));
     return {};
   }
 };

@@ -137,8 +137,8 @@ class FamilyMeasurement {
             P::kName.data(), to_string(start).data(), i, to_string(report.status).data(), report.iterations,
             report.sweeps, kkt.cost, report.stationarity, report.defect, kkt.stationarity, kkt.defect,
             kkt.subgradient, kkt.miss, kkt.total,
-            reference.is_solved ? "cost" : (reference.is_impossible ? "infeasible total" : "none"), reference.cost, reference.turns,
-            is_false ? " FALSE" : "");
+            reference.is_solved ? "cost" : (reference.is_impossible ? "infeasible total" : "none"),
+            reference.cost, reference.turns, is_false ? " FALSE" : "");
       }
     }
     row.turns = detail::at_share(turns, 0.5);
@@ -154,8 +154,8 @@ class FamilyMeasurement {
                                       [[maybe_unused]] const FamilyInstance<P>& one,
                                       [[maybe_unused]] const OverArrays<P>& arrays, NaiveStart start,
                                       int seed, [[maybe_unused]] bool is_asked) {
-    const std::string key =
-        std::string(P::kName) + (request.is_impossible ? " impossible|" : "|") + std::string(to_string(start)) + "|" + std::to_string(seed);
+    const std::string key = std::string(P::kName) + (request.is_impossible ? " impossible|" : "|") +
+                            std::string(to_string(start)) + "|" + std::to_string(seed);
     if (const auto known = references.find(key); known != references.end()) return known->second;
 #if defined(CHICANE_HAVE_IPOPT)
     if (!request.with_ipopt || !is_asked) return {};
@@ -170,8 +170,8 @@ class FamilyMeasurement {
       }
       solver::roll_out(one.problem, one.start, *t);
     }
-    const KktResidual kkt =
-        check_kkt(arrays, *t, [](int, int) { return 0.0; }, [](int, int) { return 0.0; });
+    const KktResidual kkt = check_kkt(
+        arrays, *t, [](int, int) { return 0.0; }, [](int, int) { return 0.0; });
     return references[key] = {report.is_solved, report.is_impossible,
                               report.is_impossible ? kkt.total : kkt.cost, report.time, report.iterations};
 #else

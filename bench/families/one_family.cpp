@@ -9,7 +9,8 @@
 namespace chicane::bench {
 
 Family FAMILY_FUNCTION();
-Family FAMILY_FUNCTION() { return {FAMILY::kName, &FamilyMeasurement<FAMILY>::measure, loop_of<FAMILY>(),
-          kHasImpossible<FAMILY>}; }
+Family FAMILY_FUNCTION() {
+  return {FAMILY::kName, &FamilyMeasurement<FAMILY>::measure, loop_of<FAMILY>(), kHasImpossible<FAMILY>};
+}
 
 }  // namespace chicane::bench

@@ -15,7 +15,7 @@ namespace chicane::bench {
 
 struct IpoptReport {
   bool is_solved = false;
-  bool is_impossible = false;      ///< a local minimum of what is missed: the trajectory is that
+  bool is_impossible = false;  ///< a local minimum of what is missed: the trajectory is that
   int iterations = 0;
   double time = 0.0;               ///< CPU time from the call to the answer [s]
   double time_in_functions = 0.0;  ///< values and derivatives of the problem in it [s]

@@ -102,7 +102,8 @@ TEST(HardLimits, ComeBackWithTheLeastViolation) {
         for (const double change : {-1e-2, 1e-2}) {
           auto other = solved->answer;
           const int stage = static_cast<int>(k);
-          other.u[k][m] = std::clamp(other.u[k][m] + change, p.input_lower(stage)[m], p.input_upper(stage)[m]);
+          other.u[k][m] =
+              std::clamp(other.u[k][m] + change, p.input_lower(stage)[m], p.input_upper(stage)[m]);
           EXPECT_GE(total_violation(p, solved->instance.start, other), least - 1e-5) << seed << " " << k;
         }
       }

@@ -23,9 +23,9 @@ namespace chicane::solver {
 ///         terminal_constraint_name(int) const;                                          // optional
 ///
 /// written like constraint() and terminal_residual(). OcpSolver then solves it by a primal-dual interior
-/// point method (docs/solver_hard.md), and its report says by how much and where they are missed. Choose units
-/// in which a miss of `tolerance` is one that you do not mind. The soft penalty of a hard constraint is the
-/// price that it starts with.
+/// point method (docs/solver_hard.md), and its report says by how much and where they are missed. Choose
+/// units in which a miss of `tolerance` is one that you do not mind. The soft penalty of a hard constraint is
+/// the price that it starts with.
 
 /// How many of each a problem has.
 template <class P>

@@ -494,10 +494,10 @@ class OcpSolver {
   bool is_filtering_ = false;  ///< steps are the filter method's
   bool has_filtered_ = false;  ///< it has been used in this solve
   bool stands_still_ = false;  ///< the start could not be simulated
-  bool is_again_ = false;   ///< the start is near the solution
-  bool is_fresh_ = true;    ///< slacks and working set are to be guessed anew
-  std::size_t target_ = 0;  ///< horizon asked for
-  double work_ = 0.0;       ///< turns so far, those of a shorter horizon by their share
+  bool is_again_ = false;      ///< the start is near the solution
+  bool is_fresh_ = true;       ///< slacks and working set are to be guessed anew
+  std::size_t target_ = 0;     ///< horizon asked for
+  double work_ = 0.0;          ///< turns so far, those of a shorter horizon by their share
   std::conditional_t<kCanFilter, typename Slacks::Memory, NoFilter> best_slacks_;  ///< of the best iterate
 };
 

@@ -61,8 +61,8 @@ struct SolveReport {
                              ///< the input's unit
   int rate_stage = -1;       ///< where that is; -1 when nothing is overruled
   int rate_input = -1;
-  double gap = 0.0;  ///< complementarity gap Σ (t z + s n) of the soft constraints: what the barrier costs, at
-                     ///< most in a convex problem
+  double gap = 0.0;  ///< complementarity gap Σ (t z + s n) of the soft constraints: what the barrier costs,
+                     ///< at most in a convex problem
 };
 
 /// What OcpSolver::feedback did.

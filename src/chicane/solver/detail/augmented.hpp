@@ -62,7 +62,8 @@ struct PreviousInputs<P> {
 }  // namespace detail
 
 /// A problem whose equalities and terminal constraints are residuals √ρ (h + y/ρ) beside its own: its
-/// augmented Lagrangian, up to a constant (docs/solver_hard.md, eq. 56). Everything else is as the problem has it.
+/// augmented Lagrangian, up to a constant (docs/solver_hard.md, eq. 56). Everything else is as the problem
+/// has it.
 template <HardProblem P, int Capacity>
 class Augmented : public detail::PreviousInputs<P> {
  public:

@@ -320,7 +320,8 @@ class FilterMethod {
       const bool opens_defects = kHasHardRows<P> && there.miss > here.miss;
       if (!is_good && (trial >= kPatience || opens_defects)) {
         const bool is_there = simulate(problem, now, lq, t, length);
-        there = is_there ? measure(problem, now, slacks, candidate_, length, &lq, &t) : Merit{kInfinity, kInfinity};
+        there = is_there ? measure(problem, now, slacks, candidate_, length, &lq, &t)
+                         : Merit{kInfinity, kInfinity};
         is_good = is_there && is_acceptable(here, there, slope, length);
       }
       if (!is_good && crawls && trial == 0 && there.is_finite()) {

@@ -14,9 +14,9 @@ namespace chicane::solver {
 
 // What cannot hold: the parts of the solver of HardProblems that find out.
 
-/// Minimises the misses with ever less of the cost (docs/solver_hard.md, eq. 55). True when they have a minimum above zero that
-/// does not depend on how much, nor on whether hard constraints may give way: `trajectory` is there. Else
-/// weights and multipliers are those of the point that was found.
+/// Minimises the misses with ever less of the cost (docs/solver_hard.md, eq. 55). True when they have a
+/// minimum above zero that does not depend on how much, nor on whether hard constraints may give way:
+/// `trajectory` is there. Else weights and multipliers are those of the point that was found.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                                                   const Deadline& deadline, int& left,
