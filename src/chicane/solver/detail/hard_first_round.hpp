@@ -11,29 +11,30 @@ namespace chicane::solver {
 // How the solver of HardProblems begins.
 
 /// The primal-dual method; where its steps get short, multipliers follow the barrier of the augmented
-/// Lagrangian; where that gets nowhere, either, a solve like any other.
+/// Lagrangian. Where that gets nowhere, either, the least violation: from a point without one the primal-dual
+/// method begins again. Else this is the answer, unless a few more rounds from the guess find a better one.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& trajectory,
                                                 const Deadline& deadline, int& left,
                                                 HardReport& report) noexcept {
+  constexpr int kMoreTurns = 200;
   if constexpr (has_filter_method<P>()) {
     if (options_.may_start_short) {
       if (follow(x0, trajectory, deadline, left, report))
         return round(x0, trajectory, deadline, left, report);
       begin_again(trajectory, 1.0);
-      if (is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report)) {
-        report.status = SolveStatus::kInfeasible;
-        return false;
-      }
-      start_with_weights(trajectory.horizon, 1.0);
-      inner_.start_from_states(true);
-      if (follow(x0, trajectory, deadline, left, report))
-        return round(x0, trajectory, deadline, left, report);
+      if (track(x0, trajectory, deadline, left, report)) return round(x0, trajectory, deadline, left, report);
       begin_again(trajectory, 1.0);
-      if (!track(x0, trajectory, deadline, left, report)) {
-        begin_again(trajectory, 1.0);
-        trial_ = most_of_a_trial();
+      if (is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report)) {
+        left = std::min(left, kMoreTurns);
+      } else {
+        start_with_weights(trajectory.horizon, 1.0);
+        inner_.start_from_states(true);
+        if (follow(x0, trajectory, deadline, left, report))
+          return round(x0, trajectory, deadline, left, report);
       }
+      begin_again(trajectory, 1.0);
+      trial_ = most_of_a_trial();
     }
   }
   return round(x0, trajectory, deadline, left, report);
@@ -70,6 +71,7 @@ bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajecto
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::track(const State& x0, Trajectory& trajectory, const Deadline& deadline,
                                           int& left, HardReport& report) noexcept {
+  constexpr double kFew = 1e-3;  // of the guess's misses are left where the way leads to a solution
   if (!inner_.begin_path(problem_, x0, trajectory)) return false;
   int most = std::min(left, most_of_a_trial());
   Misses before;
@@ -85,12 +87,12 @@ bool HardSolver<P, Capacity, Arch>::track(const State& x0, Trajectory& trajector
     Misses now = measure(*problem_.problem, trajectory, nullptr);
     can_go_on_ = true;
     update(now, is_first ? nullptr : &before, trajectory.horizon, inner_.path_barrier());
+    before = now;
     if (inner_.is_path_done()) break;
     inner_.lower_path(!can_go_on_);
-    before = now;
   }
   inner_.end_path(problem_);
-  return can_go_on_ = true;
+  return can_go_on_ = before.worst() <= kFew * std::max(1.0, first_.worst());
 }
 
 }  // namespace chicane::solver

@@ -25,6 +25,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   constexpr std::array kShares{1e-5, 1e-8, 1e-8};
   constexpr std::array kKept{0.0, 0.5, 0.01};  // of the largest miss; squares spread it
   constexpr std::size_t kSquares = 2, kPhases = kShares.size();
+  if (left <= 0) return false;
   const auto factors = problem_.price_factor;
   double unit = std::max(kFirstUnit, measure(problem, trajectory, nullptr).worst());
   double share = 1.0;
@@ -37,7 +38,10 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
     share = kShares[phase] / unit_;
     weigh_misses(problem, share, unit);
     problem_.square_price = phase == kSquares ? 1.0 / (unit * unit) : 0.0;
-    if (phase == kSquares) kept_ = trajectory;
+    if (phase == kSquares) {
+      least_ = trajectory;
+      least_unit_ = unit;
+    }
     SolveReport seen;
     const int most = std::min(std::max(1, left), most_of_a_trial());
     const bool converged = inner_.follow_barrier(problem_, nullptr, x0, trajectory, deadline, most, seen);
@@ -52,19 +56,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   }
   problem_.square_price = 0.0;
   ask_for(round_tolerance());
-  if (is_minimum) {
-    trajectory = kept_;
-    look_at(x0, kept_, true, report);
-    measure(problem, trajectory, nullptr);
-    for (std::size_t n = 0; n < kNh; ++n) {
-      for (std::size_t k = 0; k < static_cast<std::size_t>(trajectory.horizon); ++k)
-        problem_.equality_shift[n][k] = equality_[n][k];
-    }
-    for (std::size_t n = 0; n < kEnd; ++n)
-      problem_.terminal_shift[n] = n < kNeh ? terminal_[n] : std::max(0.0, terminal_[n]);
-    keep_prices(trajectory.horizon);
-    return true;
-  }
+  if (is_minimum) return is_certified_ = true;
   report.status = SolveStatus::kStalled;  // it converged, but not with the whole cost
   can_go_on_ = false;
   problem_.cost_root = 1.0;
@@ -82,6 +74,26 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
         multiplier / weight * (n < kNeh ? terminal_[n] : std::max(0.0, terminal_[n]));
   }
   return false;
+}
+/// The answer is the point of least violation, with the multipliers of the violation alone: its certificate.
+template <HardProblem P, int Capacity, class Arch>
+HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, const State& x0,
+                                                          Trajectory& trajectory,
+                                                          HardReport report) noexcept {
+  weigh_misses(problem, 0.0, least_unit_);
+  for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
+  problem_.terminal_shift.fill(0.0);
+  trajectory = least_;
+  look_at(x0, least_, true, report);
+  const Misses now = measure(problem, trajectory, &report);
+  for (std::size_t n = 0; n < kNh; ++n) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(trajectory.horizon); ++k)
+      problem_.equality_shift[n][k] = equality_[n][k];
+  }
+  for (std::size_t n = 0; n < kEnd; ++n)
+    problem_.terminal_shift[n] = n < kNeh ? terminal_[n] : std::max(0.0, terminal_[n]);
+  keep_prices(trajectory.horizon);
+  return finish(SolveStatus::kInfeasible, now, report);
 }
 /// A ten thousandth of the narrowest bounds' distance, at most 1e-8: steps from one to the other are
 /// no longer than the distance, whatever the slope.

@@ -124,6 +124,7 @@ class HardSolver {
     guess_ = trajectory;
     kept_miss_ = std::numeric_limits<double>::infinity();
     trial_ = 0;
+    is_certified_ = false;
     start(problem, x0, trajectory);
     int left = options_.max_iterations;
     bool has_begun = prices_.is_known;
@@ -135,10 +136,8 @@ class HardSolver {
     for (;;) {
       const bool converged = has_begun ? round(x0, trajectory, deadline, left, report)
                                        : first_round(x0, trajectory, deadline, left, report);
-      Misses now = measure(problem, trajectory, &report);
-      if (!has_begun && !converged && report.status == SolveStatus::kInfeasible)
-        return finish(SolveStatus::kInfeasible, now, report);
       has_begun = true;
+      Misses now = measure(problem, trajectory, &report);
       if (report.status == SolveStatus::kNotFinite) return report;
       update(now, progress.is_first() ? nullptr : &before, trajectory.horizon);
       if (converged && now.worst() <= options_.tolerance) return finish(report.status, now, report);
@@ -162,8 +161,8 @@ class HardSolver {
         progress = {};
       } else if (is_replaced = take_better(now.worst(), trajectory); !converged) {
         break;
-      } else if (is_infeasible(problem, x0, trajectory, deadline, left, report)) {
-        return finish(SolveStatus::kInfeasible, measure(problem, trajectory, &report), report);
+      } else if (is_certified_ || is_infeasible(problem, x0, trajectory, deadline, left, report)) {
+        break;
       } else if (is_spent()) {
         break;
       }
@@ -177,6 +176,7 @@ class HardSolver {
     for (std::size_t n = kNeh; n < kEnd; ++n) count_distance(now, n);
     const bool is_close = !is_replaced && usable(report.status) && now.worst() <= options_.loose_tolerance;
     if (is_close) return finish(SolveStatus::kBudgetSpent, now, report);
+    if (is_certified_) return tell_infeasible(problem, x0, trajectory, report);
     if (take_guess(problem, x0, now, trajectory, report)) now = measure(problem, trajectory, &report);
     return finish(SolveStatus::kStalled, now, report);
   }
@@ -379,6 +379,8 @@ class HardSolver {
 
   bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
                      int& left, HardReport& report) noexcept;
+  HardReport tell_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
+                             HardReport report) noexcept;
   double finest_tolerance(const P& problem, int horizon) const noexcept;
   void weigh_misses(const P& problem, double share, double unit) noexcept;
 
@@ -469,10 +471,13 @@ class HardSolver {
   Misses first_;       ///< of the guess
   TurnLog* log_ = nullptr;
   Trajectory guess_;
-  Trajectory kept_;         ///< of the first weights, where others were tried as well
-  double kept_miss_ = 0.0;  ///< largest of its misses
-  double tolerance_ = 0.0;  ///< of the next round
-  int last_turns_ = 0;      ///< of the last round
+  Trajectory kept_;          ///< of the first weights, where others were tried as well
+  double kept_miss_ = 0.0;   ///< largest of its misses
+  Trajectory least_;         ///< where misses have a local minimum above zero, with is_certified_
+  double tolerance_ = 0.0;   ///< of the next round
+  int last_turns_ = 0;       ///< of the last round
+  double least_unit_ = 1.0;  ///< what misses are multiples of there
+  bool is_certified_ = false;
   int trial_ = 0;           ///< turns that are left for the first weights, kTrialSpent; 0: all of them
   bool can_go_on_ = false;  ///< the next round differs little from the last one
   std::array<std::array<double, Capacity>, kNh> equality_{};  ///< values at the last measure()
