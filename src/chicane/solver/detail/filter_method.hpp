@@ -126,9 +126,9 @@ class FilterMethod {
     is_fresh_ = is_new_barrier_ = true;
     return true;
   }
-
   /// Of the last turns this many in succession have taken a small share of their step.
   [[nodiscard]] int short_steps() const noexcept { return short_steps_; }
+  /// The longest move of an input in the last step that was taken.
   [[nodiscard]] double moved() const noexcept { return moved_; }
   /// The point where it stands; after start().
   [[nodiscard]] const Point& point() const noexcept { return candidate_; }

@@ -39,7 +39,7 @@ bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& tra
   }
   return round(x0, trajectory, deadline, left, report);
 }
-/// The primal-dual method (eq. 50–56). True when it has got to the end of its barrier: multipliers and prices
+/// The primal-dual method (eq. 50–54). True when it has got to the end of its barrier: multipliers and prices
 /// are those of its point, and full steps may go on from there.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajectory, const Deadline& deadline,

@@ -26,7 +26,7 @@ template <class P>
   return P::kNr;
 }
 
-/// Rows that must hold inside the primal-dual method (docs/solver_hard.md, eq. 50–56): equalities of stages
+/// Rows that must hold inside the primal-dual method (docs/solver_hard.md, eq. 50–54): equalities of stages
 /// and end with multipliers y, inequalities of the end with slacks t > 0 and multipliers z > 0. The problem's
 /// functions return them as residuals √ρ (h + shift); looks store those here with their derivatives.
 template <class P, std::size_t Capacity, class Arch>
