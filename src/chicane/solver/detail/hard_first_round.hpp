@@ -17,7 +17,7 @@ template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& trajectory,
                                                 const Deadline& deadline, int& left,
                                                 HardReport& report) noexcept {
-  constexpr int kMoreTurns = 200;
+  constexpr int kMoreTurns = 500;
   if constexpr (has_filter_method<P>()) {
     if (options_.may_start_short) {
       if (follow(x0, trajectory, deadline, left, report))
