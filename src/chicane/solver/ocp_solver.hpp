@@ -261,14 +261,7 @@ class OcpSolver {
     for (std::size_t i = 0; i < kNx; ++i) std::fill(t_.x[i] + 1, t_.x[i] + t_.horizon + 1, t_.x[i][0]);
   }
   /// A simulation whose functions are not finite somewhere: the first state everywhere may be better. Once.
-  bool stand_still(const P& problem, const SolveReport& report) noexcept {
-    if (!kCanFilter || stands_still_ || report.iterations > 0) return false;
-    fill_inputs(0);
-    hold_states();
-    is_fresh_ = true;
-    barrier_.start(problem, final_barrier(problem), Evaluate::violation(problem, t_));
-    return true;
-  }
+  bool stand_still(const P& problem, const SolveReport& report) noexcept;
   /// Inputs whose changes are bounded become the nearest admissible ones.
   void admit_inputs() noexcept {
     now_.chains.admit(t_.horizon, [&](std::size_t k, std::size_t m) -> double& { return t_.u[m][k]; });
@@ -439,16 +432,7 @@ class OcpSolver {
   bool restart(const P& problem) noexcept;
 
   /// The last rung: one step that lowers the cost. False when there is none.
-  bool descend(const P& problem, const Deadline& deadline, SolveReport& report) noexcept {
-    if (!descent_.step(problem, now_, lq_, barrier_, t_, deadline, report.sweeps)) return false;
-    if (log_ != nullptr) log_->set_step(descent_.moved());
-    is_exact_ = options_.second_order && descent_.is_under_way();
-    if (!descent_.is_smooth()) return true;
-    full_steps_ = true;
-    has_best_ = false;
-    progress_.restart();
-    return true;
-  }
+  bool descend(const P& problem, const Deadline& deadline, SolveReport& report) noexcept;
 
   // ---- endings
 

@@ -383,47 +383,8 @@ class FilterMethod {
 
   /// Miss and cost of `point` with the slacks at `length` of their direction (0: where they are). With
   /// `from`, whose bounds are in `lq`: slacks of bounds as they are.
-  Merit measure(const P& problem, [[maybe_unused]] Look& now, const Slacks& slacks, const Point& point,
-                double length, const Lq* lq = nullptr, const Point* from = nullptr) noexcept {
-    V cost(0.0);
-    V miss(0.0);
-    for (std::size_t k = 0; k < point.horizon; k += 8) {
-      const auto live =
-          stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(point.horizon));
-      const auto values = Evaluate::values(problem, point, k);
-      cost += select(live, values.cost, V(0.0));
-      for (std::size_t c = 0; c < slacks.count(); ++c)
-        soft_.measure(price_of(problem, c), slacks, c, k, values.constraint[c], length, live, miss, cost);
-      for (std::size_t i = 0; i < kNx; ++i)
-        miss += select(live, abs(values.next[i] - V::load_unaligned(point.x[i] + k + 1)), V(0.0));
-      if constexpr (Evaluate::kHardRows > 0) {
-        for (std::size_t n = 0; n < Evaluate::kHardRows; ++n) {
-          const V missed = rows_ != nullptr ? Look::Hard::miss(problem, n, k, values.hard[n]) : V(0.0);
-          const V square = rows_ != nullptr ? V(0.0) : 0.5 * values.hard[n] * values.hard[n];
-          miss += select(live, missed, V(0.0));
-          cost += select(live, square, V(0.0));
-        }
-      }
-    }
-    Merit merit{sum(miss), sum(cost)};
-    if constexpr (kHasHardRows<P>) {
-      if (rows_ != nullptr) {
-        double ends[P::kNe + 1];
-        merit.cost += Evaluate::end_cost(problem, point, ends);
-        now.hard.measure_end(unshifted(problem, ends), length, mu_, merit.miss, merit.cost);
-      } else {
-        merit.cost += Evaluate::end_cost(problem, point);
-      }
-    } else {
-      merit.cost += Evaluate::end_cost(problem, point);
-    }
-    if (from == nullptr) {
-      bounds_.measure(length, mu_, merit.miss, merit.cost);
-    } else {
-      bounds_.measure_at(*lq, mu_, point, *from, merit.miss, merit.cost);
-    }
-    return merit;
-  }
+  Merit measure(const P& problem, Look& now, const Slacks& slacks, const Point& point, double length,
+                const Lq* lq = nullptr, const Point* from = nullptr) noexcept;
 
   /// Values of the end's rows that must hold, of their residuals.
   static auto unshifted(const P& problem, const double* residuals) noexcept {
@@ -471,36 +432,7 @@ class FilterMethod {
   /// constant part, cut to 0.99 of the way to their bounds; a share `kept` of each defect stays. False when
   /// that is not finite.
   bool simulate(const P& problem, const Look& now, const Lq& lq, const Point& t, double feedback,
-                double length, double kept = 0.0) noexcept {
-    using One = typename Evaluate::One;
-    constexpr double kShare = 0.99;
-    candidate_.horizon = t.horizon;
-    for (std::size_t i = 0; i < kNx; ++i) candidate_.x[i][0] = t.x[i][0];
-    for (std::size_t k = 0; k < t.horizon; ++k) {
-      for (std::size_t m = 0; m < kNu; ++m) {
-        double du = length * lq.constant(k, m);
-        for (std::size_t i = 0; feedback > 0.0 && i < kNx; ++i)
-          du += feedback * lq.gain(k, m, i) * (candidate_.x[i][k] - t.x[i][k]);
-        du = std::min(std::max(du, kShare * lq.lq.low[m][k]), kShare * lq.lq.high[m][k]);
-        if (Lq::kHasRates && Lq::has_rate(m) && k > 0) {
-          const double was = candidate_.u[m][k - 1] - t.u[m][k - 1];
-          du = was +
-               std::min(std::max(du - was, kShare * lq.lq.rate_low[m][k]), kShare * lq.lq.rate_high[m][k]);
-        }
-        candidate_.u[m][k] = t.u[m][k] + du;
-      }
-      const auto next =
-          Evaluate::next(problem, k, candidate_.template state<One>(k), candidate_.template input<One>(k));
-      double sum = 0.0;
-      for (std::size_t i = 0; i < kNx; ++i) {
-        candidate_.x[i][k + 1] = Evaluate::number(next[i]) - kept * lq.lq.stage[k].defect(i);
-        sum += 0.0 * candidate_.x[i][k + 1];
-      }
-      if (!(sum == 0.0)) return false;
-    }
-    now.chains.keep_previous(candidate_);
-    return true;
-  }
+                double length, double kept = 0.0) noexcept;
 
   Bounds bounds_;
   SoftSteps<P, Capacity, Arch> soft_;
@@ -535,3 +467,5 @@ class FilterMethod {
 struct NoFilter {};
 
 }  // namespace chicane::solver
+
+#include "chicane/solver/detail/filter_trials.hpp"

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "chicane/base/math.hpp"
 #include "chicane/base/math_pack.hpp"
 #include "chicane/solver/detail/bound_barrier.hpp"
 #include "chicane/solver/detail/iterate.hpp"
@@ -164,7 +165,7 @@ class HardRows {
       t_at_[n] = t_[n];
       if (length > 0.0) t_at_[n] = std::max(t_[n] + length * dt_[n], -h[n]);  // more room costs nothing
       miss += std::fabs(h[n] + t_at_[n]);
-      cost -= mu * std::log(t_at_[n]);
+      cost -= mu * log(t_at_[n]);
     }
   }
   /// Largest residual of the rows and of their complementarity at the present iterate.

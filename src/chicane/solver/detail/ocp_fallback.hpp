@@ -145,6 +145,27 @@ bool OcpSolver<P, Capacity, Arch>::restart(const P& problem) noexcept {
   return roll_out(problem);
 }
 template <OcpProblem P, int Capacity, class Arch>
+bool OcpSolver<P, Capacity, Arch>::stand_still(const P& problem, const SolveReport& report) noexcept {
+  if (!kCanFilter || stands_still_ || report.iterations > 0) return false;
+  fill_inputs(0);
+  hold_states();
+  is_fresh_ = true;
+  barrier_.start(problem, final_barrier(problem), Evaluate::violation(problem, t_));
+  return true;
+}
+template <OcpProblem P, int Capacity, class Arch>
+bool OcpSolver<P, Capacity, Arch>::descend(const P& problem, const Deadline& deadline,
+                                           SolveReport& report) noexcept {
+  if (!descent_.step(problem, now_, lq_, barrier_, t_, deadline, report.sweeps)) return false;
+  if (log_ != nullptr) log_->set_step(descent_.moved());
+  is_exact_ = options_.second_order && descent_.is_under_way();
+  if (!descent_.is_smooth()) return true;
+  full_steps_ = true;
+  has_best_ = false;
+  progress_.restart();
+  return true;
+}
+template <OcpProblem P, int Capacity, class Arch>
 void OcpSolver<P, Capacity, Arch>::record_filter_turn(const SolveReport& report) noexcept {
   if (log_ == nullptr) return;
   log_->add(report, Turn::Kind::kFilter, filter_.mu());
