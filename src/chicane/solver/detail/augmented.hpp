@@ -96,6 +96,7 @@ class Augmented : public detail::PreviousInputs<P> {
   std::array<Weight, kEndEqualities + kEndConstraints> terminal_weight{};
   std::array<double, kEndEqualities + kEndConstraints> terminal_shift{};
   std::array<double, kNc> price_factor{};  ///< of soft constraints, hard ones among them
+  double violation_price = 0.0;            ///< of hard ones in their place, if any: of their violation alone
   double square_price = 0.0;               ///< of hard ones in their place, if any: of ½ violation²
   double hard_price = 0.0;      ///< of hard ones in their place, if any: so high that none is violated
   bool is_primal_dual = false;  ///< rows are those of the primal-dual method (detail/hard_rows.hpp)
@@ -145,6 +146,7 @@ class Augmented : public detail::PreviousInputs<P> {
       if (problem->is_hard(c)) {
         price.cap = 1e30;
         if (is_primal_dual) price = {hard_price, 0.0, SoftConstraint<>::kMustHold};
+        if (violation_price > 0.0) price = {violation_price, 0.0, price.cap};
         if (square_price > 0.0) price = {kNearlyNone * square_price, square_price, price.cap};
       }
     }

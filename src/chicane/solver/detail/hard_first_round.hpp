@@ -11,8 +11,8 @@ namespace chicane::solver {
 // How the solver of HardProblems begins.
 
 /// The primal-dual method; where its steps get short, multipliers follow the barrier of the augmented
-/// Lagrangian. Where that gets nowhere, either, the least violation: from a point without one the primal-dual
-/// method begins again. Else this is the answer, unless a few more rounds from the guess find a better one.
+/// Lagrangian. Where that gets nowhere, either, the least violation: where there is one, it is the answer
+/// unless more rounds from the guess find a better one.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& trajectory,
                                                 const Deadline& deadline, int& left,
@@ -27,11 +27,6 @@ bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& tra
       begin_again(trajectory, 1.0);
       if (is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report)) {
         left = std::min(left, kMoreTurns);
-      } else {
-        start_with_weights(trajectory.horizon, 1.0);
-        inner_.start_from_states(true);
-        if (follow(x0, trajectory, deadline, left, report))
-          return round(x0, trajectory, deadline, left, report);
       }
       begin_again(trajectory, 1.0);
       trial_ = most_of_a_trial();

@@ -29,6 +29,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   const auto factors = problem_.price_factor;
   double unit = std::max(kFirstUnit, measure(problem, trajectory, nullptr).worst());
   double share = 1.0;
+  int budget = most_of_a_trial();
   double last = 0.0;
   for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
   problem_.terminal_shift.fill(0.0);
@@ -43,18 +44,22 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
       least_unit_ = unit;
     }
     SolveReport seen;
-    const int most = std::min(std::max(1, left), most_of_a_trial());
+    const int most = std::max(1, std::min(left, budget));
     const bool converged = inner_.follow_barrier(problem_, nullptr, x0, trajectory, deadline, most, seen);
     inner_.start_from_states(true);
     report.iterations += seen.iterations;
     report.sweeps += seen.sweeps;
     left -= seen.iterations;
+    budget -= seen.iterations;
     const double worst = measure(problem, trajectory, &report).worst();
     is_minimum = converged && worst > options_.tolerance && worst > kKept[phase] * last;
-    if (!is_minimum || left <= 0) break;
+    if (!is_minimum || std::min(left, budget) <= 0) {
+      is_minimum = is_minimum && phase + 1 == kPhases;
+      break;
+    }
     last = unit = worst;
   }
-  problem_.square_price = 0.0;
+  problem_.square_price = problem_.violation_price = 0.0;
   ask_for(round_tolerance());
   if (is_minimum) return is_certified_ = true;
   report.status = SolveStatus::kStalled;  // it converged, but not with the whole cost
@@ -93,6 +98,7 @@ HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, cons
   for (std::size_t n = 0; n < kEnd; ++n)
     problem_.terminal_shift[n] = n < kNeh ? terminal_[n] : std::max(0.0, terminal_[n]);
   keep_prices(trajectory.horizon);
+  problem_.violation_price = 0.0;
   return finish(SolveStatus::kInfeasible, now, report);
 }
 /// A ten thousandth of the narrowest bounds' distance, at most 1e-8: steps from one to the other are
@@ -115,9 +121,8 @@ void HardSolver<P, Capacity, Arch>::weigh_misses(const P& problem, double share,
   problem_.cost_root = std::sqrt(share);
   for (auto& weight : problem_.equality_weight) weight.set(1.0 / (unit * unit));
   for (auto& weight : problem_.terminal_weight) weight.set(1.0 / (unit * unit));
-  for (std::size_t c = 0; c < kNc; ++c)
-    problem_.price_factor[c] =
-        is_hard(problem, c) ? 1.0 / (unit * std::max(1e-12, price_of(problem, c).linear)) : share;
+  problem_.price_factor.fill(share);
+  problem_.violation_price = 1.0 / unit;
 }
 
 }  // namespace chicane::solver
