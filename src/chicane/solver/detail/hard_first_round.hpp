@@ -18,19 +18,28 @@ bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& tra
                                                 const Deadline& deadline, int& left,
                                                 HardReport& report) noexcept {
   constexpr int kMoreTurns = 500;
+  constexpr double kFew = 1e-2;  // of the guess's misses are left where a path leads to a solution
   if constexpr (has_filter_method<P>()) {
-    if (options_.may_start_short) {
-      if (follow(x0, trajectory, deadline, left, report))
-        return round(x0, trajectory, deadline, left, report);
-      begin_again(trajectory, 1.0);
-      if (track(x0, trajectory, deadline, left, report)) return round(x0, trajectory, deadline, left, report);
-      begin_again(trajectory, 1.0);
-      if (is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report)) {
-        left = std::min(left, kMoreTurns);
-      }
-      begin_again(trajectory, 1.0);
-      trial_ = most_of_a_trial();
+    if (!options_.may_start_short) return round(x0, trajectory, deadline, left, report);
+    if (follow(x0, trajectory, deadline, left, report)) return round(x0, trajectory, deadline, left, report);
+    begin_again(trajectory, 1.0);
+    const bool has_path = track(x0, trajectory, deadline, left, report);
+    const double enough = kFew * std::max(1.0, first_.worst());
+    if (has_path && measure(*problem_.problem, trajectory, nullptr).worst() <= enough)
+      return round(x0, trajectory, deadline, left, report);
+    kept_ = trajectory;
+    begin_again(trajectory, 1.0);
+    if (is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report)) {
+      left = std::min(left, kMoreTurns);
+    } else if (has_path) {
+      trajectory = kept_;
+      start_with_weights(trajectory.horizon, 1.0);
+      put_prices(trajectory.horizon);
+      inner_.start_from_states(true);
+      return round(x0, trajectory, deadline, left, report);
     }
+    begin_again(trajectory, 1.0);
+    trial_ = most_of_a_trial();
   }
   return round(x0, trajectory, deadline, left, report);
 }
@@ -66,7 +75,6 @@ bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajecto
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::track(const State& x0, Trajectory& trajectory, const Deadline& deadline,
                                           int& left, HardReport& report) noexcept {
-  constexpr double kFew = 1e-3;  // of the guess's misses are left where the way leads to a solution
   if (!inner_.begin_path(problem_, x0, trajectory)) return false;
   int most = std::min(left, most_of_a_trial());
   Misses before;
@@ -87,7 +95,7 @@ bool HardSolver<P, Capacity, Arch>::track(const State& x0, Trajectory& trajector
     inner_.lower_path(!can_go_on_);
   }
   inner_.end_path(problem_);
-  return can_go_on_ = before.worst() <= kFew * std::max(1.0, first_.worst());
+  return can_go_on_ = true;
 }
 
 }  // namespace chicane::solver
