@@ -37,7 +37,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   bool is_minimum = false;
   for (std::size_t phase = 0; phase < kPhases; ++phase) {
     share = kShares[phase] / unit_;
-    weigh_misses(problem, share, unit);
+    weigh_misses(share, unit);
     problem_.square_price = phase == kSquares ? 1.0 / (unit * unit) : 0.0;
     if (phase == kSquares) {
       least_ = trajectory;
@@ -85,7 +85,7 @@ template <HardProblem P, int Capacity, class Arch>
 HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, const State& x0,
                                                           Trajectory& trajectory,
                                                           HardReport report) noexcept {
-  weigh_misses(problem, 0.0, least_unit_);
+  weigh_misses(0.0, least_unit_);
   for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
   problem_.terminal_shift.fill(0.0);
   trajectory = least_;
@@ -117,7 +117,7 @@ double HardSolver<P, Capacity, Arch>::finest_tolerance(const P& problem, int hor
 }
 /// The cost by `share`, misses in multiples of `unit`: what is small counts, too.
 template <HardProblem P, int Capacity, class Arch>
-void HardSolver<P, Capacity, Arch>::weigh_misses(const P& problem, double share, double unit) noexcept {
+void HardSolver<P, Capacity, Arch>::weigh_misses(double share, double unit) noexcept {
   problem_.cost_root = std::sqrt(share);
   for (auto& weight : problem_.equality_weight) weight.set(1.0 / (unit * unit));
   for (auto& weight : problem_.terminal_weight) weight.set(1.0 / (unit * unit));

@@ -382,7 +382,7 @@ class HardSolver {
   HardReport tell_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                              HardReport report) noexcept;
   double finest_tolerance(const P& problem, int horizon) const noexcept;
-  void weigh_misses(const P& problem, double share, double unit) noexcept;
+  void weigh_misses(double share, double unit) noexcept;
 
   // ---- values
 
