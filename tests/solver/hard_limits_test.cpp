@@ -63,7 +63,7 @@ TEST(HardLimits, CostNoMoreThanTheToleranceByTheirBarrier) {
 
 TEST(HardLimits, ThatBoundedInputsCannotKeepAreInfeasible) {
   for (const NaiveStart start : {NaiveStart::kIdle, NaiveStart::kLine}) {
-    for (int seed = 0; seed < 20; ++seed) {
+    for (int seed = 0; seed < 8; ++seed) {
       const auto solved = solve<BrysonDenham>(seed, true, start);
       const BrysonDenham& p = solved->instance.problem;
       const HardReport& report = solved->report;
