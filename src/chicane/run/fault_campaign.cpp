@@ -151,11 +151,10 @@ Result<FlyingLap> drive_undisturbed(const scenario::Scenario& scenario, double w
     if ((*loop)->world().lap == 0 && !is_open) lap.begins = (*loop)->time();
   }
   if ((*loop)->world().lap < laps) {
-    return fail(
-        ErrorCode::kInvalidArgument,
-        fmt::format("{} on {} with {}: {} not driven without any fault: {} in {:.0f} s", scenario.car,
-                    scenario.track, scenario.preset, is_open ? "the road is" : "two laps are",
-                    (*loop)->world().lap, (*loop)->time()));
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("{} on {} with {}: {} not driven without any fault: {} in {:.0f} s", scenario.car,
+                            scenario.track, scenario.preset, is_open ? "the road is" : "two laps are",
+                            (*loop)->world().lap, (*loop)->time()));
   }
   lap.time = is_open ? (*loop)->time() : (*loop)->world().last_lap_time;
   while ((*loop)->time() < lap.begins + lap.time + wait && !(*loop)->is_over()) advance();
