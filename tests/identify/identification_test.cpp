@@ -126,9 +126,10 @@ TEST(Identification, IsTheMirrorImageOfAMirroredLog) {
 TEST(Identification, TellsTheSizeOfACarByHowItTurns) {
   for (const char* car : {"f1tenth", "road-car", "orca-1-43"}) {
     const auto scenario = protocol::compose({"", {{"car", car}}});
-    const DriveLog log = drive_log({{"car", car}, {"track", "oval"}, {"laps", "1"}});
+    const DriveLog log = drive_log({{"car", car}, {"track", "hairpins"}, {"laps", "1"}});
     const double wheelbase = scenario->vehicle.wheelbase();
-    EXPECT_NEAR(turning_wheelbase({log}), wheelbase, 0.25 * wheelbase) << car;  // slip turns less or more
+    EXPECT_NEAR(turning_wheelbase({log}), wheelbase, 0.35 * wheelbase)
+        << car;  // enough to tell it from others
   }
   EXPECT_TRUE(std::isnan(turning_wheelbase({})));
 }

@@ -318,7 +318,9 @@ double turning_wheelbase(const std::vector<DriveLog>& logs) {
   constexpr double kSpan = 0.2;         // [s] over which the yaw rate is taken
   constexpr double kLeastSteer = 0.03;  // [rad]
   constexpr std::size_t kFewest = 20;
-  std::vector<std::array<double, 2>> bends;  // sideways acceleration, wheelbase
+  // Least squares of steer = wheelbase · curvature + understeer · sideways acceleration.
+  double cc = 0.0, ca = 0.0, aa = 0.0, cs = 0.0, as = 0.0;
+  std::size_t count = 0;
   for (const DriveLog& log : logs) {
     std::size_t command = 0, ahead = 0;
     for (const Sample& at : log.samples) {
@@ -330,17 +332,18 @@ double turning_wheelbase(const std::vector<DriveLog>& logs) {
       if (next.time - at.time < 0.5 * kSpan || std::fabs(steer) < kLeastSteer) continue;
       const double yaw_rate = (next.psi - at.psi) / (next.time - at.time);
       const double speed = 0.5 * (at.speed + next.speed);
-      if (yaw_rate * steer > 0.0 && speed > 0.1)
-        bends.push_back({std::fabs(speed * yaw_rate), tan(steer) * speed / yaw_rate});
+      if (!(yaw_rate * steer > 0.0 && speed > 0.3)) continue;
+      const double curvature = yaw_rate / speed, sideways = speed * yaw_rate;
+      cc += curvature * curvature;
+      ca += curvature * sideways;
+      aa += sideways * sideways;
+      cs += curvature * steer;
+      as += sideways * steer;
+      ++count;
     }
   }
-  if (bends.size() < kFewest) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(bends.begin(), bends.end());
-  bends.resize(std::max(kFewest, bends.size() / 3));
-  const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
-  std::nth_element(bends.begin(), middle, bends.end(),
-                   [](const auto& a, const auto& b) { return a[1] < b[1]; });
-  return (*middle)[1];
+  const double wheelbase = (cs * aa - as * ca) / (cc * aa - ca * ca);
+  return count >= kFewest && wheelbase > 0.0 ? wheelbase : std::numeric_limits<double>::quiet_NaN();
 }
 
 bool Identification::knows_tires() const noexcept { return use_front >= kRaceUse && use_rear >= kRaceUse; }
