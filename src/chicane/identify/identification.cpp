@@ -39,7 +39,7 @@ double per_full_size(std::string_view unit, const model::Similarity& to) {
   const double length = to.length(), time = to.time();
   if (unit == "ms") return 1.0 / time;
   if (unit == "m") return 1.0 / length;
-  if (unit == "kg m²") return std::pow(length, -5.0);
+  if (unit == "kg m²") return 1.0 / (length * length * length * length * length);
   if (unit == "deg/s" || unit == "1/s") return time;
   if (unit == "W/kg") return 1.0 / to.speed();
   if (unit == "1/m") return length;
