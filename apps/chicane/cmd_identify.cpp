@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <filesystem>
@@ -157,11 +158,45 @@ std::string to_car(const Identification& found, scenario::Scenario scenario, con
   return text;
 }
 
+/// The car of the shelf that turns as the logs do: what the search begins with where nobody says.
+Result<std::string> car_for(const std::vector<identify::DriveLog>& logs) {
+  const double wheelbase = identify::turning_wheelbase(logs);
+  std::string best;
+  double best_length = 0.0, best_ratio = 1e9;
+  for (const protocol::Entry& entry : protocol::entries(protocol::Shelf::kCar)) {
+    const auto car = protocol::compose({.scenario_file = {}, .settings = {{"car", entry.name}}});
+    // A helper turns the car along: its wheelbase says little of how it turns, and only simulators have one.
+    if (!car || car->vehicle.steer_helper > 0.0) continue;
+    const double ratio = std::fabs(std::log(car->vehicle.wheelbase() / wheelbase));
+    if (ratio < best_ratio) {
+      best = entry.name;
+      best_length = car->vehicle.wheelbase();
+      best_ratio = ratio;
+    }
+  }
+  if (best.empty())
+    return fail(ErrorCode::kInvalidArgument,
+                "--car: got none, and too few bends in the log to tell the car's size by, expected a car");
+  fmt::print(
+      stderr,
+      "identify: without --car the search begins with {} ({:.3g} m between the axles): the log turns as "
+      "{:.3g} m would\n",
+      best, best_length, wheelbase);
+  return best;
+}
+
+/// Logs of other programs do not say whose they are; recordings of ours are of the car of the settings.
+bool is_nobodys(const std::vector<identify::DriveLog>& logs, const Options& options) {
+  const bool is_told = std::any_of(options.settings.begin(), options.settings.end(),
+                                   [](const auto& each) { return each.first == "car"; });
+  return !is_told && std::none_of(logs.begin(), logs.end(),
+                                  [](const identify::DriveLog& log) { return log.is_centre_of_mass; });
+}
+
 Result<void> identify_and_tell(const Options& options) {
   static std::atomic<bool> wants_stop{false};  // static: must outlive the last signal
   catch_interrupts(wants_stop);
-  const Result<scenario::Scenario> start =
-      protocol::compose({.scenario_file = {}, .settings = options.settings});
+  Result<scenario::Scenario> start = protocol::compose({.scenario_file = {}, .settings = options.settings});
   if (!start) return fail(start.error());
   const auto how = log_options(options.identify);
   if (!how) return fail(how.error());
@@ -173,6 +208,14 @@ Result<void> identify_and_tell(const Options& options) {
     if (!parts) return fail(parts.error());
     std::move(parts->begin(), parts->end(), std::back_inserter(logs));
     names += (names.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
+  }
+  if (is_nobodys(logs, options)) {
+    const Result<std::string> car = car_for(logs);
+    if (!car) return fail(car.error());
+    auto settings = options.settings;
+    settings.insert(settings.begin(), {"car", *car});
+    start = protocol::compose({.scenario_file = {}, .settings = settings});
+    if (!start) return fail(start.error());
   }
   const auto found = [&] {
     Share share(wants_stop);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <optional>
 
@@ -41,6 +42,8 @@ std::string in_words(const identify::DriveLog& log, const path::Track* track, in
 }  // namespace
 
 bool may_be_foreign_log(const std::string& file) {
+  std::error_code trouble;
+  if (std::filesystem::is_directory(file, trouble)) return true;  // a bag, as rosbag2 writes it
   if (file.ends_with(".db3") || file.ends_with(".csv")) return true;
   const auto ours = recording::check_recording(file);
   return file.ends_with(".mcap") && !ours && ours.error().code == ErrorCode::kParse &&

@@ -50,6 +50,31 @@ class Import(unittest.TestCase):
             self.assertEqual(code, 0, err)
             self.assertIn("all tyres on the road", out)
 
+    # Its steering lags by 0.16 s: prices and limits that took what is asked for the wheel drove it off eight maps of ten.
+    def test_a_model_car_races_on_maps_with_the_settings_of_the_preset(self):
+        for name in ("chicane", "long"):
+            with self.subTest(name):
+                code, out, err = run("drive", "--fast", "--laps", "1", "--preset", "race", "--car", "f1tenth", "--track", MAPS / f"{name}.yaml",
+                                     "--set", "time_limit_s=30", "--no-cache")
+                self.assertEqual(code, 0, err)
+                self.assertIn("1 of 1 laps, completed, all tyres on the road", out)
+
+    def test_bags_of_other_programs_are_reported_by_file_and_by_folder(self):
+        bag = ROOT / "tests/fuzz/corpus/bag/plain.db3"
+        folder = self.out / "bag"
+        folder.mkdir()
+        (folder / "bag_0.db3").write_bytes(bag.read_bytes())
+        (folder / "metadata.yaml").write_text("rosbag2_bagfile_information:\n")
+        for log in (bag, folder):
+            page = self.out / f"{log.name}.html"
+            code, _, err = run("report", log, "-o", page)
+            self.assertEqual(code, 0, err)
+            self.assertIn("</html>", page.read_text())
+        (folder / "bag_0.db3").unlink()
+        code, out, err = run("identify", folder)
+        self.assertEqual((code, out), (2, ""))
+        self.assertIn("got a folder without .mcap or .db3, expected a bag of ROS 2", err)
+
     def test_refusals_name_the_file_and_the_remedy(self):
         for name, words in {"gym_waypoints.csv": "gym_waypoints.csv:1: header: got none for 4 columns",
                             "no_loop.yaml": "no_loop.yaml: free space: got no loop, open between (",

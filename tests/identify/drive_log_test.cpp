@@ -187,6 +187,25 @@ TEST(DriveLog, IsReadFromABagOfOdometryAndCommands) {
   std::filesystem::remove(file);
 }
 
+TEST(DriveLog, IsReadFromTheFolderThatRosbag2Writes) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("chicane_bag_" + std::to_string(::getpid()));
+  std::filesystem::create_directory(folder);
+  EXPECT_THAT(read_log(folder.string(), {}).error().message, HasSubstr("got a folder without .mcap or .db3"));
+  std::ofstream(folder / "metadata.yaml") << "rosbag2_bagfile_information:\n";
+  write_bag((folder / "bag_0.mcap").string(), false);
+  const auto one = read_log(folder.string(), {});
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_EQ(one->size(), 1U);
+  EXPECT_TRUE(read_plain_log(folder.string(), {}));
+  write_bag((folder / "bag_1.mcap").string(), false);
+  const auto both = read_log(folder.string(), {});
+  ASSERT_TRUE(both) << both.error().message;
+  EXPECT_EQ(both->size(), 2U) << "parts of a bag that was split";
+  EXPECT_THAT(read_plain_log(folder.string(), {}).error().message, HasSubstr("got a bag of 2 files"));
+  std::filesystem::remove_all(folder);
+}
+
 TEST(DriveLog, IsPartedAtGapsAndJumps) {
   std::ostringstream text;
   text << "time,x,y,psi,speed,steer\n";

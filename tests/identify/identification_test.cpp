@@ -122,6 +122,18 @@ TEST(Identification, IsTheMirrorImageOfAMirroredLog) {
   }
 }
 
+// Whoever names no car got the one of the original simulator, for a model car, too.
+TEST(Identification, TellsTheSizeOfACarByHowItTurns) {
+  for (const char* car : {"f1tenth", "road-car", "orca-1-43"}) {
+    const auto scenario = protocol::compose({"", {{"car", car}}});
+    const DriveLog log = drive_log({{"car", car}, {"track", "hairpins"}, {"laps", "1"}});
+    const double wheelbase = scenario->vehicle.wheelbase();
+    EXPECT_NEAR(turning_wheelbase({log}), wheelbase, 0.35 * wheelbase)
+        << car;  // enough to tell it from others
+  }
+  EXPECT_TRUE(std::isnan(turning_wheelbase({})));
+}
+
 TEST(Identification, EndsWhenItIsAskedTo) {
   const DriveLog log = drive_log({{"car", "road-car"}, {"track", "oval"}, {"laps", "1"}});
   int asked = 0;

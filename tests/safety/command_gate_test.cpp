@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "chicane/base/random.hpp"
+#include "chicane/model/actuator.hpp"
 
 namespace chicane::safety {
 namespace {
@@ -90,6 +91,31 @@ TEST(CommandGate, LimitsTheSteeringRateBothWays) {
   const GateResult right = gate.pass({-0.4, 0.0}, 0.1);
   EXPECT_EQ(right.reason, GateReason::kRate);
   EXPECT_NEAR(right.command.steer, 0.0, 1e-15);  // rounding of one addition and one subtraction
+}
+
+// f1tenth in full size: the wheel follows with 0.5 s. A limit of what is sent kept it from a third of its
+// rate.
+TEST(CommandGate, LimitsTheWheelsRateWhereSteeringIsSlow) {
+  model::VehicleParams vehicle = road_car();
+  vehicle.steer_lag = 0.5;
+  vehicle.steer_rate_limit = 1.0;
+  CommandGate free{vehicle};
+  EXPECT_EQ(free.pass({0.4, 0.0}, 0.08).reason, GateReason::kNone);   // 0.8 rad/s of the wheel
+  EXPECT_EQ(free.pass({-0.4, 0.0}, 0.08).reason, GateReason::kNone);  // 0.92 rad/s, from 0.06 rad
+  CommandGate gate{vehicle};
+  const model::Actuator unlimited{.low = -1.0, .high = 1.0, .lag = vehicle.steer_lag};
+  Random random{11};
+  double wheel = 0.0;
+  int limited = 0;
+  for (int i = 0; i < 2'000; ++i) {
+    const bool is_hard = i % 50 < 25;
+    const GateResult sent = gate.pass({is_hard ? 0.4 : random.uniform(-0.5, 0.1), 0.0}, 0.08);
+    limited += sent.reason == GateReason::kRate ? 1 : 0;
+    const double next = unlimited.next(wheel, sent.command.steer, 0.08);
+    ASSERT_LE(std::fabs(next - wheel), 0.08 * vehicle.steer_rate_limit * (1.0 + 1e-12)) << i;
+    wheel = next;
+  }
+  EXPECT_GT(limited, 50);
 }
 
 TEST(CommandGate, SkipsTheRateCheckWithoutAUsableElapsedTime) {

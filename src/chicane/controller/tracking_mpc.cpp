@@ -125,7 +125,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
 
   /// Horizon and prices, from the options.
   void shape_problem() noexcept {
-    problem_.others = {options_.step_length, model_.lags(options_.step_length)};
+    problem_.others = Problem::Step::of(model_, options_.step_length);
     problem_.first = problem_.others;
     problem_.horizon = options_.horizon_steps;
     problem_.weight = {.lateral = std::sqrt(options_.weight_lateral),
@@ -249,7 +249,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const bool can_shift = has_horizon_ && elapsed >= 0.0 && elapsed < 0.5 * old_end;
     const double step = options_.step_length;
     const double first = can_shift ? std::clamp(elapsed, step, kLongestHold) : step;
-    problem_.first = first == step ? problem_.others : Problem::Step{first, model_.lags(first)};
+    problem_.first = first == step ? problem_.others : Problem::Step::of(model_, first);
     problem_.first_correction = {};
     problem_.push(disturbance_);
     turns_ = kMostTurns;

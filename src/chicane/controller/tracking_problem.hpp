@@ -10,6 +10,7 @@
 #include "chicane/base/jet.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/command_history.hpp"
+#include "chicane/model/actuator.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/solver/stage_data.hpp"
 
@@ -65,6 +66,16 @@ struct TrackingProblem {
   struct Step {
     double length = 0.05;  ///< [s]
     model::PredictionModel::Lags lags;
+    /// Of the difference between the angle asked for and the wheel, what counts as the wheel's motion.
+    double steer_share = 1.0;
+
+    [[nodiscard]] static Step of(const model::PredictionModel& model, double length) noexcept {
+      const model::PredictionModel::Lags lags = model.lags(length);
+      const bool is_slow = model.vehicle().steer_lag > model::kSlowSteering;
+      return {length, lags, is_slow ? 1.0 - lags.steer.end : 1.0};
+    }
+    /// Mean rate of the wheel over the stage for a difference of one [1/s].
+    [[nodiscard]] double steer_speed() const noexcept { return steer_share / length; }
   };
 
   const model::PredictionModel* model = nullptr;
@@ -110,8 +121,9 @@ struct TrackingProblem {
   [[nodiscard]] auto residual(K k, const X& x, const U& u) const noexcept {
     const auto& [s, d, e, vx, vy, r, steer, a] = x;
     const auto& [steer_asked, a_asked] = u;
-    const auto per_length = select(solver::stage_number(k) < 0.5, 1.0 / first.length, 1.0 / others.length);
-    const auto rate = (steer_asked - steer) * per_length;
+    const auto is_first = solver::stage_number(k) < 0.5;
+    const auto per_length = select(is_first, 1.0 / first.length, 1.0 / others.length);
+    const auto rate = (steer_asked - steer) * select(is_first, first.steer_speed(), others.steer_speed());
     using T = Common<decltype(vx), decltype(vy), decltype(r), decltype(steer), decltype(a)>;
     const auto use = model->tire_use(model::BodyMotion<T>{T(vx), T(vy), T(r), T(steer), T(a)});
     const model::VehicleParams& car = model->vehicle();

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <iterator>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
@@ -135,6 +137,22 @@ Result<LogRows> read_rows(const std::string& file, const LogOptions& options) {
   return text ? read_csv_rows(*text, file, options) : fail(text.error());
 }
 
+/// The file, or those of a bag, which is a folder for rosbag2.
+Result<std::vector<std::string>> files_of(const std::string& path) {
+  std::error_code trouble;
+  if (!std::filesystem::is_directory(path, trouble)) return std::vector<std::string>{path};
+  std::vector<std::string> files;
+  for (const auto& each : std::filesystem::directory_iterator(path, trouble)) {
+    const std::string name = each.path().string();
+    if (name.ends_with(".mcap") || name.ends_with(".db3")) files.push_back(name);
+  }
+  if (trouble) return fail(ErrorCode::kIo, path + ": " + trouble.message());
+  if (files.empty())
+    return fail(ErrorCode::kParse, path + ": got a folder without .mcap or .db3, expected a bag of ROS 2");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 Result<std::vector<DriveLog>> checked(Result<LogRows> rows, const std::string& file) {
   if (!rows) return fail(rows.error());
   std::vector<DriveLog> parts = parts_of(std::move(*rows), file);
@@ -152,11 +170,24 @@ Result<std::vector<DriveLog>> parse_csv_log(const std::string& text, const std::
 }
 
 Result<std::vector<DriveLog>> read_log(const std::string& file, const LogOptions& options) {
-  return checked(read_rows(file, options), file);
+  const auto files = files_of(file);
+  if (!files) return fail(files.error());
+  std::vector<DriveLog> all;
+  for (const std::string& each : *files) {
+    auto parts = checked(read_rows(each, options), each);
+    if (!parts) return fail(parts.error());
+    std::move(parts->begin(), parts->end(), std::back_inserter(all));
+  }
+  return all;
 }
 
 Result<DriveLog> read_plain_log(const std::string& file, const LogOptions& options) {
-  Result<LogRows> rows = read_rows(file, options);
+  const auto files = files_of(file);
+  if (!files) return fail(files.error());
+  if (files->size() > 1)
+    return fail(ErrorCode::kParse,
+                fmt::format("{}: got a bag of {} files, expected one of them", file, files->size()));
+  Result<LogRows> rows = read_rows(files->front(), options);
   if (!rows) return fail(rows.error());
   std::erase_if(rows->samples, [](const Sample& each) {
     return !std::isfinite(each.time + each.x + each.y + each.psi + each.speed);

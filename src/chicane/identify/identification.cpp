@@ -4,13 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/option.hpp"
 #include "chicane/identify/detail/window_fit.hpp"
 #include "chicane/model/prediction.hpp"
+#include "chicane/model/similarity.hpp"
 
 namespace chicane::identify {
 namespace {
@@ -20,7 +23,7 @@ constexpr double kSeen = 0.5;        ///< samples from which a prediction starts
 constexpr double kLeastSpeed = 0.7;  ///< below it there is standing and reversing [m/s]
 constexpr std::size_t kMostWindows = 400;
 
-/// A number that is estimated: where it is in a car, and what is expected of it.
+/// A number that is estimated: where it is in a car in full size, and what is expected of it.
 struct Row {
   std::string_view key, unit;
   double per_si;     ///< what people see of one in SI
@@ -28,7 +31,33 @@ struct Row {
   double mean;       ///< [SI]
   double deviation;  ///< [SI], or of the logarithm
   double& (*of)(Car&);
+  double per_full_size = 1.0;  ///< of the car as it is [SI], over that of the car in full size
 };
+
+/// What numbers with this unit are in the car as it is, over those in full size (model/similarity.hpp).
+double per_full_size(std::string_view unit, const model::Similarity& to) {
+  const double length = to.length(), time = to.time();
+  if (unit == "ms") return 1.0 / time;
+  if (unit == "m") return 1.0 / length;
+  if (unit == "kg m²") return 1.0 / (length * length * length * length * length);
+  if (unit == "deg/s" || unit == "1/s") return time;
+  if (unit == "W/kg") return 1.0 / to.speed();
+  if (unit == "1/m") return length;
+  return 1.0;  // ratios, angles, accelerations
+}
+
+/// The log of the same motion in full size.
+DriveLog full_size(DriveLog log, const model::Similarity& to) {
+  for (Sample& sample : log.samples) {
+    sample.time *= to.time();
+    sample.x *= to.length();
+    sample.y *= to.length();
+    sample.speed *= to.speed();
+    sample.yaw_rate /= to.time();
+  }
+  for (Told& told : log.told) told.time *= to.time();
+  return log;
+}
 
 void scale_wheelbase(Car& car, double to) {
   const double by = to / car.vehicle.wheelbase();
@@ -37,8 +66,8 @@ void scale_wheelbase(Car& car, double to) {
   car.vehicle.kinematic_length *= by;
 }
 
+/// `start`: in full size.
 std::vector<Row> rows_for(const model::VehicleParams& start, bool has_pedal, bool is_centre_of_mass) {
-  const double size = start.scale;
   std::vector<Row> rows{
       {"latency_ms", "ms", 1e3, false, 0.1, 0.1, [](Car& c) -> double& { return c.delay; }},
       {"steer_lag_ms", "ms", 1e3, true, std::max(start.steer_lag, 0.02), 1.0,
@@ -70,7 +99,7 @@ std::vector<Row> rows_for(const model::VehicleParams& start, bool has_pedal, boo
        [](Car& c) -> double& { return c.vehicle.drive_power_per_mass; }});
   add({"brake_acceleration_mps2", "m/s²", 1.0, true, start.brake_acceleration, 0.5,
        [](Car& c) -> double& { return c.vehicle.brake_acceleration; }});
-  add({"drive_lag_ms", "ms", 1e3, true, std::max(start.drive_lag, 0.02 * std::sqrt(size)), 1.0,
+  add({"drive_lag_ms", "ms", 1e3, true, std::max(start.drive_lag, 0.02), 1.0,
        [](Car& c) -> double& { return c.vehicle.drive_lag; }});
   add({"drag_constant_mps2", "m/s²", 1.0, true, start.drag_constant, 1.0,
        [](Car& c) -> double& { return c.vehicle.drag_constant; }});
@@ -83,6 +112,14 @@ std::vector<Row> rows_for(const model::VehicleParams& start, bool has_pedal, boo
 
 double value_of(const Row& row, double theta) { return row.is_log ? exp(theta) : theta; }
 
+void set(const Row& row, double value, Car& car) {
+  if (row.of == nullptr) {
+    scale_wheelbase(car, value);
+  } else {
+    row.of(car) = value;
+  }
+}
+
 Beliefs beliefs_of(const std::vector<Row>& rows, const model::VehicleParams& start) {
   Beliefs beliefs;
   for (const Row& row : rows) {
@@ -91,14 +128,7 @@ Beliefs beliefs_of(const std::vector<Row>& rows, const model::VehicleParams& sta
   }
   beliefs.car = [rows, start](const std::vector<double>& theta) {
     Car car{.vehicle = start};
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const double value = value_of(rows[i], theta[i]);
-      if (rows[i].of == nullptr) {
-        scale_wheelbase(car, value);
-      } else {
-        rows[i].of(car) = value;
-      }
-    }
+    for (std::size_t i = 0; i < rows.size(); ++i) set(rows[i], value_of(rows[i], theta[i]), car);
     return car;
   };
   return beliefs;
@@ -153,8 +183,8 @@ std::array<double, 2> tire_use(const std::vector<DriveLog>& logs, const std::vec
 }
 
 std::vector<PredictionError> prediction_errors(const std::vector<DriveLog>& logs, std::vector<Window> windows,
-                                               const Car& car, const Noise& noise, double size) {
-  std::vector<PredictionError> errors{{.ahead = 1.0 * size}, {.ahead = 2.0 * size}, {.ahead = 3.0 * size}};
+                                               const Car& car, const Noise& noise) {
+  std::vector<PredictionError> errors{{.ahead = 1.0}, {.ahead = 2.0}, {.ahead = 3.0}};
   std::vector<int> counts(errors.size());
   std::vector<Actuators> actuators;
   for (const DriveLog& log : logs) actuators.emplace_back(log, car);
@@ -162,7 +192,7 @@ std::vector<PredictionError> prediction_errors(const std::vector<DriveLog>& logs
   for (Window& window : windows) {
     const std::vector<Sample>& samples = logs[window.log].samples;
     std::size_t seen = window.first;
-    while (seen < window.last && samples[seen].time < samples[window.first].time + kSeen * size) ++seen;
+    while (seen < window.last && samples[seen].time < samples[window.first].time + kSeen) ++seen;
     fit_start(logs, window, seen, car, actuators[window.log], noise);
     drive(car, logs[window.log], actuators[window.log], window.first, window.last, window.start, expected);
     for (std::size_t h = 0; h < errors.size(); ++h) {
@@ -195,13 +225,11 @@ void thin(std::vector<Window>& windows) {
   }
 }
 
-}  // namespace
-
-bool Identification::knows_tires() const noexcept { return use_front >= kRaceUse && use_rear >= kRaceUse; }
-
-Result<Identification> identify(const std::vector<DriveLog>& logs, const model::VehicleParams& start,
-                                double hold_out, const std::function<bool(double)>& progress) {
-  const double size = std::sqrt(start.scale);  // of times and speeds
+/// `logs` are in full size, `told` is as the car is.
+Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, const model::VehicleParams& told,
+                                          double hold_out, const std::function<bool(double)>& progress) {
+  const model::Similarity similarity(told);
+  const model::VehicleParams start = similarity.full_size(told);
   std::vector<Window> windows, held_out;
   Identification found;
   bool has_pedal = !logs.empty();
@@ -209,20 +237,22 @@ Result<Identification> identify(const std::vector<DriveLog>& logs, const model::
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const double from = logs[i].samples.front().time, to = logs[i].samples.back().time;
     const double split = to - hold_out * (to - from);
-    add_windows(logs, i, from, split, kWindow * size, kLeastSpeed * size, windows);
-    add_windows(logs, i, split, to, (kSeen + 3.3) * size, kLeastSpeed * size, held_out);
-    found.driven += to - from;
+    add_windows(logs, i, from, split, kWindow, kLeastSpeed, windows);
+    add_windows(logs, i, split, to, kSeen + 3.3, kLeastSpeed, held_out);
+    found.driven += (to - from) / similarity.time();
     has_pedal = has_pedal && logs[i].has_throttle();
     is_centre_of_mass = is_centre_of_mass && logs[i].is_centre_of_mass;
   }
   thin(windows);
   if (static_cast<double>(windows.size()) * kWindow < 10.0)
     return fail(ErrorCode::kInvalidArgument,
-                fmt::format("logs: got {:.0f} s of driving to fit, expected at least 10 s",
-                            static_cast<double>(windows.size()) * kWindow * size));
-  const std::vector<Row> rows = rows_for(start, has_pedal, is_centre_of_mass);
+                fmt::format("logs: got {:.0f} s of driving to fit, expected at least {:.3g} s",
+                            static_cast<double>(windows.size()) * kWindow / similarity.time(),
+                            10.0 / similarity.time()));
+  std::vector<Row> rows = rows_for(start, has_pedal, is_centre_of_mass);
+  for (Row& row : rows) row.per_full_size = per_full_size(row.unit, similarity);
   const Beliefs beliefs = beliefs_of(rows, start);
-  Noise noise{0.05 * start.scale + 0.005, 0.05 * start.scale + 0.005, 0.005, 0.1 * size, 0.02 / size};
+  Noise noise{0.055, 0.055, 0.005, 0.1, 0.02};
   const Noise least{1e-3, 1e-3, 2e-4, 5e-3, 1e-3};
   // A limit that is believed too low explains every bend wrongly, one that is too high changes nothing: the
   // first round has a high one.
@@ -248,14 +278,19 @@ Result<Identification> identify(const std::vector<DriveLog>& logs, const model::
       noise[kind] = std::max(fit.residual[kind], least[kind]);
   }
   const Car car = beliefs.car(fit.theta);
-  found.vehicle = car.vehicle;
-  found.vehicle.name = start.name;
-  found.delay = std::max(0.0, car.delay);
+  Car as_it_is{.vehicle = told};
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    set(rows[i], rows[i].per_full_size * value_of(rows[i], fit.theta[i]), as_it_is);
+  found.vehicle = as_it_is.vehicle;
+  found.delay = std::max(0.0, as_it_is.delay);
   found.has_pedal = has_pedal;
-  found.residual = {fit.residual[0], fit.residual[2], fit.residual[3]};
+  found.residual = {fit.residual[0] / similarity.length(), fit.residual[2],
+                    fit.residual[3] / similarity.speed()};
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double deviation = fit.deviation[i];
-    const auto outside = [&](double theta) { return value_of(rows[i], theta) * rows[i].per_si; };
+    const auto outside = [&](double theta) {
+      return value_of(rows[i], theta) * rows[i].per_full_size * rows[i].per_si;
+    };
     found.estimates.push_back({std::string(rows[i].key), std::string(rows[i].unit), outside(fit.theta[i]),
                                outside(fit.theta[i] - 2.0 * deviation),
                                outside(fit.theta[i] + 2.0 * deviation), outside(beliefs.mean[i]),
@@ -267,8 +302,60 @@ Result<Identification> identify(const std::vector<DriveLog>& logs, const model::
   for (Estimate& each : found.estimates) {  // the curve's beginning says little of its peak
     if (each.key == "friction" && !found.knows_tires()) each.is_excited = false;
   }
-  found.held_out = prediction_errors(logs, std::move(held_out), car, noise, size);
+  found.held_out = prediction_errors(logs, std::move(held_out), car, noise);
+  for (PredictionError& error : found.held_out) {
+    error.ahead /= similarity.time();
+    error.position /= similarity.length();
+    error.speed /= similarity.speed();
+  }
   return found;
+}
+
+}  // namespace
+
+double turning_wheelbase(const std::vector<DriveLog>& logs) {
+  constexpr double kLate = 0.15;        // [s] a usual delay and lag
+  constexpr double kSpan = 0.2;         // [s] over which the yaw rate is taken
+  constexpr double kLeastSteer = 0.03;  // [rad]
+  constexpr std::size_t kFewest = 20;
+  // Least squares of steer = wheelbase · curvature + understeer · sideways acceleration.
+  double cc = 0.0, ca = 0.0, aa = 0.0, cs = 0.0, as = 0.0;
+  std::size_t count = 0;
+  for (const DriveLog& log : logs) {
+    std::size_t command = 0, ahead = 0;
+    for (const Sample& at : log.samples) {
+      while (ahead + 1 < log.samples.size() && log.samples[ahead].time < at.time + kSpan) ++ahead;
+      const Sample& next = log.samples[ahead];
+      const double middle = 0.5 * (at.time + next.time);
+      while (command + 1 < log.told.size() && log.told[command + 1].time <= middle - kLate) ++command;
+      const double steer = log.told[command].steer;
+      if (next.time - at.time < 0.5 * kSpan || std::fabs(steer) < kLeastSteer) continue;
+      const double yaw_rate = (next.psi - at.psi) / (next.time - at.time);
+      const double speed = 0.5 * (at.speed + next.speed);
+      if (!(yaw_rate * steer > 0.0 && speed > 0.3)) continue;
+      const double curvature = yaw_rate / speed, sideways = speed * yaw_rate;
+      cc += curvature * curvature;
+      ca += curvature * sideways;
+      aa += sideways * sideways;
+      cs += curvature * steer;
+      as += sideways * steer;
+      ++count;
+    }
+  }
+  const double wheelbase = (cs * aa - as * ca) / (cc * aa - ca * ca);
+  return count >= kFewest && wheelbase > 0.0 ? wheelbase : std::numeric_limits<double>::quiet_NaN();
+}
+
+bool Identification::knows_tires() const noexcept { return use_front >= kRaceUse && use_rear >= kRaceUse; }
+
+Result<Identification> identify(const std::vector<DriveLog>& logs, const model::VehicleParams& start,
+                                double hold_out, const std::function<bool(double)>& progress) {
+  // A model car is fitted in full size, as controllers see it: the model's floors are those of such a car.
+  const model::Similarity similarity(start);
+  if (similarity.is_identity()) return identify_full_size(logs, start, hold_out, progress);
+  std::vector<DriveLog> scaled;
+  for (const DriveLog& each : logs) scaled.push_back(full_size(each, similarity));
+  return identify_full_size(scaled, start, hold_out, progress);
 }
 
 }  // namespace chicane::identify

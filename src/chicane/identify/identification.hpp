@@ -49,6 +49,10 @@ struct Identification {
 };
 inline constexpr double kRaceUse = 0.6;
 
+/// Wheelbase of a car without slip that would turn as the logs do, by their gentler bends [m]: enough to tell
+/// whose car it is. NaN where there is hardly a bend.
+[[nodiscard]] double turning_wheelbase(const std::vector<DriveLog>& logs);
+
 /// Finds delay, lags, offset, wheelbase, tyres, inertia, drive, brakes and drag of the car that drove `logs`.
 /// `start` gives what logs cannot tell (mass, track width, tyre shape, limits) and what to expect of the
 /// rest. `hold_out`: share of each log, at its end, kept for the prediction errors, in [0, 0.8]. `progress`

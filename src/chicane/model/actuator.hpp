@@ -8,6 +8,12 @@
 
 namespace chicane::model {
 
+/// Steering with a longer time constant than this is slow [s of a car in full size]: what is asked of it runs
+/// ahead of the wheel by far more than the wheel moves until the next command. Controller and gate then count
+/// the rate of the wheel. Below, the change of what is asked stands in for it, as prices and limits of
+/// cars in full size were chosen with (docs/decisions/0039-rates-of-slow-steering.md).
+inline constexpr double kSlowSteering = 0.3;
+
 /// From the value asked for to the value at the wheel: range, first-order lag, rate limit, in this order
 /// (docs/model.md, eq. 13). Exact for a value asked for that is held over the step while the rate does not
 /// bind. Plain data and one function, no allocation.

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chicane/base/math.hpp"
+#include "chicane/model/actuator.hpp"
+
 namespace chicane::safety {
 namespace {
 
@@ -25,7 +28,21 @@ constexpr int severity(GateReason reason) noexcept {
   return 3;
 }
 
+bool is_slow(const model::VehicleParams& vehicle) noexcept {
+  return vehicle.steer_lag > model::kSlowSteering;
+}
+
 }  // namespace
+
+double CommandGate::wheel_after(double elapsed) const noexcept {
+  if (!is_slow(vehicle_)) return last_.steer;
+  if (!(std::isfinite(elapsed) && elapsed > 0.0)) return wheel_;
+  const model::Actuator steering{.low = -vehicle_.steer_limit,
+                                 .high = vehicle_.steer_limit,
+                                 .lag = vehicle_.steer_lag,
+                                 .rate = vehicle_.steer_rate_limit};
+  return steering.next(wheel_, last_.steer, elapsed);
+}
 
 GateResult CommandGate::limited(const model::Command& asked, double elapsed) const noexcept {
   GateResult result{asked, GateReason::kNone};
@@ -54,12 +71,14 @@ GateResult CommandGate::limited(const model::Command& asked, double elapsed) con
   }
 
   if (std::isfinite(elapsed) && elapsed > 0.0) {
-    const double reach = vehicle_.steer_rate_limit * elapsed;
-    if (command.steer > last_.steer + reach) {
-      command.steer = last_.steer + reach;
+    const double wheel = wheel_after(elapsed);
+    const double share = is_slow(vehicle_) ? 1.0 - exp(-elapsed / vehicle_.steer_lag) : 1.0;
+    const double reach = vehicle_.steer_rate_limit * elapsed / share;
+    if (command.steer > wheel + reach) {
+      command.steer = wheel + reach;
       note(GateReason::kRate);
-    } else if (command.steer < last_.steer - reach) {
-      command.steer = last_.steer - reach;
+    } else if (command.steer < wheel - reach) {
+      command.steer = wheel - reach;
       note(GateReason::kRate);
     }
   }
@@ -69,6 +88,7 @@ GateResult CommandGate::limited(const model::Command& asked, double elapsed) con
 
 GateResult CommandGate::pass(const model::Command& asked, double elapsed) noexcept {
   const GateResult result = limited(asked, elapsed);
+  wheel_ = wheel_after(elapsed);
   last_ = result.command;
   return result;
 }

@@ -15,7 +15,8 @@ struct GateResult {
 };
 
 /// The only way to an actuator: whatever is asked, what leaves is finite, inside the vehicle's steering and
-/// throttle range, and no faster than its steering rate allows. Non-finite parts are replaced by the last
+/// throttle range, and no faster than its steering rate allows: that of what is sent or, where the steering
+/// is slow (model/actuator.hpp), that of the wheel behind its lag. Non-finite parts are replaced by the last
 /// sent steering and gentle braking. A nominal command passes unchanged, bit for bit. No allocation; one
 /// thread.
 class CommandGate {
@@ -25,13 +26,20 @@ class CommandGate {
   [[nodiscard]] GateResult pass(const model::Command& asked, double elapsed) noexcept;
   /// What pass() would send.
   [[nodiscard]] GateResult limited(const model::Command& asked, double elapsed) const noexcept;
-  void reset() noexcept { last_ = {}; }
+  void reset() noexcept {
+    last_ = {};
+    wheel_ = 0.0;
+  }
   /// Another car's limits from now on; the last command stays.
   void set_vehicle(const model::VehicleParams& vehicle) noexcept { vehicle_ = vehicle; }
 
  private:
+  /// Where the wheel is `elapsed` [s] after the last command; that command, where the steering is not slow.
+  [[nodiscard]] double wheel_after(double elapsed) const noexcept;
+
   model::VehicleParams vehicle_;
   model::Command last_;
+  double wheel_ = 0.0;  ///< where it was when last_ was sent [rad]
 };
 
 }  // namespace chicane::safety

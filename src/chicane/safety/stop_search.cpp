@@ -36,7 +36,7 @@ StopSearch::StopSearch(const model::VehicleParams& vehicle)
 void StopSearch::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   model_.set_vehicle(vehicle);
   if (!(vehicle == stability_.vehicle())) stability_ = model::BrakingStability(vehicle);
-  problem_.others = {kStage, model_.lags(kStage)};
+  problem_.others = Problem::Step::of(model_, kStage);
   problem_.first = problem_.others;
   problem_.weight = {.lateral = 1.0,
                      .heading = std::sqrt(5.0),
