@@ -110,7 +110,7 @@ describe('the workbench', () => {
     await setting('latency_ms').getByRole('alert').waitFor();
     assert.match(
       await setting('latency_ms').getByRole('alert').innerText(),
-      /latency_ms: got 9999, expected a number in \[0, 500\] ms/,
+      /Latency cannot be 9999: choose 0 to 500 ms\./,
     );
     assert.equal(await box('latency_ms').inputValue(), first);
     await type('latency_ms', Number(first) + 1);

@@ -12,8 +12,9 @@ const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   draw: ['lib', 'state'],
   state: ['protocol', 'lib', 'draw'],
   scene3d: ['draw', 'state', 'protocol', 'lib'],
-  recording: ['scene3d', 'draw', 'state', 'protocol', 'lib', 'page'],
-  views: ['recording', 'scene3d', 'draw', 'state', 'protocol', 'lib', 'page'],
+  parts: ['state', 'draw', 'protocol', 'lib'],
+  recording: ['parts', 'scene3d', 'draw', 'state', 'protocol', 'lib', 'page'],
+  views: ['parts', 'recording', 'scene3d', 'draw', 'state', 'protocol', 'lib', 'page'],
 };
 
 const root = new URL('.', import.meta.url).pathname;

@@ -2,6 +2,7 @@ import type { IWebSocket } from '@foxglove/ws-protocol';
 import { render } from 'preact';
 import { toggleScheme } from './lib/appearance';
 import { addShortcuts, shortcutFor, ticks } from './lib/keys';
+import { refusalInWords } from './lib/refusal';
 import { nextSpeedUnit } from './lib/units';
 import { WorkerLink } from './page/worker_link';
 import { Connection, SUBPROTOCOLS } from './protocol/connection';
@@ -90,7 +91,7 @@ function live(): Source {
       takeSettings(values);
       if (isAll) void loadSchema();
     },
-    notice: (sentence) => (notice.value = sentence),
+    notice: (sentence) => (notice.value = refusalInWords(sentence)),
   });
 }
 

@@ -6,11 +6,13 @@ import { ghostShown } from '../state/ghost_shown';
 import { keepAllLaps, lapSamples, laps, sampleLap } from '../state/laps';
 import { link, notice, services } from '../state/link';
 import { complete } from '../state/message_fields';
+import { removeOtherLaps } from '../state/other_laps';
 import { run } from '../state/run';
 import { seekTo } from '../state/seek';
 import { schema } from '../state/settings';
 import { beginSettings, takeSettings } from '../state/settings_session';
 import { everyFrame } from '../state/ticker';
+import { offerLaps } from './add_laps';
 import { type Landmark, LogSource, landmarksOf } from './log_source';
 import type { McapLog } from './mcap_log';
 import type { Mode } from './mode';
@@ -130,9 +132,17 @@ async function readReports(recordings: Recordings): Promise<void> {
   reports.value = [];
   try {
     for (const log of recordings.logs) reports.value = [...reports.value, ...(await reportsOf(log))];
+    offerOthers();
   } catch (error) {
     notice.value = error instanceof Error ? error.message : String(error);
   }
+}
+
+/** The laps of the recordings that are not played are there to be compared. */
+function offerOthers(): void {
+  removeOtherLaps();
+  const log = logs.value[played.value];
+  offerLaps(reports.value.filter(({ recording }) => recording !== log?.name));
 }
 
 let endSampling: () => void = () => undefined;
@@ -161,7 +171,10 @@ async function look(source: LogSource): Promise<void> {
       const now = source.runAt(position.value);
       if (player.value !== source || now === sampled) return;
       sampled = now;
-      untracked(() => sampleRun(source, frames, now));
+      untracked(() => {
+        sampleRun(source, frames, now);
+        offerOthers();
+      });
     });
   } catch (error) {
     notice.value = error instanceof Error ? error.message : String(error);

@@ -8,6 +8,7 @@ import { inSpeedUnit, speedUnit } from '../lib/units';
 import { setupInWords } from '../state/lap_setup';
 import { bestsOf } from '../state/lap_table';
 import { gapsToLimit } from '../state/limit';
+import { BestLapLosses, LapsOfRuns } from './compare_runs';
 import { type RunReport, type Trace, verdictOf } from './summary';
 
 /** The runs that are reported; empty while they are read. */
@@ -181,6 +182,7 @@ function RunSection({ report }: { report: RunReport }) {
       </p>
       <SpeedMap report={report} />
       <LapTable report={report} />
+      <BestLapLosses report={report} />
       <Curve title="Speed" unit={unit.name} trace={trace} values={trace.speed} factor={unit.perMps} report={report} />
       <Curve title="Lateral error" unit="m, + left" trace={trace} values={trace.error} report={report} />
       {faults.length > 0 && (
@@ -273,6 +275,7 @@ export function SummaryView() {
       <div class="summary-sheet">
         {all.length === 0 && <p class="empty">Reading the recording …</p>}
         <Comparison />
+        <LapsOfRuns reports={all} />
         {all.map((report) => (
           <RunSection key={report.name} report={report} />
         ))}

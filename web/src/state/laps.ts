@@ -1,6 +1,6 @@
 import { computed, signal } from '@preact/signals';
 import type { Frame, Lap } from '../protocol/topics';
-import { LapSamples } from './lap_samples';
+import { LapSamples, momentOf } from './lap_samples';
 import { bestsOf } from './lap_table';
 import { run } from './run';
 
@@ -69,20 +69,7 @@ export function receiveLap(lap: Lap): void {
 /** Adds a frame to the samples of its lap. */
 export function sampleLap(frame: Frame): void {
   lapSamples.setLength(run.value?.track_length_m ?? NaN);
-  lapSamples.push(
-    frame.lap,
-    {
-      s_m: frame.s_m,
-      time_s: frame.lap_time_s,
-      speed_mps: frame.speed_mps,
-      lateral_error_m: frame.lateral_error_m,
-      steer_rad: frame.steer_applied_rad,
-      throttle: frame.throttle_applied,
-      x_m: frame.x_m,
-      y_m: frame.y_m,
-    },
-    frame.last_lap_time_s,
-  );
+  lapSamples.push(frame.lap, momentOf(frame), frame.last_lap_time_s);
   sampledLaps.value = lapSamples.completed;
 }
 

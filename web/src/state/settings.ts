@@ -1,4 +1,5 @@
 import { computed, signal } from '@preact/signals';
+import { refusalInWords } from '../lib/refusal';
 import type { SchemaEntry } from '../protocol/schema';
 import type { SetAnswer, Setting } from '../protocol/source';
 
@@ -74,6 +75,7 @@ export class SettingRequests {
       const request = state.next;
       delete state.next;
       ({ value: inForce, sentence } = await this.#send(key, request));
+      if (sentence !== null) sentence = refusalInWords(sentence);
     }
     this.#open.delete(key);
     if (inForce !== null) settings.value = withEntry(settings.value, key, inForce);

@@ -1,4 +1,5 @@
 import { effect, signal } from '@preact/signals';
+import { refusalInWords } from '../lib/refusal';
 import { programPage } from '../protocol/program_page';
 import type { SchemaEntry } from '../protocol/schema';
 import type { AskAnswer, Setting } from '../protocol/source';
@@ -115,7 +116,7 @@ export async function ask(): Promise<void> {
     await waitFor(Number(taken.message), mine);
     if (mine === newest) asked.value = sent;
   } catch (error) {
-    if (mine === newest) problem.value = error instanceof Error ? error.message : String(error);
+    if (mine === newest) problem.value = refusalInWords(error instanceof Error ? error.message : String(error));
   } finally {
     if (mine === newest) progress.value = null;
   }
