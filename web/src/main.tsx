@@ -14,6 +14,7 @@ import { begin, isReading, summary, timeline } from './recording/begin';
 import { isReport } from './recording/mode';
 import { beginSession, receive, receivePastLeft } from './state/demultiplexer';
 import { toggleLayer } from './state/layers';
+import { listenForLayouts, toggleDock } from './state/layout';
 import { ageAtArrival, attempt, link, notice, pastLeft, services } from './state/link';
 import { call, can, refresh } from './state/operate';
 import { rememberRun } from './state/other_run';
@@ -33,7 +34,7 @@ import { RestartView } from './views/restart_view';
 import { listenForLinks, ShareView } from './views/share_view';
 import { nextView, toggleDimension, zoom } from './views/track_view';
 import { focusSearch } from './views/tune_view';
-import { isPanelAlone, titleOf, toggleDock, WorkbenchView } from './views/workbench_view';
+import { isPanelAlone, titleOf, WorkbenchView } from './views/workbench_view';
 
 let session: string | null = null;
 
@@ -99,6 +100,7 @@ void begin(live);
 refreshOnNewChoice(refresh);
 listenToDriver();
 listenForLinks();
+listenForLayouts();
 // A report may lie in a frame, where browsers refuse to write the address.
 if (isReport()) readAddress();
 else followAddress();

@@ -18,8 +18,8 @@ import { BytesReadable } from './readable';
 // road, as live and as a recording. CHICANE is the program's path; with CHICANE_EVERY_RUN all presets drive all cars
 // with all faults.
 
-const program = process.env['CHICANE'];
-const isWhole = process.env['CHICANE_EVERY_RUN'] !== undefined;
+const { CHICANE: program, CHICANE_EVERY_RUN: everyRun } = process.env;
+const isWhole = everyRun !== undefined;
 const folder = mkdtempSync(join(tmpdir(), `chicane-contradictions-${process.pid}-`));
 afterAll(() => rmSync(folder, { recursive: true }));
 
