@@ -155,13 +155,14 @@ describe('a recording in the page', () => {
     const rows = others.locator('tr');
     assert.ok((await rows.count()) >= 1);
     await rows.last().getByLabel(/as A$/).check();
+    await page.getByLabel('Compare lap 2 as B', { exact: true }).check(); // lap 1 is the same in both
     const losses = page.getByTestId('time-won');
-    assert.match(await losses.locator('h2').innerText(), /^Where lap \d of branch\.mcap loses time to lap \d \+\d/);
+    assert.match(await losses.locator('h2').innerText(), /^Where lap \d of branch\.mcap loses time to lap 2 \+\d/);
     assert.match(await losses.locator('tr.most').innerText(), /T\d[\s\S]* s lost, .* s of it /);
     await losses.getByText(/^Mini-sectors of/).click();
     assert.ok((await losses.locator('.mini-sector-table li').count()) > 30);
     const curves = page.locator('[aria-label="Speed along the track"] .key');
-    assert.equal(await curves.count(), 2);
+    assert.equal(await curves.count(), 2, 'laps A and B');
     for (const each of await page.getByLabel(/^Draw lap . too$/).all()) await each.check();
     await dashboard.until(
       () => curves.count(),

@@ -380,6 +380,57 @@ describe('the workbench', () => {
     await page.setViewportSize(LAPTOP.viewport);
   });
 
+  it('is arranged as its reader likes, by name and by link', async () => {
+    const tabs = () => page.getByRole('tab').allInnerTexts();
+    const plots = () => page.locator('.plots .plot h2').evaluateAll((all) => all.map((each) => each.firstChild.data));
+    await dashboard.show('plots');
+    const [allTabs, allPlots] = [await tabs(), await plots()];
+    await dashboard.button('Layout').click();
+    const dialog = page.getByRole('dialog', { name: 'Layout' });
+    await dialog.getByLabel('Tune', { exact: true }).uncheck();
+    await dialog.getByLabel('Cost', { exact: true }).uncheck();
+    await dialog.getByRole('button', { name: 'Move Speed down' }).click();
+    await dialog.getByLabel('Second panel').selectOption('laps');
+    await dialog.getByLabel('Instruments below the picture').uncheck();
+    await dialog.getByLabel('Name').fill('mine');
+    await dialog.getByRole('button', { name: 'Save' }).click();
+    const link = await dialog.getByLabel('Link', { exact: true }).inputValue();
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await dialog.getByRole('button', { name: 'Close' }).click();
+    const check = async () => {
+      assert.deepEqual(
+        await tabs(),
+        allTabs.filter((name) => name !== 'Tune'),
+      );
+      const now = await plots();
+      assert.deepEqual(now.slice(0, 2), [allPlots[1], allPlots[0]]);
+      assert.ok(!now.includes('Cost ') && allPlots.includes('Cost '), `${now}`);
+      await page.locator('.panel-body.second .laps').waitFor();
+      assert.equal(await page.locator('.instruments').count(), 0);
+    };
+    await check();
+    assert.ok((await dashboard.overflow()).across <= 0);
+    await dashboard.button('Layout').click();
+    await dialog.getByRole('button', { name: 'As at first' }).click();
+    await dialog.getByRole('button', { name: 'Close' }).click();
+    assert.deepEqual([await tabs(), await plots()], [allTabs, allPlots]);
+    await page.evaluate((hash) => {
+      location.hash = hash;
+    }, new URL(link).hash);
+    await page.locator('.panel-body.second').waitFor();
+    await check();
+    await dashboard.button('Layout').click();
+    await dialog.getByRole('button', { name: 'As at first' }).click();
+    await dialog.getByRole('button', { name: 'Use the layout mine' }).click();
+    await dialog.getByRole('button', { name: 'Delete the layout mine' }).click();
+    await dialog.getByRole('button', { name: 'Close' }).click();
+    await check();
+    await dashboard.button('Layout').click();
+    await dialog.getByRole('button', { name: 'As at first' }).click();
+    await dialog.getByRole('button', { name: 'Close' }).click();
+    await page.locator('.instruments').waitFor();
+  });
+
   it('has nothing that axe objects to while everything is in use', async () => {
     for (const tab of ['drive', 'explain', 'tune', 'faults', 'plots']) {
       await dashboard.show(tab);

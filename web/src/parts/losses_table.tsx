@@ -1,3 +1,4 @@
+import { useState } from 'preact/hooks';
 import { fixed } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import { scaleOf } from '../state/compared';
@@ -70,18 +71,21 @@ function CornerRow({ corner, isMost, show }: { corner: CornerTime; isMost: boole
   );
 }
 
-/** Every mini-sector in figures, for readers of tables and for print. */
-function MiniSectorTable({ pieces }: { pieces: readonly Stretch[] }) {
+/** Every mini-sector in figures, for readers of tables; made when it is opened, or at once for print. */
+function MiniSectorTable({ pieces, isForPrint }: { pieces: readonly Stretch[]; isForPrint: boolean }) {
+  const [isOpen, setOpen] = useState(false);
   return (
-    <details class="mini-sector-table">
+    <details class="mini-sector-table" onToggle={({ currentTarget }) => setOpen(currentTarget.open)}>
       <summary>Mini-sectors of {fixed((pieces[0]?.to ?? 0) - (pieces[0]?.from ?? 0), 1)} m</summary>
-      <ol tabIndex={0}>
-        {pieces.map(({ from, lost }) => (
-          <li key={from}>
-            <span>{fixed(from, 0)} m</span> <b class={colourOf(lost)}>{seconds(lost)} s</b>
-          </li>
-        ))}
-      </ol>
+      {(isOpen || isForPrint) && (
+        <ol>
+          {pieces.map(({ from, lost }) => (
+            <li key={from}>
+              <span>{fixed(from, 0)} m</span> <b class={colourOf(lost)}>{seconds(lost)} s</b>
+            </li>
+          ))}
+        </ol>
+      )}
     </details>
   );
 }
@@ -93,10 +97,11 @@ interface Options {
   readonly laps: TwoLaps;
   readonly corners: readonly CornerTime[];
   readonly show?: ShowCorner;
+  readonly isForPrint?: boolean;
 }
 
 /** By mini-sectors, and by corners with the cause; the corner that costs most is in bold. */
-export function LossesTable({ laps, corners, show }: Options) {
+export function LossesTable({ laps, corners, show, isForPrint = false }: Options) {
   const pieces = miniSectors(laps);
   const known = corners.filter(({ lost }) => Number.isFinite(lost));
   const most = known.reduce<CornerTime | null>((x, y) => (x && x.lost >= y.lost ? x : y), null);
@@ -125,7 +130,7 @@ export function LossesTable({ laps, corners, show }: Options) {
           </tbody>
         </table>
       )}
-      <MiniSectorTable pieces={pieces} />
+      <MiniSectorTable pieces={pieces} isForPrint={isForPrint} />
     </>
   );
 }

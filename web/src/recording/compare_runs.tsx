@@ -114,7 +114,7 @@ function Losses({ a, b, title }: { a: Pick; b: Pick; title: ComponentChildren })
       <h3>
         {title} <span class="unit">{seconds(laps.total)} s</span>
       </h3>
-      <LossesTable laps={laps} corners={cornerTimes(laps, corners, startLine(samples))} />
+      <LossesTable laps={laps} corners={cornerTimes(laps, corners, startLine(samples))} isForPrint />
     </section>
   );
 }
