@@ -1,7 +1,7 @@
-import { signal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { ticksOf } from '../draw/axis';
 import { fixed, lapTime } from '../lib/format';
+import { store } from '../lib/store';
 import { speedUnit } from '../lib/units';
 import { LossesTable, seconds } from '../parts/losses_table';
 import { along, type DrivenLap, startLine } from '../state/compared';
@@ -128,7 +128,7 @@ export function BestLapLosses({ report }: { report: RunReport }) {
 }
 
 /** The laps chosen, as indices of the list; null: the best laps of the first two runs. */
-const chosen = signal<readonly [number | null, number | null]>([null, null]);
+const chosen = store.signal<readonly [number | null, number | null]>('page', [null, null]);
 
 function Choice({ which, picks, value }: { which: 0 | 1; picks: readonly Pick[]; value: number }) {
   return (

@@ -1,5 +1,5 @@
+import { store } from '../lib/store';
 import './summary.css';
-import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { ticksOf } from '../draw/axis';
 import { speedColour, topOfScale } from '../draw/speed_colour';
@@ -12,8 +12,8 @@ import { BestLapLosses, LapsOfRuns } from './compare_runs';
 import { type RunReport, type Trace, verdictOf } from './summary';
 
 /** The runs that are reported; empty while they are read. */
-export const reports = signal<readonly RunReport[]>([]);
-export const isSummaryShown = signal(false);
+export const reports = store.signal<readonly RunReport[]>('page', []);
+export const isSummaryShown = store.signal('page', false);
 
 const WIDTH = 900; // of a picture's own units
 const MOST_POINTS = 700;

@@ -1,4 +1,5 @@
-import { computed, signal } from '@preact/signals';
+import { computed } from '@preact/signals';
+import { store } from '../lib/store';
 import type { Lap } from '../protocol/topics';
 import { type Corner, cornersOf } from './corners';
 import type { LapChannel, LapSamples } from './lap_samples';
@@ -18,10 +19,10 @@ import { miniSectors, numbered, type Stretch, type TwoLaps } from './time_won';
 export const LIMIT = 0;
 
 /** The laps to compare, by number; null for the default: the newest against the best. */
-export const chosen = signal<readonly [number | null, number | null]>([null, null]);
+export const chosen = store.signal<readonly [number | null, number | null]>('run', [null, null]);
 
 /** Laps that are drawn beside these two, by number. */
-export const overlaid = signal<readonly number[]>([]);
+export const overlaid = store.signal<readonly number[]>('run', []);
 
 export function toggleOverlaid(number: number): void {
   const all = overlaid.value;
@@ -111,12 +112,12 @@ export const twoLaps = computed<TwoLaps | null>(() => {
   return a === b ? null : along(lapSamples, [drivenLap(a), drivenLap(b)]);
 });
 
-let known: { readonly of: object; readonly corners: readonly Corner[] } | null = null;
+const known = store.data('page', () => ({ of: null as object | null, corners: [] as readonly Corner[] }));
 
 /** The corners of the road, found once for each road. */
 export function roadCorners(): readonly Corner[] {
   const { centre } = road.lines;
-  if (known?.of !== centre) known = { of: centre, corners: cornersOf(centre) };
+  if (known.of !== centre) Object.assign(known, { of: centre, corners: cornersOf(centre) });
   return known.corners;
 }
 
@@ -126,15 +127,19 @@ export function startLine(samples: LapSamples = lapSamples): number {
   return Number.isFinite(place) ? place : 0;
 }
 
-let marked: { of: readonly Corner[]; line: number; corners: MarkedCorner[] } | null = null;
+const marked = store.data('page', () => ({
+  of: null as readonly Corner[] | null,
+  line: NaN,
+  corners: [] as readonly MarkedCorner[],
+}));
 
 /** The corners with their numbers, by distance from the start line. */
 export function markedCorners(): readonly MarkedCorner[] {
   const [corners, line] = [roadCorners(), startLine()];
-  if (marked?.of !== corners || marked.line !== line) {
+  if (marked.of !== corners || marked.line !== line) {
     const length = run.value?.track_length_m ?? NaN;
     const all = length > 0 ? numbered(corners, line, length) : [];
-    marked = { of: corners, line, corners: all.map((corner, i) => ({ ...corner, number: i + 1 })) };
+    Object.assign(marked, { of: corners, line, corners: all.map((corner, i) => ({ ...corner, number: i + 1 })) });
   }
   return marked.corners;
 }
@@ -148,11 +153,11 @@ export function scaleOf(pieces: readonly Stretch[]): number {
 
 /** The line of the first lap by what it loses on it; null where the laps are not known. */
 export const lossesNow = computed<Losses | null>(() => {
-  const known = twoLaps.value;
+  const two = twoLaps.value;
   const [x, y] = (['x_m', 'y_m'] as const).map((name) => samplesOf(pair.value[0], name));
-  if (!known || !x || !y) return null;
-  const pieces = miniSectors(known);
-  const indexOf = (place: number): number => Math.round((place / known.length) * x.length);
+  if (!two || !x || !y) return null;
+  const pieces = miniSectors(two);
+  const indexOf = (place: number): number => Math.round((place / two.length) * x.length);
   return {
     line: { x, y },
     pieces: pieces.map(({ from, to, lost }) => ({ first: indexOf(from), end: indexOf(to), lost })),

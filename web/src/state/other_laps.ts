@@ -1,5 +1,5 @@
-import { signal } from '@preact/signals';
 import { mod } from '../lib/math';
+import { store } from '../lib/store';
 import type { Lap } from '../protocol/topics';
 import type { LapChannel, LapSamples } from './lap_samples';
 
@@ -26,7 +26,7 @@ function numberOf(recording: string, { lap, lap_time_s: time }: Lap): number {
   return number;
 }
 
-export const otherLaps = signal<readonly OtherLap[]>([]);
+export const otherLaps = store.signal<readonly OtherLap[]>('page', []);
 
 /** Two roads whose lengths differ by more are not the same [m]. */
 const SAME_LENGTH_M = 0.5;

@@ -1,4 +1,4 @@
-import { signal } from '@preact/signals';
+import { store } from '../lib/store';
 
 /** Where browsers allow no clipboard (addresses without TLS that are not this machine), the text is selected. */
 function copy(field: HTMLInputElement | null, said: (text: string) => void): void {
@@ -11,7 +11,7 @@ function copy(field: HTMLInputElement | null, said: (text: string) => void): voi
   );
 }
 
-const said = signal<{ readonly id: string; readonly text: string } | null>(null);
+const said = store.signal<{ readonly id: string; readonly text: string } | null>('page', null);
 
 /** A text in a field, with a button that copies it. */
 export function Copied({ id, label, text }: { id: string; label: string; text: string }) {

@@ -1,6 +1,6 @@
-import { signal } from '@preact/signals';
 import { download, downloadPng, fileName } from '../lib/download';
 import { fixed, lapTime, UNKNOWN } from '../lib/format';
+import { store } from '../lib/store';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import type { Lap, Limit } from '../protocol/topics';
 import { pair as comparedPair, drawn, LIMIT } from '../state/compared';
@@ -129,7 +129,7 @@ function Row({ lap, bests, pair, hasSetups }: RowOptions) {
 
 const ROWS = 40;
 const SETUP_WORDS = 2;
-const showsAll = signal(false);
+const showsAll = store.signal('page', false);
 
 /** The newest laps and the best, or all laps. */
 function rowsOf(all: readonly Lap[], bests: LapBests): Lap[] {

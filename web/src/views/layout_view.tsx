@@ -1,4 +1,4 @@
-import { signal } from '@preact/signals';
+import { store } from '../lib/store';
 import {
   applyLayout,
   besideChosen,
@@ -22,7 +22,7 @@ import { TABS, type Tab } from '../state/tab';
 import { Copied } from './copied';
 import { Dialog } from './help_view';
 
-const isOpen = signal(false);
+const isOpen = store.signal('page', false);
 
 export const openLayout = (): void => {
   isOpen.value = true;

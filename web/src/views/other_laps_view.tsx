@@ -1,12 +1,12 @@
-import { signal } from '@preact/signals';
 import { lapTime } from '../lib/format';
+import { store } from '../lib/store';
 import { lapSamples, sampledLaps } from '../state/laps';
 import { isSameRoad, type OtherLap, otherLaps, removeOtherLaps } from '../state/other_laps';
 import { Picks } from './lap_picks';
 
 /** Why a recording could not be added; empty without a reason. */
-const problem = signal('');
-const isReading = signal(false);
+const problem = store.signal('page', '');
+const isReading = store.signal('page', false);
 
 async function add(files: readonly File[]): Promise<void> {
   [problem.value, isReading.value] = ['', true];

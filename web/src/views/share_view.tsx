@@ -1,6 +1,6 @@
-import { signal } from '@preact/signals';
 import { plural } from '../lib/format';
 import { tidy } from '../lib/scale';
+import { store } from '../lib/store';
 import type { Setting } from '../protocol/source';
 import { notice } from '../state/link';
 import { canSet } from '../state/operate';
@@ -19,7 +19,7 @@ import { tab } from '../state/tab';
 import { Copied, forgetCopied } from './copied';
 import { Dialog } from './help_view';
 
-const isOpen = signal(false);
+const isOpen = store.signal('page', false);
 
 export const openShare = (): void => {
   isOpen.value = true;

@@ -1,6 +1,6 @@
-import { signal } from '@preact/signals';
 import type { ComponentType } from 'preact';
 import { useLayoutEffect, useRef } from 'preact/hooks';
+import { store } from '../lib/store';
 import { beside, dock, hasInstruments, panelShare, panels, setPanelShare, toggleDock } from '../state/layout';
 import { link } from '../state/link';
 import { isStageAlone } from '../state/presentation';
@@ -32,7 +32,7 @@ const PANELS = [
 export const titleOf = (name: Tab): string => PANELS.find((each) => each.name === name)?.title ?? name;
 
 /** Whether only the panel is shown, without picture and instruments. */
-export const isPanelAlone = signal(false);
+export const isPanelAlone = store.signal('page', false);
 
 /** The bar between picture and panel, moved by dragging or with the arrow keys. */
 function Splitter() {
