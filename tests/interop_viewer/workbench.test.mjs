@@ -354,6 +354,18 @@ describe('the workbench', () => {
     await dashboard.button('1×').click();
   });
 
+  it('says in which corner a lap loses most to the limit, and why, in three clicks', async () => {
+    await dashboard.show('laps');
+    await page.getByTestId('limit').waitFor();
+    await page.getByLabel('Compare lap 2 as A', { exact: true }).check();
+    await page.getByLabel('Compare the limit as B', { exact: true }).check();
+    const losses = page.getByTestId('time-won');
+    assert.match(await losses.locator('h2').innerText(), /^Where lap 2 loses time to the limit \+\d/);
+    const most = await losses.locator('tr.most').innerText();
+    assert.match(most, /^T\d[\s\S]* s lost, [\d.]+ s of it (braking|less|a slower|[\d.]+ (mph|km\/h|m\/s) slower)/);
+    assert.match(await page.locator('.legend').innerText(), /lost/i, 'the map shows it in colours');
+  });
+
   it('finds the limit again for a car with another grip', async () => {
     await dashboard.show('laps');
     const limit = () => page.getByTestId('limit').locator('.time').innerText();

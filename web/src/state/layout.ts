@@ -53,6 +53,9 @@ export const beside = computed<Tab | null>(() => {
 /** The panel that is to stand beside the first one; empty: none. */
 export const besideChosen = computed<Tab | ''>(() => listOf(besideText.value, TABS)[0] ?? '');
 
+/** Whether a panel is seen, as the first or the second one. */
+export const isSeen = (name: Tab): boolean => tab.value === name || beside.value === name;
+
 export function setPanels(names: readonly Tab[]): void {
   panelText.value = names.join('.');
 }

@@ -29,6 +29,7 @@ import { cursorMark, pointAt, timeNear } from '../state/cursor';
 import { faultMarks } from '../state/faults';
 import { hindsight } from '../state/hindsight';
 import { layers } from '../state/layers';
+import { isSeen } from '../state/layout';
 import { limit } from '../state/limit';
 import { link } from '../state/link';
 import { live } from '../state/live';
@@ -37,7 +38,6 @@ import { road } from '../state/road';
 import { isPaused, run } from '../state/run';
 import { seekTo } from '../state/seek';
 import { shown } from '../state/shown';
-import { tab } from '../state/tab';
 import { everyFrame } from '../state/ticker';
 import { AlertsView, dangerNow, HudView } from './hud_view';
 import { LegendView } from './legend_view';
@@ -121,7 +121,7 @@ class Painter {
     if (bar.value.metres !== length.metres || Math.abs(bar.value.pixels - length.pixels) > 0.5) bar.value = length;
 
     // The way driven would lie on the line of the lap that is coloured.
-    const losses = layers.timeLost.value && tab.value === 'laps' && !isInset ? lossesNow.value : null;
+    const losses = layers.timeLost.value && isSeen('laps') && !isInset ? lossesNow.value : null;
     const scene: Scene = {
       road: this.#road,
       racingLine: layers.racingLine.value ? limit.value : null,
