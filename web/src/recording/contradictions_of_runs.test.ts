@@ -46,12 +46,12 @@ function runsOf(): Words[] {
     });
   });
   const lasting = ['dead_controller', 'link_lost', 'half_grip', 'ice_patch', 'steering_stuck', 'throttle_stuck'].map(
-    (fault): Words => ['--fault', `${fault}@9+${fault === 'ice_patch' ? 3 : 8}`, '--set', 'guard.mode=off'],
+    (fault): Words => ['--fault', `${fault}@6+${fault === 'ice_patch' ? 3 : 8}`, '--set', 'guard.mode=off'],
   );
   return [
     ...cross,
     ...lasting, // off the road
-    ['--preset', 'race', '--fault', 'steering_stuck@9+4'],
+    ['--preset', 'race', '--fault', 'steering_stuck@6+4'],
     ['--car', 'f1tenth', '--fault', 'gps_noise@6*2'],
     ['--fault', 'dead_controller@6+6'],
     ['--set', 'plant_options.friction_scale=0.6', '--preset', 'pid'],
@@ -63,7 +63,7 @@ const file = join(folder, 'run.mcap');
 
 function drive(words: Words): void {
   rmSync(file, { force: true });
-  const all = ['drive', '--fast', '--track', 'oval', '--laps', '1', ...words, '--record', file];
+  const all = ['drive', '--fast', '--track', 'oval', '--set', 'time_limit_s=16', ...words, '--record', file];
   try {
     execFileSync(program ?? '', all, { stdio: ['ignore', 'ignore', 'pipe'] });
   } catch (error) {
