@@ -26,7 +26,7 @@ export function Picks({ lap, pair, name }: { lap: number; pair: readonly [number
           checked={overlaid.value.includes(lap)}
           onChange={() => toggleOverlaid(lap)}
         />
-        too
+        +
       </label>
     </div>
   );
