@@ -42,7 +42,8 @@ std::string plan_line(const lap_time::PlanProgress& now, double elapsed, double 
     return fmt::format("planning the lap: {:.0f} %, about {:.0f} s left", 100.0 * now.work / now.expected,
                        std::ceil(per_work * (now.expected - now.work)));
   const double seconds = std::ceil(elapsed);
-  if (!std::isfinite(budget)) return fmt::format("planning the lap: {:.0f} s so far, more than estimated", seconds);
+  if (!std::isfinite(budget))
+    return fmt::format("planning the lap: {:.0f} s so far, more than estimated", seconds);
   return fmt::format("planning the lap: {:.0f} s so far, at most {:.0f} s left", seconds,
                      std::ceil(per_work * std::max(budget - now.work, 0.0)));
 }

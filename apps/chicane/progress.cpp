@@ -31,8 +31,8 @@ std::string line(const telemetry::Frame& frame) {
   const std::string solve =
       frame.solve_time > 0.0 ? fmt::format("  solve {:5.0f} µs", 1e6 * frame.solve_time) : "";
   const std::string beside = std::isfinite(error) ? fmt::format("error {:+6.2f} m", error) : "error unknown";
-  return fmt::format("{:7.1f} s  {}{:6.1f} mph  {}{}{}{}", frame.time, place, mps_to_mph(speed), beside, solve,
-                     off, exception(frame.result.report));
+  return fmt::format("{:7.1f} s  {}{:6.1f} mph  {}{}{}{}", frame.time, place, mps_to_mph(speed), beside,
+                     solve, off, exception(frame.result.report));
 }
 
 }  // namespace

@@ -394,7 +394,8 @@ describe('the workbench', () => {
 
   it('is arranged as its reader likes, by name and by link', async () => {
     const tabs = () => page.getByRole('tab').allInnerTexts();
-    const plots = () => page.locator('.plots .plot h2').evaluateAll((all) => all.map((each) => each.firstChild.data.trim()));
+    const plots = () =>
+      page.locator('.plots .plot h2').evaluateAll((all) => all.map((each) => each.firstChild.data.trim()));
     await dashboard.show('plots');
     const [allTabs, allPlots] = [await tabs(), await plots()];
     await dashboard.button('Layout').click();

@@ -204,8 +204,8 @@ constexpr std::array kSent{
     field<bool>("is_manual", "a person drives", [](const Frame& f) { return f.is_manual; }),
 };
 
-/// What limits the speed, as it stands beside the command that was sent: a drive that is not asked for all it has
-/// is no limit, and full throttle is not part of it.
+/// What limits the speed, as it stands beside the command that was sent: a drive that is not asked for all it
+/// has is no limit, and full throttle is not part of it.
 road::SpeedLimiter limiter_beside_pedal(const Frame& frame) {
   constexpr double kFull = 0.995;  // less is shown as less than 100 %
   const road::SpeedLimiter limiter = why(frame).speed_limiter;

@@ -194,7 +194,11 @@ export function WorkbenchView() {
             <View key={tab.value} />
           </div>
           {second && (
-            <section class={`panel-body second show-${second.name}`} aria-label={`Second panel: ${second.title}`} tabIndex={0}>
+            <section
+              class={`panel-body second show-${second.name}`}
+              aria-label={`Second panel: ${second.title}`}
+              tabIndex={0}
+            >
               <second.View key={second.name} />
             </section>
           )}
