@@ -66,6 +66,8 @@ Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop
 }
 
 constexpr const char* kNotAsked = "not asked for (--limit)";
+/// The same in a recording, whose reader gives no options to this run any more.
+constexpr const char* kNotLookedFor = "this run was driven without looking for it";
 
 lap_time::LimitAnswer answer_of(const path::Track& track, const lap_time::PlantLimit& limit) {
   if (!limit.is_whole())
@@ -84,6 +86,7 @@ Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const ru
   }
   protocol::Run description = live::description(loop);
   description.limit = limit;
+  if (!options.wants_limit) description.limit.why_not = kNotLookedFor;
   const auto kept = KeptRun::start(options, std::move(description), loop.scenario(), 0.0);
   if (!kept) return fail(kept.error());
   telemetry::RunSummary summary;

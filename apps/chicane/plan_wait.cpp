@@ -41,8 +41,10 @@ std::string plan_line(const lap_time::PlanProgress& now, double elapsed, double 
   if (now.work < now.expected)
     return fmt::format("planning the lap: {:.0f} %, about {:.0f} s left", 100.0 * now.work / now.expected,
                        std::ceil(per_work * (now.expected - now.work)));
-  if (!std::isfinite(budget)) return "planning the lap: takes longer than usual";
-  return fmt::format("planning the lap: takes longer than usual, at most {:.0f} s left",
+  const double seconds = std::ceil(elapsed);
+  if (!std::isfinite(budget))
+    return fmt::format("planning the lap: {:.0f} s so far, more than estimated", seconds);
+  return fmt::format("planning the lap: {:.0f} s so far, at most {:.0f} s left", seconds,
                      std::ceil(per_work * std::max(budget - now.work, 0.0)));
 }
 

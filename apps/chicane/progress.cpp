@@ -30,8 +30,9 @@ std::string line(const telemetry::Frame& frame) {
   const std::string off = frame.is_off_track ? "  OFF TRACK" : "";
   const std::string solve =
       frame.solve_time > 0.0 ? fmt::format("  solve {:5.0f} µs", 1e6 * frame.solve_time) : "";
-  return fmt::format("{:7.1f} s  {}{:6.1f} mph  error {:+6.2f} m{}{}{}", frame.time, place, mps_to_mph(speed),
-                     error, solve, off, exception(frame.result.report));
+  const std::string beside = std::isfinite(error) ? fmt::format("error {:+6.2f} m", error) : "error unknown";
+  return fmt::format("{:7.1f} s  {}{:6.1f} mph  {}{}{}{}", frame.time, place, mps_to_mph(speed), beside,
+                     solve, off, exception(frame.result.report));
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ TEST(PlanLine, SaysHowFarItIsAndWhatIsLeft) {
   const lap_time::PlanProgress half{.work = 5.0, .expected = 10.0};
   EXPECT_EQ(plan_line(half, 8.0, 90.0), "planning the lap: 50 %, about 8 s left");
   const lap_time::PlanProgress late{.work = 60.0, .expected = 10.0};
-  EXPECT_EQ(plan_line(late, 120.0, 90.0), "planning the lap: takes longer than usual, at most 60 s left");
+  EXPECT_EQ(plan_line(late, 120.0, 90.0), "planning the lap: 120 s so far, at most 60 s left");
 }
 
 }  // namespace

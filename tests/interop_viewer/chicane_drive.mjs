@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Starts `chicane` (its path in CHICANE) with a page, and listens to it as a second viewer, by the protocol's
 // reference client.
+import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import rosmsg from '@foxglove/rosmsg';
@@ -50,15 +51,19 @@ export async function startProgram(command, args, port = 0) {
   return program;
 }
 
-/** Changes a setting of the run. */
+/** Changes a setting of the run, as the program's own page may: without an origin a viewer only watches. */
 export async function change(url, name, value) {
-  const socket = new WebSocket(url.replace('http', 'ws'), ['foxglove.sdk.v1']);
+  const socket = new WebSocket(url.replace('http', 'ws'), ['foxglove.sdk.v1'], { origin: new URL(url).origin });
   const client = new foxglove.FoxgloveClient({ ws: socket });
   await once(socket, 'open');
   const answer = new Promise((resolve) => client.on('parameterValues', resolve));
   client.setParameters([{ name, value }], 'change');
-  await answer;
+  const { parameters } = await answer;
   client.close();
+  assert.deepEqual(
+    parameters.map((each) => [each.name, each.value]),
+    [[name, value]],
+  );
 }
 
 /** Frames by cycle, the newest 2000 of them, and all changes. */

@@ -206,17 +206,20 @@ export class DashboardPage {
       });
   }
 
-  /** What axe objects to; `rules`: only these. */
-  async accessibilityFindings(rules) {
+  /** What axe objects to; `rules`: only these; `part`: a selector of the only part that is looked at. */
+  async accessibilityFindings(rules, part) {
     if (!(await this.page.evaluate(() => 'axe' in globalThis))) await this.page.evaluate(axe);
     // Limits what axe describes of elements without findings, and what it loads; the findings are the same.
     const options = { resultTypes: ['violations'], preload: false, ...(rules && { runOnly: rules }) };
-    const { violations } = await this.page.evaluate(async (given) => {
-      globalThis.isHeld = true;
-      const result = await globalThis.axe.run(given);
-      globalThis.isHeld = false;
-      return result;
-    }, options);
+    const { violations } = await this.page.evaluate(
+      async ([within, given]) => {
+        globalThis.isHeld = true;
+        const result = await globalThis.axe.run(within ?? document, given);
+        globalThis.isHeld = false;
+        return result;
+      },
+      [part, options],
+    );
     return violations.map(
       ({ id, nodes }) =>
         `${id}: ${nodes.map(({ target, failureSummary }) => `${target} ${failureSummary}`).join(', ')}`,

@@ -83,11 +83,15 @@ const scrub = (page, seconds) =>
 const time = (page) => page.locator('.timeline-time').innerText();
 
 describe('a recording in the page', () => {
-  afterEach(() => dashboard.close(isAboutGraphics));
+  let page;
+  before(async () => {
+    page = await open(url);
+  });
+  afterEach(() => dashboard.hadNothingToComplainOf(isAboutGraphics));
+  after(() => dashboard.close(isAboutGraphics));
 
   it('is scrubbed, played and stepped', async () => {
-    const page = await open(url);
-    await page.locator('.laps tbody tr').nth(1).waitFor(); // both laps, though we stand at the start
+    await page.locator('.laps .lap-table tbody tr').nth(1).waitFor(); // both laps, though we stand at the start
     await scrub(page, 30);
     await dashboard.until(
       () => dashboard.number('speed'),
@@ -131,7 +135,6 @@ describe('a recording in the page', () => {
   });
 
   it('shows both futures, each in turn', async () => {
-    const page = await open(url);
     await scrub(page, 55);
     await dashboard.until(
       () => dashboard.number('speed'),
@@ -146,19 +149,48 @@ describe('a recording in the page', () => {
       'slower since the branch',
     );
     assert.match(await time(page), /^0:55/);
+    await page.getByLabel('Recording shown').selectOption({ label: 'run.mcap' });
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (mph) => mph > 60,
+      'as it was driven, again',
+    );
+  });
+
+  it('draws laps of the other recording, and says where they lose time', async () => {
+    const others = page.locator('.other-laps tbody');
+    await others.getByText('branch.mcap').waitFor();
+    const rows = others.locator('tr');
+    assert.ok((await rows.count()) >= 1);
+    await rows.last().getByLabel(/as A$/).check();
+    await page.getByLabel('Compare lap 2 as B', { exact: true }).check(); // lap 1 is the same in both
+    const losses = page.getByTestId('time-won');
+    assert.match(await losses.locator('h2').innerText(), /^Where lap \d of branch\.mcap loses time to lap 2 \+\d/);
+    assert.match(await losses.locator('tr.most').innerText(), /T\d[\s\S]* s lost, .* s of it /);
+    await losses.getByText(/^Mini-sectors of/).click();
+    assert.ok((await losses.locator('.mini-sector-table li').count()) > 30);
+    const curves = page.locator('[aria-label="Speed along the track"] .key');
+    assert.equal(await curves.count(), 2, 'laps A and B');
+    for (const each of await page.getByLabel(/^Draw lap . too$/).all()) await each.check();
+    await dashboard.until(
+      () => curves.count(),
+      (count) => count === 3,
+      'three laps at once',
+    );
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
   });
 
   it('says what belongs to the recording and cannot be changed', async () => {
-    const page = await open(url);
     await dashboard.show('tune');
     assert.equal(await page.locator('.panel-body [data-key="tracking_mpc.horizon_steps"]').count(), 0);
   });
+});
 
-  it('is accessible, also on a phone', async () => {
-    await open(url, PHONE);
-    assert.deepEqual(await dashboard.accessibilityFindings(), []);
-    assert.ok((await dashboard.overflow()).across <= 0);
-  });
+it('is accessible, also on a phone', async () => {
+  await open(url, PHONE);
+  assert.deepEqual(await dashboard.accessibilityFindings(), []);
+  assert.ok((await dashboard.overflow()).across <= 0);
+  await dashboard.close(isAboutGraphics);
 });
 
 it('is played slower and faster', async () => {
@@ -230,11 +262,23 @@ describe('a report', () => {
     );
     assert.equal(await page.locator('.summary-run').first().locator('.lap-table tbody tr').count(), 2);
     assert.equal(await page.getByTestId('comparison').locator('thead th').count(), 3, 'both, side by side');
+    const losses = page.locator('[data-testid="losses"]');
+    await losses.nth(1).waitFor();
+    assert.match(await losses.first().innerText(), /Where lap A loses time to lap B [\s\S]*T1/, 'between the runs');
+    await page
+      .getByLabel('Lap B')
+      .selectOption({ label: await page.getByLabel('Lap B').locator('option').first().innerText() });
+    await page.getByLabel('Time gap along the road').waitFor();
+    assert.match(await losses.nth(1).innerText(), /^Where lap \d loses time to (the limit|lap \d)/);
     assert.match(await page.locator('.summary-run pre').first().textContent(), /track: "?lakeside/);
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
     await page.emulateMedia({ media: 'print' });
     assert.ok(await page.locator('.summary-map').first().isVisible(), 'the map is printed');
     assert.ok(await page.getByTestId('verdict').first().isVisible());
+    await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+    assert.equal(await page.locator('.summary-page details:not([open])').count(), 0, 'on paper nothing is closed');
+    await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+    assert.equal(await page.locator('.summary-page details[open]').count(), 0);
     assert.equal(await page.locator('.timeline').isVisible(), false);
     const ink = (await page.pdf()).length;
     await page.emulateMedia({ media: 'screen' });

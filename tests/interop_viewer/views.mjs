@@ -13,14 +13,17 @@ export const SIZES = {
   phone: PHONE,
   tablet: { viewport: { width: 768, height: 1024 }, hasTouch: true },
   laptop: { viewport: { width: 1280, height: 720 } },
+  common: { viewport: { width: 1366, height: 768 } },
   screen: { viewport: { width: 1920, height: 1080 } },
   narrow: { ...PHONE, viewport: { width: 320, height: 640 } },
   zoomed: { viewport: { width: 683, height: 384 }, deviceScaleFactor: 2 }, // 1366 x 768 at 200 %
 };
 export const THEMES = ['light', 'dark'];
 
-const tab = (name) => ({
+/** A tab changes its own side of the page; the rest was looked at with the first one. */
+const tab = (name, i) => ({
   name,
+  part: i === 0 ? undefined : '.side',
   async show(dashboard) {
     await dashboard.show(name);
     if (name === 'laps') await dashboard.page.locator('.lap-table .picks').nth(1).waitFor();
@@ -96,6 +99,27 @@ const LIVE = [
     leave: (dashboard) => dashboard.button('Leave the tour').click(),
   },
   overlay('help', '?', 'dialog[open]'),
+  {
+    name: 'layout',
+    async show(dashboard) {
+      await dashboard.button('Layout').click();
+      await dashboard.page.getByRole('dialog', { name: 'Layout' }).waitFor();
+    },
+    leave: (dashboard) => dashboard.button('Close').click(),
+  },
+  {
+    name: 'two panels',
+    async show({ page }) {
+      await page.evaluate(() => {
+        location.hash = '#layout?tab=plots&beside=laps&plots=speed.own';
+      });
+      await page.locator('.panel-body.second .laps').waitFor();
+    },
+    leave: ({ page }) =>
+      page.evaluate(() => {
+        location.hash = '#layout?beside=';
+      }),
+  },
   overlay('presentation', 'g', '.workbench.stage-alone'),
 ];
 
@@ -157,7 +181,7 @@ export async function walk(browser, { address, state, views }, options, look) {
   const dashboard = await DashboardPage.open(browser, await address(), { tab: 'drive', state, ...options });
   for (const view of views) {
     await view.show(dashboard);
-    await look(dashboard, view.name);
+    await look(dashboard, view.name, view.part);
     await view.leave?.(dashboard);
   }
   await dashboard.close(isExpected);

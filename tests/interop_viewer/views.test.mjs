@@ -23,7 +23,7 @@ for (const size of sizes) {
       if (found.length > 0) findings[name] = found;
     };
     for (const group of scenes.groups) {
-      await walk(here.browser, group, shape, async (dashboard, name) => {
+      await walk(here.browser, group, shape, async (dashboard, name, part) => {
         const { page } = dashboard;
         assert.ok((await dashboard.overflow()).across <= 0, `${name} fits the window`);
         note(name, await page.evaluate(misfits));
@@ -31,7 +31,7 @@ for (const size of sizes) {
           await page.emulateMedia({ colorScheme: theme });
           // The theme changes colours alone: all rules once, those of colours in both.
           const rules = theme === THEMES[0] ? undefined : ['color-contrast'];
-          note(`${name}, ${theme}`, await dashboard.accessibilityFindings(rules));
+          note(`${name}, ${theme}`, await dashboard.accessibilityFindings(rules, part));
         }
       });
     }

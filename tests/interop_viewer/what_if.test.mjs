@@ -117,7 +117,7 @@ describe('what if, in a live run', () => {
     assert.ok(Number(lap[1]) > Number(lap[0]), lap.join());
     await page.getByLabel('What if: Speed limit').fill('9999');
     await page.getByText('Drive both', { exact: true }).click();
-    await page.locator('.what-if [role="alert"]', { hasText: /speed_limit_mps: got 9999, expected/ }).waitFor();
+    await page.locator('.what-if [role="alert"]', { hasText: /Speed limit cannot be 9999: choose / }).waitFor();
   });
 
   it('keeps the winner with one click', async () => {

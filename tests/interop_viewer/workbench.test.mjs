@@ -110,7 +110,7 @@ describe('the workbench', () => {
     await setting('latency_ms').getByRole('alert').waitFor();
     assert.match(
       await setting('latency_ms').getByRole('alert').innerText(),
-      /latency_ms: got 9999, expected a number in \[0, 500\] ms/,
+      /Latency cannot be 9999: choose 0 to 500 ms\./,
     );
     assert.equal(await box('latency_ms').inputValue(), first);
     await type('latency_ms', Number(first) + 1);
@@ -354,6 +354,18 @@ describe('the workbench', () => {
     await dashboard.button('1×').click();
   });
 
+  it('says in which corner a lap loses most to the limit, and why, in three clicks', async () => {
+    await dashboard.show('laps');
+    await page.getByTestId('limit').waitFor();
+    await page.getByLabel('Compare lap 2 as A', { exact: true }).check();
+    await page.getByLabel('Compare the limit as B', { exact: true }).check();
+    const losses = page.getByTestId('time-won');
+    assert.match(await losses.locator('h2').innerText(), /^Where lap 2 loses time to the limit \+\d/);
+    const most = await losses.locator('tr.most').innerText();
+    assert.match(most, /^T\d[\s\S]* s lost, [\d.]+ s of it (braking|less|a slower|[\d.]+ (mph|km\/h|m\/s) slower)/);
+    assert.match(await page.locator('.legend').innerText(), /lost/i, 'the map shows it in colours');
+  });
+
   it('finds the limit again for a car with another grip', async () => {
     await dashboard.show('laps');
     const limit = () => page.getByTestId('limit').locator('.time').innerText();
@@ -378,6 +390,58 @@ describe('the workbench', () => {
     assert.match(picture.name, /plots\.png/);
     assert.ok((await dashboard.colours(last)) > 2);
     await page.setViewportSize(LAPTOP.viewport);
+  });
+
+  it('is arranged as its reader likes, by name and by link', async () => {
+    const tabs = () => page.getByRole('tab').allInnerTexts();
+    const plots = () =>
+      page.locator('.plots .plot h2').evaluateAll((all) => all.map((each) => each.firstChild.data.trim()));
+    await dashboard.show('plots');
+    const [allTabs, allPlots] = [await tabs(), await plots()];
+    await dashboard.button('Layout').click();
+    const dialog = page.getByRole('dialog', { name: 'Layout' });
+    await dialog.getByLabel('Tune', { exact: true }).uncheck();
+    await dialog.getByLabel('Cost', { exact: true }).uncheck();
+    await dialog.getByRole('button', { name: 'Move Speed down' }).click();
+    await dialog.getByLabel('Second panel').selectOption('laps');
+    await dialog.getByLabel('Instruments below the picture').uncheck();
+    await dialog.getByLabel('Name').fill('mine');
+    await dialog.getByRole('button', { name: 'Save' }).click();
+    const link = await dialog.getByLabel('Link', { exact: true }).inputValue();
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await dialog.getByRole('button', { name: 'Close' }).click();
+    const check = async () => {
+      assert.deepEqual(
+        await tabs(),
+        allTabs.filter((name) => name !== 'Tune'),
+      );
+      const now = await plots();
+      assert.deepEqual(now.slice(0, 2), [allPlots[1], allPlots[0]]);
+      assert.ok(!now.includes('Cost') && allPlots.includes('Cost'), `${now}`);
+      await page.locator('.panel-body.second .laps').waitFor();
+      assert.equal(await page.locator('.instruments').count(), 0);
+    };
+    await check();
+    assert.ok((await dashboard.overflow()).across <= 0);
+    await dashboard.button('Layout').click();
+    await dialog.getByRole('button', { name: 'As at first' }).click();
+    await dialog.getByRole('button', { name: 'Close' }).click();
+    assert.deepEqual([await tabs(), await plots()], [allTabs, allPlots]);
+    await page.evaluate((hash) => {
+      location.hash = hash;
+    }, new URL(link).hash);
+    await page.locator('.panel-body.second').waitFor();
+    await check();
+    await dashboard.button('Layout').click();
+    await dialog.getByRole('button', { name: 'As at first' }).click();
+    await dialog.getByRole('button', { name: 'Use the layout mine' }).click();
+    await dialog.getByRole('button', { name: 'Delete the layout mine' }).click();
+    await dialog.getByRole('button', { name: 'Close' }).click();
+    await check();
+    await dashboard.button('Layout').click();
+    await dialog.getByRole('button', { name: 'As at first' }).click();
+    await dialog.getByRole('button', { name: 'Close' }).click();
+    await page.locator('.instruments').waitFor();
   });
 
   it('has nothing that axe objects to while everything is in use', async () => {

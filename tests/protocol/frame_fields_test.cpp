@@ -104,6 +104,21 @@ std::vector<FrameField> rows() {
 
 TEST(FrameFields, CarryWhatTheSampleHolds) { expect_values(decoded(samples::frame()), kSample); }
 
+TEST(FrameFields, SayNoLimitOfTheSpeedThatThePedalContradicts) {
+  telemetry::Frame frame = samples::frame();
+  road::SpeedLimiter& limiter = frame.result.report.explanation.speed_limiter;
+  const auto told = [&](road::SpeedLimiter said, double throttle) {
+    limiter = said;
+    frame.result.command.throttle = throttle;
+    return static_cast<road::SpeedLimiter>(decoded(frame).at("speed_limiter").at(0));
+  };
+  EXPECT_EQ(told(road::SpeedLimiter::kPower, 1.0), road::SpeedLimiter::kPower);
+  EXPECT_EQ(told(road::SpeedLimiter::kPower, 0.2), road::SpeedLimiter::kPartThrottle);
+  EXPECT_EQ(told(road::SpeedLimiter::kPartThrottle, 0.2), road::SpeedLimiter::kPartThrottle);
+  EXPECT_EQ(told(road::SpeedLimiter::kPartThrottle, 1.0), road::SpeedLimiter::kPower);
+  EXPECT_EQ(told(road::SpeedLimiter::kCurvature, 1.0), road::SpeedLimiter::kCurvature);
+}
+
 TEST(FrameFields, WithoutTruthShowWhatWasMeasuredAndLeaveTheRestUnknown) {
   telemetry::Frame frame = samples::frame();
   frame.has_truth = false;

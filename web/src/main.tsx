@@ -2,10 +2,11 @@ import type { IWebSocket } from '@foxglove/ws-protocol';
 import { render } from 'preact';
 import { toggleScheme } from './lib/appearance';
 import { addShortcuts, shortcutFor, ticks } from './lib/keys';
+import { refusalInWords } from './lib/refusal';
+import { store } from './lib/store';
 import { nextSpeedUnit } from './lib/units';
 import { WorkerLink } from './page/worker_link';
 import { Connection, SUBPROTOCOLS } from './protocol/connection';
-import { answerBy, programPage } from './protocol/program_page';
 import { ReadingSocket } from './protocol/reading';
 import { readSchema } from './protocol/schema';
 import type { Source } from './protocol/source';
@@ -13,14 +14,16 @@ import { begin, isReading, summary, timeline } from './recording/begin';
 import { isReport } from './recording/mode';
 import { beginSession, receive, receivePastLeft } from './state/demultiplexer';
 import { toggleLayer } from './state/layers';
+import { listenForLayouts, toggleDock } from './state/layout';
 import { ageAtArrival, attempt, link, notice, pastLeft, services } from './state/link';
 import { call, can, refresh } from './state/operate';
 import { rememberRun } from './state/other_run';
 import { toggleFrozen, toggleMark } from './state/plot_view';
 import { togglePresentation } from './state/presentation';
+import { answerBy, programPage } from './state/program_page';
 import { isPaused } from './state/run';
 import { schema } from './state/settings';
-import { beginSettings, refreshOnNewChoice, takeSettings } from './state/settings_session';
+import { refreshOnNewChoice, takeSettings } from './state/settings_session';
 import { refreshText } from './state/shown';
 import { followAddress, readAddress, TABS, tab } from './state/tab';
 import { everyFrame } from './state/ticker';
@@ -32,9 +35,9 @@ import { RestartView } from './views/restart_view';
 import { listenForLinks, ShareView } from './views/share_view';
 import { nextView, toggleDimension, zoom } from './views/track_view';
 import { focusSearch } from './views/tune_view';
-import { isPanelAlone, titleOf, toggleDock, WorkbenchView } from './views/workbench_view';
+import { isPanelAlone, titleOf, WorkbenchView } from './views/workbench_view';
 
-let session: string | null = null;
+const session = store.data('page', () => ({ name: null as string | null }));
 
 async function loadSchema(): Promise<void> {
   try {
@@ -68,15 +71,12 @@ function live(): Source {
   return new Connection(opener(), {
     open(name) {
       // The program tells of its run from the beginning, whenever the page comes.
-      const isOther = name !== session;
+      const isOther = name !== session.name;
       beginSession(isOther);
-      ageAtArrival.value = pastLeft.value = 0;
       if (isOther) {
-        if (session !== null) rememberRun();
-        beginSettings();
-        schema.value = [];
+        if (session.name !== null) rememberRun();
       }
-      session = name;
+      session.name = name;
       link.value = 'live';
       attempt.value = 0;
     },
@@ -90,7 +90,7 @@ function live(): Source {
       takeSettings(values);
       if (isAll) void loadSchema();
     },
-    notice: (sentence) => (notice.value = sentence),
+    notice: (sentence) => (notice.value = refusalInWords(sentence)),
   });
 }
 
@@ -98,6 +98,7 @@ void begin(live);
 refreshOnNewChoice(refresh);
 listenToDriver();
 listenForLinks();
+listenForLayouts();
 // A report may lie in a frame, where browsers refuse to write the address.
 if (isReport()) readAddress();
 else followAddress();

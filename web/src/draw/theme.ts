@@ -1,5 +1,6 @@
 import { effect } from '@preact/signals';
 import { scheme } from '../lib/appearance';
+import { store } from '../lib/store';
 
 /** The colours of style.css that canvases need. */
 export interface Theme {
@@ -62,16 +63,16 @@ function read(): Theme {
   };
 }
 
-let current: Theme | null = null;
+const known = store.data('page', () => ({ theme: null as Theme | null }));
 const listeners = new Set<() => void>();
 
 effect(() => {
   void scheme.value;
-  current = null;
+  known.theme = null;
   for (const listener of listeners) listener();
 });
 
-export const theme = (): Theme => (current ??= read());
+export const theme = (): Theme => (known.theme ??= read());
 
 /** Calls back when the colour scheme changes between light and dark. */
 export function onThemeChange(listener: () => void): () => void {

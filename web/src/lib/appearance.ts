@@ -1,5 +1,6 @@
-import { computed, effect, signal } from '@preact/signals';
+import { computed, effect } from '@preact/signals';
 import { persisted } from './persisted';
+import { store } from './store';
 
 // Light or dark: as the system has it, or as chosen here.
 
@@ -11,7 +12,7 @@ const isAppearance = (value: unknown): value is Appearance => (APPEARANCES as re
 export const appearance = persisted<Appearance>('appearance', 'system', isAppearance);
 
 const prefersDark = typeof matchMedia === 'undefined' ? null : matchMedia('(prefers-color-scheme: dark)');
-const isSystemDark = signal(prefersDark?.matches ?? false);
+const isSystemDark = store.signal('page', prefersDark?.matches ?? false);
 prefersDark?.addEventListener('change', () => (isSystemDark.value = prefersDark.matches));
 
 /** What is shown. */

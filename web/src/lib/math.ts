@@ -12,6 +12,9 @@ export interface Box {
 
 export const clamp = (value: number, low: number, high: number): number => Math.min(high, Math.max(low, value));
 
+/** The remainder in [0, of). */
+export const mod = (value: number, of: number): number => value - of * Math.floor(value / of);
+
 export const mix = (a: number, b: number, share: number): number => a + (b - a) * share;
 
 export const degrees = (radians: number): number => (radians * 180) / Math.PI;

@@ -1,5 +1,5 @@
-import { signal } from '@preact/signals';
 import type { FunctionComponent } from 'preact';
+import { store } from '../lib/store';
 import type { Source } from '../protocol/source';
 import { notice } from '../state/link';
 import { attach } from '../state/operate';
@@ -7,16 +7,16 @@ import { askedLog } from '../state/what_if';
 import { findMode } from './mode';
 
 /** The views of recordings; their code is loaded with the first one. */
-export const timeline = signal<FunctionComponent | null>(null);
-export const summary = signal<FunctionComponent | null>(null);
+export const timeline = store.signal<FunctionComponent | null>('page', null);
+export const summary = store.signal<FunctionComponent | null>('page', null);
 /** Whether the report is shown instead of the workbench. */
-export const isReading = signal<() => boolean>(() => false);
+export const isReading = store.signal<() => boolean>('page', () => false);
 
-let current: Source | null = null;
+const current = store.data('page', () => ({ source: null as Source | null }));
 
 function take(source: Source): void {
-  current?.close();
-  current = source;
+  current.source?.close();
+  current.source = source;
   attach(source);
 }
 

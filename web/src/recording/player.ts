@@ -1,4 +1,5 @@
-import { computed, effect, signal, untracked } from '@preact/signals';
+import { computed, effect, untracked } from '@preact/signals';
+import { store } from '../lib/store';
 import { readSchema } from '../protocol/schema';
 import type { Frame, Run } from '../protocol/topics';
 import { beginSession, receive, rewind } from '../state/demultiplexer';
@@ -6,11 +7,13 @@ import { ghostShown } from '../state/ghost_shown';
 import { keepAllLaps, lapSamples, laps, sampleLap } from '../state/laps';
 import { link, notice, services } from '../state/link';
 import { complete } from '../state/message_fields';
+import { removeOtherLaps } from '../state/other_laps';
 import { run } from '../state/run';
 import { seekTo } from '../state/seek';
 import { schema } from '../state/settings';
-import { beginSettings, takeSettings } from '../state/settings_session';
+import { takeSettings } from '../state/settings_session';
 import { everyFrame } from '../state/ticker';
+import { offerLaps } from './add_laps';
 import { type Landmark, LogSource, landmarksOf } from './log_source';
 import type { McapLog } from './mcap_log';
 import type { Mode } from './mode';
@@ -21,15 +24,15 @@ import { isSummaryShown, reports } from './summary_view';
 
 // State of the time line.
 
-export const player = signal<LogSource | null>(null);
-export const logs = signal<readonly McapLog[]>([]);
+export const player = store.signal<LogSource | null>('page', null);
+export const logs = store.signal<readonly McapLog[]>('page', []);
 /** Index of the one that is played. */
-export const played = signal(0);
-export const position = signal(0); // [s]
-export const isPlaying = signal(false);
-export const landmarks = signal<readonly Landmark[]>([]);
+export const played = store.signal('page', 0);
+export const position = store.signal('page', 0); // [s]
+export const isPlaying = store.signal('page', false);
+export const landmarks = store.signal<readonly Landmark[]>('page', []);
 /** Share of the recording that has been searched for landmarks. */
-export const searched = signal(0);
+export const searched = store.signal('page', 0);
 export const duration = computed(() => player.value?.log.duration ?? 0);
 
 /** Schema of the pace, the only setting of a recording. */
@@ -58,14 +61,13 @@ export async function play(recordings: Recordings, which = 0, start = recordings
   const log = recordings.logs[which];
   if (!log) throw new Error('there is no recording to show');
   player.value?.close();
-  endSampling();
+  sampling.end();
   logs.value = recordings.logs;
   played.value = which;
   landmarks.value = [];
   const source = await LogSource.open(log, {
     open() {
       beginSession();
-      beginSettings();
       schema.value = PACE;
       link.value = 'live';
     },
@@ -89,7 +91,7 @@ export async function play(recordings: Recordings, which = 0, start = recordings
 }
 
 /** Index of the recording that is shown as a ghost beside the one played; −1: none. */
-export const beside = signal(1);
+export const beside = store.signal('page', 1);
 
 /** Shows another recording as a ghost, where it was driven on the same track. */
 export async function showBeside(which: number, log = logs.value[played.value]): Promise<void> {
@@ -130,12 +132,20 @@ async function readReports(recordings: Recordings): Promise<void> {
   reports.value = [];
   try {
     for (const log of recordings.logs) reports.value = [...reports.value, ...(await reportsOf(log))];
+    offerOthers();
   } catch (error) {
     notice.value = error instanceof Error ? error.message : String(error);
   }
 }
 
-let endSampling: () => void = () => undefined;
+/** The laps of the recordings that are not played are there to be compared. */
+function offerOthers(): void {
+  removeOtherLaps();
+  const log = logs.value[played.value];
+  offerLaps(reports.value.filter(({ recording }) => recording !== log?.name));
+}
+
+const sampling = store.data('page', () => ({ end: (): void => undefined }));
 
 /** Samples all laps of the run that is shown. */
 function sampleRun(source: LogSource, frames: readonly { time: number; frame: Frame }[], which: number): void {
@@ -157,11 +167,14 @@ async function look(source: LogSource): Promise<void> {
     keepAllLaps();
     const frames = await framesOf(log);
     let sampled = -1;
-    endSampling = effect(() => {
+    sampling.end = effect(() => {
       const now = source.runAt(position.value);
       if (player.value !== source || now === sampled) return;
       sampled = now;
-      untracked(() => sampleRun(source, frames, now));
+      untracked(() => {
+        sampleRun(source, frames, now);
+        offerOthers();
+      });
     });
   } catch (error) {
     notice.value = error instanceof Error ? error.message : String(error);

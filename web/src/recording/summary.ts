@@ -1,8 +1,10 @@
 import { hasBit } from '../lib/bits';
 import { fixed, lapTime, plural } from '../lib/format';
 import type { Severity } from '../lib/words';
-import type { Change, Frame, Lap, Limit, Run } from '../protocol/topics';
+import type { Change, Frame, Lap, Limit, Path, Run } from '../protocol/topics';
+import { type Corner, cornersOf } from '../state/corners';
 import { faultInWords } from '../state/event_log';
+import { LapSamples, momentOf } from '../state/lap_samples';
 import { bestsOf } from '../state/lap_table';
 import { gapsToLimit } from '../state/limit';
 import { complete } from '../state/message_fields';
@@ -11,6 +13,7 @@ import type { McapLog } from './mcap_log';
 /** One run of a recording, in figures and traces. */
 export interface RunReport {
   readonly name: string; // of the recording, with a number where it holds several runs
+  readonly recording: string;
   readonly run: Run;
   readonly laps: readonly Lap[];
   readonly limit: Limit | null;
@@ -22,6 +25,8 @@ export interface RunReport {
   readonly changes: readonly { readonly name: string; readonly value: string; readonly time: number }[];
   readonly trace: Trace;
   readonly settings: string; // the scenario as YAML; empty where the recording has none
+  readonly samples: LapSamples;
+  readonly corners: readonly Corner[];
 }
 
 export interface Trace {
@@ -41,6 +46,7 @@ type Draft = { -readonly [K in keyof RunReport]: RunReport[K] } & {
 
 const begin = (run: Run): Draft => ({
   name: '',
+  recording: '',
   run,
   laps: [],
   limit: null,
@@ -52,6 +58,8 @@ const begin = (run: Run): Draft => ({
   changes: [],
   trace: { time: [], speed: [], error: [], x: [], y: [], isBad: [] },
   settings: '',
+  samples: new LapSamples(),
+  corners: [],
 });
 
 function addFrame(draft: Draft, frame: Frame, before: Frame | null): void {
@@ -70,6 +78,8 @@ function addFrame(draft: Draft, frame: Frame, before: Frame | null): void {
   trace.x.push(frame.x_m);
   trace.y.push(frame.y_m);
   trace.isBad.push(frame.is_off_track);
+  draft.samples.setLength(draft.run.track_length_m);
+  draft.samples.push(frame.lap, momentOf(frame), frame.last_lap_time_s);
 }
 
 /** The runs of a recording: another one begins where time goes back or another track, car or controller is told. */
@@ -78,9 +88,10 @@ export async function reportsOf(log: McapLog): Promise<RunReport[]> {
   let last: Frame | null = null;
   let known: Run | null = null;
   let limit: Limit | null = null;
+  let corners: readonly Corner[] = [];
   const draft = (): Draft | undefined => runs.at(-1);
   const messages = log.messages(
-    ['/chicane/run', '/chicane/frame', '/chicane/lap', '/chicane/change', '/chicane/limit'],
+    ['/chicane/run', '/chicane/frame', '/chicane/lap', '/chicane/change', '/chicane/limit', '/track/centre'],
     0,
     log.duration,
   );
@@ -97,14 +108,20 @@ export async function reportsOf(log: McapLog): Promise<RunReport[]> {
     } else if (topic === '/chicane/frame') {
       const frame = complete('/chicane/frame', message as Frame);
       if (known && (last === null || frame.time_s < last.time_s)) {
-        runs.push({ ...begin(known), limit });
+        runs.push({ ...begin(known), limit, corners });
         last = null;
       }
       const now = draft();
       if (now) addFrame(now, frame, last);
       last = frame;
     } else if (topic === '/chicane/lap') {
-      draft()?.laps.push(complete('/chicane/lap', message as Lap));
+      const lap = complete('/chicane/lap', message as Lap);
+      draft()?.laps.push(lap);
+      draft()?.samples.complete(lap.lap - 1, lap.lap_time_s); // after the last lap no frame says so
+    } else if (topic === '/track/centre') {
+      corners = cornersOf((message as Path).poses.map(({ pose }) => pose.position));
+      const now = draft();
+      if (now && last !== null) now.corners = corners;
     } else if (topic === '/chicane/change') {
       const { name, value, stamp } = message as Change;
       if (!/^(manual|fault)\./.test(name)) draft()?.changes.push({ name, value, time: stamp.sec + stamp.nsec / 1e9 });
@@ -114,6 +131,7 @@ export async function reportsOf(log: McapLog): Promise<RunReport[]> {
   return runs.map((each, i) => ({
     ...each,
     settings: i === 0 ? settings : '',
+    recording: log.name,
     name: runs.length > 1 ? `${log.name}, run ${i + 1}` : log.name,
   }));
 }

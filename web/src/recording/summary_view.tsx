@@ -1,5 +1,5 @@
+import { store } from '../lib/store';
 import './summary.css';
-import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { ticksOf } from '../draw/axis';
 import { speedColour, topOfScale } from '../draw/speed_colour';
@@ -8,11 +8,12 @@ import { inSpeedUnit, speedUnit } from '../lib/units';
 import { setupInWords } from '../state/lap_setup';
 import { bestsOf } from '../state/lap_table';
 import { gapsToLimit } from '../state/limit';
+import { BestLapLosses, LapsOfRuns } from './compare_runs';
 import { type RunReport, type Trace, verdictOf } from './summary';
 
 /** The runs that are reported; empty while they are read. */
-export const reports = signal<readonly RunReport[]>([]);
-export const isSummaryShown = signal(false);
+export const reports = store.signal<readonly RunReport[]>('page', []);
+export const isSummaryShown = store.signal('page', false);
 
 const WIDTH = 900; // of a picture's own units
 const MOST_POINTS = 700;
@@ -181,6 +182,7 @@ function RunSection({ report }: { report: RunReport }) {
       </p>
       <SpeedMap report={report} />
       <LapTable report={report} />
+      <BestLapLosses report={report} />
       <Curve title="Speed" unit={unit.name} trace={trace} values={trace.speed} factor={unit.perMps} report={report} />
       <Curve title="Lateral error" unit="m, + left" trace={trace} values={trace.error} report={report} />
       {faults.length > 0 && (
@@ -273,6 +275,7 @@ export function SummaryView() {
       <div class="summary-sheet">
         {all.length === 0 && <p class="empty">Reading the recording …</p>}
         <Comparison />
+        <LapsOfRuns reports={all} />
         {all.map((report) => (
           <RunSection key={report.name} report={report} />
         ))}

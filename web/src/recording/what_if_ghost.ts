@@ -1,4 +1,5 @@
 import { effect } from '@preact/signals';
+import { store } from '../lib/store';
 import { ghostShown } from '../state/ghost_shown';
 import { live } from '../state/live';
 import { complete } from '../state/message_fields';
@@ -51,14 +52,14 @@ export function momentsOf({ was: { trace } }: WhatIfAnswer): Moment[] {
 /** Shows both futures on the picture, from their first moment on. */
 export const watchBoth = (found: WhatIfAnswer): void => showAgain(momentsOf(found));
 
-let shownBefore: typeof ghostShown.source = null;
+const before = store.data('page', () => ({ source: null as typeof ghostShown.source }));
 effect(() => {
   const found = answer.value;
   if (found) {
     if (!(ghostShown.source instanceof RecordedDrive && ghostShown.source.label === 'what if'))
-      shownBefore = ghostShown.source;
+      before.source = ghostShown.source;
     ghostShown.source = ghostOf(found.branch);
   } else if (ghostShown.source?.label === 'what if') {
-    ghostShown.source = shownBefore;
+    ghostShown.source = before.source;
   }
 });

@@ -1,3 +1,5 @@
+import { store } from '../lib/store';
+
 /** What renders 3D on this machine. */
 export type Renderer = 'card' | 'processor' | 'none';
 
@@ -12,7 +14,7 @@ function ask(): Renderer {
   return BY_PROCESSOR.test(name) ? 'processor' : 'card';
 }
 
-let answer: Renderer | undefined;
+const found = store.data('page', () => ({ renderer: null as Renderer | null }));
 
 /** Determined once, without the console messages that the library prints where there is no WebGL. */
-export const renderer = (): Renderer => (answer ??= ask());
+export const renderer = (): Renderer => (found.renderer ??= ask());

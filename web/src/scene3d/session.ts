@@ -1,3 +1,4 @@
+import { store } from '../lib/store';
 import type { Frame } from '../protocol/topics';
 import { frameListeners, rebuildListeners } from '../state/demultiplexer';
 import { ghostShown } from '../state/ghost_shown';
@@ -93,15 +94,15 @@ export class Session {
 
 export const session = new Session();
 
-let track = '';
+const seen = store.data('page', () => ({ track: '' }));
 rebuildListeners.add(() => session.forget());
 // What is shown again moves the car and leaves no marks.
 replayListeners.add((frame, now) => session.playout.push(motionOf(frame), now));
 frameListeners.add((frame, now) => {
   const name = `${run.value?.track} ${run.value?.track_length_m}`;
-  if (run.value && name !== track) {
-    if (track !== '') session.forget();
-    track = name;
+  if (run.value && name !== seen.track) {
+    if (seen.track !== '') session.forget();
+    seen.track = name;
   }
   session.take(frame, now);
 });

@@ -1,5 +1,6 @@
-import { computed, signal } from '@preact/signals';
+import { computed } from '@preact/signals';
 import { persisted } from '../lib/persisted';
+import { store } from '../lib/store';
 import { CAMERAS, type CameraName, DEFAULT_ORBIT, type Orbit, zoomedOrbit } from './cameras';
 import { renderer } from './renderer';
 
@@ -20,10 +21,10 @@ export const isSpared = computed(() => choice.value === '' && dimension.value ==
 export const camera = persisted<CameraName>('camera', 'chase', isCamera);
 
 /** Why there is no 3D picture, as a sentence; null if it is available. */
-export const obstacle = signal<string | null>(null);
+export const obstacle = store.signal<string | null>('page', null);
 
 /** Whether the 3D picture is loaded and drawn. Until then, and without it, the map has the full size. */
-export const isReady = signal(false);
+export const isReady = store.signal('page', false);
 
 export const wants3d = computed(() => dimension.value === '3d' && obstacle.value === null);
 export const shows3d = computed(() => wants3d.value && isReady.value);

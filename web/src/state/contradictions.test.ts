@@ -79,9 +79,9 @@ describe('the page', () => {
 
   it('would find what it looks for', () => {
     const circumstances = { isStuck: false, canReset: true };
-    const frame = frameWith({ rung: RUNG.BRAKE, throttle_sent: -0.02 });
+    const frame = frameWith({ rung: RUNG.BRAKE, throttle_sent: 0.3 });
     const screen = screenOf(frame, circumstances, [], FULL_BRAKE);
-    expect(contradictionsOf(frame, screen)[0]).toContain('brakes fully, and does not');
+    expect(contradictionsOf(frame, screen)[0]).toContain('brakes, and drives');
     expect(contradictionsOf(frame, { ...screen, aim: 12 }).join()).toContain('an aim that nobody drives at');
     const stuck = [{ name: 'stuck', severity: 'bad', text: 'The car stands' }] as const;
     const driving = frameWith({ throttle_sent: 1, speed_limiter: SPEED_LIMITER.POWER });

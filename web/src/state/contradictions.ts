@@ -69,8 +69,9 @@ export function contradictionsOf(frame: Frame, screen: Screen): string[] {
   refuse(has('road') && has('edge'), 'beyond the edge, and inside it');
   refuse(has('road') && /number that is not finite/.test(solver.text), 'off the road is called a wrong number');
   refuse(/brakes? fully/.test(sentence.title) && !/^brake (9\d|100) %$/.test(pedalAsked), 'brakes fully, and does not');
+  refuse(/ brakes\b/.test(sentence.title) && pedalAsked.startsWith('drive'), 'brakes, and drives');
   refuse(
-    sentence.limiter === SPEED_LIMITER.POWER && !(pedalAsked.startsWith('drive') && percentOf(pedalAsked) >= 50),
+    sentence.limiter === SPEED_LIMITER.POWER && !(pedalAsked.startsWith('drive') && percentOf(pedalAsked) >= 99),
     'the drive gives no more, and is not asked to',
   );
   refuse(

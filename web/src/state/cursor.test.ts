@@ -1,7 +1,8 @@
 import { beforeEach, describe, expect, it } from 'vitest';
+import { store } from '../lib/store';
 import { UNKNOWN_FRAME } from '../protocol/messages';
 import { cursorMark, pointAt, timeNear } from './cursor';
-import { forgetHistory, keepFrame } from './live';
+import { keepFrame } from './live';
 import { cursorTime, isFrozen, thaw } from './plot_view';
 
 /** Two times round a circle of 100 m, 40 s each. */
@@ -15,7 +16,7 @@ function drive(): void {
 
 describe('the cursor', () => {
   beforeEach(() => {
-    forgetHistory();
+    store.reset('moment');
     thaw();
     cursorTime.value = null;
     drive();

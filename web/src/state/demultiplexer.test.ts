@@ -1,7 +1,7 @@
 import { beforeEach, describe, expect, it, vi } from 'vitest';
 import type { Change, Frame, Lap, Limit, Run } from '../protocol/topics';
 import { Column, costColumn } from './columns';
-import { beginSession, forget, frameListeners, receive, rewind } from './demultiplexer';
+import { beginSession, frameListeners, receive, rewind } from './demultiplexer';
 import { events } from './event_log';
 import { bestLap, laps } from './laps';
 import { gapsToLimit, limit, whyNoLimit } from './limit';
@@ -95,10 +95,10 @@ describe('what is cleared', () => {
   });
   const lengths = () => [live.plots.length, laps.value.length, events.value.length];
 
-  it('within a run: history, laps and events; not the newest frame', () => {
-    forget();
-    expect(lengths()).toEqual([0, 0, 0]);
-    expect([live.frame?.time_s, limit.value?.lap_time_s]).toEqual([3, 20]);
+  it('where the run begins anew: history, laps and events; the frame that came stays, and the limit', () => {
+    receive('/chicane/frame', frameWith({ time_s: 0.5 }), 0);
+    expect(lengths()).toEqual([1, 0, 0]);
+    expect([live.frame?.time_s, limit.value?.lap_time_s]).toEqual([0.5, 20]);
   });
 
   it('at a jump in a recording: the newest frame too, so that an earlier one is not taken for a new run', () => {

@@ -1,16 +1,16 @@
+import { store } from '../lib/store';
 import type { Change, Frame, Lap, Limit, Path, Plan, Run, TopicName, Topics } from '../protocol/topics';
-import { forgetEvents, forgetFrameEvents, noteChange, noteEvents, noteNotices, setFaultNames } from './event_log';
-import { forgetFaultMarks, forgetFaults, noteFaultChange, noteFaultMarks } from './faults';
-import { forgetLaps, forgetSamples, noteLap, receiveLap } from './laps';
+import { forgetFrameEvents, noteChange, noteEvents, noteNotices, setFaultNames } from './event_log';
+import { forgetFaultMarks, noteFaultChange, noteFaultMarks } from './faults';
+import { forgetSamples, noteLap, receiveLap } from './laps';
 import { noteScore } from './leaderboard';
-import { forgetLimit, receiveLimit } from './limit';
-import { forgetHistory, forgetRows, keepFrame, keepPlan, live } from './live';
+import { receiveLimit } from './limit';
+import { forgetRows, keepFrame, keepPlan, live } from './live';
 import { complete } from './message_fields';
 import { Past } from './past';
-import { forgetRecent, isReplaying, keepRecent } from './replay';
+import { isReplaying, keepRecent } from './replay';
 import { type RoadLines, receiveReference, receiveRoadLine } from './road';
 import { receiveRun, run } from './run';
-import { shown } from './shown';
 
 // Distributes messages, by topic, to the modules that hold their content; and clears these when the run changes or a
 // recording jumps to another time.
@@ -35,8 +35,8 @@ export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: num
       past.keepBefore(message as Frame);
       break;
     case '/chicane/plan':
-      newestPlan = message as Plan;
-      keepPlan(newestPlan, !isReplaying());
+      last.plan = message as Plan;
+      keepPlan(last.plan, !isReplaying());
       break;
     case '/chicane/run':
       receiveRun(message as Run);
@@ -64,14 +64,14 @@ export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: num
   }
 }
 
-let newest: Frame | null = null;
-let newestPlan: Plan | null = null;
+/** What came last. */
+const last = store.data('moment', () => ({ frame: null as Frame | null, plan: null as Plan | null }));
 const past = new Past();
 
 function receiveFrame(frame: Frame, now: number): void {
-  let before = newest;
+  let before = last.frame;
   if (before && frame.time_s < before.time_s) {
-    forget();
+    store.reset('moment');
     noteNotices(run.value?.notices ?? []);
     past.drop();
     for (const listener of restartListeners) listener();
@@ -79,11 +79,11 @@ function receiveFrame(frame: Frame, now: number): void {
   }
   const isNew = frame.time_s !== before?.time_s; // a paused run repeats its last frame
   const isShown = !isReplaying();
-  newest = frame;
+  last.frame = frame;
   keepFrame(frame, now, isNew, isShown);
   if (isNew) {
     past.keepNew(frame);
-    keepRecent(frame, newestPlan);
+    keepRecent(frame, last.plan);
     noteEvents(frame, before);
     noteFaultMarks(frame, before, run.value?.fault_names ?? []);
     noteLap(frame);
@@ -117,34 +117,16 @@ export function receivePastLeft(left: number, now: number): void {
 }
 
 /**
- * Clears history, laps and events: they belong to an earlier run, or to a later time of this one.
- */
-export function forget(): void {
-  forgetHistory();
-  forgetLaps();
-  forgetEvents();
-  forgetFaults();
-  forgetRecent();
-}
-
-/**
  * Messages follow that tell of a run from its beginning: clears what is known. The last frame of the same run stays on
  * the screen until they come.
  */
 export function beginSession(isOtherRun = true): void {
-  forget();
+  store.reset(isOtherRun ? 'run' : 'moment');
   past.expect();
-  newest = null;
-  live.frame = null;
-  if (!isOtherRun) return;
-  forgetLimit();
-  shown.value = null;
 }
 
 /** Jumps to another time of a recording: its history is cleared and sent again. */
 export function rewind(): void {
-  forget();
+  store.reset('moment');
   noteNotices(run.value?.notices ?? []);
-  newest = null;
-  live.frame = null;
 }

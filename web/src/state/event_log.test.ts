@@ -1,6 +1,7 @@
 import { beforeEach, describe, expect, it } from 'vitest';
+import { store } from '../lib/store';
 import type { Frame } from '../protocol/topics';
-import { events, forgetEvents, noteChange, noteEvents, noteNotices, setFaultNames } from './event_log';
+import { events, noteChange, noteEvents, noteNotices, setFaultNames } from './event_log';
 
 const frame = (change: Partial<Frame>): Frame =>
   ({
@@ -22,7 +23,7 @@ function see(change: Partial<Frame>): void {
 }
 
 beforeEach(() => {
-  forgetEvents();
+  store.reset('moment');
   before = null;
 });
 

@@ -1,5 +1,5 @@
-import { signal } from '@preact/signals';
 import { hasBit } from '../lib/bits';
+import { store } from '../lib/store';
 import { nameInWords, rungInWords, type Severity, statusInWords } from '../lib/words';
 import type { Change, Frame } from '../protocol/topics';
 
@@ -16,7 +16,7 @@ export interface RunEvent {
 const KEPT = 60;
 
 /** Newest first. */
-export const events = signal<readonly RunEvent[]>([]);
+export const events = store.signal<readonly RunEvent[]>('moment', []);
 
 interface Watch {
   readonly name: string;
@@ -35,23 +35,18 @@ const WATCHES: readonly Watch[] = [
   { name: 'manual', look: ({ is_manual }) => (is_manual ? { severity: 'good', text: 'Driven by hand' } : null) },
 ];
 
-let nextId = 1;
-let open = new Map<string, RunEvent>();
-let faultNames: readonly string[] = [];
-
-export function forgetEvents(): void {
-  events.value = [];
-  open = new Map();
-}
+const kept = store.data('page', () => ({ nextId: 1, faultNames: [] as readonly string[] }));
+/** Events that are not over, by what they were found by. */
+const found = store.data('moment', () => ({ open: new Map<string, RunEvent>() }));
 
 /** Clears the events that were found in frames. */
 export function forgetFrameEvents(): void {
   events.value = events.value.filter(({ isChange }) => isChange);
-  open = new Map();
+  found.open = new Map();
 }
 
 export function setFaultNames(names: readonly string[]): void {
-  faultNames = names;
+  kept.faultNames = names;
 }
 
 /** Keeps them by time: changes of a run that was joined late arrive apart from its frames. */
@@ -62,15 +57,15 @@ function add(event: RunEvent): void {
 }
 
 function follow(key: string, now: { severity: Severity; text: string } | null, time: number): void {
-  const running = open.get(key);
+  const running = found.open.get(key);
   if (running && running.text !== now?.text) {
     const ended = { ...running, duration: time - running.time };
     events.value = events.value.map((event) => (event.id === running.id ? ended : event));
-    open.delete(key);
+    found.open.delete(key);
   }
   if (now && running?.text !== now.text) {
-    const event = { ...now, id: nextId++, time, duration: null };
-    open.set(key, event);
+    const event = { ...now, id: kept.nextId++, time, duration: null };
+    found.open.set(key, event);
     add(event);
   }
 }
@@ -85,7 +80,7 @@ export function noteEvents(frame: Frame, before: Frame | null): void {
     const isOn = hasBit(frame.active_faults, i);
     follow(
       `fault ${i}`,
-      isOn ? { severity: 'warning', text: `Fault: ${faultInWords(faultNames[i] ?? `#${i + 1}`)}` } : null,
+      isOn ? { severity: 'warning', text: `Fault: ${faultInWords(kept.faultNames[i] ?? `#${i + 1}`)}` } : null,
       frame.time_s,
     );
   }
@@ -95,7 +90,7 @@ export function noteEvents(frame: Frame, before: Frame | null): void {
 export function noteNotices(notices: readonly string[]): void {
   for (const text of notices) {
     if (events.value.some((event) => event.text === text)) continue;
-    add({ id: nextId++, severity: 'warning', text, time: 0, duration: null, isChange: true });
+    add({ id: kept.nextId++, severity: 'warning', text, time: 0, duration: null, isChange: true });
   }
 }
 
@@ -106,7 +101,7 @@ export function noteChange({ stamp, name, value }: Change): void {
   if (/^(manual|fault|run)\./.test(name) && !isPlan) return; // noteEvents() or the page itself shows these
   const planned = `Races by a new lap, planned with ${Math.round(100 * Number(value))} % of the grip`;
   add({
-    id: nextId++,
+    id: kept.nextId++,
     severity: isPlan ? 'good' : 'unknown',
     text: isPlan ? planned : `${name} set to ${value}`,
     time: stamp.sec + stamp.nsec / 1e9,

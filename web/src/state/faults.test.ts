@@ -1,7 +1,8 @@
 import { beforeEach, describe, expect, it } from 'vitest';
+import { store } from '../lib/store';
 import { UNKNOWN_FRAME } from '../protocol/messages';
 import { readSchema } from '../protocol/schema';
-import { faultMarks, forgetFaults, noteFaultChange, noteFaultMarks, secondsLeft } from './faults';
+import { faultMarks, noteFaultChange, noteFaultMarks, secondsLeft } from './faults';
 import { schema } from './settings';
 
 const change = (value: string, sec: number) =>
@@ -9,7 +10,7 @@ const change = (value: string, sec: number) =>
 
 describe('faults', () => {
   beforeEach(() => {
-    forgetFaults();
+    store.reset('moment');
     schema.value = readSchema([{ key: 'fault.half_grip', kind: 'bool', fault: { group: 'road', duration_s: 5 } }]);
   });
 

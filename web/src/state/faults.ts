@@ -1,5 +1,5 @@
-import { signal } from '@preact/signals';
 import { hasBit } from '../lib/bits';
+import { store } from '../lib/store';
 import type { Change, Frame } from '../protocol/topics';
 import { entryOf } from './settings';
 
@@ -15,14 +15,11 @@ export interface FaultMark {
   readonly y: number;
 }
 
-export const faultMarks = signal<readonly FaultMark[]>([]);
+export const faultMarks = store.signal<readonly FaultMark[]>('moment', []);
 /** When each fault that was switched on will end [s], by its key. */
 const untils = new Map<string, number>();
 
-export function forgetFaults(): void {
-  forgetFaultMarks();
-  untils.clear();
-}
+store.onReset('moment', () => untils.clear());
 
 /** Clears where faults began, which is found in frames. */
 export function forgetFaultMarks(): void {

@@ -1,4 +1,5 @@
 import { mix } from '../lib/math';
+import type { Frame } from '../protocol/topics';
 import { LONGEST_SILENCE_S } from './silence';
 
 /** The channels kept of a lap, at equal distances along the road. */
@@ -7,6 +8,18 @@ export type LapChannel = (typeof LAP_CHANNELS)[number];
 
 /** A sample of a lap; `s_m` is measured along the centre line, whose origin need not be the start line. */
 export type LapMoment = Readonly<Record<LapChannel, number>> & { readonly s_m: number };
+
+/** What a frame says of its lap. */
+export const momentOf = (frame: Frame): LapMoment => ({
+  s_m: frame.s_m,
+  time_s: frame.lap_time_s,
+  speed_mps: frame.speed_mps,
+  lateral_error_m: frame.lateral_error_m,
+  steer_rad: frame.steer_applied_rad,
+  throttle: frame.throttle_applied,
+  x_m: frame.x_m,
+  y_m: frame.y_m,
+});
 
 const POINTS = 1000;
 const KEPT = 16; // laps beside the best

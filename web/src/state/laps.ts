@@ -1,6 +1,7 @@
-import { computed, signal } from '@preact/signals';
+import { computed } from '@preact/signals';
+import { store } from '../lib/store';
 import type { Frame, Lap } from '../protocol/topics';
-import { LapSamples } from './lap_samples';
+import { LapSamples, momentOf } from './lap_samples';
 import { bestsOf } from './lap_table';
 import { run } from './run';
 
@@ -9,52 +10,51 @@ const LAPS_KEPT = 1000;
 const PUBLISHED_EVERY_MS = 100;
 
 /** Completed laps as the server sends them, by number: the newest ones and the best. */
-export const laps = signal<readonly Lap[]>([]);
+export const laps = store.signal<readonly Lap[]>('moment', []);
 /** The fastest lap time that a frame has reported [s], for runs that report no details of their laps. */
-const bestSeen = signal(NaN);
+const bestSeen = store.signal('moment', NaN);
 /** Time of the best lap [s], the same everywhere on the page; not-a-number before the first lap. */
 export const bestLap = computed(() => (laps.value.length > 0 ? bestsOf(laps.value).time : bestSeen.value));
 /** Laps as functions of the distance, sampled from frames. */
 export const lapSamples = new LapSamples();
 
 /** Counts the laps that have been sampled to their end: views that show samples read it, and follow. */
-export const sampledLaps = signal(0);
+export const sampledLaps = store.signal('page', 0);
 
 /** A recording's laps are all sampled when it is opened: none of its moments adds to them or removes any. */
-let hasAllLaps = false;
+const table = store.data('page', () => ({ hasAllLaps: false, kept: [] as readonly Lap[], isHeldBack: false }));
 export function keepAllLaps(): void {
-  hasAllLaps = true;
+  table.hasAllLaps = true;
   publish(); // none of them is held back any more: who samples them needs all
 }
 
-let kept: readonly Lap[] = [];
-let isHeldBack = false;
-
 function publish(): void {
-  if (hasAllLaps) laps.value = kept; // a moment of a recording is shown as a whole
-  if (hasAllLaps || isHeldBack) return;
-  isHeldBack = true;
-  laps.value = kept;
+  if (table.hasAllLaps) laps.value = table.kept; // a moment of a recording is shown as a whole
+  if (table.hasAllLaps || table.isHeldBack) return;
+  table.isHeldBack = true;
+  laps.value = table.kept;
   setTimeout(() => {
-    isHeldBack = false;
-    if (laps.peek() !== kept) publish();
+    table.isHeldBack = false;
+    if (laps.peek() !== table.kept) publish();
   }, PUBLISHED_EVERY_MS);
 }
 
 export function forgetLaps(): void {
-  kept = [];
-  laps.value = kept;
+  table.kept = [];
+  laps.value = table.kept;
   bestSeen.value = NaN;
-  if (!hasAllLaps) lapSamples.clear();
+  if (!table.hasAllLaps) lapSamples.clear();
 }
+
+store.onReset('moment', forgetLaps);
 
 /** Clears the samples of laps, which are made of frames; the table of laps stays. */
 export function forgetSamples(): void {
-  if (!hasAllLaps) lapSamples.clear();
+  if (!table.hasAllLaps) lapSamples.clear();
 }
 
 export function receiveLap(lap: Lap): void {
-  const before = kept;
+  const before = table.kept;
   const isNext = before.length === 0 || (before.at(-1)?.lap ?? 0) < lap.lap;
   const all = isNext
     ? [...before, lap]
@@ -62,32 +62,19 @@ export function receiveLap(lap: Lap): void {
   lapSamples.complete(lap.lap - 1, lap.lap_time_s); // after the last lap no frame says so
   sampledLaps.value = lapSamples.completed;
   const best = all.length > LAPS_KEPT ? bestsOf(all).lap : NaN;
-  kept = all.filter((each, i) => i >= all.length - LAPS_KEPT || each.lap === best);
+  table.kept = all.filter((each, i) => i >= all.length - LAPS_KEPT || each.lap === best);
   publish();
 }
 
 /** Adds a frame to the samples of its lap. */
 export function sampleLap(frame: Frame): void {
   lapSamples.setLength(run.value?.track_length_m ?? NaN);
-  lapSamples.push(
-    frame.lap,
-    {
-      s_m: frame.s_m,
-      time_s: frame.lap_time_s,
-      speed_mps: frame.speed_mps,
-      lateral_error_m: frame.lateral_error_m,
-      steer_rad: frame.steer_applied_rad,
-      throttle: frame.throttle_applied,
-      x_m: frame.x_m,
-      y_m: frame.y_m,
-    },
-    frame.last_lap_time_s,
-  );
+  lapSamples.push(frame.lap, momentOf(frame), frame.last_lap_time_s);
   sampledLaps.value = lapSamples.completed;
 }
 
 /** Takes from a frame what it says about laps. */
 export function noteLap(frame: Frame): void {
-  if (!hasAllLaps) sampleLap(frame);
+  if (!table.hasAllLaps) sampleLap(frame);
   if (frame.last_lap_time_s > 0 && !(frame.last_lap_time_s >= bestSeen.value)) bestSeen.value = frame.last_lap_time_s;
 }

@@ -1,17 +1,10 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
+import { store } from '../lib/store';
 import { UNKNOWN_LIMIT } from '../protocol/messages';
 import type { Limit } from '../protocol/topics';
 import { LapSamples, timeGap } from './lap_samples';
-import {
-  forgetLimit,
-  gapsToLimit,
-  limitChannel,
-  limit as limitOfThePage,
-  limitTimeAt,
-  receiveLimit,
-  whyNoLimit,
-} from './limit';
+import { gapsToLimit, limitChannel, limit as limitOfThePage, limitTimeAt, receiveLimit, whyNoLimit } from './limit';
 import { lapWith } from './test_messages';
 
 const limit: Limit = {
@@ -60,7 +53,7 @@ describe('the limit', () => {
     receiveLimit(UNKNOWN_LIMIT);
     expect(now()).toEqual([null, '']);
     receiveLimit({ ...UNKNOWN_LIMIT, why_not: 'too early' });
-    forgetLimit();
+    store.reset('run');
     expect(now()).toEqual([null, '']);
   });
 

@@ -1,22 +1,17 @@
-import { signal } from '@preact/signals';
 import { firstSince } from '../draw/axis';
 import { mix } from '../lib/math';
+import { store } from '../lib/store';
 import type { Lap, Limit } from '../protocol/topics';
 import type { LapChannel, LapSamples } from './lap_samples';
 
 /** The fastest lap possible on this road with this car; null while it is not known. */
-export const limit = signal<Limit | null>(null);
+export const limit = store.signal<Limit | null>('run', null);
 /** Why it is not known, in one sentence; empty while the program gives no reason. */
-export const whyNoLimit = signal('');
+export const whyNoLimit = store.signal('run', '');
 
 export function receiveLimit(message: Limit): void {
   limit.value = message.is_known ? message : null;
   whyNoLimit.value = message.is_known ? '' : message.why_not;
-}
-
-export function forgetLimit(): void {
-  limit.value = null;
-  whyNoLimit.value = '';
 }
 
 /** Columns of the limit that correspond to channels of a driven lap. */

@@ -1,17 +1,17 @@
-import { signal } from '@preact/signals';
+import { store } from '../lib/store';
 
 /** The connection to the program; always live while a recording is shown. */
 export type Link = 'connecting' | 'live' | 'lost';
 
-export const link = signal<Link>('connecting');
+export const link = store.signal<Link>('page', 'connecting');
 /** How often the page has tried to connect since the connection was lost. */
-export const attempt = signal(0);
+export const attempt = store.signal('page', 0);
 /** What the server can be asked to do. */
-export const services = signal<ReadonlySet<string>>(new Set());
+export const services = store.signal<ReadonlySet<string>>('page', new Set());
 /** The last sentence from the server; null once it was read. */
-export const notice = signal<string | null>(null);
+export const notice = store.signal<string | null>('page', null);
 
 /** How old the newest frame was at most when it came [s]; 0 where the source does not say. */
-export const ageAtArrival = signal(0);
+export const ageAtArrival = store.signal('moment', 0);
 /** Frames from before the page came that are still to come. */
-export const pastLeft = signal(0);
+export const pastLeft = store.signal('moment', 0);

@@ -1,12 +1,13 @@
 import { beforeEach, describe, expect, it } from 'vitest';
+import { store } from '../lib/store';
 import { COST_TERMS, Column, costColumn } from './columns';
-import { forgetHistory, keepFrame, keepPlan, live } from './live';
+import { keepFrame, keepPlan, live } from './live';
 import { frameWith, planWith } from './test_messages';
 
 const keep = (change: Parameters<typeof frameWith>[0], now = 0, isNew = true): void =>
   keepFrame(frameWith(change), now, isNew);
 
-beforeEach(forgetHistory);
+beforeEach(() => store.reset('moment'));
 
 describe('the history', () => {
   it('holds the numbers of a frame under their names, in their units', () => {
@@ -52,12 +53,12 @@ describe('the history', () => {
     expect(live.pastPlans.at(-1)).toBe(live.plan);
   });
 
-  it('is cleared but for the newest frame', () => {
+  it('is cleared with the moment that it led to', () => {
     keep({ time_s: 3 });
     keepPlan(planWith());
-    forgetHistory();
+    store.reset('moment');
     expect([live.plots.length, live.trace.length, live.stepTimes.total]).toEqual([0, 0, 0]);
     expect([live.plan, live.pastPlans]).toEqual([null, []]);
-    expect(live.frame?.time_s).toBe(3);
+    expect(live.frame).toBeNull();
   });
 });

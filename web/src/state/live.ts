@@ -1,3 +1,4 @@
+import { store } from '../lib/store';
 import type { Frame, Plan } from '../protocol/topics';
 import { COLUMN_COUNT, plotRow } from './columns';
 import { Histogram } from './histogram';
@@ -24,14 +25,11 @@ export const live = {
 
 const row: number[] = new Array<number>(COLUMN_COUNT).fill(NaN);
 
-/**
- * Clears the history. The newest frame stays, so that the display does not flicker before the next one arrives.
- */
-export function forgetHistory(): void {
+store.onReset('moment', () => {
   forgetRows();
-  live.plan = null;
+  live.frame = live.plan = null;
   live.pastPlans = [];
-}
+});
 
 /** Clears what is made of frames alone. */
 export function forgetRows(): void {

@@ -1,5 +1,5 @@
-import { signal } from '@preact/signals';
 import { clamp } from '../lib/math';
+import { store } from '../lib/store';
 
 /** Position of the stick: both in [−1, 1], left and drive positive. */
 export interface Stick {
@@ -17,7 +17,7 @@ export const held = {
   gamepad: null as Stick | null,
 };
 /** The stick position that is sent; shown by the indicator. */
-export const stick = signal<Stick>({ steer: 0, throttle: 0 });
+export const stick = store.signal<Stick>('page', { steer: 0, throttle: 0 });
 
 const STEER_RATE = 2.2; // of full travel per second, while a key is held
 const RETURN_RATE = 4; // after it is released

@@ -3,7 +3,8 @@ import type { Frame, Plan, Run } from '../protocol/topics';
 
 // A page of its own, whatever other tests have loaded.
 vi.resetModules();
-const { forget, receive } = await import('./demultiplexer');
+const { receive } = await import('./demultiplexer');
+const { store } = await import('../lib/store');
 const { events } = await import('./event_log');
 const { lapSamples } = await import('./laps');
 const { live } = await import('./live');
@@ -12,7 +13,7 @@ const FRAMES = 30_000; // eight minutes at sixty a second: longer than anything 
 const SPEED = 45; // [m/s]
 
 it('what the page keeps stops growing', () => {
-  forget();
+  store.reset('moment');
   receive('/chicane/run', { track_length_m: 1000 } as Run, 0);
   const sizes = () => [
     live.plots.length,

@@ -1,44 +1,44 @@
-import { signal } from '@preact/signals';
+import { store } from '../lib/store';
 import type { AskAnswer, ServiceName, Setting, Source } from '../protocol/source';
 import { link, notice, services } from './link';
 import { entryOf, SettingRequests, settings } from './settings';
 
 /** What the page can do to the run: every view changes it through these functions. */
-let source: Source | null = null;
+const operated = store.data('page', () => ({ source: null as Source | null, isConfirmed: false }));
 
 /** A change that would restart the run and waits for the operator's confirmation. */
-export const pendingConfirmation = signal<{ readonly key: string; readonly value: Setting } | null>(null);
-let isConfirmed = false;
+export const pendingConfirmation = store.signal<{ readonly key: string; readonly value: Setting } | null>('page', null);
 
 export const requests = new SettingRequests(
   (key, value) =>
-    source?.set?.(key, value) ?? Promise.resolve({ value: null, sentence: `${key} cannot be changed here` }),
+    operated.source?.set?.(key, value) ?? Promise.resolve({ value: null, sentence: `${key} cannot be changed here` }),
 );
 
 export function attach(to: Source): void {
-  source = to;
+  operated.source = to;
 }
 
-export const retry = (): void => source?.retryNow?.();
+export const retry = (): void => operated.source?.retryNow?.();
 
 /** Requests the values of all settings again. */
-export const refresh = (): void => source?.refresh?.();
+export const refresh = (): void => operated.source?.refresh?.();
 
 export const can = (name: ServiceName): boolean => services.value.has(name) && link.value === 'live';
 
 export function call(name: ServiceName, data?: boolean): void {
-  void source?.call?.(name, data).then((sentence) => {
+  void operated.source?.call?.(name, data).then((sentence) => {
     if (sentence !== null) notice.value = sentence;
   });
 }
 
 /** Asks for another future of the run that goes on. */
 export const ask = (question: string): Promise<AskAnswer> =>
-  source?.ask?.('/what_if', question) ?? Promise.resolve({ isTaken: false, message: 'nobody is there to ask' });
+  operated.source?.ask?.('/what_if', question) ??
+  Promise.resolve({ isTaken: false, message: 'nobody is there to ask' });
 
 /** Begins a race against a second car, or ends it. */
 export const askRival = (question: string): Promise<AskAnswer> =>
-  source?.ask?.('/rival', question) ?? Promise.resolve({ isTaken: false, message: 'nobody is there to ask' });
+  operated.source?.ask?.('/rival', question) ?? Promise.resolve({ isTaken: false, message: 'nobody is there to ask' });
 
 /** Whether a setting can be changed now. */
 export const canSet = (key: string): boolean =>
@@ -46,7 +46,7 @@ export const canSet = (key: string): boolean =>
 
 /** Changes a setting. The first change that would restart the run has to be confirmed. */
 export function set(key: string, value: Setting): void {
-  if (entryOf(key)?.is_live === false && !isConfirmed) {
+  if (entryOf(key)?.is_live === false && !operated.isConfirmed) {
     pendingConfirmation.value = { key, value };
     return;
   }
@@ -61,6 +61,6 @@ export function confirm(isYes: boolean): void {
     settings.value = new Map(settings.value); // controls show the value in force again
     return;
   }
-  isConfirmed = true;
+  operated.isConfirmed = true;
   void requests.set(request.key, request.value);
 }

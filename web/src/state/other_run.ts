@@ -1,4 +1,5 @@
-import { computed, signal } from '@preact/signals';
+import { computed } from '@preact/signals';
+import { store } from '../lib/store';
 import { requests } from './operate';
 import { run } from './run';
 
@@ -7,7 +8,7 @@ import { run } from './run';
 const CHOICES = ['track', 'car', 'preset', 'controller'] as const;
 type Choice = Readonly<Record<(typeof CHOICES)[number], string>>;
 
-const before = signal<Choice | null>(null);
+const before = store.signal<Choice | null>('page', null);
 
 /** The choice of the run that this page showed before, where the program now drives another one. */
 export const otherRun = computed<Choice | null>(() => {

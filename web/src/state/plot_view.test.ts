@@ -1,6 +1,7 @@
 import { beforeEach, describe, expect, it } from 'vitest';
+import { store } from '../lib/store';
 import { Column } from './columns';
-import { forget, receive } from './demultiplexer';
+import { receive } from './demultiplexer';
 import { live } from './live';
 import { isFrozen, plotted, thaw, timeRange, toggleFrozen, windowSeconds, zoomed, zoomTo } from './plot_view';
 import { frameWith } from './test_messages';
@@ -8,7 +9,7 @@ import { frameWith } from './test_messages';
 const see = (time: number): void => receive('/chicane/frame', frameWith({ time_s: time }), 0);
 
 beforeEach(() => {
-  forget();
+  store.reset('moment');
   live.frame = null;
   thaw();
   windowSeconds.value = 20;

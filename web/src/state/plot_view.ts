@@ -1,5 +1,5 @@
-import { signal } from '@preact/signals';
 import { persisted } from '../lib/persisted';
+import { store } from '../lib/store';
 import { COLUMN_COUNT, Column } from './columns';
 import { History } from './history';
 import { LONGEST_WINDOW_S, live } from './live';
@@ -11,14 +11,14 @@ export const windowSeconds = persisted<number>('plots.window', 20, (value) =>
   (WINDOWS_S as readonly unknown[]).includes(value),
 );
 /** Whether the plots are held while the run goes on. */
-export const isFrozen = signal(false);
+export const isFrozen = store.signal('page', false);
 /** The time range zoomed into [s]; the plots are then held. */
-export const zoomed = signal<readonly [number, number] | null>(null);
+export const zoomed = store.signal<readonly [number, number] | null>('page', null);
 /** Time under the cursor of any plot [s]; null when it is over none. */
-export const cursorTime = signal<number | null>(null);
+export const cursorTime = store.signal<number | null>('page', null);
 
 /** Time of the mark that a click sets, the second cursor [s]; null: none. Plots then show differences from it. */
-export const markTime = signal<number | null>(null);
+export const markTime = store.signal<number | null>('page', null);
 
 /** Sets the mark where the cursor is, or takes it away. */
 export function toggleMark(): void {
@@ -26,12 +26,12 @@ export function toggleMark(): void {
 }
 
 /** A place on a lap that is compared, under the cursor: the lap from 0, and metres along the road; null: over none. */
-export const cursorPlace = signal<{ readonly lap: number; readonly place: number } | null>(null);
+export const cursorPlace = store.signal<{ readonly lap: number; readonly place: number } | null>('page', null);
 
-let frozen: History | null = null;
+const frozen = store.data('page', () => ({ history: null as History | null }));
 
 /** The history that plots draw: the live one, or a copy from the moment they were held. */
-export const plotted = (): History => (isFrozen.value && frozen ? frozen : live.plots);
+export const plotted = (): History => (isFrozen.value && frozen.history) || live.plots;
 
 function newestTime(): number | null {
   const newest = plotted().newest(Column.time_s);
@@ -40,8 +40,8 @@ function newestTime(): number | null {
 
 export function freeze(): void {
   if (isFrozen.value) return;
-  frozen ??= new History(COLUMN_COUNT, live.plots.capacity);
-  frozen.copyFrom(live.plots);
+  frozen.history ??= new History(COLUMN_COUNT, live.plots.capacity);
+  frozen.history.copyFrom(live.plots);
   isFrozen.value = true;
 }
 

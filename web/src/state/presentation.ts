@@ -1,7 +1,7 @@
-import { signal } from '@preact/signals';
+import { store } from '../lib/store';
 
 /** Whether only the picture is shown, for an audience. */
-export const isStageAlone = signal(false);
+export const isStageAlone = store.signal('page', false);
 
 /** For an audience: the picture alone, on the whole screen where the browser allows it; and back. */
 export function togglePresentation(): void {

@@ -1,4 +1,4 @@
-import { signal } from '@preact/signals';
+import { store } from '../lib/store';
 import type { Frame, Plan } from '../protocol/topics';
 import { live } from './live';
 import { everyFrame } from './ticker';
@@ -13,36 +13,38 @@ export interface Moment {
   readonly plan: Plan | null;
 }
 
-let recent: Moment[] = [];
-let shownAgain: readonly Moment[] = [];
-let stop: () => void = () => undefined;
+const replay = store.data('page', () => ({
+  recent: [] as Moment[],
+  shownAgain: [] as readonly Moment[],
+  stop: (): void => undefined,
+}));
 
 /** Seconds of the replay that are left; null while none is shown. */
-export const replayLeft = signal<number | null>(null);
+export const replayLeft = store.signal<number | null>('page', null);
 
 /** Called with each frame that is shown again, and with the newest one at the end. */
 export const replayListeners = new Set<(frame: Frame, now: number) => void>();
 
-export const isReplaying = (): boolean => shownAgain.length > 0;
+export const isReplaying = (): boolean => replay.shownAgain.length > 0;
 
 /** Keeps the frames of the last seconds. */
 export function keepRecent(frame: Frame, plan: Plan | null): void {
-  const last = recent.at(-1)?.frame;
-  if (last && frame.time_s < last.time_s) recent = [];
-  recent.push({ frame, plan });
+  const last = replay.recent.at(-1)?.frame;
+  if (last && frame.time_s < last.time_s) replay.recent = [];
+  replay.recent.push({ frame, plan });
   const from = frame.time_s - REPLAY_S;
   let old = 0;
-  while ((recent[old]?.frame.time_s ?? Infinity) < from || recent.length - old > MOST_KEPT) ++old;
+  while ((replay.recent[old]?.frame.time_s ?? Infinity) < from || replay.recent.length - old > MOST_KEPT) ++old;
   // In blocks: to shift one by one would move the whole row each time.
-  if (old > 64 || recent.length > MOST_KEPT) recent.splice(0, old);
+  if (old > 64 || replay.recent.length > MOST_KEPT) replay.recent.splice(0, old);
 }
 
-export function forgetRecent(): void {
+store.onReset('moment', () => {
+  replay.recent = []; // first: nothing of it is shown at the end
   endReplay();
-  recent = [];
-}
+});
 
-export const canReplay = (): boolean => recent.length > 1;
+export const canReplay = (): boolean => replay.recent.length > 1;
 
 function show({ frame, plan }: Moment, now: number): void {
   live.frame = frame;
@@ -53,38 +55,38 @@ function show({ frame, plan }: Moment, now: number): void {
 
 /** Shows the last seconds again, at the pace they were driven. */
 export function startReplay(): void {
-  const end = recent.at(-1)?.frame.time_s ?? NaN;
-  showAgain(recent.filter(({ frame }) => frame.time_s >= end - REPLAY_S));
+  const end = replay.recent.at(-1)?.frame.time_s ?? NaN;
+  showAgain(replay.recent.filter(({ frame }) => frame.time_s >= end - REPLAY_S));
 }
 
 /** Shows moments, by their time, at the pace they were driven. */
 export function showAgain(moments: readonly Moment[]): void {
-  shownAgain = moments;
+  replay.shownAgain = moments;
   const end = moments.at(-1)?.frame.time_s ?? NaN;
-  if (shownAgain.length < 2) {
+  if (replay.shownAgain.length < 2) {
     endReplay();
     return;
   }
-  stop();
-  let [at, time, clock] = [0, shownAgain[0]?.frame.time_s ?? 0, NaN];
-  stop = everyFrame((now) => {
+  replay.stop();
+  let [at, time, clock] = [0, replay.shownAgain[0]?.frame.time_s ?? 0, NaN];
+  replay.stop = everyFrame((now) => {
     if (Number.isFinite(clock)) time += Math.min(now - clock, 250) / 1000;
     clock = now;
     const first = at;
-    while (at < shownAgain.length && (shownAgain[at]?.frame.time_s ?? Infinity) <= time) ++at;
-    const moment = shownAgain[at - 1];
+    while (at < replay.shownAgain.length && (replay.shownAgain[at]?.frame.time_s ?? Infinity) <= time) ++at;
+    const moment = replay.shownAgain[at - 1];
     if (moment && at > first) show(moment, now);
     replayLeft.value = Math.max(0, Math.ceil(end - time));
-    if (at >= shownAgain.length) endReplay();
+    if (at >= replay.shownAgain.length) endReplay();
   });
 }
 
 /** Back to the newest frame. */
 export function endReplay(): void {
-  stop();
-  stop = () => undefined;
-  shownAgain = [];
+  replay.stop();
+  replay.stop = () => undefined;
+  replay.shownAgain = [];
   replayLeft.value = null;
-  const newest = recent.at(-1);
+  const newest = replay.recent.at(-1);
   if (newest) show(newest, performance.now());
 }

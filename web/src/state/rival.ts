@@ -1,12 +1,13 @@
-import { effect, signal } from '@preact/signals';
+import { effect } from '@preact/signals';
 import { wrapAngle } from '../lib/math';
-import { programPage } from '../protocol/program_page';
+import { store } from '../lib/store';
 import type { GhostPose, GhostSource } from '../scene3d/ghost';
 import { restartListeners } from './demultiplexer';
 import { ghostShown } from './ghost_shown';
 import { link, notice } from './link';
 import { live } from './live';
 import { askRival, can, canSet, requests } from './operate';
+import { programPage } from './program_page';
 import { type Poses, type Race, readRace } from './rival_answer';
 import { entryOf } from './settings';
 import type { Wish } from './what_if';
@@ -15,10 +16,10 @@ import type { Wish } from './what_if';
 // ghost, and asks for its laps.
 
 /** What the program tells of the race; null without one. */
-export const race = signal<Race | null>(null);
+export const race = store.signal<Race | null>('page', null);
 /** The settings of B. */
-export const raced = signal<readonly Wish[]>([]);
-export const raceProblem = signal('');
+export const raced = store.signal<readonly Wish[]>('page', []);
+export const raceProblem = store.signal('page', '');
 
 export const canRace = (): boolean => can('/rival');
 
@@ -56,28 +57,28 @@ const ghost: GhostSource = {
   poseAt: (_time, into) => race.value !== null && poseOf(race.value.poses, live.frame?.time_s ?? NaN, into),
 };
 
-let shownBefore: GhostSource | null = null;
+const before = store.data('page', () => ({ source: null as GhostSource | null }));
 effect(() => {
   const isOnStage = race.value?.state === 'racing';
   if (isOnStage && ghostShown.source !== ghost) {
-    shownBefore = ghostShown.source;
+    before.source = ghostShown.source;
     ghostShown.source = ghost;
   } else if (!isOnStage && ghostShown.source === ghost) {
-    ghostShown.source = shownBefore;
+    ghostShown.source = before.source;
   }
 });
 
 const POLL_MS = 200;
-let timer: ReturnType<typeof setTimeout> | undefined;
+const next = store.data('page', () => ({ look: undefined as ReturnType<typeof setTimeout> | undefined }));
 
 async function look(): Promise<void> {
-  clearTimeout(timer);
-  timer = undefined;
+  clearTimeout(next.look);
+  next.look = undefined;
   if (!canRace()) return;
   const text = await programPage('rival.json').catch(() => null);
   const now = text === null ? null : readRace(JSON.parse(text));
   race.value = now === null || now.state === 'none' ? null : now;
-  if (now && (now.state === 'racing' || now.state === 'building')) timer = setTimeout(() => void look(), POLL_MS);
+  if (now && (now.state === 'racing' || now.state === 'building')) next.look = setTimeout(() => void look(), POLL_MS);
 }
 
 // A page that comes while a race goes on shows it.

@@ -1,8 +1,9 @@
-import { computed, signal } from '@preact/signals';
+import { computed } from '@preact/signals';
+import { store } from '../lib/store';
 import type { Run } from '../protocol/topics';
 
 /** Track, car, controller and state of the run; null until the program has sent it. */
-export const run = signal<Run | null>(null);
+export const run = store.signal<Run | null>('page', null);
 
 export const isPaused = computed(() => run.value?.is_paused ?? false);
 

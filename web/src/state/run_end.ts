@@ -1,5 +1,6 @@
-import { computed, signal } from '@preact/signals';
+import { computed } from '@preact/signals';
 import { plural } from '../lib/format';
+import { store } from '../lib/store';
 import type { Severity } from '../lib/words';
 import { attempt, link } from './link';
 import { run } from './run';
@@ -40,7 +41,7 @@ function endOf(kind: string, reason: string): RunEnd {
 const sentence = (reason: string): string =>
   reason === '' ? '' : `${reason[0]?.toUpperCase()}${reason.slice(1)}${reason.endsWith('.') ? '' : '.'}`;
 
-const closed = signal('');
+const closed = store.signal('page', '');
 const nameOf = (end: RunEnd | null): string => (end ? `${end.kind} ${end.title}` : '');
 
 /** Whether the card is shown: until it is closed, or the run goes on. */

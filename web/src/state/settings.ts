@@ -1,17 +1,19 @@
-import { computed, signal } from '@preact/signals';
+import { computed } from '@preact/signals';
+import { refusalInWords } from '../lib/refusal';
+import { store } from '../lib/store';
 import type { SchemaEntry } from '../protocol/schema';
 import type { SetAnswer, Setting } from '../protocol/source';
 
 /** All settings as the server describes them; empty until it does. */
-export const schema = signal<readonly SchemaEntry[]>([]);
+export const schema = store.signal<readonly SchemaEntry[]>('run', []);
 /** The values in force, or requested and not yet answered. */
-export const settings = signal<ReadonlyMap<string, Setting>>(new Map());
+export const settings = store.signal<ReadonlyMap<string, Setting>>('run', new Map());
 /** The values the run started with, as the program knows them. */
 export const startSettings = computed<ReadonlyMap<string, Setting>>(
   () => new Map(schema.value.flatMap(({ key, start }) => (start === null ? [] : [[key, start]]))),
 );
 /** Why requests were refused, by key, until the same setting is changed again. */
-export const refusals = signal<ReadonlyMap<string, string>>(new Map());
+export const refusals = store.signal<ReadonlyMap<string, string>>('run', new Map());
 
 export const entryOf = (key: string): SchemaEntry | undefined => schema.value.find((entry) => entry.key === key);
 
@@ -74,6 +76,7 @@ export class SettingRequests {
       const request = state.next;
       delete state.next;
       ({ value: inForce, sentence } = await this.#send(key, request));
+      if (sentence !== null) sentence = refusalInWords(sentence);
     }
     this.#open.delete(key);
     if (inForce !== null) settings.value = withEntry(settings.value, key, inForce);

@@ -2,13 +2,6 @@ import { effect } from '@preact/signals';
 import type { Setting } from '../protocol/source';
 import { requests } from './operate';
 import { run } from './run';
-import { refusals, settings } from './settings';
-
-/** Begins another run, whose values are not known yet. */
-export function beginSettings(): void {
-  settings.value = new Map();
-  refusals.value = new Map();
-}
 
 export function takeSettings(values: ReadonlyMap<string, Setting>): void {
   requests.receive(values);

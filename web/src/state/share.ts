@@ -1,4 +1,5 @@
-import { computed, signal } from '@preact/signals';
+import { computed } from '@preact/signals';
+import { store } from '../lib/store';
 import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
 import { link } from './link';
@@ -110,7 +111,7 @@ export function textsIn(fragment: string): ReadonlyMap<string, string> | null {
 }
 
 /** What the address asked for, until the reader has answered. */
-export const wantedTexts = signal<ReadonlyMap<string, string> | null>(null);
+export const wantedTexts = store.signal<ReadonlyMap<string, string> | null>('page', null);
 
 export interface Wanted {
   readonly run: SharedRun;

@@ -1,15 +1,15 @@
-import { signal } from '@preact/signals';
+import { store } from '../lib/store';
 import type { Frame } from '../protocol/topics';
 import { ageAtArrival, link } from './link';
 import { live } from './live';
 import { isPaused } from './run';
 
 /** The frame that the page's text shows, renewed about ten times a second. */
-export const shown = signal<Frame | null>(null);
+export const shown = store.signal<Frame | null>('run', null);
 /** Whole seconds since the last frame of a run that is not paused. */
-export const silence = signal(0);
+export const silence = store.signal('page', 0);
 /** Whole seconds by which the newest frame is older than the run, that is not paused, has come to. */
-export const behind = signal(0);
+export const behind = store.signal('page', 0);
 
 /** Brings what the text shows up to date; `now` as of performance.now(). */
 export function refreshText(now: number): void {

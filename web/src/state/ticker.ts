@@ -1,12 +1,14 @@
+import { store } from '../lib/store';
+
 type Task = (now: number) => void;
 
 const tasks = new Set<Task>();
-let isRunning = false;
+const loop = store.data('page', () => ({ isRunning: false }));
 
 function turn(now: number): void {
   for (const task of tasks) task(now);
   if (tasks.size > 0) requestAnimationFrame(turn);
-  else isRunning = false;
+  else loop.isRunning = false;
 }
 
 /**
@@ -22,8 +24,8 @@ export function everyFrame(task: Task, interval = 0): () => void {
     task(now);
   };
   tasks.add(paced);
-  if (!isRunning) {
-    isRunning = true;
+  if (!loop.isRunning) {
+    loop.isRunning = true;
     requestAnimationFrame(turn);
   }
   return () => void tasks.delete(paced);

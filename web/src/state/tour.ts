@@ -1,6 +1,7 @@
-import { computed, signal } from '@preact/signals';
+import { computed } from '@preact/signals';
 import { hasBit } from '../lib/bits';
 import { persisted } from '../lib/persisted';
+import { store } from '../lib/store';
 import type { Frame } from '../protocol/topics';
 import { frameListeners, restartListeners } from './demultiplexer';
 import { services } from './link';
@@ -183,18 +184,20 @@ export const skipped = computed<readonly string[]>(() => left.value.split(',').f
 
 export const step = computed<Step | null>(() => STEPS[stepNumber.value] ?? null);
 /** For each task of the step whether it is done. */
-export const done = signal<readonly boolean[]>([]);
+export const done = store.signal<readonly boolean[]>('page', []);
 export const isStepDone = computed(() => done.value.length > 0 && done.value.every(Boolean));
 
-let watch: Watch | null = null;
-let watched: Step | null = null;
-let lastTime = NaN;
+const watching = store.data('page', () => ({
+  watch: null as Watch | null,
+  step: null as Step | null,
+  lastTime: NaN,
+}));
 
 function begin(): void {
-  watched = step.value;
-  watch = watched?.watch() ?? null;
-  done.value = (watched?.tasks ?? []).map(() => false);
-  lastTime = NaN;
+  watching.step = step.value;
+  watching.watch = step.value?.watch() ?? null;
+  done.value = (step.value?.tasks ?? []).map(() => false);
+  watching.lastTime = NaN;
 }
 
 /** Opens the tour where it was left; from the beginning when it was finished. */
@@ -221,10 +224,10 @@ export function goOn(): void {
 /** Looks at a frame of the run. */
 export function lookAt(frame: Frame): void {
   if (!isTourOpen.value || !step.value) return;
-  if (watched !== step.value) begin(); // the page was opened in the middle of a tour
-  const seconds = frame.time_s - lastTime;
-  lastTime = frame.time_s;
-  const seen = watch?.(frame, seconds > 0 && seconds < 1 ? seconds : 0) ?? [];
+  if (watching.step !== step.value) begin(); // the page was opened in the middle of a tour
+  const seconds = frame.time_s - watching.lastTime;
+  watching.lastTime = frame.time_s;
+  const seen = watching.watch?.(frame, seconds > 0 && seconds < 1 ? seconds : 0) ?? [];
   let areAll = true;
   const now = done.value.map((was, i) => {
     areAll &&= was || seen[i] === true;
@@ -234,4 +237,4 @@ export function lookAt(frame: Frame): void {
 }
 
 frameListeners.add(lookAt);
-restartListeners.add(() => (lastTime = NaN));
+restartListeners.add(() => (watching.lastTime = NaN));

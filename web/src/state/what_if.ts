@@ -1,11 +1,13 @@
-import { effect, signal } from '@preact/signals';
-import { programPage } from '../protocol/program_page';
+import { effect } from '@preact/signals';
+import { refusalInWords } from '../lib/refusal';
+import { store } from '../lib/store';
 import type { SchemaEntry } from '../protocol/schema';
 import type { AskAnswer, Setting } from '../protocol/source';
 import { restartListeners } from './demultiplexer';
 import { live } from './live';
 import { ask as askRun, can } from './operate';
 import { cursorTime } from './plot_view';
+import { programPage } from './program_page';
 import { run } from './run';
 import { isControl, schema, settings } from './settings';
 import { readWhatIf, type WhatIfAnswer } from './what_if_answer';
@@ -23,17 +25,17 @@ export interface Wish {
   readonly value: Setting;
 }
 
-export const from = signal<From>('now');
-export const span = signal<Span>('lap');
-export const wishes = signal<readonly Wish[]>([]);
+export const from = store.signal<From>('page', 'now');
+export const span = store.signal<Span>('page', 'lap');
+export const wishes = store.signal<readonly Wish[]>('page', []);
 
 /** The newest answer, and what it was asked. */
-export const answer = signal<WhatIfAnswer | null>(null);
-export const asked = signal<readonly Wish[]>([]);
+export const answer = store.signal<WhatIfAnswer | null>('page', null);
+export const asked = store.signal<readonly Wish[]>('page', []);
 /** The share that is computed; null when nothing is. */
-export const progress = signal<number | null>(null);
+export const progress = store.signal<number | null>('page', null);
 /** Why there is no answer; empty when nothing is wrong. */
-export const problem = signal('');
+export const problem = store.signal('page', '');
 
 /** A recording that is shown, for which the program answers; null in a live run. */
 export interface AskedLog {
@@ -43,9 +45,9 @@ export interface AskedLog {
   position(): number;
   ask(question: string): Promise<AskAnswer>;
 }
-export const askedLog = signal<AskedLog | null>(null);
+export const askedLog = store.signal<AskedLog | null>('page', null);
 /** The settings of the recording that is shown; a live run has its own. */
-export const loggedSchema = signal<readonly SchemaEntry[]>([]);
+export const loggedSchema = store.signal<readonly SchemaEntry[]>('page', []);
 
 export const canAsk = (): boolean => askedLog.value !== null || can('/what_if');
 
@@ -84,14 +86,14 @@ export function question(): string {
 
 const pause = (ms: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, ms));
 const POLL_MS = 150;
-let newest = 0;
+const asking = store.data('page', () => ({ newest: 0, run: '' }));
 
 /** Waits for the answer of a question by its number. */
 async function waitFor(id: number, mine: number): Promise<void> {
-  while (mine === newest) {
+  while (mine === asking.newest) {
     const reply = await programPage('what_if.json');
     const state = reply === null ? null : readWhatIf(JSON.parse(reply));
-    if (mine !== newest) return;
+    if (mine !== asking.newest) return;
     if (state?.id !== id) throw new Error('another question took the place of this one');
     if (state.kind === 'failed') throw new Error(state.why);
     if (state.kind === 'done') {
@@ -105,7 +107,7 @@ async function waitFor(id: number, mine: number): Promise<void> {
 
 /** Asks; the answer appears in `answer`. */
 export async function ask(): Promise<void> {
-  const mine = ++newest;
+  const mine = ++asking.newest;
   const sent = wishes.value;
   problem.value = '';
   progress.value = 0;
@@ -113,17 +115,17 @@ export async function ask(): Promise<void> {
     const taken = await (askedLog.value?.ask(question()) ?? askRun(question()));
     if (!taken.isTaken) throw new Error(taken.message);
     await waitFor(Number(taken.message), mine);
-    if (mine === newest) asked.value = sent;
+    if (mine === asking.newest) asked.value = sent;
   } catch (error) {
-    if (mine === newest) problem.value = error instanceof Error ? error.message : String(error);
+    if (mine === asking.newest) problem.value = refusalInWords(error instanceof Error ? error.message : String(error));
   } finally {
-    if (mine === newest) progress.value = null;
+    if (mine === asking.newest) progress.value = null;
   }
 }
 
 /** Forgets the answer, and one that is being computed. */
 export function forgetAnswer(): void {
-  ++newest;
+  ++asking.newest;
   answer.value = null;
   progress.value = null;
   problem.value = '';
@@ -131,9 +133,8 @@ export function forgetAnswer(): void {
 
 // An answer is about one run.
 restartListeners.add(forgetAnswer);
-let known = '';
 effect(() => {
   const now = `${run.value?.track} ${run.value?.car} ${run.value?.controller} ${run.value?.preset}`;
-  if (known !== '' && known !== now) forgetAnswer();
-  known = now;
+  if (asking.run !== '' && asking.run !== now) forgetAnswer();
+  asking.run = now;
 });

@@ -1,6 +1,6 @@
-import { signal } from '@preact/signals';
 import { download, fileName } from '../lib/download';
 import { fixed, lapTime } from '../lib/format';
+import { store } from '../lib/store';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import { live } from '../state/live';
 import { endReplay, isReplaying, startReplay } from '../state/replay';
@@ -13,7 +13,7 @@ const FRAMES_PER_SECOND = 30;
 const TYPES = ['video/webm;codecs=vp9', 'video/webm', 'video/mp4'];
 
 /** Whether a film is being made. */
-export const isFilming = signal(false);
+export const isFilming = store.signal('page', false);
 
 const typeOfFilm = (): string | undefined =>
   typeof MediaRecorder === 'undefined' ? undefined : TYPES.find((type) => MediaRecorder.isTypeSupported(type));

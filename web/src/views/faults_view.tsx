@@ -1,8 +1,9 @@
-import { computed, signal } from '@preact/signals';
+import { computed } from '@preact/signals';
 import { hasBit } from '../lib/bits';
 import { fixed } from '../lib/format';
 import { clamp } from '../lib/math';
 import { tidy } from '../lib/scale';
+import { store } from '../lib/store';
 import { driverInWords } from '../lib/words';
 import type { FaultEntry } from '../protocol/schema';
 import { faultInWords } from '../state/event_log';
@@ -37,7 +38,10 @@ const LEAST_S = 3;
 const DURATIONS_S = [0.1, 600] as const;
 
 /** Duration and strength chosen here, by key. */
-const chosen = signal<ReadonlyMap<string, { readonly duration: number; readonly strength: number }>>(new Map());
+const chosen = store.signal<ReadonlyMap<string, { readonly duration: number; readonly strength: number }>>(
+  'page',
+  new Map(),
+);
 
 const choiceOf = (key: string, entry: FaultEntry): { duration: number; strength: number } =>
   chosen.value.get(key) ?? { duration: Math.max(LEAST_S, entry.duration_s), strength: entry.strength };

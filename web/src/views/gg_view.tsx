@@ -1,6 +1,7 @@
 import { firstSince } from '../draw/axis';
 import { fixed } from '../lib/format';
-import { extent, niceCeil } from '../lib/math';
+import { extent, mix, niceCeil } from '../lib/math';
+import { store } from '../lib/store';
 import { Column } from '../state/columns';
 import { cursorTime, isFrozen, plotted, timeRange } from '../state/plot_view';
 import { shown } from '../state/shown';
@@ -23,7 +24,7 @@ export function gripRadius(lateral: number, frontUse: number, rearUse: number): 
 export const reachOf = (most: number, radius: number): number =>
   niceCeil(Math.max(0.5, most * 1.08, Number.isFinite(radius) ? radius * 1.02 : 0));
 
-let radius = NaN; // smoothed [g]
+const circle = store.data('page', () => ({ radius: NaN })); // smoothed [g]
 
 function paint(context: CanvasRenderingContext2D, width: number, height: number): void {
   const colours = chartColours();
@@ -36,6 +37,7 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number)
   const most = Math.max(...[across, along].flatMap((values) => (extent(values) ?? [0, 0]).map(Math.abs))) / G;
   const newest = across.length - 1;
   renewGrip(newest + first);
+  const { radius } = circle;
   const scale = reachOf(most, radius);
   const [middleX, middleY] = [width / 2, height / 2];
   const pixels = (Math.min(width, height) / 2 - 16) / scale;
@@ -104,10 +106,11 @@ function renewGrip(row: number): void {
   const value = (column: number): number => history.column(column)[row] ?? NaN;
   const now =
     gripRadius(value(Column.lateral_acceleration_mps2), value(Column.front_tire_use), value(Column.rear_tire_use)) / G;
-  if (Number.isFinite(now)) radius = Number.isFinite(radius) ? radius + (now - radius) * 0.2 : now;
+  if (Number.isFinite(now)) circle.radius = Number.isFinite(circle.radius) ? mix(circle.radius, now, 0.2) : now;
 }
 
 function drawGrip(context: CanvasRenderingContext2D, x: number, y: number, pixels: number): void {
+  const { radius } = circle;
   if (!Number.isFinite(radius)) return;
   context.beginPath();
   context.arc(x, y, radius * pixels, 0, 2 * Math.PI);

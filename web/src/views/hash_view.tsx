@@ -1,5 +1,5 @@
 import { useEffect, useState } from 'preact/hooks';
-import { programPage } from '../protocol/program_page';
+import { programPage } from '../state/program_page';
 import { commandOf, sharedNow } from '../state/share';
 
 interface Ended {

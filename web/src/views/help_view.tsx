@@ -1,8 +1,8 @@
-import { signal } from '@preact/signals';
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import { allShortcuts, type Shortcut } from '../lib/keys';
+import { store } from '../lib/store';
 
-export const isHelpOpen = signal(false);
+export const isHelpOpen = store.signal('page', false);
 
 const GROUPS: readonly Shortcut['group'][] = ['Run', 'Camera', 'Panels', 'Driving by hand'];
 

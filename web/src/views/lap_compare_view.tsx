@@ -6,10 +6,10 @@ import { rangeAboutZero, rangeInSteps } from '../draw/axis';
 import { onThemeChange } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { speedUnit } from '../lib/units';
+import { lapName, samplesOf } from '../state/compared';
 import { cursorMark } from '../state/cursor';
 import { type LapChannel, timeGap } from '../state/lap_samples';
 import { lapSamples } from '../state/laps';
-import { limit, limitChannel } from '../state/limit';
 import { cursorPlace, cursorTime } from '../state/plot_view';
 import { type ChartColours, chartColours } from './plot_colours';
 
@@ -17,23 +17,17 @@ interface Curve {
   readonly title: string;
   readonly unit: string;
   readonly decimals: number;
-  /** Both laps, or their difference. */
-  data(a: number, b: number): (Float64Array | null)[];
+  /** A curve for each lap, or for what each but lap B has lost to lap B. */
+  data(numbers: readonly number[]): (Float64Array | null)[];
   readonly range: (columns: readonly ArrayLike<number>[]) => [number, number];
-  /** What is above zero is lost, and filled in red; below it is gained, and filled in green. */
-  readonly isFilled?: boolean;
+  /** Of differences from lap B; that of lap A is filled: red above zero, where it lost, green below it. */
+  readonly isGap?: boolean;
 }
-
-/** Laps count from 0; −1 is the limit, the fastest possible lap. */
-const LIMIT = -1;
-const samplesOf = (lap: number, name: LapChannel): Float64Array | null =>
-  lap !== LIMIT ? lapSamples.channel(lap, name) : limit.value && limitChannel(limit.value, lapSamples, name);
-const nameOf = (lap: number): string => (lap === LIMIT ? 'limit' : `lap ${lap + 1}`);
 
 const channel =
   (name: LapChannel, factor = 1) =>
-  (a: number, b: number): (Float64Array | null)[] =>
-    [a, b].map((lap) => samplesOf(lap, name)?.map((value) => value * factor) ?? null);
+  (numbers: readonly number[]): (Float64Array | null)[] =>
+    numbers.map((lap) => samplesOf(lap, name)?.map((value) => value * factor) ?? null);
 
 const SPEED = computed<Curve>(() => {
   const { name, perMps, axisStep, axisLeast } = speedUnit();
@@ -56,14 +50,14 @@ const OTHERS: readonly Curve[] = [
   },
   {
     title: 'Time gap',
-    unit: 's, + first lap behind',
+    unit: 's, + behind lap B',
     decimals: 3,
-    data: (a, b) => {
-      const [first, second] = channel('time_s')(a, b);
-      return [first && second ? timeGap(first, second) : null];
+    data: (numbers) => {
+      const [a, b, ...others] = channel('time_s')(numbers);
+      return [a, ...others].map((each) => (each && b ? timeGap(each, b) : null));
     },
     range: (columns) => rangeAboutZero(columns, 0.1),
-    isFilled: true,
+    isGap: true,
   },
 ];
 
@@ -93,14 +87,18 @@ function distanceFromLine(place: number): number {
 const withGaps = (values: Float64Array): (number | null)[] =>
   Array.from(values, (value) => (Number.isFinite(value) ? value : null));
 
-function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number; names: readonly [string, string] }) {
+/** The colour of a lap by its place among those drawn. */
+const colourOf = (place: number): number => place % 10;
+
+function CurvePlot({ curve, numbers }: { curve: Curve; numbers: readonly number[] }) {
   const host = useRef<HTMLDivElement>(null);
   const reading = useRef<HTMLParagraphElement>(null);
-  const [first, second] = curve.data(a, b);
+  const shown = curve.data(numbers);
+  const lapA = numbers[0] ?? 0;
   useEffect(() => {
     const element = host.current;
     if (!element) return undefined;
-    const columns = [first, second].filter((each): each is Float64Array => each !== null && each !== undefined);
+    const columns = shown.filter((each): each is Float64Array => each !== null);
     const places = Float64Array.from({ length: lapSamples.points }, (_, point) => lapSamples.s(point));
     const create = (): uPlot => {
       const colours = chartColours();
@@ -110,7 +108,10 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
         ticks: { show: false },
         font: `11px ${colours.font}`,
       };
-      const stroke = columns.length === 1 ? [colours.series[3] ?? ''] : colours.series;
+      const strokeOf = (i: number): string => {
+        if (curve.isGap && i === 0) return colours.series[3] ?? '';
+        return colours.series[colourOf(curve.isGap ? i + 1 : i)] ?? '';
+      };
       const options: uPlot.Options = {
         width: element.clientWidth,
         height: element.clientHeight,
@@ -130,10 +131,10 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
         series: [
           {},
           ...columns.map((_, i) => ({
-            stroke: stroke[i] ?? '',
-            width: 1.75,
+            stroke: strokeOf(i),
+            width: i < 2 ? 1.75 : 1.25,
             points: { show: false },
-            ...(curve.isFilled && { fill: (self: uPlot) => lossGradient(self, colours), fillTo: 0 }),
+            ...(curve.isGap && i === 0 && { fill: (self: uPlot) => lossGradient(self, colours), fillTo: 0 }),
           })),
         ],
         hooks: {
@@ -143,7 +144,7 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
               const at = plot.cursor.idx;
               if (plot.cursor.event)
                 cursorPlace.value =
-                  at === null || at === undefined || a < 0 ? null : { lap: a, place: lapSamples.place(at) };
+                  at === null || at === undefined || lapA < 1 ? null : { lap: lapA - 1, place: lapSamples.place(at) };
               const values =
                 at === null || at === undefined
                   ? []
@@ -181,19 +182,19 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
       plot.destroy();
     };
     // A complete lap does not change, so its number identifies its data.
-  }, [curve, a, b, first === null]);
+  }, [curve, numbers.join(' '), shown.filter((each) => each === null).length]);
   return (
     <section class="plot" aria-label={`${curve.title} along the track`}>
       <header>
         <h2>
           {curve.title} <span class="unit">{curve.unit}</span>
         </h2>
-        {second === undefined ? null : (
+        {!curve.isGap && (
           <p>
-            {names.map((name, i) => (
-              <span key={name} class="key">
-                <span class="stroke" style={{ borderColor: `var(--series-${i + 1})` }} />
-                {name}
+            {numbers.map((lap, i) => (
+              <span key={lap} class="key">
+                <span class="stroke" style={{ borderColor: `var(--series-${colourOf(i) + 1})` }} />
+                {lapName(lap)}
               </span>
             ))}
           </p>
@@ -205,21 +206,20 @@ function CurvePlot({ curve, a, b, names }: { curve: Curve; a: number; b: number;
   );
 }
 
-/** Two laps over the distance along the road; `a` and `b` count from 0. */
-export function LapCompareView({ a, b }: { a: number; b: number }) {
-  const names = [nameOf(a), nameOf(b)] as const;
-  const missing = [a, b].filter((lap) => !samplesOf(lap, 'time_s'));
+/** Laps A and B, and those that are drawn beside them, over the distance along the road. */
+export function LapCompareView({ numbers }: { numbers: readonly number[] }) {
+  const missing = numbers.filter((lap) => !samplesOf(lap, 'time_s'));
   if (missing.length > 0) {
     return (
       <p class="empty">
-        This page has not seen all of {missing.map(nameOf).join(' and ')}: there is nothing to compare.
+        This page has not seen all of {missing.map(lapName).join(' and ')}: there is nothing to compare.
       </p>
     );
   }
   return (
     <div class="compare">
       {[SPEED.value, ...OTHERS].map((curve) => (
-        <CurvePlot key={`${curve.title} ${curve.unit} ${a} ${b}`} curve={curve} a={a} b={b} names={names} />
+        <CurvePlot key={`${curve.title} ${curve.unit} ${numbers.join(' ')}`} curve={curve} numbers={numbers} />
       ))}
     </div>
   );

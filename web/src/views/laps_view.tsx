@@ -1,9 +1,9 @@
-import { signal } from '@preact/signals';
 import { download, downloadPng, fileName } from '../lib/download';
 import { fixed, lapTime, UNKNOWN } from '../lib/format';
+import { store } from '../lib/store';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import type { Lap, Limit } from '../protocol/topics';
-import { chosen, pair as comparedPair, LIMIT } from '../state/compared';
+import { pair as comparedPair, drawn, LIMIT } from '../state/compared';
 import { differences, setupInWords } from '../state/lap_setup';
 import { bestsOf, type LapBests, lapSamplesCsv, lapsCsv } from '../state/lap_table';
 import { bestLap, lapSamples, laps, sampledLaps } from '../state/laps';
@@ -14,7 +14,9 @@ import { startSettings } from '../state/settings';
 import { everyFrame } from '../state/ticker';
 import { canFilm, film, isFilming } from './clip';
 import { LapCompareView } from './lap_compare_view';
+import { Picks } from './lap_picks';
 import { LeaderboardView } from './leaderboard_view';
+import { OtherLapsView } from './other_laps_view';
 import { TimeWonView } from './time_won_view';
 
 function gap(seconds: number): string {
@@ -24,28 +26,6 @@ function gap(seconds: number): string {
 
 const percent = (value: number): string =>
   Number.isFinite(value) ? `${value >= 0 ? '+' : ''}${fixed(value, 1)} %` : UNKNOWN;
-
-function Picks({ lap, pair, name }: { lap: number; pair: readonly [number, number]; name: string }) {
-  const pick = (which: 0 | 1): void => {
-    chosen.value = which === 0 ? [lap, chosen.value[1]] : [chosen.value[0], lap];
-  };
-  return (
-    <div class="picks">
-      {([0, 1] as const).map((which) => (
-        <label key={which} title={`Compare as lap ${which === 0 ? 'A' : 'B'}`}>
-          <input
-            type="radio"
-            name={`compare-${which}`}
-            aria-label={`Compare ${name} as ${which === 0 ? 'A' : 'B'}`}
-            checked={pair[which] === lap}
-            onChange={() => pick(which)}
-          />
-          {which === 0 ? 'A' : 'B'}
-        </label>
-      ))}
-    </div>
-  );
-}
 
 /** The first row: the fastest possible lap. */
 function LimitRow({
@@ -149,7 +129,7 @@ function Row({ lap, bests, pair, hasSetups }: RowOptions) {
 
 const ROWS = 40;
 const SETUP_WORDS = 2;
-const showsAll = signal(false);
+const showsAll = store.signal('page', false);
 
 /** The newest laps and the best, or all laps. */
 function rowsOf(all: readonly Lap[], bests: LapBests): Lap[] {
@@ -272,10 +252,11 @@ export function LapsView() {
           )}
         </div>
       )}
+      <OtherLapsView pair={pair} />
       <LeaderboardView />
       <Differences all={all} pair={pair} />
       <TimeWonView />
-      {(all.length > 1 || pair.includes(LIMIT)) && <LapCompareView a={pair[0] - 1} b={pair[1] - 1} />}
+      {pair[0] !== pair[1] && <LapCompareView numbers={drawn.value} />}
     </div>
   );
 }

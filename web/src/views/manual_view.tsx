@@ -1,8 +1,9 @@
-import { effect, signal } from '@preact/signals';
+import { effect } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { fixed } from '../lib/format';
 import { isTakenBy } from '../lib/keys';
 import { clamp } from '../lib/math';
+import { store } from '../lib/store';
 import { asksForWheel, firstGamepad, gamepads, stickOf } from '../state/gamepad';
 import { link } from '../state/link';
 import { live } from '../state/live';
@@ -73,22 +74,21 @@ export function listenToDriver(): void {
   });
 }
 
-let wasStartPressed = false;
-let hasGamepad = false;
+const gamepad = store.data('page', () => ({ isThere: false, wasStartPressed: false }));
 /** The name of the gamepad that is there; empty without one. */
-const gamepadName = signal('');
+const gamepadName = store.signal('page', '');
 
 /** Start takes the wheel and hands it back. */
 function watchGamepad(): void {
-  if (!hasGamepad) return;
+  if (!gamepad.isThere) return;
   const pad = firstGamepad(gamepads());
   gamepadName.value = pad?.id ?? '';
   const isPressed = pad !== null && asksForWheel(pad);
-  if (isPressed && !wasStartPressed) toggleManual();
-  wasStartPressed = isPressed;
+  if (isPressed && !gamepad.wasStartPressed) toggleManual();
+  gamepad.wasStartPressed = isPressed;
 }
 
-if (typeof window !== 'undefined') addEventListener('gamepadconnected', () => (hasGamepad = true));
+if (typeof window !== 'undefined') addEventListener('gamepadconnected', () => (gamepad.isThere = true));
 
 /** A pad for finger or mouse: sideways steers, up is throttle, down is brake. */
 function Pad() {

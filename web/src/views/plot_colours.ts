@@ -1,4 +1,5 @@
 import { onThemeChange } from '../draw/theme';
+import { store } from '../lib/store';
 import { LIMITERS } from '../lib/words';
 
 /** The colours of the style sheet that charts need. */
@@ -34,10 +35,10 @@ function read(): ChartColours {
   };
 }
 
-let current: ChartColours | null = null;
-onThemeChange(() => (current = null));
+const known = store.data('page', () => ({ colours: null as ChartColours | null }));
+onThemeChange(() => (known.colours = null));
 
-export const chartColours = (): ChartColours => (current ??= read());
+export const chartColours = (): ChartColours => (known.colours ??= read());
 
 /** Clears a canvas and fits it to its box [CSS pixels] and the screen's resolution; null without a visible canvas. */
 export function fitCanvas(canvas: HTMLCanvasElement, width: number, height: number): CanvasRenderingContext2D | null {

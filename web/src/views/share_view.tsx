@@ -1,6 +1,6 @@
-import { signal } from '@preact/signals';
 import { plural } from '../lib/format';
 import { tidy } from '../lib/scale';
+import { store } from '../lib/store';
 import type { Setting } from '../protocol/source';
 import { notice } from '../state/link';
 import { canSet } from '../state/operate';
@@ -16,9 +16,10 @@ import {
   wantedTexts,
 } from '../state/share';
 import { tab } from '../state/tab';
+import { Copied, forgetCopied } from './copied';
 import { Dialog } from './help_view';
 
-const isOpen = signal(false);
+const isOpen = store.signal('page', false);
 
 export const openShare = (): void => {
   isOpen.value = true;
@@ -38,47 +39,11 @@ export function listenForLinks(): void {
 
 const asText = (value: Setting): string => (typeof value === 'number' ? tidy(value) : String(value));
 
-/** Where browsers allow no clipboard (addresses without TLS that are not this machine), the text is selected. */
-function copy(field: HTMLInputElement | null, said: (text: string) => void): void {
-  if (!field) return;
-  field.select();
-  const done = navigator.clipboard?.writeText(field.value) ?? Promise.reject(new Error('no clipboard'));
-  done.then(
-    () => said('Copied'),
-    () => said('Selected: Ctrl+C copies it'),
-  );
-}
-
-const said = signal<{ readonly id: string; readonly text: string } | null>(null);
-
-function Copied({ id, label, text }: { id: string; label: string; text: string }) {
-  return (
-    <div class="copied">
-      <label for={id}>{label}</label>
-      <div class="copied-row">
-        <input id={id} type="text" readOnly value={text} onFocus={(event) => event.currentTarget.select()} />
-        <button
-          type="button"
-          aria-label={`Copy the ${label.toLowerCase()}`}
-          onClick={() =>
-            copy(document.getElementById(id) as HTMLInputElement | null, (words) => (said.value = { id, text: words }))
-          }
-        >
-          Copy
-        </button>
-      </div>
-      <p class="soft" role="status">
-        {said.value?.id === id ? said.value.text : ''}
-      </p>
-    </div>
-  );
-}
-
 /** The link to the run that goes on, and the command that begins it. */
 function Offer() {
   const close = (): void => {
     isOpen.value = false;
-    said.value = null;
+    forgetCopied();
   };
   const shared = sharedNow.value;
   const files = filesChosen.value;

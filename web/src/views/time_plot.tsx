@@ -1,6 +1,7 @@
 import { effect } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
+import { store } from '../lib/store';
 import 'uplot/dist/uPlot.min.css';
 import { firstSince, secondsBack, silencesIn } from '../draw/axis';
 import { onThemeChange } from '../draw/theme';
@@ -227,7 +228,7 @@ function markByClick(plot: uPlot): void {
 
 const PACE_MS = 100; // as often as text
 const PHASES = 6; // plots take turns, so that no repaint draws all of them
-let made = 0;
+const plotsMade = store.data('page', () => ({ count: 0 }));
 
 /**
  * Time between repaints of a plot [ms]: until its lines have moved by one pixel, at most as long as between updates of
@@ -248,7 +249,7 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
     const redraw = (): void => plot.setData(dataOf(spec) as unknown as uPlot.AlignedData);
     const fit = (): void => plot.setSize(box);
     const box = onScreen(element, fit);
-    let last = performance.now() - (PACE_MS / PHASES) * (made++ % PHASES);
+    let last = performance.now() - (PACE_MS / PHASES) * (plotsMade.count++ % PHASES);
     const stop = everyFrame((now) => {
       const newest = plotted().newest(Column.time_s);
       // Half a repaint of tolerance, as in everyFrame().

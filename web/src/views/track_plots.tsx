@@ -1,5 +1,6 @@
 import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
+import { store } from '../lib/store';
 import 'uplot/dist/uPlot.min.css';
 import { rangeAboutZero, rangeInSteps } from '../draw/axis';
 import { onThemeChange } from '../draw/theme';
@@ -163,12 +164,12 @@ function TrackPlot({ spec }: { spec: TrackSpec }) {
   );
 }
 
-let known: { unit: SpeedUnit; all: readonly TrackSpec[] } | null = null;
+const known = store.data('page', () => ({ unit: null as SpeedUnit | null, all: [] as readonly TrackSpec[] }));
 
 /** Speed, inputs and error against the distance along the track. */
 export function TrackPlots() {
   const unit = speedUnit();
-  if (known?.unit !== unit) known = { unit, all: specs(unit) };
+  if (known.unit !== unit) Object.assign(known, { unit, all: specs(unit) });
   if (!(lapSamples.length > 0))
     return <p class="empty">The road is not known: there is no distance to plot against.</p>;
   return (

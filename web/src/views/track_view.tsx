@@ -1,4 +1,3 @@
-import { signal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { CachedPicture, isSame } from '../draw/cached_picture';
 import { above, behind, type Camera, fitting, scaleBar, unproject, zoomed } from '../draw/camera';
@@ -18,6 +17,7 @@ import { onThemeChange, theme } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { type Box, boundsOf, extrapolate, type Point, wrapAngle } from '../lib/math';
 import { type OnScreen, onScreen } from '../lib/on_screen';
+import { store } from '../lib/store';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import { CAMERAS } from '../scene3d/cameras';
 import type { GhostPose } from '../scene3d/ghost';
@@ -29,6 +29,7 @@ import { cursorMark, pointAt, timeNear } from '../state/cursor';
 import { faultMarks } from '../state/faults';
 import { hindsight } from '../state/hindsight';
 import { layers } from '../state/layers';
+import { isSeen } from '../state/layout';
 import { limit } from '../state/limit';
 import { link } from '../state/link';
 import { live } from '../state/live';
@@ -37,7 +38,6 @@ import { road } from '../state/road';
 import { isPaused, run } from '../state/run';
 import { seekTo } from '../state/seek';
 import { shown } from '../state/shown';
-import { tab } from '../state/tab';
 import { everyFrame } from '../state/ticker';
 import { AlertsView, dangerNow, HudView } from './hud_view';
 import { LegendView } from './legend_view';
@@ -50,13 +50,13 @@ const VIEWS: readonly { view: View; label: string; title: string }[] = [
   { view: 'whole', label: 'Whole track', title: 'See the whole track (C)' },
 ];
 
-export const view = signal<View>('behind');
+export const view = store.signal<View>('page', 'behind');
 const INSET_INTERVAL_MS = 80; // the small map beside the 3D picture
 
-const metresAcross = signal(100);
-const bar = signal({ metres: 10, pixels: 80 });
-const scaleTop = signal(10); // [m/s]
-const ghostLabel = signal<string | null>(null);
+const metresAcross = store.signal('page', 100);
+const bar = store.signal('page', { metres: 10, pixels: 80 });
+const scaleTop = store.signal('page', 10); // [m/s]
+const ghostLabel = store.signal<string | null>('page', null);
 
 /** The next camera in 3D, or the next view of the map. */
 export function nextView(): void {
@@ -121,7 +121,7 @@ class Painter {
     if (bar.value.metres !== length.metres || Math.abs(bar.value.pixels - length.pixels) > 0.5) bar.value = length;
 
     // The way driven would lie on the line of the lap that is coloured.
-    const losses = layers.timeLost.value && tab.value === 'laps' && !isInset ? lossesNow.value : null;
+    const losses = layers.timeLost.value && isSeen('laps') && !isInset ? lossesNow.value : null;
     const scene: Scene = {
       road: this.#road,
       racingLine: layers.racingLine.value ? limit.value : null,

@@ -1,34 +1,35 @@
-import { computed, signal } from '@preact/signals';
+import { computed } from '@preact/signals';
 import { download } from '../lib/download';
 import { tidy } from '../lib/scale';
+import { store } from '../lib/store';
 import { nameInWords } from '../lib/words';
-import { programPage } from '../protocol/program_page';
 import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
 import { set } from '../state/operate';
+import { programPage } from '../state/program_page';
 import { run } from '../state/run';
 import { isFound } from '../state/setting_search';
 import { isControl, schema, settingChanges, settings } from '../state/settings';
 import { NothingToSet } from './drive_view';
 import { SettingRow } from './setting_row';
 
-const search = signal('');
-const onlyChanged = signal(false);
+const search = store.signal('page', '');
+const onlyChanged = store.signal('page', false);
 /** Groups that were opened or closed by hand; others follow the active controller. */
-const isOpen = signal<ReadonlyMap<string, boolean>>(new Map());
+const isOpen = store.signal<ReadonlyMap<string, boolean>>('page', new Map());
 
-let isSearchWanted = false;
+const wants = store.data('page', () => ({ search: false }));
 
 /** The search takes the next key, also where it is not there yet: it appears before another key can be pressed. */
 export function focusSearch(): void {
   const box = document.getElementById('tune-search');
-  isSearchWanted = box === null;
+  wants.search = box === null;
   box?.focus();
 }
 
 function takeFocus(box: HTMLInputElement | null): void {
-  if (!box || !isSearchWanted) return;
-  isSearchWanted = false;
+  if (!box || !wants.search) return;
+  wants.search = false;
   box.focus();
 }
 

@@ -154,6 +154,8 @@ function showInPanel(part: HTMLElement | null): void {
   if (!part || !panel) return;
   const [inside, frame] = [part.getBoundingClientRect(), panel.getBoundingClientRect()];
   if (inside.bottom > frame.bottom) panel.scrollTop += inside.top - frame.top;
+  // On a very small window the page scrolls as a whole.
+  if (part.getBoundingClientRect().bottom > innerHeight) part.scrollIntoView({ block: 'nearest' });
 }
 
 /** Both futures: what the change comes to, in a sentence, a table, and along the road. */

@@ -1,6 +1,6 @@
-import { signal } from '@preact/signals';
 import { lapTime } from '../lib/format';
 import { tidy } from '../lib/scale';
+import { store } from '../lib/store';
 import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
 import { watchBoth } from '../recording/what_if_ghost';
@@ -35,7 +35,7 @@ import { SettingMeaning, typed } from './setting_row';
 import { WhatIfResult } from './what_if_result';
 
 const MOST_WISHES = 8;
-const kept = signal<readonly Wish[] | null>(null);
+const kept = store.signal<readonly Wish[] | null>('page', null);
 
 const asText = (value: Setting | undefined): string =>
   typeof value === 'number' ? tidy(value).replace('−', '-') : String(value ?? '');

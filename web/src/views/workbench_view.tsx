@@ -1,8 +1,7 @@
-import { signal } from '@preact/signals';
 import type { ComponentType } from 'preact';
 import { useLayoutEffect, useRef } from 'preact/hooks';
-import { clamp } from '../lib/math';
-import { persisted } from '../lib/persisted';
+import { store } from '../lib/store';
+import { beside, dock, hasInstruments, panelShare, panels, setPanelShare, toggleDock } from '../state/layout';
 import { link } from '../state/link';
 import { isStageAlone } from '../state/presentation';
 import { TABS, type Tab, tab } from '../state/tab';
@@ -12,6 +11,7 @@ import { ExplainView } from './explain_view';
 import { FaultsView } from './faults_view';
 import { InstrumentsView } from './instruments_view';
 import { LapsView } from './laps_view';
+import { LayoutView, openLayout } from './layout_view';
 import { PlotsView } from './plots_view';
 import { TourView } from './tour_view';
 import { TrackView } from './track_view';
@@ -31,38 +31,24 @@ const PANELS = [
 
 export const titleOf = (name: Tab): string => PANELS.find((each) => each.name === name)?.title ?? name;
 
-type Dock = 'right' | 'bottom';
-const dock = persisted<Dock>('dock', 'right', (value) => value === 'right' || value === 'bottom');
-const shareRight = persisted<number>('dock.right', 0.36);
-const shareBottom = persisted<number>('dock.bottom', 0.44);
 /** Whether only the panel is shown, without picture and instruments. */
-export const isPanelAlone = signal(false);
-
-export function toggleDock(): void {
-  dock.value = dock.value === 'right' ? 'bottom' : 'right';
-}
-
-function moveSplit(share: number): void {
-  const limited = clamp(share, 0.2, 0.8);
-  if (dock.value === 'right') shareRight.value = limited;
-  else shareBottom.value = limited;
-}
+export const isPanelAlone = store.signal('page', false);
 
 /** The bar between picture and panel, moved by dragging or with the arrow keys. */
 function Splitter() {
   const isVertical = dock.value === 'right';
-  const share = isVertical ? shareRight.value : shareBottom.value;
+  const share = panelShare.value;
   const drag = (event: PointerEvent): void => {
     const bar = event.currentTarget as HTMLElement;
     const box = bar.parentElement?.getBoundingClientRect();
     if (!box || !bar.hasPointerCapture(event.pointerId)) return;
-    moveSplit(isVertical ? (box.right - event.clientX) / box.width : (box.bottom - event.clientY) / box.height);
+    setPanelShare(isVertical ? (box.right - event.clientX) / box.width : (box.bottom - event.clientY) / box.height);
   };
   const key = (event: KeyboardEvent): void => {
     const step = { ArrowLeft: 0.02, ArrowUp: 0.02, ArrowRight: -0.02, ArrowDown: -0.02 }[event.key];
     if (step === undefined) return;
     event.preventDefault();
-    moveSplit(share + step);
+    setPanelShare(share + step);
   };
   return (
     <div
@@ -83,17 +69,18 @@ function Splitter() {
 
 function Tabs() {
   const key = (event: KeyboardEvent): void => {
-    const at = TABS.indexOf(tab.value);
-    const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: TABS.length - 1 }[event.key];
+    const shown = panels.value;
+    const at = shown.indexOf(tab.value);
+    const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: shown.length - 1 }[event.key];
     if (to === undefined) return;
     event.preventDefault();
-    tab.value = TABS[(to + TABS.length) % TABS.length] as Tab;
+    tab.value = shown[(to + shown.length) % shown.length] as Tab;
     document.getElementById(`tab-${tab.value}`)?.focus();
   };
   return (
     <div class="tab-row">
       <div class="tabs" role="tablist" aria-label="Panels" onKeyDown={key}>
-        {PANELS.map(({ name, title }, i) => (
+        {panels.value.map((name) => (
           <button
             key={name}
             id={`tab-${name}`}
@@ -102,13 +89,18 @@ function Tabs() {
             aria-selected={tab.value === name}
             aria-controls="panel"
             tabIndex={tab.value === name ? 0 : -1}
-            title={`${title} (${i + 1})`}
+            title={`${titleOf(name)} (${TABS.indexOf(name) + 1})`}
             onClick={() => (tab.value = name)}
           >
-            {title}
+            {titleOf(name)}
           </button>
         ))}
       </div>
+      <button type="button" class="icon" aria-label="Layout" title="Layout: panels, plots, links" onClick={openLayout}>
+        <svg viewBox="0 0 16 16" width="16" height="16" aria-hidden="true">
+          <path d="M2 2.5h5v5H2zM9 2.5h5v5H9zM2 9.5h5v4H2zM9 9.5h5v4H9z" fill="none" stroke="currentColor" />
+        </svg>
+      </button>
       <button
         type="button"
         class="icon dock-button"
@@ -168,7 +160,7 @@ function useScrollOf(name: Tab) {
 export function WorkbenchView() {
   const body = useScrollOf(tab.value);
   const View: ComponentType = PANELS[TABS.indexOf(tab.value)]?.View ?? PlotsView;
-  const share = dock.value === 'right' ? shareRight.value : shareBottom.value;
+  const second = PANELS.find(({ name }) => name === beside.value);
   const classes = [
     'workbench',
     `dock-${dock.value}`,
@@ -178,29 +170,41 @@ export function WorkbenchView() {
   ];
   const hasStage = isStageAlone.value || !isPanelAlone.value;
   return (
-    <main class={classes.filter(Boolean).join(' ')} style={{ '--panel-share': String(share) }}>
+    <main class={classes.filter(Boolean).join(' ')} style={{ '--panel-share': String(panelShare.value) }}>
       <EndView />
       {hasStage && (
         <div class="stage">
           <TrackView />
-          <InstrumentsView />
+          {hasInstruments.value && <InstrumentsView />}
         </div>
       )}
       {!isPanelAlone.value && !isStageAlone.value && <Splitter />}
       <div class="panel side" hidden={isStageAlone.value}>
         <TourView />
         <Tabs />
-        <div
-          class={`panel-body show-${tab.value}`}
-          ref={body}
-          id="panel"
-          role="tabpanel"
-          aria-labelledby={`tab-${tab.value}`}
-          tabIndex={0}
-        >
-          <View key={tab.value} />
+        <div class="panel-bodies">
+          <div
+            class={`panel-body show-${tab.value}`}
+            ref={body}
+            id="panel"
+            role="tabpanel"
+            aria-labelledby={`tab-${tab.value}`}
+            tabIndex={0}
+          >
+            <View key={tab.value} />
+          </div>
+          {second && (
+            <section
+              class={`panel-body second show-${second.name}`}
+              aria-label={`Second panel: ${second.title}`}
+              tabIndex={0}
+            >
+              <second.View key={second.name} />
+            </section>
+          )}
         </div>
       </div>
+      <LayoutView titleOf={titleOf} />
     </main>
   );
 }

@@ -1,0 +1,133 @@
+import { execFileSync, spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { afterAll, describe, expect, it } from 'vitest';
+import type { Frame, TopicName } from '../protocol/topics';
+import { alertsOf } from '../state/alerts';
+import { contradictionsOf, screenOf } from '../state/contradictions';
+import { beginSession, receive } from '../state/demultiplexer';
+import { events } from '../state/event_log';
+import { whyNoLimit } from '../state/limit';
+import { live } from '../state/live';
+import { run } from '../state/run';
+import { McapLog } from './mcap_log';
+import { BytesReadable } from './readable';
+
+// Recorded runs of the program, as the page shows each of their frames: presets, cars and faults, by hand and off the
+// road, as live and as a recording. CHICANE is the program's path; with CHICANE_EVERY_RUN all presets drive all cars
+// with all faults.
+
+const { CHICANE: program, CHICANE_EVERY_RUN: everyRun } = process.env;
+const isWhole = everyRun !== undefined;
+const folder = mkdtempSync(join(tmpdir(), `chicane-contradictions-${process.pid}-`));
+afterAll(() => rmSync(folder, { recursive: true }));
+
+const TOPICS: readonly TopicName[] = ['/chicane/run', '/chicane/frame', '/chicane/limit', '/chicane/change'];
+
+/** One of so many frames is looked at: what is shown stays for longer than that. */
+const LOOKS_AT = 3;
+
+type Words = readonly string[];
+const namesOf = (shelf: string): string[] =>
+  execFileSync(program ?? '', ['list', shelf], { encoding: 'utf8' })
+    .split('\n')
+    .flatMap((line) => /^([a-z][\w-]*) {2,}/.exec(line)?.[1] ?? []);
+
+/** Runs that differ in what the page has to say of them. */
+function runsOf(): Words[] {
+  const [presets, cars, faults] = ['presets', 'cars', 'faults'].map(namesOf) as [string[], string[], string[]];
+  const full = cars.filter((car) => car !== 'f1tenth' && car !== 'orca-1-43');
+  const cross = presets.flatMap((preset, i) => {
+    const some = isWhole ? full : [full[i % full.length] ?? '', 'udacity'];
+    return some.flatMap((car, j): Words[] => {
+      const mine = isWhole ? faults : faults.filter((_, k) => k % 10 === (i + 5 * j) % 10);
+      return mine.map((fault) => ['--preset', preset, '--car', car, '--fault', `${fault}@6`]);
+    });
+  });
+  const lasting = ['dead_controller', 'link_lost', 'half_grip', 'ice_patch', 'steering_stuck', 'throttle_stuck'].map(
+    (fault): Words => ['--fault', `${fault}@6+${fault === 'ice_patch' ? 3 : 8}`, '--set', 'guard.mode=off'],
+  );
+  return [
+    ...cross,
+    ...lasting, // off the road
+    ['--preset', 'race', '--fault', 'steering_stuck@6+4'],
+    ['--car', 'f1tenth', '--fault', 'gps_noise@6*2'],
+    ['--fault', 'dead_controller@6+6'],
+    ['--set', 'plant_options.friction_scale=0.6', '--preset', 'pid'],
+    ['--set', 'tracking_mpc.speed_limit_mps=8'],
+  ];
+}
+
+const file = join(folder, 'run.mcap');
+
+function drive(words: Words): void {
+  rmSync(file, { force: true });
+  const all = ['drive', '--fast', '--track', 'oval', '--set', 'time_limit_s=16', ...words, '--record', file];
+  try {
+    execFileSync(program ?? '', all, { stdio: ['ignore', 'ignore', 'pipe'] });
+  } catch (error) {
+    const { status, stderr } = error as { status: number; stderr: Buffer };
+    if (status !== 1) throw new Error(`${all.join(' ')}: ${stderr}`); // 1: the car left the road
+  }
+}
+
+/** Nobody takes the wheel that a person should have; ended like by Ctrl-C. */
+function driveByNobody(): void {
+  rmSync(file, { force: true });
+  const all = ['drive', '--manual', '--pace', '20', '--port', '0', '--record', file];
+  spawnSync(program ?? '', all, { stdio: 'ignore', timeout: 2500, killSignal: 'SIGINT' });
+}
+
+/** Messages of a recording in the order of time; `look` is called at each frame. */
+async function play(look: (frame: Frame) => void): Promise<void> {
+  const log = await McapLog.open(file, new BytesReadable(new Uint8Array(readFileSync(file))));
+  beginSession();
+  for await (const { topic, time, message } of log.messages(TOPICS, 0, log.duration)) {
+    receive(topic, message, 1000 * time);
+    if (topic === '/chicane/frame' && live.frame) look(live.frame);
+  }
+}
+
+describe.skipIf(program === undefined)('recorded runs', () => {
+  it('are told without contradictions', { timeout: 1_800_000 }, async () => {
+    const found = new Map<string, string>();
+    const states = new Set<string>();
+    let [runs, frames] = [0, 0];
+    const refuse = (text: string, words: Words): void => void (found.has(text) || found.set(text, words.join(' ')));
+    for (const words of [...runsOf(), ['--manual']]) {
+      ++runs;
+      if (words[0] === '--manual') driveByNobody();
+      else drive(words);
+      let since = 0;
+      await play((frame) => {
+        ++frames;
+        if (++since % LOOKS_AT !== 0) return;
+        for (const isReplay of [false, true]) {
+          const canReset = !isReplay;
+          const { fault_names: faults = [], brake_throttle_limit: fullBrake = NaN } = run.value ?? {};
+          const alerts = alertsOf(frame, live.plots, faults, canReset);
+          const screen = screenOf(
+            frame,
+            { isStuck: alerts.some(({ name }) => name === 'stuck'), canReset },
+            alerts,
+            fullBrake,
+          );
+          for (const each of contradictionsOf(frame, screen)) refuse(each, words);
+          const { title, text } = screen.sentence;
+          if (isReplay && /\bReset\b/.test(`${text} ${alerts.map((each) => each.text).join()}`))
+            refuse('a recording offers a reset', words);
+          const names = alerts.map(({ name }) => name).join();
+          states.add([words.join(' '), isReplay, title, text, names, screen.solver.text].join('|'));
+        }
+      });
+      if (whyNoLimit.value.includes('--')) refuse(`an option is named: ${whyNoLimit.value}`, words);
+      for (const { text } of events.value)
+        if (/\bgot\b.*\bexpected\b|\bNaN (?!measurement)|undefined/.test(text))
+          refuse(`an event is told raw: ${text}`, words);
+    }
+    console.log(`${states.size} states in ${frames} frames of ${runs} runs, ${found.size} contradictions`);
+    expect(Object.fromEntries(found)).toEqual({});
+    expect(states.size).toBeGreaterThan(500);
+  });
+});

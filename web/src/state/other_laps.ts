@@ -1,0 +1,93 @@
+import { mod } from '../lib/math';
+import { store } from '../lib/store';
+import type { Lap } from '../protocol/topics';
+import type { LapChannel, LapSamples } from './lap_samples';
+
+// Laps of other recordings on the same road, for comparison with the laps of the run.
+
+/** A lap of another recording. */
+export interface OtherLap {
+  /** Below 0, so that it is no lap of the run, and used once. */
+  readonly number: number;
+  readonly recording: string;
+  /** As the recording counts. */
+  readonly lap: number;
+  readonly time: number; // [s]
+  readonly samples: LapSamples;
+}
+
+/** The numbers given so far, by recording, lap and time: no other lap gets one of them. */
+const numbers = new Map<string, number>();
+
+function numberOf(recording: string, { lap, lap_time_s: time }: Lap): number {
+  const key = `${recording} ${lap} ${time}`;
+  const number = numbers.get(key) ?? -1 - numbers.size;
+  numbers.set(key, number);
+  return number;
+}
+
+export const otherLaps = store.signal<readonly OtherLap[]>('page', []);
+
+/** Two roads whose lengths differ by more are not the same [m]. */
+const SAME_LENGTH_M = 0.5;
+
+export const isSameRoad = (a: LapSamples, b: LapSamples): boolean => Math.abs(a.length - b.length) <= SAME_LENGTH_M;
+
+/** Adds the sampled laps of a recording, which replaces one of that name. */
+export function addOtherLaps(recording: string, laps: readonly Lap[], samples: LapSamples): void {
+  const kept = otherLaps.value.filter((each) => each.recording !== recording);
+  const known = laps.filter(({ lap }) => samples.laps.includes(lap - 1));
+  otherLaps.value = [
+    ...kept,
+    ...known.map((each) => ({
+      number: numberOf(recording, each),
+      recording,
+      lap: each.lap,
+      time: each.lap_time_s,
+      samples,
+    })),
+  ];
+}
+
+export function removeOtherLaps(recording?: string): void {
+  otherLaps.value = recording === undefined ? [] : otherLaps.value.filter((each) => each.recording !== recording);
+}
+
+/** Lines that were found from frames lie up to so many points apart though they are the same. */
+const SAME_LINE = 2;
+
+/**
+ * The lap's time at its point `first`, where the other line is [s]. A lap that was recorded in part is not known there:
+ * between two findings of the same line it has the speed of its end.
+ */
+function timeAtLine({ lap, samples }: OtherLap, first: number): number {
+  const known = samples.channel(lap - 1, 'time_s')?.[first] ?? NaN;
+  if (Number.isFinite(known) || first > SAME_LINE) return known;
+  const speed =
+    samples
+      .channel(lap - 1, 'speed_mps')
+      ?.filter(Number.isFinite)
+      .at(-1) ?? NaN;
+  return (first * samples.length) / samples.points / speed;
+}
+
+/**
+ * A channel of a lap at the points of `onto`, whose laps may begin elsewhere along the same road: the lap is then
+ * closed, its end before its beginning, and its time counts from the line of `onto`.
+ */
+export function channelOnto(other: OtherLap, name: LapChannel, onto: LapSamples): Float64Array | null {
+  const { lap, time, samples } = other;
+  const values = samples.channel(lap - 1, name);
+  if (!values || !isSameRoad(samples, onto)) return null;
+  const { points } = samples;
+  const pointOf = (each: LapSamples): number => Math.round((each.place(0) / each.length) * points);
+  const first = mod(pointOf(onto) - pointOf(samples), points);
+  if (!Number.isFinite(first)) return null;
+  if (first === 0) return values;
+  const begin = name === 'time_s' ? timeAtLine(other, first) : 0;
+  const lapTime = name === 'time_s' ? time : 0;
+  return values.map((_, i) => {
+    const at = i + first;
+    return (values[at % points] ?? NaN) - begin + (at >= points ? lapTime : 0);
+  });
+}

@@ -1,0 +1,42 @@
+import { store } from '../lib/store';
+
+/** Where browsers allow no clipboard (addresses without TLS that are not this machine), the text is selected. */
+function copy(field: HTMLInputElement | null, said: (text: string) => void): void {
+  if (!field) return;
+  field.select();
+  const done = navigator.clipboard?.writeText(field.value) ?? Promise.reject(new Error('no clipboard'));
+  done.then(
+    () => said('Copied'),
+    () => said('Selected: Ctrl+C copies it'),
+  );
+}
+
+const said = store.signal<{ readonly id: string; readonly text: string } | null>('page', null);
+
+/** A text in a field, with a button that copies it. */
+export function Copied({ id, label, text }: { id: string; label: string; text: string }) {
+  return (
+    <div class="copied">
+      <label for={id}>{label}</label>
+      <div class="copied-row">
+        <input id={id} type="text" readOnly value={text} onFocus={(event) => event.currentTarget.select()} />
+        <button
+          type="button"
+          aria-label={`Copy the ${label.toLowerCase()}`}
+          onClick={() =>
+            copy(document.getElementById(id) as HTMLInputElement | null, (words) => (said.value = { id, text: words }))
+          }
+        >
+          Copy
+        </button>
+      </div>
+      <p class="soft" role="status">
+        {said.value?.id === id ? said.value.text : ''}
+      </p>
+    </div>
+  );
+}
+
+export const forgetCopied = (): void => {
+  said.value = null;
+};
