@@ -98,7 +98,7 @@ describe('a link to a run', () => {
     await page.getByText('Left out, since a link cannot set it here: run.pace, laps.').waitFor();
     await dashboard.button('Drive it').click();
     await page.getByTestId('notice').waitFor();
-    assert.match(await dashboard.text('notice'), /track: /);
+    assert.match(await dashboard.text('notice'), /Track cannot be \/etc\/passwd: choose one of /);
     assert.doesNotMatch(await dashboard.text('notice'), /root:/);
     assert.equal(await summary(dashboard), before);
     await dashboard.close();

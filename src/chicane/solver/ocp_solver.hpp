@@ -236,9 +236,15 @@ class OcpSolver {
   /// Where the barrier of soft constraints ends; of problems with rows that must hold so low that all of it
   /// together costs no more than the tolerance.
   [[nodiscard]] double final_barrier([[maybe_unused]] const P& problem) const noexcept {
-    if constexpr (!kHasHardRows<P>) return options_.tolerance;
-    const double products = 2.0 * static_cast<double>(target_ * constraint_count(problem));
-    return options_.tolerance / std::max(1.0, products);
+    if constexpr (kHasHardRows<P>) {
+      constexpr double kLeast = 1e-12;  // lower, and rounding is all that is left of slopes
+      const std::size_t count = constraint_count(problem);
+      bool must_hold = false;
+      for (std::size_t c = 0; c < count; ++c) must_hold = must_hold || problem.keeps(c);
+      const double products = 2.0 * static_cast<double>(target_ * count);
+      if (must_hold) return std::max(options_.tolerance / products, std::min(options_.tolerance, kLeast));
+    }
+    return options_.tolerance;
   }
   /// The inputs of the warm start; its states or those of a simulation, of inputs of zero where that
   /// diverges.

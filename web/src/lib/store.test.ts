@@ -5,6 +5,7 @@ import { changeAt, frameWith, lapWith, planWith, runWith } from '../state/test_m
 import { store } from './store';
 
 it('one reset puts back all that belongs to a run', () => {
+  beginSession(); // tests of other files may share the store
   const first = structuredClone(store.peek());
   receive('/chicane/run', runWith({ track_length_m: 1000, notices: ['assumed'], fault_names: ['ice'] }), 0);
   for (let i = 0; i < 50; ++i)

@@ -131,41 +131,46 @@ export function LayoutView({ titleOf }: { titleOf: (name: Tab) => string }) {
   };
   return (
     <Dialog isOpen={isOpen.value} title="Layout" onClose={close}>
-      <div class="layout-lists">
-        <ShownList legend="Panels" all={TABS} shown={panels.value} titleOf={titleOf} set={setPanels} />
-        <ShownList
-          legend="Plots"
-          all={PLOTS}
-          shown={plots.value}
-          titleOf={(name) => PLOT_TITLES[name]}
-          set={setPlots}
+      <div class="dialog-scroll">
+        <div class="layout-lists">
+          <ShownList legend="Panels" all={TABS} shown={panels.value} titleOf={titleOf} set={setPanels} />
+          <ShownList
+            legend="Plots"
+            all={PLOTS}
+            shown={plots.value}
+            titleOf={(name) => PLOT_TITLES[name]}
+            set={setPlots}
+          />
+        </div>
+        <label>
+          Second panel{' '}
+          <select
+            value={besideChosen.value}
+            onChange={({ currentTarget }) => setBeside(currentTarget.value as Tab | '')}
+          >
+            <option value="">none</option>
+            {TABS.map((name) => (
+              <option key={name} value={name}>
+                {titleOf(name)}
+              </option>
+            ))}
+          </select>
+        </label>
+        <label>
+          <input
+            type="checkbox"
+            checked={hasInstruments.value}
+            onChange={() => (hasInstruments.value = !hasInstruments.value)}
+          />{' '}
+          Instruments below the picture
+        </label>
+        <Stored />
+        <Copied
+          id="layout-link"
+          label="Link"
+          text={linkToLayout(layoutText.value, location.href.replace(/[?#].*/, ''))}
         />
       </div>
-      <label>
-        Second panel{' '}
-        <select value={besideChosen.value} onChange={({ currentTarget }) => setBeside(currentTarget.value as Tab | '')}>
-          <option value="">none</option>
-          {TABS.map((name) => (
-            <option key={name} value={name}>
-              {titleOf(name)}
-            </option>
-          ))}
-        </select>
-      </label>
-      <label>
-        <input
-          type="checkbox"
-          checked={hasInstruments.value}
-          onChange={() => (hasInstruments.value = !hasInstruments.value)}
-        />{' '}
-        Instruments below the picture
-      </label>
-      <Stored />
-      <Copied
-        id="layout-link"
-        label="Link"
-        text={linkToLayout(layoutText.value, location.href.replace(/[?#].*/, ''))}
-      />
       <div class="buttons end">
         <button type="button" onClick={() => applyLayout(FIRST_LAYOUT)}>
           As at first
