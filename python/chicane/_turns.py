@@ -21,7 +21,7 @@ class Turns(Mapping[str, npt.NDArray[Any]]):
     kind: how the step was found: "full step" by the working set, "descent" by a line search over simulations, "filter" by the filter
     method. cost: of the point where the turn began. stationarity, defect, complementarity: how far that is from optimal.
     step: the longest move of an input from there; 0 where none was taken. barrier: of soft constraints, or of the filter method.
-    round: of the multipliers of what must hold, from 1, whose shares are in the cost; 0 where nothing must hold."""
+    round: of the multipliers of what must hold, from 1, whose shares are in the cost; 0: of none."""
 
     def __init__(self, columns: dict[str, npt.NDArray[Any]]) -> None:
         self._columns = columns | {"kind": _KINDS[columns["kind"]]}

@@ -237,7 +237,7 @@ class OcpSolver {
   /// together costs no more than the tolerance.
   [[nodiscard]] double final_barrier([[maybe_unused]] const P& problem) const noexcept {
     if constexpr (kHasHardRows<P>) {
-      constexpr double kLeast = 1e-12;  // lower, and rounding is all that is left of slopes
+      constexpr double kLeast = 1e-11;  // below it slopes are all rounding
       const std::size_t count = constraint_count(problem);
       bool must_hold = false;
       for (std::size_t c = 0; c < count; ++c) must_hold = must_hold || problem.keeps(c);
