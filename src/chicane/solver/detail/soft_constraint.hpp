@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/solver/problem.hpp"
 
@@ -32,7 +33,7 @@ struct SoftConstraint {
   /// Puts (s, t, n, z) on the central path for the present value: an interior point always exists and needs
   /// no memory. Newton's method for linear + quadratic · s = μ/s + μ/t on the smaller slack, from the
   /// solution for quadratic = 0.
-  void centre(const SoftPenalty& price, const auto& mu) noexcept {
+  CHICANE_INLINE void centre(const SoftPenalty& price, const auto& mu) noexcept {
     if (price.cap == kMustHold) {  // no room for a violation: what is missed stays a residual
       s = V(1.0) * (mu / price.linear);
       t = max(-value, 1e-2 * max(abs(value), V(1.0)));
