@@ -82,7 +82,7 @@ void print(const FamilyRow& row, bool is_markdown) {
   }
   std::fflush(stdout);
 }
-/// What cannot hold: how often it is said where Ipopt says it, and from how far a point.
+/// Counts of infeasible answers where Ipopt has them, and of points with larger misses than its point.
 void print_infeasible(const std::vector<FamilyRow>& rows) {
   bool is_first = true;
   for (const FamilyRow& row : rows) {

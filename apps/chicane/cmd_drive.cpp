@@ -66,7 +66,7 @@ Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop
 }
 
 constexpr const char* kNotAsked = "not asked for (--limit)";
-/// The same in a recording, whose reader gives no options to this run any more.
+/// Reason in a recording: its reader gives no options to this run any more.
 constexpr const char* kNotLookedFor = "this run was driven without looking for it";
 
 lap_time::LimitAnswer answer_of(const path::Track& track, const lap_time::PlantLimit& limit) {

@@ -9,7 +9,8 @@
 namespace chicane::apps {
 
 /// Writes what a log of another program says of a car as a recording into `output`: where it was, its speed,
-/// its commands; place along the road and laps where --track is given, else laps by where it has been.
+/// its commands. Laps and the place along the road are those of --track; without it laps end where the car
+/// has been before.
 /// Values that the log lacks stay unknown (NaN). Sentences on stderr tell how it was read.
 ///
 /// kParse for what is no log: neither a bag of ROS 2 with odometry, nor a CSV table of a car.

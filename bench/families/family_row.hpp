@@ -45,7 +45,7 @@ struct FamilyRow {
   int lower = 0, higher = 0;    ///< costs more than 1 % (and 1e-6) from Ipopt's
   int false_optimal = 0;
   int infeasible = 0, reference_infeasible = 0, both_infeasible = 0;
-  int further = 0;  ///< of both: a sum of misses more than 1e-4 above that of Ipopt's point
+  int further = 0;  ///< infeasible by both, with a sum of misses more than 1e-4 above Ipopt's
   double turns = 0.0, time = 0.0, most_time = 0.0, ratio = 0.0, least_ratio = 0.0;
   double worst_residual = 0.0;  ///< of those that are optimal, by the independent check
   double floor_residual = 0.0;  ///< and of those at the floor

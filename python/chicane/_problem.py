@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from ._types import npt
 from . import _chicane, _cost
+from ._arguments import Array, array_of, number_of, state_of
 from ._integrators import Implicit
 from ._solution import Feedback, Solution, Solutions
 from ._symbols import Graph, Objects, Symbol, TraceError, refuse, where
+from ._types import npt
 
-Array = npt.NDArray[np.float64]
 Function = Callable[..., Any]
 FUNCTIONS = ("dynamics", "residual", "constraint", "equality", "terminal_residual", "terminal_equality", "terminal_constraint")
 _INSIDE = "the implicit step"
@@ -143,16 +143,16 @@ class Problem:
         start: an earlier solution, in the place of both, with its multipliers.
         tolerance: of the conditions of optimality, (0, 1e-2]. budget_s: when to stop, best answer so far [s]; 0: never.
         log: the turns are in the solution's log, one row each (Turns); the problem is interpreted then."""
-        state = self._state(x0)
-        inputs = self._array("u", 0.0 if start is None and u is None else start.u if start is not None else u, (self.horizon, self.nu))
+        state = state_of(x0, self.nx)
+        inputs = array_of("u", 0.0 if start is None and u is None else start.u if start is not None else u, (self.horizon, self.nu))
         has_states = start is not None or x is not None
-        states = self._array("x", (start.x if start is not None else x) if has_states else 0.0, (self.horizon + 1, self.nx))
+        states = array_of("x", (start.x if start is not None else x) if has_states else 0.0, (self.horizon + 1, self.nx))
         if start is not None and start.unknowns.shape[1] != self.unknowns:
             raise ValueError("start: got a solution of another problem")
         if self.unknowns > 0:
             inputs = np.hstack([inputs, start.unknowns if start is not None else self._guess_unknowns(state, states if has_states else None)])
-        options = {"tolerance": self._number("tolerance", tolerance, 1e-14, 1e-2), "budget_s": self._number("budget_s", budget_s, 0.0, 1e6),
-                   "max_iterations": int(self._number("max_iterations", max_iterations, 1, 10000)), "second_order": bool(second_order),
+        options = {"tolerance": number_of("tolerance", tolerance, 1e-14, 1e-2), "budget_s": number_of("budget_s", budget_s, 0.0, 1e6),
+                   "max_iterations": int(number_of("max_iterations", max_iterations, 1, 10000)), "second_order": bool(second_order),
                    "start_from_states": has_states}
         values = self.stage_parameters(p)
         told = {}
@@ -179,7 +179,7 @@ class Problem:
         last = self._last
         if last is None and x0 is None:
             raise ValueError("prepare: got no x0 and no earlier answer, expected one of both")
-        shift = int(self._number("shift", shift, 0, self.horizon))
+        shift = int(number_of("shift", shift, 0, self.horizon))
         options = {"tolerance": tolerance, "max_iterations": max_iterations, "budget_s": budget_s}
         if last is None or self._course is None:
             solution = self.solve(x0, p, **options)  # type: ignore[arg-type]
@@ -199,7 +199,7 @@ class Problem:
         derivatives. May be called again and again."""
         if self._prepared is None:
             raise ValueError("feedback: got no preparation, expected prepare() after the last solve() or change")
-        state = self._state(x0)
+        state = state_of(x0, self.nx)
         told = self._prepared.feedback(state)
         self._course = Feedback(told | {"u": np.ascontiguousarray(told["u"][:, :self.nu])}, state)
         return self._course
@@ -213,14 +213,14 @@ class Problem:
         states = np.ascontiguousarray(x0, float)
         if states.ndim != 2 or states.shape[1] != self.nx:
             raise ValueError(f"x0: got shape {states.shape}, expected (n, {self.nx})")
-        threads = int(self._number("threads", threads, 0, 1000)) or os.cpu_count() or 1
-        options = {"tolerance": self._number("tolerance", tolerance, 1e-14, 1e-2), "budget_s": 0.0, "second_order": True,
-                   "max_iterations": int(self._number("max_iterations", max_iterations, 1, 10000)), "start_from_states": False}
+        threads = int(number_of("threads", threads, 0, 1000)) or os.cpu_count() or 1
+        options = {"tolerance": number_of("tolerance", tolerance, 1e-14, 1e-2), "budget_s": 0.0, "second_order": True,
+                   "max_iterations": int(number_of("max_iterations", max_iterations, 1, 10000)), "start_from_states": False}
         given = np.asarray(0.0 if p is None else p, float)
         has_own = self.parameters > 0 and given.ndim > 1 and given.shape[0] == len(states) and given.shape != (self.horizon + 1, self.parameters)
         own = np.stack([self.stage_parameters(each) for each in given]) if has_own else self.stage_parameters(p)[None]
         full = np.stack([self._with_shifts(each, next(iter(self._shifts()))) for each in own])
-        inputs = self._array("u", 0.0 if u is None else u, (self.horizon, self.nu))
+        inputs = array_of("u", 0.0 if u is None else u, (self.horizon, self.nu))
         if self.unknowns > 0:
             inputs = np.hstack([inputs, self._guess_unknowns(states.mean(axis=0) if len(states) else np.zeros(self.nx), None)])
         told = self._solver(options).solve_many(states, full, inputs, threads)
@@ -368,39 +368,10 @@ class Problem:
     def _pair(self, name: str, given: Any, shape: tuple[int, ...]) -> tuple[Array, Array]:
         if not isinstance(given, (tuple, list)) or len(given) != 2:
             raise ValueError(f"bounds: {name}: got {given!r}, expected (low, high)")
-        low, high = (self._array(f"bounds: {name}", part, shape) for part in given)
+        low, high = (array_of(f"bounds: {name}", part, shape) for part in given)
         if not np.all(low <= high):
             raise ValueError(f"bounds: {name}: got a lower bound above the upper one, expected low <= high")
         return low, high
-
-    def _state(self, x0: npt.ArrayLike) -> Array:
-        given = np.atleast_1d(x0)
-        state = self._array("x0", given, (self.nx,))
-        if given.shape != state.shape:
-            raise ValueError(f"x0: got shape {given.shape}, expected numbers of shape {state.shape}")
-        if not np.isfinite(state).all():
-            raise ValueError(f"x0: got {state}, expected finite numbers")
-        return state
-
-    @staticmethod
-    def _array(name: str, given: Any, shape: tuple[int, ...]) -> Array:
-        """A number, or an array of that shape or of its last dimensions."""
-        try:
-            array = np.asarray(given, float)
-            if array.ndim == 0:
-                return np.full(shape, array)
-            if array.shape == shape[-array.ndim:]:
-                return np.ascontiguousarray(array if array.ndim == len(shape) else np.broadcast_to(array, shape))
-        except (ValueError, TypeError):
-            pass
-        got = f"shape {np.shape(given)}" if isinstance(given, (np.ndarray, list, tuple, float, int)) else repr(given)
-        raise ValueError(f"{name}: got {got}, expected numbers of shape {shape}")
-
-    @staticmethod
-    def _number(name: str, value: float, least: float, most: float) -> float:
-        if not least <= value <= most:
-            raise ValueError(f"{name}: got {value}, expected a number from {least:g} to {most:g}")
-        return value
 
     def stage_parameters(self, p: npt.ArrayLike | None) -> Array:
         """p by stage: (horizon + 1, parameters)."""
@@ -415,7 +386,7 @@ class Problem:
             values = np.vstack([values, values[-1:]])
         if not np.isfinite(values).all():
             raise ValueError("p: got a number that is not finite")
-        return self._array("p", values, (self.horizon + 1, self.parameters))
+        return array_of("p", values, (self.horizon + 1, self.parameters))
 
     @property
     def has_expression_cost(self) -> bool:

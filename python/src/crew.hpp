@@ -90,7 +90,7 @@ class Crew {
   }
 
   const int count_;
-  pid_t process_ = -1;  ///< that has the threads
+  pid_t process_ = -1;  ///< owner of the threads: a copy by fork has none
   std::vector<std::thread> others_;
   std::atomic<int> round_{0};
   std::atomic<int> busy_{0};

@@ -101,7 +101,7 @@ class Environment {
   std::unique_ptr<run::ClosedLoop> loop_;
   Agent* agent_ = nullptr;  ///< the controller of loop_
   model::Measurement seen_;
-  path::Projection foot_;  ///< of what is seen, where that says a place and kTrack asks for it
+  path::Projection foot_;  ///< seen place on the track, where kTrack asks for it
   double progress_ = 0.0;
   int off_track_events_ = 0;
   bool has_ended_ = true;

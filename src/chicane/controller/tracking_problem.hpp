@@ -66,7 +66,7 @@ struct TrackingProblem {
   struct Step {
     double length = 0.05;  ///< [s]
     model::PredictionModel::Lags lags;
-    /// Of the difference between the angle asked for and the wheel, what counts as the wheel's motion.
+    /// Share of the difference between the angle asked for and the wheel that counts as the wheel's motion.
     double steer_share = 1.0;
 
     [[nodiscard]] static Step of(const model::PredictionModel& model, double length) noexcept {

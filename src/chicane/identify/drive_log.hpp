@@ -48,8 +48,8 @@ struct LogOptions {
 };
 
 /// Reads recordings of ours, bags of ROS 2 (MCAP, SQLite) with nav_msgs/Odometry and
-/// ackermann_msgs/AckermannDriveStamped in CDR, as a file or its folder, and CSV files with a header. A log
-/// that jumps, or has no samples for half a second, becomes several.
+/// ackermann_msgs/AckermannDriveStamped in CDR, as a file or its folder, and CSV files with a header. Jumps
+/// and half a second without samples divide a log into several.
 ///
 /// CSV columns are found by name, with their unit behind (`_deg`, `_rad`, `_mps`, `_kmh`, `_mph`, `_ms`,
 /// `_s`): time, x, y, psi (yaw, heading), speed (v, vx), yaw_rate, steer (steering, delta), throttle (pedal).

@@ -46,11 +46,10 @@ bool is_of(const controller::Plan& plan, const model::Command& answered) noexcep
 
 /// The acceleration [m/s²] that the driven axles can give beside the force that they carry sideways
 /// (docs/safety_derivation.md, eq. 14). Infinite for cars whose tyres share nothing between the directions.
-double traction(const model::PredictionModel& model, model::BodyMotion<double> body) noexcept {
+double traction(const model::PredictionModel& model, const model::BodyMotion<double>& body) noexcept {
   const model::VehicleParams& car = model.vehicle();
   if (!(car.friction_coupling > 0.0)) return std::numeric_limits<double>::infinity();
-  body.acceleration = 0.0;
-  const auto tires = model.tire_use(body);
+  const auto tires = model.tire_use(body);  // undriven
   const double grip = kTraction * car.friction * model.load(body.vx) / car.wheelbase();
   const auto left = [](double use) { return std::sqrt(std::max(1.0 - use * use, kLeastTraction)); };
   const double front = left(tires.front) * grip * car.rear_axle / std::max(car.drive_share_front, 1e-6);
@@ -327,7 +326,7 @@ model::Command Guard::limited(const model::Command& command, double interval) co
   const model::VehicleParams& car = model_.vehicle();
   const double v = act_speed_;
   if (inside.throttle > 0.0) {
-    const double most = throttle_for(car, traction(model_, act_body_), v);
+    const double most = throttle_for(car, most_drive_, v);
     inside.throttle = std::min(inside.throttle, std::max(most, 0.0));
   }
   if (car.latches_brakes() && inside.throttle == car.brake_release_throttle) return inside;
@@ -409,14 +408,14 @@ void Guard::show_backup(const StopStart& start, controller::Plan& plan) const no
 std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   const road::ReferenceLine& line = road_.line();
   is_far_ = false;
-  act_body_ = {};
+  most_drive_ = std::numeric_limits<double>::infinity();
   act_speed_ = estimator_.is_started() ? estimator_.state().vx : std::numeric_limits<double>::infinity();
   if (line.is_empty() || !estimator_.is_started() || !std::isfinite(act_time)) return std::nullopt;
   const controller::StateEstimator::Prediction at = estimator_.predict(act_time, sent_);
   const model::State& car = at.state;
   if (!std::isfinite(car.x + car.y + car.psi + car.vx + car.vy + car.r)) return std::nullopt;
   act_speed_ = car.vx;
-  act_body_ = {car.vx, car.vy, car.r, car.steer, at.acceleration};
+  most_drive_ = traction(model_, {car.vx, car.vy, car.r, car.steer, 0.0});
   if (revision_ != road_.revision()) {
     has_place_ = false;
     filter_.forget();

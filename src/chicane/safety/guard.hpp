@@ -152,8 +152,8 @@ class Guard {
   double stuck_since_ = 0.0;       ///< a car that should move stands [s]
   double released_at_ = std::numeric_limits<double>::infinity();  ///< its brake, or began to stand [s]
   double act_speed_ = 0.0;                                        ///< estimated where the command acts [m/s]
-  model::BodyMotion<double> act_body_{};                          ///< and the whole motion
-  double sent_from_ = 0.0;  ///< from which the command of this cycle acts [s]
+  double most_drive_ = 0.0;  ///< acceleration that the tyres can give then [m/s²]
+  double sent_from_ = 0.0;   ///< from which the command of this cycle acts [s]
 };
 
 }  // namespace chicane::safety
