@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Prints the tables of docs/limit.md in Markdown: bound and witness of two cars on four tracks, and `default` beside them.
+"""Prints the tables of docs/limit.md in Markdown: bound and witness of two cars on four tracks, and the laps of `race` and `default`.
 
     tools/limit_tables.py --compute > limits.jsonl          drives `chicane limit` for each (two minutes)
     tools/limit_tables.py limits.jsonl                      table 1
-    tools/limit_tables.py limits.jsonl runs.jsonl           table 2; runs: results of plans/numbers.yaml
+    tools/limit_tables.py limits.jsonl runs.jsonl           table 2; runs: results of plans/racing.yaml
 
 tools/check_figures compares them with the page, and writes them. The program is `chicane` on the path."""
 import argparse
@@ -41,18 +41,19 @@ def bounds(limits):
 
 
 def gaps(limits, runs):
-    laps = {(run["settings"]["car"], run["settings"]["track"]): run["lap_time_s"] for run in runs
-            if "run" in run and run["settings"]["preset"] == "default" and run["settings"]["guard.mode"] == "on"}
-    print("| car | track | bound | flying lap of `default` | gap |\n|---|---|--:|--:|--:|")
+    laps = {tuple(run["settings"][key] for key in ("car", "track", "preset")): run["lap_time_s"] for run in runs
+            if "run" in run and run["settings"]["guard.mode"] == "on"}
+    print("| car | track | bound | `race` | gap | `default` | gap |\n|---|---|--:|--:|--:|--:|--:|")
     for row in limits:
-        lap = laps[row["car"], row["track"]]
-        print(f"| {row['car']} | {row['track']} | {row['bound']:.2f} | {lap:.2f} | {100.0 * (lap / row['bound'] - 1.0):.1f} % |")
+        found = [laps[row["car"], row["track"], preset] for preset in ("race", "default")]
+        cells = " | ".join(f"{lap:.2f} | {100.0 * (lap / row['bound'] - 1.0):.1f} %" for lap in found)
+        print(f"| {row['car']} | {row['track']} | {row['bound']:.2f} | {cells} |")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("limits", nargs="?", help="what --compute has printed")
-    parser.add_argument("runs", nargs="?", help="results of plans/numbers.yaml")
+    parser.add_argument("runs", nargs="?", help="results of plans/racing.yaml")
     parser.add_argument("--compute", action="store_true")
     options = parser.parse_args()
     if options.compute == bool(options.limits):

@@ -7,6 +7,11 @@
     tools/sweep_tables.py runs.jsonl pid        docs/pid.md: presets by speed (plans/pid.yaml)
     tools/sweep_tables.py runs.jsonl cars       docs/cars.md: cars by track (plans/cars.yaml)
     tools/sweep_tables.py runs.jsonl sensors    docs/latency.md: presets by latency of the sensors (plans/sensor-latency.yaml)
+    tools/sweep_tables.py runs.jsonl race       docs/racing.md: `race` with the guard on and off, and `default` (plans/racing.yaml)
+    tools/sweep_tables.py runs.jsonl race_cars  docs/racing.md: `race` with the other cars (plans/racing-cars.yaml)
+    tools/sweep_tables.py runs.jsonl waypoints  docs/racing_unknown.md: laps from waypoints alone (plans/racing-waypoints.yaml)
+    tools/sweep_tables.py runs.jsonl otherwise  docs/racing_unknown.md: another grip, mass, latency (plans/racing-otherwise.yaml)
+    tools/sweep_tables.py runs.jsonl told       docs/racing_unknown.md: less grip, untold and told (plans/racing-told.yaml)
 
 tools/check_figures compares them with the pages, and writes them."""
 import argparse
@@ -92,7 +97,58 @@ def sensors(runs):
     return pivot(runs, lambda run: f"`{setting(run, 'preset')}`", lambda run: setting(run, "sensor.latency_ms"), cell, ("preset", "{} ms"))
 
 
-TABLES = {"numbers": numbers, "pid": pid, "cars": cars, "sensors": sensors}
+def road(run):
+    return Path(setting(run, "track")).stem
+
+
+def lap_and_edge(run):
+    """The last lap, and how near the edge a tyre came in all of them."""
+    if "error" in run:
+        return "refused"
+    return f"{lap(run)} ({run['min_edge_distance_m']:.2f})" if is_clean(run) else f"off ({run['min_edge_distance_m']:.1f})"
+
+
+def race(runs):
+    def name(run):
+        return "`default`" if setting(run, "preset") == "default" else f"`race`, guard {setting(run, 'guard.mode')}"
+    return pivot(runs, lambda run: f"`{setting(run, 'car')}`, {road(run)}", name, lap_and_edge, ("car, track", "{}"))
+
+
+def race_cars(runs):
+    return pivot(runs, lambda run: f"`{setting(run, 'car')}`", road, lap_and_edge, ("car", "{}"))
+
+
+def waypoints(runs):
+    def cell(run):
+        laps = ", ".join(f"{time:.2f}" for time in run["lap_times_s"])
+        return f"{laps} ({run['min_edge_distance_m']:.2f})" if is_clean(run) else f"off ({run['min_edge_distance_m']:.1f})"
+    return pivot(runs, lambda run: f"`{setting(run, 'car')}`, {road(run)}", lambda run: setting(run, "guard.mode"), cell,
+                 ("car, track", "guard {}"))
+
+
+def otherwise(runs):
+    def what(run):
+        names = {"plant_options.friction_scale": "grip", "plant_options.mass_scale": "mass"}
+        found = [f"{name} {float(setting(run, key)):g}" for key, name in names.items() if float(setting(run, key)) != 1.0]
+        late = float(setting(run, "latency_ms")) - 100.0
+        return ", ".join(found + ([f"latency +{late:g} ms"] if late else [])) or "as believed"
+
+    def learns(run):
+        return "learns" if setting(run, "tracking_mpc.learn_grip") == "true" else "does not learn"
+    return pivot(runs, lambda run: f"`{setting(run, 'car')}`, {what(run)}", lambda run: f"{road(run)}, {learns(run)}", lap_and_edge,
+                 ("car, what is otherwise", "{}"))
+
+
+def told(runs):
+    def row(run):
+        grip, believed = float(setting(run, "plant_options.friction_scale")), float(setting(run, "vehicle.friction"))
+        is_told = grip < 1.0 and believed < 1.2  # the friction of road-car
+        return f"`{setting(run, 'preset')}`, grip {grip:g}" + ("" if grip == 1.0 else ", told" if is_told else ", untold")
+    return pivot(runs, row, road, lap_and_edge, ("preset, grip", "{}"))
+
+
+TABLES = {"numbers": numbers, "pid": pid, "cars": cars, "sensors": sensors, "race": race, "race_cars": race_cars,
+          "waypoints": waypoints, "otherwise": otherwise, "told": told}
 
 
 def main():

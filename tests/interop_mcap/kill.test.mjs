@@ -14,7 +14,7 @@ import { promisify } from 'node:util';
 import { McapStreamReader } from '@mcap/core';
 import { listen } from './live_time.mjs';
 
-const KILLS = Number(process.env.CHICANE_KILLS ?? 50);
+const KILLS = Number(process.env.CHICANE_KILLS ?? 15);
 const AT_ONCE = 5;
 const MOST_LOST_S = 0.1;
 const { CHICANE } = process.env;

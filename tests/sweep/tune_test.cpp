@@ -128,6 +128,7 @@ TEST(Tune, WhatCannotWinIsTriedNoFurther) {
   EXPECT_THAT(log, Not(HasSubstr(R"("driven":6,"passed":4)"))) << "ends with the first trial that is failed";
 }
 
+#ifdef CHICANE_SLOW_TESTS
 TEST(Tune, ASearchThatHasConvergedGoesOnUntilItHasTriedWhatWasAsked) {
   std::atomic<bool> stop{false};
   TuneTask local = task();
@@ -138,6 +139,7 @@ TEST(Tune, ASearchThatHasConvergedGoesOnUntilItHasTriedWhatWasAsked) {
   ASSERT_TRUE(tuning) << tuning.error().message;
   EXPECT_EQ(tuning->evaluations, 80);
 }
+#endif
 
 TEST(Tune, HasEachTrialOfItsOwn) {
   const auto trials = tune_trials(0.02);
