@@ -151,6 +151,7 @@ class StateEstimator {
   }
   /// Another model from now on; the estimate stays.
   void set_model(const model::PredictionModel& model) noexcept { model_ = model; }
+  [[nodiscard]] const model::PredictionModel& model() const noexcept { return model_; }
 
   /// Takes in a measurement. Afterwards state() is the estimate at now.time; what of it is not finite is
   /// replaced by what the model expects.

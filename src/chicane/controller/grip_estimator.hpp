@@ -1,53 +1,65 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cmath>
+#include "chicane/controller/command_history.hpp"
+#include "chicane/model/measurement.hpp"
+#include "chicane/model/vehicle.hpp"
 
 namespace chicane::controller {
 
-/// What the tyres give sideways of what a model believes: the share ρ that fits best
+/// How much grip the tyres have, over what is believed, by which grip predicts the next measurement better
+/// (docs/racing_unknown.md, eq. 1 to 4). Two estimators see the same measurements and commands, one with the
+/// believed grip, one with a little less. What each did not expect is noise and the wrong grip; the noise is
+/// the same in both, so that their difference says what the grip does alone, and least squares over the last
+/// kMemory of cornering finds the share, without the bias of noise, and how sure it is.
 ///
-///     d = (ρ − 1) a                                                        (docs/racing.md, eq. 3)
-///
-/// to the lateral accelerations a that the model has, and d that it lacks (StateEstimator::disturbance), by
-/// least squares over the last kMemory of cornering. The slip is the same for car and model, as the estimator
-/// sees the motion: so ρ shows before the grip is used up. One thread; allocates nothing.
+/// Another mass, a side wind or steering that answers otherwise pass for grip. One thread; allocates nothing.
 class GripEstimator {
  public:
-  static constexpr double kLeast = 3.0;    ///< [m/s²] of lateral acceleration: less tells too little
+  static constexpr double kLeast = 3.0;  ///< [m/s²] of lateral acceleration by tyres: less tells too little
   static constexpr double kMemory = 10.0;  ///< time constant of forgetting, of cornering [s]
   static constexpr double kEnough = 1.0;   ///< of cornering [s] until something is known
-  static constexpr double kLow = 0.3, kHigh = 1.3;  ///< range of share()
+  static constexpr double kSure = 0.1;     ///< standard deviation of share() from which on it is known
+  static constexpr double kLow = 0.3, kHigh = 1.6;  ///< range of share()
 
-  void reset() noexcept { *this = {}; }
-  /// Accelerations sideways, of the model and beside it [m/s²], during the last `elapsed` [s]. What is not
-  /// finite, or less than kLeast, is left out.
-  void add(double lateral, double missing, double elapsed) noexcept {
-    const bool tells = std::isfinite(lateral + missing + elapsed) && std::fabs(lateral) >= kLeast;
-    if (!tells || elapsed <= 0.0) return;
-    const double left = kMemory / (kMemory + elapsed);
-    time_ = left * time_ + elapsed;
-    products_ = left * products_ + elapsed * lateral * missing;
-    squares_ = left * squares_ + elapsed * lateral * lateral;
-    residuals_ = left * residuals_ + elapsed * missing * missing;
-  }
-  [[nodiscard]] bool is_known() const noexcept { return time_ >= kEnough; }
-  /// ρ; 1 until it is known.
-  [[nodiscard]] double share() const noexcept {
-    if (!is_known()) return 1.0;
-    const double share = 1.0 + products_ / squares_;
-    return share < kLow ? kLow : share > kHigh ? kHigh : share;
-  }
-  /// Standard deviation of single measurements of ρ about it.
-  [[nodiscard]] double deviation() const noexcept {
-    if (!is_known()) return 0.0;
-    const double rest = residuals_ - products_ * products_ / squares_;
-    return std::sqrt(rest > 0.0 ? rest / squares_ : 0.0);
-  }
+  explicit GripEstimator(const model::PredictionModel& model) noexcept : believed_{model}, less_{model} {}
+
+  /// Begins anew where `from` is, with the car as it is believed to be.
+  void begin(const StateEstimator& from, const model::PredictionModel& believed) noexcept;
+  void see(const model::Measurement& now, const CommandHistory& sent) noexcept;
+
+  [[nodiscard]] bool is_known() const noexcept { return time_ >= kEnough && deviation() <= kSure; }
+  /// Grip over the one that is believed; 1 until it is known.
+  [[nodiscard]] double share() const noexcept;
+  /// share() less its standard deviation: what may be relied on.
+  [[nodiscard]] double lower() const noexcept { return is_known() ? share() - deviation() : 1.0; }
+  /// Whether share() differs from one by more than `least`, and by more than noise does in one case of 20.
+  [[nodiscard]] bool differs(double least) const noexcept;
+  /// Standard deviation of share() by the noise that is seen; infinite before there is any corner.
+  [[nodiscard]] double deviation() const noexcept;
 
  private:
-  double time_ = 0.0;
-  double products_ = 0.0, squares_ = 0.0, residuals_ = 0.0;
+  static constexpr double kStep = 0.1;  ///< share of grip that the other estimator has less
+
+  /// What was not expected of one measured quantity, n, and what the grip does to it, h, times seconds.
+  struct Sums {
+    double hh = 0.0, hn = 0.0, nn = 0.0;
+
+    void add(double h, double n, double left, double elapsed) noexcept;
+    /// Of n about what the best share of h explains, per second.
+    [[nodiscard]] double variance(double time) const noexcept;
+  };
+  struct Surprise {
+    double aside = 0.0;    ///< [m] to the left of the expected place
+    double heading = 0.0;  ///< [rad]
+  };
+  [[nodiscard]] static Surprise surprise(const StateEstimator& estimator, const model::Measurement& now,
+                                         const CommandHistory& sent) noexcept;
+
+  StateEstimator believed_, less_;
+  double time_ = 0.0;      ///< of cornering, as far as it is remembered [s]
+  double interval_ = 0.0;  ///< between measurements in corners, mean [s]
+  Sums aside_, heading_;
 };
 
 }  // namespace chicane::controller

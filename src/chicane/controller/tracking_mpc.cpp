@@ -53,18 +53,19 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   void configure(const TrackingMpcOptions& options, const model::VehicleParams& vehicle) noexcept override {
+    if (options.learns() != options_.learns()) forget_grip();
     options_ = options;
     told_ = vehicle;
     believe();
+    grip_.begin(estimator_, model_);
   }
 
   [[nodiscard]] const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
     sent_time_ = now.time + now.delay;
     const double act_time = now.time + (options_.compensate_delay ? now.delay : 0.0);
     if (!road_.add(now)) shape_raced();
-    const double elapsed = now.time - estimator_.time();
     estimator_.correct(now, sent_);
-    if (options_.learns()) watch_grip(elapsed);
+    if (options_.learns()) watch_grip(now);
     watch_sight(now);
     const StateEstimator::Prediction start = estimator_.predict(act_time, sent_);
     is_returning_ = !place_on_line(now, start) || (is_returning_ && std::fabs(x0_[Problem::kE]) > kJoining);
@@ -96,7 +97,9 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const road::RacingRoad* lap = road_.lap();
     const std::span<const Vec2> waypoints = road_.seen().closed_waypoints();
     if (!options_.racing_line || (lap == nullptr && waypoints.empty())) return {};
-    const double grip = std::floor(100.0 * believed_grip() * grip_.share() + 0.5) / 100.0;
+    const double grip = has_shown_grip_  ? grip_times(grip_.lower())
+                        : lap != nullptr ? lap->grip()
+                                         : options_.first_grip();
     return {.is_wanted = lap == nullptr || std::fabs(grip - lap->grip()) > kGripStep,
             .waypoints = lap == nullptr || lap->is_learned() ? waypoints : std::span<const Vec2>{},
             .grip = grip};
@@ -104,8 +107,10 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
 
   void reset() noexcept override {
     road_.reset();
-    shape_raced();
     estimator_.reset();
+    forget_grip();
+    shape_raced();
+    grip_.begin(estimator_, model_);
     sent_.clear();
     has_horizon_ = false;
     has_place_ = is_returning_ = false;
@@ -154,25 +159,34 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     believe();
   }
 
-  /// The grip of the model, over what was told.
-  [[nodiscard]] double believed_grip() const noexcept {
-    return road_.is_raced() ? road_.lap()->grip() : options_.first_grip();
+  /// In hundredths, over what was told.
+  [[nodiscard]] double grip_times(double share) const noexcept {
+    return std::floor(100.0 * model_grip_ * share + 0.5) / 100.0;
   }
-  /// Model, road and problem for options, vehicle and the believed grip.
+  void forget_grip() noexcept {
+    model_grip_ = 1.0;
+    has_shown_grip_ = false;
+  }
+  /// Model, road and problem for options, vehicle and grip. What is driven at by a plan is in that plan;
+  /// without one, a car that has not shown its grip is driven with little of it, and with no more than told.
   void believe() noexcept {
-    const model::VehicleParams car = model::with_grip(told_, believed_grip());
+    const model::VehicleParams car = model::with_grip(told_, model_grip_);
     model_.set_vehicle(car);
-    road_.configure(options_.road(), car);
+    const double used =
+        has_shown_grip_ || road_.is_raced() ? std::min(model_grip_, 1.0) : options_.first_grip();
+    road_.configure(options_.road(), model::with_grip(told_, used));
     estimator_.set_model(model_);
-    grip_.reset();
     shape_problem();
   }
 
-  void watch_grip(double elapsed) noexcept {
-    const model::State& car = estimator_.state();
-    const model::BodyMotion<double> body{car.vx, car.vy, car.r, car.steer, estimator_.acceleration()};
-    const double turned = (1.0 - told_.steer_helper) * car.vx * car.r;  // the rest is not by tyres
-    grip_.add(model_.change(body).vy + turned, estimator_.disturbance().lateral, elapsed);
+  void watch_grip(const model::Measurement& now) noexcept {
+    grip_.see(now, sent_);
+    const bool is_other = grip_.differs(kGripStep);
+    if (!grip_.is_known() || (has_shown_grip_ && !is_other)) return;
+    has_shown_grip_ = true;
+    if (is_other) model_grip_ = grip_times(grip_.share());
+    believe();
+    if (is_other) grip_.begin(estimator_, model_);
   }
 
   /// Room beside the line at s [m] ahead, where the line has moved sideways by `offset` [m].
@@ -461,7 +475,9 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   TrackingMpcOptions options_;
   model::VehicleParams told_;  ///< whose grip may differ from the model's
   model::PredictionModel model_;
-  GripEstimator grip_;  ///< over the model's
+  GripEstimator grip_{model_};   ///< over the model's
+  double model_grip_ = 1.0;      ///< over what was told
+  bool has_shown_grip_ = false;  ///< what it is was known once
   road::DrivenRoad road_;
   StateEstimator estimator_;
   CommandHistory sent_;

@@ -8,6 +8,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/model/grip.hpp"
 #include "chicane/safety/stop_player.hpp"
 
 namespace chicane::safety {
@@ -79,6 +80,7 @@ Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::Ve
 Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
              const GuardOptions& options, road::KnownRoad road)
     : controller_{std::move(controller)},
+      vehicle_{vehicle},
       options_{options},
       monitor_{vehicle.length, vehicle.wheelbase()},
       actuators_{vehicle},
@@ -126,6 +128,7 @@ void Guard::forget_road() {
   road_ = known_road(options_, nullptr, model_.vehicle());
   has_place_ = false;
   filter_.forget();
+  believe_grip(1.0);
   controller_->use_line(nullptr);
 }
 
@@ -134,11 +137,19 @@ void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
   if (lap && lap->is_learned() == (options_.road == GuardRoad::kWaypoints)) road_.use_line(lap.get());
   has_place_ = false;
   filter_.forget();
+  believe_grip(lap ? lap->grip() : 1.0);
   controller_->use_line(std::move(lap));
 }
 
 void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
-  actuators_.set_vehicle(vehicle);
+  vehicle_ = vehicle;
+  believe_grip(grip_);
+}
+
+/// A stop counts with the grip that the car is driven with: what its tyres have shown, over what was told.
+void Guard::believe_grip(double share) noexcept {
+  grip_ = share;
+  actuators_.set_vehicle(model::with_grip(vehicle_, share));
   count_with_actuators();
 }
 

@@ -74,7 +74,8 @@ class Guard {
   void reset() noexcept;
   /// The road that was told is another one: from now on the guard learns it from waypoints. Allocates.
   void forget_road();
-  /// A planned lap for the controller to race by; the stops follow it, too, where the guard knows the track.
+  /// A planned lap for the controller to race by; the stops follow it, too, where the guard knows the track,
+  /// and count with its grip.
   /// It stays when a new run begins.
   void use_line(std::shared_ptr<const road::RacingRoad> lap);
   /// Other parameters of the model from now on. The limits of what is sent stay those of the beginning.
@@ -115,6 +116,7 @@ class Guard {
   void watch_rest(double time, double throttle) noexcept;
   void free_stuck_car(double time, controller::StepResult& result) noexcept;
   [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
+  void believe_grip(double share) noexcept;
   void count_with_actuators() noexcept;
   void watch_actuators(const model::Measurement& seen) noexcept;
   [[nodiscard]] const ActuatorAnswer& answer() const noexcept;
@@ -122,6 +124,8 @@ class Guard {
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
 
   Owned<controller::Controller> controller_;
+  model::VehicleParams vehicle_;  ///< as it was told
+  double grip_ = 1.0;             ///< of the planned lap, over that
   GuardOptions options_;
   MeasurementMonitor monitor_;
   ResetWatch reset_watch_;
