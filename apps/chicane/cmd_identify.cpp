@@ -13,6 +13,7 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/identify/identification.hpp"
+#include "chicane/model/similarity.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/sim/double_track.hpp"
@@ -195,13 +196,21 @@ struct ShelfCar {
   double ratio = 0.0;  ///< of its wheelbase and the logs', as a logarithm
 };
 
+/// Slow steering of a shelf car says nothing of another one, and the search does not get away from it: at
+/// least what an ordinary car has, in full size.
+void forget_slow_steering(model::VehicleParams& car) {
+  constexpr double kUsualRate = 90.0 * kPi / 180.0;  // [rad/s]
+  car.steer_rate_limit = std::max(car.steer_rate_limit, kUsualRate * model::Similarity(car).time());
+}
+
 /// Those of the shelf, the nearest by their wheelbase first.
 std::vector<ShelfCar> shelf_by_wheelbase(double wheelbase) {
   std::vector<ShelfCar> cars;
   for (const protocol::Entry& entry : protocol::entries(protocol::Shelf::kCar)) {
-    const auto car = protocol::compose({.scenario_file = {}, .settings = {{"car", entry.name}}});
+    auto car = protocol::compose({.scenario_file = {}, .settings = {{"car", entry.name}}});
     // A helper turns the car along: its wheelbase says little of how it turns, and only simulators have one.
     if (!car || car->vehicle.steer_helper > 0.0) continue;
+    forget_slow_steering(car->vehicle);
     cars.push_back({entry.name, car->vehicle, std::fabs(std::log(car->vehicle.wheelbase() / wheelbase))});
   }
   std::stable_sort(cars.begin(), cars.end(), [](const auto& a, const auto& b) { return a.ratio < b.ratio; });
@@ -273,6 +282,7 @@ Result<void> identify_and_tell(const Options& options) {
     settings.insert(settings.begin(), {"car", *car});
     start = protocol::compose({.scenario_file = {}, .settings = settings});
     if (!start) return fail(start.error());
+    forget_slow_steering(start->vehicle);
   }
   const auto found = [&] {
     Share share(wants_stop);

@@ -128,7 +128,8 @@ TEST(DoubleTrack, ThePlantOfAModelHasThatModel) {
     EXPECT_NEAR(a, std::get<double>(option.read(&model)), 1e-12 * std::fabs(a)) << option.name;
   }
   EXPECT_EQ(made.wheel_inertia, plant.wheel_inertia);
-  EXPECT_EQ(made.downforce_front / made.downforce_rear, plant.downforce_front / plant.downforce_rear);
+  EXPECT_NEAR(made.downforce_front / made.downforce_rear, plant.downforce_front / plant.downforce_rear,
+              1e-12);
 }
 
 TEST(DoubleTrack, DownforceLetsItCornerFaster) {
