@@ -31,7 +31,10 @@ def drive(chicane, *words):
 
 def truth_of(chicane, car, log):
     """The numbers of the car's own model: what a search that begins with it assumes."""
-    answer = json.loads(run(chicane, "identify", log, "--car", car, "--hold-out", "0", "--json").stdout)
+    done = run(chicane, "identify", log, "--car", car, "--hold-out", "0", "--json")
+    if done.returncode != 0:
+        raise SystemExit(done.stderr.strip())
+    answer = json.loads(done.stdout)
     return {each["key"]: each["assumed"] for each in answer["estimates"]}
 
 
