@@ -6,14 +6,19 @@
 #include <atomic>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "chicane/base/text.hpp"
 #include "chicane/identify/identification.hpp"
+#include "chicane/model/similarity.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
+#include "chicane/sim/double_track.hpp"
 #include "commands.hpp"
+#include "identify_page.hpp"
 #include "interrupt.hpp"
 #include "many_runs.hpp"
 #include "setting_options.hpp"
@@ -64,10 +69,16 @@ std::string advice(const Identification& found) {
     text += "The log has no pedal: drive, brakes and drag are those of the car it began with.\n";
   if (!found.knows_tires())
     text += fmt::format(
-        "The tyres reached {:.0f} % (front) and {:.0f} % (rear) of their peak: grip is not known, so do not "
-        "race by\n"
-        "this car. Drive bends nearer to the limit, at least {:.0f} %.\n",
-        100.0 * found.use_front, 100.0 * found.use_rear, 100.0 * identify::kRaceUse);
+        "The tyres reached {:.0f} % (front) and {:.0f} % (rear) of their peak: grip is not known, and race "
+        "refuses\n"
+        "this car. Drive bends nearer to the limit, at least {:.0f} % at one axle, or state the friction "
+        "that you know "
+        "it "
+        "to have{}.\n",
+        100.0 * found.use_front, 100.0 * found.use_rear, 100.0 * identify::kRaceUse,
+        found.shown_friction() > 0.1
+            ? fmt::format(":\nthe log shows --set friction_low={}", number_text(found.shown_friction(), 2))
+            : " (friction_low)");
   for (const Estimate& each : found.estimates) {
     if (each.key == "steer_offset_deg" && each.is_excited && (each.low > 0.1 || each.high < -0.1))
       text += fmt::format("The wheels point {} deg {} when 0 is asked: correct it where commands are sent.\n",
@@ -111,6 +122,8 @@ std::string json_of(const Identification& found) {
   json["residual_m"] = found.residual[0];
   json["tire_use"] = {found.use_front, found.use_rear};
   json["knows_tires"] = found.knows_tires();
+  json["friction_low"] = found.least_friction();
+  json["friction_shown"] = found.shown_friction();
   json["held_out"] = nlohmann::ordered_json::array();
   for (const identify::PredictionError& error : found.held_out)
     json["held_out"].push_back({{"ahead_s", error.ahead},
@@ -120,22 +133,41 @@ std::string json_of(const Identification& found) {
   return json.dump(2) + "\n";
 }
 
-/// The car file: the start's plant, and the model as it was found.
+/// A plant of four wheels becomes one with the model that was found; what turns by a helper stays the
+/// start's.
+void take_plant(scenario::Scenario& scenario) {
+  const bool has_wheels =
+      scenario.plant == sim::DoubleTrack::kName || scenario.plant == sim::DoubleTrack::kRoadCar;
+  if (!has_wheels || scenario.vehicle.steer_helper > 0.0) return;
+  scenario.plant = sim::DoubleTrack::kName;
+  scenario.plant_params = sim::plant_of(scenario.vehicle, scenario.plant_params);
+}
+
+/// The car file: the model as it was found, and a plant that has it.
 std::string to_car(const Identification& found, scenario::Scenario scenario, const std::string& logs) {
   std::string text =
       fmt::format("# {}, identified from {:.0f} s of {}\n", scenario.vehicle.name, found.driven, logs);
   if (!found.knows_tires())
-    text += "# Grip is not known: the tyres were used too little. Do not race by this car.\n";
+    text +=
+        "# Grip is not known: the tyres were used too little. Race by it only with a friction_low of "
+        "yours.\n";
   text +=
       "# [log] 95 % interval in brackets; [assumed] as the car it began with, because the log does not "
       "excite it.\n";
   const scenario::Scenario fresh;
   scenario.vehicle = found.vehicle;
+  scenario.friction_low = found.least_friction();
+  take_plant(scenario);
   std::string group;
   for (const protocol::Parameter& row : protocol::list()) {
     const bool is_vehicle = row.group == "vehicle";
     if (row.key == "latency_ms") {
       text += fmt::format("latency_ms: {}\n", number_text(std::round(1e4 * found.delay) / 10.0));
+      continue;
+    }
+    if (row.key == "friction_low") {
+      text += fmt::format("friction_low: {}  # least friction that the log shows; 0: none, no race\n",
+                          number_text(scenario.friction_low, 4));
       continue;
     }
     if (row.key != "plant" && row.key != "control_period_ms" && !is_vehicle && row.group != "plant_params")
@@ -158,31 +190,63 @@ std::string to_car(const Identification& found, scenario::Scenario scenario, con
   return text;
 }
 
-/// The car of the shelf that turns as the logs do: what the search begins with where nobody says.
-Result<std::string> car_for(const std::vector<identify::DriveLog>& logs) {
-  const double wheelbase = identify::turning_wheelbase(logs);
-  std::string best;
-  double best_length = 0.0, best_ratio = 1e9;
+struct ShelfCar {
+  std::string name;
+  model::VehicleParams vehicle;
+  double ratio = 0.0;  ///< of its wheelbase and the logs', as a logarithm
+};
+
+/// Slow steering of a shelf car says nothing of another one, and the search does not get away from it: at
+/// least what an ordinary car has, in full size.
+void forget_slow_steering(model::VehicleParams& car) {
+  constexpr double kUsualRate = 90.0 * kPi / 180.0;  // [rad/s]
+  car.steer_rate_limit = std::max(car.steer_rate_limit, kUsualRate * model::Similarity(car).time());
+}
+
+/// Those of the shelf, the nearest by their wheelbase first.
+std::vector<ShelfCar> shelf_by_wheelbase(double wheelbase) {
+  std::vector<ShelfCar> cars;
   for (const protocol::Entry& entry : protocol::entries(protocol::Shelf::kCar)) {
-    const auto car = protocol::compose({.scenario_file = {}, .settings = {{"car", entry.name}}});
+    auto car = protocol::compose({.scenario_file = {}, .settings = {{"car", entry.name}}});
     // A helper turns the car along: its wheelbase says little of how it turns, and only simulators have one.
     if (!car || car->vehicle.steer_helper > 0.0) continue;
-    const double ratio = std::fabs(std::log(car->vehicle.wheelbase() / wheelbase));
-    if (ratio < best_ratio) {
-      best = entry.name;
-      best_length = car->vehicle.wheelbase();
-      best_ratio = ratio;
-    }
+    forget_slow_steering(car->vehicle);
+    cars.push_back({entry.name, car->vehicle, std::fabs(std::log(car->vehicle.wheelbase() / wheelbase))});
   }
-  if (best.empty())
+  std::stable_sort(cars.begin(), cars.end(), [](const auto& a, const auto& b) { return a.ratio < b.ratio; });
+  return cars;
+}
+
+/// The car of the shelf that the search begins with where nobody says: of those that turn as the logs do, the
+/// one from which a rough search explains them best.
+Result<std::string> car_for(const std::vector<identify::DriveLog>& logs, const std::function<bool()>& go_on) {
+  constexpr double kNear = 0.35;  // logarithm of the ratio of wheelbases
+  constexpr std::size_t kMostTried = 4;
+  const double wheelbase = identify::turning_wheelbase(logs);
+  const std::vector<ShelfCar> cars =
+      std::isfinite(wheelbase) ? shelf_by_wheelbase(wheelbase) : std::vector<ShelfCar>{};
+  if (cars.empty())
     return fail(ErrorCode::kInvalidArgument,
                 "--car: got none, and too few bends in the log to tell the car's size by, expected a car");
+  const ShelfCar* best = &cars.front();
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t tried = 0;
+  while (tried < std::min(cars.size(), kMostTried) && (tried == 0 || cars[tried].ratio < kNear)) ++tried;
+  for (std::size_t i = 0; i < tried && tried > 1; ++i) {
+    const auto rough =
+        identify::identify(logs, cars[i].vehicle,
+                           {.hold_out = 0.0, .is_rough = true, .progress = [&](double) { return go_on(); }});
+    if (!rough || !(rough->loss < least)) continue;
+    least = rough->loss;
+    best = &cars[i];
+  }
   fmt::print(
       stderr,
       "identify: without --car the search begins with {} ({:.3g} m between the axles): the log turns as "
-      "{:.3g} m would\n",
-      best, best_length, wheelbase);
-  return best;
+      "{:.3g} m would{}\n",
+      best->name, best->vehicle.wheelbase(), wheelbase,
+      tried > 1 ? fmt::format(", and of the {} cars nearest to that this one explains it best", tried) : "");
+  return best->name;
 }
 
 /// Logs of other programs do not say whose they are; recordings of ours are of the car of the settings.
@@ -200,7 +264,9 @@ Result<void> identify_and_tell(const Options& options) {
   if (!start) return fail(start.error());
   const auto how = log_options(options.identify);
   if (!how) return fail(how.error());
-  if (Result<void> writable = check_writable(options.output_file); !writable) return writable;
+  if (Result<void> named = check_page_name("--report", options.report_file); !named) return named;
+  for (const std::string& file : {options.output_file, options.report_file})
+    if (Result<void> writable = check_writable(file); !writable) return writable;
   std::vector<identify::DriveLog> logs;
   std::string names;
   for (const std::string& file : options.log_files) {
@@ -210,17 +276,19 @@ Result<void> identify_and_tell(const Options& options) {
     names += (names.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
   }
   if (is_nobodys(logs, options)) {
-    const Result<std::string> car = car_for(logs);
+    const Result<std::string> car = car_for(logs, [&] { return !wants_stop; });
     if (!car) return fail(car.error());
     auto settings = options.settings;
     settings.insert(settings.begin(), {"car", *car});
     start = protocol::compose({.scenario_file = {}, .settings = settings});
     if (!start) return fail(start.error());
+    forget_slow_steering(start->vehicle);
   }
   const auto found = [&] {
     Share share(wants_stop);
-    return identify::identify(logs, start->vehicle, options.identify.hold_out,
-                              [&](double done) { return share(done); });
+    return identify::identify(
+        logs, start->vehicle,
+        {.hold_out = options.identify.hold_out, .progress = [&](double done) { return share(done); }});
   }();
   if (!found) return fail(found.error());
   if (wants_stop) fmt::print(stderr, "identify: interrupted, these are the values so far\n");
@@ -228,10 +296,17 @@ Result<void> identify_and_tell(const Options& options) {
     if (Result<void> kept = write_file(options.output_file, to_car(*found, *start, names)); !kept)
       return kept;
   }
+  const std::string command = options.output_file.empty()
+                                  ? ""
+                                  : fmt::format("chicane drive --car {}{}", options.output_file,
+                                                found->knows_tires() ? " --preset race" : "");
+  if (!options.report_file.empty()) {
+    const std::string page =
+        identify_page(*found, {.logs = names, .advice = advice(*found), .command = command});
+    if (Result<void> kept = write_file(options.report_file, page); !kept) return kept;
+  }
   fmt::print("{}", options.is_json ? json_of(*found) : table_of(*found, names));
-  if (!options.output_file.empty() && !options.is_json)
-    fmt::print("\n{}: chicane drive --car {}{}\n", options.output_file, options.output_file,
-               found->knows_tires() ? " --preset race" : "");
+  if (!command.empty() && !options.is_json) fmt::print("\n{}: {}\n", options.output_file, command);
   return {};
 }
 

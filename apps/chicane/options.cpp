@@ -278,6 +278,10 @@ void add_identify(CLI::App& command, Options& options) {
                   "Write the car into this file; an older one is replaced")
       ->type_name("CAR.yaml");
   command
+      .add_option("--report", options.report_file,
+                  "Write intervals, predictions and residuals as one HTML page; replaces an older one")
+      ->type_name("FILE.html");
+  command
       .add_option("--hold-out", options.identify.hold_out,
                   "Share of each log, at its end, that only tests the predictions")
       ->type_name("X")

@@ -87,6 +87,25 @@ TEST(Race, LearnsTheGripWithoutLeavingTheRoad) {
   }
 }
 
+// A car from a log: what is not known of its grip is margin, until its tyres have shown it.
+TEST(Race, CountsOnTheFrictionThatIsKnown) {
+  const auto second_lap = [](const char* low, const char* learns) {
+    const auto run = drive({{"preset", "race"},
+                            {"car", "road-car"},
+                            {"track", "oval"},
+                            {"laps", "2"},
+                            {"friction_low", low},
+                            {"tracking_mpc.learn_grip", learns}});
+    EXPECT_TRUE(run.completed && run.off_track_events == 0) << low << ": " << run.end_reason;
+    return run.laps.back().lap_time;
+  };
+  constexpr double kKnown = 22.3;  // docs/racing.md, Table 4: with all 1.2 of it
+  const double careful = second_lap("0.84", "false");
+  const double shown = second_lap("0.84", "true");
+  EXPECT_GT(careful, 1.05 * kKnown);
+  EXPECT_LT(shown, 0.5 * (careful + kKnown));
+}
+
 #ifdef CHICANE_SLOW_TESTS
 // docs/tracking.md, eq. 18a: more speed where there is grip and room, less in neither.
 TEST(Race, IsFasterWhereSpeedHasAPrice) {

@@ -161,6 +161,18 @@ void write_bag(const std::string& file, bool has_second_odometry) {
   ASSERT_TRUE((*writer)->close());
 }
 
+// A yaw rate of 0 all along a bend was fitted: inertia 143 for 2000 kg m².
+TEST(DriveLog, AYawRateThatIsZeroThroughoutIsNone) {
+  const auto with = [](const char* rate) {
+    return Csv(rows("t,x,y,psi,v,steer,yaw_rate", [&](const Row& r) { return plain(r) + ',' + rate; }))
+        .read();
+  };
+  const auto none = with("0"), some = with("0.5");
+  ASSERT_TRUE(none && some);
+  EXPECT_TRUE(std::isnan(none->front().samples[10].yaw_rate));
+  EXPECT_EQ(some->front().samples[10].yaw_rate, 0.5);
+}
+
 TEST(DriveLog, IsReadFromABagOfOdometryAndCommands) {
   const std::string file =
       (std::filesystem::temp_directory_path() / ("chicane_log_" + std::to_string(::getpid()) + ".mcap"))

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <tuple>
 
 #include "chicane/model/vehicle.hpp"
 #include "chicane/protocol/schema.hpp"
@@ -55,6 +56,35 @@ std::vector<std::string> differences(const Scenario& a, const Scenario& b, std::
     if (!is_same) found.push_back(std::string(p.key) + ": " + get_text(a, p) + ", " + get_text(b, p));
   }
   return found;
+}
+
+// The file of a car whose log did not use the tyres: `identify` writes 0.
+TEST_F(Library, RefusesToRaceACarWhoseGripIsNotKnown) {
+  const std::string car =
+      write("mine.yaml", "# mine\nplant: road-car\nfriction_low: 0\nvehicle:\n  friction: 1.1\n");
+  EXPECT_EQ(error_of({.scenario_file = {}, .settings = {{"car", car}}}), "");
+  const std::string error = error_of({.scenario_file = {}, .settings = {{"car", car}, {"preset", "race"}}});
+  EXPECT_THAT(error, HasSubstr("mine.yaml:3: friction_low: got 0"));
+  EXPECT_THAT(error, HasSubstr("--set friction_low=0.5"));
+  EXPECT_EQ(error.find('\n'), std::string::npos);
+  const auto stated =
+      compose({.scenario_file = {}, .settings = {{"car", car}, {"preset", "race"}, {"friction_low", "0.7"}}});
+  ASSERT_TRUE(stated) << stated.error().message;
+  EXPECT_EQ(stated->believed_vehicle().friction, 0.7);
+  EXPECT_EQ(stated->vehicle.friction, 1.1);
+  ASSERT_EQ(stated->notices.size(), 1U);
+  EXPECT_THAT(stated->notices[0], HasSubstr("planned with a friction of 0.7"));
+}
+
+TEST_F(Library, TheLeastFrictionIsOfARaceAlone) {
+  for (const auto& [preset, low, believed] :
+       {std::tuple{"default", "0.7", 1.2}, {"race", "inf", 1.2}, {"race", "3", 1.2}, {"race", "0.7", 0.7}}) {
+    const auto scenario = compose(
+        {.scenario_file = {}, .settings = {{"car", "road-car"}, {"preset", preset}, {"friction_low", low}}});
+    ASSERT_TRUE(scenario) << scenario.error().message;
+    EXPECT_EQ(scenario->believed_vehicle().friction, believed) << preset << ' ' << low;
+    EXPECT_EQ(scenario->notices.size(), believed < 1.2 ? 1U : 0U) << preset << ' ' << low;
+  }
 }
 
 TEST_F(Library, EveryShippedPresetLoadsAndSaysWhatItIs) {

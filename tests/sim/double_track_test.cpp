@@ -102,6 +102,36 @@ TEST(DoubleTrack, TheModelThatFollowsFromTheRoadCarIsTheOneThatWasFitted) {
   }
 }
 
+TEST(DoubleTrack, ThePlantOfAModelHasThatModel) {
+  DoubleTrackParams plant;
+  plant.downforce_front = 0.6;
+  plant.downforce_rear = 0.9;
+  plant.drive_friction = 40.0;
+  model::VehicleParams found = model_of(plant);
+  found.friction *= 0.8;
+  found.cornering_front *= 1.3;
+  found.cornering_rear *= 0.9;
+  found.front_axle *= 1.1;
+  found.yaw_inertia *= 0.9;
+  found.drive_acceleration *= 1.2;
+  found.brake_acceleration *= 0.7;
+  found.steer_lag = 0.08;
+  found.drag_constant *= 1.4;
+  found.drag_quadratic *= 1.5;
+  const DoubleTrackParams made = plant_of(found, plant);
+  const model::VehicleParams model = model_of(made, found);
+  for (const Option& option : model::vehicle_options()) {
+    if (option.kind != OptionKind::kNumber || option.name == "kinematic_length" ||
+        option.name == "brake_throttle_limit")
+      continue;
+    const double a = std::get<double>(option.read(&found));
+    EXPECT_NEAR(a, std::get<double>(option.read(&model)), 1e-12 * std::fabs(a)) << option.name;
+  }
+  EXPECT_EQ(made.wheel_inertia, plant.wheel_inertia);
+  EXPECT_NEAR(made.downforce_front / made.downforce_rear, plant.downforce_front / plant.downforce_rear,
+              1e-12);
+}
+
 TEST(DoubleTrack, DownforceLetsItCornerFaster) {
   DoubleTrackParams params;
   DoubleTrack without(params);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <limits>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
@@ -27,6 +28,9 @@ std::vector<DriveLog> parts_of(LogRows rows, const std::string& file) {
   DriveLog part = empty;
   std::vector<Told> told = rows.told;
   std::stable_sort(told.begin(), told.end(), earlier);
+  // Odometry has a place for the yaw rate also where nothing measures it: 0 throughout is none.
+  const bool has_yaw_rate = std::any_of(rows.samples.begin(), rows.samples.end(),
+                                        [](const Sample& each) { return each.yaw_rate != 0.0; });
   const auto finish = [&] {
     if (!part.samples.empty() && part.samples.back().time - part.samples.front().time >= kShortestLog) {
       // Commands from a second before, which may act still.
@@ -41,6 +45,7 @@ std::vector<DriveLog> parts_of(LogRows rows, const std::string& file) {
   };
   for (const Sample& each : rows.samples) {
     Sample now = each;
+    if (!has_yaw_rate) now.yaw_rate = std::numeric_limits<double>::quiet_NaN();
     if (!std::isfinite(now.x + now.y + now.psi + now.speed)) continue;
     if (!part.samples.empty()) {
       const Sample& last = part.samples.back();

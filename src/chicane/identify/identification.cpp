@@ -22,6 +22,8 @@ constexpr double kWindow = 3.0;      ///< of a car in full size [s]
 constexpr double kSeen = 0.5;        ///< samples from which a prediction starts [s]
 constexpr double kLeastSpeed = 0.7;  ///< below it there is standing and reversing [m/s]
 constexpr std::size_t kMostWindows = 400;
+constexpr int kRoughSteps = 12;
+constexpr std::size_t kFewWindows = 12;  ///< for a rough look
 
 /// A number that is estimated: where it is in a car in full size, and what is expected of it.
 struct Row {
@@ -129,6 +131,7 @@ Beliefs beliefs_of(const std::vector<Row>& rows, const model::VehicleParams& sta
   beliefs.car = [rows, start](const std::vector<double>& theta) {
     Car car{.vehicle = start};
     for (std::size_t i = 0; i < rows.size(); ++i) set(rows[i], value_of(rows[i], theta[i]), car);
+    car.delay = std::max(0.0, car.delay);
     return car;
   };
   return beliefs;
@@ -156,9 +159,14 @@ void add_windows(const std::vector<DriveLog>& logs, std::size_t log, double from
   }
 }
 
-/// Of the tyres, in all windows: the share of the peak that one sample in a hundred exceeds.
-std::array<double, 2> tire_use(const std::vector<DriveLog>& logs, const std::vector<Window>& windows,
-                               const Car& car) {
+/// Measured, and as the model has it.
+Compared compared(const Sample& seen, const Expected& e) {
+  return {seen.time, seen.x, seen.y, seen.psi, seen.speed, e[0], e[1], e[2], e[3]};
+}
+
+/// The windows as the found car drives them: what is left of the samples, and how far the tyres were used.
+void look_back(const std::vector<DriveLog>& logs, const std::vector<Window>& windows, const Car& car,
+               Identification& found) {
   const model::PredictionModel model(car.vehicle);
   std::array<std::vector<double>, 2> uses;
   std::vector<Expected> expected;
@@ -166,26 +174,29 @@ std::array<double, 2> tire_use(const std::vector<DriveLog>& logs, const std::vec
   for (const DriveLog& log : logs) actuators.emplace_back(log, car);
   for (const Window& window : windows) {
     drive(car, logs[window.log], actuators[window.log], window.first, window.last, window.start, expected);
-    for (const Expected& e : expected) {
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const Expected& e = expected[i];
       const auto use = model.tire_use(model::BodyMotion<double>{e[5], e[6], e[4], e[7], 0.0});
       uses[0].push_back(use.front);
       uses[1].push_back(use.rear);
+      found.fitted.push_back(compared(logs[window.log].samples[window.first + i], e));
     }
   }
-  std::array<double, 2> most{};
-  for (std::size_t axle = 0; axle < 2; ++axle) {
-    if (uses[axle].empty()) continue;
-    const auto at = uses[axle].begin() + static_cast<std::ptrdiff_t>(uses[axle].size() * 99 / 100);
-    std::nth_element(uses[axle].begin(), at, uses[axle].end());
-    most[axle] = *at;
-  }
-  return most;
+  const auto most_of = [](std::vector<double>& axle, std::array<int, 30>& bins) {
+    if (axle.empty()) return 0.0;
+    for (const double use : axle)
+      ++bins[std::min(bins.size() - 1, static_cast<std::size_t>(std::max(0.0, use / SlipCover::kBin)))];
+    const auto at = axle.begin() + static_cast<std::ptrdiff_t>(axle.size() * 99 / 100);
+    std::nth_element(axle.begin(), at, axle.end());
+    return *at;
+  };
+  found.use_front = most_of(uses[0], found.slip.front);
+  found.use_rear = most_of(uses[1], found.slip.rear);
 }
 
-std::vector<PredictionError> prediction_errors(const std::vector<DriveLog>& logs, std::vector<Window> windows,
-                                               const Car& car, const Noise& noise) {
-  std::vector<PredictionError> errors{{.ahead = 1.0}, {.ahead = 2.0}, {.ahead = 3.0}};
-  std::vector<int> counts(errors.size());
+std::vector<PredictedStretch> predict(const std::vector<DriveLog>& logs, std::vector<Window> windows,
+                                      const Car& car, const Noise& noise) {
+  std::vector<PredictedStretch> stretches;
   std::vector<Actuators> actuators;
   for (const DriveLog& log : logs) actuators.emplace_back(log, car);
   std::vector<Expected> expected;
@@ -195,30 +206,48 @@ std::vector<PredictionError> prediction_errors(const std::vector<DriveLog>& logs
     while (seen < window.last && samples[seen].time < samples[window.first].time + kSeen) ++seen;
     fit_start(logs, window, seen, car, actuators[window.log], noise);
     drive(car, logs[window.log], actuators[window.log], window.first, window.last, window.start, expected);
-    for (std::size_t h = 0; h < errors.size(); ++h) {
-      std::size_t at = seen;
-      while (at < window.last && samples[at].time < samples[seen - 1].time + errors[h].ahead) ++at;
-      if (at == window.last) continue;
-      const Sample& then = samples[at];
-      const Expected& e = expected[at - window.first];
-      errors[h].position += (e[0] - then.x) * (e[0] - then.x) + (e[1] - then.y) * (e[1] - then.y);
-      errors[h].yaw += (e[2] - then.psi) * (e[2] - then.psi);
-      errors[h].speed += (e[3] - then.speed) * (e[3] - then.speed);
-      ++counts[h];
-    }
+    PredictedStretch stretch{.known = samples[seen - 1].time, .samples = {}};
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      stretch.samples.push_back(compared(samples[window.first + i], expected[i]));
+    stretches.push_back(std::move(stretch));
   }
+  return stretches;
+}
+
+/// One, two and three seconds ahead.
+std::vector<PredictionError> prediction_errors(const std::vector<PredictedStretch>& stretches) {
   std::vector<PredictionError> found;
-  for (std::size_t h = 0; h < errors.size(); ++h) {
-    if (counts[h] == 0) continue;
-    const auto mean = [&](double sum) { return std::sqrt(sum / counts[h]); };
-    found.push_back({errors[h].ahead, mean(errors[h].position), mean(errors[h].yaw), mean(errors[h].speed)});
+  for (const double ahead : {1.0, 2.0, 3.0}) {
+    PredictionError sum{.ahead = ahead};
+    int count = 0;
+    for (const PredictedStretch& stretch : stretches) {
+      const auto at = std::find_if(stretch.samples.begin(), stretch.samples.end(),
+                                   [&](const Compared& each) { return each.time >= stretch.known + ahead; });
+      if (at == stretch.samples.end()) continue;
+      sum.position +=
+          (at->model_x - at->x) * (at->model_x - at->x) + (at->model_y - at->y) * (at->model_y - at->y);
+      sum.yaw += (at->model_psi - at->psi) * (at->model_psi - at->psi);
+      sum.speed += (at->model_speed - at->speed) * (at->model_speed - at->speed);
+      ++count;
+    }
+    if (count == 0) continue;
+    const auto mean = [&](double squares) { return std::sqrt(squares / count); };
+    found.push_back({ahead, mean(sum.position), mean(sum.yaw), mean(sum.speed)});
   }
   return found;
 }
 
+/// From full size to the car's own.
+Compared own_size(Compared each, const model::Similarity& from) {
+  each.time /= from.time();
+  for (double* length : {&each.x, &each.y, &each.model_x, &each.model_y}) *length /= from.length();
+  for (double* speed : {&each.speed, &each.model_speed}) *speed /= from.speed();
+  return each;
+}
+
 /// Every other one, until there are few enough.
-void thin(std::vector<Window>& windows) {
-  while (windows.size() > kMostWindows) {
+void thin(std::vector<Window>& windows, std::size_t most) {
+  while (windows.size() > most) {
     std::vector<Window> half;
     for (std::size_t i = 0; i < windows.size(); i += 2) half.push_back(windows[i]);
     windows = std::move(half);
@@ -227,7 +256,7 @@ void thin(std::vector<Window>& windows) {
 
 /// `logs` are in full size, `told` is as the car is.
 Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, const model::VehicleParams& told,
-                                          double hold_out, const std::function<bool(double)>& progress) {
+                                          const IdentifyOptions& options) {
   const model::Similarity similarity(told);
   const model::VehicleParams start = similarity.full_size(told);
   std::vector<Window> windows, held_out;
@@ -236,19 +265,19 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, con
   bool is_centre_of_mass = true;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const double from = logs[i].samples.front().time, to = logs[i].samples.back().time;
-    const double split = to - hold_out * (to - from);
+    const double split = to - options.hold_out * (to - from);
     add_windows(logs, i, from, split, kWindow, kLeastSpeed, windows);
     add_windows(logs, i, split, to, kSeen + 3.3, kLeastSpeed, held_out);
     found.driven += (to - from) / similarity.time();
     has_pedal = has_pedal && logs[i].has_throttle();
     is_centre_of_mass = is_centre_of_mass && logs[i].is_centre_of_mass;
   }
-  thin(windows);
-  if (static_cast<double>(windows.size()) * kWindow < 10.0)
+  const double to_fit = static_cast<double>(windows.size()) * kWindow;
+  thin(windows, options.is_rough ? kFewWindows : kMostWindows);
+  if (to_fit < 10.0)
     return fail(ErrorCode::kInvalidArgument,
                 fmt::format("logs: got {:.0f} s of driving to fit, expected at least {:.3g} s",
-                            static_cast<double>(windows.size()) * kWindow / similarity.time(),
-                            10.0 / similarity.time()));
+                            to_fit / similarity.time(), 10.0 / similarity.time()));
   std::vector<Row> rows = rows_for(start, has_pedal, is_centre_of_mass);
   for (Row& row : rows) row.per_full_size = per_full_size(row.unit, similarity);
   const Beliefs beliefs = beliefs_of(rows, start);
@@ -264,19 +293,20 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, con
   }
   WindowFit fit;
   fit.theta = first.mean;
-  constexpr int kRounds = 3;
+  const int rounds = options.is_rough ? 1 : 3;
   bool goes_on = true;
-  for (int round = 0; round < kRounds && goes_on; ++round) {
+  for (int round = 0; round < rounds && goes_on; ++round) {
     int step = 0;
     fit = fit_windows(logs, windows, round == 0 ? first : beliefs, fit.theta, noise, [&] {
-      goes_on = progress((round + std::min(1.0, 0.07 * step++)) / kRounds);
-      return goes_on;
+      goes_on = options.progress((round + std::min(1.0, 0.07 * step)) / rounds);
+      return goes_on && (step++ < kRoughSteps || !options.is_rough);
     });
     // Both directions of the place are alike.
     fit.residual[0] = fit.residual[1] = std::max(fit.residual[0], fit.residual[1]);
     for (std::size_t kind = 0; kind < noise.size(); ++kind)
       noise[kind] = std::max(fit.residual[kind], least[kind]);
   }
+  found.loss = fit.loss;
   const Car car = beliefs.car(fit.theta);
   Car as_it_is{.vehicle = told};
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -296,13 +326,24 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, con
                                outside(fit.theta[i] + 2.0 * deviation), outside(beliefs.mean[i]),
                                deviation < 0.4 * beliefs.deviation[i]});
   }
-  const auto use = tire_use(logs, windows, car);
-  found.use_front = use[0];
-  found.use_rear = use[1];
+  look_back(logs, windows, car, found);
+  for (Estimate& each : found.estimates) {
+    if (each.key != "latency_ms") continue;
+    each.value = std::max(0.0, each.value);
+    each.low = std::max(0.0, each.low);
+    each.high = std::max(0.0, each.high);
+  }
   for (Estimate& each : found.estimates) {  // the curve's beginning says little of its peak
     if (each.key == "friction" && !found.knows_tires()) each.is_excited = false;
   }
-  found.held_out = prediction_errors(logs, std::move(held_out), car, noise);
+  found.correlations = std::move(fit.correlations);
+  found.stretches = predict(logs, std::move(held_out), car, noise);
+  found.held_out = prediction_errors(found.stretches);
+  for (Compared& each : found.fitted) each = own_size(each, similarity);
+  for (PredictedStretch& stretch : found.stretches) {
+    stretch.known /= similarity.time();
+    for (Compared& each : stretch.samples) each = own_size(each, similarity);
+  }
   for (PredictionError& error : found.held_out) {
     error.ahead /= similarity.time();
     error.position /= similarity.length();
@@ -346,16 +387,33 @@ double turning_wheelbase(const std::vector<DriveLog>& logs) {
   return count >= kFewest && wheelbase > 0.0 ? wheelbase : std::numeric_limits<double>::quiet_NaN();
 }
 
-bool Identification::knows_tires() const noexcept { return use_front >= kRaceUse && use_rear >= kRaceUse; }
+bool Identification::knows_tires() const noexcept {
+  return std::max(use_front, use_rear) >= kRaceUse && std::min(use_front, use_rear) >= kLeastRaceUse;
+}
+
+double Identification::least_friction() const noexcept {
+  if (!knows_tires()) return 0.0;
+  for (const Estimate& each : estimates)
+    if (each.key == "friction") return std::max(0.0, each.low);
+  return 0.0;
+}
+
+double Identification::shown_friction() const noexcept {
+  const double use = std::min(1.0, std::min(use_front, use_rear));
+  const double shape = vehicle.tire_shape;
+  // The curve of force over slip; its chord where the shape is the original simulator's.
+  const double force = shape > 1.0 ? sin(shape * atan(use * tan(kPi / (2.0 * shape)))) : use;
+  return force * vehicle.friction;
+}
 
 Result<Identification> identify(const std::vector<DriveLog>& logs, const model::VehicleParams& start,
-                                double hold_out, const std::function<bool(double)>& progress) {
+                                const IdentifyOptions& options) {
   // A model car is fitted in full size, as controllers see it: the model's floors are those of such a car.
   const model::Similarity similarity(start);
-  if (similarity.is_identity()) return identify_full_size(logs, start, hold_out, progress);
+  if (similarity.is_identity()) return identify_full_size(logs, start, options);
   std::vector<DriveLog> scaled;
   for (const DriveLog& each : logs) scaled.push_back(full_size(each, similarity));
-  return identify_full_size(scaled, start, hold_out, progress);
+  return identify_full_size(scaled, start, options);
 }
 
 }  // namespace chicane::identify

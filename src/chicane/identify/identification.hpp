@@ -32,6 +32,26 @@ struct PredictionError {
   double speed = 0.0;     ///< [m/s]
 };
 
+/// What was measured at a moment, and what the model says of it.
+struct Compared {
+  double time = 0.0;  ///< of the log [s]
+  double x = 0.0, y = 0.0, psi = 0.0, speed = 0.0;
+  double model_x = 0.0, model_y = 0.0, model_psi = 0.0, model_speed = 0.0;
+};
+
+/// A stretch of a log's held-out end: the model knows the samples until `known`, and goes on from there by
+/// the commands alone.
+struct PredictedStretch {
+  double known = 0.0;  ///< [s]
+  std::vector<Compared> samples;
+};
+
+/// Samples by the slip of an axle over that of its peak force.
+struct SlipCover {
+  static constexpr double kBin = 0.05;
+  std::array<int, 30> front{}, rear{};  ///< the last holds all beyond, too
+};
+
 struct Identification {
   model::VehicleParams vehicle;  ///< the start's, with what was estimated
   double delay = 0.0;            ///< from command to effect [s]
@@ -39,28 +59,45 @@ struct Identification {
   std::vector<PredictionError>
       held_out;         ///< on the end of each log, which the fit has not seen; may be empty
   double driven = 0.0;  ///< length of all logs [s]
-  /// Largest share of the peak that each axle's tyres reached, but for one sample in a hundred.
+  /// Largest slip that each axle's tyres reached, over that of their peak force, but for one sample in a
+  /// hundred.
   double use_front = 0.0, use_rear = 0.0;
   /// Standard deviations of what is left: position [m], yaw [rad], speed [m/s].
   std::array<double, 3> residual{};
+  std::vector<std::vector<double>> correlations;  ///< of the errors of two estimates, in their order
+  std::vector<PredictedStretch> stretches;        ///< what held_out is the mean of
+  std::vector<Compared> fitted;                   ///< samples that were fitted, each window from its start
+  SlipCover slip;
+  double loss = 0.0;      ///< what was minimised (docs/identification.md, eq. 4)
   bool has_pedal = true;  ///< else drive and brakes are the start's
-  /// Whether the tyres were used enough for a lap near the limit: kRaceUse of the peak at both axles.
+  /// Whether the tyres were used enough for a lap near the limit: kRaceUse of the peak's slip at the axle
+  /// that limits the car, kLeastRaceUse at the other one.
   [[nodiscard]] bool knows_tires() const noexcept;
+  /// Lower end of the friction's interval; 0 where the tyres are not known.
+  [[nodiscard]] double least_friction() const noexcept;
+  /// The friction that both axles have used.
+  [[nodiscard]] double shown_friction() const noexcept;
 };
-inline constexpr double kRaceUse = 0.6;
+inline constexpr double kRaceUse = 0.6, kLeastRaceUse = 0.4;
 
 /// Wheelbase of a car without slip that would turn as the logs do, by their gentler bends [m]: enough to tell
 /// whose car it is. NaN where there is hardly a bend.
 [[nodiscard]] double turning_wheelbase(const std::vector<DriveLog>& logs);
 
+struct IdentifyOptions {
+  double hold_out = 0.3;  ///< share of each log, at its end, kept for the prediction errors, in [0, 0.8]
+  bool is_rough = false;  ///< few stretches and steps: enough to compare cars to begin with by their loss
+  /// Is told the share done, and ends the search by returning false: the best so far is the result.
+  std::function<bool(double)> progress = [](double) { return true; };
+};
+
 /// Finds delay, lags, offset, wheelbase, tyres, inertia, drive, brakes and drag of the car that drove `logs`.
 /// `start` gives what logs cannot tell (mass, track width, tyre shape, limits) and what to expect of the
-/// rest. `hold_out`: share of each log, at its end, kept for the prediction errors, in [0, 0.8]. `progress`
-/// is told the share done and ends the search by returning false: the best so far is the result.
+/// rest.
 ///
 /// kInvalidArgument where the logs have less than ten seconds of driving.
 [[nodiscard]] Result<Identification> identify(const std::vector<DriveLog>& logs,
-                                              const model::VehicleParams& start, double hold_out,
-                                              const std::function<bool(double)>& progress);
+                                              const model::VehicleParams& start,
+                                              const IdentifyOptions& options = {});
 
 }  // namespace chicane::identify

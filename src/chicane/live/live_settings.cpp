@@ -43,6 +43,7 @@ bool is_of_the_world(const protocol::Parameter& row) {
 /// The car of another scenario: the model of it, and what is simulated.
 void take_car(scenario::Scenario& scenario, const scenario::Scenario& from) {
   scenario.vehicle = from.vehicle;
+  scenario.friction_low = from.friction_low;
   scenario.plant = from.plant;
   scenario.plant_params = from.plant_params;
 }

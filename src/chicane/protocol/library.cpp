@@ -223,6 +223,17 @@ void note_track(bool is_asked_for, scenario::Scenario& scenario) {
                     scenario.track, scale, scenario.car));
 }
 
+/// A race with less friction than the model has, because no more is known of the car.
+void note_friction(scenario::Scenario& scenario) {
+  const double friction = scenario.believed_vehicle().friction;
+  if (friction < scenario.vehicle.friction)
+    scenario.notices.push_back(
+        fmt::format("friction_low: the race is planned with a friction of {:.3g}, the least that is known of "
+                    "the car; its "
+                    "model has {:.3g}",
+                    friction, scenario.vehicle.friction));
+}
+
 /// A file named in a scenario file may be meant relative to it.
 void resolve_names(Document& document) {
   const fs::path folder = fs::path(document.file).parent_path();
@@ -272,11 +283,11 @@ std::optional<Document> read_car(const Wish& wish, RememberedFiles& files, Fault
   for (const Assignment& assignment : car->assignments) {
     const std::string_view key = assignment.parameter->key;
     if (key == "plant" || key.starts_with("vehicle.") || key.starts_with("plant_params.") ||
-        key == "latency_ms" || key == "control_period_ms")
+        key == "latency_ms" || key == "control_period_ms" || key == "friction_low")
       continue;
     faults.add({ErrorCode::kParse,
                 fmt::format("{}:{}: {}: got a setting of a run, expected only plant, plant_params, vehicle, "
-                            "latency_ms and control_period_ms in a car file",
+                            "latency_ms, control_period_ms and friction_low in a car file",
                             car->file, assignment.line, key)});
   }
   return std::move(*car);
@@ -426,6 +437,7 @@ Result<scenario::Scenario> compose(const Request& request, RememberedFiles& file
   for (auto layer = layers.end() - static_cast<std::ptrdiff_t>(asked); layer != layers.end(); ++layer)
     note_idle(*layer, scenario);
   note_track(is_set(layers, "track"), scenario);
+  note_friction(scenario);
   return scenario;
 }
 

@@ -48,8 +48,9 @@ int edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 bool is_live(const Parameter& parameter) {
-  constexpr std::array<std::string_view, 7> kWhatRuns{
-      "track_scale", "vehicle.scale", "plant", "controller", "seed", "control_period_ms", "waypoints_sent"};
+  constexpr std::array<std::string_view, 8> kWhatRuns{"track_scale",  "vehicle.scale", "plant",
+                                                      "controller",   "seed",          "control_period_ms",
+                                                      "friction_low", "waypoints_sent"};
   return parameter.option.kind != Kind::kText &&  // preset, track, car: names
          parameter.group != "guard" &&            // what watches over a run is fixed when it starts
          parameter.group != "plant_params" &&     // and so is the car
@@ -179,6 +180,12 @@ std::vector<Contradiction> contradictions(const Scenario& scenario) {
   if (has_params && scenario.plant != sim::DoubleTrack::kName) {
     found.push_back({"plant", "got " + scenario.plant + ", expected " + std::string(sim::DoubleTrack::kName) +
                                   ", the only one with plant_params"});
+  }
+  if (scenario.races() && !(scenario.friction_low > 0.0)) {
+    found.push_back(
+        {"friction_low",
+         "got 0, the grip of this car is not known, expected more to race by: log bends nearer to "
+         "the limit, or state the least friction (--set friction_low=0.5)"});
   }
   const auto* driver = controller::Registry::find(scenario.controller);
   if (driver == nullptr) return found;

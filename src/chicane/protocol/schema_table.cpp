@@ -28,6 +28,11 @@ auto run_options() {
                        "Laps to drive, the first from standstill; 0 drives until stopped."),
       option<&S::seed>("seed", unit::kNone, 0, 9007199254740992.0, "Seed of everything random."),
       option<&S::latency>("latency", unit::kMillisecond, 0, 500, "Actuation delay of the simulated car."),
+      option<&S::friction_low>(
+          "friction_low", unit::kNone, 0, 5,
+          "Friction that the car is known to have at least, which a race is planned with; 0 where it is not "
+          "known: no race; infinite: vehicle.friction.")
+          .or_infinite(),
       option<&S::control_period>("control_period", unit::kMillisecond, 5, 1000, "Time between measurements."),
       option<&S::time_limit>("time_limit", unit::kSecond, 0, 1e7,
                              "Ends the run; 0 allows ten minutes per lap."),

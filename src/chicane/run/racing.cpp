@@ -79,9 +79,7 @@ path::Track in_full_size(const path::Track& track, const scenario::Scenario& sce
 
 }  // namespace
 
-bool races(const scenario::Scenario& scenario) noexcept {
-  return scenario.controller == controller::TrackingMpcEntry::kName && options_of(scenario).racing_line;
-}
+bool races(const scenario::Scenario& scenario) noexcept { return scenario.races(); }
 
 double plan_budget(const scenario::Scenario& scenario) noexcept { return options_of(scenario).plan_budget; }
 

@@ -26,7 +26,8 @@ bool plan_same_lap(const scenario::Scenario& a, const scenario::Scenario& b) {
 /// Whether the same road comes of both.
 bool is_same_road(const scenario::Scenario& a, const scenario::Scenario& b) {
   return a.track == b.track && a.size_of_track() == b.size_of_track() && a.vehicle.scale == b.vehicle.scale &&
-         are_same(safety::guard_options(), &a.guard, &b.guard) && plan_same_lap(a, b) &&
+         a.friction_low == b.friction_low && are_same(safety::guard_options(), &a.guard, &b.guard) &&
+         plan_same_lap(a, b) &&
          ((a.guard.mode == safety::GuardMode::kOff && !races(a)) ||
           are_same(model::vehicle_options(), &a.vehicle, &b.vehicle));
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,10 @@ struct Scenario {
   int waypoints_sent = 6;        ///< telemetry shows this many waypoints
 
   model::VehicleParams vehicle = model::udacity_params();  ///< the controller's model of it
-  safety::GuardOptions guard;                              ///< what watches over the controller
+  double friction_low =
+      std::numeric_limits<double>::infinity();  ///< least friction that the car is known to have: what a race
+                                                ///< is planned with; 0: not known; infinite: vehicle.friction
+  safety::GuardOptions guard;                   ///< what watches over the controller
   sim::DoubleTrackParams plant_params;  ///< of the plant `double-track`, whose model follows from them
   sim::PlantDeviation plant_options;
   sim::SensorOptions sensor;
@@ -51,6 +55,18 @@ struct Scenario {
   /// Of what is assumed of a track's file: one that is driven in its own size has the noise of the car's
   /// size, any other one is in full size.
   [[nodiscard]] double scale_of_file() const noexcept { return track_scale == 1.0 ? vehicle.scale : 1.0; }
+
+  /// Whether a planned lap at the car's limit is driven by.
+  [[nodiscard]] bool races() const noexcept {
+    using Entry = controller::TrackingMpcEntry;
+    return controller == Entry::kName && std::get<Entry::Options>(controllers).racing_line;
+  }
+  /// The car that controller and planner count on: a race is planned with no more friction than is known.
+  [[nodiscard]] model::VehicleParams believed_vehicle() const {
+    model::VehicleParams believed = vehicle;
+    if (races() && friction_low < believed.friction) believed.friction = friction_low;
+    return believed;
+  }
 
   /// Of every controller, whichever drives: std::get<controller::PidOptions>(controllers).
   controller::Registry::Options controllers;

@@ -154,6 +154,45 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
   return m;
 }
 
+DoubleTrackParams plant_of(const model::VehicleParams& m, DoubleTrackParams like) {
+  DoubleTrackParams p = like;
+  p.front_axle = m.front_axle;
+  p.rear_axle = m.rear_axle;
+  p.track_width = m.track_width;
+  p.tire_width = m.tire_width;
+  p.mass = m.mass;
+  p.yaw_inertia = m.yaw_inertia;
+  p.height = m.height;
+  p.steer_limit = m.steer_limit;
+  p.steer_rate_limit = m.steer_rate_limit;
+  p.steer_lag = m.steer_lag;
+  p.friction = m.friction;
+  p.load_sensitivity = m.load_sensitivity;
+  if (m.tire_shape > 0.0) p.shape = m.tire_shape;
+  const double slope = p.shape * p.friction;
+  p.stiffness_front = m.cornering_front / slope;
+  p.stiffness_rear = m.cornering_rear / slope;
+  const double downforce = m.load_quadratic * p.mass / (1.0 - p.load_sensitivity);
+  const double like_downforce = like.downforce_front + like.downforce_rear;
+  const double share_front = like_downforce > 0.0 ? like.downforce_front / like_downforce : 0.5;
+  p.downforce_front = share_front * downforce;
+  p.downforce_rear = (1.0 - share_front) * downforce;
+  const double inertia = p.mass + 4.0 * p.wheel_inertia / (p.wheel_radius * p.wheel_radius);
+  p.drive_force = m.drive_acceleration * inertia;
+  if (m.drive_power_per_mass < std::numeric_limits<double>::infinity())
+    p.drive_power = m.drive_power_per_mass * inertia;
+  const double resistance = m.drag_constant * inertia;
+  p.drive_friction = std::min(like.drive_friction, resistance);
+  p.rolling_resistance = (resistance - p.drive_friction) / (DoubleTrackParams::kGravity * p.mass);
+  p.drag = std::max(0.0, m.drag_quadratic * inertia - p.rolling_resistance * downforce);
+  p.brake_force = m.brake_acceleration * inertia;
+  p.drive_lag = m.drive_lag;
+  p.roll_share_front = m.roll_share_front;
+  p.brake_share_front = m.brake_share_front;
+  p.drive_share_front = m.drive_share_front;
+  return p;
+}
+
 DoubleTrack::DoubleTrack(const DoubleTrackParams& params) noexcept
     : nominal_{params},
       params_{params},

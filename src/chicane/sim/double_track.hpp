@@ -90,6 +90,11 @@ struct DoubleTrackParams {
 /// and `width` are not the plant's: they stay as in `body`.
 [[nodiscard]] model::VehicleParams model_of(const DoubleTrackParams& plant, model::VehicleParams body = {});
 
+/// A plant with that model: the other way round. What no model has (wheels, relaxation, anti-lock) stays as
+/// in `like`. Pre: `car` is valid and no steering helper turns it. Where `car` brakes or drives by what no
+/// plant has, as drag in proportion to speed, the nearest plant has none of it.
+[[nodiscard]] DoubleTrackParams plant_of(const model::VehicleParams& car, DoubleTrackParams like = {});
+
 /// The plants `double-track` and `road-car`: planar with quasi-static load transfer and downforce,
 /// magic-formula tyres with combined slip and relaxation lengths, proportional brakes with anti-lock, lagging
 /// and rate-limited steering, 1 kHz; small cars, whose wheels answer faster, move in several parts of a step.

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "chicane/protocol/json.hpp"
-#include "chicane/sweep/detail/page_text.hpp"
+#include "chicane/sweep/page_text.hpp"
 #include "chicane/sweep/result_file.hpp"
 
 namespace chicane::sweep {
@@ -16,7 +16,7 @@ namespace {
 
 std::string cell_of(const protocol::Json& value) {
   if (value.is_null()) return "";
-  return detail::csv_cell(value.is_string() ? value.get<std::string>() : protocol::json_text(value));
+  return csv_cell(value.is_string() ? value.get<std::string>() : protocol::json_text(value));
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
-#include "chicane/sweep/detail/page_text.hpp"
 #include "chicane/sweep/outcome.hpp"
+#include "chicane/sweep/page_text.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -237,9 +237,7 @@ constexpr std::array kCsvColumns{"search_value",
 }  // namespace
 
 std::string league_html(const League& league, const LeagueResults& results) {
-  using detail::escaped;
-  std::string page =
-      detail::page_head(league.name) + fmt::format("<p>{}</p>", escaped(in_words(league, results)));
+  std::string page = page_head(league.name) + fmt::format("<p>{}</p>", escaped(in_words(league, results)));
   for (const LeagueTable& table : LeagueTables(league, results).all()) {
     page += fmt::format("<h2>{}</h2><p>{}</p><div class=scroll><table><tr>", escaped(table.title),
                         escaped(table.note));
@@ -287,14 +285,14 @@ std::string league_csv(const LeagueResults& results) {
   text += ",why_not\r\n";
   for (const LeagueCell& cell : results.cells) {
     const auto bound = results.bounds.find({cell.track, cell.car});
-    text += fmt::format("{},{},{},{},{},{}", detail::csv_cell(cell.entry), detail::csv_cell(cell.track),
-                        detail::csv_cell(cell.car), detail::csv_cell(cell.disturbance), cell.is_clean ? 1 : 0,
+    text += fmt::format("{},{},{},{},{},{}", csv_cell(cell.entry), csv_cell(cell.track), csv_cell(cell.car),
+                        csv_cell(cell.disturbance), cell.is_clean ? 1 : 0,
                         bound == results.bounds.end() ? "" : number_text(bound->second));
     for (const char* column : kCsvColumns) {
       const double value = cell.number(column);
       text += "," + (std::isfinite(value) ? number_text(value) : std::string());
     }
-    text += "," + detail::csv_cell(cell.why) + "\r\n";
+    text += "," + csv_cell(cell.why) + "\r\n";
   }
   return text;
 }

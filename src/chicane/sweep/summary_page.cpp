@@ -17,7 +17,7 @@
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/sweep/detail/heat_map.hpp"
-#include "chicane/sweep/detail/page_text.hpp"
+#include "chicane/sweep/page_text.hpp"
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/trial.hpp"
 
@@ -26,7 +26,6 @@ namespace {
 
 using detail::ByNumber;
 using detail::colour;
-using detail::escaped;
 using json = protocol::Json;
 
 constexpr std::size_t kMostValues = 60;  // of an axis in a table or a map; more are put into intervals
@@ -132,7 +131,7 @@ class Page {
   }
 
   [[nodiscard]] std::string text() {
-    std::string page = detail::page_head(header_.name);
+    std::string page = page_head(header_.name);
     page += fmt::format(
         "<p>{} of {} runs, {} clean (all laps driven, no tyre off the road). Plan {}, {}, {} arithmetic.</p>",
         runs_.size(), header_.runs, clean_runs(), header_.plan, escaped(header_.program),

@@ -36,6 +36,54 @@ class Held {
   std::size_t at_ = 0;
 };
 
+/// The model's step is linearly implicit, of first order: its damping would be found in inertia and lags.
+/// Twice the way to the middle is of second order, and as stable. The model's slip of the front axle is
+/// linear in angles: it is given the angle with which that slip is the true one.
+model::BodyMotion<double> midpoint_step(const model::PredictionModel& model, const Car& car,
+                                        const model::BodyMotion<double>& from, double steer,
+                                        double acceleration, double dt) noexcept {
+  constexpr double kLeastSpeed = 1.0;  // [m/s]
+  const double across = (from.vy + car.vehicle.front_axle * from.r) / std::max(from.vx, kLeastSpeed);
+  const double linear = steer + across - atan(across);
+  model::BodyMotion<double> to = model.advance(from, linear, acceleration, 0.5 * dt);
+  to.vx = 2.0 * to.vx - from.vx;
+  to.vy = 2.0 * to.vy - from.vy;
+  to.r = 2.0 * to.r - from.r;
+  return to;
+}
+
+/// Speed and its change from samples alone, by a line of least squares through those near a moment.
+class MeasuredSpeed {
+ public:
+  explicit MeasuredSpeed(const std::vector<Sample>& samples) : samples_{samples} {}
+  struct Speed {
+    double value = 0.0;         ///< [m/s]
+    double acceleration = 0.0;  ///< [m/s²]
+  };
+  /// Moments have to be asked for in their order.
+  Speed at(double t) {
+    while (first_ + 1 < samples_.size() && samples_[first_].time < t - kReach) ++first_;
+    double count = 0.0, sum_t = 0.0, sum_v = 0.0, tt = 0.0, tv = 0.0;
+    for (std::size_t i = first_; i < samples_.size() && samples_[i].time <= t + kReach; ++i) {
+      const double dt = samples_[i].time - t;
+      count += 1.0;
+      sum_t += dt;
+      sum_v += samples_[i].speed;
+      tt += dt * dt;
+      tv += dt * samples_[i].speed;
+    }
+    const double spread = count * tt - sum_t * sum_t;
+    if (count < 3.0 || !(spread > 1e-9)) return {samples_[first_].speed, 0.0};
+    const double slope = (count * tv - sum_t * sum_v) / spread;
+    return {(sum_v - slope * sum_t) / count, slope};
+  }
+
+ private:
+  static constexpr double kReach = 0.15;  ///< [s] to each side
+  const std::vector<Sample>& samples_;
+  std::size_t first_ = 0;
+};
+
 }  // namespace
 
 Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.front().time} {
@@ -45,6 +93,7 @@ Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.f
   Held steering(log.told, &Told::steer);
   Held pedal(log.told, &Told::throttle);
   const bool has_throttle = log.has_throttle();
+  MeasuredSpeed measured(log.samples);
   steer_.reserve(count);
   std::size_t sample = 0;
   double steer = log.told.front().steer;
@@ -55,11 +104,13 @@ Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.f
     const Sample& a = log.samples[sample];
     const Sample& b = log.samples[std::min(sample + 1, log.samples.size() - 1)];
     const double share = b.time > a.time ? std::clamp((t - a.time) / (b.time - a.time), 0.0, 1.0) : 0.0;
-    const double speed = a.speed + share * (b.speed - a.speed);
+    const MeasuredSpeed::Speed alone = has_throttle ? MeasuredSpeed::Speed{} : measured.at(t);
+    const double speed = has_throttle ? a.speed + share * (b.speed - a.speed) : alone.value;
     const double asked = steering.mean(t - car.delay, t - car.delay + kStep);
     const double throttle =
         has_throttle ? std::clamp(pedal.mean(t - car.delay, t - car.delay + kStep), -1.0, 1.0) : 0.0;
-    const double wanted = model::longitudinal_acceleration(car.vehicle, throttle, speed);
+    const double wanted =
+        has_throttle ? model::longitudinal_acceleration(car.vehicle, throttle, speed) : alone.acceleration;
     if (i == 0) acceleration = wanted;
     steer_.push_back(steer);
     speed_.push_back(speed);
@@ -67,7 +118,7 @@ Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.f
     acceleration_.push_back(acceleration);
     const double most = car.vehicle.steer_rate_limit * kStep;
     steer += std::clamp(asked + (steer - asked) * lags.steer.end - steer, -most, most);
-    acceleration = wanted + (acceleration - wanted) * lags.drive.end;
+    acceleration = has_throttle ? wanted + (acceleration - wanted) * lags.drive.end : wanted;
   }
 }
 
@@ -97,10 +148,13 @@ void drive(const Car& car, const DriveLog& log, const Actuators& actuators, std:
     const double until = log.samples[sample].time;
     while (until - t >= kStep && i + 1 < actuators.size()) {
       const double steer = 0.5 * (actuators.steer(i) + actuators.steer(i + 1)) + car.steer_offset;
-      const double wanted = model::longitudinal_acceleration(car.vehicle, actuators.throttle(i), now.vx);
-      const double mean = wanted + (now.acceleration - wanted) * lags.drive.mean;
-      model::BodyMotion<double> next = model.advance(now, steer, has_throttle ? mean : 0.0, kStep);
-      next.acceleration = has_throttle ? wanted + (now.acceleration - wanted) * lags.drive.end : 0.0;
+      // Without a pedal the speed is what was measured.
+      const double wanted = has_throttle
+                                ? model::longitudinal_acceleration(car.vehicle, actuators.throttle(i), now.vx)
+                                : actuators.acceleration(i);
+      const double mean = has_throttle ? wanted + (now.acceleration - wanted) * lags.drive.mean : wanted;
+      model::BodyMotion<double> next = midpoint_step(model, car, now, steer, mean, kStep);
+      next.acceleration = has_throttle ? wanted + (now.acceleration - wanted) * lags.drive.end : wanted;
       if (!has_throttle) next.vx = now.vx + actuators.speed(i + 1) - actuators.speed(i);
       const double course = psi + 0.25 * kStep * (now.r + next.r);
       const double vx = 0.5 * (now.vx + next.vx), vy = 0.5 * (now.vy + next.vy);

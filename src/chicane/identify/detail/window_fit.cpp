@@ -169,7 +169,8 @@ double loss_of_beliefs(const Expectation& beliefs, const VectorXd& theta) {
 struct Linearised {
   MatrixXd information;
   VectorXd slope;
-  MatrixXd disagreement;
+  std::vector<MatrixXd> informations;  ///< of each window
+  std::vector<VectorXd> slopes;
   std::vector<Eliminated> windows;
 };
 
@@ -177,7 +178,7 @@ Linearised linearise(const std::vector<DriveLog>& logs, const std::vector<Window
                      const Expectation& beliefs, const VectorXd& theta, const Noise& noise) {
   const Eigen::Index p = theta.size();
   const VectorXd weight = beliefs.deviation.cwiseAbs2().cwiseInverse();
-  Linearised now{weight.asDiagonal(), weight.cwiseProduct(theta - beliefs.mean), MatrixXd::Zero(p, p), {}};
+  Linearised now{weight.asDiagonal(), weight.cwiseProduct(theta - beliefs.mean), {}, {}, {}};
   struct Side {
     Car car;
     std::vector<Actuators> actuators;
@@ -214,14 +215,40 @@ Linearised linearise(const std::vector<DriveLog>& logs, const std::vector<Window
     const MatrixXd by_start =
         root.asDiagonal() * derivatives_by_start(here.car, log, here.actuators[window.log], window, noise, r);
     Eliminated e = eliminate(by_start, root.asDiagonal() * by_theta, root.cwiseProduct(r));
-    now.information += e.by_theta.transpose() * e.by_theta;
-    const VectorXd slope = e.by_theta.transpose() * e.rest;
-    now.slope += slope;
-    now.disagreement += slope * slope.transpose();
+    now.informations.emplace_back(e.by_theta.transpose() * e.by_theta);
+    now.slopes.emplace_back(e.by_theta.transpose() * e.rest);
+    now.information += now.informations.back();
+    now.slope += now.slopes.back();
     e.by_theta.resize(0, 0);
     now.windows.push_back(std::move(e));
   }
   return now;
+}
+
+/// How much the numbers vary where one stretch of the log is left out, blocks of kBlock windows in turn (eq.
+/// 8).
+MatrixXd jackknife(const Linearised& at) {
+  constexpr std::size_t kBlock = 2;  // windows: a bend reaches into the next one
+  const Eigen::Index p = at.slope.size();
+  std::vector<VectorXd> moved;
+  VectorXd mean = VectorXd::Zero(p);
+  for (std::size_t first = 0; first < at.slopes.size(); first += kBlock) {
+    MatrixXd rest = at.information;
+    VectorXd slope = VectorXd::Zero(p);
+    for (std::size_t w = first; w < std::min(first + kBlock, at.slopes.size()); ++w) {
+      rest -= at.informations[w];
+      slope += at.slopes[w];
+    }
+    moved.emplace_back(rest.ldlt().solve(slope));
+    mean += moved.back();
+  }
+  const double blocks = static_cast<double>(moved.size());
+  mean /= blocks;
+  MatrixXd covariance = MatrixXd::Zero(p, p);
+  for (const VectorXd& each : moved) covariance += (each - mean) * (each - mean).transpose();
+  // Few blocks tell their own variance badly: Student's quantile in the place of 2.
+  const double quantile = 1.96 + 2.37 / std::max(1.0, blocks - 1.0);
+  return 0.25 * quantile * quantile * (blocks - 1.0) / blocks * covariance;
 }
 
 }  // namespace
@@ -272,13 +299,15 @@ WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& wi
     at = linearise(logs, windows, beliefs, theta, noise);
     if (is_done) break;
   }
-  const double count = static_cast<double>(windows.size());
   const MatrixXd inverse = at.information.ldlt().solve(MatrixXd::Identity(theta.size(), theta.size()));
-  const double more = count / std::max(1.0, count - static_cast<double>(theta.size()));
   const VectorXd weight = beliefs.deviation.cwiseAbs2().cwiseInverse();
-  const MatrixXd covariance = inverse * (more * at.disagreement + MatrixXd(weight.asDiagonal())) * inverse;
+  const MatrixXd covariance = jackknife(at) + inverse * weight.asDiagonal() * inverse;
   fit.deviation = listed(inverse.diagonal().cwiseMax(covariance.diagonal()).cwiseMax(0.0).cwiseSqrt());
   fit.theta = listed(theta);
+  fit.loss = now;
+  const VectorXd root = inverse.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const MatrixXd correlation = root.asDiagonal() * inverse * root.asDiagonal();
+  for (const auto& row : correlation.rowwise()) fit.correlations.emplace_back(row.begin(), row.end());
   // What is left, by kind.
   const Car car = beliefs.car(theta);
   const std::vector<Actuators> actuators = actuators_of(logs, car);

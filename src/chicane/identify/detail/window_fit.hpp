@@ -30,11 +30,13 @@ struct WindowFit {
   /// Standard deviations: the larger of what the residuals' size says, and of what the windows' disagreement
   /// does.
   std::vector<double> deviation;
-  Noise residual{};  ///< standard deviations of what is left, by its median
+  std::vector<std::vector<double>> correlations;  ///< of theta
+  Noise residual{};                               ///< standard deviations of what is left, by its median
+  double loss = 0.0;                              ///< of samples and beliefs
   int iterations = 0;
 };
 
-/// Multiple shooting (docs/identification.md, eq. 4–8): the numbers and the starts of all windows that
+/// Multiple shooting (docs/identification.md, eq. 4–9): the numbers and the starts of all windows that
 /// explain the samples best, by Levenberg and Marquardt with the starts eliminated window by window. Huber's
 /// loss. Windows keep their fitted starts.
 [[nodiscard]] WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,

@@ -10,7 +10,7 @@
 #include <map>
 #include <set>
 
-#include "chicane/sweep/detail/page_text.hpp"
+#include "chicane/sweep/page_text.hpp"
 
 namespace chicane::sweep::detail {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 /// Text of pages and tables.
-namespace chicane::sweep::detail {
+namespace chicane::sweep {
 
 /// For HTML, within an element or a quoted attribute.
 [[nodiscard]] std::string escaped(std::string_view text);
@@ -14,4 +14,4 @@ namespace chicane::sweep::detail {
 /// A value of RFC 4180, in quotes where it has to be.
 [[nodiscard]] std::string csv_cell(const std::string& text);
 
-}  // namespace chicane::sweep::detail
+}  // namespace chicane::sweep

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/sweep/detail/page_text.hpp"
+#include "chicane/sweep/page_text.hpp"
 
 #include <fmt/format.h>
 
-namespace chicane::sweep::detail {
+namespace chicane::sweep {
 
 std::string escaped(std::string_view text) {
   std::string result;
@@ -49,4 +49,4 @@ std::string csv_cell(const std::string& text) {
   return quoted + "\"";
 }
 
-}  // namespace chicane::sweep::detail
+}  // namespace chicane::sweep

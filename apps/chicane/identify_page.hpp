@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "chicane/identify/identification.hpp"
+
+namespace chicane::apps {
+
+/// What the page of an identification says beside its figures.
+struct IdentifyPageWords {
+  std::string logs;     ///< names of the files
+  std::string advice;   ///< sentences, a line each; may be empty
+  std::string command;  ///< that drives the found car
+};
+
+/// One HTML page without other files: the numbers with their intervals, measured against predicted motion on
+/// the held-out ends, residuals, correlations of the estimates, and the slip that the log covers.
+[[nodiscard]] std::string identify_page(const identify::Identification& found,
+                                        const IdentifyPageWords& words);
+
+}  // namespace chicane::apps
