@@ -3,7 +3,7 @@ import { REASON, RUNG, SPEED_LIMITER, STATUS } from '../protocol/messages';
 import type { Frame } from '../protocol/topics';
 import { alertsOf } from './alerts';
 import { COLUMN_COUNT, plotRow } from './columns';
-import { contradictionsOf, screenOf } from './contradictions';
+import { contradictionsOf, isSentence, screenOf } from './contradictions';
 import { History } from './history';
 import { pedalInWords, solverInWords, stateSentence } from './sentence';
 import { frameWith } from './test_messages';
@@ -75,6 +75,11 @@ describe('the page', () => {
       }
     expect(count).toBeGreaterThan(20_000);
     expect([...found]).toEqual([]);
+  });
+
+  it('takes no heap of words for a sentence', () => {
+    expect(['The drive gives no more.', 'Position, yaw or speed has not been measured.'].filter(isSentence).length).toBe(2);
+    expect(['Not known', 'Off the road', 'The last lap', 'Changed the command', ''].filter(isSentence)).toEqual([]);
   });
 
   it('would find what it looks for', () => {

@@ -29,7 +29,7 @@ import { cursorMark, pointAt, timeNear } from '../state/cursor';
 import { faultMarks } from '../state/faults';
 import { hindsight } from '../state/hindsight';
 import { layers } from '../state/layers';
-import { isSeen } from '../state/layout';
+import { hasInstruments, isRoomy, isSeen } from '../state/layout';
 import { limit } from '../state/limit';
 import { link } from '../state/link';
 import { live } from '../state/live';
@@ -40,6 +40,7 @@ import { seekTo } from '../state/seek';
 import { shown } from '../state/shown';
 import { everyFrame } from '../state/ticker';
 import { AlertsView, dangerNow, HudView } from './hud_view';
+import { InstrumentsView } from './instruments_view';
 import { LegendView } from './legend_view';
 
 export type View = 'behind' | 'above' | 'whole';
@@ -416,6 +417,7 @@ export function TrackView() {
       <AlertsView />
       <div class="map-foot">
         <HudView />
+        {hasInstruments.value && isRoomy.value && <InstrumentsView />}
         <LegendView bar={bar} scaleTop={scaleTop} ghostLabel={ghostLabel} />
       </div>
     </section>
