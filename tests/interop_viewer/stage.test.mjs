@@ -49,7 +49,9 @@ describe('on the picture', () => {
     const { page } = dashboard;
     await page.locator('body').press('m');
     await page.getByTestId('alerts').getByText('A person drives', { exact: true }).waitFor();
-    await page.locator('.rows dd', { hasText: /A person drives: the controller (plans beside|has no plan here)/ }).waitFor();
+    await page
+      .locator('.rows dd', { hasText: /A person drives: the controller (plans beside|has no plan here)/ })
+      .waitFor();
     await page.keyboard.down('ArrowUp');
     await page.keyboard.down('ArrowLeft');
     await page.locator('.alert.bad', { hasText: /Off the road, \d+\.\d m beyond the edge/ }).waitFor();

@@ -78,7 +78,9 @@ describe('the page', () => {
   });
 
   it('takes no heap of words for a sentence', () => {
-    expect(['The drive gives no more.', 'Position, yaw or speed has not been measured.'].filter(isSentence).length).toBe(2);
+    expect(
+      ['The drive gives no more.', 'Position, yaw or speed has not been measured.'].filter(isSentence).length,
+    ).toBe(2);
     expect(['Not known', 'Off the road', 'The last lap', 'Changed the command', ''].filter(isSentence)).toEqual([]);
   });
 
