@@ -149,6 +149,10 @@ describe('the page', () => {
     const share = (width * height) / (1366 * 768);
     assert.ok(share >= 0.6, `${(100 * share).toFixed(1)} % of the screen`);
     assert.deepEqual(await page.evaluate(misfits), []);
+    // The car stands in the middle of the picture, above what lies over its foot.
+    const map = await box(dashboard, '.map');
+    const foot = await box(dashboard, '.map-foot');
+    assert.ok(foot.y > map.y + map.height - 235 + 20, `${map.y + map.height - foot.y} px of the foot are covered`);
     const clock = async () => (await box(dashboard, '.instruments .clock')).x;
     const first = await clock();
     const why = await dashboard.text('why');

@@ -408,7 +408,7 @@ describe('the workbench', () => {
     await dialog.getByLabel('Cost', { exact: true }).uncheck();
     await dialog.getByRole('button', { name: 'Move Speed down' }).click();
     await dialog.getByLabel('Second panel').selectOption('laps');
-    await dialog.getByLabel('Instruments below the picture').uncheck();
+    await dialog.getByLabel('Instruments with the picture').uncheck();
     await dialog.getByLabel('Name').fill('mine');
     await dialog.getByRole('button', { name: 'Save' }).click();
     const link = await dialog.getByLabel('Link', { exact: true }).inputValue();

@@ -1,6 +1,6 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { CachedPicture, isSame } from '../draw/cached_picture';
-import { above, behind, type Camera, fitting, scaleBar, unproject, zoomed } from '../draw/camera';
+import { above, behind, type Camera, fitting, LEGEND_PX, NUMBERS_PX, scaleBar, unproject, zoomed } from '../draw/camera';
 import { carShape } from '../draw/car';
 import {
   drawCursor,
@@ -280,7 +280,8 @@ class Painter {
     const share = Number.isNaN(this.#heading) ? 1 : 1 - Math.exp(-elapsed / 250);
     const from = Number.isNaN(this.#heading) ? car.yaw : this.#heading;
     this.#heading = from + wrapAngle(car.yaw - from) * share;
-    return behind(car, this.#heading, width, height, metresAcross.value);
+    const foot = hasInstruments.value && isRoomy.value ? NUMBERS_PX : LEGEND_PX;
+    return behind(car, this.#heading, width, height, metresAcross.value, foot);
   }
 }
 
