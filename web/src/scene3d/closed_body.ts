@@ -1,8 +1,8 @@
 import type { Measures, Parts } from './car_mesh';
 import { type Colour, colourOf, mirroredRing, type Vector } from './mesh';
 
-// Bodies with a roof: a saloon, a van and a coupé. Lengths and heights are those of the shape, drawn for a car of its usual
-// length and scaled to the one driven; axles, track, wheels and width are those of the car.
+// Bodies with a roof: a saloon, a van and a coupé. Lengths and heights are those of the shape, drawn for a car of its
+// usual length and scaled to the one driven; axles, track, wheels and width are those of the car.
 
 const WHITE = colourOf('#f1f3f7');
 const ACCENT = colourOf('#2158c9');

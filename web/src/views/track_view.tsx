@@ -1,6 +1,16 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { CachedPicture, isSame } from '../draw/cached_picture';
-import { above, behind, type Camera, fitting, LEGEND_PX, NUMBERS_PX, scaleBar, unproject, zoomed } from '../draw/camera';
+import {
+  above,
+  behind,
+  type Camera,
+  fitting,
+  LEGEND_PX,
+  NUMBERS_PX,
+  scaleBar,
+  unproject,
+  zoomed,
+} from '../draw/camera';
 import { carShape } from '../draw/car';
 import {
   drawCursor,
