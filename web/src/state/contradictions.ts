@@ -45,8 +45,8 @@ const MOST_WORDS = 14;
 /** What the sentences of the page are built round; a new sentence with another verb adds it here. */
 const VERBS = new Set(
   `are brakes brings can cannot changed contains contradict converged could did do does drives follows found frees give
-  gives has have holds is makes may move moves must plans repeat returns should stands stops take takes turn turns uses
-  would`.split(/\s+/),
+  gives has have holds is makes may move moves must plans repeat returns should stands stopped stops take takes turn
+  turns uses would`.split(/\s+/),
 );
 /** What may stand before a verb as its subject: no sentence of the page is an order. */
 const SUBJECT = /^(a|an|the|it|this|position|measured speed|reset)\b/i;
