@@ -43,8 +43,8 @@ export function repaintSeldom(interval) {
 }
 
 /**
- * Pages that tests have left, by the browser and the options they were opened with. To load the page anew in one of
- * them takes a third of the processor time of a context of its own.
+ * Pages that tests have left, by the browser and the options that a page keeps for life. To load the page anew in one
+ * of them takes a quarter of the processor time of a context of its own.
  */
 const left = new WeakMap();
 /** What they show meanwhile: a page of the same site as the program's, for which the browser keeps its process. */
@@ -68,20 +68,24 @@ export class DashboardPage {
    */
   static async open(browser, url, { tab = 'drive', state = 'Live', fluent = false, ...options } = {}) {
     const shape = { ...LAPTOP, ...options };
-    const key = JSON.stringify([fluent, shape]);
+    const { viewport, colorScheme, ...kept } = shape;
+    const key = JSON.stringify([fluent, kept]);
     const shelf = left.get(browser) ?? left.set(browser, new Map()).get(browser);
     const dashboard = shelf.get(key) ?? (await DashboardPage.#fresh(browser, shape, fluent));
     shelf.delete(key);
+    await dashboard.page.setViewportSize(viewport);
+    await dashboard.page.emulateMedia({ colorScheme });
     dashboard.leave = async () => {
       const { page } = dashboard;
       for (const other of page.context().pages()) if (other !== page) await other.close();
       await page.evaluate(() => localStorage.clear()).catch(() => undefined); // a file has none
+      dashboard.home = null;
       await page.goto(await rest());
-      await page.setViewportSize(shape.viewport);
-      await page.emulateMedia({ media: null, reducedMotion: null, colorScheme: shape.colorScheme });
+      await page.emulateMedia({ media: null, reducedMotion: null });
       shelf.set(key, dashboard);
     };
     dashboard.complaints.length = 0;
+    dashboard.home = new URL(url).origin;
     await dashboard.page.goto(`${url}#${tab}`);
     await dashboard.page.getByText(state, { exact: true }).waitFor();
     return dashboard;
@@ -100,12 +104,18 @@ export class DashboardPage {
     page.on('response', (response) => {
       if (response.status() >= 400) complaints.push(`${response.status()} ${response.url()}`);
     });
-    return new DashboardPage(page, complaints);
+    const dashboard = new DashboardPage(page, complaints);
+    page.on('request', (request) => {
+      const isElsewhere = /^(https?|wss?):/.test(request.url()) && new URL(request.url()).origin !== dashboard.home;
+      if (dashboard.home !== null && isElsewhere) complaints.push(`asked for ${request.url()}`);
+    });
+    return dashboard;
   }
 
   constructor(page, complaints) {
     this.page = page;
     this.complaints = complaints;
+    this.home = null; // of the page: it may ask for nothing elsewhere
     this.leave = () => page.context().close();
   }
 

@@ -11,7 +11,6 @@ import { pathToFileURL } from 'node:url';
 import { launch } from './browser.mjs';
 import { startDrive } from './chicane_drive.mjs';
 import { DashboardPage, PHONE } from './dashboard_page.mjs';
-import { PATIENCE } from './patience.mjs';
 
 const program = process.env.CHICANE ?? 'chicane';
 const folder = mkdtempSync(join(tmpdir(), 'chicane-recording-'));
@@ -55,23 +54,9 @@ function addressOf(child) {
 
 /** The page once its recording is read to the end. */
 async function open(address, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1366, height: 768 }, ...options });
-  context.setDefaultTimeout(PATIENCE);
-  const page = await context.newPage();
-  const complaints = [];
-  page.on('console', (message) => {
-    if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
-  });
-  page.on('pageerror', (error) => complaints.push(String(error)));
-  page.on('request', (request) => {
-    if (!request.url().startsWith(new URL(address).origin) && /^(https?|wss?):/.test(request.url()))
-      complaints.push(`asked for ${request.url()}`);
-  });
-  await page.goto(`${address}#laps`);
-  dashboard = new DashboardPage(page, complaints);
-  await page.getByText('Recording', { exact: true }).waitFor();
-  await page.getByLabel('Looking for landmarks').waitFor({ state: 'detached' });
-  return page;
+  dashboard = await DashboardPage.open(browser, address, { tab: 'laps', state: 'Recording', ...options });
+  await dashboard.page.getByLabel('Looking for landmarks').waitFor({ state: 'detached' });
+  return dashboard.page;
 }
 /** 3D drawn by the processor is said to be slow. */
 const isAboutGraphics = (text) => /GPU|WebGL|GL Driver/i.test(text);

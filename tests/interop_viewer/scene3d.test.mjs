@@ -25,14 +25,44 @@ const countDrawing = () => {
   }
 };
 
-/** The page draws sixteen times a second, or with `fluent` as often as the browser repaints. */
-async function open(browser, { storage = {}, script, fluent = false, ...options } = {}) {
+/** Pages that tests have left, by browser, drawing and size: a context of its own costs more than all the rest. */
+const left = new WeakMap();
+
+/**
+ * The page with nothing in its storage but `storage`. It draws sixteen times a second, or with `fluent` as often as the
+ * browser repaints.
+ */
+async function open(browser, { storage = {}, fluent = false, ...options } = {}) {
+  const shelf = left.get(browser) ?? left.set(browser, new Map()).get(browser);
+  const key = JSON.stringify([fluent, options]);
+  const opened = shelf.get(key) ?? (await fresh(browser, { fluent, ...options }));
+  shelf.delete(key);
+  const { page, complaints } = opened;
+  await page.goto(`${demo.url}nothing`); // of the same origin, whose storage this is
+  await page.evaluate((entries) => {
+    localStorage.clear();
+    for (const [name, value] of entries) localStorage.setItem(name, JSON.stringify(value));
+  }, Object.entries(storage));
+  complaints.length = 0;
+  await page.goto(demo.url);
+  await page.getByText('Live', { exact: true }).waitFor();
+  const leave = async () => {
+    await page.goto('about:blank');
+    await page.emulateMedia({ colorScheme: 'light', reducedMotion: null });
+    shelf.set(key, opened);
+  };
+  return { page, complaints, leave };
+}
+
+async function fresh(browser, { script, fluent, ...options }) {
   const context = await browser.newContext({ viewport: { width: 820, height: 560 }, colorScheme: 'light', ...options });
   context.setDefaultTimeout(PATIENCE);
   const page = await context.newPage();
   const complaints = [];
   page.on('console', (message) => {
-    // What drivers say of a canvas that is read back for a picture without a graphics card.
+    // What drivers say of a canvas that is read back for a picture without a graphics card; and that there is no page
+    // of the name that open() asks for.
+    if (message.location().url.endsWith('/nothing')) return;
     if (['error', 'warning'].includes(message.type()) && !message.text().includes('GL Driver Message'))
       complaints.push(message.text());
   });
@@ -40,17 +70,7 @@ async function open(browser, { storage = {}, script, fluent = false, ...options 
   if (!fluent) await page.addInitScript(repaintSeldom, 60);
   if (script) await page.addInitScript(script);
   await page.addInitScript(countDrawing);
-  await page.addInitScript((entries) => {
-    try {
-      if (localStorage.length === 0)
-        for (const [key, value] of entries) localStorage.setItem(key, JSON.stringify(value));
-    } catch {
-      // A test without storage.
-    }
-  }, Object.entries(storage));
-  await page.goto(demo.url);
-  await page.getByText('Live', { exact: true }).waitFor();
-  return { context, page, complaints };
+  return { page, complaints };
 }
 
 const in3d = { 'chicane.dimension': '3d' };
@@ -87,7 +107,7 @@ describe('the 3D picture', () => {
   after(() => browser.close());
 
   it('is drawn when chosen, from every camera, and chosen again after a reload', async () => {
-    const { context, page, complaints } = await open(browser);
+    const { page, complaints, leave } = await open(browser);
     // Without a graphics card the map comes first, and says why.
     await page.getByText('No graphics card here').waitFor();
     assert.equal(await page.locator('canvas.map-3d').count(), 0);
@@ -109,11 +129,11 @@ describe('the 3D picture', () => {
     assert.equal(await button(page, 'Free').getAttribute('aria-pressed'), 'true');
     assert.ok((await page.locator('canvas.map-2d').boundingBox()).width < 200, 'the map stays, small');
     assert.deepEqual(complaints, []);
-    await context.close();
+    await leave();
   });
 
   it('comes without the page standing still for it', async (test) => {
-    const { context, page, complaints } = await open(browser, { storage: { 'chicane.dimension': '2d' }, fluent: true });
+    const { page, complaints, leave } = await open(browser, { storage: { 'chicane.dimension': '2d' }, fluent: true });
     const dashboard = new DashboardPage(page, complaints);
     await dashboard.until(
       () => dashboard.colours('canvas.map-2d'),
@@ -144,11 +164,11 @@ describe('the 3D picture', () => {
     // the wait holds on a busy machine too.
     assert.ok(longest < Math.max(1000, took / 2), `${longest} ms without an answer, of ${took} ms`);
     assert.deepEqual(complaints, []);
-    await context.close();
+    await leave();
   });
 
   it('obeys the keyboard: cameras, map, and turning the free camera', async () => {
-    const { context, page, complaints } = await open(browser, { storage: in3d });
+    const { page, complaints, leave } = await open(browser, { storage: in3d });
     await ready(page);
     for (const name of ['Chase', 'Top', 'Cockpit', 'Free']) {
       await page.waitForFunction(
@@ -175,11 +195,11 @@ describe('the 3D picture', () => {
     await ready(page);
     await button(page, 'Resume').click();
     assert.deepEqual(complaints, []);
-    await context.close();
+    await leave();
   });
 
   it('rests while nothing moves, and goes on after a reset', async () => {
-    const { context, page, complaints } = await open(browser, { storage: in3d });
+    const { page, complaints, leave } = await open(browser, { storage: in3d });
     await ready(page);
     await button(page, 'Pause').click();
     await page.getByText('Paused', { exact: true }).waitFor();
@@ -190,11 +210,11 @@ describe('the 3D picture', () => {
     await page.waitForFunction((before) => globalThis.drawn > before, still);
     assert.ok((await picture(page)).colours >= 30);
     assert.deepEqual(complaints, []);
-    await context.close();
+    await leave();
   });
 
   it('gives way to the map when the browser takes the context, and comes back when asked', async () => {
-    const { context, page } = await open(browser, { storage: in3d });
+    const { page, leave } = await open(browser, { storage: in3d });
     await ready(page);
     await page.evaluate(() =>
       document.querySelector('canvas.map-3d').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext(),
@@ -204,7 +224,7 @@ describe('the 3D picture', () => {
     await button(page, '3D').click();
     await ready(page);
     assert.ok((await picture(page)).colours >= 30);
-    await context.close();
+    await leave();
   });
 
   it('has nothing that axe objects to, in the light, in the dark, still, and on a phone', async () => {
@@ -219,27 +239,27 @@ describe('the 3D picture', () => {
       }));
       assert.ok(content <= width, `${name}: ${content} px of content on ${width} px`);
     };
-    const { context, page, complaints } = await open(browser, { storage });
+    const { page, complaints, leave } = await open(browser, { storage });
     await isGood(page, 'in the light');
     await page.emulateMedia({ colorScheme: 'dark' });
     await isGood(page, 'in the dark');
     await page.emulateMedia({ reducedMotion: 'reduce' });
     await page.reload();
     await isGood(page, 'for readers who want little motion');
-    await context.close();
+    await leave();
     const phone = await open(browser, {
       storage,
       ...{ viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true },
     });
     await isGood(phone.page, 'on a phone');
-    await phone.context.close();
+    await phone.leave();
     assert.deepEqual([...complaints, ...phone.complaints], []);
   });
 });
 
 it('is replaced by the map, with a note, where there is no WebGL', async () => {
   const browser = await launch('--disable-3d-apis');
-  const { context, page, complaints } = await open(browser);
+  const { page, complaints } = await open(browser);
   await page.getByText('This browser offers no WebGL 2').waitFor();
   const dashboard = new DashboardPage(page);
   await dashboard.until(
@@ -255,7 +275,6 @@ it('is replaced by the map, with a note, where there is no WebGL', async () => {
   await button(page, '2D').click();
   await page.getByText('This browser offers no WebGL 2').waitFor({ state: 'detached' });
   assert.deepEqual(complaints, []);
-  await context.close();
   await browser.close();
 });
 
@@ -267,11 +286,12 @@ it('works where the browser keeps nothing', async () => {
         throw new DOMException('denied', 'SecurityError');
       },
     });
-  const { context, page, complaints } = await open(browser, { script });
+  const { page, complaints } = await fresh(browser, { script });
+  await page.goto(demo.url);
+  await page.getByText('Live', { exact: true }).waitFor();
   await button(page, '3D').click();
   await ready(page);
   assert.ok((await picture(page)).colours >= 30);
   assert.deepEqual(complaints, []);
-  await context.close();
   await browser.close();
 });

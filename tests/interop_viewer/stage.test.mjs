@@ -2,7 +2,8 @@
 // The picture and what lies on it: speed, why, alerts, the cursor; and how the page fits windows, fingers and eyes.
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { DashboardPage, PHONE, TABS } from './dashboard_page.mjs';
+import { DashboardPage, differentFrom, PHONE, TABS } from './dashboard_page.mjs';
+import { misfits } from './fit.mjs';
 import { browserAndDrive } from './here.mjs';
 
 const here = browserAndDrive(['--track', 'oval', '--pace', '3']);
@@ -48,7 +49,9 @@ describe('on the picture', () => {
     const { page } = dashboard;
     await page.locator('body').press('m');
     await page.getByTestId('alerts').getByText('A person drives', { exact: true }).waitFor();
-    await page.locator('.rows dd', { hasText: 'A person drives: the controller plans beside' }).waitFor();
+    await page
+      .locator('.rows dd', { hasText: /A person drives: the controller (plans beside|has no plan here)/ })
+      .waitFor();
     await page.keyboard.down('ArrowUp');
     await page.keyboard.down('ArrowLeft');
     await page.locator('.alert.bad', { hasText: /Off the road, \d+\.\d m beyond the edge/ }).waitFor();
@@ -136,6 +139,25 @@ describe('the page', () => {
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
     await page.getByLabel('Change to light colours').click();
     assert.equal(await background(page), light);
+    await dashboard.close();
+  });
+
+  it('gives the picture three fifths of a common screen, and no number moves when the reason changes', async () => {
+    const dashboard = await open();
+    const { page } = dashboard;
+    const { width, height } = await box(dashboard, 'canvas.map-2d');
+    const share = (width * height) / (1366 * 768);
+    assert.ok(share >= 0.6, `${(100 * share).toFixed(1)} % of the screen`);
+    assert.deepEqual(await page.evaluate(misfits), []);
+    // The car stands in the middle of the picture, above what lies over its foot.
+    const map = await box(dashboard, '.map');
+    const foot = await box(dashboard, '.map-foot');
+    assert.ok(foot.y > map.y + map.height - 235 + 20, `${map.y + map.height - foot.y} px of the foot are covered`);
+    const clock = async () => (await box(dashboard, '.instruments .clock')).x;
+    const first = await clock();
+    const why = await dashboard.text('why');
+    await dashboard.until(() => dashboard.text('why'), differentFrom(why), 'another reason');
+    assert.equal(await clock(), first);
     await dashboard.close();
   });
 

@@ -273,7 +273,8 @@ TEST(RosMessages, DiagnosticsSayInWordsWhoIsInControl) {
   };
   EXPECT_EQ(first(), std::pair(1, std::string("the car follows the last plan")));
   frame.result.report.rung = controller::Rung::kBrake;
-  EXPECT_EQ(first(), std::pair(2, std::string("the car follows the last plan and brakes fully")));
+  EXPECT_EQ(first(),
+            std::pair(2, std::string("the car follows the last plan and brakes as hard as is useful")));
   frame.result.report.rung = controller::Rung::kController;
   EXPECT_EQ(first(), std::pair(1, std::string("the command gate changed the command")));
   frame.result.report.gated = false;

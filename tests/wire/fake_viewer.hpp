@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cstring>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -31,18 +32,24 @@ class FakeServer final : public net::Server {
             std::uint32_t topic) override {
     sent.push_back({to, std::move(bytes), binary, delivery, topic});
   }
-  void close(net::ConnectionId, std::uint16_t, std::string_view) override {}
+  void close(net::ConnectionId id, std::uint16_t, std::string_view) override { closed.push_back(id); }
   void run_after(std::chrono::nanoseconds delay, std::function<void()> task) override {
+    const std::lock_guard lock(mutex);
     tasks.emplace_back(delay, std::move(task));
   }
   [[nodiscard]] std::size_t waiting(net::ConnectionId) const override { return unread; }
   /// Everything that was waiting happens, once.
   void pass_time() {
-    for (auto& [delay, task] : std::exchange(tasks, {})) task();
+    std::unique_lock lock(mutex);
+    auto due = std::exchange(tasks, {});
+    lock.unlock();
+    for (auto& [delay, task] : due) task();
   }
   std::vector<Sent> take() { return std::exchange(sent, {}); }
 
   std::vector<Sent> sent;
+  std::vector<net::ConnectionId> closed;
+  std::mutex mutex;  ///< of tasks: the end of a run is waited for on another thread
   std::vector<std::pair<std::chrono::nanoseconds, std::function<void()>>> tasks;
   std::size_t unread = 0;  ///< messages that wait for each connection
 };

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What a viewer that comes late gets, in which order, and how much at a time.
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
 
 #include "wire/fake_viewer.hpp"
 
@@ -120,6 +123,81 @@ TEST_F(ViewerOfAPast, IsPacedByWhatItHasRead) {
   EXPECT_EQ(subscription_of(next.at(next.size() - 2)), 5U) << "what is left is told last";
   endpoint->on_message(1, read, false);
   EXPECT_THAT(answer()["message"].get<std::string>(), HasSubstr("does not ask for pacing"));
+}
+
+TEST_F(ViewerOfAPast, HasTheLastLapBeforeItIsSentAway) {
+  begin();
+  connect(2, false, "/viewer?paced");
+  endpoint->on_close(1, "");
+  endpoint->on_message(2, subscribe(4, "/chicane/frame"), false);
+  endpoint->on_message(2, subscribe(5, "/chicane/lap"), false);
+  std::size_t sent = 0;
+  int laps = 0;
+  const auto look = [&] {
+    for (const auto& message : server.take()) {
+      if (!message.binary) continue;
+      sent += message.bytes->size();
+      if (message.bytes->front() == 1 && subscription_of(message) == 5) ++laps;
+    }
+  };
+  drive(100);  // of which it reads nothing
+  look();
+  std::size_t read = 0;
+  endpoint->publish(telemetry::CompletedLap{.lap = 1}, frame.time);
+  std::atomic<bool> is_over{false};
+  std::thread end([&] {
+    endpoint->dismiss();
+    is_over = true;
+  });
+  for (int i = 0; i < 10'000 && server.closed.empty(); ++i) {
+    read = std::min(sent, read + 100);
+    endpoint->on_message(2, json{{"op", "received"}, {"bytes", read}, {"at", clock}}.dump(), false);
+    std::this_thread::sleep_for(std::chrono::microseconds{100});
+    server.pass_time();
+    look();
+  }
+  EXPECT_EQ(server.closed, std::vector<net::ConnectionId>{2});
+  EXPECT_EQ(laps, 1) << "the newest frame may go beyond the window, laps may not";
+  endpoint->on_close(2, "");
+  while (!is_over) {
+    server.pass_time();
+    std::this_thread::sleep_for(std::chrono::milliseconds{1});
+  }
+  end.join();
+}
+
+/// How long the end of a run waits for a viewer that has not read its past.
+class ViewerAtTheEnd : public ViewerOfAPast {
+ protected:
+  using Clock = std::chrono::steady_clock;
+  using Milliseconds = std::chrono::milliseconds;
+  Clock::duration wait(bool reads, const ViewerEndpoint::Patience& patience) {
+    begin();
+    connect(2, false, "/viewer?past&paced");
+    endpoint->on_message(2, subscribe_past(5), false);
+    drive(20);
+    const auto begin = Clock::now();
+    std::atomic<bool> is_over{false};
+    std::thread end([&] {
+      endpoint->dismiss(patience);
+      is_over = true;
+    });
+    for (std::size_t read = 0; !is_over; read += reads ? 1 : 0) {
+      endpoint->on_message(2, json{{"op", "received"}, {"bytes", read}, {"at", clock}}.dump(), false);
+      server.pass_time();
+      std::this_thread::sleep_for(Milliseconds{2});
+    }
+    end.join();
+    return Clock::now() - begin;
+  }
+};
+
+TEST_F(ViewerAtTheEnd, IsWaitedForWhileItReads) {
+  EXPECT_GE(wait(true, {Milliseconds{200}, Milliseconds{600}}), Milliseconds{600});
+}
+
+TEST_F(ViewerAtTheEnd, IsNotWaitedForWhenItReadsNothing) {
+  EXPECT_LT(wait(false, {Milliseconds{50}, Milliseconds{20'000}}), Milliseconds{10'000});
 }
 
 TEST_F(Viewer, GetsAllLapsBeforeTheFramesOfBefore) {

@@ -18,7 +18,7 @@
   ROW(kController, "controller", kOk, "the controller drives")                                                   \
   ROW(kShiftedPlan, "shifted_plan", kWarning, "the car follows the last plan")                                   \
   ROW(kHoldAndBrake, "hold_and_brake", kError, "the car follows the last plan and brakes gently")                \
-  ROW(kBrake, "brake", kError, "the car follows the last plan and brakes fully")                                 \
+  ROW(kBrake, "brake", kError, "the car follows the last plan and brakes as hard as is useful")                      \
   ROW(kReturnToRoad, "return_to_road", kWarning, "the controller returns to the road at walking pace")           \
   ROW(kStopOnRoad, "stop_on_road", kError, "the controller has no plan and stops the car along the road")        \
   ROW(kGuardStop, "guard_stop", kError, "the guard stops the car on the known road")

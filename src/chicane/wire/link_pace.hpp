@@ -53,6 +53,8 @@ class LinkPace {
 
   /// Bytes that were sent and not acknowledged.
   [[nodiscard]] std::size_t in_flight() const { return static_cast<std::size_t>(sent_ - received_); }
+  /// Bytes that the reader has acknowledged.
+  [[nodiscard]] std::uint64_t received() const { return received_; }
   [[nodiscard]] std::size_t window() const { return window_; }
   /// `reserve`: beyond the window, for what must not wait behind other things [byte].
   [[nodiscard]] bool has_room(std::size_t reserve = 0) const { return in_flight() < window_ + reserve; }

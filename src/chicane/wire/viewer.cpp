@@ -144,25 +144,43 @@ void ViewerEndpoint::set_end(std::string kind, std::string reason) {
   });
 }
 
-void ViewerEndpoint::dismiss(std::chrono::milliseconds patience) {
+void ViewerEndpoint::dismiss(const Patience& patience) {
   if (server_ == nullptr) return;
   using Clock = std::chrono::steady_clock;
-  const auto end = Clock::now() + patience;
+  const auto begin = Clock::now();
+  auto heard = begin;
+  std::map<net::ConnectionId, std::pair<std::size_t, std::uint64_t>> reading;  // what waits, what was read
   std::promise<void> gone;
   std::set<net::ConnectionId> told;
   bool has_ticked = false;
   std::function<void()> look = [&] {
     if (!std::exchange(has_ticked, true)) tick();
     for (const auto& [id, client] : clients_) {
-      const bool has_all =
-          server_->waiting(id) == 0 && client.past_before == 0 && client.owed.empty() && !client.is_behind;
-      if (has_all && told.insert(id).second) server_->close(id, kGoingAway, "the run is over");
+      const std::pair<std::size_t, std::uint64_t> now{server_->waiting(id),
+                                                      client.pace ? client.pace->received() : 0};
+      if (std::exchange(reading[id], now) != now) heard = Clock::now();
+      if (has_all(id, client) && told.insert(id).second) {
+        heard = Clock::now();
+        server_->close(id, kGoingAway, "the run is over");
+      }
     }
-    if (clients_.empty() || Clock::now() >= end) return gone.set_value();
+    const auto now = Clock::now();
+    if (clients_.empty() || now >= heard + patience.silent || now >= begin + patience.whole)
+      return gone.set_value();
     server_->run_after(std::chrono::milliseconds{5}, look);
   };
   server_->run_after(std::chrono::nanoseconds{0}, look);
   gone.get_future().wait();
+}
+
+/// Nothing of the run is left that it has asked for.
+bool ViewerEndpoint::has_all(net::ConnectionId id, const Client& client) const {
+  const auto is_told = [&](std::uint32_t channel, const KeptMessage* next) {
+    return next == nullptr || !client.subscriptions.contains(channel);
+  };
+  return server_->waiting(id) == 0 && client.past_before == 0 && client.owed.empty() && !client.is_behind &&
+         is_told(lap_channel(), memory_.lap_from(client.next_lap)) &&
+         is_told(change_channel(), memory_.change_from(client.next_change));
 }
 
 void ViewerEndpoint::change_run(std::function<void(protocol::Run&)> change) {

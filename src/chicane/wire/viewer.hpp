@@ -80,9 +80,15 @@ class ViewerEndpoint final : public Endpoint {
   /// The run is over: why in a word ("finished", "stopped", "failed") and in a sentence. A run that begins
   /// anew is not over any more. Any thread.
   void set_end(std::string kind, std::string reason);
-  /// Sends what is not sent yet and closes the connections; comes back when viewers have gone, or after
-  /// `patience`. The thread that runs the experiment, at its end.
-  void dismiss(std::chrono::milliseconds patience = std::chrono::milliseconds{1000});
+  /// How long the end of a run waits for viewers.
+  struct Patience {
+    std::chrono::milliseconds silent{2000};  ///< without any of them reading
+    std::chrono::milliseconds whole{10'000};
+  };
+  /// Sends what is not sent yet and closes the connections; comes back when viewers have gone, or when
+  /// `patience` is over. The thread that runs the experiment, at its end.
+  void dismiss(const Patience& patience);
+  void dismiss() { dismiss(Patience{}); }
 
   void on_start(net::Server& server) override;
   [[nodiscard]] net::UpgradeAnswer on_upgrade(const net::UpgradeRequest& request) override;
@@ -130,6 +136,7 @@ class ViewerEndpoint final : public Endpoint {
   void deliver(net::ConnectionId id, Client& client, net::Bytes bytes);
   [[nodiscard]] std::size_t room_for(net::ConnectionId id, const Client& client) const;
   [[nodiscard]] bool has_room(net::ConnectionId id, const Client& client) const;
+  [[nodiscard]] bool has_all(net::ConnectionId id, const Client& client) const;
   [[nodiscard]] double now() const;
   void send_cadence(protocol::Cadence cadence);
   void send_channel(std::uint32_t channel);

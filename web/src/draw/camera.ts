@@ -54,13 +54,22 @@ export function fitting(box: Box, width: number, height: number, margin: number)
   };
 }
 
-const FOOT = 84; // height of the legend at the bottom [px]
+/** What lies over the foot of the picture in the way of the car [px]: the legend, and the numbers above it. */
+export const LEGEND_PX = 84;
+export const NUMBERS_PX = 235;
 
-/** The car below the middle and above the legend, looking up the screen; `heading` is a smoothed yaw. */
-export function behind(car: Point, heading: number, width: number, height: number, metresAcross: number): Camera {
+/** The car below the middle and above the `foot`, looking up the screen; `heading` is a smoothed yaw. */
+export function behind(
+  car: Point,
+  heading: number,
+  width: number,
+  height: number,
+  metresAcross: number,
+  foot: number = LEGEND_PX,
+): Camera {
   return {
     centre: car,
-    at: { x: width / 2, y: Math.min(height * 0.72, Math.max(height / 2, height - FOOT)) },
+    at: { x: width / 2, y: Math.min(height * 0.72, Math.max(height / 2, height - foot)) },
     scale: Math.min(width, height) / metresAcross,
     rotation: Math.PI / 2 - heading,
   };

@@ -37,8 +37,7 @@ export const driverInWords = (frame: Pick<Frame, 'is_manual' | 'rung' | 'guard_r
 export function rungInWords(rung: number, reason: number = REASON.NONE): Sentence {
   const source = RUNG_WORDS[rung];
   if (!source) return { severity: 'bad', text: `Unknown rung ${rung}` };
-  // How hard, the pedal beside it says: full braking is what is useful at this speed.
-  const text = capital(source.text.replace(/ fully$/, ''));
+  const text = capital(source.text);
   const why = REASON_WORDS[reason]?.severity ?? 'bad';
   const isReplaced = rung !== RUNG.CONTROLLER;
   const isHeldBack = !isReplaced && why === 'warning';

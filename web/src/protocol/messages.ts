@@ -153,7 +153,7 @@ export const RUNG = {
   SHIFTED_PLAN: 1,
   /** the car follows the last plan and brakes gently */
   HOLD_AND_BRAKE: 2,
-  /** the car follows the last plan and brakes fully */
+  /** the car follows the last plan and brakes as hard as is useful */
   BRAKE: 3,
   /** the controller returns to the road at walking pace */
   RETURN_TO_ROAD: 4,
@@ -387,7 +387,7 @@ export const RUNG_WORDS: Words = {
   },
   [RUNG.BRAKE]: {
     severity: 'bad',
-    text: 'the car follows the last plan and brakes fully',
+    text: 'the car follows the last plan and brakes as hard as is useful',
   },
   [RUNG.RETURN_TO_ROAD]: {
     severity: 'warning',

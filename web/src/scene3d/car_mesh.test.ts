@@ -29,6 +29,16 @@ function volume({ positions }: MeshData): number {
   return sum / 6;
 }
 
+/** Corners that the other side does not have. */
+function missingInMirror(part: MeshData): string[] {
+  const key = ([x, y, z]: number[], side: number): string =>
+    [x, (y ?? 0) * side || 0, z].map((v) => (v ?? 0).toFixed(4).replace('-0.0000', '0.0000')).join();
+  const here = new Set(corners(part).map((corner) => key(corner, 1)));
+  return corners(part)
+    .map((corner) => key(corner, -1))
+    .filter((corner) => !here.has(corner));
+}
+
 describe('the car', () => {
   it('has the given length and width, and stands on the road', () => {
     const all = [...corners(model.paint), ...corners(model.dark)];
@@ -45,13 +55,8 @@ describe('the car', () => {
   });
 
   it('looks the same in a mirror', () => {
-    for (const part of [model.paint, model.dark, model.lamps, model.headlamps]) {
-      const key = ([x, y, z]: number[], side: number): string =>
-        [x, (y ?? 0) * side || 0, z].map((v) => (v ?? 0).toFixed(4).replace('-0.0000', '0.0000')).join();
-      const here = new Set(corners(part).map((corner) => key(corner, 1)));
-      const there = new Set(corners(part).map((corner) => key(corner, -1)));
-      expect([...there].filter((corner) => !here.has(corner))).toEqual([]);
-    }
+    for (const part of [model.paint, model.dark, model.lamps, model.headlamps])
+      expect(missingInMirror(part)).toEqual([]);
   });
 
   it('turns its skin outwards', () => {
@@ -83,6 +88,34 @@ describe('the car', () => {
     });
     expect(toy.wheelRadius).toBeLessThan(0.06);
     expect(Math.max(...corners(toy.paint).map(([, , z]) => z ?? NaN))).toBeLessThan(0.15);
+  });
+});
+
+describe('bodies', () => {
+  const BODIES = ['formula-student', 'indy', 'road-car', 'vw-vanagon', 'udacity', 'f1tenth'];
+  const all = BODIES.map((car) => carModel({ ...SIZE, car }));
+
+  it('are six, each closed, as long as the car, and the same in a mirror', () => {
+    expect(new Set(all.map(({ paint, dark }) => `${paint.positions.join()} ${dark.positions.join()}`)).size).toBe(6);
+    for (const [i, body] of all.entries()) {
+      const skin = [...corners(body.paint), ...corners(body.dark)];
+      const xs = skin.map(([x]) => x ?? NaN);
+      expect(Math.max(...xs) - Math.min(...xs), BODIES[i]).toBeCloseTo(SIZE.body_length_m, 0);
+      expect(Math.max(...skin.map(([, y]) => y ?? NaN)), BODIES[i]).toBeLessThanOrEqual(body.width / 2 + 0.1);
+      for (const part of [body.paint, body.dark, body.lamps, body.headlamps, body.wheel]) {
+        expect(volume(part), BODIES[i]).toBeGreaterThan(0);
+        expect(part.positions.every(Number.isFinite), BODIES[i]).toBe(true);
+        if (part !== body.wheel) expect(missingInMirror(part), BODIES[i]).toEqual([]);
+      }
+      expect(body.paint.positions.length / 9, BODIES[i]).toBeLessThan(3000);
+    }
+  });
+
+  it('belong to cars by name, and to small ones of any name', () => {
+    const toy = { ...SIZE, body_length_m: 0.5, front_axle_m: 0.16, rear_axle_m: 0.15 };
+    expect(carModel({ ...toy, car: 'mine' }).helmet.positions).toHaveLength(0);
+    expect(carModel({ ...toy, car: 'orca-1-43' }).helmet.positions.length).toBeGreaterThan(0);
+    expect(carModel({ ...SIZE, car: 'mine' })).toEqual(model);
   });
 });
 

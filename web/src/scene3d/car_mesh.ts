@@ -1,6 +1,7 @@
 import type { CarSize } from '../draw/car';
-import { addClosedBody, type Profile, SALOON, VAN } from './closed_body';
+import { addClosedBody, COUPE, type Profile, SALOON, VAN } from './closed_body';
 import { type Colour, colourOf, MeshBuilder, type MeshData, mirroredRing, type Vector } from './mesh';
+import { addModelCar } from './model_car';
 
 /** The parts of a car in its own axes: x forward, y left, z up from the road, origin at the centre of mass [m]. */
 export interface CarModel {
@@ -321,19 +322,54 @@ function addWishbones({ dark }: Parts, { k, front, rear, radius, tyre, halfTrack
   }
 }
 
-/** Cars with a roof, by name; all others are open. */
-const PROFILES: Readonly<Record<string, Profile>> = { 'road-car': SALOON, 'bmw-320i': SALOON, 'vw-vanagon': VAN };
+/** What an Indy car has beside other single-seaters: the screen round its driver, and a fin along its engine. */
+function addScreenAndFin({ paint, dark }: Parts, { k, rear, tub, at }: Measures): void {
+  const frame = 0.05 * k;
+  for (const side of [-1, 1]) {
+    dark.rod([at(0.37), side * tub * 0.86, 0.7 * k], [at(0.36), side * tub * 0.7, 0.98 * k], frame, SOOT);
+    dark.rod([at(0.36), side * tub * 0.7, 0.98 * k], [at(0.52), side * tub * 0.66, 0.95 * k], frame, SOOT);
+    dark.rod([at(0.52), side * tub * 0.66, 0.95 * k], [at(0.62), side * tub * 0.3, 0.92 * k], frame, SOOT);
+    dark.rod([at(0.62), side * tub * 0.3, 0.92 * k], [at(0.64), 0, 0.91 * k], frame, SOOT);
+  }
+  dark.rod([at(0.64), 0, 0.91 * k], [at(0.74), 0, 0.64 * k], frame, SOOT);
+  const fin = (x: number, low: number, high: number): Vector[] =>
+    mirroredRing(x, [
+      [0.012 * k, low * k],
+      [0.012 * k, high * k],
+    ]);
+  paint.loft([fin(rear - 0.1 * k, 0.56, 0.86), fin(at(0.16), 0.7, 1.02), fin(at(0.3), 0.84, 1.03)], ACCENT);
+}
+
+type Body = 'formula' | 'indy' | 'model' | Profile;
+
+/** The shape of each shipped car. */
+const BODIES: Readonly<Record<string, Body>> = {
+  'road-car': SALOON,
+  'bmw-320i': SALOON,
+  'vw-vanagon': VAN,
+  udacity: COUPE,
+  'tum-1200': COUPE,
+  'orca-1-43': COUPE,
+  indy: 'indy',
+  f1tenth: 'model',
+};
+/** Cars of other names that are shorter are model cars [m]. */
+const SMALL_M = 1;
+
+const bodyOf = ({ car = '', body_length_m: length }: CarLooks): Body =>
+  BODIES[car] ?? (length < SMALL_M ? 'model' : 'formula');
 
 /** What the shape of a car follows from. */
 export type CarLooks = CarSize & { readonly car?: string };
 
 /**
- * A saloon or a van where the car is one, else an open single-seater, whose front wheels are visible from every camera.
- * Axles, track, tyres, length and width are those of the car; the rest of the shape is invented.
+ * Six bodies: saloon, van, coupé, Indy car, model car, and for all others an open single-seater, whose front wheels are
+ * visible from every camera. Axles, track, tyres, length and width are those of the car; the rest is invented.
  */
 export function carModel(size: CarLooks): CarModel {
-  const profile = PROFILES[size.car ?? ''] ?? null;
-  const measures = measure(size, profile !== null);
+  const body = bodyOf(size);
+  const isClosed = typeof body === 'object';
+  const measures = measure(size, isClosed);
   const { k, front, rear, radius, tyre, halfTrack, halfWidth, length, at } = measures;
   const parts: Parts = {
     paint: new MeshBuilder(),
@@ -341,16 +377,26 @@ export function carModel(size: CarLooks): CarModel {
     lamps: new MeshBuilder(),
     headlamps: new MeshBuilder(),
   };
-  const open = { eye: [at(0.41), 0, 0.97 * k] as Vector, steeringWheel: [at(0.6), 0, 0.66 * k] as Vector };
-  if (profile === null) for (const add of [addTub, addPods, addWings, addWishbones]) add(parts, measures);
-  const { eye, steeringWheel } = profile === null ? open : addClosedBody(parts, measures, profile);
+  let place = { eye: [at(0.41), 0, 0.97 * k] as Vector, steeringWheel: [at(0.6), 0, 0.66 * k] as Vector };
+  if (isClosed) {
+    place = addClosedBody(parts, measures, body);
+  } else if (body === 'model') {
+    place = addModelCar(parts, measures);
+    addWishbones(parts, measures);
+  } else {
+    for (const add of [addTub, addPods, addWings, addWishbones]) add(parts, measures);
+    if (body === 'indy') addScreenAndFin(parts, measures);
+  }
+  const { eye, steeringWheel } = place;
+  const nobody = new MeshBuilder().data();
+  const driver = isClosed ? helmetMesh(eye, 0.11 * k) : helmetMesh([at(0.425), 0, 0.82 * k], 0.14 * k);
   return {
     paint: parts.paint.data(),
     dark: parts.dark.data(),
     lamps: parts.lamps.data(),
     headlamps: parts.headlamps.data(),
-    helmet: helmetMesh(profile === null ? [at(0.425), 0, 0.82 * k] : eye, (profile === null ? 0.14 : 0.11) * k),
-    hand: handMesh(k),
+    helmet: body === 'model' ? nobody : driver,
+    hand: body === 'model' ? nobody : handMesh(k),
     wheel: wheelMesh(radius, tyre),
     wheels: [
       { x: front, y: halfTrack, radius },

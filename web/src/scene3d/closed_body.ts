@@ -1,8 +1,8 @@
 import type { Measures, Parts } from './car_mesh';
 import { type Colour, colourOf, mirroredRing, type Vector } from './mesh';
 
-// Bodies with a roof: a saloon and a van. Lengths and heights are those of the shape, drawn for a car of its usual
-// length and scaled to the one driven; axles, track, wheels and width are those of the car.
+// Bodies with a roof: a saloon, a van and a coupé. Lengths and heights are those of the shape, drawn for a car of its
+// usual length and scaled to the one driven; axles, track, wheels and width are those of the car.
 
 const WHITE = colourOf('#f1f3f7');
 const ACCENT = colourOf('#2158c9');
@@ -24,6 +24,8 @@ export interface Profile {
   readonly upper: Colour;
   readonly lower: Colour;
   readonly eye: { readonly along: number; readonly height: number };
+  /** Height of a wing on the tail; none where it is missing. */
+  readonly wing?: number;
 }
 
 export const SALOON: Profile = {
@@ -62,6 +64,28 @@ export const VAN: Profile = {
   upper: WHITE,
   lower: ACCENT,
   eye: { along: 0.79, height: 1.5 },
+};
+
+/** Low, with a long nose, a roof that falls to the tail, and a wing. */
+export const COUPE: Profile = {
+  usualLength: 4.4,
+  belt: [
+    [0, 0.72],
+    [0.03, 0.86],
+    [0.2, 0.9],
+    [0.62, 0.84],
+    [0.85, 0.74],
+    [0.97, 0.58],
+    [1, 0.46],
+  ],
+  glass: [0.06, 0.36, 0.48, 0.66],
+  roof: 1.2,
+  sill: 0.16,
+  lamps: 0.66,
+  upper: ACCENT,
+  lower: WHITE,
+  eye: { along: 0.46, height: 1.02 },
+  wing: 1.06,
 };
 
 const mixed = (table: Profile['belt'], along: number): number => {
@@ -171,6 +195,16 @@ export function addClosedBody(
       [g1 - 0.26 * k, Math.max(...mirror), height(g1) + 0.13 * k],
       DARK,
     );
+  }
+  if (profile.wing !== undefined) {
+    const top = profile.wing * k;
+    paint.box([tail + 0.02 * k, -0.86 * half, top - 0.035 * k], [tail + 0.34 * k, 0.86 * half, top], ACCENT);
+    for (const side of [-1, 1]) {
+      const [a, b] = [side * 0.86 * half, side * 0.88 * half];
+      paint.box([tail, Math.min(a, b), top - 0.14 * k], [tail + 0.36 * k, Math.max(a, b), top + 0.05 * k], WHITE);
+      const post = side * 0.5 * half;
+      dark.rod([tail + 0.26 * k, post, 0.8 * k], [tail + 0.18 * k, post, top - 0.02 * k], 0.04 * k, DARK);
+    }
   }
   const y = 0.4 * half;
   const x = place(profile.eye.along);

@@ -1,9 +1,18 @@
 import { describe, expect, it } from 'vitest';
-import { REASON, RUNG, SPEED_LIMITER, STATUS } from '../protocol/messages';
+import {
+  REASON,
+  REASON_WORDS,
+  RUNG,
+  RUNG_WORDS,
+  SPEED_LIMITER,
+  SPEED_LIMITER_WORDS,
+  STATUS,
+  STATUS_WORDS,
+} from '../protocol/messages';
 import type { Frame } from '../protocol/topics';
 import { alertsOf } from './alerts';
 import { COLUMN_COUNT, plotRow } from './columns';
-import { contradictionsOf, screenOf } from './contradictions';
+import { contradictionsOf, isSentence, screenOf } from './contradictions';
 import { History } from './history';
 import { pedalInWords, solverInWords, stateSentence } from './sentence';
 import { frameWith } from './test_messages';
@@ -75,6 +84,20 @@ describe('the page', () => {
       }
     expect(count).toBeGreaterThan(20_000);
     expect([...found]).toEqual([]);
+  });
+
+  it('has a subject and a verb in every sentence of the tables', () => {
+    const tables = [RUNG_WORDS, REASON_WORDS, STATUS_WORDS, SPEED_LIMITER_WORDS];
+    const all = tables.flatMap((table) => Object.values(table).map((row) => row?.text ?? ''));
+    expect(all.length).toBeGreaterThan(35);
+    expect(all.filter((text) => !isSentence(text))).toEqual([]);
+  });
+
+  it('takes no heap of words for a sentence', () => {
+    expect(
+      ['The drive gives no more.', 'Position, yaw or speed has not been measured.'].filter(isSentence).length,
+    ).toBe(2);
+    expect(['Not known', 'Off the road', 'The last lap', 'Changed the command', ''].filter(isSentence)).toEqual([]);
   });
 
   it('would find what it looks for', () => {

@@ -42,6 +42,20 @@ export function screenOf(
 }
 
 const MOST_WORDS = 14;
+/** What the sentences of the page are built round; a new sentence with another verb adds it here. */
+const VERBS = new Set(
+  `are brakes brings can cannot changed contains contradict converged could did do does drives follows found frees give
+  gives has have holds is makes may move moves must plans repeat returns should stands stopped stops take takes turn
+  turns uses would`.split(/\s+/),
+);
+/** What may stand before a verb as its subject: no sentence of the page is an order. */
+const SUBJECT = /^(a|an|the|it|this|position|measured speed|reset)\b/i;
+/** Whether a text has a verb behind a subject. */
+export const isSentence = (text: string): boolean => {
+  const [, ...rest] = text.toLowerCase().match(/[a-z]+/g) ?? [];
+  return SUBJECT.test(text) && rest.some((word) => VERBS.has(word));
+};
+
 const wordsIn = (text: string): number => text.split(/\s+/).filter((word) => word !== '').length;
 const percentOf = (pedal: string): number => Number(/\d+/.exec(pedal)?.[0] ?? NaN);
 
@@ -59,6 +73,9 @@ export function contradictionsOf(frame: Frame, screen: Screen): string[] {
   // "Who drives: why" are two sentences.
   for (const text of [sentence.title, sentence.text, ...alerts.flatMap((alert) => alert.text.split(': '))])
     refuse(wordsIn(text) > MOST_WORDS, `more than ${MOST_WORDS} words`);
+  // The title of a limit is its name; the others are the first half of the sentence.
+  for (const text of [sentence.limiter === null ? sentence.title : '', sentence.text, solver.text])
+    refuse(text !== '' && !isSentence(text), `no subject or no verb in "${text}"`);
   refuse(Number.isFinite(aim) && isOthers, 'an aim that nobody drives at');
   refuse(Number.isFinite(planned) && isOthers, 'a planned speed that nobody drives at');
   refuse(aim === 0 || planned === 0, 'a speed of 0 is aimed at');

@@ -1,6 +1,7 @@
 import { computed } from '@preact/signals';
 import { clamp } from '../lib/math';
 import { persisted } from '../lib/persisted';
+import { store } from '../lib/store';
 import { formulaText } from './own_channel';
 import { TABS, type Tab, tab } from './tab';
 
@@ -31,12 +32,17 @@ function listOf<T extends string>(text: string, all: readonly T[]): readonly T[]
 }
 
 export const dock = persisted<Dock>('dock', 'right', (value) => value === 'right' || value === 'bottom');
-export const shareRight = persisted<number>('dock.right', 0.36);
+export const shareRight = persisted<number>('dock.right', 0.34);
 export const shareBottom = persisted<number>('dock.bottom', 0.44);
 const panelText = persisted<string>('panels', TABS.join('.'));
 const plotText = persisted<string>('plots.shown', PLOTS.join('.'));
 const besideText = persisted<string>('beside', '');
 export const hasInstruments = persisted<boolean>('instruments', true);
+
+/** Where the window has room, the numbers stand on the picture, which is larger for it. */
+const roomy = typeof matchMedia === 'undefined' ? null : matchMedia('(min-width: 1001px) and (min-height: 600px)');
+export const isRoomy = store.signal('page', roomy?.matches ?? true);
+roomy?.addEventListener('change', () => (isRoomy.value = roomy.matches));
 
 /** The panels that have a tab, in their order; the one that is shown has one in any case. */
 export const panels = computed<readonly Tab[]>(() => {

@@ -162,7 +162,7 @@ export function LayoutView({ titleOf }: { titleOf: (name: Tab) => string }) {
             checked={hasInstruments.value}
             onChange={() => (hasInstruments.value = !hasInstruments.value)}
           />{' '}
-          Instruments below the picture
+          Instruments with the picture
         </label>
         <Stored />
         <Copied

@@ -1,6 +1,16 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { CachedPicture, isSame } from '../draw/cached_picture';
-import { above, behind, type Camera, fitting, scaleBar, unproject, zoomed } from '../draw/camera';
+import {
+  above,
+  behind,
+  type Camera,
+  fitting,
+  LEGEND_PX,
+  NUMBERS_PX,
+  scaleBar,
+  unproject,
+  zoomed,
+} from '../draw/camera';
 import { carShape } from '../draw/car';
 import {
   drawCursor,
@@ -29,7 +39,7 @@ import { cursorMark, pointAt, timeNear } from '../state/cursor';
 import { faultMarks } from '../state/faults';
 import { hindsight } from '../state/hindsight';
 import { layers } from '../state/layers';
-import { isSeen } from '../state/layout';
+import { hasInstruments, isRoomy, isSeen } from '../state/layout';
 import { limit } from '../state/limit';
 import { link } from '../state/link';
 import { live } from '../state/live';
@@ -40,6 +50,7 @@ import { seekTo } from '../state/seek';
 import { shown } from '../state/shown';
 import { everyFrame } from '../state/ticker';
 import { AlertsView, dangerNow, HudView } from './hud_view';
+import { InstrumentsView } from './instruments_view';
 import { LegendView } from './legend_view';
 
 export type View = 'behind' | 'above' | 'whole';
@@ -279,7 +290,8 @@ class Painter {
     const share = Number.isNaN(this.#heading) ? 1 : 1 - Math.exp(-elapsed / 250);
     const from = Number.isNaN(this.#heading) ? car.yaw : this.#heading;
     this.#heading = from + wrapAngle(car.yaw - from) * share;
-    return behind(car, this.#heading, width, height, metresAcross.value);
+    const foot = hasInstruments.value && isRoomy.value ? NUMBERS_PX : LEGEND_PX;
+    return behind(car, this.#heading, width, height, metresAcross.value, foot);
   }
 }
 
@@ -416,6 +428,7 @@ export function TrackView() {
       <AlertsView />
       <div class="map-foot">
         <HudView />
+        {hasInstruments.value && isRoomy.value && <InstrumentsView />}
         <LegendView bar={bar} scaleTop={scaleTop} ghostLabel={ghostLabel} />
       </div>
     </section>

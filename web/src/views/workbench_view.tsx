@@ -1,7 +1,7 @@
 import type { ComponentType } from 'preact';
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import { store } from '../lib/store';
-import { beside, dock, hasInstruments, panelShare, panels, setPanelShare, toggleDock } from '../state/layout';
+import { beside, dock, hasInstruments, isRoomy, panelShare, panels, setPanelShare, toggleDock } from '../state/layout';
 import { link } from '../state/link';
 import { isStageAlone } from '../state/presentation';
 import { TABS, type Tab, tab } from '../state/tab';
@@ -175,7 +175,7 @@ export function WorkbenchView() {
       {hasStage && (
         <div class="stage">
           <TrackView />
-          {hasInstruments.value && <InstrumentsView />}
+          {hasInstruments.value && !isRoomy.value && <InstrumentsView />}
         </div>
       )}
       {!isPanelAlone.value && !isStageAlone.value && <Splitter />}
