@@ -11,6 +11,7 @@
     tools/sweep_tables.py runs.jsonl race_cars  docs/racing.md: `race` with the other cars (plans/racing-cars.yaml)
     tools/sweep_tables.py runs.jsonl waypoints  docs/racing_unknown.md: laps from waypoints alone (plans/racing-waypoints.yaml)
     tools/sweep_tables.py runs.jsonl otherwise  docs/racing_unknown.md: another grip, mass, latency (plans/racing-otherwise.yaml)
+    tools/sweep_tables.py runs.jsonl noise      docs/racing_unknown.md: noisy sensors (plans/racing-noise.yaml)
     tools/sweep_tables.py runs.jsonl told       docs/racing_unknown.md: less grip, untold and told (plans/racing-told.yaml)
 
 tools/check_figures compares them with the pages, and writes them."""
@@ -133,22 +134,35 @@ def otherwise(runs):
         late = float(setting(run, "latency_ms")) - 100.0
         return ", ".join(found + ([f"latency +{late:g} ms"] if late else [])) or "as believed"
 
-    def learns(run):
-        return "learns" if setting(run, "tracking_mpc.learn_grip") == "true" else "does not learn"
-    return pivot(runs, lambda run: f"`{setting(run, 'car')}`, {what(run)}", lambda run: f"{road(run)}, {learns(run)}", lap_and_edge,
-                 ("car, what is otherwise", "{}"))
+    return pivot(runs, lambda run: f"`{setting(run, 'car')}`, {what(run)}", road, lap_and_edge, ("car, what is otherwise", "{}"))
+
+
+def noise(runs):
+    """Of several seeds: the mean of the last laps, the least distance to the edge, and how many leave the road."""
+    found = {}
+    for run in runs:
+        key = f"`{setting(run, 'car')}`, {road(run)}", setting(run, "tracking_mpc.learn_grip")
+        found.setdefault(key[0], {}).setdefault(key[1], []).append(run)
+
+    def cell(seeds):
+        clean = [run["lap_time_s"] for run in seeds if is_clean(run)]
+        mean = f"{sum(clean) / len(clean):.2f}" if clean else "–"
+        return f"{mean} ({min(run['min_edge_distance_m'] for run in seeds):.2f}), off {len(seeds) - len(clean)} of {len(seeds)}"
+    rows = [[name, *(cell(by_learning[learns]) for learns in ("true", "false"))] for name, by_learning in found.items()]
+    return markdown(("car, track", "learns the grip", "does not"), rows, 2)
 
 
 def told(runs):
     def row(run):
         grip, believed = float(setting(run, "plant_options.friction_scale")), float(setting(run, "vehicle.friction"))
         is_told = grip < 1.0 and believed < 1.2  # the friction of road-car
-        return f"`{setting(run, 'preset')}`, grip {grip:g}" + ("" if grip == 1.0 else ", told" if is_told else ", untold")
+        learns = ", learns" if setting(run, "tracking_mpc.learn_grip") == "true" else ""
+        return f"`{setting(run, 'preset')}`{learns}, grip {grip:g}" + ("" if grip == 1.0 else ", told" if is_told else ", untold")
     return pivot(runs, row, road, lap_and_edge, ("preset, grip", "{}"))
 
 
 TABLES = {"numbers": numbers, "pid": pid, "cars": cars, "sensors": sensors, "race": race, "race_cars": race_cars,
-          "waypoints": waypoints, "otherwise": otherwise, "told": told}
+          "waypoints": waypoints, "otherwise": otherwise, "noise": noise, "told": told}
 
 
 def main():

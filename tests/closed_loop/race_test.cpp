@@ -53,7 +53,7 @@ TEST(Race, IsCleanForCarsThatBrakingMakesUnstable) {
   }
 }
 
-// The road is learned in the first lap, with an assumed width (docs/racing.md, section 3).
+// The road is learned in the first lap, with an assumed width (docs/racing_unknown.md).
 TEST(Race, NeedsNoTrack) {
   const std::pair<const char*, const char*> races[] = {{"udacity", "lakeside"}, {"road-car", "oval"}};
   for (const auto& [car, track] : races) {
@@ -69,7 +69,7 @@ TEST(Race, NeedsNoTrack) {
   }
 }
 
-// docs/racing.md, Table 4: nobody told it how much grip there is.
+// docs/racing_unknown.md, Table 2: nobody told it how much grip there is.
 TEST(Race, LearnsTheGripWithoutLeavingTheRoad) {
   const std::pair<const char*, double> grips[] = {{"0.8", 24.4}, {"1.1", 22.0}};
   for (const auto& [grip, lap_time] : grips) {
@@ -99,7 +99,7 @@ TEST(Race, CountsOnTheFrictionThatIsKnown) {
     EXPECT_TRUE(run.completed && run.off_track_events == 0) << low << ": " << run.end_reason;
     return run.laps.back().lap_time;
   };
-  constexpr double kKnown = 22.3;  // docs/racing.md, Table 4: with all 1.2 of it
+  constexpr double kKnown = 22.3;  // docs/racing.md, Table 1: with all 1.2 of it
   const double careful = second_lap("0.84", "false");
   const double shown = second_lap("0.84", "true");
   EXPECT_GT(careful, 1.05 * kKnown);
