@@ -61,8 +61,8 @@ async function fresh(browser, { script, fluent, ...options }) {
   const complaints = [];
   page.on('console', (message) => {
     // What drivers say of a canvas that is read back for a picture without a graphics card; and that there is no page
-    // of the name that open() asks for.
-    if (message.location().url.endsWith('/nothing')) return;
+    // of the name that open() asks for, and so no icon of it.
+    if (/\/(nothing|favicon\.ico)$/.test(message.location().url)) return;
     if (['error', 'warning'].includes(message.type()) && !message.text().includes('GL Driver Message'))
       complaints.push(message.text());
   });
@@ -257,8 +257,9 @@ describe('the 3D picture', () => {
   });
 });
 
-it('is replaced by the map, with a note, where there is no WebGL', async () => {
+it('is replaced by the map, with a note, where there is no WebGL', async (test) => {
   const browser = await launch('--disable-3d-apis');
+  test.after(() => browser.close());
   const { page, complaints } = await open(browser);
   await page.getByText('This browser offers no WebGL 2').waitFor();
   const dashboard = new DashboardPage(page);
@@ -275,11 +276,11 @@ it('is replaced by the map, with a note, where there is no WebGL', async () => {
   await button(page, '2D').click();
   await page.getByText('This browser offers no WebGL 2').waitFor({ state: 'detached' });
   assert.deepEqual(complaints, []);
-  await browser.close();
 });
 
-it('works where the browser keeps nothing', async () => {
+it('works where the browser keeps nothing', async (test) => {
   const browser = await launch();
+  test.after(() => browser.close());
   const script = () =>
     Object.defineProperty(window, 'localStorage', {
       get: () => {
@@ -293,5 +294,4 @@ it('works where the browser keeps nothing', async () => {
   await ready(page);
   assert.ok((await picture(page)).colours >= 30);
   assert.deepEqual(complaints, []);
-  await browser.close();
 });

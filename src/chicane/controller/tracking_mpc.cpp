@@ -12,7 +12,7 @@
 #include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/copyable.hpp"
 #include "chicane/controller/explain.hpp"
-#include "chicane/controller/grip_estimator.hpp"
+#include "chicane/controller/learned_grip.hpp"
 #include "chicane/controller/tracking_solver.hpp"
 #include "chicane/controller/way_back.hpp"
 #include "chicane/model/grip.hpp"
@@ -37,8 +37,7 @@ constexpr double kSpeedAhead = 4.0;    // [m/s] wanted at most beyond what the l
 constexpr double kLongestHold = 0.3;   // [s] the first command is assumed to be held at most this long
 constexpr double kBlindAfter = 0.3;    // [s] without a measurement, or a waypoint: stop
 constexpr double kPreview = 0.3;       // [s] the car answers the wheel about so late
-constexpr double kCrawl = 3.0;      // [m/s] below it the fallback brings the car to rest, and no plan races
-constexpr double kGripStep = 0.03;  // a lap is planned anew where the grip differs by more
+constexpr double kCrawl = 3.0;  // [m/s] below it the fallback brings the car to rest, and no plan races
 
 class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable<TrackingMpcOptions> {
  public:
@@ -53,7 +52,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   void configure(const TrackingMpcOptions& options, const model::VehicleParams& vehicle) noexcept override {
-    if (options.learns() != options_.learns()) forget_grip();
+    if (options.learns() != options_.learns()) grip_.forget();
     options_ = options;
     told_ = vehicle;
     believe();
@@ -97,10 +96,10 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const road::RacingRoad* lap = road_.lap();
     const std::span<const Vec2> waypoints = road_.seen().closed_waypoints();
     if (!options_.racing_line || (lap == nullptr && waypoints.empty())) return {};
-    const double grip = has_shown_grip_  ? grip_times(grip_.lower())
+    const double grip = grip_.is_shown() ? grip_.lower()
                         : lap != nullptr ? lap->grip()
                                          : options_.first_grip();
-    return {.is_wanted = lap == nullptr || std::fabs(grip - lap->grip()) > kGripStep,
+    return {.is_wanted = lap == nullptr || std::fabs(grip - lap->grip()) > LearnedGrip::kStep,
             .waypoints = lap == nullptr || lap->is_learned() ? waypoints : std::span<const Vec2>{},
             .grip = grip};
   }
@@ -108,7 +107,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   void reset() noexcept override {
     road_.reset();
     estimator_.reset();
-    forget_grip();
+    grip_.forget();
     shape_raced();
     grip_.begin(estimator_, model_);
     sent_.clear();
@@ -159,34 +158,23 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     believe();
   }
 
-  /// In hundredths, over what was told.
-  [[nodiscard]] double grip_times(double share) const noexcept {
-    return std::floor(100.0 * model_grip_ * share + 0.5) / 100.0;
-  }
-  void forget_grip() noexcept {
-    model_grip_ = 1.0;
-    has_shown_grip_ = false;
-  }
   /// Model, road and problem for options, vehicle and grip. What is driven at by a plan is in that plan;
   /// without one, a car that has not shown its grip is driven with little of it, and with no more than told.
   void believe() noexcept {
-    const model::VehicleParams car = model::with_grip(told_, model_grip_);
+    const model::VehicleParams car = model::with_grip(told_, grip_.share());
     model_.set_vehicle(car);
     const double used =
-        has_shown_grip_ || road_.is_raced() ? std::min(model_grip_, 1.0) : options_.first_grip();
+        grip_.is_shown() || road_.is_raced() ? std::min(grip_.share(), 1.0) : options_.first_grip();
     road_.configure(options_.road(), model::with_grip(told_, used));
     estimator_.set_model(model_);
     shape_problem();
   }
 
   void watch_grip(const model::Measurement& now) noexcept {
-    grip_.see(now, sent_);
-    const bool is_other = grip_.differs(kGripStep);
-    if (!grip_.is_known() || (has_shown_grip_ && !is_other)) return;
-    has_shown_grip_ = true;
-    if (is_other) model_grip_ = grip_times(grip_.share());
+    const LearnedGrip::Change change = grip_.see(now, sent_);
+    if (change == LearnedGrip::Change::kNothing) return;
     believe();
-    if (is_other) grip_.begin(estimator_, model_);
+    if (change == LearnedGrip::Change::kModel) grip_.begin(estimator_, model_);
   }
 
   /// Room beside the line at s [m] ahead, where the line has moved sideways by `offset` [m].
@@ -475,9 +463,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   TrackingMpcOptions options_;
   model::VehicleParams told_;  ///< whose grip may differ from the model's
   model::PredictionModel model_;
-  GripEstimator grip_{model_};   ///< over the model's
-  double model_grip_ = 1.0;      ///< over what was told
-  bool has_shown_grip_ = false;  ///< what it is was known once
+  LearnedGrip grip_{model_};
   road::DrivenRoad road_;
   StateEstimator estimator_;
   CommandHistory sent_;

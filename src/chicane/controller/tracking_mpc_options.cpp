@@ -40,8 +40,9 @@ constexpr std::array kOptions{
                             "Price of slip beyond the useful, normalised and squared."),
     option<&T::racing_line>(
         "racing_line", "Race by the minimum-time line of the track, or of the road learned from waypoints."),
-    option<&T::learn_grip>("learn_grip",
-                           "Race with the grip that the tyres have shown, the first lap with 0.8 of it."),
+    option<&T::learn_grip>(
+        "learn_grip",
+        "Race with the grip that the tyres have shown; the first plan has 0.6 of what was told."),
     option<&T::slip_share>("slip_share", unit::kNone, 0.1, 2,
                            "Most slip of an axle in the plan to race by, over that of its peak force."),
     option<&T::edge_margin>("edge_margin", unit::kMetre, 0, 5,

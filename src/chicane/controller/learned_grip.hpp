@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "chicane/controller/grip_estimator.hpp"
+
+namespace chicane::controller {
+
+/// The grip that a car is raced with when nobody is sure of it: of the model, which begins at what was told
+/// and follows what the tyres show, and of the plan, which is made for what may be relied on
+/// (docs/racing_unknown.md). Shares of the told grip. One thread; allocates nothing.
+class LearnedGrip {
+ public:
+  static constexpr double kStep = 0.03;  ///< model and plan follow where the grip differs by more
+
+  explicit LearnedGrip(const model::PredictionModel& told) noexcept : estimator_{told} {}
+
+  /// Nothing is known; begin() has to follow.
+  void forget() noexcept {
+    share_ = 1.0;
+    is_shown_ = false;
+  }
+  /// The estimate begins anew where `from` is, with the model as it is now.
+  void begin(const StateEstimator& from, const model::PredictionModel& model) noexcept {
+    estimator_.begin(from, model);
+  }
+  /// What has changed by a measurement. After kModel the model has to follow share(), and then begin().
+  enum class Change { kNothing, kShown, kModel };
+  [[nodiscard]] Change see(const model::Measurement& now, const CommandHistory& sent) noexcept {
+    estimator_.see(now, sent);
+    const bool is_other = estimator_.differs(kStep);
+    if (!estimator_.is_known() || (is_shown_ && !is_other)) return Change::kNothing;
+    is_shown_ = true;
+    if (!is_other) return Change::kShown;
+    share_ = hundredths(share_ * estimator_.share());
+    return Change::kModel;
+  }
+  /// Of the model.
+  [[nodiscard]] double share() const noexcept { return share_; }
+  /// Whether the tyres have shown anything yet.
+  [[nodiscard]] bool is_shown() const noexcept { return is_shown_; }
+  /// For a plan: what may be relied on. Pre: is_shown().
+  [[nodiscard]] double lower() const noexcept { return hundredths(share_ * estimator_.lower()); }
+
+ private:
+  [[nodiscard]] static double hundredths(double share) noexcept {
+    return std::floor(100.0 * share + 0.5) / 100.0;
+  }
+
+  GripEstimator estimator_;
+  double share_ = 1.0;
+  bool is_shown_ = false;
+};
+
+}  // namespace chicane::controller

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/controller/learned_grip.hpp"
+
+#include <gtest/gtest.h>
+
+#include "chicane/base/math.hpp"
+#include "chicane/model/grip.hpp"
+
+namespace chicane::controller {
+namespace {
+
+/// A car with `grip` of what it is told weaves at 25 m/s for `seconds`; the model follows what it shows.
+LearnedGrip driven_with(double grip, double seconds) {
+  const model::VehicleParams told = model::road_car_params();
+  model::PredictionModel believed{told};
+  StateEstimator truth{model::PredictionModel{model::with_grip(told, grip)}}, seen{believed};
+  CommandHistory sent;
+  model::Measurement now{.speed = 25.0};
+  truth.correct(now, sent);
+  seen.correct(now, sent);
+  LearnedGrip learned{believed};
+  learned.begin(seen, believed);
+  while (now.time < seconds) {
+    const double time = now.time + 0.04;
+    sent.add(now.time, {.steer = 0.05 * sin(1.3 * time), .throttle = 0.2});
+    const model::State car = truth.predict(time, sent).state;
+    now = {.time = time,
+           .x = car.x,
+           .y = car.y,
+           .psi = car.psi,
+           .speed = hypot(car.vx, car.vy),
+           .steer = car.steer};
+    truth.correct(now, sent);
+    seen.correct(now, sent);
+    if (learned.see(now, sent) != LearnedGrip::Change::kModel) continue;
+    believed.set_vehicle(model::with_grip(told, learned.share()));
+    seen.set_model(believed);
+    learned.begin(seen, believed);
+  }
+  return learned;
+}
+
+TEST(LearnedGrip, FollowsWhatTheTyresShow) {
+  for (const double grip : {0.6, 0.8, 1.0, 1.2}) {
+    const LearnedGrip learned = driven_with(grip, 20.0);
+    EXPECT_TRUE(learned.is_shown()) << grip;
+    EXPECT_NEAR(learned.share(), grip, LearnedGrip::kStep + 0.02) << grip;
+    EXPECT_LE(learned.lower(), learned.share() + LearnedGrip::kStep) << grip;
+  }
+}
+
+TEST(LearnedGrip, BelievesWhatWasToldUntilThen) {
+  LearnedGrip learned = driven_with(0.8, 0.5);
+  EXPECT_FALSE(learned.is_shown());
+  EXPECT_EQ(learned.share(), 1.0);
+  learned = driven_with(0.8, 20.0);
+  learned.forget();
+  EXPECT_FALSE(learned.is_shown());
+  EXPECT_EQ(learned.share(), 1.0);
+}
+
+}  // namespace
+}  // namespace chicane::controller
