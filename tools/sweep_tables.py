@@ -40,7 +40,8 @@ def is_clean(run):
 
 
 def setting(run, key):
-    return str(run["settings"][key])
+    value = run["settings"][key]
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def lap(run):

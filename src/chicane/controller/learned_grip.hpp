@@ -13,13 +13,16 @@ namespace chicane::controller {
 /// (docs/racing_unknown.md). Shares of the told grip. One thread; allocates nothing.
 class LearnedGrip {
  public:
-  static constexpr double kStep = 0.03;  ///< model and plan follow where the grip differs by more
+  static constexpr double kStep =
+      0.03;  ///< the model, and a plan upwards, follow where the grip differs by more
+  static constexpr double kStepDown = 0.015;  ///< a plan downwards
 
   explicit LearnedGrip(const model::PredictionModel& told) noexcept : estimator_{told} {}
 
   /// Nothing is known; begin() has to follow.
   void forget() noexcept {
     share_ = 1.0;
+    unsure_ = 0.0;
     is_shown_ = false;
   }
   /// The estimate begins anew where `from` is, with the model as it is now.
@@ -34,7 +37,8 @@ class LearnedGrip {
     if (!estimator_.is_known() || (is_shown_ && !is_other)) return Change::kNothing;
     is_shown_ = true;
     if (!is_other) return Change::kShown;
-    share_ = hundredths(share_ * estimator_.share());
+    unsure_ = share_ * estimator_.deviation();
+    share_ = rounded(share_ * estimator_.share());
     return Change::kModel;
   }
   /// Of the model.
@@ -42,15 +46,25 @@ class LearnedGrip {
   /// Whether the tyres have shown anything yet.
   [[nodiscard]] bool is_shown() const noexcept { return is_shown_; }
   /// For a plan: what may be relied on. Pre: is_shown().
-  [[nodiscard]] double lower() const noexcept { return hundredths(share_ * estimator_.lower()); }
+  [[nodiscard]] double lower() const noexcept {
+    return rounded(estimator_.is_known() ? share_ * estimator_.lower() : share_ - unsure_);
+  }
+  /// Whether a plan for `planned` has to be made anew for `wanted`.
+  [[nodiscard]] static bool is_other_plan(double planned, double wanted) noexcept {
+    return wanted > planned + kStep || wanted < planned - kStepDown;
+  }
 
  private:
-  [[nodiscard]] static double hundredths(double share) noexcept {
-    return std::floor(100.0 * share + 0.5) / 100.0;
+  /// In hundredths. Nearly what was told is what was told: a car that is as believed ends with the plan that
+  /// it would have had without learning.
+  [[nodiscard]] static double rounded(double share) noexcept {
+    constexpr double kNearlyTold = 0.02;
+    return std::fabs(share - 1.0) <= kNearlyTold ? 1.0 : std::floor(100.0 * share + 0.5) / 100.0;
   }
 
   GripEstimator estimator_;
   double share_ = 1.0;
+  double unsure_ = 0.0;  ///< standard deviation of share_ when it was found
   bool is_shown_ = false;
 };
 

@@ -99,7 +99,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const double grip = grip_.is_shown() ? grip_.lower()
                         : lap != nullptr ? lap->grip()
                                          : options_.first_grip();
-    return {.is_wanted = lap == nullptr || std::fabs(grip - lap->grip()) > LearnedGrip::kStep,
+    return {.is_wanted = lap == nullptr || LearnedGrip::is_other_plan(lap->grip(), grip),
             .waypoints = lap == nullptr || lap->is_learned() ? waypoints : std::span<const Vec2>{},
             .grip = grip};
   }

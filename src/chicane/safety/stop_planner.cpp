@@ -27,7 +27,6 @@ constexpr double kGravity = 9.81;          // [m/s²]
 constexpr double kLeastBraking = 0.15;     // of the useful one, in any curve
 constexpr double kFeedbackShare = 0.4;     // of the grip, for coming back to the middle of the road
 constexpr double kStopMargin = 0.6;        // [m] wanted to the edge by a car that stops
-constexpr double kRacedMargin = 0.3;       // [m] the same along a line that is raced by
 constexpr int kTurns = 3;                  // of the search for a stable deceleration
 constexpr double kSlipShift = 2e-3;        // [rad] to either side, for slopes of the axles' forces
 constexpr double kStiffnessDoubt = 0.015;  // of the rear axle's
@@ -200,8 +199,7 @@ model::Command StopPlanner::law(const road::KnownRoad& road, const StopStart& at
   const double course = at.e + at.body.vy / v;
   // Towards the middle of the road, where there is most room on both sides, or the line that is raced by.
   const double beside =
-      at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) +
-                                               (road.is_raced() ? kRacedMargin : kStopMargin));
+      at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + kStopMargin);
   const double curvature = ahead + back_to(beside, course, v);
   // The wheel that gives the yaw rate this asks for, by the model: a braking car oversteers.
   const double yaw_acceleration = kYawBandwidth * (v * curvature - at.body.r);
