@@ -31,8 +31,8 @@ class GripEstimator {
   [[nodiscard]] bool is_known() const noexcept { return time_ >= kEnough && deviation() <= kSure; }
   /// Grip over the one that is believed; 1 until it is known.
   [[nodiscard]] double share() const noexcept;
-  /// share() less its standard deviation: what may be relied on.
-  [[nodiscard]] double lower() const noexcept { return is_known() ? share() - deviation() : 1.0; }
+  /// share() less two standard deviations: what may be relied on.
+  [[nodiscard]] double lower() const noexcept { return is_known() ? share() - 2.0 * deviation() : 1.0; }
   /// Whether share() differs from one by more than `least`, and by more than noise does in one case of 20.
   [[nodiscard]] bool differs(double least) const noexcept;
   /// Standard deviation of share() by the noise that is seen; infinite before there is any corner.

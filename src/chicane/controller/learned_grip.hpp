@@ -37,7 +37,7 @@ class LearnedGrip {
     if (!estimator_.is_known() || (is_shown_ && !is_other)) return Change::kNothing;
     is_shown_ = true;
     if (!is_other) return Change::kShown;
-    unsure_ = share_ * estimator_.deviation();
+    unsure_ = 2.0 * share_ * estimator_.deviation();
     share_ = rounded(share_ * estimator_.share());
     return Change::kModel;
   }
@@ -64,7 +64,7 @@ class LearnedGrip {
 
   GripEstimator estimator_;
   double share_ = 1.0;
-  double unsure_ = 0.0;  ///< standard deviation of share_ when it was found
+  double unsure_ = 0.0;  ///< two standard deviations of share_ when it was found
   bool is_shown_ = false;
 };
 
