@@ -12,7 +12,6 @@
     tools/sweep_tables.py runs.jsonl waypoints  docs/racing_unknown.md: laps from waypoints alone (plans/racing-waypoints.yaml)
     tools/sweep_tables.py runs.jsonl otherwise  docs/racing_unknown.md: another grip, mass, latency (plans/racing-otherwise.yaml)
     tools/sweep_tables.py runs.jsonl noise      docs/racing_unknown.md: noisy sensors (plans/racing-noise.yaml)
-    tools/sweep_tables.py runs.jsonl told       docs/racing_unknown.md: less grip, untold and told (plans/racing-told.yaml)
 
 tools/check_figures compares them with the pages, and writes them."""
 import argparse
@@ -153,17 +152,8 @@ def noise(runs):
     return markdown(("car, track", "learns the grip", "does not"), rows, 2)
 
 
-def told(runs):
-    def row(run):
-        grip, believed = float(setting(run, "plant_options.friction_scale")), float(setting(run, "vehicle.friction"))
-        is_told = grip < 1.0 and believed < 1.2  # the friction of road-car
-        learns = ", learns" if setting(run, "tracking_mpc.learn_grip") == "true" else ""
-        return f"`{setting(run, 'preset')}`{learns}, grip {grip:g}" + ("" if grip == 1.0 else ", told" if is_told else ", untold")
-    return pivot(runs, row, road, lap_and_edge, ("preset, grip", "{}"))
-
-
 TABLES = {"numbers": numbers, "pid": pid, "cars": cars, "sensors": sensors, "race": race, "race_cars": race_cars,
-          "waypoints": waypoints, "otherwise": otherwise, "noise": noise, "told": told}
+          "waypoints": waypoints, "otherwise": otherwise, "noise": noise}
 
 
 def main():
