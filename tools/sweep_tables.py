@@ -8,7 +8,6 @@
     tools/sweep_tables.py runs.jsonl cars       docs/cars.md: cars by track (plans/cars.yaml)
     tools/sweep_tables.py runs.jsonl sensors    docs/latency.md: presets by latency of the sensors (plans/sensor-latency.yaml)
     tools/sweep_tables.py runs.jsonl race       docs/racing.md: `race` with the guard on and off, and `default` (plans/racing.yaml)
-    tools/sweep_tables.py runs.jsonl race_cars  docs/racing.md: `race` with the other cars (plans/racing-cars.yaml)
     tools/sweep_tables.py runs.jsonl waypoints  docs/racing_unknown.md: laps from waypoints alone (plans/racing-waypoints.yaml)
     tools/sweep_tables.py runs.jsonl otherwise  docs/racing_unknown.md: another grip, mass, latency (plans/racing-otherwise.yaml)
     tools/sweep_tables.py runs.jsonl noise      docs/racing_unknown.md: noisy sensors (plans/racing-noise.yaml)
@@ -115,10 +114,6 @@ def race(runs):
     return pivot(runs, lambda run: f"`{setting(run, 'car')}`, {road(run)}", name, lap_and_edge, ("car, track", "{}"))
 
 
-def race_cars(runs):
-    return pivot(runs, lambda run: f"`{setting(run, 'car')}`", road, lap_and_edge, ("car", "{}"))
-
-
 def waypoints(runs):
     def cell(run):
         laps = ", ".join(f"{time:.2f}" for time in run["lap_times_s"])
@@ -152,7 +147,7 @@ def noise(runs):
     return markdown(("car, track", "learns the grip", "does not"), rows, 2)
 
 
-TABLES = {"numbers": numbers, "pid": pid, "cars": cars, "sensors": sensors, "race": race, "race_cars": race_cars,
+TABLES = {"numbers": numbers, "pid": pid, "cars": cars, "sensors": sensors, "race": race,
           "waypoints": waypoints, "otherwise": otherwise, "noise": noise}
 
 
