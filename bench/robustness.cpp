@@ -10,8 +10,8 @@
 //
 // --markdown: the tables as docs/solver_measured.md has them. FIRST: seed of the first instance. IPOPT: it
 // solves so many of each, and what is not solved; all without. NAME: families whose name contains it; all
-// without. FILE keeps what Ipopt finds, which takes minutes; without Ipopt (Debian: coinor-libipopt-dev) only
-// what is in FILE is compared with.
+// without. FILE keeps what Ipopt finds, which takes minutes; without Ipopt (Debian: coinor-libipopt-dev) FILE
+// alone is compared with.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

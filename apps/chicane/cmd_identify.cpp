@@ -72,9 +72,7 @@ std::string advice(const Identification& found) {
         "The tyres reached {:.0f} % (front) and {:.0f} % (rear) of their peak: grip is not known, and race "
         "refuses\n"
         "this car. Drive bends nearer to the limit, at least {:.0f} % at one axle, or state the friction "
-        "that you know "
-        "it "
-        "to have{}.\n",
+        "that you know it to have{}.\n",
         100.0 * found.use_front, 100.0 * found.use_rear, 100.0 * identify::kRaceUse,
         found.shown_friction() > 0.1
             ? fmt::format(":\nthe log shows --set friction_low={}", number_text(found.shown_friction(), 2))
@@ -193,7 +191,7 @@ std::string to_car(const Identification& found, scenario::Scenario scenario, con
 struct ShelfCar {
   std::string name;
   model::VehicleParams vehicle;
-  double ratio = 0.0;  ///< of its wheelbase and the logs', as a logarithm
+  double ratio = 0.0;  ///< logarithm of its wheelbase over the logs'
 };
 
 /// Slow steering of a shelf car says nothing of another one, and the search does not get away from it: at

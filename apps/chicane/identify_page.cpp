@@ -25,7 +25,7 @@ constexpr const char* kMeasured = "#1c2430";
 constexpr const char* kModel = "#c2571a";
 constexpr const char* kFront = "#3b6ea5";
 constexpr std::size_t kMostStretches = 6;
-constexpr std::size_t kMostDots = 1500;  // of a plot
+constexpr std::size_t kMostDots = 1500;  // in one plot
 
 /// A range that has some room about its values.
 struct Range {
@@ -116,7 +116,7 @@ class Plot {
   std::string body_;
 };
 
-/// Where the interval lies about the value that the search began with.
+/// Drawing of an interval beside the value that the search began with.
 std::string interval_bar(const Estimate& each) {
   Range range;
   for (const double value : {each.low, each.high, each.assumed, each.value}) range.add(value);
@@ -146,7 +146,7 @@ std::string numbers_of(const Identification& found) {
   return text + "</table></div>";
 }
 
-/// Of a stretch, in its own place: measured, and predicted from where the samples end.
+/// Plot of one stretch: measured, and predicted from where the samples end.
 std::string path_plot(const identify::PredictedStretch& stretch) {
   Range x, y;
   for (const Compared& each : stretch.samples) {

@@ -7,11 +7,11 @@
 
 namespace chicane::apps {
 
-/// What the page of an identification says beside its figures.
+/// Words on the page of an identification, beside its figures.
 struct IdentifyPageWords {
   std::string logs;     ///< names of the files
   std::string advice;   ///< sentences, a line each; may be empty
-  std::string command;  ///< that drives the found car
+  std::string command;  ///< command line that drives the found car
 };
 
 /// One HTML page without other files: the numbers with their intervals, measured against predicted motion on

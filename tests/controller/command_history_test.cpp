@@ -57,6 +57,19 @@ TEST_F(Estimating, ReplaysACommandForExactlyTheFractionItActs) {
   EXPECT_NEAR(prediction.state.vx, 0.063 * model.vehicle().drive_acceleration, 0.01);
 }
 
+TEST_F(Estimating, SaysWhatAMeasurementIsBesideTheExpectation) {
+  estimator.correct({.time = 0.0, .speed = 10.0}, sent);
+  EXPECT_FALSE(std::isfinite(estimator.surprise().aside)) << "nothing was expected";
+  const model::State expected = estimator.predict(0.04, sent).state;
+  estimator.correct(
+      {.time = 0.04, .x = expected.x, .y = expected.y + 0.1, .psi = expected.psi - 0.02, .speed = 10.0},
+      sent);
+  EXPECT_NEAR(estimator.surprise().aside, 0.1, 1e-12) << "to the left";
+  EXPECT_NEAR(estimator.surprise().heading, -0.02, 1e-12);
+  estimator.correct({.time = 0.02, .speed = 10.0}, sent);
+  EXPECT_FALSE(std::isfinite(estimator.surprise().aside)) << "an old measurement";
+}
+
 /// Lag and rate limit as the actuator has them, whatever the steps are that it is replayed in.
 TEST(StateEstimator, TurnsTheWheelAsFastAsTheActuatorDoes) {
   const model::VehicleParams car = model::road_car_params();

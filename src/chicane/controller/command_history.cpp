@@ -143,6 +143,7 @@ double throttle_against_rolling_back(const model::VehicleParams& vehicle, double
 void StateEstimator::correct(const model::Measurement& now, const CommandHistory& sent) noexcept {
   const double elapsed = now.time - time_;
   direction_.see(now);
+  surprise_ = {};
   const bool goes_on = is_started_ && elapsed > 0.0 && elapsed < kLongestGap;
   if (!is_finite(now) && !goes_on) return;
   if (goes_on) {
@@ -152,6 +153,7 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
     const double dpsi = angle_difference(now.psi, now_.state.psi);
     const bool is_near = dx * dx + dy * dy < kLostPosition * kLostPosition && std::fabs(dpsi) < 0.5;
     if (!is_finite(now) || is_near) {
+      surprise_ = {dy * cos(now_.state.psi) - dx * sin(now_.state.psi), dpsi};
       take_over(now, dx, dy, dpsi);
       return;
     }

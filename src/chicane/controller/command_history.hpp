@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/prediction.hpp"
@@ -160,6 +161,12 @@ class StateEstimator {
   [[nodiscard]] double time() const noexcept { return time_; }  ///< of state() [s]
   [[nodiscard]] bool is_started() const noexcept { return is_started_; }
   [[nodiscard]] double acceleration() const noexcept { return now_.acceleration; }
+  /// The last measurement beside what was expected of it; NaN where nothing was.
+  struct Surprise {
+    double aside = std::numeric_limits<double>::quiet_NaN();    ///< [m] to the left of the expected place
+    double heading = std::numeric_limits<double>::quiet_NaN();  ///< [rad]
+  };
+  [[nodiscard]] const Surprise& surprise() const noexcept { return surprise_; }
   [[nodiscard]] const Disturbance& disturbance() const noexcept { return now_.disturbance; }
   /// What state() has for a speed forward is one backwards (DirectionWatch).
   [[nodiscard]] bool rolls_back() const noexcept { return direction_.rolls_back(); }
@@ -190,6 +197,7 @@ class StateEstimator {
   double place_seen_ = 0.0;    ///< time of the last place that was measured together with a heading [s]
   double heading_seen_ = 0.0;  ///< and of the last heading
   Prediction now_;             ///< at time_
+  Surprise surprise_;
   DirectionWatch direction_;
 };
 

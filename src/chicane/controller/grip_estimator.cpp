@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "chicane/base/angle.hpp"
-#include "chicane/base/math.hpp"
 #include "chicane/model/grip.hpp"
 
 namespace chicane::controller {
@@ -33,31 +31,20 @@ void GripEstimator::begin(const StateEstimator& from, const model::PredictionMod
 
 void GripEstimator::see(const model::Measurement& now, const CommandHistory& sent) noexcept {
   const double elapsed = now.time - believed_.time();
-  const bool goes_on =
-      believed_.is_started() && less_.is_started() && elapsed > 0.0 && elapsed < kLongestSilence;
-  const Surprise n = goes_on ? surprise(believed_, now, sent) : Surprise{};
-  const Surprise more = goes_on ? surprise(less_, now, sent) : Surprise{};
   believed_.correct(now, sent);
   less_.correct(now, sent);
+  const StateEstimator::Surprise& n = believed_.surprise();
+  const StateEstimator::Surprise& less = less_.surprise();
+  const bool is_seen = elapsed > 0.0 && elapsed < kLongestSilence && std::fabs(n.aside) < kFarAside &&
+                       std::isfinite(n.heading + less.aside + less.heading);
   const model::State& car = believed_.state();
   const double by_tyres = (1.0 - believed_.model().vehicle().steer_helper) * car.vx * car.r;
-  if (!goes_on || !(std::fabs(by_tyres) >= kLeast) || !(std::fabs(n.aside) < kFarAside)) return;
+  if (!is_seen || !(std::fabs(by_tyres) >= kLeast)) return;
   const double left = kMemory / (kMemory + elapsed);
   time_ = left * time_ + elapsed;
   interval_ = interval_ > 0.0 ? interval_ + 0.05 * (elapsed - interval_) : elapsed;
-  aside_.add((more.aside - n.aside) / kStep, n.aside, left, elapsed);
-  heading_.add((more.heading - n.heading) / kStep, n.heading, left, elapsed);
-}
-
-GripEstimator::Surprise GripEstimator::surprise(const StateEstimator& estimator,
-                                                const model::Measurement& now,
-                                                const CommandHistory& sent) noexcept {
-  const model::State expected = estimator.predict(now.time, sent).state;
-  const double x = now.x - expected.x, y = now.y - expected.y;
-  const Surprise found{y * cos(expected.psi) - x * sin(expected.psi),
-                       angle_difference(now.psi, expected.psi)};
-  return std::isfinite(found.aside + found.heading) ? found
-                                                    : Surprise{std::numeric_limits<double>::infinity(), 0.0};
+  aside_.add((less.aside - n.aside) / kStep, n.aside, left, elapsed);
+  heading_.add((less.heading - n.heading) / kStep, n.heading, left, elapsed);
 }
 
 void GripEstimator::Sums::add(double h, double n, double left, double elapsed) noexcept {

@@ -49,12 +49,6 @@ class GripEstimator {
     /// Of n about what the best share of h explains, per second.
     [[nodiscard]] double variance(double time) const noexcept;
   };
-  struct Surprise {
-    double aside = 0.0;    ///< [m] to the left of the expected place
-    double heading = 0.0;  ///< [rad]
-  };
-  [[nodiscard]] static Surprise surprise(const StateEstimator& estimator, const model::Measurement& now,
-                                         const CommandHistory& sent) noexcept;
 
   StateEstimator believed_, less_;
   double time_ = 0.0;      ///< of cornering, as far as it is remembered [s]

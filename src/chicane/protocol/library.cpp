@@ -229,8 +229,7 @@ void note_friction(scenario::Scenario& scenario) {
   if (friction < scenario.vehicle.friction)
     scenario.notices.push_back(
         fmt::format("friction_low: the race is planned with a friction of {:.3g}, the least that is known of "
-                    "the car; its "
-                    "model has {:.3g}",
+                    "the car; its model has {:.3g}",
                     friction, scenario.vehicle.friction));
 }
 
