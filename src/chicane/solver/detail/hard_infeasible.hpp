@@ -36,7 +36,9 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   ask_for(finest_tolerance(problem, trajectory.horizon));
   bool is_minimum = false;
   for (std::size_t phase = 0; phase < kPhases; ++phase) {
-    share = kShares[phase] / unit_;
+    const double cost = measure(problem, trajectory, nullptr).cost;
+    const double cost_unit = std::isfinite(cost) ? std::max(unit_, cost) : unit_;
+    share = kShares[phase] / (cost_unit * std::max(1.0, unit * unit));
     weigh_misses(share, unit);
     problem_.square_price = phase == kSquares ? 1.0 / (unit * unit) : 0.0;
     if (phase == kSquares) {

@@ -177,7 +177,7 @@ class HardSolver {
     const bool is_close = !is_replaced && usable(report.status) && now.worst() <= options_.loose_tolerance;
     if (is_close) return finish(SolveStatus::kBudgetSpent, now, report);
     if (is_certified_) return tell_infeasible(problem, x0, trajectory, report);
-    if (take_guess(problem, x0, now, trajectory, report)) now = measure(problem, trajectory, &report);
+    if (take_guess(problem, x0, trajectory, report)) now = measure(problem, trajectory, &report);
     return finish(SolveStatus::kStalled, now, report);
   }
 
@@ -197,14 +197,17 @@ class HardSolver {
     trajectory = guess_;
     start_with_weights(trajectory.horizon, factor);
   }
-  /// The guess, simulated, if it misses less than `now` and costs less, too: true then.
-  bool take_guess(const P& problem, const State& x0, const Misses& now, Trajectory& trajectory,
-                  HardReport& report) noexcept {
+  /// The guess, simulated, if its inputs miss less than those of `trajectory` and cost less, too: true then.
+  bool take_guess(const P& problem, const State& x0, Trajectory& trajectory, HardReport& report) noexcept {
     if (!roll_out(problem, x0, guess_)) return false;
     const Misses guess = measure(problem, guess_, nullptr);
-    if (!(guess.worst() < now.worst() && guess.cost < now.cost)) return false;
-    trajectory = guess_;
-    look_at(x0, trajectory, false, report);
+    kept_ = trajectory;
+    if (roll_out(problem, x0, kept_)) {
+      const Misses own = measure(problem, kept_, nullptr);
+      if (!(guess.worst() < own.worst() && guess.cost < own.cost)) return false;
+    }
+    kept_ = trajectory = guess_;
+    look_at(x0, kept_, false, report);
     return true;
   }
   /// The residuals of `trajectory`, simulated or with its states, become those of `report`.
