@@ -12,7 +12,7 @@ namespace {
 
 using namespace chicane;
 using bench::Kernel;
-using bench::Look;
+using bench::Part;
 using bench::Shape;
 
 template <class Run>
@@ -31,8 +31,8 @@ void per_stage(benchmark::State& state, InstructionSet set, const Run& run) {
 void Pass(benchmark::State& state, InstructionSet set, Kernel kernel, Shape shape) {
   per_stage(state, set, [&](auto arch) { bench::run_kernel<decltype(arch)>(kernel, shape); });
 }
-void Functions(benchmark::State& state, InstructionSet set, Look look) {
-  per_stage(state, set, [&](auto arch) { bench::run_look<decltype(arch)>(look); });
+void Functions(benchmark::State& state, InstructionSet set, Part part) {
+  per_stage(state, set, [&](auto arch) { bench::run_part<decltype(arch)>(part); });
 }
 
 const struct {
@@ -48,11 +48,11 @@ const struct {
 
 const struct {
   const char* name;
-  Look look;
-} kLooks[] = {{"RollOut", Look::kRollOut},
-              {"LookFirstOrder", Look::kFirstOrder},
-              {"LookSecondOrder", Look::kSecondOrder},
-              {"SetStages", Look::kSetStages}};
+  Part part;
+} kParts[] = {{"RollOut", Part::kRollOut},
+              {"LineariseFirstOrder", Part::kFirstOrder},
+              {"LineariseSecondOrder", Part::kSecondOrder},
+              {"SetStages", Part::kSetStages}};
 
 }  // namespace
 
@@ -69,9 +69,9 @@ int main(int argc, char** argv) {
             [=](benchmark::State& state) { Pass(state, set, kernel.kernel, shape.shape); });
       }
     }
-    for (const auto& look : kLooks) {
-      benchmark::RegisterBenchmark((std::string(look.name) + "/described/" + name).c_str(),
-                                   [=](benchmark::State& state) { Functions(state, set, look.look); });
+    for (const auto& part : kParts) {
+      benchmark::RegisterBenchmark((std::string(part.name) + "/described/" + name).c_str(),
+                                   [=](benchmark::State& state) { Functions(state, set, part.part); });
     }
   }
   benchmark::RunSpecifiedBenchmarks();

@@ -58,7 +58,7 @@ void run(Kernel kernel) noexcept {
 }
 
 template <class Arch>
-struct Looks {
+struct Parts {
   using Problem = StructuredDescribedProblem;
   using Linearisation = solver::Linearisation<Problem, kCapacity, Arch>;
   using Layout = typename Linearisation::Layout;
@@ -72,7 +72,7 @@ struct Looks {
   std::array<Stages, Layout::kLCount> l;
   solver::SolveReport report;
 
-  Looks() noexcept {
+  Parts() noexcept {
     Random random{1};
     const DescribedInstance instance = random_instance(random, kKernelStages);
     problem = Problem{instance.problem, instance.start[4]};
@@ -88,13 +88,15 @@ struct Looks {
     }
     f.fill(Stages(0.5));
     l.fill(Stages(0.5));
-    run(Look::kRollOut);
+    run(Part::kRollOut);
   }
-  void run(Look look) noexcept {
-    if (look == Look::kRollOut) solver::RollOut<Problem, Arch>::run(problem, point);
-    if (look == Look::kFirstOrder) now.template look<1>(problem, point, false, 1e-13, slacks, lq, report);
-    if (look == Look::kSecondOrder) now.template look<2>(problem, point, false, 1e-13, slacks, lq, report);
-    if (look == Look::kSetStages) {
+  void run(Part part) noexcept {
+    if (part == Part::kRollOut) solver::RollOut<Problem, Arch>::run(problem, point);
+    if (part == Part::kFirstOrder)
+      now.template linearise<1>(problem, point, false, 1e-13, slacks, lq, report);
+    if (part == Part::kSecondOrder)
+      now.template linearise<2>(problem, point, false, 1e-13, slacks, lq, report);
+    if (part == Part::kSetStages) {
       for (std::size_t k = 0; k < kKernelStages; k += 8) lq.set(k, f, l);
     }
   }
@@ -121,12 +123,12 @@ void run_kernel(Kernel kernel, Shape shape) noexcept {
 }
 
 template <class Arch>
-void run_look(Look look) noexcept {
-  static Looks<Arch> looks;
-  looks.run(look);
+void run_part(Part part) noexcept {
+  static Parts<Arch> parts;
+  parts.run(part);
 }
 
 template void run_kernel<arch::Native>(Kernel, Shape) noexcept;
-template void run_look<arch::Native>(Look) noexcept;
+template void run_part<arch::Native>(Part) noexcept;
 
 }  // namespace chicane::bench

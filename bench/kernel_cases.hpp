@@ -15,12 +15,12 @@ constexpr std::size_t kKernelStages = 20;
 template <class Arch>
 void run_kernel(Kernel kernel, Shape shape) noexcept;
 
-/// What a turn does with the functions of the described problem: simulate inputs, look at an iterate with
-/// Hessians of first or second order, and, the last part of a look, turn entries into stages of the quadratic
-/// program.
-enum class Look { kRollOut, kFirstOrder, kSecondOrder, kSetStages };
+/// What an iteration does with the functions of the described problem: simulate inputs, linearise at an
+/// iterate with Hessians of first or second order, and, the last part of that, turn entries into stages of
+/// the quadratic program.
+enum class Part { kRollOut, kFirstOrder, kSecondOrder, kSetStages };
 /// The same for kKernelStages stages of the described problem.
 template <class Arch>
-void run_look(Look look) noexcept;
+void run_part(Part part) noexcept;
 
 }  // namespace chicane::bench

@@ -35,7 +35,7 @@ References read(const std::string& file) {
     int is_solved = 0;
     ReferenceAnswer answer;
     if (tab == std::string::npos || std::sscanf(line.c_str() + tab + 1, "%d %lf %lf %d", &is_solved,
-                                                &answer.cost, &answer.time, &answer.turns) != 4)
+                                                &answer.cost, &answer.time, &answer.iterations) != 4)
       continue;
     answer.is_solved = is_solved == 1;
     answer.is_impossible = is_solved == 2;
@@ -49,7 +49,7 @@ void write(const References& references, const std::string& file) {
     char numbers[96];
     std::snprintf(numbers, sizeof numbers, "%d %.17g %.6g %d",
                   answer.is_impossible ? 2 : (answer.is_solved ? 1 : 0), answer.cost, answer.time,
-                  answer.turns);
+                  answer.iterations);
     out << key << '\t' << numbers << '\n';
   }
 }
@@ -58,11 +58,11 @@ void write(const References& references, const std::string& file) {
 void print_head(bool is_markdown) {
   if (is_markdown) {
     std::printf(
-        "| family | from | solved | of Ipopt's | less / more | turns | time [ms] | p99 | ratio | p1 |\n"
+        "| family | from | solved | of Ipopt's | less / more | iterations | time [ms] | p99 | ratio | p1 |\n"
         "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   } else {
     std::printf("%-34s %-4s %9s %4s %9s %4s %4s %5s %5s %8s %8s %6s %6s %8s\n", "family", "from", "optimal",
-                "near", "of Ipopt's", "less", "more", "false", "turns", "ms", "p99", "ratio", "p1",
+                "near", "of Ipopt's", "less", "more", "false", "iterations", "ms", "p99", "ratio", "p1",
                 "residual");
   }
 }
@@ -72,13 +72,13 @@ void print(const FamilyRow& row, bool is_markdown) {
   const double ms = 1e3 * row.time, most_ms = 1e3 * row.most_time;
   if (is_markdown) {
     std::printf("| %s | %s | %d of %d | %d of %d | %d / %d | %.0f | %.2f | %.2f | %.0f | %.0f |\n", family,
-                start, row.optimal, row.instances, row.both, row.reference, row.lower, row.higher, row.turns,
-                ms, most_ms, row.ratio, row.least_ratio);
+                start, row.optimal, row.instances, row.both, row.reference, row.lower, row.higher,
+                row.iterations, ms, most_ms, row.ratio, row.least_ratio);
   } else {
     std::printf("%-34s %-4s %4d/%-4d %4d %4d/%-4d %4d %4d %5d %5.0f %8.2f %8.2f %6.0f %6.0f %8.1e\n", family,
                 start, row.optimal, row.instances, row.usable - row.optimal, row.both, row.reference,
-                row.lower, row.higher, row.false_optimal, row.turns, ms, most_ms, row.ratio, row.least_ratio,
-                row.worst_residual);
+                row.lower, row.higher, row.false_optimal, row.iterations, ms, most_ms, row.ratio,
+                row.least_ratio, row.worst_residual);
   }
   std::fflush(stdout);
 }
@@ -147,11 +147,12 @@ int print_tolerances(FamilyRequest request, const std::vector<std::string_view>&
 int print_loops(const FamilyRequest& request, bool is_markdown, const std::vector<std::string_view>& names) {
   if (is_markdown) {
     std::printf(
-        "| family | solved | of Ipopt's | more | turns | time [ms] | p99 | ratio | p1 | with its multipliers "
+        "| family | solved | of Ipopt's | more | iterations | time [ms] | p99 | ratio | p1 | with its "
+        "multipliers "
         "|\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   } else {
     std::printf("%-34s %9s %4s %10s %4s %5s %8s %8s %6s %6s %6s\n", "family", "optimal", "near", "of Ipopt's",
-                "more", "turns", "ms", "p99", "ratio", "p1", "warm");
+                "more", "iterations", "ms", "p99", "ratio", "p1", "warm");
   }
   for (const Family& family : all_families()) {
     if (!is_wanted(family, names) || family.drive == nullptr) continue;
@@ -159,12 +160,12 @@ int print_loops(const FamilyRequest& request, bool is_markdown, const std::vecto
     const double ms = 1e3 * row.time, most_ms = 1e3 * row.most_time;
     if (is_markdown) {
       std::printf("| %s | %d of %d | %d of %d | %d | %.0f | %.3f | %.3f | %.0f | %.0f | %.0f |\n",
-                  row.family.data(), row.optimal, row.solves, row.both, row.reference, row.higher, row.turns,
-                  ms, most_ms, row.ratio, row.least_ratio, row.warm_ratio);
+                  row.family.data(), row.optimal, row.solves, row.both, row.reference, row.higher,
+                  row.iterations, ms, most_ms, row.ratio, row.least_ratio, row.warm_ratio);
     } else {
       std::printf("%-34s %4d/%-4d %4d %5d/%-4d %4d %5.0f %8.3f %8.3f %6.0f %6.0f %6.0f\n", row.family.data(),
                   row.optimal, row.solves, row.usable - row.optimal, row.both, row.reference, row.higher,
-                  row.turns, ms, most_ms, row.ratio, row.least_ratio, row.warm_ratio);
+                  row.iterations, ms, most_ms, row.ratio, row.least_ratio, row.warm_ratio);
     }
     std::fflush(stdout);
   }

@@ -59,7 +59,7 @@ void measure(const char* name, int horizon, Start start) {
   const auto guess = std::make_unique<bench::DescribedTrajectory<kCapacity>>();
   Random random{1};
   std::vector<double> times;
-  double turns = 0.0;
+  double iterations = 0.0;
   double sweeps = 0.0;
   int unsolved = 0;
   for (int i = 0; i < kInstances; ++i) {
@@ -87,14 +87,15 @@ void measure(const char* name, int horizon, Start start) {
       least = std::min(least, bench::cpu_time() - begin);
     }
     times.push_back(1e6 * least);
-    turns += static_cast<double>(report.iterations) / kInstances;
+    iterations += static_cast<double>(report.iterations) / kInstances;
     sweeps += static_cast<double>(report.sweeps) / kInstances;
     unsolved += report.status == solver::SolveStatus::kOptimal ? 0 : 1;
   }
   std::sort(times.begin(), times.end());
   constexpr const char* kNames[] = {"cold", "path law", "warm"};
-  std::printf("%-10s %-8s N = %3d: median %7.2f us, largest %7.2f us, %.1f turns, %.1f sweeps, %d unsolved\n",
-              name, kNames[start], horizon, times[times.size() / 2], times.back(), turns, sweeps, unsolved);
+  std::printf(
+      "%-10s %-8s N = %3d: median %7.2f us, largest %7.2f us, %.1f iterations, %.1f sweeps, %d unsolved\n",
+      name, kNames[start], horizon, times[times.size() / 2], times.back(), iterations, sweeps, unsolved);
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ void Solve(benchmark::State& state) {
   const auto ocp = std::make_unique<solver::OcpSolver<Problem, kCapacity>>();
   const auto trajectory = std::make_unique<Trajectory>();
   std::size_t next = 0;
-  std::int64_t turns = 0;
+  std::int64_t iterations = 0;
   std::int64_t sweeps = 0;
   std::int64_t unsolved = 0;
   for (auto _ : state) {
@@ -74,12 +74,12 @@ void Solve(benchmark::State& state) {
     next = (next + 1) % instances.size();
     *trajectory = instance.guess;
     const auto report = ocp->solve(instance.problem, instance.start, *trajectory);
-    turns += report.iterations;
+    iterations += report.iterations;
     sweeps += report.sweeps;
     unsolved += report.status == solver::SolveStatus::kOptimal ? 0 : 1;
   }
-  state.counters["turns"] =
-      benchmark::Counter(static_cast<double>(turns), benchmark::Counter::kAvgIterations);
+  state.counters["iterations"] =
+      benchmark::Counter(static_cast<double>(iterations), benchmark::Counter::kAvgIterations);
   state.counters["unsolved"] =
       benchmark::Counter(static_cast<double>(unsolved), benchmark::Counter::kAvgIterations);
   state.counters["sweeps"] =
@@ -139,12 +139,12 @@ struct Passes {
         now->upper[m][k] = problem.input_upper(0)[m];
       }
     }
-    look<1>();
+    linearise<1>();
     lq->backward(kStages, 0.0, true);
   }
   template <int Order>
-  void look() {
-    now->look<Order>(problem, point, false, 1e-13, *slacks, lq->lq, report);
+  void linearise() {
+    now->linearise<Order>(problem, point, false, 1e-13, *slacks, lq->lq, report);
   }
 };
 
@@ -159,13 +159,13 @@ void per_stage(benchmark::State& state, const Pass& pass) {
 }
 
 /// Values, derivatives, adjoint, optimality and the stages of the quadratic program.
-void LookFirstOrder(benchmark::State& state) {
+void LineariseFirstOrder(benchmark::State& state) {
   Passes p;
-  per_stage(state, [&] { p.look<1>(); });
+  per_stage(state, [&] { p.linearise<1>(); });
 }
-void LookSecondOrder(benchmark::State& state) {
+void LineariseSecondOrder(benchmark::State& state) {
   Passes p;
-  per_stage(state, [&] { p.look<2>(); });
+  per_stage(state, [&] { p.linearise<2>(); });
 }
 void BackwardSweep(benchmark::State& state) {
   Passes p;
@@ -176,8 +176,8 @@ void ForwardSweep(benchmark::State& state) {
   per_stage(state,
             [&] { benchmark::DoNotOptimize(p.lq->forward(Passes::kStages, Passes::Lq::Repair::kLast)); });
 }
-BENCHMARK(LookFirstOrder);
-BENCHMARK(LookSecondOrder);
+BENCHMARK(LineariseFirstOrder);
+BENCHMARK(LineariseSecondOrder);
 BENCHMARK(BackwardSweep);
 BENCHMARK(ForwardSweep);
 

@@ -22,7 +22,7 @@ PARTS = (
     ("Runs", ("drive", "read", "verify", "view", "sweep", "limit", "Run", "Frames", "Recording", "Limit")),
     ("Parts of your own", ("Controller", "Seen", "Command", "Plant", "CarState", "Track", "TrackReader", "use_track_reader")),
     ("Environments", ("Env", "VecEnv")),
-    ("Optimal control problems", ("Problem", "Solution", "Solutions", "Feedback", "Turns", "TraceError")),
+    ("Optimal control problems", ("Problem", "Solution", "Solutions", "Feedback", "Iterations", "TraceError")),
     ("Functions for problems", ("rk4", "implicit_euler", "gauss_legendre", "table", "where", "minimum", "maximum", "clip", "hypot", "norm2", "atan2")),
     ("Names", ("tracks", "cars", "presets", "scenarios", "parameters", "faults", "frame_fields")),
 )

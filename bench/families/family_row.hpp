@@ -20,7 +20,7 @@ struct ReferenceAnswer {
   bool is_impossible = false;  ///< it ended where the misses have a local minimum
   double cost = 0.0;           ///< then: the sum of the misses of its inputs, simulated
   double time = 0.0;
-  int turns = 0;
+  int iterations = 0;
 };
 /// By family, start and seed; kept in a file, as Ipopt takes minutes.
 using References = std::map<std::string, ReferenceAnswer>;
@@ -46,7 +46,7 @@ struct FamilyRow {
   int false_optimal = 0;
   int infeasible = 0, reference_infeasible = 0, both_infeasible = 0;
   int further = 0;  ///< infeasible by both, with a sum of misses more than 1e-4 above Ipopt's
-  double turns = 0.0, time = 0.0, most_time = 0.0, ratio = 0.0, least_ratio = 0.0;
+  double iterations = 0.0, time = 0.0, most_time = 0.0, ratio = 0.0, least_ratio = 0.0;
   double worst_residual = 0.0;  ///< of those that are optimal, by the independent check
   double floor_residual = 0.0;  ///< and of those at the floor
 };
@@ -57,7 +57,7 @@ struct LoopRow {
   int solves = 0, optimal = 0, usable = 0;
   int reference = 0, both = 0;  ///< of those: solved by Ipopt from the same start; by both
   int higher = 0;               ///< costs more than 1 % (and 1e-6) above Ipopt's
-  double turns = 0.0, time = 0.0, most_time = 0.0;
+  double iterations = 0.0, time = 0.0, most_time = 0.0;
   double ratio = 0.0, least_ratio = 0.0;  ///< Ipopt's time over ours: median, first percentile
   double warm_ratio = 0.0;                ///< median with Ipopt's multipliers, too
 };

@@ -84,7 +84,7 @@ class FamilyMeasurement {
                                                        .max_iterations = request.max_iterations,
                                                        .start_from_states = start == NaiveStart::kLine});
     FamilyRow row{.family = P::kName, .start = start, .instances = request.instances};
-    std::vector<double> times, turns, ratios;
+    std::vector<double> times, iterations, ratios;
     for (int i = request.first; i < request.first + request.instances; ++i) {
       const FamilyInstance<P> one = instance(i, request.is_impossible);
       const auto t = std::make_unique<Trajectory>();
@@ -104,7 +104,7 @@ class FamilyMeasurement {
       const bool is_asked = !is_optimal || i - request.first < request.ipopt_instances;
       const ReferenceAnswer reference = reference_of(request, references, one, arrays, start, i, is_asked);
       times.push_back(time);
-      turns.push_back(report.iterations);
+      iterations.push_back(report.iterations);
       row.optimal += is_optimal ? 1 : 0;
       const bool is_at_floor = report.status == solver::SolveStatus::kAtFloor;
       row.at_floor += is_at_floor ? 1 : 0;
@@ -132,16 +132,17 @@ class FamilyMeasurement {
       }
       if (request.each) {
         std::printf(
-            "%s %s %d: %s turns %d sweeps %d cost %.8g stat %.2e defect %.2e | check stat %.2e defect %.2e "
-            "sub %.2e miss %.2e total %.6g | ipopt %s %.8g turns %d%s\n",
+            "%s %s %d: %s iterations %d sweeps %d cost %.8g stat %.2e defect %.2e | check stat %.2e defect "
+            "%.2e "
+            "sub %.2e miss %.2e total %.6g | ipopt %s %.8g iterations %d%s\n",
             P::kName.data(), to_string(start).data(), i, to_string(report.status).data(), report.iterations,
             report.sweeps, kkt.cost, report.stationarity, report.defect, kkt.stationarity, kkt.defect,
             kkt.subgradient, kkt.miss, kkt.total,
             reference.is_solved ? "cost" : (reference.is_impossible ? "infeasible total" : "none"),
-            reference.cost, reference.turns, is_false ? " FALSE" : "");
+            reference.cost, reference.iterations, is_false ? " FALSE" : "");
       }
     }
-    row.turns = detail::at_share(turns, 0.5);
+    row.iterations = detail::at_share(iterations, 0.5);
     row.time = detail::at_share(times, 0.5);
     row.most_time = detail::at_share(times, 0.99);
     row.ratio = detail::at_share(ratios, 0.5);

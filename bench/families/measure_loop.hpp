@@ -106,7 +106,7 @@ class LoopMeasurement {
     is_optimal_ = report_.status == solver::SolveStatus::kOptimal;
     time_ = time;
     times_.push_back(time);
-    turns_.push_back(report_.iterations);
+    iterations_.push_back(report_.iterations);
     ++row_.solves;
     row_.usable += is_usable_ ? 1 : 0;
     row_.optimal += is_optimal_ ? 1 : 0;
@@ -137,7 +137,7 @@ class LoopMeasurement {
 
   LoopRow row() {
     row_.family = P::kName;
-    row_.turns = detail::at_share(turns_, 0.5);
+    row_.iterations = detail::at_share(iterations_, 0.5);
     row_.time = detail::at_share(times_, 0.5);
     row_.most_time = detail::at_share(times_, 0.99);
     row_.ratio = detail::at_share(ratios_, 0.5);
@@ -151,7 +151,7 @@ class LoopMeasurement {
   solver::SolveReport report_;
   bool is_usable_ = false, is_optimal_ = false;
   double time_ = 0.0;
-  std::vector<double> times_, turns_, ratios_, warm_ratios_;
+  std::vector<double> times_, iterations_, ratios_, warm_ratios_;
 #if defined(CHICANE_HAVE_IPOPT)
   IpoptSolver<OverArrays<P>> ipopt_;
 #endif

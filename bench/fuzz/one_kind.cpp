@@ -38,7 +38,8 @@ FuzzTally run(long count, long first) {
     ++tally.wrong;
     const KktResidual kkt = judge.check(one->answer);
     std::printf(
-        "%s %ld: %s (%s, %d turns, tolerance %.0e, says %.2e %.2e %.2e; check: slope %.2e defect %.2e prices "
+        "%s %ld: %s (%s, %d iterations, tolerance %.0e, says %.2e %.2e %.2e; check: slope %.2e defect %.2e "
+        "prices "
         "%.2e "
         "outside %.2e miss %.2e rounding %.2e cost %.6g)\n",
         KIND_NAME, seed, kWrongNames[static_cast<int>(wrong)], to_string(one->report.status).data(),

@@ -26,7 +26,7 @@ class DenseReference final : public Reference<DescribedProblem> {
         return solve_dense<decltype(arch)>(now.problem, now.start, answer);
       });
       outcome.is_solved = report.status == solver::SolveStatus::kOptimal;
-      outcome.turns = report.iterations;
+      outcome.iterations = report.iterations;
     }
     outcome.time = (cpu_time() - begin) / kRepeats;
     return outcome;

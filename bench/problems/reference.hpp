@@ -18,7 +18,7 @@ inline constexpr int kLongestHorizon = 200;
 /// What another solver did with one instance.
 struct Outcome {
   bool is_solved = false;
-  int turns = 0;
+  int iterations = 0;
   double time = 0.0;               ///< CPU time from the call to the answer [s]
   double time_in_functions = 0.0;  ///< values and derivatives of the problem in it [s]; 0 = not measured
 };

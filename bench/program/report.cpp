@@ -46,14 +46,15 @@ std::string small(double value) { return std::isfinite(value) ? fmt::format("{:.
 
 std::string own_table(const std::vector<SolveRow>& rows) {
   std::string text =
-      "| family | N | median µs | p99 | p99.9 | p99 / median | turns | sweeps | unsolved | gradient median / "
+      "| family | N | median µs | p99 | p99.9 | p99 / median | iterations | sweeps | unsolved | gradient "
+      "median / "
       "worst |\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const SolveRow& row : rows) {
     const SolverColumn& own = row.own;
     text += fmt::format("| {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {} | {} / {} |\n",
                         row.family, row.horizon, own.time_us.median, own.time_us.p99, own.time_us.p999,
-                        own.time_us.p99 / own.time_us.median, own.mean_turns, own.mean_sweeps, own.unsolved,
-                        small(own.median_gradient), small(own.worst_gradient));
+                        own.time_us.p99 / own.time_us.median, own.mean_iterations, own.mean_sweeps,
+                        own.unsolved, small(own.median_gradient), small(own.worst_gradient));
   }
   return text;
 }
@@ -64,7 +65,7 @@ double ratio(const SolverColumn* reference, const SolverColumn& own) {
 
 std::string reference_table(const std::vector<SolveRow>& rows) {
   std::string text =
-      "| family | N | solver | median µs | p99 | ratio | ratio, its functions free | turns | unsolved | "
+      "| family | N | solver | median µs | p99 | ratio | ratio, its functions free | iterations | unsolved | "
       "gradient median / worst | our cost over its, worst |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const SolveRow& row : rows) {
     for (const SolverColumn& column : row.references) {
@@ -72,7 +73,7 @@ std::string reference_table(const std::vector<SolveRow>& rows) {
       text += fmt::format("| {} | {} | {} | {:.0f} | {:.0f} | {:.0f} | {} | {:.1f} | {} | {} / {} | {} |\n",
                           row.family, row.horizon, column.name, column.time_us.median, column.time_us.p99,
                           ratio(&column, row.own_shared), free > 0.0 ? number(free, 0) : "–",
-                          column.mean_turns, column.unsolved, small(column.median_gradient),
+                          column.mean_iterations, column.unsolved, small(column.median_gradient),
                           small(column.worst_gradient), small(column.worst_excess));
     }
   }
@@ -140,7 +141,7 @@ void put(Json& row, const SolverColumn& column) {
   if (column.without_functions_us > 0.0)
     row[prefix + "_without_functions_p50_us"] = column.without_functions_us;
   row[prefix + "_unsolved"] = column.unsolved;
-  row[prefix + "_mean_turns"] = column.mean_turns;
+  row[prefix + "_mean_iterations"] = column.mean_iterations;
   if (column.mean_sweeps > 0.0) row[prefix + "_mean_sweeps"] = column.mean_sweeps;
   row[prefix + "_median_gradient"] = column.median_gradient;
   row[prefix + "_worst_gradient"] = column.worst_gradient;

@@ -69,7 +69,7 @@ Sample solve_own(const Case<Problem>& instance, Trajectory& answer) {
     sample.outcome.time = std::min(sample.outcome.time, (cpu_time() - begin) / repeats);
   }
   sample.outcome.is_solved = report.status == solver::SolveStatus::kOptimal;
-  sample.outcome.turns = report.iterations;
+  sample.outcome.iterations = report.iterations;
   sample.sweeps = report.sweeps;
   answer = instance.guess;
   std::copy_n(own.u.begin(), own.horizon, answer.u.begin());
@@ -111,7 +111,7 @@ SolverColumn summarize(std::string_view name, const std::vector<Sample>& samples
   const auto count = static_cast<double>(samples.size());
   for (const Sample& sample : samples) {
     result.unsolved += sample.outcome.is_solved ? 0 : 1;
-    result.mean_turns += sample.outcome.turns / count;
+    result.mean_iterations += sample.outcome.iterations / count;
     result.mean_sweeps += sample.sweeps / count;
   }
   std::vector<double> gradients = column(samples, [](const Sample& s) { return s.gradient; });

@@ -26,7 +26,7 @@ struct SolverColumn {
   double without_functions_us =
       0.0;           ///< median without the problem's functions and derivatives; 0 when not measured
   int unsolved = 0;  ///< did not say that it converged
-  double mean_turns = 0.0;
+  double mean_iterations = 0.0;
   double mean_sweeps = 0.0;  ///< own only
   /// ‖u − Proj(u − dJ/du)‖∞ of the simulated inputs by forward derivatives of the whole simulation, which
   /// no solver uses; NaN with soft constraints, whose penalty has a kink.

@@ -41,7 +41,7 @@ class IpoptReference final : public Reference<DescribedProblem> {
     outcome.time = cpu_time() - begin;
     outcome.time_in_functions = nlp_->time_in_functions;
     outcome.is_solved = is_solved(status);
-    if (Ipopt::IsValid(app.Statistics())) outcome.turns = app.Statistics()->IterationCount();
+    if (Ipopt::IsValid(app.Statistics())) outcome.iterations = app.Statistics()->IterationCount();
     answer = instance.guess;
     if (outcome.is_solved) nlp_->answer(answer);
     return outcome;

@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
   const auto ocp = std::make_unique<solver::OcpSolver<CartPole, kHorizon>>();
   solver::Trajectory<4, 1, kHorizon> plan{.horizon = kHorizon};
   const auto report = ocp->solve(CartPole{}, {0.0, 0.0, 0.0, 0.0}, plan);
-  std::printf("%s after %d turns, cost %.7g, what must hold is missed by %.1e\n",
+  std::printf("%s after %d iterations, cost %.7g, what must hold is missed by %.1e\n",
               to_string(report.status).data(), report.iterations, report.cost, report.miss);
   if (argc > 1) {
     std::FILE* file = std::fopen(argv[1], "w");

@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
   solver::Trajectory<10, 2, kHorizon> plan{.horizon = kHorizon};
   const std::array<double, 10> start{0.3, -0.2, 0.6, -0.1, 0.9, 0.3, 0.8, -0.6, -0.5, 0.9};
   const solver::SolveReport report = ocp->solve(Chain{}, start, plan);
-  std::printf("%s after %d turns, cost %.7g\n", to_string(report.status).data(), report.iterations,
+  std::printf("%s after %d iterations, cost %.7g\n", to_string(report.status).data(), report.iterations,
               report.cost);
   if (argc > 1) {
     std::FILE* file = std::fopen(argv[1], "w");

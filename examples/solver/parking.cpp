@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
   const auto ocp = std::make_unique<solver::OcpSolver<Parking, kHorizon>>();
   solver::Trajectory<5, 2, kHorizon> plan{.horizon = kHorizon};
   const solver::SolveReport report = ocp->solve(Parking{}, {-1.0, 4.0, 0.0, 0.0, 0.0}, plan);
-  std::printf("%s after %d turns, cost %.7g\n", to_string(report.status).data(), report.iterations,
+  std::printf("%s after %d iterations, cost %.7g\n", to_string(report.status).data(), report.iterations,
               report.cost);
   if (argc > 1) {
     std::FILE* file = std::fopen(argv[1], "w");

@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   solver::Trajectory<6, 2, kHorizon> plan{.horizon = kHorizon};
   plan.u.fill({Quadrotor::kHover, Quadrotor::kHover});
   const solver::SolveReport report = ocp->solve(Quadrotor{}, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, plan);
-  std::printf("%s after %d turns, cost %.7g\n", to_string(report.status).data(), report.iterations,
+  std::printf("%s after %d iterations, cost %.7g\n", to_string(report.status).data(), report.iterations,
               report.cost);
   if (argc > 1) {
     std::FILE* file = std::fopen(argv[1], "w");

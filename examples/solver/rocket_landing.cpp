@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
       plan.x[k][i] = kStart[i] + static_cast<double>(k) / kHorizon * (kGoal[i] - kStart[i]);
   }
   const auto report = ocp->solve(Rocket{}, kStart, plan);
-  std::printf("%s after %d turns, cost %.7g, what must hold is missed by %.1e\n",
+  std::printf("%s after %d iterations, cost %.7g, what must hold is missed by %.1e\n",
               to_string(report.status).data(), report.iterations, report.cost, report.miss);
   if (argc > 1) {
     std::FILE* file = std::fopen(argv[1], "w");

@@ -35,16 +35,16 @@ from ._symbols import (  # noqa: E402
     Symbol, TraceError, acos, asin, atan, atan2, clip, cos, exp, hypot, log, maximum, minimum, norm2, rk4, sin, sqrt, table, tan, tanh, where,
 )
 from ._track import Track, TrackReader, use_track_reader  # noqa: E402
-from ._turns import Turns  # noqa: E402
+from ._iterations import Iterations  # noqa: E402
 from ._view import view  # noqa: E402
 
 if TYPE_CHECKING:
     from ._env import Env, VecEnv
 
 __all__ = [
-    "CarState", "Command", "Controller", "Env", "Feedback", "Frames", "Limit", "NO_ANSWER", "Plant", "Problem", "Recording", "Run", "Seen",
-    "Solution", "Solutions", "Symbol", "TraceError", "Track", "TrackReader", "Turns", "VecEnv", "__version__", "acos", "asin", "atan",
-    "atan2", "cars", "clip", "cos", "drive", "exp", "faults", "frame_fields", "gauss_legendre", "hypot", "implicit_euler", "limit", "log",
+    "CarState", "Command", "Controller", "Env", "Feedback", "Frames", "Iterations", "Limit", "NO_ANSWER", "Plant", "Problem", "Recording", "Run",
+    "Seen", "Solution", "Solutions", "Symbol", "TraceError", "Track", "TrackReader", "VecEnv", "__version__", "acos", "asin", "atan", "atan2",
+    "cars", "clip", "cos", "drive", "exp", "faults", "frame_fields", "gauss_legendre", "hypot", "implicit_euler", "limit", "log",
     "maximum", "minimum", "norm2", "parameters", "presets", "read", "rk4", "scenarios", "sin", "sqrt", "sweep", "table", "tan", "tanh",
     "tracks", "use_track_reader", "verify", "view", "where",
 ]

@@ -203,7 +203,7 @@ class CompiledSolver:
         words = _Options(options["tolerance"], options["budget_s"], options["max_iterations"], options["second_order"], options["start_from_states"])
         self._setting = words, lower, upper
 
-    def solve(self, x0: Array, parameters: Array, x: Array, u: Array, goes_on: bool, turns: int) -> dict[str, Any]:
+    def solve(self, x0: Array, parameters: Array, x: Array, u: Array, goes_on: bool, iterations: int) -> dict[str, Any]:
         return self._main.solve(self._setting, x0, parameters, x, u)
 
     def prepare(self) -> bool:

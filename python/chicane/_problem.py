@@ -142,7 +142,7 @@ class Problem:
         u: inputs to start from, (horizon, nu); x: states to start from, (horizon + 1, nx); else inputs of 0, simulated.
         start: an earlier solution, in the place of both, with its multipliers.
         tolerance: of the conditions of optimality, (0, 1e-2]. budget_s: when to stop, best answer so far [s]; 0: never.
-        log: the turns are in the solution's log, one row each (Turns); the problem is interpreted then."""
+        log: the iterations are in the solution's log, one row each (Iterations); the problem is interpreted then."""
         state = state_of(x0, self.nx)
         inputs = array_of("u", 0.0 if start is None and u is None else start.u if start is not None else u, (self.horizon, self.nu))
         has_states = start is not None or x is not None
@@ -156,11 +156,11 @@ class Problem:
                    "start_from_states": has_states}
         values = self.stage_parameters(p)
         told = {}
-        turns = 2 * int(max_iterations) + 1000 if log else 0
+        iterations = 2 * int(max_iterations) + 1000 if log else 0
         for shift in self._shifts():
             full = self._with_shifts(values, shift)
             solver = self._solver(options, must_interpret=log)
-            told = solver.solve(state, full, states, inputs, start is not None and start is self._last, turns)
+            told = solver.solve(state, full, states, inputs, start is not None and start is self._last, iterations)
             if told["status"] >= 0 or not self.has_expression_cost:
                 break
         told["cost"] += self._offset(full)

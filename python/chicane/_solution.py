@@ -8,7 +8,7 @@ import numpy as np
 
 from ._types import npt
 from . import _chicane
-from ._turns import Turns
+from ._iterations import Iterations
 
 if TYPE_CHECKING:
     from ._problem import Problem
@@ -26,9 +26,9 @@ class Solution:
     violation: the largest amount by which something that should hold does not, in its own unit, and `violated`, what and where.
     multipliers: "dynamics" (horizon, nx), the price of each next state; "bounds" (horizon, nu); "constraints" and "equalities",
     (horizon, rows); "terminal_equality", "terminal_constraint", (rows,).
-    unknowns: states inside the intervals of an implicit method, (horizon, count). iterations: turns of the solver. residual: how far from optimal. gap: what
-    the barrier of soft and hard limits costs, at most in a convex problem. time: how long C++ worked [s]. log: the turns, where solve() was
-    asked for them (Turns), else None."""
+    unknowns: states inside the intervals of an implicit method, (horizon, count). iterations: iterations of the solver. residual: how far from optimal. gap: what
+    the barrier of soft and hard limits costs, at most in a convex problem. time: how long C++ worked [s]. log: the iterations, where solve() was
+    asked for them (Iterations), else None."""
 
     def __init__(self, problem: Problem, told: dict[str, Any], x0: Array, parameters: Array, full: Array) -> None:
         self._problem = problem
@@ -47,7 +47,7 @@ class Solution:
         self.residual: float = max(told["stationarity"], told["defect"], told["complementarity"])
         self.gap: float = told["gap"]
         self.time: float = told["time"]
-        self.log = Turns(told["log"]) if "log" in told else None
+        self.log = Iterations(told["log"]) if "log" in told else None
         self.multipliers: dict[str, Array] = {name: told[name] for name in ("dynamics", "bounds", "constraints", "equalities",
                                                                             "terminal_equality", "terminal_constraint")}
         self.multipliers["equalities"] = np.ascontiguousarray(told["equalities"][:, problem.unknowns:])
@@ -87,7 +87,7 @@ class Solution:
         return self.is_usable
 
     def __repr__(self) -> str:
-        text = f"{self.status} after {self.iterations} turns, cost {self.cost:.6g}, {1e3 * self.time:.3g} ms"
+        text = f"{self.status} after {self.iterations} iterations, cost {self.cost:.6g}, {1e3 * self.time:.3g} ms"
         if not self.is_usable:
             text += f": not usable, {self._sentence}"
         if self.violated:
@@ -96,7 +96,7 @@ class Solution:
 
     def _repr_html_(self) -> str:
         rows = [("status", self.status if self.is_usable else f"{self.status} (not usable: {self._sentence})"), ("cost", f"{self.cost:.6g}"),
-                ("violation", f"{self.violation:.3g}: {self.violated}" if self.violated else "none"), ("turns", str(self.iterations)),
+                ("violation", f"{self.violation:.3g}: {self.violated}" if self.violated else "none"), ("iterations", str(self.iterations)),
                 ("residual", f"{self.residual:.1e}"), ("time", f"{1e3 * self.time:.3g} ms")]
         return "<table>" + "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in rows) + "</table>"
 

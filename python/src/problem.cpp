@@ -166,24 +166,24 @@ class Interpreter {
     setting_.budget_s = options["budget_s"].cast<double>();
   }
 
-  /// With `turns` > 0 a log of so many.
+  /// With `iterations` > 0 a log of so many.
   py::dict solve(const Array& x0, const Array& parameters, const Array& x, const Array& u, bool goes_on,
-                 std::size_t turns) {
+                 std::size_t iterations) {
     if (main_ == nullptr) main_ = std::make_unique<Worker>(*this);
     TracedAnswer& answer = main_->answer;
     std::copy(x.data(), x.data() + x.size(), answer.x.begin());
     std::copy(u.data(), u.data() + u.size(), answer.u.begin());
     double seconds = 0.0;
-    std::vector<solver::Turn> memory(turns);
-    solver::TurnLog log(memory);
+    std::vector<solver::Iteration> memory(iterations);
+    solver::IterationLog log(memory);
     unlocked([&] {
-      seconds = main_->solve(*this, x0.data(), parameters.data(), goes_on, turns > 0 ? &log : nullptr);
+      seconds = main_->solve(*this, x0.data(), parameters.data(), goes_on, iterations > 0 ? &log : nullptr);
     });
     py::dict told = report_of(answer.report, seconds);
     const auto nx = static_cast<py::ssize_t>(problem_.nx);
     const auto nu = static_cast<py::ssize_t>(problem_.nu);
     add_trajectory(told);
-    if (turns > 0) told["log"] = table_of(log);
+    if (iterations > 0) told["log"] = table_of(log);
     told["dynamics"] = shaped(answer.adjoint, horizon_, nx);
     told["bounds"] = shaped(answer.bound, horizon_, nu);
     told["constraints"] = shaped(answer.constraint, horizon_, problem_.rows(Function::kConstraint));
@@ -328,7 +328,7 @@ class Interpreter {
       answer.terminal_constraint.resize(rows(Function::kTerminalConstraint));
     }
     double solve(const Interpreter& of, const double* x0, const double* from, bool goes_on,
-                 solver::TurnLog* log = nullptr) {
+                 solver::IterationLog* log = nullptr) {
       const Setting& setting = of.setting_;
       parameters.fill(from, of.problem_.np, of.horizon_ + 1);
       const auto begin = std::chrono::steady_clock::now();
@@ -361,24 +361,24 @@ class Interpreter {
     told["x"] = shaped(main_->answer.x, horizon_ + 1, problem_.nx);
     told["u"] = shaped(main_->answer.u, horizon_, problem_.nu);
   }
-  /// A column for each number of a turn.
-  static py::dict table_of(const solver::TurnLog& log) {
-    const auto turns = log.turns();
+  /// A column for each number of an iteration.
+  static py::dict table_of(const solver::IterationLog& log) {
+    const auto iterations = log.iterations();
     py::dict table;
     const auto add = [&](const char* name, const auto& number) {
-      py::array_t<decltype(number(turns[0]))> column(static_cast<py::ssize_t>(turns.size()));
-      std::transform(turns.begin(), turns.end(), column.mutable_data(), number);
+      py::array_t<decltype(number(iterations[0]))> column(static_cast<py::ssize_t>(iterations.size()));
+      std::transform(iterations.begin(), iterations.end(), column.mutable_data(), number);
       table[name] = column;
     };
-    using solver::Turn;
-    add("round", [](const Turn& turn) { return turn.round; });
-    add("kind", [](const Turn& turn) { return static_cast<int>(turn.kind); });
-    add("cost", [](const Turn& turn) { return turn.cost; });
-    add("stationarity", [](const Turn& turn) { return turn.stationarity; });
-    add("defect", [](const Turn& turn) { return turn.defect; });
-    add("complementarity", [](const Turn& turn) { return turn.complementarity; });
-    add("step", [](const Turn& turn) { return turn.step; });
-    add("barrier", [](const Turn& turn) { return turn.barrier; });
+    using solver::Iteration;
+    add("round", [](const Iteration& iteration) { return iteration.round; });
+    add("kind", [](const Iteration& iteration) { return static_cast<int>(iteration.kind); });
+    add("cost", [](const Iteration& iteration) { return iteration.cost; });
+    add("stationarity", [](const Iteration& iteration) { return iteration.stationarity; });
+    add("defect", [](const Iteration& iteration) { return iteration.defect; });
+    add("complementarity", [](const Iteration& iteration) { return iteration.complementarity; });
+    add("step", [](const Iteration& iteration) { return iteration.step; });
+    add("barrier", [](const Iteration& iteration) { return iteration.barrier; });
     return table;
   }
   static py::dict report_of(const solver::HardReport& report, double seconds) {

@@ -32,7 +32,7 @@ class Pages(unittest.TestCase):
         self.assertIn("(did you mean oval?)", self.run_page("python.md"))
 
     def test_problems(self):
-        self.assertRegex(self.run_page("python_problems.md"), r"optimal after 65 turns, cost 89\.58(.|\n)*got a branch on a symbol, expected ch\.where")
+        self.assertRegex(self.run_page("python_problems.md"), r"optimal after 65 iterations, cost 89\.58(.|\n)*got a branch on a symbol, expected ch\.where")
 
     def test_the_packages_to_install_are_those_that_are_needed(self):
         listed = set(re.search(r"apt-get install --no-install-recommends (.*?)\n/usr", (DOCS / "python.md").read_text(encoding="utf-8"), re.DOTALL)[1]

@@ -160,7 +160,7 @@ def reference(name, make):
 
 
 def references(names):
-    print("| family | cost | Ipopt's apart | Ipopt [ms] | turns | interpreted [ms] | compiled [ms] | × interpreted | × compiled | compiled / by hand | "
+    print("| family | cost | Ipopt's apart | Ipopt [ms] | iterations | interpreted [ms] | compiled [ms] | × interpreted | × compiled | compiled / by hand | "
           "warm interpreted [µs] | compiled [µs] | ratio |")
     print("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|")
     rows = [reference(name, make) for name, make in families.FAMILIES.items() if not names or name in names]

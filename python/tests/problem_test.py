@@ -164,7 +164,7 @@ class Solving(unittest.TestCase):
         self.assertEqual(one.cost[7], alone.cost)
 
 
-class Turns(unittest.TestCase):
+class Iterations(unittest.TestCase):
     def test_the_log_has_each_turn_and_changes_nothing(self):
         for make in (families.cart_pole, families.cart_pole_exactly):
             ocp, x0, _ = make()

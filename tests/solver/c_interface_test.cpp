@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "chicane/solver/turn_log.hpp"
+#include "chicane/solver/iteration_log.hpp"
 #include "support/alloc_guard.hpp"
 
 namespace chicane::solver {
@@ -214,29 +214,29 @@ TEST_F(CInterface, RefusesWhatItCannotDoAndSaysWhy) {
   EXPECT_EQ(std::string(chicane_status_text(77)), "unknown status");
 }
 
-TEST(TurnLog, HasEachTurnWithItsStepAndCountsWhatDoesNotFit) {
+TEST(IterationLog, HasEachTurnWithItsStepAndCountsWhatDoesNotFit) {
   Pendulum problem;
   const auto solver = std::make_unique<OcpSolver<Pendulum, 20>>();
   Trajectory<2, 1, 20> t{.horizon = 20};
-  std::array<Turn, 50> memory;
-  TurnLog log(memory);
-  solver->record_turns(&log);
+  std::array<Iteration, 50> memory;
+  IterationLog log(memory);
+  solver->record_iterations(&log);
   const SolveReport report = solver->solve(problem, {1.0, 0.3}, t);
   ASSERT_EQ(log.count(), static_cast<std::size_t>(report.iterations) + 1);
-  const auto turns = log.turns();
-  EXPECT_EQ(turns.back().cost, report.cost);
-  EXPECT_EQ(turns.back().stationarity, report.stationarity);
-  EXPECT_EQ(turns.back().step, 0.0);
-  EXPECT_GT(turns.front().barrier, turns.back().barrier);
-  for (const Turn& turn : turns.first(turns.size() - 1)) EXPECT_GT(turn.step, 0.0);
+  const auto iterations = log.iterations();
+  EXPECT_EQ(iterations.back().cost, report.cost);
+  EXPECT_EQ(iterations.back().stationarity, report.stationarity);
+  EXPECT_EQ(iterations.back().step, 0.0);
+  EXPECT_GT(iterations.front().barrier, iterations.back().barrier);
+  for (const Iteration& iteration : iterations.first(iterations.size() - 1)) EXPECT_GT(iteration.step, 0.0);
 
-  TurnLog small(std::span<Turn>(memory).first(2));
-  solver->record_turns(&small);
+  IterationLog small(std::span<Iteration>(memory).first(2));
+  solver->record_iterations(&small);
   t = {.horizon = 20};
   solver->solve(problem, {1.0, 0.3}, t);
   EXPECT_EQ(small.count(), log.count());
-  EXPECT_EQ(small.turns().size(), 2U);
-  EXPECT_EQ(small.turns()[1].cost, turns[1].cost);
+  EXPECT_EQ(small.iterations().size(), 2U);
+  EXPECT_EQ(small.iterations()[1].cost, iterations[1].cost);
 }
 
 }  // namespace

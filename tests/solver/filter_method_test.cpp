@@ -73,14 +73,14 @@ TEST(FilterMethod, SaysWhereRoundingEndsIt) {
 }
 
 TEST(FilterMethod, HandsOutNoWorseThanTheGuessWhenTheBudgetEnds) {
-  for (const int turns : {5, 10, 15, 20, 30}) {
+  for (const int iterations : {5, 10, 15, 20, 30}) {
     for (int seed = 0; seed < 10; ++seed) {
       const auto instance = FamilyMeasurement<CartPole>::instance(seed);
       const auto guess = FamilyMeasurement<CartPole>::guess(instance, NaiveStart::kIdle);
       const auto none = [](int, int) { return 0.0; };
       const double before = check_kkt(OverArrays<CartPole>{instance.problem}, guess, none, none).cost;
-      const auto [report, kkt] = solve<CartPole>(seed, NaiveStart::kIdle, {.max_iterations = turns});
-      EXPECT_LE(kkt.cost, (1.0 + 1e-9) * before) << turns << " " << seed;
+      const auto [report, kkt] = solve<CartPole>(seed, NaiveStart::kIdle, {.max_iterations = iterations});
+      EXPECT_LE(kkt.cost, (1.0 + 1e-9) * before) << iterations << " " << seed;
     }
   }
 }

@@ -213,15 +213,15 @@ TEST(HardConstraints, AreMetToALooseTolerance) {
     EXPECT_LE(report.miss, 1e-4) << seed;
   }
 }
-// Misses that came down slowly, in rounds of a few turns each, were given up as going nowhere: stalled.
+// Misses that came down slowly, in rounds of a few iterations each, were given up as going nowhere: stalled.
 TEST(HardConstraints, HavePatienceWithShortRounds) {
   expect_optimal<ArmOnALine>({117, 159}, NaiveStart::kIdle);
 }
-// The first ways took a fifth of the turns each: of more than 500, more than was good for them, and these
-// were lost again.
+// The first ways took a fifth of the iterations each: of more than 500, more than was good for them, and
+// these were lost again.
 TEST(HardConstraints, LoseNothingByMoreTurns) {
-  for (const int turns : {500, 1000, 2000})
-    expect_optimal<ArmOnALine>({4, 10, 26, 38}, NaiveStart::kIdle, {.max_iterations = turns});
+  for (const int iterations : {500, 1000, 2000})
+    expect_optimal<ArmOnALine>({4, 10, 26, 38}, NaiveStart::kIdle, {.max_iterations = iterations});
 }
 // An inequality at the end that was active in early rounds only kept its multiplier: no optimum.
 TEST(HardConstraints, LetGoOfInequalitiesThatHoldWithRoomToSpare) {

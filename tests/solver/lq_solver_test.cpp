@@ -248,16 +248,16 @@ TYPED_TEST(LqSolverOn, GivesTheSameBitsForEveryWidthOfRegisters) {
 
 TYPED_TEST(LqSolverOn, StartsASweepAgainWhereTheWorkingSetChanged) {
   Random random{43};
-  int turns = 0;
+  int iterations = 0;
   for (int trial = 0; trial < 48; ++trial) {
     const auto data = random_data<TypeParam>(random, 24);
     for (const InstructionSet set : available_sets()) {
       const LqAnswer answer = solve<TypeParam>(set, *data);
       EXPECT_TRUE(answer.again_is_same) << to_string(set) << ", trial " << trial;
-      turns += answer.sweeps;
+      iterations += answer.sweeps;
     }
   }
-  EXPECT_GT(turns, 60);
+  EXPECT_GT(iterations, 60);
 }
 
 TYPED_TEST(LqSolverOn, TakesTheAdjointOfTheDynamics) {

@@ -201,11 +201,11 @@ TEST_F(OcpSolverTest, GrowsTheHorizonWhenTheGuessIsHopeless) {
 
 TEST_F(OcpSolverTest, ADeadlineWhileGrowingStillReturnsTheWholeHorizon) {
   trajectory.horizon = kCapacity;
-  for (int turns = 0; turns < 30; ++turns) {
+  for (int iterations = 0; iterations < 30; ++iterations) {
     for (auto& u : trajectory.u) u = {instance.problem.steer_limit, 1.0};
-    const SolveReport report = solve({.max_iterations = turns});
-    ASSERT_EQ(trajectory.horizon, kCapacity) << turns;
-    ASSERT_TRUE(is_finite_and_inside()) << turns;
+    const SolveReport report = solve({.max_iterations = iterations});
+    ASSERT_EQ(trajectory.horizon, kCapacity) << iterations;
+    ASSERT_TRUE(is_finite_and_inside()) << iterations;
     if (report.defect < 1e-9) {
       ASSERT_NEAR(report.cost, bench::simulated_cost(instance.problem, instance.start, trajectory),
                   1e-6 * report.cost);
@@ -303,7 +303,7 @@ TEST_F(OcpSolverTest, RemembersNothingFromSolveToSolve) {
 }
 
 TEST(OcpSolver, SecondOrderSavesTurnsWhereResidualsAreLarge) {
-  int turns[2] = {0, 0};
+  int iterations[2] = {0, 0};
   for (const bool second_order : {false, true}) {
     const auto ocp =
         std::make_unique<Solver>(SolverOptions{.max_iterations = 100, .second_order = second_order});
@@ -316,11 +316,11 @@ TEST(OcpSolver, SecondOrderSavesTurnsWhereResidualsAreLarge) {
       DescribedTrajectory<kCapacity> trajectory;
       trajectory.horizon = 2;
       const SolveReport report = ocp->solve(instance.problem, instance.start, trajectory);
-      turns[second_order ? 1 : 0] += report.iterations;
+      iterations[second_order ? 1 : 0] += report.iterations;
       EXPECT_TRUE(!second_order || report.status == SolveStatus::kOptimal) << i;
     }
   }
-  EXPECT_LT(2 * turns[1], turns[0]);
+  EXPECT_LT(2 * iterations[1], iterations[0]);
 }
 
 /// A kink at the optimum: the slope never vanishes there.

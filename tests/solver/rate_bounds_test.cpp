@@ -207,10 +207,10 @@ TEST_F(RateBounds, GiveWayToTheInputsOwnBounds) {
 }
 
 TEST_F(RateBounds, HoldWhateverTheStatus) {
-  for (const int turns : {1, 2, 3}) {
+  for (const int iterations : {1, 2, 3}) {
     for (auto& u : trajectory.u) u = {kInfinity, -77.0};
-    const SolveReport report = solve({.max_iterations = turns});
-    EXPECT_TRUE(inputs_are_admissible(instance, trajectory)) << turns << to_string(report.status);
+    const SolveReport report = solve({.max_iterations = iterations});
+    EXPECT_TRUE(inputs_are_admissible(instance, trajectory)) << iterations << to_string(report.status);
   }
   for (auto& u : trajectory.u) u = {kNaN, 3.0};
   solve({}, Deadline::after(std::chrono::nanoseconds{0}));

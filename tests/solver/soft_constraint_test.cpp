@@ -119,15 +119,15 @@ TEST_F(SoftOcp, ReportsTheWorstStageAndConstraintWhenACapIsExceeded) {
   EXPECT_EQ(solve().status, SolveStatus::kOptimal);
 }
 
-/// Turns run out at any moment, after steps that were in vain too: what is told is of what is returned.
+/// Iterations run out at any moment, after steps that were in vain too: what is told is of what is returned.
 TEST_F(SoftOcp, WhateverTheStatusTheReportIsOfTheAnswer) {
   Random random{81};
   int cut_short = 0;
   for (int i = 0; i < 40; ++i) {
     bench::CorridorInstance instance = bench::random_corridor(random, kCapacity);
     instance.problem.price = {.linear = 3e4, .quadratic = 1e4};
-    for (int turns = 1; turns <= 40; ++turns) {
-      *ocp = Solver{{.max_iterations = turns}};
+    for (int iterations = 1; iterations <= 40; ++iterations) {
+      *ocp = Solver{{.max_iterations = iterations}};
       trajectory = {};
       trajectory.horizon = kCapacity;
       Random guess{static_cast<std::uint64_t>(i) + 5};
@@ -146,9 +146,9 @@ TEST_F(SoftOcp, WhateverTheStatusTheReportIsOfTheAnswer) {
           constraint = c;
         }
       }
-      ASSERT_EQ(report.worst_stage, stage) << i << ", " << turns << " turns";
-      ASSERT_EQ(report.worst_constraint, constraint) << i << ", " << turns << " turns";
-      ASSERT_NEAR(report.violation, worst, 1e-12) << i << ", " << turns << " turns";
+      ASSERT_EQ(report.worst_stage, stage) << i << ", " << iterations << " iterations";
+      ASSERT_EQ(report.worst_constraint, constraint) << i << ", " << iterations << " iterations";
+      ASSERT_NEAR(report.violation, worst, 1e-12) << i << ", " << iterations << " iterations";
     }
   }
   EXPECT_GT(cut_short, 400);

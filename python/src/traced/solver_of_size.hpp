@@ -31,7 +31,7 @@ class SolverOfSize final : public TracedSolver {
     if (is_hard_) {
       if (hard_ == nullptr) hard_ = std::make_unique<Hard>(call.options);
       hard_->set_options(call.options);
-      hard_->record_turns(call.log);
+      hard_->record_iterations(call.log);
       prices_.is_known = prices_.is_known && call.goes_on;
       answer.report = hard_->solve(problem_, x0, trajectory_, prices_, call.deadline);
       store_multipliers(*hard_, answer);
@@ -39,7 +39,7 @@ class SolverOfSize final : public TracedSolver {
     } else {
       if (soft_ == nullptr) soft_ = std::make_unique<Soft>(call.options);
       soft_->set_options(call.options);
-      soft_->record_turns(call.log);
+      soft_->record_iterations(call.log);
       answer.report = {};
       static_cast<solver::SolveReport&>(answer.report) =
           soft_->solve(augmented_, x0, trajectory_, call.deadline);

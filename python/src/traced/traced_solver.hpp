@@ -8,8 +8,8 @@
 
 #include "chicane/base/deadline.hpp"
 #include "chicane/solver/hard_constraints.hpp"
+#include "chicane/solver/iteration_log.hpp"
 #include "chicane/solver/problem.hpp"
-#include "chicane/solver/turn_log.hpp"
 #include "traced/program.hpp"
 
 namespace chicane::python {
@@ -31,7 +31,7 @@ struct TracedCall {
   solver::SolverOptions options;
   bool goes_on = false;  ///< from the multipliers of the solve before
   Deadline deadline = Deadline::never();
-  solver::TurnLog* log = nullptr;
+  solver::IterationLog* log = nullptr;
 };
 
 /// States and inputs (in: the guess), multipliers and the report. Vectors have the sizes of the problem.

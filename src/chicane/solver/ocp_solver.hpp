@@ -24,16 +24,16 @@
 #include "chicane/solver/detail/roll_out.hpp"
 #include "chicane/solver/detail/steps.hpp"
 #include "chicane/solver/detail/working_set_qp.hpp"
+#include "chicane/solver/iteration_log.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/solution.hpp"
-#include "chicane/solver/turn_log.hpp"
 #include "chicane/solver/warm_start.hpp"
 
 namespace chicane::solver {
 
 /// Sequential quadratic programming by direct multiple shooting for any OcpProblem (docs/solver.md).
 ///
-/// One turn: linearise all stages, eight at a time; measure optimality with the exact adjoint; solve the
+/// One iteration: linearise all stages, eight at a time; measure optimality with the exact adjoint; solve the
 /// stage-structured quadratic program by an active set over Riccati sweeps; step. Soft constraints enter by a
 /// primal-dual interior point whose slacks are eliminated stage by stage. Steps are full, first
 /// Gauss–Newton's, near the solution Newton's. When they stop improving, a primal-dual interior point method
@@ -63,8 +63,8 @@ class OcpSolver {
   /// Solves from x0. In: trajectory.horizon in [1, Capacity] and the inputs of the warm start (any values;
   /// states are recomputed, but for SolverOptions::start_from_states). Out: the solution, or the best
   /// iterate; its inputs are finite and inside their bounds whatever the status. Data that are not finite, or
-  /// bounds that cross, end with kNotFinite. The deadline is asked in every turn and before every correction
-  /// of the working set; what is under way when it comes is finished.
+  /// bounds that cross, end with kNotFinite. The deadline is asked in every iteration and before every
+  /// correction of the working set; what is under way when it comes is finished.
   SolveReport solve(const P& problem, const State& x0, Trajectory& trajectory,
                     Deadline deadline = Deadline::never()) noexcept {
     CHICANE_ASSERT(trajectory.horizon >= 1 && trajectory.horizon <= Capacity);
@@ -94,14 +94,14 @@ class OcpSolver {
   /// the prepared point; input bounds become active and inactive. May be called again and again.
   FeedbackReport feedback(const State& x0, Trajectory& trajectory) noexcept requires(!kHasRateBounds<P>);
 
-  /// From the next solve on, turns are added to `log`, which must live as long; null: none.
-  void record_turns(TurnLog* log) noexcept { log_ = log; }
+  /// From the next solve on, iterations are added to `log`, which must live as long; null: none.
+  void record_iterations(IterationLog* log) noexcept { log_ = log; }
 
   // ---- the filter method from barrier to barrier, for who changes the problem on the way
 
   /// Begins it at a guess. False when that is of no use.
   bool begin_path(const P& problem, const State& x0, const Trajectory& trajectory) noexcept;
-  /// At most `most` turns, counted in `report`. True when the problem of the present barrier is solved:
+  /// At most `most` iterations, counted in `report`. True when the problem of the present barrier is solved:
   /// `trajectory` is where.
   bool follow_path(const P& problem, Trajectory& trajectory, const Deadline& deadline, int most,
                    SolveReport& report) noexcept;
@@ -114,9 +114,9 @@ class OcpSolver {
 
   // ---- the filter method alone, for HardSolver
 
-  /// Follows the barrier from a guess to its end, in at most `most` turns, counted in `report`. True where it
-  /// gets there: solve_again() goes on with full steps. `rows`: the problem itself, whose rows that must hold
-  /// are equations then (detail/hard_rows.hpp), and which gets their multipliers; null: residuals.
+  /// Follows the barrier from a guess to its end, in at most `most` iterations, counted in `report`. True
+  /// where it gets there: solve_again() goes on with full steps. `rows`: the problem itself, whose rows that
+  /// must hold are equations then (detail/hard_rows.hpp), and which gets their multipliers; null: residuals.
   bool follow_barrier(const P& problem, P* rows, const State& x0, Trajectory& trajectory,
                       const Deadline& deadline, int most, SolveReport& report) noexcept;
   /// Slacks of hard constraints to prices that have changed.
@@ -166,17 +166,18 @@ class OcpSolver {
   static_assert(ProblemPattern<P>::keeps_previous_inputs(),
                 "dynamics() has to return input m as it is for the state kPreviousInput[m]");
 
-  /// All turns, from an iterate that is ready to be looked at.
+  /// All iterations, from an iterate that is ready to be linearised.
   CHICANE_INLINE SolveReport run(const P& problem, const State& x0, Trajectory& trajectory,
                                  const Deadline& deadline, SolveReport report) noexcept {
     for (;; ++report.iterations, work_ += share_of_horizon()) {
       if constexpr (kCanFilter) {
-        if (is_filtering_ && !filter_turn(problem, deadline, report)) break;
+        if (is_filtering_ && !filter_iteration(problem, deadline, report)) break;
         if (is_filtering_) continue;
       }
-      look(problem, report);
+      linearise(problem, report);
       if (log_ != nullptr)
-        log_->add(report, full_steps_ ? Turn::Kind::kFullStep : Turn::Kind::kDescent, barrier_.mu());
+        log_->add(report, full_steps_ ? Iteration::Kind::kFullStep : Iteration::Kind::kDescent,
+                  barrier_.mu());
       if (!is_finite(report) && !has_best_) {
         if (stand_still(problem, report)) continue;
         return give_up(problem, x0, trajectory, report);
@@ -299,16 +300,16 @@ class OcpSolver {
   bool roll_out(const P& problem) noexcept { return RollOut<P, Arch>::run(problem, t_); }
 
   /// Linearises and measures. Slacks start on the central path, and return to it while the cost descends.
-  void look(const P& problem, SolveReport& report) noexcept {
+  void linearise(const P& problem, SolveReport& report) noexcept {
     const bool centre = is_fresh_ || !full_steps_;
     const double share = std::max(kDefectShare * options_.tolerance, kDefectFloor);
-    const auto look = [&](auto order) {
-      now_.template look<order>(problem, t_, centre, share, barrier_, lq_.lq, report);
+    const auto with_order = [&](auto order) {
+      now_.template linearise<order>(problem, t_, centre, share, barrier_, lq_.lq, report);
     };
     if constexpr (has_hessians<P>()) {
-      is_exact_ ? look(std::integral_constant<int, 2>{}) : look(std::integral_constant<int, 1>{});
+      is_exact_ ? with_order(std::integral_constant<int, 2>{}) : with_order(std::integral_constant<int, 1>{});
     } else {
-      look(std::integral_constant<int, 1>{});
+      with_order(std::integral_constant<int, 1>{});
     }
     if constexpr (kHasRateBounds<P>) {
       if (is_fresh_) now_.chains.guess(now_.slope, t_.horizon, lq_);
@@ -330,11 +331,11 @@ class OcpSolver {
 
   // ---- full steps
 
-  /// Hessians of the present look become Gauss–Newton's.
+  /// Hessians of the present linearisation become Gauss–Newton's.
   void take_gauss_newton(const P& problem) noexcept {
     is_exact_ = false;
     SolveReport unused;
-    look(problem, unused);
+    linearise(problem, unused);
   }
 
   /// Takes the whole step of the quadratic program. False at the deadline, or where nothing helps.
@@ -358,18 +359,18 @@ class OcpSolver {
     is_exact_ = options_.second_order && ((longest <= kNear && curvature_pays()) || is_crawling());
     return true;
   }
-  /// Structured problems have second derivatives almost for free. Dense ones cost as much as several turns:
-  /// only where Gauss–Newton needs more than that.
+  /// Structured problems have second derivatives almost for free. Dense ones cost as much as several
+  /// iterations: only where Gauss–Newton needs more than that.
   [[nodiscard]] bool curvature_pays() const noexcept {
-    constexpr double kTurns = 6.0;
-    return has_cheap_curvature<P>() || progress_.is_slow(0.1 * options_.tolerance, kTurns);
+    constexpr double kIterations = 6.0;
+    return has_cheap_curvature<P>() || progress_.is_slow(0.1 * options_.tolerance, kIterations);
   }
-  /// Gauss–Newton would need tens of turns, or the filter method has brought a point near the solution:
+  /// Gauss–Newton would need tens of iterations, or the filter method has brought a point near the solution:
   /// whatever the units of the inputs.
   [[nodiscard]] bool is_crawling() const noexcept {
-    constexpr double kTurns = 20.0;
-    return kCanFilter &&
-           (has_filtered_ || (barrier_.is_final() && progress_.is_slow(0.1 * options_.tolerance, kTurns)));
+    constexpr double kIterations = 20.0;
+    return kCanFilter && (has_filtered_ ||
+                          (barrier_.is_final() && progress_.is_slow(0.1 * options_.tolerance, kIterations)));
   }
 
   // ---- the filter method (detail/ocp_fallback.hpp)
@@ -382,8 +383,8 @@ class OcpSolver {
     return may_grow() ? start_short(problem, trajectory) : go_back(problem);
   }
   bool begin_filter(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept;
-  bool filter_turn(const P& problem, const Deadline& deadline, SolveReport& report) noexcept;
-  void record_filter_turn(const SolveReport& report) noexcept;
+  bool filter_iteration(const P& problem, const Deadline& deadline, SolveReport& report) noexcept;
+  void record_filter_iteration(const SolveReport& report) noexcept;
   void take_cheapest(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept;
   bool is_at_floor(const SolveReport& report) noexcept;
 
@@ -419,7 +420,7 @@ class OcpSolver {
     barrier_.lift(problem);
     t_ = best_;
     SolveReport unused;
-    look(problem, unused);
+    linearise(problem, unused);
     return descent_.simulate(problem, now_, lq_, barrier_, t_) || roll_out(problem);
   }
 
@@ -429,7 +430,7 @@ class OcpSolver {
   [[nodiscard]] bool may_grow() const noexcept {
     return options_.may_start_short && !has_grown_ && t_.horizon > kFirstHorizon;
   }
-  /// What a turn costs beside one of the whole horizon.
+  /// What an iteration costs beside one of the whole horizon.
   [[nodiscard]] double share_of_horizon() const noexcept {
     return static_cast<double>(t_.horizon) / static_cast<double>(target_);
   }
@@ -475,11 +476,11 @@ class OcpSolver {
   Iterate<kNx, kNu, kSize> step_;  ///< from it to the next
   Iterate<kNx, kNu, kSize> best_;
   SolveReport best_report_{};
-  TurnLog* log_ = nullptr;
+  IterationLog* log_ = nullptr;
   bool has_best_ = false;
-  bool shows_best_ = false;  ///< the last look was at the best iterate
+  bool shows_best_ = false;  ///< the last linearisation was at the best iterate
   bool full_steps_ = true;
-  bool is_exact_ = false;  ///< Hessians of the next look
+  bool is_exact_ = false;  ///< Hessians of the next linearisation
   bool has_grown_ = false;
   bool is_filtering_ = false;  ///< steps are the filter method's
   bool has_filtered_ = false;  ///< it has been used in this solve
@@ -487,7 +488,7 @@ class OcpSolver {
   bool is_again_ = false;      ///< the start is near the solution
   bool is_fresh_ = true;       ///< slacks and working set are to be guessed anew
   std::size_t target_ = 0;     ///< horizon asked for
-  double work_ = 0.0;          ///< turns so far, those of a shorter horizon by their share
+  double work_ = 0.0;          ///< iterations so far, those of a shorter horizon by their share
   std::conditional_t<kCanFilter, typename Slacks::Memory, NoFilter> best_slacks_;  ///< of the best iterate
 };
 

@@ -42,8 +42,8 @@ namespace chicane::solver {
 ///
 /// Where they contradict input_lower and input_upper, those count; the report says by how much.
 ///
-/// **For budgets of a few turns**, a type may say `static constexpr bool kRealTime = true`: the filter
-/// method, which solves from poor guesses in tens of turns, is left out, and is not compiled.
+/// **For budgets of a few iterations**, a type may say `static constexpr bool kRealTime = true`: the filter
+/// method, which solves from poor guesses in tens of iterations, is left out, and is not compiled.
 ///
 /// **Level 1, any model.** One scalar type for everything, branches allowed; derivatives are dense:
 ///
@@ -181,15 +181,15 @@ struct Trajectory {
 struct SolverOptions {
   double tolerance = 1e-6;        ///< stationarity accepted as optimal; (0, 1e-2]
   double loose_tolerance = 1e-2;  ///< stationarity accepted when the budget is spent; [tolerance, 1e3]
-  int max_iterations = 1000;  ///< SQP turns, those of a shorter horizon by their share; worst-case time is
-                              ///< proportional to it; [1, 10000]. Controllers ask for fewer
-  bool may_start_short =
-      true;  ///< when full steps fail, the filter method, or for kRealTime a growing horizon: reaches optima
-             ///< from poor guesses, at the price of tens of turns; off where the budget is a few turns
+  int max_iterations = 1000;  ///< SQP iterations, those of a shorter horizon by their share; worst-case time
+                              ///< is proportional to it; [1, 10000]. Controllers ask for fewer
+  bool may_start_short = true;     ///< when full steps fail, the filter method, or for kRealTime a growing
+                                   ///< horizon: reaches optima from poor guesses, at the price of tens of
+                                   ///< iterations; off where the budget is a few iterations
   bool start_from_states = false;  ///< a warm start's states count, too, where they are finite: the first
                                    ///< steps close their gaps. For systems that are unstable, whose simulated
                                    ///< guess would run away
-  bool second_order = true;        ///< exact Hessians near the solution: fewer turns, costlier turns
+  bool second_order = true;  ///< exact Hessians near the solution: fewer iterations, costlier iterations
 };
 
 }  // namespace chicane::solver

@@ -47,7 +47,7 @@ inline constexpr std::array kSolveStatusWords{CHICANE_SOLVE_STATUSES(CHICANE_WOR
 /// What one solve did.
 struct SolveReport {
   SolveStatus status = SolveStatus::kNotFinite;
-  int iterations = 0;            ///< turns of the outer (SQP) loop
+  int iterations = 0;            ///< iterations of the outer (SQP) loop
   int sweeps = 0;                ///< Riccati sweeps, active-set flips included
   double cost = 0.0;             ///< objective at the returned trajectory
   double stationarity = 0.0;     ///< dual residual: ‖u − Proj(u − ∇L)‖∞ from the exact adjoint

@@ -122,7 +122,7 @@ class Barrier {
     return sum;
   }
 
-  /// Value of constraint c of stage k at the last look.
+  /// Value of constraint c of stage k at the last linearisation.
   [[nodiscard]] double value(std::size_t c, std::size_t k) const noexcept { return value_[c][k]; }
   [[nodiscard]] double violation_slack(std::size_t c, std::size_t k) const noexcept { return s_[c][k]; }
   [[nodiscard]] double distance_slack(std::size_t c, std::size_t k) const noexcept { return t_[c][k]; }

@@ -29,7 +29,7 @@ class Descent {
   using Point = Iterate<kNx, kNu, Capacity>;
   using Lq = LqSolver<Arch, ProblemPattern<P>, Capacity>;
   using Slacks = Barrier<P, Capacity, Arch>;
-  using Look = Linearisation<P, Capacity, Arch>;
+  using Linearised = Linearisation<P, Capacity, Arch>;
 
   /// A new solve.
   void start() noexcept {
@@ -57,17 +57,17 @@ class Descent {
 
   /// Simulates the trajectory with the gains as feedback, so that an unstable system stays near it. False,
   /// and nothing changed, when that is not finite.
-  bool simulate(const P& problem, const Look& now, Lq& lq, const Slacks& slacks, Point& t) noexcept {
+  bool simulate(const P& problem, const Linearised& now, Lq& lq, const Slacks& slacks, Point& t) noexcept {
     lq.backward(t.horizon, shift_, true);
     if (!std::isfinite(try_step(problem, t, now, lq, slacks, 0.0))) return false;
     t = candidate_;
     return true;
   }
 
-  /// One step from t, at which `now` looks. False when no step length and no shift lowers it any more, or the
-  /// deadline came first.
-  bool step(const P& problem, const Look& now, Lq& lq, Slacks& slacks, Point& t, const Deadline& deadline,
-            int& sweeps) noexcept {
+  /// One step from t, at which `now` is the linearisation. False when no step length and no shift lowers it
+  /// any more, or the deadline came first.
+  bool step(const P& problem, const Linearised& now, Lq& lq, Slacks& slacks, Point& t,
+            const Deadline& deadline, int& sweeps) noexcept {
     constexpr int kAttempts = 12;
     constexpr int kHalvings = 6;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -113,7 +113,7 @@ class Descent {
   }
 
   /// Simulates the gains from t into candidate_ with the constant part times `length`; returns the merit.
-  double try_step(const P& problem, const Point& t, const Look& now, const Lq& lq, const Slacks& slacks,
+  double try_step(const P& problem, const Point& t, const Linearised& now, const Lq& lq, const Slacks& slacks,
                   double length) noexcept {
     using One = typename Evaluate::One;
     candidate_.horizon = t.horizon;

@@ -30,7 +30,7 @@ CHICANE_INLINE inline void leave_admissible(const P& problem, const std::array<d
   }
 }
 
-/// The worst violation of a soft constraint at the last look, and the complementarity gap.
+/// The worst violation of a soft constraint at the last linearisation, and the complementarity gap.
 template <OcpProblem P, class Slacks>
 void tell_violation(const P& problem, const Slacks& slacks, std::size_t horizon,
                     SolveReport& report) noexcept {

@@ -43,7 +43,7 @@ class FilterMethod {
   using Layout = typename Lq::Layout;
   using Bounds = BoundBarrier<Lq, Capacity, Arch>;
   using Slacks = Barrier<P, Capacity, Arch>;
-  using Look = Linearisation<P, Capacity, Arch>;
+  using Linearised = Linearisation<P, Capacity, Arch>;
   enum class Outcome {
     kGoing,
     kSolved,  ///< the problem of the last barrier, loosely: near the solution
@@ -53,7 +53,7 @@ class FilterMethod {
 
   /// Begins at `t`, whose inputs are moved off their bounds. The barrier will end at `final_mu` in the
   /// problem's own unit of costs; it begins lower where `is_near` a solution.
-  void start(const P& problem, double final_mu, bool is_exact, bool is_near, Look& now, Lq& lq,
+  void start(const P& problem, double final_mu, bool is_exact, bool is_near, Linearised& now, Lq& lq,
              Slacks& slacks, Point& t, SolveReport& report) noexcept {
     for (std::size_t m = 0; m < kNu; ++m) {
       for (std::size_t k = 0; k < t.horizon; ++k)
@@ -71,7 +71,7 @@ class FilterMethod {
         now.hard.begin(*rows_);
       }
     }
-    look<1>(problem, now, lq, slacks, t, report);
+    linearise<1>(problem, now, lq, slacks, t, report);
     double steepest = 0.0;
     keep_gradient(lq, t.horizon);
     for (std::size_t k = 0; k < t.horizon; ++k) {
@@ -99,7 +99,7 @@ class FilterMethod {
   /// Before start(): rows that must hold are unknowns' equations, with slacks and multipliers of their own,
   /// and `rows`, the problem itself, keeps them. Null: they are residuals like others.
   void take_rows(P* rows) noexcept { rows_ = rows; }
-  /// After start(): turn() returns kSolved at the solution of each barrier's problem.
+  /// After start(): iteration() returns kSolved at the solution of each barrier's problem.
   void stop_at_barriers() noexcept { stops_at_barriers_ = true; }
   /// Goes on from there with the next barrier; the problem may have changed, with `centre` also the prices of
   /// soft constraints.
@@ -110,13 +110,13 @@ class FilterMethod {
   [[nodiscard]] double mu() const noexcept { return mu_; }
   [[nodiscard]] bool is_at_last_barrier() const noexcept { return mu_ <= final_mu_; }
   /// The working set of the present point; what is needed to go on should that not be enough.
-  void hand_over(const Look& now, Lq& lq) noexcept {
+  void hand_over(const Linearised& now, Lq& lq) noexcept {
     bounds_.choose_working_set(lq);
     for (std::size_t i = 0; i < kNx; ++i)
       std::copy(now.adjoint[i], now.adjoint[i] + candidate_.horizon, prices_[i]);
   }
   /// Goes on with a lower barrier from where it left off. False when there is none.
-  bool resume(Look& now, Slacks& slacks, Point& t) noexcept {
+  bool resume(Linearised& now, Slacks& slacks, Point& t) noexcept {
     constexpr double kLeast = 1e-13;
     if (final_mu_ <= kLeast * unit_) return false;
     final_mu_ = std::max(kLeast * unit_, 1e-2 * final_mu_);
@@ -126,17 +126,17 @@ class FilterMethod {
     is_fresh_ = is_new_barrier_ = true;
     return true;
   }
-  /// Of the last turns this many in succession have taken a small share of their step.
+  /// Of the last iterations this many in succession have taken a small share of their step.
   [[nodiscard]] int short_steps() const noexcept { return short_steps_; }
   /// The longest move of an input in the last step that was taken.
   [[nodiscard]] double moved() const noexcept { return moved_; }
   /// The point where it stands; after start().
   [[nodiscard]] const Point& point() const noexcept { return candidate_; }
 
-  /// One look and one step from t. Pre: `t` is as the last call left it.
-  Outcome turn(const P& problem, Look& now, Lq& lq, Slacks& slacks, Point& t, const Deadline& deadline,
-               SolveReport& report) noexcept {
-    look(problem, now, lq, slacks, t, report);
+  /// One linearisation and one step from t. Pre: `t` is as the last call left it.
+  Outcome iterate(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, Point& t,
+                  const Deadline& deadline, SolveReport& report) noexcept {
+    linearise(problem, now, lq, slacks, t, report);
     if (!std::isfinite(report.cost + report.defect + report.complementarity)) return Outcome::kStuck;
     if (are_sides_new_) bounds_.start(lq, t.horizon, mu_);
     are_sides_new_ = false;
@@ -150,7 +150,7 @@ class FilterMethod {
           now.hard.set_ends(*rows_, mu_);
         }
       }
-      look(problem, now, lq, slacks, t, report);
+      linearise(problem, now, lq, slacks, t, report);
     }
     const Merit here = measure(problem, now, slacks, t, 0.0);
     if (!here.is_finite()) return Outcome::kStuck;
@@ -177,7 +177,7 @@ class FilterMethod {
   static constexpr double kSteep = 100.0;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr double kShort = 0.1;
-  static constexpr int kShortInTurn = 3, kMostLeaps = 4;
+  static constexpr int kShortInSuccession = 3, kMostLeaps = 4;
   static constexpr double kFirstShift = 1.0;
   static constexpr double kRowWeight = 1e6;  ///< ρ of rows that must hold, and the price of hard limits, in
   static constexpr double kHardPrice = 1e6;  ///< the unit of costs
@@ -185,30 +185,31 @@ class FilterMethod {
 
   static constexpr std::size_t z(std::size_t i) noexcept { return i < kNx ? i : i + 1; }
 
-  // ---- looks
+  // ---- linearisation
 
   template <int Order>
-  void look(const P& problem, Look& now, Lq& lq, Slacks& slacks, const Point& t,
-            SolveReport& report) noexcept {
+  void linearise(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, const Point& t,
+                 SolveReport& report) noexcept {
     if constexpr (kHasHardRows<P>) {
       if (rows_ != nullptr && is_fresh_) now.hard.centre(*rows_, end_rows(problem, t), mu_);
     }
     now.state_residual = has_prices_ ? residual_ : nullptr;
-    now.template look<Order>(problem, t, is_fresh_, 1.0, slacks, lq.lq, report);
+    now.template linearise<Order>(problem, t, is_fresh_, 1.0, slacks, lq.lq, report);
     now.state_residual = nullptr;
     is_fresh_ = false;
   }
   /// With exact Hessians once there are prices for them.
-  void look(const P& problem, Look& now, Lq& lq, Slacks& slacks, const Point& t,
-            SolveReport& report) noexcept {
+  void linearise(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, const Point& t,
+                 SolveReport& report) noexcept {
     if constexpr (has_hessians<P>()) {
-      if (has_prices_ && is_exact_) return look<2>(problem, now, lq, slacks, t, report);
+      if (has_prices_ && is_exact_) return linearise<2>(problem, now, lq, slacks, t, report);
     }
-    look<1>(problem, now, lq, slacks, t, report);
+    linearise<1>(problem, now, lq, slacks, t, report);
   }
 
   /// How far from solving the barrier problem (eq. 34).
-  double residual(const Look& now, const Lq& lq, const Point& t, const SolveReport& report) const noexcept {
+  double residual(const Linearised& now, const Lq& lq, const Point& t,
+                  const SolveReport& report) const noexcept {
     if (!has_prices_) return std::numeric_limits<double>::infinity();
     double dual = 0.0;
     double prices = 0.0;
@@ -290,7 +291,7 @@ class FilterMethod {
 
   /// Halves the step until the filter takes it; where that takes long, also along simulations that keep a
   /// share of the defects.
-  Outcome search(const P& problem, Look& now, const Lq& lq, Slacks& slacks, Point& t, const Merit& here,
+  Outcome search(const P& problem, Linearised& now, const Lq& lq, Slacks& slacks, Point& t, const Merit& here,
                  const Deadline& deadline) noexcept {
     constexpr int kPatience = 4;
     const double fraction = std::max(0.99, 1.0 - mu_ / unit_);
@@ -309,7 +310,7 @@ class FilterMethod {
     }
     const double least = least_length(here, slope);
     // Short steps in succession: the filter hinders what would converge (Maratos). One whole step without it.
-    const bool crawls = kHasHardRows<P> && short_steps_ >= kShortInTurn && leaps_ < kMostLeaps;
+    const bool crawls = kHasHardRows<P> && short_steps_ >= kShortInSuccession && leaps_ < kMostLeaps;
     for (int trial = 0; trial == 0 || length >= least; ++trial, length *= 0.5) {
       if (deadline.spent()) return Outcome::kSpent;
       add_step<Arch>(t, length, step_, candidate_);
@@ -372,7 +373,7 @@ class FilterMethod {
     }
     return std::max(0.05 * least, 1e-10);
   }
-  void take_prices(const Lq& lq, Look& now, std::size_t horizon, double length) noexcept {
+  void take_prices(const Lq& lq, Linearised& now, std::size_t horizon, double length) noexcept {
     for (std::size_t k = 0; k < horizon; ++k) {
       for (std::size_t i = 0; i < kNx; ++i) {
         double& price = now.adjoint[i][k];
@@ -383,14 +384,14 @@ class FilterMethod {
 
   /// Miss and cost of `point` with the slacks at `length` of their direction (0: where they are). With
   /// `from`, whose bounds are in `lq`: slacks of bounds as they are.
-  Merit measure(const P& problem, Look& now, const Slacks& slacks, const Point& point, double length,
+  Merit measure(const P& problem, Linearised& now, const Slacks& slacks, const Point& point, double length,
                 const Lq* lq = nullptr, const Point* from = nullptr) noexcept;
 
   /// Values of the end's rows that must hold, of their residuals.
   static auto unshifted(const P& problem, const double* residuals) noexcept {
     std::array<double, static_cast<std::size_t>(P::kNe) + 1> values{};
     if constexpr (kHasHardRows<P>) {
-      for (std::size_t n = 0; n < Look::Hard::kEndRows; ++n)
+      for (std::size_t n = 0; n < Linearised::Hard::kEndRows; ++n)
         values[n] = residuals[n] / problem.terminal_weight[n].root - problem.terminal_shift[n];
     }
     return values;
@@ -404,7 +405,7 @@ class FilterMethod {
   // ---- when no step is good
 
   /// First a larger shift, then prices and slacks anew, then a simulation, which has no defects.
-  Outcome recover(const P& problem, const Look& now, const Lq& lq, Point& t) noexcept {
+  Outcome recover(const P& problem, const Linearised& now, const Lq& lq, Point& t) noexcept {
     constexpr int kMostSimulations = 8;
     candidate_ = t;
     ++failures_;
@@ -425,20 +426,21 @@ class FilterMethod {
     are_sides_new_ = true;
     return Outcome::kGoing;
   }
-  bool simulate(const P& problem, const Look& now, const Lq& lq, const Point& t, double length) noexcept {
+  bool simulate(const P& problem, const Linearised& now, const Lq& lq, const Point& t,
+                double length) noexcept {
     return simulate(problem, now, lq, t, 1.0, length, 1.0 - length);
   }
   /// candidate_ by simulation: inputs of t, with `feedback` times the gains and `length` of the step's
   /// constant part, cut to 0.99 of the way to their bounds; a share `kept` of each defect stays. False when
   /// that is not finite.
-  bool simulate(const P& problem, const Look& now, const Lq& lq, const Point& t, double feedback,
+  bool simulate(const P& problem, const Linearised& now, const Lq& lq, const Point& t, double feedback,
                 double length, double kept = 0.0) noexcept;
 
   Bounds bounds_;
   SoftSteps<P, Capacity, Arch> soft_;
   Filter filter_;
   Point step_;
-  Point candidate_;  ///< of the line search; between turns the present point
+  Point candidate_;  ///< of the line search; between iterations the present point
   alignas(64) double residual_[kNx][kStageStride<Capacity>]{};  ///< of optimality in the states
   double prices_[kNx][Capacity]{};                              ///< of the dynamics, at the last hand-over
   double gradient_[Capacity][kNz]{};                            ///< of the stages' costs
@@ -446,9 +448,9 @@ class FilterMethod {
   double final_mu_ = 1e-6;
   double unit_ = 1.0;        ///< of costs
   double small_miss_ = 0.0;  ///< below it the cost has to fall
-  double shift_ = 0.0;       ///< of this turn's Hessians
+  double shift_ = 0.0;       ///< of this iteration's Hessians
   double last_shift_ = 0.0;
-  double forced_shift_ = 0.0;   ///< least shift of the next turn
+  double forced_shift_ = 0.0;   ///< least shift of the next iteration
   bool is_exact_ = true;        ///< Hessians
   bool has_prices_ = false;     ///< of the dynamics
   bool is_fresh_ = true;        ///< the slacks of soft constraints go to their central path

@@ -11,7 +11,7 @@ namespace chicane::solver {
 // Trial points of the filter method: what they miss and cost, and those that come from simulations.
 
 template <OcpProblem P, std::size_t Capacity, class Arch>
-Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]] Look& now,
+Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]] Linearised& now,
                                                const Slacks& slacks, const Point& point, double length,
                                                const Lq* lq, const Point* from) noexcept {
   V cost(0.0);
@@ -27,7 +27,7 @@ Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]
       miss += select(live, abs(values.next[i] - V::load_unaligned(point.x[i] + k + 1)), V(0.0));
     if constexpr (Evaluate::kHardRows > 0) {
       for (std::size_t n = 0; n < Evaluate::kHardRows; ++n) {
-        const V missed = rows_ != nullptr ? Look::Hard::miss(problem, n, k, values.hard[n]) : V(0.0);
+        const V missed = rows_ != nullptr ? Linearised::Hard::miss(problem, n, k, values.hard[n]) : V(0.0);
         const V square = rows_ != nullptr ? V(0.0) : 0.5 * values.hard[n] * values.hard[n];
         miss += select(live, missed, V(0.0));
         cost += select(live, square, V(0.0));
@@ -55,7 +55,7 @@ Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]
 }
 
 template <OcpProblem P, std::size_t Capacity, class Arch>
-bool FilterMethod<P, Capacity, Arch>::simulate(const P& problem, const Look& now, const Lq& lq,
+bool FilterMethod<P, Capacity, Arch>::simulate(const P& problem, const Linearised& now, const Lq& lq,
                                                const Point& t, double feedback, double length,
                                                double kept) noexcept {
   using One = typename Evaluate::One;

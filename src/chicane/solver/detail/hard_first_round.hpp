@@ -17,7 +17,7 @@ template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& trajectory,
                                                 const Deadline& deadline, int& left,
                                                 HardReport& report) noexcept {
-  constexpr int kMoreTurns = 500;
+  constexpr int kMoreIterations = 500;
   constexpr double kFew = 1e-2;  // of the guess's misses are left where a path leads to a solution
   if constexpr (has_filter_method<P>()) {
     if (!options_.may_start_short) return round(x0, trajectory, deadline, left, report);
@@ -30,7 +30,7 @@ bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& tra
     kept_ = trajectory;
     begin_again(trajectory, 1.0);
     if (is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report)) {
-      left = std::min(left, kMoreTurns);
+      left = std::min(left, kMoreIterations);
     } else if (has_path) {
       trajectory = kept_;
       start_with_weights(trajectory.horizon, 1.0);
@@ -48,10 +48,10 @@ bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& tra
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajectory, const Deadline& deadline,
                                            int& left, HardReport& report) noexcept {
-  constexpr int kMostTurns = 60;
+  constexpr int kMostIterations = 60;
   constexpr double kDearer = 4.0;  // than the highest multiplier: the constraint is kept
   SolveReport seen;
-  const int most = std::max(1, std::min({left, kMostTurns, options_.max_iterations / 4}));
+  const int most = std::max(1, std::min({left, kMostIterations, options_.max_iterations / 4}));
   const bool is_solved = inner_.follow_barrier(problem_, &problem_, x0, trajectory, deadline, most, seen);
   report.iterations += seen.iterations;
   report.sweeps += seen.sweeps;
@@ -71,7 +71,7 @@ bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajecto
 }
 
 /// Follows the filter method's barrier down, and brings multipliers, weights and prices up to date at the
-/// solution of each barrier's problem. True when it has got to the end within a trial's turns.
+/// solution of each barrier's problem. True when it has got to the end within a trial's iterations.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::track(const State& x0, Trajectory& trajectory, const Deadline& deadline,
                                           int& left, HardReport& report) noexcept {

@@ -91,7 +91,7 @@ HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, cons
   for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
   problem_.terminal_shift.fill(0.0);
   trajectory = least_;
-  look_at(x0, least_, true, report);
+  assess(x0, least_, true, report);
   const Misses now = measure(problem, trajectory, &report);
   for (std::size_t n = 0; n < kNh; ++n) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(trajectory.horizon); ++k)

@@ -29,7 +29,7 @@ template <class P>
 
 /// Rows that must hold inside the primal-dual method (docs/solver_hard.md, eq. 50–54): equalities of stages
 /// and end with multipliers y, inequalities of the end with slacks t > 0 and multipliers z > 0. The problem's
-/// functions return them as residuals √ρ (h + shift); looks store those here with their derivatives.
+/// functions return them as residuals √ρ (h + shift); linearisations store those here with their derivatives.
 template <class P, std::size_t Capacity, class Arch>
 class HardRows {
  public:
@@ -40,7 +40,7 @@ class HardRows {
   using V = Stages<Arch>;
   using Step = Iterate<kNx, kNu, Capacity>;
 
-  // ---- what looks leave here
+  // ---- what linearisations leave here
   template <class Row>
   CHICANE_INLINE void store(std::size_t n, std::size_t k, const Row& r) noexcept {
     r.v.store(value_[n] + k);

@@ -30,7 +30,6 @@ class HardSolver {
 
   explicit HardSolver(const SolverOptions& options = {}) noexcept : options_{options}, inner_{options} {}
 
-  /// From the next solve on.
   void set_options(const SolverOptions& options) noexcept {
     options_ = options;
     inner_.set_options(options);
@@ -60,9 +59,9 @@ class HardSolver {
   FeedbackReport feedback(const State& x0, Trajectory& trajectory) noexcept {
     return inner_.feedback(x0, trajectory);
   }
-  void record_turns(TurnLog* log) noexcept {
+  void record_iterations(IterationLog* log) noexcept {
     log_ = log;
-    inner_.record_turns(log);
+    inner_.record_iterations(log);
   }
 
   /// After a solve: multipliers, d(cost)/d(right-hand side).
@@ -142,7 +141,7 @@ class HardSolver {
       update(now, progress.is_first() ? nullptr : &before, trajectory.horizon);
       if (converged && now.worst() <= options_.tolerance) return finish(report.status, now, report);
       if (is_spent()) break;
-      progress.note(now.worst(), converged, last_turns_);
+      progress.note(now.worst(), converged, last_iterations_);
       before = now;
       if (trial_ == kTrialSpent) {
         trial_ = 0;
@@ -151,8 +150,8 @@ class HardSolver {
         progress = {};
         continue;
       }
-      if (converged && last_turns_ == 0 && ask_for_more()) progress.excuse();
-      if (converged && !progress.is_lost(now.worst(), first_.worst(), last_turns_)) continue;
+      if (converged && last_iterations_ == 0 && ask_for_more()) progress.excuse();
+      if (converged && !progress.is_lost(now.worst(), first_.worst(), last_iterations_)) continue;
       if (may_start_again) {  // by another way: misses count from the start
         may_start_again = false;
         kept_ = trajectory;
@@ -171,7 +170,7 @@ class HardSolver {
       if (!progress.is_first()) progress.begin_at(before.worst());
     }
     is_replaced |= take_better(measure(problem, trajectory, nullptr).worst(), trajectory);
-    if (is_replaced) look_at(x0, trajectory, true, report);
+    if (is_replaced) assess(x0, trajectory, true, report);
     Misses now = measure(problem, trajectory, &report);
     for (std::size_t n = kNeh; n < kEnd; ++n) count_distance(now, n);
     const bool is_close = !is_replaced && usable(report.status) && now.worst() <= options_.loose_tolerance;
@@ -181,8 +180,8 @@ class HardSolver {
     return finish(SolveStatus::kStalled, now, report);
   }
 
-  /// Turns of a way that others follow: a fifth of all, and no more than a hundred, so that who allows more
-  /// turns gets to the other ways, too.
+  /// Iterations of a way that others follow: a fifth of all, and no more than a hundred, so that who allows
+  /// more iterations gets to the other ways, too.
   [[nodiscard]] int most_of_a_trial() const noexcept {
     return std::max(1, std::min(100, options_.max_iterations / 5));
   }
@@ -207,11 +206,11 @@ class HardSolver {
       if (!(guess.worst() < own.worst() && guess.cost < own.cost)) return false;
     }
     kept_ = trajectory = guess_;
-    look_at(x0, kept_, false, report);
+    assess(x0, kept_, false, report);
     return true;
   }
   /// The residuals of `trajectory`, simulated or with its states, become those of `report`.
-  void look_at(const State& x0, Trajectory& trajectory, bool with_states, HardReport& report) noexcept {
+  void assess(const State& x0, Trajectory& trajectory, bool with_states, HardReport& report) noexcept {
     inner_.allow_iterations(0);
     inner_.start_from_states(with_states);
     const SolveReport seen = inner_.solve(problem_, x0, trajectory);
@@ -243,7 +242,7 @@ class HardSolver {
     report.iterations = iterations;
     report.sweeps = sweeps;
     ++report.rounds;
-    last_turns_ = now.iterations;
+    last_iterations_ = now.iterations;
     left -= std::max(1, now.iterations);
     if (trial_ != 0) trial_ = trial_ > now.iterations ? trial_ - now.iterations : kTrialSpent;
     if (now.status == SolveStatus::kAtFloor && residual(now) <= options_.tolerance)
@@ -472,16 +471,16 @@ class HardSolver {
   Prices prices_;
   double unit_ = 1.0;  ///< of costs
   Misses first_;       ///< of the guess
-  TurnLog* log_ = nullptr;
+  IterationLog* log_ = nullptr;
   Trajectory guess_;
   Trajectory kept_;          ///< of the first weights, where others were tried as well
   double kept_miss_ = 0.0;   ///< largest of its misses
   Trajectory least_;         ///< where misses have a local minimum above zero, with is_certified_
   double tolerance_ = 0.0;   ///< of the next round
-  int last_turns_ = 0;       ///< of the last round
+  int last_iterations_ = 0;  ///< of the last round
   double least_unit_ = 1.0;  ///< what misses are multiples of there
   bool is_certified_ = false;
-  int trial_ = 0;           ///< turns that are left for the first weights, kTrialSpent; 0: all of them
+  int trial_ = 0;           ///< iterations that are left for the first weights, kTrialSpent; 0: all of them
   bool can_go_on_ = false;  ///< the next round differs little from the last one
   std::array<std::array<double, Capacity>, kNh> equality_{};  ///< values at the last measure()
   std::array<double, kEnd> terminal_{};

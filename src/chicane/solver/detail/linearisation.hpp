@@ -23,7 +23,7 @@
 
 namespace chicane::solver {
 
-/// Looks at an iterate: values and derivatives of every stage, exact adjoint, optimality measures, and the
+/// Linearises an iterate: values and derivatives of every stage, exact adjoint, optimality measures, and the
 /// stages of the quadratic program (docs/solver.md, eq. 4–8, 12, 13, 22). Goes through the horizon from its
 /// end, eight stages at a time: evaluate them in lanes, run the adjoint through them, add up their costs.
 template <OcpProblem P, std::size_t Capacity, class Arch>
@@ -49,22 +49,22 @@ class Linearisation {
   Hard hard;                   ///< rows that must hold, for the primal-dual method
   double merit = 0.0;          ///< cost with the barrier's smoothed penalties; when slacks were centred
   double defect_excess = 0.0;  ///< largest defect beyond its tolerance; <= 0: all are small enough
-  /// Not null: prices of the dynamics are unknowns, too. Looks leave `adjoint` as it is and put here what is
-  /// missing to optimality in the states: [i][k] of x_k, k = 1 … horizon.
+  /// Not null: prices of the dynamics are unknowns, too. Linearisations leave `adjoint` as it is and put here
+  /// what is missing to optimality in the states: [i][k] of x_k, k = 1 … horizon.
   double (*state_residual)[kStageStride<Capacity>] = nullptr;
 
-  /// Looks at `t`. With Order 2 the stages get exact Hessians of the Lagrangian, else Gauss–Newton's.
+  /// Linearises at `t`. With Order 2 the stages get exact Hessians of the Lagrangian, else Gauss–Newton's.
   /// `centre`: slacks are put on the central path first. `defect_share`: of 1 + |x| that defects may have.
   /// Sets cost, defect, stationarity, complementarity and violation of the report.
   template <int Order>
-  void look(const P& problem, const Point& t, bool centre, double defect_share, Slacks& slacks, Lq& lq,
-            SolveReport& report) noexcept {
+  void linearise(const P& problem, const Point& t, bool centre, double defect_share, Slacks& slacks, Lq& lq,
+                 SolveReport& report) noexcept {
     Sums sums;
     double lambda[kNx];
     sums.end_cost = look_at_end<Order>(problem, t, lq, lambda);
     for (std::size_t k = (t.horizon - 1) / 8 * 8 + 8; k > 0; k -= 8)
-      look_at<kHasOneLook ? 2 : Order>(problem, t, k - 8, {centre, defect_share, exactness<Order>()}, slacks,
-                                       lambda, lq, sums);
+      linearise_stages<kHasOneLinearisation ? 2 : Order>(
+          problem, t, k - 8, {centre, defect_share, exactness<Order>()}, slacks, lambda, lq, sums);
     sums.finish(*this, report);
     if constexpr (kHasRateBounds<P>) {  // measured by whole chains
       chains.fold_first(lq);
@@ -80,14 +80,15 @@ class Linearisation {
   using Jacobians = typename Entries::Jacobians;
   using Gradient = typename Entries::Gradient;
 
-  /// One look of second order for both kinds of Hessians, where that is to be built quickly and curvature
-  /// costs little.
-  static constexpr bool kHasOneLook = StructuredProblem<P> && has_hessians<P>() && has_filter_method<P>();
+  /// One linearisation of second order for both kinds of Hessians, where that is to be built quickly and
+  /// curvature costs little.
+  static constexpr bool kHasOneLinearisation =
+      StructuredProblem<P> && has_hessians<P>() && has_filter_method<P>();
   template <int Order>
-  using IsExact = std::conditional_t<kHasOneLook, bool, std::bool_constant<Order == 2>>;
+  using IsExact = std::conditional_t<kHasOneLinearisation, bool, std::bool_constant<Order == 2>>;
   template <int Order>
   static constexpr IsExact<Order> exactness() noexcept {
-    if constexpr (kHasOneLook) return Order == 2;
+    if constexpr (kHasOneLinearisation) return Order == 2;
     return {};
   }
   template <int Order>
@@ -234,8 +235,8 @@ class Linearisation {
 
   /// The eight stages from k0 on; those beyond the horizon count for nothing.
   template <int Order>
-  void look_at(const P& problem, const Point& t, std::size_t k0, const How<Order>& how, Slacks& slacks,
-               double (&lambda)[kNx], Lq& lq, Sums& sums) noexcept {
+  void linearise_stages(const P& problem, const Point& t, std::size_t k0, const How<Order>& how,
+                        Slacks& slacks, double (&lambda)[kNx], Lq& lq, Sums& sums) noexcept {
     const auto rows = [&]() CHICANE_INLINE {
       if constexpr (is_compact<Pattern>()) return evaluate<Order>(problem, t, k0);
       if constexpr (!is_compact<Pattern>()) return Evaluate::template stages<Order>(problem, t, k0);
@@ -305,7 +306,7 @@ class Linearisation {
   /// Soft constraints: their multipliers to the gradient, their eliminated slacks to the quadratic program
   /// (eq. 20, 21).
   template <int Order, class Row,
-            class Mask>  // NOLINTNEXTLINE(readability-function-size): all sums of a look
+            class Mask>  // NOLINTNEXTLINE(readability-function-size): all sums of a linearisation
   CHICANE_INLINE static void add_soft(const P& problem, const Row& constraint, std::size_t k0,
                                       const Mask& live, bool centre, Slacks& slacks, Gradient& gradient,
                                       Costs& l, Sums& sums) noexcept {

@@ -19,11 +19,11 @@ void OcpSolver<P, Capacity, Arch>::look_at_best(const P& problem, SolveReport& r
     full_steps_ = true;
     is_fresh_ = false;
     barrier_.restore(best_slacks_, t_.horizon);
-    look(problem, report);
+    linearise(problem, report);
   } else {
     full_steps_ = false;
     SolveReport unused;
-    look(problem, unused);
+    linearise(problem, unused);
   }
 }
 /// Returns the best iterate, extended to the whole horizon; unless it is optimal, its residuals decide
@@ -42,7 +42,7 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
     if (kCanFilter && !(has_best_ && is_close(report))) take_cheapest(problem, trajectory, report);
     if (is_growing() || !has_best_) {
       while (is_growing()) grow(problem);
-      look(problem, report);
+      linearise(problem, report);
       if (!is_finite(report)) return give_up(problem, t_.template state<double>(0), trajectory, report);
     }
     report.iterations = iterations;

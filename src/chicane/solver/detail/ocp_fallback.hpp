@@ -32,22 +32,22 @@ bool OcpSolver<P, Capacity, Arch>::begin_filter(const P& problem, const Trajecto
   return true;
 }
 
-/// One turn of it. Near the solution its working set goes to full steps, which converge faster. False at the
-/// end of the budget, or when it has lost its way, too.
+/// One iteration of it. Near the solution its working set goes to full steps, which converge faster. False at
+/// the end of the budget, or when it has lost its way, too.
 template <OcpProblem P, int Capacity, class Arch>
-bool OcpSolver<P, Capacity, Arch>::filter_turn(const P& problem, const Deadline& deadline,
-                                               SolveReport& report) noexcept {
+bool OcpSolver<P, Capacity, Arch>::filter_iteration(const P& problem, const Deadline& deadline,
+                                                    SolveReport& report) noexcept {
   using Outcome = typename Filter::Outcome;
   if (work_ >= options_.max_iterations || deadline.spent()) return false;
-  const Outcome outcome = filter_.turn(problem, now_, lq_, barrier_, t_, deadline, report);
-  record_filter_turn(report);
+  const Outcome outcome = filter_.iterate(problem, now_, lq_, barrier_, t_, deadline, report);
+  record_filter_iteration(report);
   if (outcome == Outcome::kGoing) return true;
   is_filtering_ = false;
   if (outcome != Outcome::kSolved) return false;
   filter_.hand_over(now_, lq_);
   best_ = t_;
   best_report_ = report;
-  best_report_.stationarity = kInfinity;  // by other prices than those of the first look at it
+  best_report_.stationarity = kInfinity;  // by other prices than those of the first linearisation at it
   barrier_.save(best_slacks_, t_.horizon);
   has_best_ = full_steps_ = true;
   is_exact_ = options_.second_order;
@@ -67,8 +67,8 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(const P& problem, P* rows, con
   bool is_solved = false;
   if (start(problem, x0, trajectory) && begin_filter(problem, trajectory, unused)) {
     for (; report.iterations < most && !is_solved; ++report.iterations) {
-      const Outcome outcome = filter_.turn(problem, now_, lq_, barrier_, t_, deadline, report);
-      record_filter_turn(report);
+      const Outcome outcome = filter_.iterate(problem, now_, lq_, barrier_, t_, deadline, report);
+      record_filter_iteration(report);
       if (outcome == Outcome::kGoing && filter_.short_steps() < patience) continue;
       is_solved = outcome == Outcome::kSolved;
       break;
@@ -100,8 +100,8 @@ bool OcpSolver<P, Capacity, Arch>::follow_path(const P& problem, Trajectory& tra
                                                SolveReport& report) noexcept {
   using Outcome = typename Filter::Outcome;
   for (; report.iterations < most; ++report.iterations) {
-    const Outcome outcome = filter_.turn(problem, now_, lq_, barrier_, t_, deadline, report);
-    record_filter_turn(report);
+    const Outcome outcome = filter_.iterate(problem, now_, lq_, barrier_, t_, deadline, report);
+    record_filter_iteration(report);
     if (outcome == Outcome::kGoing) continue;
     if (outcome == Outcome::kSolved) t_.write(trajectory);
     return outcome == Outcome::kSolved;
@@ -166,9 +166,9 @@ bool OcpSolver<P, Capacity, Arch>::descend(const P& problem, const Deadline& dea
   return true;
 }
 template <OcpProblem P, int Capacity, class Arch>
-void OcpSolver<P, Capacity, Arch>::record_filter_turn(const SolveReport& report) noexcept {
+void OcpSolver<P, Capacity, Arch>::record_filter_iteration(const SolveReport& report) noexcept {
   if (log_ == nullptr) return;
-  log_->add(report, Turn::Kind::kFilter, filter_.mu());
+  log_->add(report, Iteration::Kind::kFilter, filter_.mu());
   log_->set_step(filter_.moved());
 }
 
@@ -202,7 +202,7 @@ void OcpSolver<P, Capacity, Arch>::take_cheapest(const P& problem, const Traject
     const auto consider = [&](bool is_solution) {
       if (!is_solution && !roll_out(problem)) return false;
       SolveReport seen = report;
-      look(problem, seen);
+      linearise(problem, seen);
       if (!is_finite(seen) || (is_solution && !is_close(seen))) return false;
       if (!is_solution && seen.cost >= least) return false;
       least = seen.cost;
@@ -224,7 +224,7 @@ void OcpSolver<P, Capacity, Arch>::take_cheapest(const P& problem, const Traject
     } else if (has_best_) {
       t_ = best_;
     }
-    look(problem, report);
+    linearise(problem, report);
   }
 }
 

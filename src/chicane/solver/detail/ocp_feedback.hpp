@@ -16,7 +16,7 @@ bool OcpSolver<P, Capacity, Arch>::prepare(const P& problem) noexcept requires(!
   is_fresh_ = false;
   is_exact_ = options_.second_order;
   SolveReport seen;
-  look(problem, seen);
+  linearise(problem, seen);
   const double extra = lq_.backward(t_.horizon);
   if (extra > 0.0 && is_exact_) {  // indefinite: Gauss–Newton is not
     take_gauss_newton(problem);

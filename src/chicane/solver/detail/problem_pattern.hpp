@@ -88,7 +88,7 @@ template <class P>
 }
 
 /// Whether the solver has the filter method for this problem: unless it says `kRealTime = true`, for budgets
-/// of a few turns.
+/// of a few iterations.
 template <class P>
 [[nodiscard]] constexpr bool has_filter_method() noexcept {
   if constexpr (requires { P::kRealTime; }) return !P::kRealTime;

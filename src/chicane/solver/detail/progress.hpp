@@ -14,7 +14,7 @@ class Progress {
  public:
   void restart() noexcept { *this = Progress{}; }
 
-  /// Takes note of the step of one turn. `excused`: the problem itself still changes, no verdict yet.
+  /// Takes note of the step of one iteration. `excused`: the problem itself still changes, no verdict yet.
   void note(double step, bool excused) noexcept {
     if (excused) {
       restart();
@@ -32,10 +32,10 @@ class Progress {
   [[nodiscard]] bool is_lost() const noexcept { return idle_ >= kPatience; }
   /// The shortest step so far.
   [[nodiscard]] double shortest() const noexcept { return shortest_; }
-  /// Whether more than `turns` further steps would be needed to get as short as `length`, at the present
+  /// Whether more than `iterations` further steps would be needed to get as short as `length`, at the present
   /// linear rate.
-  [[nodiscard]] bool is_slow(double length, double turns) const noexcept {
-    return log(last_ / length) > turns * -log(std::fmin(rate_, 1.0));
+  [[nodiscard]] bool is_slow(double length, double iterations) const noexcept {
+    return log(last_ / length) > iterations * -log(std::fmin(rate_, 1.0));
   }
 
  private:

@@ -289,7 +289,7 @@ class RateChain {
   double multiplier_[Stages]{};
   Range range_[Stages]{};
   double least_[Stages]{};
-  std::size_t count_ = 0;  ///< stages looked at
+  std::size_t count_ = 0;  ///< stages counted
   double best_ = 0.0;
   double at_[2 * Stages + 2]{};  ///< points of the derivative
   double derivative_[2 * Stages + 2]{};

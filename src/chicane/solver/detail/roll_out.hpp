@@ -18,7 +18,7 @@ namespace chicane::solver {
 ///
 /// Both ways add in the same order: where x_i + … is the last thing that a function does for a state, they
 /// give the same bits. What a pattern cannot show is a branch by select() on a state that no derivative
-/// belongs to; states of such a function may be off, and the defects of the first look say so.
+/// belongs to; states of such a function may be off, and the defects of the first linearisation say so.
 template <OcpProblem P, class Arch>
 class RollOut {
  public:

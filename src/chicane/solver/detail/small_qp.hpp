@@ -63,10 +63,10 @@ struct SmallQp {
     return added;
   }
 
-  /// Finds u and the working set: active-set turns first; if they should cycle, coordinate descent, which
-  /// cannot.
+  /// Finds u and the working set: active-set iterations first; if they should cycle, coordinate descent,
+  /// which cannot.
   void solve() noexcept {
-    for (std::size_t turn = 0; turn < 4 * N; ++turn) {
+    for (std::size_t iteration = 0; iteration < 4 * N; ++iteration) {
       solve_free();
       bool changed = false;
       for (std::size_t i = 0; i < N; ++i) {

@@ -49,7 +49,7 @@ struct SoftConstraint {
     const V root = sqrt(total * gap * total * gap + 4.0 * mu * mu);
     V y = select(b > V(0.0), 2.0 * mu * gap / (b + root), (root - b) / (2.0 * total));
     y = max(y, 1e-3 * mu / total);
-    for (int turn = 0; turn < 8; ++turn) {
+    for (int iteration = 0; iteration < 8; ++iteration) {
       const V far = y + gap;
       const V slack = select(is_violated, far, y);
       const V excess = price.linear + price.quadratic * slack - mu / y - mu / far;

@@ -13,8 +13,8 @@
 
 namespace chicane::solver {
 
-/// Solves the quadratic program of one turn by corrections of its working set, else stage by stage, or with
-/// bounds on changes by an interior point (docs/solver.md, "Bounds: primal-dual active set").
+/// Solves the quadratic program of one iteration by corrections of its working set, else stage by stage, or
+/// with bounds on changes by an interior point (docs/solver.md, "Bounds: primal-dual active set").
 template <OcpProblem P, class Lq>
 class WorkingSetQp {
  public:

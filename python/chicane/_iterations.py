@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 _KINDS = np.array(["full step", "descent", "filter"])
 
 
-class Turns(Mapping[str, npt.NDArray[Any]]):
-    """The turns of a solve as columns, each of shape (turns,): turns["cost"]. print() shows a table.
+class Iterations(Mapping[str, npt.NDArray[Any]]):
+    """The iterations of a solve as columns, each of shape (iterations,): iterations["cost"]. print() shows a table.
 
     kind: how the step was found: "full step" by the working set, "descent" by a line search over simulations, "filter" by the filter
-    method. cost: of the point where the turn began. stationarity, defect, complementarity: how far that is from optimal.
+    method. cost: of the point where the iteration began. stationarity, defect, complementarity: how far that is from optimal.
     step: the longest move of an input from there; 0 where none was taken. barrier: of soft constraints, or of the filter method.
     round: of the multipliers of what must hold, from 1, whose shares are in the cost; 0: of none."""
 
@@ -40,11 +40,11 @@ class Turns(Mapping[str, npt.NDArray[Any]]):
 
     @property
     def count(self) -> int:
-        """Number of turns."""
+        """Number of iterations."""
         return len(self._columns["cost"])
 
     def to_pandas(self) -> pd.DataFrame:
-        """A DataFrame with a row for each turn (needs python3-pandas)."""
+        """A DataFrame with a row for each iteration (needs python3-pandas)."""
         import pandas as pd
         return pd.DataFrame(self._columns)
 
@@ -53,12 +53,12 @@ class Turns(Mapping[str, npt.NDArray[Any]]):
                  for name, value in zip(self._columns, row)] for row in zip(*self._columns.values())]
 
     def __str__(self) -> str:
-        rows = [["turn", *self._columns], *([str(n), *row] for n, row in enumerate(self._rows()))]
+        rows = [["iteration", *self._columns], *([str(n), *row] for n, row in enumerate(self._rows()))]
         widths = [max(len(row[n]) for row in rows) for n in range(len(rows[0]))]
         return "\n".join("  ".join(cell.rjust(width) for cell, width in zip(row, widths)) for row in rows)
 
     def __repr__(self) -> str:
-        return f"<Turns: {self.count}, columns {', '.join(self._columns)}>"
+        return f"<Iterations: {self.count}, columns {', '.join(self._columns)}>"
 
     def _repr_html_(self) -> str:
         head = "".join(f"<th>{name}</th>" for name in self._columns)

@@ -10,8 +10,8 @@
 
 namespace chicane::solver {
 
-/// One turn of a solve: the iterate it began at, and the step from there.
-struct Turn {
+/// One iteration of a solve: the iterate it began at, and the step from there.
+struct Iteration {
   /// How the step was found (docs/solver.md): by the working set, by a line search over simulations, by the
   /// filter method.
   enum class Kind : std::uint8_t { kFullStep, kDescent, kFilter };
@@ -23,36 +23,36 @@ struct Turn {
   double barrier = 0.0;  ///< of soft constraints, or of the filter method
 };
 
-/// Turns of a solve, in memory of the caller. What does not fit is counted, not kept.
-class TurnLog {
+/// Iterations of a solve, in memory of the caller. What does not fit is counted, not kept.
+class IterationLog {
  public:
-  explicit TurnLog(std::span<Turn> memory) noexcept : turns_{memory} {}
+  explicit IterationLog(std::span<Iteration> memory) noexcept : iterations_{memory} {}
 
   void clear() noexcept {
     count_ = 0;
     round_ = 0;
   }
   void begin_round() noexcept { ++round_; }
-  CHICANE_INLINE inline void add(const SolveReport& report, Turn::Kind kind, double barrier) noexcept {
-    if (count_ < turns_.size())
-      turns_[count_] = {
+  CHICANE_INLINE inline void add(const SolveReport& report, Iteration::Kind kind, double barrier) noexcept {
+    if (count_ < iterations_.size())
+      iterations_[count_] = {
           round_, kind,   report.cost, report.stationarity, report.defect, report.complementarity,
           0.0,    barrier};
     ++count_;
   }
-  /// Of the turn that was added last.
+  /// Of the iteration that was added last.
   void set_step(double step) noexcept {
-    if (count_ > 0 && count_ <= turns_.size()) turns_[count_ - 1].step = step;
+    if (count_ > 0 && count_ <= iterations_.size()) iterations_[count_ - 1].step = step;
   }
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   /// Those that are kept, in their order.
-  [[nodiscard]] std::span<const Turn> turns() const noexcept {
-    return turns_.first(count_ < turns_.size() ? count_ : turns_.size());
+  [[nodiscard]] std::span<const Iteration> iterations() const noexcept {
+    return iterations_.first(count_ < iterations_.size() ? count_ : iterations_.size());
   }
 
  private:
-  std::span<Turn> turns_;
+  std::span<Iteration> iterations_;
   std::size_t count_ = 0;
   int round_ = 0;
 };
