@@ -30,8 +30,8 @@ constexpr double kPointsAcross = 5.0;  // spacing of the points is the width ove
 struct Imported {
   TrackFile content;
   path::Track track;
-  std::string kind;                      ///< "occupancy map"
-  double spacing = 0.0;                  ///< distance between the written points [m]
+  std::string kind;      ///< "occupancy map"
+  double spacing = 0.0;  ///< distance between the written points [m]
   path::PointFit fit{};
   double narrowest = 1e9, widest = 0.0;  ///< [m]
   double sharpest = 0.0;                 ///< curvature [1/m]
@@ -149,8 +149,8 @@ std::string in_json(const Imported& road) {
 std::string description_of(const Imported& road, const std::string& file) {
   std::string text = fmt::format(
       "From {} by chicane import\n{}{}: its {} points are {:.3f} m from the line (rms), {:.3f} m at most",
-      std::filesystem::path(file).filename().string(), protocol::kNote, road.kind,
-      road.content.points.size(), road.fit.rms, road.fit.most);
+      std::filesystem::path(file).filename().string(), protocol::kNote, road.kind, road.content.points.size(),
+      road.fit.rms, road.fit.most);
   for (const std::string& warning : road.content.warnings)
     text += fmt::format("\n{}{}", protocol::kNote,
                         warning.starts_with(file + ": ") ? warning.substr(file.size() + 2) : warning);

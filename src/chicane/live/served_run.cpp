@@ -34,7 +34,7 @@ protocol::Run describe_served(const scenario::Scenario& scenario, const controll
   if (track)
     describe(*track, run);
   else  // the scenario's is not the simulator's
-    run.origin = {.car_notes = run.origin.car_notes, .identified = run.origin.identified};
+    run.origin.road_kind.clear(), run.origin.road_notes.clear();
   run.limit = track ? RunLimit::first_answer(*track) : lap_time::LimitAnswer{.why_not = kUnknownRoad};
   return run;
 }

@@ -86,8 +86,7 @@ void put_origin(CdrWriter& writer, const Run& run) {
 std::string encode_run(const Frame&, const Run& run) {
   const model::VehicleParams& car = run.vehicle;
   CdrWriter writer;
-  writer
-      .text(run.track)
+  writer.text(run.track)
       .put(run.track_length, run.is_closed)
       .text(run.controller)
       .text(run.preset)

@@ -2,9 +2,9 @@ import { fixed, plural } from '../lib/format';
 import { tidy } from '../lib/scale';
 import { nameInWords } from '../lib/words';
 import type { Run } from '../protocol/topics';
+import { run } from '../state/run';
 import { labelOf } from '../state/setting_search';
 import { entryOf } from '../state/settings';
-import { run } from '../state/run';
 import { Meaning } from './meaning';
 
 /** A parameter of a car file that a log found; no interval where it was assumed. */
@@ -26,8 +26,8 @@ export const identifiedOf = (of: Run): Identified[] =>
 /** "812 points of the file, 0.012 m from the line (rms), 0.034 m at most"; empty where nothing is known. */
 export function fitInWords({ track_points, track_fit_rms_m, track_fit_max_m }: Run): string {
   if (track_points === 0) return '';
-  const points = plural(track_points, 'point');
-  return `${points} of the file, ${fixed(track_fit_rms_m, 3)} m from the line (rms), ${fixed(track_fit_max_m, 3)} m at most`;
+  const [rms, most] = [fixed(track_fit_rms_m, 3), fixed(track_fit_max_m, 3)];
+  return `${plural(track_points, 'point')} of the file, ${rms} m from the line (rms), ${most} m at most`;
 }
 
 /** What the road was read from, and at which size it is driven. */
