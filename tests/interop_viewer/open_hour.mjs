@@ -49,13 +49,17 @@ for (let i = 1; i <= SAMPLES; ++i) {
   const now = await read();
   const elapsed = (performance.now() - clock) / 1000;
   const taken = processorTime(drive.pid) - used;
-  const cells = now.map((each, k) => `${percent((each.busy - before[k].busy) / elapsed)} | ${(each.heap / 1e6).toFixed(2)}`);
+  const cells = now.map(
+    (each, k) => `${percent((each.busy - before[k].busy) / elapsed)} | ${(each.heap / 1e6).toFixed(2)}`,
+  );
   console.log(`| ${((MINUTES * i) / SAMPLES).toFixed(1)} | ${percent(taken / elapsed)} | ${cells.join(' | ')} |`);
   [clock, used, before] = [performance.now(), processorTime(drive.pid), await read()];
 }
 for (const tab of OPEN.slice(0, 2)) {
   const cost = await pageCost(browser, drive.url, tab, 20);
-  console.log(`${tab}: message to screen p50 ${cost.median.toFixed(0)} ms, p95 ${cost.p95.toFixed(0)} ms, a fourth page`);
+  console.log(
+    `${tab}: message to screen p50 ${cost.median.toFixed(0)} ms, p95 ${cost.p95.toFixed(0)} ms, a fourth page`,
+  );
 }
 console.log(`load ${loadavg()[0].toFixed(1)} at the end`);
 await browser.close();

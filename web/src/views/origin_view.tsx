@@ -36,12 +36,17 @@ export function roadInWords({ track_kind, track_scale }: Run): string {
   return track_kind === '' ? '' : `Read from ${/^[aeiou]/i.test(track_kind) ? 'an' : 'a'} ${track_kind} file${size}.`;
 }
 
+function label(of: string): string {
+  const entry = entryOf(`vehicle.${of}`);
+  return entry ? labelOf(entry) : nameInWords(of);
+}
+
 function Name({ of }: { of: string }) {
   const entry = entryOf(`vehicle.${of}`);
-  if (!entry) return <>{nameInWords(of)}</>;
+  if (!entry) return <>{label(of)}</>;
   return (
     <>
-      <Meaning of={labelOf(entry)}>{entry.meaning}</Meaning> {entry.unit && <span class="unit">{entry.unit}</span>}
+      <Meaning of={label(of)}>{entry.meaning}</Meaning> {entry.unit && <span class="unit">{entry.unit}</span>}
     </>
   );
 }
@@ -76,7 +81,7 @@ function Found({ values }: { values: readonly Identified[] }) {
       </table>
       {assumed.length > 0 && (
         <p class="note">
-          Assumed, because the log does not excite it: {assumed.map(({ key }) => nameInWords(key)).join(', ')}.
+          Assumed, because the log does not excite it: {assumed.map(({ key }) => label(key)).join(', ')}.
         </p>
       )}
     </>
