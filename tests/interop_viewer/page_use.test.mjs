@@ -39,7 +39,7 @@ describe('the page', () => {
     await origin.getByText('smoothing: noise of 0.5 m assumed').waitFor();
     await origin.getByText(/^\d+ points of the file, 0\.\d{3} m from the line \(rms\), \d\.\d{3} m at most$/).waitFor();
     await row.getByRole('button').click();
-    await page.getByRole('note').filter({ hasText: /brak/i }).waitFor();
+    await page.locator('.meaning-box:popover-open').waitFor();
     await page.keyboard.press('Escape');
     assert.deepEqual(await dashboard.accessibilityFindings(undefined, '[data-testid="origin"]'), []);
   });
