@@ -109,7 +109,7 @@ describe('the cursor', () => {
     await dashboard.until(pink, (count) => count === 0, 'no ring without a cursor');
     await dashboard.button('Chase').click();
     const map = await box(dashboard, 'canvas.map-2d');
-    await page.mouse.click(map.x + map.width / 2, map.y + map.height * 0.75);
+    await page.mouse.click(map.x + map.width / 2, map.y + map.height - 235 + 15); // just behind the car
     await dashboard.until(pink, (count) => count > 20, 'a ring where the road was clicked');
     await dashboard.button('Follow').waitFor();
     await dashboard.button('Follow').click();

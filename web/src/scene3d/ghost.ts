@@ -1,9 +1,9 @@
+import { paintSize } from '../draw/paint_size';
 import { lapTime } from '../lib/format';
 import { wrapAngle } from '../lib/math';
 import type { Frame } from '../protocol/topics';
 import { run } from '../state/run';
 import { LONGEST_SILENCE_S } from '../state/silence';
-import { paintSize } from './paint_size';
 
 /** Pose and steering angle of another car at a time of the lap. */
 export interface GhostPose {

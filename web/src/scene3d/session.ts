@@ -1,3 +1,4 @@
+import { paintSize } from '../draw/paint_size';
 import { store } from '../lib/store';
 import type { Frame } from '../protocol/topics';
 import { frameListeners, rebuildListeners } from '../state/demultiplexer';
@@ -6,7 +7,6 @@ import { replayListeners } from '../state/replay';
 import { run } from '../state/run';
 import { type GhostSource, LapRecorder } from './ghost';
 import { type Motion, motionOf, Playout } from './motion';
-import { paintSize } from './paint_size';
 import { RibbonRing } from './ribbon';
 import { TyreMarks } from './tyre_marks';
 
@@ -58,7 +58,8 @@ export class Session {
       this.marks.push(motion, wheels);
     }
     const wasBraking = (this.#last?.throttle ?? 0) < -0.05;
-    if (motion.throttle < -0.05 && !wasBraking && motion.speed > 3) this.#markBrake(motion, car?.track_width_m ?? 1.6, size);
+    if (motion.throttle < -0.05 && !wasBraking && motion.speed > 3)
+      this.#markBrake(motion, car?.track_width_m ?? 1.6, size);
     this.#last = motion;
   }
 

@@ -9,6 +9,7 @@ import {
   WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
+import { paintSize } from '../draw/paint_size';
 import { topOfScale } from '../draw/speed_colour';
 import type { Point } from '../lib/math';
 import { speedUnit } from '../lib/units';
@@ -27,7 +28,6 @@ import { QualityGovernor } from './quality';
 import { BandView, RingView } from './ribbon_view';
 import { tidyLines } from './road_mesh';
 import { RoadView } from './road_view';
-import { paintSize } from './paint_size';
 import type { Session } from './session';
 import { SlowPicture } from './slow_picture';
 import { plantTrees } from './trees';

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { paintSize } from './paint_size';
+import { paintSize } from '../draw/paint_size';
 import { type RoadPaint, roadMeshes } from './road_mesh';
 
 const paint = {
@@ -27,7 +27,10 @@ describe('what is painted on a road', () => {
   });
 
   it('is in the size of the car, and the road as it is', () => {
-    const [small, full] = [roadMeshes(straight(0.5, 20), false, 0.1, paint, 0.1), roadMeshes(straight(5, 200), false, 1, paint)];
+    const [small, full] = [
+      roadMeshes(straight(0.5, 20), false, 0.1, paint, 0.1),
+      roadMeshes(straight(5, 200), false, 1, paint),
+    ];
     for (const part of ['verge', 'kerbs', 'surface', 'lines'] as const) {
       expect(small[part].positions.length).toBe(full[part].positions.length);
       small[part].positions.forEach((value, i) => expect(value).toBeCloseTo((full[part].positions[i] ?? NaN) / 10, 4));
