@@ -1,4 +1,4 @@
-import { paintSize } from '../draw/paint_size';
+import { paintSize } from '../lib/paint_size';
 import { lapTime } from '../lib/format';
 import { wrapAngle } from '../lib/math';
 import type { Frame } from '../protocol/topics';

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { paintSize } from '../draw/paint_size';
+import { paintSize } from '../lib/paint_size';
 import { type RoadPaint, roadMeshes } from './road_mesh';
 
 const paint = {

@@ -1,4 +1,4 @@
-import { paintSize } from '../draw/paint_size';
+import { paintSize } from '../lib/paint_size';
 import { store } from '../lib/store';
 import type { Frame } from '../protocol/topics';
 import { frameListeners, rebuildListeners } from '../state/demultiplexer';

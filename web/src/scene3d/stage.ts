@@ -9,7 +9,7 @@ import {
   WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
-import { paintSize } from '../draw/paint_size';
+import { paintSize } from '../lib/paint_size';
 import { topOfScale } from '../draw/speed_colour';
 import type { Point } from '../lib/math';
 import { speedUnit } from '../lib/units';

@@ -12,7 +12,7 @@ import {
   zoomed,
 } from '../draw/camera';
 import { carShape } from '../draw/car';
-import { paintSize } from '../draw/paint_size';
+import { paintSize } from '../lib/paint_size';
 import {
   drawCursor,
   drawDot,
