@@ -176,6 +176,8 @@ describe('a recording in the page', () => {
       await page.waitForTimeout(2000);
       return ((await position()) - from) / ((performance.now() - begin) / 1000);
     }
+    await dashboard.beginAt('laps');
+    await scrub(page, 5);
     await page.locator('body').press('[');
     await page.locator('body').press('[');
     await page.getByText('0.25× speed', { exact: true }).waitFor();
@@ -186,7 +188,8 @@ describe('a recording in the page', () => {
     await page.getByText('4× speed', { exact: true }).waitFor();
     const fast = await rate();
     assert.ok(slow > 0 && fast > 3 * slow, `${slow}, then ${fast}`); // sixteen times, were the machine not busy
-    await dashboard.button('Pause').click();
+    await page.keyboard.press('Space');
+    await page.getByText('Recording', { exact: true }).waitFor();
   });
 
   it('says what belongs to the recording and cannot be changed', async () => {
