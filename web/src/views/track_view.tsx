@@ -219,6 +219,7 @@ class Painter {
     ratio: number,
   ): void {
     const [context, road] = [this.#context as CanvasRenderingContext2D, this.#road as RoadShape];
+    if (width < 330) return; // it would lie under the buttons
     const side = Math.min(170, width * 0.3);
     const top = width < 560 ? 48 : 8; // below the buttons where they do not fit side by side
     const fit = fitting(this.#roadBox as Box, side, side, 8);
