@@ -6,17 +6,17 @@ import { DashboardPage, differentFrom, LAPTOP, PHONE, TABS } from './dashboard_p
 import { misfits } from './fit.mjs';
 import { browserAndDrive } from './here.mjs';
 
+let shared = null;
+after(() => shared?.close()); // before the browser ends
 const here = browserAndDrive(['--track', 'oval', '--pace', '3']);
 
 /** The page that the tests have in common, at a tab. */
-let shared = null;
 async function open({ tab = 'laps' } = {}) {
   shared ??= await DashboardPage.open(here.browser, here.drive.url, { tab });
   await shared.beginAt(tab);
   return shared;
 }
 afterEach(() => shared?.hadNothingToComplainOf());
-after(() => shared?.close());
 
 const box = (dashboard, selector) => dashboard.page.locator(selector).first().boundingBox();
 const background = (page) => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
