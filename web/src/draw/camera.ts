@@ -85,7 +85,7 @@ export function above(car: Point, width: number, height: number, metresAcross: n
   };
 }
 
-/** Lines of a square grid that cover the view: 40 px apart or more, at multiples of `least`, twice, four times … that [m]. */
+/** Lines of a square grid that cover the view: 40 px apart or more, at multiples of `least`, twice that, … [m]. */
 export function groundGrid(
   camera: Camera,
   width: number,
