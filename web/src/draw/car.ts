@@ -1,5 +1,5 @@
-import type { Run } from '../protocol/topics';
 import { paintSize } from '../lib/paint_size';
+import type { Run } from '../protocol/topics';
 
 export interface Wheel {
   /** Centre in the car's own axes, x forward, y left, from the centre of mass [m]. */

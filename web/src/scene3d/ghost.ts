@@ -1,6 +1,6 @@
-import { paintSize } from '../lib/paint_size';
 import { lapTime } from '../lib/format';
 import { wrapAngle } from '../lib/math';
+import { paintSize } from '../lib/paint_size';
 import type { Frame } from '../protocol/topics';
 import { run } from '../state/run';
 import { LONGEST_SILENCE_S } from '../state/silence';

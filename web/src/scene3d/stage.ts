@@ -9,9 +9,9 @@ import {
   WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
-import { paintSize } from '../lib/paint_size';
 import { topOfScale } from '../draw/speed_colour';
 import type { Point } from '../lib/math';
+import { paintSize } from '../lib/paint_size';
 import { speedUnit } from '../lib/units';
 import type { Limit, Plan, Run } from '../protocol/topics';
 import type { CursorMark } from '../state/cursor';

@@ -12,7 +12,6 @@ import {
   zoomed,
 } from '../draw/camera';
 import { carShape } from '../draw/car';
-import { paintSize } from '../lib/paint_size';
 import {
   drawCursor,
   drawDot,
@@ -28,6 +27,7 @@ import { onThemeChange, theme } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { type Box, boundsOf, extrapolate, type Point, wrapAngle } from '../lib/math';
 import { type OnScreen, onScreen } from '../lib/on_screen';
+import { paintSize } from '../lib/paint_size';
 import { store } from '../lib/store';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import { CAMERAS } from '../scene3d/cameras';
