@@ -15,6 +15,7 @@
 #include "chicane/identify/identification.hpp"
 #include "chicane/model/similarity.hpp"
 #include "chicane/protocol/library.hpp"
+#include "chicane/protocol/origin.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/sim/double_track.hpp"
 #include "commands.hpp"
@@ -181,7 +182,8 @@ std::string to_car(const Identification& found, scenario::Scenario scenario, con
     for (const Estimate& each : found.estimates) {
       if (!is_vehicle || each.key != key) continue;
       value = number_text(each.value, 5);
-      remark = each.is_excited ? fmt::format("  # [log] {}", interval(each)) : "  # [assumed]";
+      remark = fmt::format("  # {}", each.is_excited ? protocol::band_remark(each.low, each.high)
+                                                     : std::string{protocol::kAssumedRemark});
     }
     text += fmt::format("{}{}: {}{}\n", row.group.empty() ? "" : "  ", key, value, remark);
   }

@@ -7,8 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "chicane/base/text.hpp"
+#include "chicane/path/point_fit.hpp"
 #include "chicane/protocol/csv_track.hpp"
+#include "chicane/protocol/foreign_tracks.hpp"
 #include "chicane/protocol/library.hpp"
+#include "chicane/protocol/origin.hpp"
 #include "commands.hpp"
 #include "import_preview.hpp"
 #include "many_runs.hpp"
@@ -27,8 +30,9 @@ constexpr double kPointsAcross = 5.0;  // spacing of the points is the width ove
 struct Imported {
   TrackFile content;
   path::Track track;
-  double spacing = 0.0;                  ///< distance between the written points [m]
-  double rms = 0.0, most = 0.0;          ///< distance of the file's points from the line [m]
+  std::string kind;      ///< "occupancy map"
+  double spacing = 0.0;  ///< distance between the written points [m]
+  path::PointFit fit{};
   double narrowest = 1e9, widest = 0.0;  ///< [m]
   double sharpest = 0.0;                 ///< curvature [1/m]
 };
@@ -58,15 +62,7 @@ double mean_width(const TrackFile& content) {
 /// How far the points of the file are from the line, and what the road is like.
 void measure(Imported& road) {
   const path::Path& centre = road.track.centre();
-  const std::vector<path::TrackPoint>& points = road.track.raw_points();
-  const std::vector<double>& places = road.track.raw_places();
-  double sum = 0.0;
-  for (std::size_t i = 0; i < points.size() && i < places.size(); ++i) {
-    const double away = (centre.at(places[i]).position - points[i].position).norm();
-    sum += away * away;
-    road.most = std::max(road.most, away);
-  }
-  road.rms = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, points.size())));
+  road.fit = path::point_fit(road.track);
   const double step = road.track.length() / std::ceil(road.track.length() / (0.5 * road.spacing));
   for (double s = 0.0; s < road.track.length(); s += step) {
     const double width = road.track.left_width(s) + road.track.right_width(s);
@@ -92,8 +88,10 @@ Result<Imported> read_road(const Options::Import& import) {
   const double usual = std::clamp(mean_width(*content) / kPointsAcross, 0.05, 2.0);
   Result<path::Track> track = protocol::make_track(*content);
   if (!track) return fail(track.error());
-  Imported road{
-      .content = std::move(*content), .track = std::move(*track), .spacing = import.spacing.value_or(usual)};
+  Imported road{.content = std::move(*content),
+                .track = std::move(*track),
+                .kind = std::string{protocol::road_kind(*text)},
+                .spacing = import.spacing.value_or(usual)};
   measure(road);
   return road;
 }
@@ -127,7 +125,7 @@ std::string in_words(const Imported& road) {
       road.track.centre().is_closed() ? "closed" : "open", road.track.length(), is_model ? 2 : 1,
       road.narrowest, road.widest,
       road.sharpest > 1e-6 ? fmt::format("tightest radius {:.2f} m", 1.0 / road.sharpest) : "straight",
-      road.content.points.size(), road.rms, road.most);
+      road.content.points.size(), road.fit.rms, road.fit.most);
 }
 
 std::string in_json(const Imported& road) {
@@ -139,12 +137,24 @@ std::string in_json(const Imported& road) {
   json["tightest_radius_m"] =
       road.sharpest > 0.0 ? nlohmann::ordered_json(1.0 / road.sharpest) : nlohmann::ordered_json(nullptr);
   json["points"] = road.content.points.size();
-  json["rms_m"] = road.rms;
-  json["max_m"] = road.most;
+  json["rms_m"] = road.fit.rms;
+  json["max_m"] = road.fit.most;
   json["track_scale"] =
       road.content.is_own_size ? nlohmann::ordered_json(1) : nlohmann::ordered_json(nullptr);
   json["notices"] = road.content.warnings;
   return json.dump(2) + "\n";
+}
+
+/// The head of the written file: what was read, how well the line fits, what was assumed.
+std::string description_of(const Imported& road, const std::string& file) {
+  std::string text = fmt::format(
+      "From {} by chicane import\n{}{}: its {} points are {:.3f} m from the line (rms), {:.3f} m at most",
+      std::filesystem::path(file).filename().string(), protocol::kNote, road.kind, road.content.points.size(),
+      road.fit.rms, road.fit.most);
+  for (const std::string& warning : road.content.warnings)
+    text += fmt::format("\n{}{}", protocol::kNote,
+                        warning.starts_with(file + ": ") ? warning.substr(file.size() + 2) : warning);
+  return text;
 }
 
 Result<void> import_and_tell(const Options& options) {
@@ -158,9 +168,7 @@ Result<void> import_and_tell(const Options& options) {
   const Result<Imported> road = read_road(import);
   if (!road) return fail(road.error());
   for (const std::string& warning : road->content.warnings) fmt::print(stderr, "{}\n", warning);
-  const std::string csv = protocol::write_csv_track(
-      resampled(*road),
-      fmt::format("From {} by chicane import", std::filesystem::path(import.file).filename().string()));
+  const std::string csv = protocol::write_csv_track(resampled(*road), description_of(*road, import.file));
   // The written file is read again: it has to be a road.
   const Result<TrackFile> again = protocol::parse_track(
       csv, options.output_file.empty() ? import.file : options.output_file, {.scale = road->content.scale});

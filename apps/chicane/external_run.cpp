@@ -28,10 +28,9 @@ namespace {
 protocol::Run description_of_external(const scenario::Scenario& scenario, const path::Track& track) {
   protocol::Run run;
   run.controller = run.preset = "external";
-  run.vehicle = scenario.vehicle;
+  live::describe(scenario, run);
   run.mode = recording::kSimulateMode;
   run.limit = live::RunLimit::first_answer(track);
-  run.notices = scenario.notices;
   live::describe(track, run);
   return run;
 }

@@ -23,7 +23,7 @@ export const TABS = [...workbench.matchAll(/^ {2}\{ name: '(\w+)', title: /gm)].
 assert.ok(TABS.length >= 6, 'workbench_view.tsx lists its panels otherwise than these tests read them');
 
 /** Between two repaints of a page [ms]: drawing costs much without a graphics card. */
-const REPAINT_MS = 200;
+const REPAINT_MS = 250;
 
 /** An init script: the page draws once in `interval` [ms], and not while `isHeld`. */
 export function repaintSeldom(interval) {
@@ -63,8 +63,8 @@ export const differentFrom = (before) => (now) => now !== before;
 export class DashboardPage {
   /**
    * Opens the page at a tab and waits until it says that it is live, or in another `state`; the browser keeps nothing
-   * of tests before. What the browser complains of is kept in `complaints`. The page draws five times a second, or with
-   * `fluent` as often as the browser repaints.
+   * of tests before. What the browser complains of is kept in `complaints`. The page draws four times a second without
+   * moving parts, or with `fluent` as often as the browser repaints and with all that moves.
    */
   static async open(browser, url, { tab = 'drive', state = 'Live', fluent = false, ...options } = {}) {
     const shape = { ...LAPTOP, ...options };
@@ -74,7 +74,7 @@ export class DashboardPage {
     const dashboard = shelf.get(key) ?? (await DashboardPage.#fresh(browser, shape, fluent));
     shelf.delete(key);
     await dashboard.page.setViewportSize(viewport);
-    await dashboard.page.emulateMedia({ colorScheme });
+    await dashboard.page.emulateMedia({ colorScheme, reducedMotion: fluent ? null : 'reduce' });
     dashboard.leave = async () => {
       const { page } = dashboard;
       for (const other of page.context().pages()) if (other !== page) await other.close();

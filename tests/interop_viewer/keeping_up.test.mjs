@@ -6,7 +6,7 @@ import { DashboardPage } from './dashboard_page.mjs';
 import { browserAndDrive } from './here.mjs';
 import { arrivals, meter, notePaints, SIXTY_A_SECOND } from './paints.mjs';
 
-const FRAMES = 300;
+const FRAMES = 200;
 
 const here = browserAndDrive(SIXTY_A_SECOND);
 
@@ -27,7 +27,7 @@ for (const tab of ['plots', 'explain']) {
     const dashboard = new DashboardPage(page, []);
     const paints = () => page.evaluate(() => [...globalThis.paints.keys()]);
     const read = await meter(page);
-    await dashboard.until(paints, ({ length }) => length > 100, 'first pictures'); // code is compiled
+    await dashboard.until(paints, ({ length }) => length > 60, 'first pictures'); // code is compiled
     const { heap } = await read();
 
     const other = await arrivals(here.drive.url);

@@ -2,10 +2,14 @@
 // The page in the hands of a reader: keys, tabs, addresses, searches and explanations do what they say.
 import assert from 'node:assert/strict';
 import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
+import { fileURLToPath } from 'node:url';
 import { DashboardPage, LAPTOP } from './dashboard_page.mjs';
 import { browserAndDrive } from './here.mjs';
 
-const here = browserAndDrive(['--track', 'lakeside']);
+// A car that `chicane identify` found from a minute of a recording, and another program's road.
+const fileOf = (name) => fileURLToPath(new URL(name, import.meta.url));
+const FILES = ['--car', fileOf('identified.yaml'), '--track', fileOf('../data/tracks/course.geojson')];
+const here = browserAndDrive(FILES);
 let dashboard;
 let page;
 
@@ -22,6 +26,23 @@ describe('the page', () => {
   });
   afterEach(() => dashboard.hadNothingToComplainOf());
   after(() => dashboard.close());
+
+  it('says what a log found of the car and how well, and what the road was read from', async () => {
+    const origin = page.getByTestId('origin');
+    assert.match(await origin.innerText(), /road-car, identified from 60 s of run\.mcap/);
+    assert.match(await origin.innerText(), /Grip is not known: the tyres were used too little/);
+    assert.equal(await origin.locator('.identified tbody tr').count(), 9);
+    const row = origin.locator('.identified tr', { hasText: 'brake acceleration' });
+    assert.deepEqual(await row.locator('td').allInnerTexts(), ['9.076', '8.99 to 9.16']);
+    await origin.getByText('Assumed, because the log does not excite it: steer rate limit, friction, ').waitFor();
+    await origin.getByText('Read from a GeoJSON file.').waitFor();
+    await origin.getByText('smoothing: noise of 0.5 m assumed').waitFor();
+    await origin.getByText(/^\d+ points of the file, 0\.\d{3} m from the line \(rms\), \d\.\d{3} m at most$/).waitFor();
+    await row.getByRole('button').click();
+    await page.locator('.meaning-box:popover-open').waitFor();
+    await page.keyboard.press('Escape');
+    assert.deepEqual(await dashboard.accessibilityFindings(undefined, '[data-testid="origin"]'), []);
+  });
 
   it('pauses by Space, whatever was clicked last', async () => {
     await dashboard.show('faults');

@@ -10,7 +10,7 @@ import { after, afterEach, before, describe, it } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { launch } from './browser.mjs';
 import { startDrive } from './chicane_drive.mjs';
-import { DashboardPage, PHONE } from './dashboard_page.mjs';
+import { DashboardPage } from './dashboard_page.mjs';
 
 const program = process.env.CHICANE ?? 'chicane';
 const folder = mkdtempSync(join(tmpdir(), 'chicane-recording-'));
@@ -162,45 +162,40 @@ describe('a recording in the page', () => {
       (count) => count === 3,
       'three laps at once',
     );
-    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    assert.deepEqual(await dashboard.accessibilityFindings(undefined, '.side'), []);
+  });
+
+  it('is played slower and faster', async () => {
+    const position = async () => {
+      const [minutes, seconds] = (await time(page)).split(':').map((text) => Number.parseFloat(text));
+      return 60 * minutes + seconds;
+    };
+    /** What is played in a second of the page's own clock, over two of them [s/s]. */
+    async function rate() {
+      const [from, begin] = [await position(), performance.now()];
+      await page.waitForTimeout(2000);
+      return ((await position()) - from) / ((performance.now() - begin) / 1000);
+    }
+    await dashboard.beginAt('laps');
+    await scrub(page, 5);
+    await page.locator('body').press('[');
+    await page.locator('body').press('[');
+    await page.getByText('0.25× speed', { exact: true }).waitFor();
+    await dashboard.button('Play').click();
+    const slow = await rate();
+    await dashboard.show('drive');
+    await dashboard.button('4×').click();
+    await page.getByText('4× speed', { exact: true }).waitFor();
+    const fast = await rate();
+    assert.ok(slow > 0 && fast > 3 * slow, `${slow}, then ${fast}`); // sixteen times, were the machine not busy
+    await page.keyboard.press('Space');
+    await page.getByText('Recording', { exact: true }).waitFor();
   });
 
   it('says what belongs to the recording and cannot be changed', async () => {
     await dashboard.show('tune');
     assert.equal(await page.locator('.panel-body [data-key="tracking_mpc.horizon_steps"]').count(), 0);
   });
-});
-
-it('is accessible, also on a phone', async () => {
-  await open(url, PHONE);
-  assert.deepEqual(await dashboard.accessibilityFindings(), []);
-  assert.ok((await dashboard.overflow()).across <= 0);
-  await dashboard.close(isAboutGraphics);
-});
-
-it('is played slower and faster', async () => {
-  const page = await open(url);
-  const position = async () => {
-    const [minutes, seconds] = (await time(page)).split(':').map((text) => Number.parseFloat(text));
-    return 60 * minutes + seconds;
-  };
-  /** What is played in a second of the page's own clock, over two of them [s/s]. */
-  async function rate() {
-    const [from, begin] = [await position(), performance.now()];
-    await page.waitForTimeout(2000);
-    return ((await position()) - from) / ((performance.now() - begin) / 1000);
-  }
-  await page.locator('body').press('[');
-  await page.locator('body').press('[');
-  await page.getByText('0.25× speed', { exact: true }).waitFor();
-  await dashboard.button('Play').click();
-  const slow = await rate();
-  await dashboard.show('drive');
-  await dashboard.button('4×').click();
-  await page.getByText('4× speed', { exact: true }).waitFor();
-  const fast = await rate();
-  assert.ok(slow > 0 && fast > 3 * slow, `${slow}, then ${fast}`); // sixteen times, were the machine not busy
-  await dashboard.close(isAboutGraphics);
 });
 
 it('is shown when its file is dropped on a page that watches a run; what is none, is refused in words', async () => {
@@ -230,7 +225,6 @@ it('is shown when its file is dropped on a page that watches a run; what is none
     'both of its laps',
   );
   assert.match(await page.locator('.summary').innerText(), /lakeside/, 'not the oval of the run');
-  assert.deepEqual(await dashboard.accessibilityFindings(), []);
   await dashboard.close(isAboutGraphics);
   await drive.stop();
 });
@@ -276,7 +270,6 @@ describe('a report', () => {
       'the speed of that moment',
     );
     assert.equal(await page.locator('.laps .lap-table tbody tr:not(.limit)').count(), 2);
-    assert.deepEqual(await dashboard.accessibilityFindings(), []);
   });
 });
 

@@ -35,6 +35,26 @@ std::string encode(std::string_view name, const telemetry::Frame& frame = sample
   return encode != nullptr ? encode(frame, run) : samples::change();
 }
 
+/// The end of a run: where car and road come from.
+void expect_origin(CdrReader& reader) {
+  const Run run = samples::run();
+  ASSERT_EQ(reader.get<std::uint32_t>(), 1U);
+  EXPECT_EQ(reader.text(), run.origin.car_notes[0]);
+  ASSERT_EQ(reader.get<std::uint32_t>(), 2U);
+  for (const IdentifiedValue& each : run.origin.identified) EXPECT_EQ(reader.text(), each.key);
+  for (const auto column : {&IdentifiedValue::value, &IdentifiedValue::low, &IdentifiedValue::high}) {
+    ASSERT_EQ(reader.get<std::uint32_t>(), 2U);
+    for (const IdentifiedValue& each : run.origin.identified) EXPECT_EQ(reader.number(), each.*column);
+  }
+  EXPECT_EQ(reader.text(), "GPX");
+  ASSERT_EQ(reader.get<std::uint32_t>(), 1U);
+  EXPECT_EQ(reader.text(), "width: assumed");
+  EXPECT_EQ(reader.number(), 0.125);
+  EXPECT_EQ(reader.get<std::uint32_t>(), 321U);
+  EXPECT_EQ(reader.number(), 0.0625);
+  EXPECT_EQ(reader.number(), 0.1875);
+}
+
 TEST(RosMessages, RunSaysWhatTheBitsAndTermsOfAFrameMean) {
   const std::string bytes = encode("/chicane/run");
   CdrReader reader{bytes};
@@ -65,6 +85,7 @@ TEST(RosMessages, RunSaysWhatTheBitsAndTermsOfAFrameMean) {
   EXPECT_EQ(reader.number(), samples::run().vehicle.brake_throttle_limit);
   EXPECT_EQ(reader.get<std::uint32_t>(), 1U);
   EXPECT_EQ(reader.text(), "pid.speed_reference_mps: has no effect");
+  expect_origin(reader);
   EXPECT_TRUE(reader.is_at_end());
 }
 

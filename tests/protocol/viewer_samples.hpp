@@ -112,6 +112,13 @@ inline Run run() {
   run.end = "failed";
   run.end_reason = "time limit reached";
   run.notices = {"pid.speed_reference_mps: has no effect"};
+  run.origin = {.car_notes = {"a car, identified from 60 s of log.csv"},
+                .identified = {{"mass_kg", 3.5, 3.25, 3.75}, {"friction", 1.25, 1.0, 1.5}},
+                .road_kind = "GPX",
+                .road_notes = {"width: assumed"}};
+  run.track_scale = 0.125;
+  run.track_points = 321;
+  run.track_fit = {.rms = 0.0625, .most = 0.1875};
   run.guard = {.mode = "observe", .road = "waypoints", .version = 7};
   lap_time::Limit limit;
   limit.times = {.lap = 25.0, .sectors = {8.0, 9.5, 7.5}};

@@ -11,7 +11,16 @@ void describe(const path::Track& track, protocol::Run& run) {
   run.track_length = track.centre().length();
   run.is_closed = track.centre().is_closed();
   run.kerb_width = track.kerb_width();
+  run.track_points = track.raw_points().size();
+  run.track_fit = path::point_fit(track);
   run.road = protocol::road_lines(track, kRoadSpacing * run.vehicle.scale);
+}
+
+void describe(const scenario::Scenario& scenario, protocol::Run& run) {
+  run.vehicle = scenario.vehicle;
+  run.notices = scenario.notices;
+  run.origin = protocol::origin_of(scenario);
+  run.track_scale = scenario.size_of_track();
 }
 
 protocol::Run description(const run::ClosedLoop& loop) {
@@ -20,11 +29,10 @@ protocol::Run description(const run::ClosedLoop& loop) {
   run.preset = scenario.preset;
   run.latency = scenario.latency;
   run.control_period = scenario.control_period;
-  run.vehicle = scenario.vehicle;
   run.mode = "drive";
   run.guard = protocol::guard_facts(scenario.guard);
+  describe(scenario, run);
   describe(loop.track(), run);
-  run.notices = scenario.notices;
   protocol::describe(loop.controller(), run);
   run.faults = protocol::fault_names();
   return run;

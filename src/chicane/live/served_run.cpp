@@ -30,9 +30,11 @@ protocol::Run describe_served(const scenario::Scenario& scenario, const controll
   run.guard = protocol::guard_facts(scenario.guard);
   run.latency = scenario.latency;
   run.control_period = scenario.control_period;
-  run.vehicle = scenario.vehicle;
-  run.notices = scenario.notices;
-  if (track) describe(*track, run);
+  describe(scenario, run);
+  if (track)
+    describe(*track, run);
+  else  // the scenario's is not the simulator's
+    run.origin.road_kind.clear(), run.origin.road_notes.clear();
   run.limit = track ? RunLimit::first_answer(*track) : lap_time::LimitAnswer{.why_not = kUnknownRoad};
   return run;
 }

@@ -13,6 +13,7 @@
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/csv_text.hpp"
 #include "chicane/protocol/detail/track_order.hpp"
+#include "chicane/protocol/origin.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -130,6 +131,7 @@ class TrackParser {
   }
 
   Result<void> read_comment(std::string_view comment) {
+    if (comment.starts_with(kNote)) return {};
     if (content_.points.empty() && names_a_plane(comment)) return read_header(comment);
     if (content_.points.empty() && fields_.empty() && names_columns(comment))
       other_names_ = {line_, std::string{comment}, split_names(comment).size()};

@@ -88,4 +88,23 @@ constexpr std::array kForeign{
 
 std::span<const TrackFormat> foreign_tracks() noexcept { return kForeign; }
 
+std::string_view road_kind(std::string_view text) noexcept {
+  if (is_map(text)) return "occupancy map";
+  if (is_yaml_cones(text) || is_csv_cones(text)) return "cones";
+  if (is_json(text)) return text.find("wpnts") != std::string_view::npos ? "ForzaETH way points" : "GeoJSON";
+  if (!is_xml(text)) return "table of points";
+  struct Root {
+    std::string_view element, name;
+  };
+  constexpr std::array kRoots{Root{"<gpx", "GPX"},
+                              Root{"<kml", "KML"},
+                              Root{"<osm", "OpenStreetMap"},
+                              Root{"<OpenDRIVE", "OpenDRIVE"},
+                              Root{"<commonRoad", "CommonRoad"},
+                              Root{"<sdf", "cones (SDF)"}};
+  for (const Root& root : kRoots)
+    if (text.substr(0, kHead).find(root.element) != std::string_view::npos) return root.name;
+  return "XML";
+}
+
 }  // namespace chicane::protocol

@@ -12,6 +12,9 @@ namespace chicane::protocol {
 /// All of them; the first that recognises a text reads it.
 [[nodiscard]] std::span<const TrackFormat> foreign_tracks() noexcept;
 
+/// What a file of a road is, by its content: "occupancy map", "GPX", "cones", "table of points".
+[[nodiscard]] std::string_view road_kind(std::string_view text) noexcept;
+
 /// ROS's map_server: free space of a map with walls. The image is read from beside the file.
 [[nodiscard]] Result<TrackFile> parse_map_track(std::string_view text, const std::string& file,
                                                 const TrackReadOptions& options);

@@ -68,10 +68,25 @@ std::string encode_plan(const Frame& frame, const Run&) {
   return writer.bytes();
 }
 
+/// Car and road as their files describe them, in the order of the message.
+void put_origin(CdrWriter& writer, const Run& run) {
+  const std::vector<IdentifiedValue>& identified = run.origin.identified;
+  writer.texts(run.origin.car_notes).count(identified.size());
+  for (const IdentifiedValue& each : identified) writer.text(each.key);
+  for (const auto column : {&IdentifiedValue::value, &IdentifiedValue::low, &IdentifiedValue::high}) {
+    writer.count(identified.size());
+    for (const IdentifiedValue& each : identified) writer.put(each.*column);
+  }
+  writer.text(run.origin.road_kind)
+      .texts(run.origin.road_notes)
+      .put(run.track_scale, static_cast<std::uint32_t>(run.track_points))
+      .put(run.track_fit.rms, run.track_fit.most);
+}
+
 std::string encode_run(const Frame&, const Run& run) {
   const model::VehicleParams& car = run.vehicle;
-  return CdrWriter{}
-      .text(run.track)
+  CdrWriter writer;
+  writer.text(run.track)
       .put(run.track_length, run.is_closed)
       .text(run.controller)
       .text(run.preset)
@@ -91,8 +106,9 @@ std::string encode_run(const Frame&, const Run& run) {
       .text(run.guard.road)
       .put(static_cast<std::uint32_t>(run.guard.version))
       .put(car.brake_throttle_limit)
-      .texts(run.notices)
-      .bytes();
+      .texts(run.notices);
+  put_origin(writer, run);
+  return writer.bytes();
 }
 
 /// Of a lap or a sector; not-a-number where there is no limit.

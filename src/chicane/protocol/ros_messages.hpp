@@ -11,8 +11,10 @@
 #include "chicane/controller/controller.hpp"
 #include "chicane/lap_time/limit.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/path/point_fit.hpp"
 #include "chicane/path/track.hpp"
 #include "chicane/protocol/guard_facts.hpp"
+#include "chicane/protocol/origin.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/lap_ledger.hpp"
 
@@ -61,6 +63,10 @@ struct Run {
   GuardFacts guard{};        ///< what watches over the controller
   FrameNames frames{};
   std::vector<std::string> notices{};  ///< of the scenario, a sentence each
+  Origin origin{};                     ///< of car and road
+  double track_scale = 1.0;            ///< the road's size over that of its file
+  std::size_t track_points = 0;        ///< in the road's file
+  path::PointFit track_fit{};          ///< of these points
 };
 
 /// What a controller says about itself, copied into a run.

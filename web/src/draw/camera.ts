@@ -85,9 +85,14 @@ export function above(car: Point, width: number, height: number, metresAcross: n
   };
 }
 
-/** Lines of a square grid that cover the view: 40 px apart or more, at multiples of 5, 10, 20, 40 … metres. */
-export function groundGrid(camera: Camera, width: number, height: number): { spacing: number; from: Point; to: Point } {
-  const spacing = 5 * 2 ** Math.max(0, Math.ceil(Math.log2(40 / camera.scale / 5)));
+/** Lines of a square grid that cover the view: 40 px apart or more, at multiples of `least`, twice that, … [m]. */
+export function groundGrid(
+  camera: Camera,
+  width: number,
+  height: number,
+  least = 5,
+): { spacing: number; from: Point; to: Point } {
+  const spacing = least * 2 ** Math.max(0, Math.ceil(Math.log2(40 / camera.scale / least)));
   // For any rotation the view lies within this distance of the point that the camera looks at.
   const reach =
     Math.hypot(Math.max(camera.at.x, width - camera.at.x), Math.max(camera.at.y, height - camera.at.y)) / camera.scale;

@@ -40,4 +40,11 @@ describe('car shape', () => {
   it('stands straight when the steering is unknown', () => {
     expect(carShape(size, NaN).wheels[0]?.angle).toBe(0);
   });
+
+  it('has wheels in the size of a model car', () => {
+    const model = carShape({ ...size, body_length_m: 0.45, tire_width_m: 0.05 }, 0);
+    expect(model.wheelLength).toBeCloseTo(0.068, 9);
+    expect(model.wheelWidth).toBeCloseTo(0.05, 9);
+    expect(carShape({ ...size, body_length_m: 4.3 }, 0).wheelLength).toBe(0.68);
+  });
 });

@@ -1,3 +1,4 @@
+import { paintSize } from '../lib/paint_size';
 import type { Run } from '../protocol/topics';
 
 export interface Wheel {
@@ -13,6 +14,7 @@ export interface CarShape {
   readonly halfWidth: number;
   readonly wheelLength: number;
   readonly wheelWidth: number;
+  readonly size: number; // of details, against those of a full-size car
   readonly wheels: readonly Wheel[]; // front left, front right, rear left, rear right
 }
 
@@ -26,14 +28,16 @@ export function carShape(car: CarSize, steer: number): CarShape {
   const wheelbase = car.front_axle_m + car.rear_axle_m;
   const overhang = Math.max(0, car.body_length_m - wheelbase) / 2;
   const half = car.track_width_m / 2;
+  const size = paintSize(car);
   const tangent = Math.tan(Number.isFinite(steer) ? steer : 0);
   const ackermann = (y: number): number => Math.atan2(wheelbase * tangent, wheelbase - y * tangent);
   return {
     rear: -car.rear_axle_m - overhang,
     front: car.front_axle_m + overhang,
     halfWidth: car.body_width_m / 2,
-    wheelLength: 0.68,
-    wheelWidth: Math.max(car.tire_width_m, 0.2),
+    wheelLength: 0.68 * size,
+    wheelWidth: Math.max(car.tire_width_m, 0.2 * size),
+    size,
     wheels: [
       { x: car.front_axle_m, y: half, angle: ackermann(half) },
       { x: car.front_axle_m, y: -half, angle: ackermann(-half) },

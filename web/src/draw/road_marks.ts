@@ -69,12 +69,19 @@ export function drawKerbs(
 const CHEQUERS = 8;
 
 /** Two rows of chequers across the road. */
-export function drawStartLine(ctx: Context, road: RoadShape, place: number, colours: Theme, px: number): void {
+export function drawStartLine(
+  ctx: Context,
+  road: RoadShape,
+  place: number,
+  colours: Theme,
+  px: number,
+  size: number,
+): void {
   const i = indexAt(road, place);
   const [left, right, centre] = [pointOf(road.left, i), pointOf(road.right, i), pointOf(road.centre, i)];
   const [ax, ay] = [(right.x - left.x) / CHEQUERS, (right.y - left.y) / CHEQUERS];
   const across = Math.hypot(ax, ay) || 1;
-  const deep = Math.max(0.6, 2 * px);
+  const deep = Math.max(0.6 * size, 2 * px);
   const [dx, dy] = [(-ay / across) * deep, (ax / across) * deep];
   if (!Number.isFinite(centre.x + ax + dx)) return;
   for (let column = 0; column < CHEQUERS; ++column)

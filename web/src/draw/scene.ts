@@ -21,6 +21,7 @@ export interface Scene {
   readonly reference: readonly Point[];
   readonly trace: Line; // where the car has been
   readonly plan: Plan | null;
+  readonly size: number; // of lines and paint, against those of full-size cars
   readonly speedScale: number; // the speed at the end of the colour scale [m/s]
   readonly hindsight: Hindsight | null; // a past plan and the path driven since
   readonly faults: readonly Point[]; // where faults began
@@ -68,8 +69,8 @@ function stroke(ctx: Context, path: Path2D, colour: string, width: number): void
  * A square grid on the ground, which shows speed off the road too. Stroked line by line: as one path of crossing lines
  * it took a tenth of a core with software rendering.
  */
-function drawGround(ctx: Context, camera: Camera, colour: string, ratio: number): void {
-  const { spacing, from, to } = groundGrid(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
+function drawGround(ctx: Context, camera: Camera, colour: string, ratio: number, size: number): void {
+  const { spacing, from, to } = groundGrid(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio, 5 * size);
   ctx.strokeStyle = colour;
   ctx.lineWidth = 1 / camera.scale;
   const draw = (x: number, y: number, toX: number, toY: number): void => {
@@ -88,6 +89,7 @@ function drawRoad(
   view: Box,
   colours: Theme,
   px: number,
+  size: number,
 ): void {
   const stretches = stretchesInside(centre, view, reach);
   const [surface, edges] = [new Path2D(), new Path2D()];
@@ -99,13 +101,13 @@ function drawRoad(
   }
   ctx.fillStyle = colours.road;
   ctx.fill(surface);
-  stroke(ctx, edges, colours.edge, Math.max(0.15, 1.5 * px));
-  ctx.setLineDash([3, 6]);
+  stroke(ctx, edges, colours.edge, Math.max(0.15 * size, 1.5 * px));
+  ctx.setLineDash([3 * size, 6 * size]);
   for (const [first, end] of stretches) {
     const dashes = new Path2D();
     addLine(dashes, centre, first, end);
     ctx.lineDashOffset = lengths[first] ?? 0; // keeps the dashes fixed to the road
-    stroke(ctx, dashes, colours.centreLine, Math.max(0.1, 0.75 * px));
+    stroke(ctx, dashes, colours.centreLine, Math.max(0.1 * size, 0.75 * px));
   }
   ctx.lineDashOffset = 0;
   ctx.setLineDash([]);
@@ -146,19 +148,25 @@ function line(xs: ArrayLike<number>, ys: ArrayLike<number>): Path2D {
 const reaches = new WeakMap<Limit, number>();
 
 /** Thin and solid: dashes would double the cost. */
-function drawRacingLine(ctx: Context, limit: Limit, view: Box, colours: Theme, px: number): void {
+function drawRacingLine(ctx: Context, limit: Limit, view: Box, colours: Theme, px: number, size: number): void {
   const points = { x: limit.x_m, y: limit.y_m };
   const reach = reaches.get(limit) ?? longestStep(points);
   reaches.set(limit, reach);
-  drawInView(ctx, points, view, reach, colours.racingLine, Math.max(0.2, 1.5 * px));
+  drawInView(ctx, points, view, reach, colours.racingLine, Math.max(0.2 * size, 1.5 * px));
 }
 
 /** A past plan as a broad band, with the path driven since on top. */
-function drawHindsight(ctx: Context, { plan, drivenX, drivenY }: Hindsight, colours: Theme, px: number): void {
+function drawHindsight(
+  ctx: Context,
+  { plan, drivenX, drivenY }: Hindsight,
+  colours: Theme,
+  px: number,
+  size: number,
+): void {
   ctx.globalAlpha = 0.6;
-  stroke(ctx, line(plan.x_m, plan.y_m), colours.predicted, Math.max(1.1, 8 * px));
+  stroke(ctx, line(plan.x_m, plan.y_m), colours.predicted, Math.max(1.1 * size, 8 * px));
   ctx.globalAlpha = 1;
-  stroke(ctx, line(drivenX, drivenY), colours.outcome, Math.max(0.18, 2 * px));
+  stroke(ctx, line(drivenX, drivenY), colours.outcome, Math.max(0.18 * size, 2 * px));
 }
 
 function drawWheels(ctx: Context, shape: CarShape, colour: string): void {
@@ -172,8 +180,12 @@ function drawWheels(ctx: Context, shape: CarShape, colour: string): void {
   }
 }
 
+/** Radii of a body seen from above: tail, nose, nose, tail. */
+const NOSE_M = [0.5, 0.9, 0.9, 0.5];
+
 function drawCar(ctx: Context, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
   const { shape } = car;
+  const { size } = shape;
   const length = shape.front - shape.rear;
   ctx.save();
   ctx.translate(car.x, car.y);
@@ -192,32 +204,38 @@ function drawCar(ctx: Context, car: NonNullable<Scene['car']>, colours: Theme, p
 
   const narrow = shape.halfWidth * 0.84; // narrower than the wheels, so that they are seen to steer
   ctx.beginPath();
-  ctx.roundRect(shape.rear, -narrow, length, 2 * narrow, [0.5, 0.9, 0.9, 0.5]);
+  ctx.roundRect(
+    shape.rear,
+    -narrow,
+    length,
+    2 * narrow,
+    NOSE_M.map((radius) => radius * size),
+  );
   ctx.fillStyle = colours.carBody;
   ctx.fill();
   ctx.strokeStyle = colours.carEdge;
-  ctx.lineWidth = Math.max(0.06, (1 * px) / grown);
+  ctx.lineWidth = Math.max(0.06 * size, (1 * px) / grown);
   ctx.stroke();
 
   ctx.beginPath();
-  ctx.roundRect(shape.rear + 0.24 * length, -0.78 * narrow, 0.4 * length, 1.56 * narrow, 0.4);
+  ctx.roundRect(shape.rear + 0.24 * length, -0.78 * narrow, 0.4 * length, 1.56 * narrow, 0.4 * size);
   ctx.fillStyle = colours.carGlass;
   ctx.fill();
   ctx.beginPath();
-  ctx.roundRect(shape.rear + 0.3 * length, -0.66 * narrow, 0.24 * length, 1.32 * narrow, 0.3);
+  ctx.roundRect(shape.rear + 0.3 * length, -0.66 * narrow, 0.24 * length, 1.32 * narrow, 0.3 * size);
   ctx.fillStyle = colours.carBody;
   ctx.fill();
 
   if (car.isBraking) {
     ctx.fillStyle = colours.brake;
-    for (const y of [-0.85, 0.45]) ctx.fillRect(shape.rear - 0.04, y * narrow, 0.22, 0.4 * narrow);
+    for (const y of [-0.85, 0.45]) ctx.fillRect(shape.rear - 0.04 * size, y * narrow, 0.22 * size, 0.4 * narrow);
   }
   ctx.restore();
 }
 
 /** A triangle where a fault began. */
-function drawFault(ctx: Context, { x, y }: Point, colours: Theme, px: number): void {
-  const size = Math.max(0.9, 7 * px);
+function drawFault(ctx: Context, { x, y }: Point, colours: Theme, px: number, unit: number): void {
+  const size = Math.max(0.9 * unit, 7 * px);
   ctx.beginPath();
   ctx.moveTo(x, y + size);
   ctx.lineTo(x - 0.87 * size, y - 0.5 * size);
@@ -242,7 +260,7 @@ function outline(ctx: Context, pose: Pose, { shape }: NonNullable<Scene['car']>,
     -0.84 * shape.halfWidth,
     shape.front - shape.rear,
     1.68 * shape.halfWidth,
-    [0.5, 0.9, 0.9, 0.5],
+    NOSE_M.map((radius) => radius * shape.size),
   );
 }
 
@@ -252,14 +270,15 @@ function drawPredicted(ctx: Context, pose: Pose, car: NonNullable<Scene['car']>,
   outline(ctx, pose, car, px);
   ctx.restore();
   ctx.strokeStyle = colours.predicted;
-  ctx.lineWidth = Math.max(0.15, 1.5 * px);
+  ctx.lineWidth = Math.max(0.15 * car.shape.size, 1.5 * px);
   ctx.stroke();
 }
 
 /** The ghost car; not drawn where it would overlap the car itself. */
 function drawGhost(ctx: Context, ghost: Pose, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
   const { shape } = car;
-  if (Math.hypot(ghost.x - car.x, ghost.y - car.y) < Math.max(1, (18 * px) / (shape.front - shape.rear))) return;
+  const { size } = shape;
+  if (Math.hypot(ghost.x - car.x, ghost.y - car.y) < Math.max(size, (18 * px) / (shape.front - shape.rear))) return;
   ctx.save();
   outline(ctx, ghost, car, px);
   ctx.globalAlpha = 0.45;
@@ -274,7 +293,7 @@ function drawGhost(ctx: Context, ghost: Pose, car: NonNullable<Scene['car']>, co
  */
 export function drawWorld(
   ctx: Context,
-  scene: Pick<Scene, 'road' | 'racingLine' | 'corners' | 'kerb' | 'start' | 'losses'>,
+  scene: Pick<Scene, 'road' | 'racingLine' | 'corners' | 'kerb' | 'start' | 'losses' | 'size'>,
   camera: Camera,
   colours: Theme,
   ratio: number,
@@ -285,15 +304,16 @@ export function drawWorld(
   ctx.setTransform(...transformOf(camera, ratio));
   ctx.lineJoin = 'round';
   const px = 1 / camera.scale; // one CSS pixel in metres
+  const { size } = scene;
   const view = worldInView(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
-  drawGround(ctx, camera, colours.groundLine, ratio);
+  drawGround(ctx, camera, colours.groundLine, ratio, size);
   if (scene.road) {
-    drawRoad(ctx, scene.road, view, colours, px);
+    drawRoad(ctx, scene.road, view, colours, px, size);
     drawKerbs(ctx, scene.road, scene.corners, scene.kerb, view, colours);
-    drawStartLine(ctx, scene.road, scene.start, colours, px);
+    drawStartLine(ctx, scene.road, scene.start, colours, px, size);
   }
-  if (scene.losses) drawLosses(ctx, scene.losses, colours, Math.max(1, 6 * px));
-  if (scene.racingLine) drawRacingLine(ctx, scene.racingLine, view, colours, px);
+  if (scene.losses) drawLosses(ctx, scene.losses, colours, Math.max(1 * size, 6 * px));
+  if (scene.racingLine) drawRacingLine(ctx, scene.racingLine, view, colours, px, size);
   if (scene.road) drawCornerNumbers(ctx, scene.road, scene.corners, camera, colours, ratio);
 }
 
@@ -302,12 +322,13 @@ export function drawMoving(ctx: Context, scene: Scene, camera: Camera, colours: 
   ctx.setTransform(...transformOf(camera, ratio));
   ctx.lineJoin = 'round';
   const px = 1 / camera.scale;
+  const { size } = scene;
   const view = worldInView(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
-  drawInView(ctx, scene.trace, view, JUMP_M, colours.trace, Math.max(0.2, 2 * px));
-  stroke(ctx, trail(scene.reference), scene.road ? colours.reference : colours.faint, Math.max(0.12, 1.5 * px));
-  if (scene.hindsight) drawHindsight(ctx, scene.hindsight, colours, px);
-  if (scene.plan) drawPlan(ctx, scene.plan, scene.speedScale, Math.max(0.45, 4 * px));
-  for (const mark of scene.faults) drawFault(ctx, mark, colours, px);
+  drawInView(ctx, scene.trace, view, JUMP_M * Math.max(size, 0.1), colours.trace, Math.max(0.2 * size, 2 * px));
+  stroke(ctx, trail(scene.reference), scene.road ? colours.reference : colours.faint, Math.max(0.12 * size, 1.5 * px));
+  if (scene.hindsight) drawHindsight(ctx, scene.hindsight, colours, px, size);
+  if (scene.plan) drawPlan(ctx, scene.plan, scene.speedScale, Math.max(0.45 * size, 4 * px));
+  for (const mark of scene.faults) drawFault(ctx, mark, colours, px, size);
   if (scene.ghost && scene.car) drawGhost(ctx, scene.ghost, scene.car, colours, px);
   if (scene.car) drawCar(ctx, scene.car, colours, px);
   if (scene.hindsight?.predicted && scene.car) drawPredicted(ctx, scene.hindsight.predicted, scene.car, colours, px);

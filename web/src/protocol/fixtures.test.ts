@@ -122,6 +122,14 @@ describe('messages of the C++ side', () => {
       guard_version: 7,
       brake_throttle_limit: 0.04,
       notices: ['pid.speed_reference_mps: has no effect'],
+      car_notes: ['a car, identified from 60 s of log.csv'],
+      identified_keys: ['mass_kg', 'friction'],
+      track_kind: 'GPX',
+      track_notes: ['width: assumed'],
+      track_scale: 0.125,
+      track_points: 321,
+      track_fit_rms_m: 0.0625,
+      track_fit_max_m: 0.1875,
     });
   });
 

@@ -613,6 +613,26 @@ export interface Run {
   brake_throttle_limit: number;
   /** what was assumed, and what has no effect: a sentence each */
   notices: string[];
+
+  // Where car and road come from, as their files say it
+  car_notes: string[];
+  /** parameters found by a log, in the unit of their key */
+  identified_keys: string[];
+  identified_values: Float64Array;
+  /** 95 % interval; not-a-number: assumed, the log did not excite it */
+  identified_low: Float64Array;
+  identified_high: Float64Array;
+  /** "occupancy map", "table of points"; empty: not known */
+  track_kind: string;
+  /** remarks of the file, and what its reader assumed */
+  track_notes: string[];
+  /** the road's size over that of its file */
+  track_scale: number;
+  /** in the file; 0: not known */
+  track_points: number;
+  /** of the points from the smooth line */
+  track_fit_rms_m: number;
+  track_fit_max_m: number;
 }
 
 /** What a Run says when nothing is known. */
@@ -646,6 +666,17 @@ export const UNKNOWN_RUN: Run = {
   guard_version: 0,
   brake_throttle_limit: NaN,
   notices: [],
+  car_notes: [],
+  identified_keys: [],
+  identified_values: new Float64Array(),
+  identified_low: new Float64Array(),
+  identified_high: new Float64Array(),
+  track_kind: '',
+  track_notes: [],
+  track_scale: NaN,
+  track_points: 0,
+  track_fit_rms_m: NaN,
+  track_fit_max_m: NaN,
 };
 
 /** chicane_msgs/msg/Lap. One completed lap, sent when it is. */

@@ -1,6 +1,8 @@
 import { lapTime } from '../lib/format';
 import { wrapAngle } from '../lib/math';
+import { paintSize } from '../lib/paint_size';
 import type { Frame } from '../protocol/topics';
+import { run } from '../state/run';
 import { LONGEST_SILENCE_S } from '../state/silence';
 
 /** Pose and steering angle of another car at a time of the lap. */
@@ -41,10 +43,11 @@ export class RecordedLap implements GhostSource {
     readonly label: string,
   ) {
     this.#rows = rows;
+    const spacing = LINE_SPACING_M * (run.value ? paintSize(run.value) : 1);
     const line: number[] = [];
     for (let i = 0; i + ROW <= rows.length; i += ROW) {
       const [x, y] = [rows[i + 1] ?? NaN, rows[i + 2] ?? NaN];
-      const far = Math.hypot(x - (line.at(-2) ?? Infinity), y - (line.at(-1) ?? Infinity)) >= LINE_SPACING_M;
+      const far = Math.hypot(x - (line.at(-2) ?? Infinity), y - (line.at(-1) ?? Infinity)) >= spacing;
       if (far) line.push(x, y);
     }
     this.line = new Float32Array(line);

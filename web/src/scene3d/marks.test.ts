@@ -49,7 +49,7 @@ describe('a band along a line', () => {
 });
 
 describe('tyre marks', () => {
-  const car = { front: 1.2, rear: 1.5, halfTrack: 0.8, tyreWidth: 0.25 };
+  const car = { front: 1.2, rear: 1.5, halfTrack: 0.8, tyreWidth: 0.25, spacing: 0.35 };
   const at = (x: number, rest: Partial<Motion>): Motion => ({
     ...{
       time: x / 20,

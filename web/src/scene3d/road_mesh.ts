@@ -216,8 +216,22 @@ export interface RoadMeshes {
   readonly lines: FlatMesh;
 }
 
-/** `lines` as tidyLines() returns them; `kerb` is the width of the kerbs, none at 0 [m]. */
-export function roadMeshes(lines: RoadLines, isClosed: boolean, kerb: number, paint: RoadPaint): RoadMeshes {
+/**
+ * `lines` as tidyLines() returns them; `kerb` is the width of the kerbs, none at 0 [m]. What is painted on the road has
+ * `size` of a full-size road's: that of the car.
+ */
+export function roadMeshes(lines: RoadLines, isClosed: boolean, kerb: number, paint: RoadPaint, size = 1): RoadMeshes {
+  if (size === 1) return fullSizeMeshes(lines, isClosed, kerb, paint);
+  const grown = (points: readonly Point[]): Point[] => points.map(({ x, y }) => ({ x: x / size, y: y / size }));
+  const { left, right, centre } = lines;
+  const full = { left: grown(left), right: grown(right), centre: grown(centre) };
+  const meshes = fullSizeMeshes(full, isClosed, kerb / size, paint);
+  for (const { positions } of [meshes.verge, meshes.kerbs, meshes.surface, meshes.lines])
+    for (let i = 0; i < positions.length; ++i) positions[i] = (positions[i] ?? NaN) * size;
+  return meshes;
+}
+
+function fullSizeMeshes(lines: RoadLines, isClosed: boolean, kerb: number, paint: RoadPaint): RoadMeshes {
   const { left, right, centre } = lines;
   const offset = (from: readonly Point[], to: readonly Point[], metres: number): Point[] =>
     from.map((point, i) => towards(point, to[i] as Point, metres));

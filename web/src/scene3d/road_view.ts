@@ -35,10 +35,10 @@ export class RoadView {
     });
   }
 
-  show(lines: RoadLines | null, isClosed: boolean, kerb: number, colours: Palette): void {
+  show(lines: RoadLines | null, isClosed: boolean, kerb: number, colours: Palette, size: number): void {
     this.#remove();
     if (!lines) return;
-    const meshes = roadMeshes(lines, isClosed, kerb, colours.road);
+    const meshes = roadMeshes(lines, isClosed, kerb, colours.road, size);
     this.#parts = new Group();
     this.#add(meshes.verge, Order.verge, this.#rough);
     this.#add(meshes.kerbs, Order.kerbs, this.#smooth);

@@ -1,3 +1,4 @@
+import { paintSize } from '../lib/paint_size';
 import { store } from '../lib/store';
 import type { Frame } from '../protocol/topics';
 import { frameListeners, rebuildListeners } from '../state/demultiplexer';
@@ -12,6 +13,7 @@ import { TyreMarks } from './tyre_marks';
 const TRACE_SPACING_M = 0.8;
 const BRAKE_MARK_M = 0.35;
 const TRACE_WIDTH_M = 0.16;
+const TYRE_MARK_M = 0.35;
 
 /**
  * What drawing keeps of the run, in fixed memory: the last frames, the best lap, tyre marks, the driven line, and the
@@ -42,19 +44,22 @@ export class Session {
       this.trace.lift(0);
     }
     this.laps.push(frame);
-    this.#trace(motion);
     const car = run.value;
+    const size = car ? paintSize(car) : 1;
+    this.#trace(motion, size);
     if (car) {
       const wheels = {
         front: car.front_axle_m,
         rear: car.rear_axle_m,
         halfTrack: car.track_width_m / 2,
-        tyreWidth: Math.max(car.tire_width_m, 0.2),
+        tyreWidth: Math.max(car.tire_width_m, 0.2 * size),
+        spacing: TYRE_MARK_M * size,
       };
       this.marks.push(motion, wheels);
     }
     const wasBraking = (this.#last?.throttle ?? 0) < -0.05;
-    if (motion.throttle < -0.05 && !wasBraking && motion.speed > 3) this.#markBrake(motion, car?.track_width_m ?? 1.6);
+    if (motion.throttle < -0.05 && !wasBraking && motion.speed > 3)
+      this.#markBrake(motion, car?.track_width_m ?? 1.6, size);
     this.#last = motion;
   }
 
@@ -73,19 +78,19 @@ export class Session {
     this.#tracePoint = { x: NaN, y: NaN };
   }
 
-  #trace({ x, y, yaw }: Motion): void {
-    if (Math.hypot(x - this.#tracePoint.x, y - this.#tracePoint.y) < TRACE_SPACING_M) return;
+  #trace({ x, y, yaw }: Motion, size: number): void {
+    if (Math.hypot(x - this.#tracePoint.x, y - this.#tracePoint.y) < TRACE_SPACING_M * size) return;
     this.#tracePoint = { x, y };
-    const [dx, dy] = [(-Math.sin(yaw) * TRACE_WIDTH_M) / 2, (Math.cos(yaw) * TRACE_WIDTH_M) / 2];
+    const [dx, dy] = [(-Math.sin(yaw) * TRACE_WIDTH_M * size) / 2, (Math.cos(yaw) * TRACE_WIDTH_M * size) / 2];
     this.trace.push(0, x + dx, y + dy, x - dx, y - dy, 1);
   }
 
   /** A mark across the road where braking began. */
-  #markBrake({ x, y, yaw }: Motion, width: number): void {
+  #markBrake({ x, y, yaw }: Motion, width: number, size: number): void {
     const [cos, sin] = [Math.cos(yaw), Math.sin(yaw)];
     const half = width / 2;
     this.brakes.lift(0);
-    for (const ahead of [0, BRAKE_MARK_M]) {
+    for (const ahead of [0, BRAKE_MARK_M * size]) {
       const [px, py] = [x + ahead * cos, y + ahead * sin];
       this.brakes.push(0, px - half * sin, py + half * cos, px + half * sin, py - half * cos, 1);
     }

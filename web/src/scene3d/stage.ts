@@ -11,6 +11,7 @@ import {
 } from 'three';
 import { topOfScale } from '../draw/speed_colour';
 import type { Point } from '../lib/math';
+import { paintSize } from '../lib/paint_size';
 import { speedUnit } from '../lib/units';
 import type { Limit, Plan, Run } from '../protocol/topics';
 import type { CursorMark } from '../state/cursor';
@@ -50,6 +51,7 @@ export interface View {
   readonly hasReducedMotion: boolean; // the user prefers reduced motion
 }
 
+const NEAR_M = 0.12; // nothing nearer is drawn, for a car in full size
 const SETTLE_MS = 1200; // duration of smoothing after the last change
 
 /** The three-dimensional picture on one canvas. */
@@ -57,7 +59,7 @@ export class Stage {
   readonly #canvas: HTMLCanvasElement;
   readonly #renderer: WebGLRenderer;
   readonly #scene = new Scene();
-  readonly #camera = new PerspectiveCamera(55, 1, 0.12, 2400);
+  readonly #camera = new PerspectiveCamera(55, 1, NEAR_M, 2400);
   readonly #sun = new DirectionalLight();
   readonly #skyLight = new HemisphereLight();
   readonly #landscape: Landscape;
@@ -274,28 +276,30 @@ export class Stage {
         run.body_width_m,
       ].join();
       if (carKey !== this.#carKey) this.#renewCar(run, carKey);
-      const roadKey = [view.roadVersion, run.is_closed, run.kerb_width_m].join();
+      const size = paintSize(run);
+      const roadKey = [view.roadVersion, run.is_closed, run.kerb_width_m, size].join();
       if (roadKey !== this.#roadKey) {
         this.#roadKey = roadKey;
         const lines = tidyLines(view.road, run.is_closed);
-        this.#road.show(lines, run.is_closed, run.kerb_width_m, this.#palette);
+        this.#road.show(lines, run.is_closed, run.kerb_width_m, this.#palette, size);
         this.#landscape.plant(lines ? plantTrees(lines) : [], this.#palette);
       }
     }
+    const width = run ? paintSize(run) : 1;
     const line = view.ghost?.line ?? null;
     if (line !== this.#lineShown) {
       this.#lineShown = line;
       const every = (axis: number): Float32Array => (line ?? new Float32Array()).filter((_, i) => i % 2 === axis);
-      this.#bestLine.show(every(0), every(1), 0.3, () => 0.55);
+      this.#bestLine.show(every(0), every(1), 0.3 * width, () => 0.55);
     }
     if (view.racingLine !== this.#limitShown) {
       this.#limitShown = view.racingLine;
-      this.#racingLine.show(view.racingLine?.x_m ?? [], view.racingLine?.y_m ?? [], 0.22, () => 0.75);
+      this.#racingLine.show(view.racingLine?.x_m ?? [], view.racingLine?.y_m ?? [], 0.22 * width, () => 0.75);
     }
     if (view.reference !== this.#referenceShown) {
       this.#referenceShown = view.reference;
       const [xs, ys] = [view.reference.map(({ x }) => x), view.reference.map(({ y }) => y)];
-      this.#reference.show(xs, ys, 0.14, (share) => 0.9 * Math.min(1, 4 * (1 - share)));
+      this.#reference.show(xs, ys, 0.14 * width, (share) => 0.9 * Math.min(1, 4 * (1 - share)));
     }
     const size = (this.#car?.model.length ?? 4.5) / 4.5;
     this.#predicted.show(view.hindsight?.plan.x_m ?? [], view.hindsight?.plan.y_m ?? [], 1.2 * size, () => 0.6);
@@ -322,6 +326,8 @@ export class Stage {
 
   #renewCar(run: Run, key: string): void {
     this.#carKey = key;
+    this.#lineShown = this.#limitShown = this.#referenceShown = null; // their width is the car's
+    this.#camera.near = NEAR_M * paintSize(run);
     this.#car?.dispose();
     this.#ghost?.dispose();
     this.#car = new CarView(this.#scene, run);

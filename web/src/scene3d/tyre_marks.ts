@@ -7,10 +7,10 @@ export interface WheelBase {
   readonly rear: number; // behind it
   readonly halfTrack: number;
   readonly tyreWidth: number;
+  readonly spacing: number; // of the pieces of a mark
 }
 
 const CAPACITY = 6000; // pieces of all four wheels
-const SPACING_M = 0.35;
 const SLIDE_RAD = 0.13; // slip angle that leaves marks where the use of grip is unknown
 
 /** Opacity in [0, 1] of the mark of a tyre that uses `use` of its grip; with NaN the slip angle decides. */
@@ -37,7 +37,7 @@ export class TyreMarks {
   }
 
   push(motion: Motion, car: WheelBase): void {
-    if (Math.hypot(motion.x - this.#x, motion.y - this.#y) < SPACING_M) return;
+    if (Math.hypot(motion.x - this.#x, motion.y - this.#y) < car.spacing) return;
     [this.#x, this.#y] = [motion.x, motion.y];
     const [cos, sin] = [Math.cos(motion.yaw), Math.sin(motion.yaw)];
     const isMoving = motion.vx > 3;

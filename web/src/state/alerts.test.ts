@@ -1,9 +1,10 @@
 import { describe, expect, it } from 'vitest';
-import { UNKNOWN_FRAME } from '../protocol/messages';
+import { UNKNOWN_FRAME, UNKNOWN_RUN } from '../protocol/messages';
 import type { Frame } from '../protocol/topics';
 import { alertsOf } from './alerts';
 import { COLUMN_COUNT, plotRow } from './columns';
 import { History } from './history';
+import { run } from './run';
 
 function alerts(...frames: Partial<Frame>[]): string[] {
   const history = new History(COLUMN_COUNT, 100);
@@ -42,6 +43,14 @@ describe('alerts on the picture', () => {
     const said = ['warning: 0.12 m to the edge', 'warning: Sliding: 108 % of the grip'];
     expect(alerts(sliding, { ...well, time_s: 1.5 })).toEqual(said);
     expect(alerts(sliding, { ...well, time_s: 2 })).toEqual([]);
+  });
+
+  it('call near to the edge what is near for the size of the car', () => {
+    const model = { ...UNKNOWN_RUN, body_length_m: 0.45 };
+    run.value = model;
+    expect(alerts({ time_s: 1, edge_distance_m: 0.12 })).toEqual([]);
+    expect(alerts({ time_s: 1, edge_distance_m: 0.02 })).toEqual(['warning: 0.02 m to the edge']);
+    run.value = null;
   });
 
   it('name who drives, and faults', () => {

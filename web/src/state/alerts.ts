@@ -1,5 +1,6 @@
 import { hasBit } from '../lib/bits';
 import { fixed } from '../lib/format';
+import { paintSize } from '../lib/paint_size';
 import { rungInWords, type Sentence } from '../lib/words';
 import { RUNG } from '../protocol/messages';
 import type { Frame } from '../protocol/topics';
@@ -8,12 +9,14 @@ import { faultInWords } from './event_log';
 import { rowsSince } from './explain';
 import { secondsLeft } from './faults';
 import type { History } from './history';
+import { run } from './run';
 import { type Circumstances, helpOf } from './sentence';
 
 /** What is near its limit is told at least this long, so that words can be read [s]. */
 const HELD_S = 0.7;
+const CLOSE_TO_EDGE_M = 0.3; // of a car in full size
 /** Nearer to the edge than this is close [m]. */
-export const CLOSE_TO_EDGE_M = 0.3;
+export const closeToEdge = (): number => CLOSE_TO_EDGE_M * (run.value ? paintSize(run.value) : 1);
 /** From farther off the road than this no controller of ours comes back [m]. */
 const FAR_OFF_M = 30;
 
@@ -85,7 +88,7 @@ export function alertsOf(frame: Frame, history: History, faultNames: readonly st
   for (let bit = 0; bit < 32; ++bit)
     if (hasBit(frame.active_faults, bit))
       alerts.push({ name: 'fault', severity: 'bad', text: faultText(faultNames[bit] ?? `#${bit + 1}`, frame.time_s) });
-  if (!frame.is_off_track && edge < CLOSE_TO_EDGE_M)
+  if (!frame.is_off_track && edge < closeToEdge())
     alerts.push({ name: 'edge', severity: 'warning', text: `${fixed(Math.max(0, edge), 2)} m to the edge` });
   if (use > 1)
     alerts.push({ name: 'grip', severity: 'warning', text: `Sliding: ${fixed(use * 100, 0)} % of the grip` });

@@ -112,6 +112,13 @@ export const twoLaps = computed<TwoLaps | null>(() => {
   return a === b ? null : along(lapSamples, [drivenLap(a), drivenLap(b)]);
 });
 
+/** Names of the compared laps whose course this page does not have. */
+export const forgotten = computed<readonly string[]>(() => {
+  void sampledLaps.value;
+  const [a, b] = pair.value;
+  return a === b ? [] : [a, b].filter((each) => each > 0 && samplesOf(each, 'time_s') === null).map(lapName);
+});
+
 const known = store.data('page', () => ({ of: null as object | null, corners: [] as readonly Corner[] }));
 
 /** The corners of the road, found once for each road. */

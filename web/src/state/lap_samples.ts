@@ -22,7 +22,8 @@ export const momentOf = (frame: Frame): LapMoment => ({
 });
 
 const POINTS = 1000;
-const KEPT = 16; // laps beside the best
+/** Laps that are kept, beside the best one. */
+export const KEPT_LAPS = 16;
 
 interface Slot {
   lap: number; // -1: free
@@ -53,7 +54,7 @@ export class LapSamples {
   #current: Slot | null = null;
   #last: (LapMoment & { lap: number }) | null = null;
 
-  constructor(kept = KEPT) {
+  constructor(kept = KEPT_LAPS) {
     const channels = () =>
       Object.fromEntries(LAP_CHANNELS.map((name) => [name, new Float64Array(POINTS)])) as Slot['channels'];
     this.#slots = Array.from({ length: kept + 2 }, () => ({

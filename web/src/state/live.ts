@@ -1,8 +1,10 @@
+import { paintSize } from '../lib/paint_size';
 import { store } from '../lib/store';
 import type { Frame, Plan } from '../protocol/topics';
 import { COLUMN_COUNT, plotRow } from './columns';
 import { Histogram } from './histogram';
 import { History } from './history';
+import { run } from './run';
 
 /** How far back plots can reach [s]. */
 export const LONGEST_WINDOW_S = 60;
@@ -51,7 +53,8 @@ export function keepFrame(frame: Frame, now: number, isNew: boolean, isShown = t
   live.plots.push(plotRow(frame, row));
   live.stepTimes.push(frame.step_time_us);
   const [x, y] = [live.trace.newest(0), live.trace.newest(1)];
-  if (!(Math.hypot(frame.x_m - x, frame.y_m - y) < TRACE_SPACING_M)) live.trace.push([frame.x_m, frame.y_m]);
+  const spacing = TRACE_SPACING_M * (run.value ? paintSize(run.value) : 1);
+  if (!(Math.hypot(frame.x_m - x, frame.y_m - y) < spacing)) live.trace.push([frame.x_m, frame.y_m]);
 }
 
 export function keepPlan(plan: Plan, isShown = true): void {

@@ -5,6 +5,7 @@ import { run } from '../state/run';
 import { entryOf, schema, settings } from '../state/settings';
 import { ControllerView } from './controller_view';
 import { ManualView } from './manual_view';
+import { OriginView } from './origin_view';
 import { ChoiceBox, SettingRow } from './setting_row';
 import { openShare } from './share_view';
 
@@ -145,6 +146,7 @@ export function DriveView() {
       <Choices />
       <World />
       <ControllerView />
+      <OriginView />
     </div>
   );
 }

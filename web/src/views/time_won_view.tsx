@@ -1,6 +1,8 @@
 import { LossesTable, seconds } from '../parts/losses_table';
-import { LIMIT, lapName, pair, roadCorners, startLine, twoLaps } from '../state/compared';
+import { forgotten, LIMIT, lapName, pair, roadCorners, startLine, twoLaps } from '../state/compared';
+import { KEPT_LAPS } from '../state/lap_samples';
 import { lapSamples } from '../state/laps';
+import { pastLeft } from '../state/link';
 import { cursorPlace } from '../state/plot_view';
 import { type CornerTime, cornerTimes } from '../state/time_won';
 
@@ -15,8 +17,16 @@ function showCorner(corner: CornerTime | null): void {
 /** Where lap A loses time to lap B, by mini-sectors and by corners with the cause. */
 export function TimeWonView() {
   const laps = twoLaps.value;
-  if (!laps) return null;
   const [a, b] = pair.value;
+  if (!laps) {
+    const missing = forgotten.value;
+    if (missing.length === 0 || pastLeft.value > 0) return null;
+    return (
+      <p class="empty" data-testid="time-won-missing">
+        The page keeps the course of the newest {KEPT_LAPS} laps and of the best one, not of {missing.join(' and ')}.
+      </p>
+    );
+  }
   return (
     <section class="block time-won" aria-label="Where the time is won" data-testid="time-won">
       <h2>

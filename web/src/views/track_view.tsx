@@ -27,6 +27,7 @@ import { onThemeChange, theme } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { type Box, boundsOf, extrapolate, type Point, wrapAngle } from '../lib/math';
 import { type OnScreen, onScreen } from '../lib/on_screen';
+import { paintSize } from '../lib/paint_size';
 import { store } from '../lib/store';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import { CAMERAS } from '../scene3d/cameras';
@@ -64,7 +65,7 @@ const VIEWS: readonly { view: View; label: string; title: string }[] = [
 export const view = store.signal<View>('page', 'behind');
 const INSET_INTERVAL_MS = 80; // the small map beside the 3D picture
 
-const metresAcross = store.signal('page', 100);
+const metresAcross = store.signal('page', 100); // for a full-size car
 const bar = store.signal('page', { metres: 10, pixels: 80 });
 const scaleTop = store.signal('page', 10); // [m/s]
 const ghostLabel = store.signal<string | null>('page', null);
@@ -143,6 +144,7 @@ class Painter {
       reference: road.reference,
       trace: losses ? NO_LINE : { x: live.trace.column(0), y: live.trace.column(1) },
       plan: live.plan,
+      size: run.value ? paintSize(run.value) : 1,
       speedScale: top,
       hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
       faults: faultMarks.value,
@@ -160,6 +162,7 @@ class Painter {
       scene.racingLine,
       scene.corners,
       scene.start,
+      scene.size,
       scene.losses,
       theme(),
     ];
@@ -216,6 +219,7 @@ class Painter {
     ratio: number,
   ): void {
     const [context, road] = [this.#context as CanvasRenderingContext2D, this.#road as RoadShape];
+    if (width < 330) return; // it would lie under the buttons
     const side = Math.min(170, width * 0.3);
     const top = width < 560 ? 48 : 8; // below the buttons where they do not fit side by side
     const fit = fitting(this.#roadBox as Box, side, side, 8);
@@ -284,14 +288,15 @@ class Painter {
         );
       return fitting(all as Box, width, height, isInset ? 10 : 52);
     }
-    if (view.value === 'above') return above(car, width, height, metresAcross.value);
+    const across = metresAcross.value * (run.value ? paintSize(run.value) : 1);
+    if (view.value === 'above') return above(car, width, height, across);
     // Smoothed over a quarter of a second, so that the view does not follow every steering movement.
     const elapsed = (now - this.#lastPaint) * Math.max(1, live.frame?.pace || 1); // a fast run turns as fast
     const share = Number.isNaN(this.#heading) ? 1 : 1 - Math.exp(-elapsed / 250);
     const from = Number.isNaN(this.#heading) ? car.yaw : this.#heading;
     this.#heading = from + wrapAngle(car.yaw - from) * share;
     const foot = hasInstruments.value && isRoomy.value ? NUMBERS_PX : LEGEND_PX;
-    return behind(car, this.#heading, width, height, metresAcross.value, foot);
+    return behind(car, this.#heading, width, height, across, foot);
   }
 }
 

@@ -161,6 +161,19 @@ string guard_road                       # where the guard knows the road from: "
 uint32 guard_version                    # 0: not known
 float64 brake_throttle_limit            # the throttle that brakes fully is minus this
 string[] notices                        # what was assumed, and what has no effect: a sentence each
+
+# Where car and road come from, as their files say it
+string[] car_notes
+string[] identified_keys                # parameters found by a log, in the unit of their key
+float64[] identified_values
+float64[] identified_low                # 95 % interval; not-a-number: assumed, the log did not excite it
+float64[] identified_high
+string track_kind                       # "occupancy map", "table of points"; empty: not known
+string[] track_notes                    # remarks of the file, and what its reader assumed
+float64 track_scale                     # the road's size over that of its file
+uint32 track_points                     # in the file; 0: not known
+float64 track_fit_rms_m                 # of the points from the smooth line
+float64 track_fit_max_m
 )"},
     RosDefinition{"chicane_msgs/Lap", R"(# One completed lap, sent when it is.
 uint32 lap                              # its number, from 1

@@ -24,7 +24,7 @@ inline constexpr FaultKind kLinkLost{
 
 inline constexpr FaultKind kFrozenSensor{
     .name = "frozen_sensor",
-    .meaning = "Every measurement is the last one before, with a new time.",
+    .meaning = "The sensors repeat their last measurement with a new time.",
     .place = FaultPlace::kSource,
     .measure =
         [](FaultMemory& memory, const model::Measurement& now, model::Measurement& told) noexcept {
