@@ -213,6 +213,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     report = {};
     report.solve.status = solver::SolveStatus::kNotFinite;  // until there is an answer
     report.delay = now.delay;
+    if (options_.learns()) report.learned.grip = grip_.estimate();
     const road::ReferenceLine& line = this->line();
     if (line.is_empty() || !std::isfinite(start.state.x + start.state.y + start.state.psi + start.state.vx))
       return false;
