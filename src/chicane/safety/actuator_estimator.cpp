@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kSlowest = 5.0;         // [m/s] slower, the wheels turn the car too little
 constexpr double kLongestSilence = 0.25; // [s] between measurements; then the estimators settle first
+constexpr double kMostUse = 0.8;         // of the tyres' peak slip: beyond it no model is exact enough
+constexpr double kCalmFor = 0.5;         // [s] after that, until the estimators have settled
 constexpr double kFarAside = 1.0;        // [m] a measurement that is another thing than noise
 constexpr double kPerfectSensor = 1e-8;  // of m and rad: that of a perfect sensor
 constexpr double kAverage = 0.5;         // [s] over which the estimators forget what they did not expect
@@ -39,6 +41,14 @@ constexpr std::array kUsual{0.0, 1.0, 0.0, 1.0};
 model::VehicleParams without_name(model::VehicleParams vehicle) noexcept {
   vehicle.name.clear();
   return vehicle;
+}
+
+/// Of the axle that uses more, 1 at its peak slip.
+double tire_use(const controller::StateEstimator& estimator) noexcept {
+  const model::State& car = estimator.state();
+  const auto use =
+      estimator.model().tire_use(model::BodyMotion<double>{car.vx, car.vy, car.r, car.steer, 0.0});
+  return std::max(use.front, use.rear);
 }
 
 }  // namespace
@@ -97,6 +107,8 @@ void ActuatorEstimator::see(const model::Measurement& now, const controller::Com
   const bool is_seen =
       elapsed > 0.0 && elapsed < kLongestSilence && std::isfinite(sum) && std::fabs(n.aside) < kFarAside;
   if (!is_seen || !(last.state().vx > kSlowest)) return;
+  if (tire_use(last) > kMostUse) slid_at_ = now.time;
+  if (std::fabs(now.time - slid_at_) < kCalmFor) return;
   const double kept = kMemory / (kMemory + elapsed);
   const double share = std::min(elapsed / kCorrelated, 1.0);
   time_ = kept * time_ + elapsed;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "chicane/controller/command_history.hpp"
 #include "chicane/controller/learned_car.hpp"
@@ -83,6 +84,7 @@ class ActuatorEstimator {
   double time_ = 0.0;      ///< of driving, as far as it is remembered [s]
   double interval_ = 0.0;  ///< between measurements, mean [s]
   double counted_ = 0.0;   ///< since here_ changed [s]
+  double slid_at_ = -std::numeric_limits<double>::infinity();  ///< tyres were used too far [s]
 };
 
 }  // namespace chicane::safety
