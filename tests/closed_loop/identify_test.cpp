@@ -9,7 +9,8 @@
 namespace chicane::run {
 namespace {
 
-/// One lap of lakeside with commands that act `delay` [s] and wheels that stand `offset` [deg] off what is told.
+/// One lap of lakeside with commands that act `delay` [s] and wheels that stand `offset` [deg] off what is
+/// told.
 telemetry::RunSummary identified(const char* car, double delay, double offset, const Settings& more = {}) {
   Settings settings{{"car", car}, {"laps", "1"}, {"identify.during_run", "true"}};
   settings.insert(settings.end(), more.begin(), more.end());
@@ -27,8 +28,7 @@ telemetry::RunSummary identified(const char* car, double delay, double offset, c
 
 TEST(IdentifyDuringRun, FindsDelayAndOffsetWithinALap) {
   for (const char* car : {"road-car", "udacity"}) {
-    const telemetry::RunSummary run =
-        identified(car, 0.06, 2.0, {{"plant_options.friction_scale", "0.85"}});
+    const telemetry::RunSummary run = identified(car, 0.06, 2.0, {{"plant_options.friction_scale", "0.85"}});
     EXPECT_TRUE(completed_on_road(run)) << car;
     EXPECT_NEAR(run.learned.delay.value, 0.06, 0.02) << car;
     EXPECT_LT(run.learned.delay.deviation, 0.02) << car;

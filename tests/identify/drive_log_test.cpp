@@ -123,7 +123,8 @@ TEST(DriveLog, RefusesWhatCannotBeWhatItsColumnSays) {
               HasSubstr("steer: got steering against the turning, expected left positive"));
 }
 
-// A model car at 1 m/s moves 2.5 cm from sample to sample: with 5 cm of noise its path seems to be twice as long.
+// A model car at 1 m/s moves 2.5 cm from sample to sample: with 5 cm of noise its path seems to be twice as
+// long.
 TEST(DriveLog, TakesNoiseOfThePlaceForNoOtherSpeed) {
   std::ostringstream text;
   text << "time,x,y,psi,speed,steer\n";

@@ -84,7 +84,8 @@ INSTANTIATE_TEST_SUITE_P(Controllers, RecordedController,
 TEST(Recorder, HasARunThatIdentifiesItsCar) {
   const TemporaryFile file;
   const auto loop = short_run({{"car", "road-car"}, {"identify.during_run", "true"}, {"time_limit_s", "20"}});
-  loop->set_fault({.fault = *sim::fault_named("steering_offset"), .at = 0.0, .duration = 60.0, .strength = 2.0});
+  loop->set_fault(
+      {.fault = *sim::fault_named("steering_offset"), .at = 0.0, .duration = 60.0, .strength = 2.0});
   const RecorderReport recorded = record(*loop, file.path());
   EXPECT_GT(loop->summary().learned.offset.value, degrees_to_radians(1.0));
   const Result<ReplayReport> replayed = verify_recording(file.path());

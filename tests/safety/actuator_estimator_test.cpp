@@ -58,8 +58,7 @@ class Weaving {
       const model::Command wanted{most_ * (sin(1.3 * time_) + 0.5 * sin(4.1 * time_)), 0.2};
       const model::Command sent = estimator.answer().command_for(wanted);
       told_.add(time_ + kTold + estimator.answer().delay, sent);
-      acted_.add(time_ + kTold + truth_.delay,
-                 {truth_.gain * sent.steer + truth_.offset, sent.throttle});
+      acted_.add(time_ + kTold + truth_.delay, {truth_.gain * sent.steer + truth_.offset, sent.throttle});
     }
   }
 
@@ -111,7 +110,8 @@ TEST(ActuatorEstimator, LeavesAUsualCarAsItIs) {
 
 /// Straight ahead, the offset shows, and nothing else does: its deviation stays what was assumed.
 TEST(ActuatorEstimator, SaysWhatIsNotExcited) {
-  Weaving car({.delay = 0.06, .gain = 0.8, .place_noise = 0.03, .heading_noise = degrees_to_radians(0.2)}, 0.0);
+  Weaving car({.delay = 0.06, .gain = 0.8, .place_noise = 0.03, .heading_noise = degrees_to_radians(0.2)},
+              0.0);
   car.drive(20.0);
   const controller::LearnedCar learned = car.estimator.learned();
   EXPECT_GT(learned.delay.deviation, 0.09);

@@ -107,7 +107,8 @@ Json to_object(const controller::LearnedCar& learned) {
   return json.empty() ? Json(nullptr) : json;
 }
 
-/// "learned            delay +58 ± 6 ms, ...": two standard deviations; empty unless a run identifies its car.
+/// "learned            delay +58 ± 6 ms, ...": two standard deviations; empty unless a run identifies its
+/// car.
 std::string learned_line(const controller::LearnedCar& learned) {
   if (!std::isfinite(learned.delay.value)) return "";
   std::string text;

@@ -11,19 +11,19 @@
 namespace chicane::safety {
 namespace {
 
-constexpr double kSlowest = 5.0;         // [m/s] slower, the wheels turn the car too little
-constexpr double kLongestSilence = 0.25; // [s] between measurements; then the estimators settle first
-constexpr double kMostUse = 0.8;         // of the tyres' peak slip: beyond it no model is exact enough
-constexpr double kCalmFor = 0.5;         // [s] after that, until the estimators have settled
-constexpr double kFarAside = 1.0;        // [m] a measurement that is another thing than noise
-constexpr double kPerfectSensor = 1e-8;  // of m and rad: that of a perfect sensor
-constexpr double kAverage = 0.5;         // [s] over which the estimators forget what they did not expect
-constexpr double kCounted = 0.5;         // [s] that the estimators count from one place at least
+constexpr double kSlowest = 5.0;          // [m/s] slower, the wheels turn the car too little
+constexpr double kLongestSilence = 0.25;  // [s] between measurements; then the estimators settle first
+constexpr double kMostUse = 0.8;          // of the tyres' peak slip: beyond it no model is exact enough
+constexpr double kCalmFor = 0.5;          // [s] after that, until the estimators have settled
+constexpr double kFarAside = 1.0;         // [m] a measurement that is another thing than noise
+constexpr double kPerfectSensor = 1e-8;   // of m and rad: that of a perfect sensor
+constexpr double kAverage = 0.5;          // [s] over which the estimators forget what they did not expect
+constexpr double kCounted = 0.5;          // [s] that the estimators count from one place at least
 constexpr double kKeptBehind = 0.5;
 constexpr double kFar = 1.0;  // deviations of the estimate from that place, from which on it is another one
-constexpr double kCorrelated = 2.0;      // [s] of which correlation and variance are the mean
+constexpr double kCorrelated = 2.0;  // [s] of which correlation and variance are the mean
 constexpr double kMostCorrelation = 0.98;
-constexpr double kSure = 3.0;            // deviations by which an estimate differs from what is driven with
+constexpr double kSure = 3.0;  // deviations by which an estimate differs from what is driven with
 
 // Of delay [s], gain, offset [rad] and grip: by how much an estimator differs, what is assumed to be usual
 // (standard deviation), the step in which the car is driven with, and the range.
@@ -55,9 +55,12 @@ double tire_use(const controller::StateEstimator& estimator) noexcept {
 
 ActuatorEstimator::ActuatorEstimator(const model::VehicleParams& vehicle) noexcept
     : vehicle_{without_name(vehicle)},
-      estimators_{[this]<std::size_t... I>(std::index_sequence<I...>) {
-        return std::array{((void)I, controller::StateEstimator{model::PredictionModel{vehicle_}})...};
-      }(std::make_index_sequence<kUnknowns + 1>{})} {
+      estimators_{[this]<std::size_t... I>(std::index_sequence<I...>){
+          return std::array{((void)I, controller::StateEstimator{model::PredictionModel{vehicle_}})...};
+}  // namespace chicane::safety
+(std::make_index_sequence<kUnknowns + 1>{})
+}
+{
   for (controller::StateEstimator& each : estimators_) each.average_over(kAverage);
   believe();
 }
@@ -144,8 +147,9 @@ void ActuatorEstimator::move_on() noexcept {
   for (std::size_t i = 0; i < kUnknowns; ++i) {
     const double share = by[i] / kRows[i].change;
     const model::State& other = estimators_[i].state();
-    for (double model::State::*each : {&model::State::x, &model::State::y, &model::State::psi, &model::State::vx,
-                                       &model::State::vy, &model::State::r, &model::State::steer})
+    for (double model::State::*each :
+         {&model::State::x, &model::State::y, &model::State::psi, &model::State::vx, &model::State::vy,
+          &model::State::r, &model::State::steer})
       more.*each += share * (other.*each - last.*each);
   }
   for (controller::StateEstimator& each : estimators_) each.move(more);
@@ -190,8 +194,8 @@ ActuatorEstimator::Solution ActuatorEstimator::solve() const noexcept {
     const double unit = kRows[i].usual;
     for (std::size_t j = 0; j < kUnknowns; ++j)
       rows[i][j] = unit * kRows[j].usual * (aside * aside_.hh[i][j] + heading * heading_.hh[i][j]);
-    rows[i][kUnknowns] = unit * (aside * aside_.hn[i] + heading * heading_.hn[i]) +
-                         (kUsual[i] - here_[i]) / unit;
+    rows[i][kUnknowns] =
+        unit * (aside * aside_.hn[i] + heading * heading_.hn[i]) + (kUsual[i] - here_[i]) / unit;
     rows[i][i] += 1.0;
     rows[i][kUnknowns + 1 + i] = 1.0;
   }
@@ -217,7 +221,8 @@ bool ActuatorEstimator::take_up() noexcept {
   const ActuatorAnswer before = answer_;
   const auto follow = [&](double& driven, Unknown i) {
     const double estimate = std::clamp(here_[i] + solution_.value[i], kRows[i].least, kRows[i].most);
-    if (std::fabs(estimate - driven) > std::max(kRows[i].step, kSure * solution_.deviation[i])) driven = estimate;
+    if (std::fabs(estimate - driven) > std::max(kRows[i].step, kSure * solution_.deviation[i]))
+      driven = estimate;
   };
   follow(answer_.delay, kDelay);
   follow(answer_.gain, kGain);

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "chicane/controller/command_history.hpp"
-#include "chicane/controller/learned_car.hpp"
+#include "chicane/controller/controller.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/safety/actuator_answer.hpp"
@@ -15,17 +15,17 @@ namespace chicane::safety {
 
 /// How late and by how much the wheels answer, beyond what was told, by which answer predicts the next
 /// measurement better (docs/identification.md, eq. 10 to 12). It is the method of controller::GripEstimator
-/// for four unknowns at once: one state estimator counts with the estimate, four have one unknown changed each,
-/// and least squares over the last kMemory of driving finds the unknowns with their deviations.
-/// The grip is among them, so that tyres that give less do not pass for another steering.
+/// for four unknowns at once: one state estimator counts with the estimate, four have one unknown changed
+/// each, and least squares over the last kMemory of driving finds the unknowns with their deviations. The
+/// grip is among them, so that tyres that give less do not pass for another steering.
 ///
 /// What is driven with, answer(), follows the estimate in steps, where that differs by more than a step and
 /// three deviations. One thread; allocates nothing.
 class ActuatorEstimator {
  public:
-  static constexpr double kMemory = 10.0;   ///< time constant of forgetting [s]
-  static constexpr double kEnough = 1.0;    ///< of driving until something is known [s]
-  static constexpr double kMostDelay = 0.3; ///< [s]
+  static constexpr double kMemory = 10.0;    ///< time constant of forgetting [s]
+  static constexpr double kEnough = 1.0;     ///< of driving until something is known [s]
+  static constexpr double kMostDelay = 0.3;  ///< [s]
 
   explicit ActuatorEstimator(const model::VehicleParams& vehicle) noexcept;
   /// Nothing is known.
@@ -54,11 +54,12 @@ class ActuatorEstimator {
     Matrix hh{};
     Values hn{};
     double nn = 0.0;
-    double left = 0.0;      ///< mean square of what the estimate does not explain
-    double product = 0.0;   ///< mean product of two such in a row
-    double last = 0.0;      ///< the last one
+    double left = 0.0;     ///< mean square of what the estimate does not explain
+    double product = 0.0;  ///< mean product of two such in a row
+    double last = 0.0;     ///< the last one
 
-    void add(const Values& h, double n, double unexplained, double kept, double elapsed, double share) noexcept;
+    void add(const Values& h, double n, double unexplained, double kept, double elapsed,
+             double share) noexcept;
     /// The unknowns are counted from another place from now on.
     void shift(const Values& by, double kept) noexcept;
     /// Weight of a second: over the variance, and over how many in a row tell the same.
@@ -77,13 +78,13 @@ class ActuatorEstimator {
 
   model::VehicleParams vehicle_;  ///< as told, without a name
   ActuatorAnswer answer_;
-  Values here_{0.0, 1.0, 0.0, 1.0};  ///< that the estimators count with
+  Values here_{0.0, 1.0, 0.0, 1.0};                                   ///< that the estimators count with
   std::array<controller::StateEstimator, kUnknowns + 1> estimators_;  ///< each but the last has one changed
   Sums aside_, heading_;
   Solution solution_;
-  double time_ = 0.0;      ///< of driving, as far as it is remembered [s]
-  double interval_ = 0.0;  ///< between measurements, mean [s]
-  double counted_ = 0.0;   ///< since here_ changed [s]
+  double time_ = 0.0;                                          ///< of driving, as far as it is remembered [s]
+  double interval_ = 0.0;                                      ///< between measurements, mean [s]
+  double counted_ = 0.0;                                       ///< since here_ changed [s]
   double slid_at_ = -std::numeric_limits<double>::infinity();  ///< tyres were used too far [s]
 };
 

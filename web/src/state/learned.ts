@@ -9,7 +9,14 @@ export interface Learned {
 
 const DEGREES = 180 / Math.PI;
 
-function learned(label: string, unit: string, digits: number, value: number, deviation: number, told: number): Learned[] {
+function learned(
+  label: string,
+  unit: string,
+  digits: number,
+  value: number,
+  deviation: number,
+  told: number,
+): Learned[] {
   if (!Number.isFinite(value)) return [];
   const sign = told === 0 && value > 0 ? '+' : '';
   return [{ label, text: `${sign}${fixed(value, digits)} ± ${fixed(2 * deviation, digits)}${unit}` }];
