@@ -75,6 +75,23 @@ class Import(unittest.TestCase):
         self.assertEqual((code, out), (2, ""))
         self.assertIn("got a folder without .mcap or .db3, expected a bag of ROS 2", err)
 
+    # rosbag2 writes MCAP or SQLite: the same run is the same page.
+    def test_a_bag_shows_the_same_run_in_either_storage(self):
+        recording = self.out / "run.mcap"
+        code, _, err = run("drive", "--fast", "--track", "oval", "--laps", "2", "--record", recording)
+        self.assertEqual(code, 0, err)
+        pages = {}
+        for storage in ("sqlite3", "mcap"):
+            bag = self.out / storage / "bag"
+            bag.parent.mkdir()
+            subprocess.run([sys.executable, ROOT / "tools/make_bag.py", recording, bag, "--storage", storage], check=True, capture_output=True)
+            page = self.out / f"{storage}.html"
+            code, out, err = run("report", bag, "--track", "oval", "-o", page)
+            self.assertEqual(code, 0, err)
+            pages[storage] = page.read_text()
+            self.assertRegex(out + err, r"bag: a log of another program, 36\.\d s, 9\d\d samples shown, [12] laps, no pedal")
+        self.assertEqual(pages["sqlite3"], pages["mcap"])
+
     def test_refusals_name_the_file_and_the_remedy(self):
         for name, words in {"gym_waypoints.csv": "gym_waypoints.csv:1: header: got none for 4 columns",
                             "no_loop.yaml": "no_loop.yaml: free space: got no loop, open between (",

@@ -93,7 +93,15 @@ const Values kSample{{"stamp", {12.25}},
                      {"violation", {0.0625}},
                      {"worst_stage", {17}},
                      {"worst_constraint", {4}},
-                     {"prediction_error_m", {0.03125}}};
+                     {"prediction_error_m", {0.03125}},
+                     {"learned_delay_s", {0.0625}},
+                     {"learned_delay_sd_s", {0.004}},
+                     {"learned_steer_gain", {0.95}},
+                     {"learned_steer_gain_sd", {0.02}},
+                     {"learned_steer_offset_rad", {-0.03}},
+                     {"learned_steer_offset_sd_rad", {0.002}},
+                     {"learned_grip", {0.85}},
+                     {"learned_grip_sd", {0.01}}};
 
 std::vector<FrameField> rows() {
   std::vector<FrameField> all;

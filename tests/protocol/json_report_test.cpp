@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
 
 namespace chicane::protocol {
@@ -58,6 +59,7 @@ TEST(JsonReport, HasEveryDocumentedKey) {
                           "solver",
                           "fallbacks",
                           "guard_reasons",
+                          "learned",
                           "gate_interventions",
                           "deadline_misses",
                           "state_hash",
@@ -76,6 +78,19 @@ TEST(JsonReport, HasEveryDocumentedKey) {
   }
   EXPECT_TRUE(report["solver"].contains("mean_iterations"));
   EXPECT_TRUE(report["solver"].contains("not_usable"));
+}
+
+TEST(JsonReport, HasWhatTheRunLearnedInTheUnitsOfItsNames) {
+  telemetry::RunSummary run = example();
+  EXPECT_EQ(Json::parse(to_json(run))["learned"], nullptr);
+  run.learned.delay = {0.0625, 0.005};
+  run.learned.offset = {degrees_to_radians(2.0), degrees_to_radians(0.1)};
+  const Json learned = Json::parse(to_json(run))["learned"];
+  EXPECT_EQ(learned["delay_ms"], 62.5);
+  EXPECT_EQ(learned["delay_sd_ms"], 5.0);
+  EXPECT_NEAR(learned["steer_offset_deg"].get<double>(), 2.0, 1e-12);
+  EXPECT_NEAR(learned["steer_offset_sd_deg"].get<double>(), 0.1, 1e-12);
+  EXPECT_FALSE(learned.contains("grip"));
 }
 
 TEST(JsonReport, NamesTheGuardWithItsVersion) {

@@ -60,6 +60,8 @@ inline telemetry::Frame frame() {
   frame.is_manual = true;
   frame.tire_use = {0.875, 1.0625};
   frame.prediction_error = 0.03125;
+  frame.result.report.learned = {
+      .delay = {0.0625, 0.004}, .gain = {0.95, 0.02}, .offset = {-0.03, 0.002}, .grip = {0.85, 0.01}};
   frame.pace = 0.25;
   frame.active_faults = 0b100100;
   frame.applied = {0.015, -0.5};

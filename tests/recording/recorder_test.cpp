@@ -10,6 +10,7 @@
 #include <map>
 #include <string>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/replay.hpp"
 #include "chicane/run/closed_loop.hpp"
@@ -78,6 +79,20 @@ INSTANTIATE_TEST_SUITE_P(Controllers, RecordedController,
                            std::erase(name, '-');
                            return name;
                          });
+
+// Delay and steering that a run finds out about its car are found again, and taken up at the same steps.
+TEST(Recorder, HasARunThatIdentifiesItsCar) {
+  const TemporaryFile file;
+  const auto loop = short_run({{"car", "road-car"}, {"identify.during_run", "true"}, {"time_limit_s", "20"}});
+  loop->set_fault(
+      {.fault = *sim::fault_named("steering_offset"), .at = 0.0, .duration = 60.0, .strength = 2.0});
+  const RecorderReport recorded = record(*loop, file.path());
+  EXPECT_GT(loop->summary().learned.offset.value, degrees_to_radians(1.0));
+  const Result<ReplayReport> replayed = verify_recording(file.path());
+  ASSERT_TRUE(replayed) << replayed.error().message;
+  EXPECT_EQ(replayed->identical, recorded.frames);
+  EXPECT_EQ(replayed->different, 0U);
+}
 
 // The lap is planned again from what the controller had learned, and takes effect at the same step.
 TEST(Recorder, HasARaceWithALearnedRoadAndGrip) {

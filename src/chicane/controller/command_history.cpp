@@ -54,6 +54,12 @@ double CommandHistory::next_change(double time, double limit) const noexcept {
 }
 
 void InnovationGains::note(double x, double y, double elapsed) noexcept {
+  if (time_ > 0.0) {
+    const double root = exp(-elapsed / time_);
+    position_ = 1.0 - root * root;
+    velocity_ = 2.0 * (1.0 - root) * (1.0 - root);
+    return;
+  }
   const double forgetting = is_disturbed_ ? kForgettingDisturbed : kForgetting;
   square_ += forgetting * (x * x + y * y - square_);
   product_ += forgetting * (x * last_x_ + y * last_y_ - product_);
@@ -213,6 +219,17 @@ void StateEstimator::take_over(const model::Measurement& now, double dx, double 
   }
   if (std::isfinite(now.speed))
     state.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state.vy * state.vy));
+}
+
+void StateEstimator::move(const model::State& by) noexcept {
+  model::State& state = now_.state;
+  state.x += by.x;
+  state.y += by.y;
+  state.psi += by.psi;
+  state.vx += by.vx;
+  state.vy += by.vy;
+  state.r += by.r;
+  state.steer += by.steer;
 }
 
 StateEstimator::Prediction StateEstimator::predict(double time, const CommandHistory& sent) const noexcept {

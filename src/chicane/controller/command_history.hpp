@@ -25,6 +25,10 @@ class CommandHistory {
     for (Entry& entry : other.entries_) entry.command = change(entry.command);
     return other;
   }
+  /// Each command acts `time` [s] later; negative: earlier.
+  void delay(double time) noexcept {
+    for (Entry& entry : entries_) entry.time += time;
+  }
   /// The command acting at `time`; zero before the first.
   [[nodiscard]] model::Command at(double time) const noexcept;
   /// First change of command after `time`, or `limit` when there is none before it.
@@ -59,14 +63,18 @@ class InnovationGains {
   explicit InnovationGains(double acceleration) noexcept : acceleration_{acceleration} {}
   void reset() noexcept {
     const bool is_disturbed = is_disturbed_;
+    const double time = time_;
     *this = InnovationGains{acceleration_};
     estimate_disturbance(is_disturbed);
+    average_over(time);
   }
   /// Whether accelerations that the model lacks are estimated, too.
   void estimate_disturbance(bool is_on) noexcept {
     is_disturbed_ = is_on;
     velocity_ = most_velocity();
   }
+  /// The gains of a filter that forgets over `time` [s], whatever the noise; 0: by the noise, as at first.
+  void average_over(double time) noexcept { time_ = time; }
   /// Takes in the innovation (x, y), `elapsed` [s] after the one before.
   void note(double x, double y, double elapsed) noexcept;
   /// The same after a time without measurements: it says how well the model counts on, not how noisy the
@@ -91,6 +99,7 @@ class InnovationGains {
     return is_disturbed_ ? kMostVelocityDisturbed : kMostVelocity;
   }
   double acceleration_;
+  double time_ = 0.0;     ///< average_over()
   double square_ = 0.0;   ///< mean of innovation²
   double product_ = 0.0;  ///< mean of innovation times the one before
   double last_x_ = 0.0, last_y_ = 0.0;
@@ -150,6 +159,11 @@ class StateEstimator {
     heading_gains_.estimate_disturbance(is_on);
     now_.disturbance = {};
   }
+  /// Innovations are averaged over `time` [s] from now on (InnovationGains).
+  void average_over(double time) noexcept {
+    place_gains_.average_over(time);
+    heading_gains_.average_over(time);
+  }
   /// Another model from now on; the estimate stays.
   void set_model(const model::PredictionModel& model) noexcept { model_ = model; }
   [[nodiscard]] const model::PredictionModel& model() const noexcept { return model_; }
@@ -158,6 +172,8 @@ class StateEstimator {
   /// replaced by what the model expects.
   void correct(const model::Measurement& now, const CommandHistory& sent) noexcept;
   [[nodiscard]] const model::State& state() const noexcept { return now_.state; }
+  /// Adds `by` to the estimate: what another model would have made of it.
+  void move(const model::State& by) noexcept;
   [[nodiscard]] double time() const noexcept { return time_; }  ///< of state() [s]
   [[nodiscard]] bool is_started() const noexcept { return is_started_; }
   [[nodiscard]] double acceleration() const noexcept { return now_.acceleration; }

@@ -10,6 +10,7 @@
 #include "chicane/base/vec2.hpp"
 #include "chicane/controller/explanation.hpp"
 #include "chicane/controller/guard_words.hpp"
+#include "chicane/controller/learned_car.hpp"
 #include "chicane/controller/plan.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
@@ -42,6 +43,7 @@ struct StepReport {
   double solve_time = 0.0;  ///< of the optimisation alone [s], as the deadline's clock saw it; 0 without one
   bool has_map = false;     ///< the lap is closed in memory
   Explanation explanation;  ///< why the answer is what it is; empty without an answer
+  LearnedCar learned;       ///< grip: the controller's word, where it learns that; the rest: the guard's
 
   // The guard's word, not the controller's.
   Rung rung = Rung::kController;

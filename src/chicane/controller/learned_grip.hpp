@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "chicane/controller/grip_estimator.hpp"
+#include "chicane/controller/learned_car.hpp"
 
 namespace chicane::controller {
 
@@ -43,6 +44,11 @@ class LearnedGrip {
   }
   /// Of the model.
   [[nodiscard]] double share() const noexcept { return share_; }
+  /// As it is estimated now.
+  [[nodiscard]] Estimate estimate() const noexcept {
+    if (!estimator_.is_known()) return {};
+    return {share_ * estimator_.share(), share_ * estimator_.deviation()};
+  }
   /// Whether the tyres have shown anything yet.
   [[nodiscard]] bool is_shown() const noexcept { return is_shown_; }
   /// For a plan: what may be relied on. Pre: is_shown().

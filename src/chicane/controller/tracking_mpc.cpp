@@ -196,14 +196,13 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   /// where the known road ends when no new waypoints have come.
   [[nodiscard]] double stopping_speed(double s) const noexcept {
     const model::VehicleParams& car = model_.vehicle();
-    const road::ReferenceLine& line = this->line();
     const double v = std::max(x0_[Problem::kVx], 0.0);
     const double braking =
         -options_.brake_share * longitudinal_acceleration(car, -car.brake_throttle_limit, v);
     double squared = std::numeric_limits<double>::infinity();
     if (blind_.is_long) squared = v * v - 2.0 * braking * s;
-    if (roadless_.is_long && !line.is_closed())
-      squared = std::min(squared, 2.0 * braking * (line.length() - s_ - s));
+    if (roadless_.is_long && !line().is_closed())
+      squared = std::min(squared, 2.0 * braking * (line().length() - s_ - s));
     return std::sqrt(std::max(squared, 0.0));
   }
 
@@ -213,6 +212,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     report = {};
     report.solve.status = solver::SolveStatus::kNotFinite;  // until there is an answer
     report.delay = now.delay;
+    if (options_.learns()) report.learned.grip = grip_.estimate();
     const road::ReferenceLine& line = this->line();
     if (line.is_empty() || !std::isfinite(start.state.x + start.state.y + start.state.psi + start.state.vx))
       return false;

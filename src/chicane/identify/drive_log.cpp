@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
@@ -19,6 +20,7 @@ namespace {
 
 constexpr double kLongestGap = 0.5;   ///< [s]
 constexpr double kShortestLog = 2.0;  ///< [s]
+constexpr double kStretch = 0.2;      ///< [s] over which signals are compared at least
 
 /// Parts in which time increases, without gaps and jumps; yaw is unwrapped, samples of one time count once.
 std::vector<DriveLog> parts_of(LogRows rows, const std::string& file) {
@@ -65,7 +67,8 @@ std::vector<DriveLog> parts_of(LogRows rows, const std::string& file) {
   return parts;
 }
 
-/// Sums over all parts: how far signals agree that have to.
+/// Sums over all parts: how far signals agree that have to. By stretches that are long against the noise of a
+/// place, which lengthens a path from sample to sample.
 struct Agreement {
   double path = 0.0, speed_path = 0.0;  ///< driven by place, and by speed [m]
   double along = 0.0;                   ///< of the path in the direction of yaw [m]
@@ -77,8 +80,10 @@ struct Agreement {
   void look_at(const DriveLog& log) {
     std::size_t command = 0;
     double last_course = std::numeric_limits<double>::quiet_NaN();
+    std::size_t begin = 0;
     for (std::size_t i = 1; i < log.samples.size(); ++i) {
-      const Sample& a = log.samples[i - 1];
+      if (log.samples[i].time - log.samples[begin].time < kStretch) continue;
+      const Sample& a = log.samples[std::exchange(begin, i)];
       const Sample& b = log.samples[i];
       const double dx = b.x - a.x, dy = b.y - a.y, dt = b.time - a.time;
       const double moved = hypot(dx, dy);

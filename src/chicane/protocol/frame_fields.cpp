@@ -231,6 +231,27 @@ constexpr std::array kReasons{
                          [](const Frame& f) { return why(f).active_ahead; }),
 };
 
+const controller::LearnedCar& learned(const Frame& frame) { return frame.result.report.learned; }
+
+constexpr std::array kLearned{
+    field<double>("learned_delay_s", "by which commands act later than told",
+                  [](const Frame& f) { return learned(f).delay.value; }),
+    field<double>("learned_delay_sd_s", "its standard deviation",
+                  [](const Frame& f) { return learned(f).delay.deviation; }),
+    field<double>("learned_steer_gain", "the wheels turn to gain times command plus offset",
+                  [](const Frame& f) { return learned(f).gain.value; }),
+    field<double>("learned_steer_gain_sd", "its standard deviation",
+                  [](const Frame& f) { return learned(f).gain.deviation; }),
+    field<double>("learned_steer_offset_rad", "left positive",
+                  [](const Frame& f) { return learned(f).offset.value; }),
+    field<double>("learned_steer_offset_sd_rad", "its standard deviation",
+                  [](const Frame& f) { return learned(f).offset.deviation; }),
+    field<double>("learned_grip", "of the tyres, share of the told one",
+                  [](const Frame& f) { return learned(f).grip.value; }),
+    field<double>("learned_grip_sd", "its standard deviation",
+                  [](const Frame& f) { return learned(f).grip.deviation; }),
+};
+
 constexpr std::array kCar{
     field<double>("front_tire_use", "1 = all of it, more slides",
                   [](const Frame& f) { return f.tire_use[0]; }),
@@ -268,6 +289,9 @@ constexpr std::array kGroups{
     FrameGroup{"Why the controller chose this command", kReasons},
     FrameGroup{"The simulated car: share of its grip that each axle uses; faults that are on", kCar},
     FrameGroup{"How good the answer is", kSolver},
+    FrameGroup{"What the run has found out about its car (identify.during_run, tracking_mpc.learn_grip); "
+               "else not-a-number",
+               kLearned},
 };
 
 }  // namespace

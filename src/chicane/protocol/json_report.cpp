@@ -91,6 +91,39 @@ Json guard_reasons(const telemetry::RunSummary& run) {
   return reasons;
 }
 
+/// Each quantity that was estimated, with its standard deviation; null where none was.
+Json to_object(const controller::LearnedCar& learned) {
+  Json json = Json::object();
+  const auto add = [&](const std::string& name, std::string_view unit, const controller::Estimate& estimate,
+                       double in_unit) {
+    if (!std::isfinite(estimate.value)) return;
+    json[fmt::format("{}{}", name, unit)] = in_unit * estimate.value;
+    json[fmt::format("{}_sd{}", name, unit)] = number(in_unit * estimate.deviation);
+  };
+  add("delay", "_ms", learned.delay, 1e3);
+  add("steer_gain", "", learned.gain, 1.0);
+  add("steer_offset", "_deg", learned.offset, radians_to_degrees(1.0));
+  add("grip", "", learned.grip, 1.0);
+  return json.empty() ? Json(nullptr) : json;
+}
+
+/// "learned            delay +58 ± 6 ms, ...": two standard deviations; empty unless a run identifies its
+/// car.
+std::string learned_line(const controller::LearnedCar& learned) {
+  if (!std::isfinite(learned.delay.value)) return "";
+  std::string text;
+  const auto add = [&](std::string_view format, const controller::Estimate& estimate, double in_unit) {
+    if (!std::isfinite(estimate.value)) return;
+    text += text.empty() ? "learned            " : ", ";
+    text += fmt::format(fmt::runtime(format), in_unit * estimate.value, 2.0 * in_unit * estimate.deviation);
+  };
+  add("delay {:+.0f} ± {:.0f} ms", learned.delay, 1e3);
+  add("steering gain {:.2f} ± {:.2f}", learned.gain, 1.0);
+  add("offset {:+.2f} ± {:.2f}°", learned.offset, radians_to_degrees(1.0));
+  add("grip {:.2f} ± {:.2f}", learned.grip, 1.0);
+  return text + "\n";
+}
+
 double number_in(const Json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_number() ? found->get<double>() : std::nan("");
@@ -206,6 +239,7 @@ std::string to_json(const RunSummary& run) {
       {"cycles", run.cycles},
       {"fallbacks", run.fallbacks},
       {"guard_reasons", guard_reasons(run)},
+      {"learned", to_object(run.learned)},
       {"gate_interventions", run.gate_interventions},
       {"deadline_misses", run.deadline_misses},
       {"duration_s", number(run.duration)},
@@ -250,6 +284,7 @@ std::string to_table(const RunSummary& run) {
                       times(run.solve_time), run.mean_iterations, run.not_usable);
   text += fmt::format("safety             {} fallbacks, {} commands changed by the gate\n", run.fallbacks,
                       run.gate_interventions);
+  text += learned_line(run.learned);
   const Json reasons = guard_reasons(run);
   for (const auto& [reason, steps] : reasons.items())
     text += fmt::format("guard              {}: {} steps\n", reason, steps.get<std::uint64_t>());

@@ -53,6 +53,7 @@ bool is_live(const Parameter& parameter) {
                                                       "friction_low", "waypoints_sent"};
   return parameter.option.kind != Kind::kText &&  // preset, track, car: names
          parameter.group != "guard" &&            // what watches over a run is fixed when it starts
+         parameter.group != "identify" &&         // and what is found out in it
          parameter.group != "plant_params" &&     // and so is the car
          std::find(kWhatRuns.begin(), kWhatRuns.end(), parameter.key) == kWhatRuns.end();
 }

@@ -67,6 +67,7 @@ Table make_table() {
   table.add("plant_params", "", sim::double_track_options(),
             [](Scenario& s) -> void* { return &s.plant_params; });
   table.add("guard", "", safety::guard_options(), [](Scenario& s) -> void* { return &s.guard; });
+  table.add("identify", "", safety::identify_options(), [](Scenario& s) -> void* { return &s.identify; });
   table.add("plant_options", "", sim::deviation_options(),
             [](Scenario& s) -> void* { return &s.plant_options; });
   table.add("sensor", "", sim::sensor_options(), [](Scenario& s) -> void* { return &s.sensor; });

@@ -31,7 +31,9 @@ ControlCycle::ControlCycle(std::unique_ptr<controller::Controller> controller,
 ControlCycle::ControlCycle(std::unique_ptr<controller::Controller> controller,
                            const scenario::Scenario& scenario, road::KnownRoad road)
     : similarity_{scenario.vehicle},
-      guard_{std::move(controller), full_size(scenario), scenario.guard, std::move(road)} {}
+      guard_{std::move(controller), full_size(scenario), scenario.guard, std::move(road)} {
+  guard_.learn_actuators(scenario.identify.during_run);
+}
 
 void ControlCycle::use_line(std::shared_ptr<const road::RacingRoad> lap) {
   if (lap) guard_.use_line(std::move(lap));
@@ -66,6 +68,8 @@ void ControlCycle::to_scale(controller::StepResult& result) const noexcept {
   controller::StepReport& report = result.report;
   report.act_time /= time;
   report.delay /= time;
+  report.learned.delay.value /= time;
+  report.learned.delay.deviation /= time;
   report.lateral_error /= length;
   report.sight /= length;
   report.stop_edge /= length;

@@ -9,26 +9,9 @@
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/state.hpp"
+#include "chicane/safety/actuator_answer.hpp"
 
 namespace chicane::safety {
-
-/// How the actuators answer: the wheels turn to gain · command + offset, and the brakes give a share of what
-/// is asked for.
-struct ActuatorAnswer {
-  double gain = 1.0;
-  double offset = 0.0;   ///< [rad]
-  double braking = 1.0;  ///< (0, 1]
-
-  [[nodiscard]] bool is_usual() const noexcept { return gain == 1.0 && offset == 0.0 && braking == 1.0; }
-  /// The command that turns the wheels as `wanted` says.
-  [[nodiscard]] model::Command command_for(const model::Command& wanted) const noexcept {
-    return {(wanted.steer - offset) / gain, wanted.throttle};
-  }
-  /// How the wheels turn by `command`.
-  [[nodiscard]] model::Command effect_of(const model::Command& command) const noexcept {
-    return {gain * command.steer + offset, command.throttle};
-  }
-};
 
 /// Compares how the car turns and brakes with what was sent to it, by its model (docs/safety_derivation.md,
 /// eq. 12 and 13). The answer is the usual one until the difference exceeds its band; then it is estimated,

@@ -105,6 +105,10 @@ void Guard::reset() noexcept {
   monitor_.reset();
   reset_watch_.reset();
   actuators_.reset();
+  if (learned_) learned_->reset();
+  sent_.clear();
+  told_.clear();
+  count_with_answer();
   count_with_actuators();
   supervisor_.reset();
   fallback_.reset();
@@ -112,8 +116,6 @@ void Guard::reset() noexcept {
   road_.reset();
   estimator_.reset();
   direction_.reset();
-  sent_.clear();
-  told_.clear();
   filter_.forget();
   has_place_ = is_astray_ = false;
   is_led_ = rests_ = false;
@@ -141,8 +143,14 @@ void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
   controller_->use_line(std::move(lap));
 }
 
+void Guard::learn_actuators(bool is_on) {
+  learned_.reset();
+  if (is_on) learned_.emplace(vehicle_);
+}
+
 void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   vehicle_ = vehicle;
+  if (learned_) learned_->set_vehicle(vehicle);
   believe_grip(grip_);
 }
 
@@ -165,9 +173,14 @@ void Guard::count_with_actuators() noexcept {
 
 model::Command Guard::step(const model::Measurement& measured, Deadline deadline, const Cycle& cycle,
                            controller::StepResult& result) noexcept {
+  take_up_actuators();
+  model::Measurement now = measured;
+  if (learned_) now.delay = std::max(now.delay + learned_->answer().delay, 0.0);
   const bool is_off = options_.mode == GuardMode::kOff;
-  const model::Measurement& seen = is_off ? measured : look(measured);
+  if (is_off && learned_) learned_->see(now, told_);
+  const model::Measurement& seen = is_off ? now : look(now);
   result = controller_->step(seen, deadline);
+  if (learned_) report_learned(result.report.learned);
   if (!is_finite(result.command)) result.answer = Answer::kNone;
   choose(seen, cycle, result);
   const model::Command asked = result.command;
@@ -189,7 +202,7 @@ void Guard::send(const Cycle& cycle, const model::Command& asked, controller::St
                         !is_same(gated.command, cycle.manual.value_or(answer().command_for(asked)));
   const model::Command effect = answer().effect_of(gated.command);
   controller_->note_sent(effect);
-  if (options_.mode == GuardMode::kOff || !std::isfinite(sent_from_)) return;
+  if ((options_.mode == GuardMode::kOff && !learned_) || !std::isfinite(sent_from_)) return;
   told_.add(sent_from_, gated.command);
   sent_.add(sent_from_, effect);
   if (answer().is_usual()) return;
@@ -200,9 +213,30 @@ void Guard::send(const Cycle& cycle, const model::Command& asked, controller::St
   }
 }
 
-const ActuatorAnswer& Guard::answer() const noexcept {
-  static constexpr ActuatorAnswer kUsual;
-  return options_.mode == GuardMode::kOn ? actuators_.answer() : kUsual;
+/// What commands are sent for, and the effect of those that were.
+void Guard::count_with_answer() noexcept {
+  constexpr ActuatorAnswer kUsual;
+  const ActuatorAnswer& watched = options_.mode == GuardMode::kOn ? actuators_.answer() : kUsual;
+  answer_ = learned_ ? watched.after(learned_->answer()) : watched;
+  sent_ = told_.changed([this](const model::Command& command) { return answer_.effect_of(command); });
+}
+
+/// Between two cycles: what was learned is driven with from now on, and what the watch found beyond it is
+/// looked for anew.
+void Guard::take_up_actuators() noexcept {
+  if (!learned_) return;
+  const double delay = learned_->answer().delay;
+  if (!learned_->take_up()) return;
+  told_.delay(learned_->answer().delay - delay);
+  actuators_.reset();
+  count_with_answer();
+  count_with_actuators();
+}
+
+void Guard::report_learned(controller::LearnedCar& learned) const noexcept {
+  const controller::Estimate grip = learned.grip;
+  learned = learned_->learned();
+  if (std::isfinite(grip.value)) learned.grip = grip;
 }
 
 /// How the actuators answer, by a measurement that nothing is wrong with; the guard drives with that.
@@ -211,17 +245,24 @@ void Guard::watch_actuators(const model::Measurement& seen) noexcept {
   const bool is_doubted = found.late || found.unmeasured || found.frozen || found.speed_mismatch ||
                           found.heading_jump || found.position_jump || direction_.rolls_back();
   if (is_doubted) return actuators_.skip();
-  const ActuatorAnswer before = answer();
+  const ActuatorAnswer before = actuators_.answer();
+  if (learned_) learned_->see(seen, told_);
   ActuatorWatch::AxleUse use;
   const model::State& car = estimator_.state();
   if (estimator_.is_started() && car.vx > kRollsBackAtMost) {
     const auto tires = model_.tire_use(model::BodyMotion<double>{car.vx, car.vy, car.r, car.steer, 0.0});
     use = {tires.front, tires.rear};
   }
-  actuators_.see(seen, told_, use);
-  if (answer().gain != before.gain || answer().offset != before.offset)
-    sent_ = told_.changed([this](const model::Command& command) { return answer().effect_of(command); });
-  if (answer().braking != before.braking) count_with_actuators();
+  if (learned_) {
+    const ActuatorAnswer& usual = learned_->answer();
+    actuators_.see(seen, told_.changed([&](const auto& command) { return usual.effect_of(command); }), use);
+  } else {
+    actuators_.see(seen, told_, use);
+  }
+  const ActuatorAnswer& after = actuators_.answer();
+  if (after.gain != before.gain || after.offset != before.offset || after.braking != before.braking)
+    count_with_answer();
+  if (after.braking != before.braking) count_with_actuators();
 }
 
 /// What of a measurement can be believed; estimate and road take it in.

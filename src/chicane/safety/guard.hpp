@@ -16,6 +16,7 @@
 #include "chicane/model/vehicle.hpp"
 #include "chicane/path/road_data.hpp"
 #include "chicane/road/known_road.hpp"
+#include "chicane/safety/actuator_estimator.hpp"
 #include "chicane/safety/actuator_watch.hpp"
 #include "chicane/safety/command_gate.hpp"
 #include "chicane/safety/fallback.hpp"
@@ -60,6 +61,10 @@ class Guard {
   /// All it knows, the controller included. Pre: the controller is Copyable.
   Guard(const Guard& other);
   Guard& operator=(const Guard&) = delete;
+
+  /// Whether delay and steering are estimated while the car drives, and driven with, in any mode; off at
+  /// first. Before a run.
+  void learn_actuators(bool is_on);
 
   /// What else holds in a cycle.
   struct Cycle {
@@ -119,7 +124,10 @@ class Guard {
   void believe_grip(double share) noexcept;
   void count_with_actuators() noexcept;
   void watch_actuators(const model::Measurement& seen) noexcept;
-  [[nodiscard]] const ActuatorAnswer& answer() const noexcept;
+  void take_up_actuators() noexcept;
+  void count_with_answer() noexcept;
+  void report_learned(controller::LearnedCar& learned) const noexcept;
+  [[nodiscard]] const ActuatorAnswer& answer() const noexcept { return answer_; }
   void send(const Cycle& cycle, const model::Command& asked, controller::StepResult& result) noexcept;
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
 
@@ -129,7 +137,9 @@ class Guard {
   GuardOptions options_;
   MeasurementMonitor monitor_;
   ResetWatch reset_watch_;
-  ActuatorWatch actuators_;
+  ActuatorWatch actuators_;  ///< by how the wheels turn by what was learned
+  std::optional<ActuatorEstimator> learned_;
+  ActuatorAnswer answer_;  ///< that commands are sent for: what was learned, and what is watched beyond it
   Supervisor supervisor_;
   Fallback fallback_;
   CommandGate gate_;

@@ -103,6 +103,7 @@ void Metrics::add(const Frame& frame) noexcept {
   if (report.rung != controller::Rung::kController) ++fallbacks_;
   ++guard_reasons_[static_cast<std::size_t>(report.reason)];
   if (report.gated) ++gated_;
+  learned_ = report.learned;
 }
 
 void Metrics::lap_completed(double lap_time, const std::array<double, 3>& sector_times) noexcept {
@@ -128,6 +129,7 @@ RunSummary Metrics::summary() const {
   run.not_usable = not_usable_;
   run.fallbacks = fallbacks_;
   run.guard_reasons = guard_reasons_;
+  run.learned = learned_;
   run.gate_interventions = gated_;
   run.deadline_misses = deadline_misses_;
   run.state_hash = hash_.value();

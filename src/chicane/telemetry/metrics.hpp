@@ -82,6 +82,7 @@ struct RunSummary {
   std::uint64_t fallbacks = 0;   ///< steps whose command came from a rung below the controller
   /// Steps in which the guard found something, by controller::GuardReason; [0]: nothing.
   std::array<std::uint64_t, controller::kGuardReasonCount> guard_reasons{};
+  controller::LearnedCar learned;  ///< as the last step reported it
   std::uint64_t gate_interventions = 0;
   std::uint64_t deadline_misses = 0;  ///< steps that took longer than the control period
   std::uint64_t state_hash =
@@ -158,6 +159,7 @@ class Metrics {
   std::array<std::uint64_t, controller::kGuardReasonCount> guard_reasons_{};
   std::uint64_t cycles_ = 0, iterations_ = 0, not_usable_ = 0, fallbacks_ = 0, gated_ = 0,
                 deadline_misses_ = 0;
+  controller::LearnedCar learned_;
   double last_time_ = 0.0;
   double last_steer_ = 0.0;
 };

@@ -143,6 +143,24 @@ export interface Frame {
   worst_constraint: number;
   /** of the car now from where plans said, one delay and one period ago */
   prediction_error_m: number;
+
+  // What the run has found out about its car (identify.during_run, tracking_mpc.learn_grip); else not-a-number
+  /** by which commands act later than told */
+  learned_delay_s: number;
+  /** its standard deviation */
+  learned_delay_sd_s: number;
+  /** the wheels turn to gain times command plus offset */
+  learned_steer_gain: number;
+  /** its standard deviation */
+  learned_steer_gain_sd: number;
+  /** left positive */
+  learned_steer_offset_rad: number;
+  /** its standard deviation */
+  learned_steer_offset_sd_rad: number;
+  /** of the tyres, share of the told one */
+  learned_grip: number;
+  /** its standard deviation */
+  learned_grip_sd: number;
 }
 
 /** Frame.rung */
@@ -300,6 +318,14 @@ export const UNKNOWN_FRAME: Frame = {
   worst_stage: -1,
   worst_constraint: -1,
   prediction_error_m: NaN,
+  learned_delay_s: NaN,
+  learned_delay_sd_s: NaN,
+  learned_steer_gain: NaN,
+  learned_steer_gain_sd: NaN,
+  learned_steer_offset_rad: NaN,
+  learned_steer_offset_sd_rad: NaN,
+  learned_grip: NaN,
+  learned_grip_sd: NaN,
 };
 
 /** The numbers of a frame, and what is yes or no, in its order. */
@@ -364,6 +390,14 @@ export const FRAME_NUMBERS = [
   'worst_stage',
   'worst_constraint',
   'prediction_error_m',
+  'learned_delay_s',
+  'learned_delay_sd_s',
+  'learned_steer_gain',
+  'learned_steer_gain_sd',
+  'learned_steer_offset_rad',
+  'learned_steer_offset_sd_rad',
+  'learned_grip',
+  'learned_grip_sd',
 ] as const;
 
 /** Each value of a state, for people: without capital and full stop. */

@@ -13,6 +13,7 @@ import {
 import { circumstancesOf } from '../state/alerts';
 import { Column } from '../state/columns';
 import { bitSharesOf, rmsOf, sharesOf } from '../state/explain';
+import { learnedOf } from '../state/learned';
 import { live } from '../state/live';
 import { can } from '../state/operate';
 import { cursorTime } from '../state/plot_view';
@@ -206,7 +207,27 @@ function Prediction() {
   );
 }
 
-/** Why the car drives as it does: speed limits, constraints, solution, prediction, events. */
+/** What the run has found out about its car; nothing where it does not learn. */
+function LearnedCar() {
+  const rows = shown.value ? learnedOf(shown.value) : [];
+  if (rows.length === 0) return null;
+  return (
+    <section class="block" aria-label="The car, as it answers">
+      <h2>The car, as it answers</h2>
+      <dl data-testid="learned">
+        {rows.map(({ label, text }) => (
+          <div class="row" key={label}>
+            <dt>{label}</dt>
+            <dd>{text}</dd>
+          </div>
+        ))}
+      </dl>
+      <p class="soft">Estimated while driving, with two standard deviations.</p>
+    </section>
+  );
+}
+
+/** Why the car drives as it does: speed limits, constraints, solution, prediction, the learned car, events. */
 export function ExplainView() {
   return (
     <div class="blocks">
@@ -214,6 +235,7 @@ export function ExplainView() {
       <Constraints />
       <Answer />
       <Prediction />
+      <LearnedCar />
       <EventsView />
     </div>
   );

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/actuator_estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "chicane/model/grip.hpp"
+#include "chicane/model/prediction.hpp"
+
+namespace chicane::safety {
+namespace {
+
+constexpr double kSlowest = 5.0;          // [m/s] slower, the wheels turn the car too little
+constexpr double kLongestSilence = 0.25;  // [s] between measurements; then the estimators settle first
+constexpr double kMostUse = 0.8;          // of the tyres' peak slip: beyond it no model is exact enough
+constexpr double kCalmFor = 0.5;          // [s] after that, until the estimators have settled
+constexpr double kFarAside = 1.0;         // [m] a measurement that is another thing than noise
+constexpr double kPerfectSensor = 1e-8;   // of m and rad: that of a perfect sensor
+constexpr double kAverage = 0.5;          // [s] over which the estimators forget what they did not expect
+constexpr double kCounted = 0.5;          // [s] that the estimators count from one place at least
+constexpr double kKeptBehind = 0.5;
+constexpr double kFar = 1.0;  // deviations of the estimate from that place, from which on it is another one
+constexpr double kCorrelated = 2.0;  // [s] of which correlation and variance are the mean
+constexpr double kMostCorrelation = 0.98;
+constexpr double kSure = 3.0;  // deviations by which an estimate differs from what is driven with
+
+// Of delay [s], gain, offset [rad] and grip: by how much an estimator differs, what is assumed to be usual
+// (standard deviation), the step in which the car is driven with, and the range.
+struct Row {
+  double change, usual, step, least, most;
+};
+constexpr std::array<Row, 4> kRows{{
+    {0.02, 0.1, 0.008, -0.1, ActuatorEstimator::kMostDelay},
+    {0.1, 0.3, 0.03, 0.35, 2.5},
+    {0.01, 0.05, 0.003, -0.25, 0.25},
+    {-0.1, 0.3, 0.05, 0.3, 1.6},
+}};
+constexpr std::array kUsual{0.0, 1.0, 0.0, 1.0};
+
+model::VehicleParams without_name(model::VehicleParams vehicle) noexcept {
+  vehicle.name.clear();
+  return vehicle;
+}
+
+/// Of the axle that uses more, 1 at its peak slip.
+double tire_use(const controller::StateEstimator& estimator) noexcept {
+  const model::State& car = estimator.state();
+  const auto use =
+      estimator.model().tire_use(model::BodyMotion<double>{car.vx, car.vy, car.r, car.steer, 0.0});
+  return std::max(use.front, use.rear);
+}
+
+}  // namespace
+
+ActuatorEstimator::ActuatorEstimator(const model::VehicleParams& vehicle) noexcept
+    : vehicle_{without_name(vehicle)},
+      estimators_{[this]<std::size_t... I>(std::index_sequence<I...>){
+          return std::array{((void)I, controller::StateEstimator{model::PredictionModel{vehicle_}})...};
+}  // namespace chicane::safety
+(std::make_index_sequence<kUnknowns + 1>{})
+}
+{
+  for (controller::StateEstimator& each : estimators_) each.average_over(kAverage);
+  believe();
+}
+
+void ActuatorEstimator::reset() noexcept { *this = ActuatorEstimator{vehicle_}; }
+
+void ActuatorEstimator::set_vehicle(const model::VehicleParams& vehicle) noexcept {
+  vehicle_ = without_name(vehicle);
+  believe();
+}
+
+/// The estimators' models, by the grip that they count with.
+void ActuatorEstimator::believe() noexcept {
+  for (std::size_t i = 0; i <= kUnknowns; ++i) {
+    const double grip = here_[kGrip] + (i == kGrip ? kRows[kGrip].change : 0.0);
+    estimators_[i].set_model(model::PredictionModel{model::with_grip(vehicle_, grip)});
+  }
+}
+
+/// How the wheels turn by what they were told, if they answered as `values` say.
+controller::CommandHistory ActuatorEstimator::effect(const controller::CommandHistory& told,
+                                                     const Values& values) const noexcept {
+  const ActuatorAnswer answer{.gain = values[kGain], .offset = values[kOffset]};
+  controller::CommandHistory sent =
+      told.changed([&](const model::Command& command) { return answer.effect_of(command); });
+  sent.delay(values[kDelay] - answer_.delay);
+  return sent;
+}
+
+void ActuatorEstimator::see(const model::Measurement& now, const controller::CommandHistory& told) noexcept {
+  controller::StateEstimator& last = estimators_[kUnknowns];
+  const double elapsed = now.time - last.time();
+  last.correct(now, effect(told, here_));
+  const controller::StateEstimator::Surprise n = last.surprise();
+  Values aside{}, heading{};
+  double sum = n.aside + n.heading;
+  for (std::size_t i = 0; i < kUnknowns; ++i) {
+    const double by = kRows[i].change;
+    Values changed = here_;
+    changed[i] += by;
+    estimators_[i].correct(now, effect(told, changed));
+    const controller::StateEstimator::Surprise& other = estimators_[i].surprise();
+    aside[i] = (n.aside - other.aside) / by;
+    heading[i] = (n.heading - other.heading) / by;
+    sum += other.aside + other.heading;
+  }
+  const bool is_seen =
+      elapsed > 0.0 && elapsed < kLongestSilence && std::isfinite(sum) && std::fabs(n.aside) < kFarAside;
+  if (!is_seen || !(last.state().vx > kSlowest)) return;
+  if (tire_use(last) > kMostUse) slid_at_ = now.time;
+  if (std::fabs(now.time - slid_at_) < kCalmFor) return;
+  const double kept = kMemory / (kMemory + elapsed);
+  const double share = std::min(elapsed / kCorrelated, 1.0);
+  time_ = kept * time_ + elapsed;
+  interval_ = interval_ > 0.0 ? interval_ + 0.05 * (elapsed - interval_) : elapsed;
+  double aside_left = n.aside, heading_left = n.heading;
+  for (std::size_t i = 0; i < kUnknowns; ++i) {
+    aside_left -= aside[i] * solution_.value[i];
+    heading_left -= heading[i] * solution_.value[i];
+  }
+  aside_.add(aside, n.aside, aside_left, kept, elapsed, share);
+  heading_.add(heading, n.heading, heading_left, kept, elapsed, share);
+  solution_ = solve();
+  counted_ += elapsed;
+  if (counted_ > kCounted) move_on();
+}
+
+/// The estimators count from the estimate on where that is further away than their differences reach. What
+/// was summed up from further away counts half.
+void ActuatorEstimator::move_on() noexcept {
+  bool is_far = false;
+  for (std::size_t i = 0; i < kUnknowns; ++i)
+    is_far = is_far || std::fabs(solution_.value[i]) >
+                           std::max(0.5 * std::fabs(kRows[i].change), kFar * solution_.deviation[i]);
+  if (!is_far) return;
+  Values by;
+  for (std::size_t i = 0; i < kUnknowns; ++i) {
+    const double next = std::clamp(here_[i] + solution_.value[i], kRows[i].least, kRows[i].most);
+    by[i] = next - std::exchange(here_[i], next);
+  }
+  // Their states by what each unknown does to them, to first order.
+  const model::State last = estimators_[kUnknowns].state();
+  model::State more{};
+  for (std::size_t i = 0; i < kUnknowns; ++i) {
+    const double share = by[i] / kRows[i].change;
+    const model::State& other = estimators_[i].state();
+    for (double model::State::*each :
+         {&model::State::x, &model::State::y, &model::State::psi, &model::State::vx, &model::State::vy,
+          &model::State::r, &model::State::steer})
+      more.*each += share * (other.*each - last.*each);
+  }
+  for (controller::StateEstimator& each : estimators_) each.move(more);
+  aside_.shift(by, kKeptBehind);
+  heading_.shift(by, kKeptBehind);
+  counted_ = 0.0;
+  believe();
+  solution_ = solve();
+}
+
+void ActuatorEstimator::Sums::add(const Values& h, double n, double unexplained, double kept, double elapsed,
+                                  double share) noexcept {
+  for (std::size_t i = 0; i < kUnknowns; ++i) {
+    hn[i] = kept * hn[i] + elapsed * h[i] * n;
+    for (std::size_t j = 0; j < kUnknowns; ++j) hh[i][j] = kept * hh[i][j] + elapsed * h[i] * h[j];
+  }
+  left += share * (unexplained * unexplained - left);
+  product += share * (unexplained * last - product);
+  last = unexplained;
+}
+
+void ActuatorEstimator::Sums::shift(const Values& by, double kept) noexcept {
+  for (std::size_t i = 0; i < kUnknowns; ++i) {
+    for (std::size_t j = 0; j < kUnknowns; ++j) hn[i] -= hh[i][j] * by[j];
+    hn[i] *= kept;
+    for (double& each : hh[i]) each *= kept;
+  }
+}
+
+double ActuatorEstimator::Sums::weight() const noexcept {
+  const double variance = std::max(left, kPerfectSensor);
+  const double correlation = std::clamp(product / variance, 0.0, kMostCorrelation);
+  return (1.0 - correlation) / ((1.0 + correlation) * variance);
+}
+
+/// Least squares about what is usual; the inverse of the normal matrix is the covariance.
+ActuatorEstimator::Solution ActuatorEstimator::solve() const noexcept {
+  const double aside = aside_.weight() / interval_, heading = heading_.weight() / interval_;
+  // [A | b | 1], in units of what is usual; becomes [1 | x | inverse].
+  std::array<std::array<double, 2 * kUnknowns + 1>, kUnknowns> rows{};
+  for (std::size_t i = 0; i < kUnknowns; ++i) {
+    const double unit = kRows[i].usual;
+    for (std::size_t j = 0; j < kUnknowns; ++j)
+      rows[i][j] = unit * kRows[j].usual * (aside * aside_.hh[i][j] + heading * heading_.hh[i][j]);
+    rows[i][kUnknowns] =
+        unit * (aside * aside_.hn[i] + heading * heading_.hn[i]) + (kUsual[i] - here_[i]) / unit;
+    rows[i][i] += 1.0;
+    rows[i][kUnknowns + 1 + i] = 1.0;
+  }
+  for (std::size_t k = 0; k < kUnknowns; ++k) {  // positive definite: no pivoting
+    const double pivot = 1.0 / rows[k][k];
+    for (double& each : rows[k]) each *= pivot;
+    for (std::size_t i = 0; i < kUnknowns; ++i) {
+      if (i == k) continue;
+      const double factor = rows[i][k];
+      for (std::size_t j = 0; j < rows[i].size(); ++j) rows[i][j] -= factor * rows[k][j];
+    }
+  }
+  Solution found;
+  for (std::size_t i = 0; i < kUnknowns; ++i) {
+    found.value[i] = kRows[i].usual * rows[i][kUnknowns];
+    found.deviation[i] = kRows[i].usual * std::sqrt(std::max(rows[i][kUnknowns + 1 + i], 0.0));
+  }
+  return found;
+}
+
+bool ActuatorEstimator::take_up() noexcept {
+  if (time_ < kEnough) return false;
+  const ActuatorAnswer before = answer_;
+  const auto follow = [&](double& driven, Unknown i) {
+    const double estimate = std::clamp(here_[i] + solution_.value[i], kRows[i].least, kRows[i].most);
+    if (std::fabs(estimate - driven) > std::max(kRows[i].step, kSure * solution_.deviation[i]))
+      driven = estimate;
+  };
+  follow(answer_.delay, kDelay);
+  follow(answer_.gain, kGain);
+  follow(answer_.offset, kOffset);
+  return answer_.delay != before.delay || answer_.gain != before.gain || answer_.offset != before.offset;
+}
+
+controller::LearnedCar ActuatorEstimator::learned() const noexcept {
+  if (time_ < kEnough) return {};
+  const auto estimate = [&](Unknown i) {
+    return controller::Estimate{here_[i] + solution_.value[i], solution_.deviation[i]};
+  };
+  return {.delay = estimate(kDelay),
+          .gain = estimate(kGain),
+          .offset = estimate(kOffset),
+          .grip = estimate(kGrip)};
+}
+
+}  // namespace chicane::safety

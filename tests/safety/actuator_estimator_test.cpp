@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/safety/actuator_estimator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
+#include "chicane/base/random.hpp"
+#include "chicane/model/grip.hpp"
+
+namespace chicane::safety {
+namespace {
+
+using controller::CommandHistory;
+using controller::StateEstimator;
+
+constexpr double kPeriod = 0.04;
+constexpr double kTold = 0.1;  // [s] after which commands act, as told
+
+/// How a car is otherwise than told, and the noise of what is measured.
+struct Otherwise {
+  double delay = 0.0, gain = 1.0, offset = 0.0, grip = 1.0;
+  double place_noise = 0.0, heading_noise = 0.0;
+};
+
+/// A car weaves at about 25 m/s and is measured; what is learned is taken up as the guard does.
+class Weaving {
+ public:
+  explicit Weaving(const Otherwise& truth, double most = 0.05)
+      : car_{model::PredictionModel{model::with_grip(model::road_car_params(), truth.grip)}},
+        truth_{truth},
+        most_{most} {
+    car_.correct({.speed = 25.0}, acted_);
+  }
+  void drive(double seconds) {
+    for (const double end = time_ + seconds; time_ < end;) {
+      time_ += kPeriod;
+      const model::State state = car_.predict(time_, acted_).state;
+      model::Measurement now{.time = time_,
+                             .x = state.x,
+                             .y = state.y,
+                             .psi = state.psi,
+                             .speed = std::sqrt(state.vx * state.vx + state.vy * state.vy),
+                             .steer = state.steer};
+      car_.correct(now, acted_);  // of what it predicts itself: nothing changes
+      now.x += truth_.place_noise * random_.normal();
+      now.y += truth_.place_noise * random_.normal();
+      now.psi += truth_.heading_noise * random_.normal();
+      const double before = estimator.answer().delay;
+      if (estimator.take_up()) {
+        ++taken_up;
+        told_.delay(estimator.answer().delay - before);
+      }
+      estimator.see(now, told_);
+      const model::Command wanted{most_ * (sin(1.3 * time_) + 0.5 * sin(4.1 * time_)), 0.2};
+      const model::Command sent = estimator.answer().command_for(wanted);
+      told_.add(time_ + kTold + estimator.answer().delay, sent);
+      acted_.add(time_ + kTold + truth_.delay, {truth_.gain * sent.steer + truth_.offset, sent.throttle});
+    }
+  }
+
+  ActuatorEstimator estimator{model::road_car_params()};
+  int taken_up = 0;
+
+ private:
+  StateEstimator car_;
+  Otherwise truth_;
+  double most_;
+  CommandHistory told_, acted_;
+  Random random_{1};
+  double time_ = 0.0;
+};
+
+void expect_found(const controller::Estimate& found, double truth, double most_deviation, const char* name) {
+  EXPECT_NEAR(found.value, truth, std::max(3.0 * found.deviation, 0.2 * most_deviation)) << name;
+  EXPECT_LT(found.deviation, most_deviation) << name;
+}
+
+TEST(ActuatorEstimator, FindsDelayGainOffsetAndGripAtOnce) {
+  for (const double noise : {0.0, 1.0}) {
+    Weaving car({.delay = 0.06,
+                 .gain = 0.9,
+                 .offset = degrees_to_radians(2.0),
+                 .grip = 0.85,
+                 .place_noise = 0.03 * noise,
+                 .heading_noise = degrees_to_radians(0.2) * noise});
+    car.drive(20.0);
+    const controller::LearnedCar learned = car.estimator.learned();
+    expect_found(learned.delay, 0.06, 0.01, "delay");
+    expect_found(learned.gain, 0.9, 0.03, "gain");
+    expect_found(learned.offset, degrees_to_radians(2.0), degrees_to_radians(0.3), "offset");
+    expect_found(learned.grip, 0.85, 0.05, "grip");
+    const ActuatorAnswer& driven = car.estimator.answer();
+    EXPECT_NEAR(driven.delay, 0.06, 0.015);
+    EXPECT_NEAR(driven.gain, 0.9, 0.05);
+    EXPECT_NEAR(driven.offset, degrees_to_radians(2.0), degrees_to_radians(0.4));
+  }
+}
+
+TEST(ActuatorEstimator, LeavesAUsualCarAsItIs) {
+  Weaving car({.place_noise = 0.05, .heading_noise = degrees_to_radians(0.3)});
+  car.drive(60.0);
+  EXPECT_TRUE(car.estimator.answer().is_usual());
+  EXPECT_EQ(car.estimator.answer().delay, 0.0);
+  EXPECT_EQ(car.taken_up, 0);
+}
+
+/// Straight ahead, the offset shows, and nothing else does: its deviation stays what was assumed.
+TEST(ActuatorEstimator, SaysWhatIsNotExcited) {
+  Weaving car({.delay = 0.06, .gain = 0.8, .place_noise = 0.03, .heading_noise = degrees_to_radians(0.2)},
+              0.0);
+  car.drive(20.0);
+  const controller::LearnedCar learned = car.estimator.learned();
+  EXPECT_GT(learned.delay.deviation, 0.09);
+  EXPECT_GT(learned.gain.deviation, 0.2);
+  EXPECT_GT(learned.grip.deviation, 0.2);
+  EXPECT_LT(learned.offset.deviation, degrees_to_radians(0.3));
+  EXPECT_EQ(car.taken_up, 0);
+}
+
+TEST(ActuatorEstimator, KeepsWhatItKnowsWhereNothingIsMeasured) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  Weaving car({.offset = 0.03});
+  car.drive(10.0);
+  const double before = car.estimator.learned().offset.value;
+  for (int i = 1; i <= 20; ++i)
+    car.estimator.see({.time = 10.0 + 0.04 * i, .x = kNaN, .y = kNaN, .psi = kNaN, .speed = kNaN}, {});
+  EXPECT_EQ(car.estimator.learned().offset.value, before);
+  car.estimator.reset();
+  EXPECT_TRUE(std::isnan(car.estimator.learned().offset.value));
+  EXPECT_TRUE(car.estimator.answer().is_usual());
+}
+
+}  // namespace
+}  // namespace chicane::safety

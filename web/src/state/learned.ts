@@ -1,0 +1,40 @@
+import { fixed } from '../lib/format';
+import type { Frame } from '../protocol/messages';
+
+export interface Learned {
+  label: string;
+  /** "+58 ± 6 ms": the estimate and two standard deviations. */
+  text: string;
+}
+
+const DEGREES = 180 / Math.PI;
+
+function learned(
+  label: string,
+  unit: string,
+  digits: number,
+  value: number,
+  deviation: number,
+  told: number,
+): Learned[] {
+  if (!Number.isFinite(value)) return [];
+  const sign = told === 0 && value > 0 ? '+' : '';
+  return [{ label, text: `${sign}${fixed(value, digits)} ± ${fixed(2 * deviation, digits)}${unit}` }];
+}
+
+/** What the run has found out about its car, over what was told; empty where nothing is estimated. */
+export function learnedOf(frame: Frame): Learned[] {
+  return [
+    ...learned('Delay beyond the told one', ' ms', 0, frame.learned_delay_s * 1e3, frame.learned_delay_sd_s * 1e3, 0),
+    ...learned('Steering gain', '', 2, frame.learned_steer_gain, frame.learned_steer_gain_sd, 1),
+    ...learned(
+      'Steering offset, left positive',
+      '°',
+      2,
+      frame.learned_steer_offset_rad * DEGREES,
+      frame.learned_steer_offset_sd_rad * DEGREES,
+      0,
+    ),
+    ...learned('Grip over the told one', '', 2, frame.learned_grip, frame.learned_grip_sd, 1),
+  ];
+}
