@@ -11,6 +11,7 @@
     tools/sweep_tables.py runs.jsonl waypoints  docs/racing_unknown.md: laps from waypoints alone (plans/racing-waypoints.yaml)
     tools/sweep_tables.py runs.jsonl otherwise  docs/racing_unknown.md: another grip, mass, latency (plans/racing-otherwise.yaml)
     tools/sweep_tables.py runs.jsonl noise      docs/racing_unknown.md: noisy sensors (plans/racing-noise.yaml)
+    tools/sweep_tables.py runs.jsonl maps       docs/import.md: a model car on maps (plans/racing-maps.yaml)
 
 tools/check_figures compares them with the pages, and writes them."""
 import argparse
@@ -114,6 +115,12 @@ def race(runs):
     return pivot(runs, lambda run: f"`{setting(run, 'car')}`, {road(run)}", name, lap_and_edge, ("car, track", "{}"))
 
 
+def maps(runs):
+    def cell(run):
+        return f"{lap(run)} ({run['min_edge_distance_m']:.3f})" if is_clean(run) else "off" if "error" not in run else "refused"
+    return pivot(runs, road, lambda run: f"`{setting(run, 'preset')}`", cell, ("map", "{}"))
+
+
 def waypoints(runs):
     def cell(run):
         laps = ", ".join(f"{time:.2f}" for time in run["lap_times_s"])
@@ -148,7 +155,7 @@ def noise(runs):
 
 
 TABLES = {"numbers": numbers, "pid": pid, "cars": cars, "sensors": sensors, "race": race,
-          "waypoints": waypoints, "otherwise": otherwise, "noise": noise}
+          "waypoints": waypoints, "otherwise": otherwise, "noise": noise, "maps": maps}
 
 
 def main():

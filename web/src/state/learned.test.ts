@@ -13,7 +13,7 @@ describe('learnedOf', () => {
       learned_grip: 0.85,
       learned_grip_sd: 0.01,
     };
-    expect(learnedOf(frame).map((each) => each.text)).toEqual(['+58 ± 6 ms', '-2.01 ± 0.11°', '0.85 ± 0.02']);
+    expect(learnedOf(frame).map((each) => each.text)).toEqual(['+58 ± 6 ms', '−2.01 ± 0.11°', '0.85 ± 0.02']);
   });
   it('is empty where nothing is estimated', () => {
     expect(learnedOf(UNKNOWN_FRAME)).toEqual([]);

@@ -8,7 +8,7 @@ import { call, can, retry } from '../state/operate';
 import { canReplay, endReplay, REPLAY_S, replayLeft, startReplay } from '../state/replay';
 import { isPaused, run } from '../state/run';
 import { closeEnd, reopenEnd, runEnd, showsEnd } from '../state/run_end';
-import { settings } from '../state/settings';
+import { settings, startSettings } from '../state/settings';
 import { commandAgain, sharedNow } from '../state/share';
 import { silence } from '../state/shown';
 import { HashView } from './hash_view';
@@ -47,8 +47,9 @@ function Results() {
 
 function Buttons() {
   const pace = settings.value.get('run.pace');
+  const asked = Number(startSettings.value.get('laps')) || laps.value.length; // a page opened late has not seen all
   const command = commandAgain(sharedNow.value, {
-    laps: runEnd.value?.kind === 'finished' ? laps.value.length : 0,
+    laps: runEnd.value?.kind === 'finished' ? asked : 0,
     pace: typeof pace === 'number' ? pace : NaN,
     port: Number(location.port),
   });
