@@ -8,6 +8,8 @@
     tools/sweep_tables.py runs.jsonl cars       docs/cars.md: cars by track (plans/cars.yaml)
     tools/sweep_tables.py runs.jsonl sensors    docs/latency.md: presets by latency of the sensors (plans/sensor-latency.yaml)
     tools/sweep_tables.py runs.jsonl race       docs/racing.md: `race` with the guard on and off, and `default` (plans/racing.yaml)
+    tools/sweep_tables.py runs.jsonl race_cars  docs/racing.md: `race` with the other cars (plans/racing-cars.yaml)
+    tools/sweep_tables.py runs.jsonl race       the same on circuits (plans/racing-circuits.yaml)
     tools/sweep_tables.py runs.jsonl waypoints  docs/racing_unknown.md: laps from waypoints alone (plans/racing-waypoints.yaml)
     tools/sweep_tables.py runs.jsonl otherwise  docs/racing_unknown.md: another grip, mass, latency (plans/racing-otherwise.yaml)
     tools/sweep_tables.py runs.jsonl noise      docs/racing_unknown.md: noisy sensors (plans/racing-noise.yaml)
@@ -115,10 +117,19 @@ def race(runs):
     return pivot(runs, lambda run: f"`{setting(run, 'car')}`, {road(run)}", name, lap_and_edge, ("car, track", "{}"))
 
 
+def lap_and_millimetres(run):
+    """As lap_and_edge, for roads of model cars, too."""
+    if "error" in run:
+        return "refused"
+    return f"{lap(run)} ({run['min_edge_distance_m']:.3f})" if is_clean(run) else "off"
+
+
 def maps(runs):
-    def cell(run):
-        return f"{lap(run)} ({run['min_edge_distance_m']:.3f})" if is_clean(run) else "off" if "error" not in run else "refused"
-    return pivot(runs, road, lambda run: f"`{setting(run, 'preset')}`", cell, ("map", "{}"))
+    return pivot(runs, road, lambda run: f"`{setting(run, 'preset')}`", lap_and_millimetres, ("map", "{}"))
+
+
+def race_cars(runs):
+    return pivot(runs, lambda run: f"`{setting(run, 'car')}`", road, lap_and_millimetres, ("car", "{}"))
 
 
 def waypoints(runs):
@@ -155,7 +166,8 @@ def noise(runs):
 
 
 TABLES = {"numbers": numbers, "pid": pid, "cars": cars, "sensors": sensors, "race": race,
-          "waypoints": waypoints, "otherwise": otherwise, "noise": noise, "maps": maps}
+          "waypoints": waypoints, "otherwise": otherwise, "noise": noise, "maps": maps,
+          "race_cars": race_cars}
 
 
 def main():

@@ -206,7 +206,7 @@ TEST(Schema, OnlyWhatMakesTheRunAnotherOneIsNotLive) {
                           "preset", "track", "track_scale", "car", "plant", "controller", "seed",
                           "friction_low", "control_period_ms", "waypoints_sent", "vehicle.name",
                           "vehicle.scale", "guard.mode", "guard.road", "guard.half_width_m", "guard.receiver",
-                          "guard.margin_m", "guard.blind_time_s"}));
+                          "guard.margin_m", "guard.blind_time_s", "identify.during_run"}));
 }
 
 TEST(Schema, SuggestsWhatWasMeant) {
