@@ -9,7 +9,6 @@
     tools/sweep_tables.py runs.jsonl sensors    docs/latency.md: presets by latency of the sensors (plans/sensor-latency.yaml)
     tools/sweep_tables.py runs.jsonl race       docs/racing.md: `race` with the guard on and off, and `default` (plans/racing.yaml)
     tools/sweep_tables.py runs.jsonl race_cars  docs/racing.md: `race` with the other cars (plans/racing-cars.yaml)
-    tools/sweep_tables.py runs.jsonl race       the same on circuits (plans/racing-circuits.yaml)
     tools/sweep_tables.py runs.jsonl waypoints  docs/racing_unknown.md: laps from waypoints alone (plans/racing-waypoints.yaml)
     tools/sweep_tables.py runs.jsonl otherwise  docs/racing_unknown.md: another grip, mass, latency (plans/racing-otherwise.yaml)
     tools/sweep_tables.py runs.jsonl noise      docs/racing_unknown.md: noisy sensors (plans/racing-noise.yaml)

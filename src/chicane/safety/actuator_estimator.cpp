@@ -24,6 +24,7 @@ constexpr double kFar = 1.0;  // deviations of the estimate from that place, fro
 constexpr double kCorrelated = 2.0;  // [s] of which correlation and variance are the mean
 constexpr double kMostCorrelation = 0.98;
 constexpr double kSure = 3.0;  // deviations by which an estimate differs from what is driven with
+constexpr double kTold = 0.1;  // of the usual deviation: an estimate that is less certain tells too little
 
 // Of delay [s], gain, offset [rad] and grip: by how much an estimator differs, what is assumed to be usual
 // (standard deviation), the step in which the car is driven with, and the range.
@@ -221,8 +222,13 @@ bool ActuatorEstimator::take_up() noexcept {
   const ActuatorAnswer before = answer_;
   const auto follow = [&](double& driven, Unknown i) {
     const double estimate = std::clamp(here_[i] + solution_.value[i], kRows[i].least, kRows[i].most);
-    if (std::fabs(estimate - driven) > std::max(kRows[i].step, kSure * solution_.deviation[i]))
-      driven = estimate;
+    const double deviation = solution_.deviation[i];
+    const bool is_better = deviation < 0.5 * taken_up_[i];
+    const double apart = kSure * (is_better ? deviation : std::hypot(deviation, taken_up_[i]));
+    if (deviation > kTold * kRows[i].usual || std::fabs(estimate - driven) <= std::max(kRows[i].step, apart))
+      return;
+    driven = estimate;
+    taken_up_[i] = deviation;
   };
   follow(answer_.delay, kDelay);
   follow(answer_.gain, kGain);

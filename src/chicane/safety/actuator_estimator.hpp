@@ -19,8 +19,8 @@ namespace chicane::safety {
 /// each, and least squares over the last kMemory of driving finds the unknowns with their deviations. The
 /// grip is among them, so that tyres that give less do not pass for another steering.
 ///
-/// What is driven with, answer(), follows the estimate in steps, where that differs by more than a step and
-/// three deviations. One thread; allocates nothing.
+/// What is driven with, answer(), follows the estimate in steps, where that is certain enough and differs by
+/// more than a step and three deviations of both. One thread; allocates nothing.
 class ActuatorEstimator {
  public:
   static constexpr double kMemory = 10.0;    ///< time constant of forgetting [s]
@@ -82,9 +82,10 @@ class ActuatorEstimator {
   std::array<controller::StateEstimator, kUnknowns + 1> estimators_;  ///< each but the last has one changed
   Sums aside_, heading_;
   Solution solution_;
-  double time_ = 0.0;                                          ///< of driving, as far as it is remembered [s]
-  double interval_ = 0.0;                                      ///< between measurements, mean [s]
-  double counted_ = 0.0;                                       ///< since here_ changed [s]
+  Values taken_up_{};      ///< deviations of what is driven with when it was taken up; 0: as told
+  double time_ = 0.0;      ///< of driving, as far as it is remembered [s]
+  double interval_ = 0.0;  ///< between measurements, mean [s]
+  double counted_ = 0.0;   ///< since here_ changed [s]
   double slid_at_ = -std::numeric_limits<double>::infinity();  ///< tyres were used too far [s]
 };
 
