@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "chicane/base/math.hpp"
 #include "chicane/model/grip.hpp"
 #include "chicane/model/prediction.hpp"
 
@@ -224,7 +225,7 @@ bool ActuatorEstimator::take_up() noexcept {
     const double estimate = std::clamp(here_[i] + solution_.value[i], kRows[i].least, kRows[i].most);
     const double deviation = solution_.deviation[i];
     const bool is_better = deviation < 0.5 * taken_up_[i];
-    const double apart = kSure * (is_better ? deviation : std::hypot(deviation, taken_up_[i]));
+    const double apart = kSure * (is_better ? deviation : hypot(deviation, taken_up_[i]));
     if (deviation > kTold * kRows[i].usual || std::fabs(estimate - driven) <= std::max(kRows[i].step, apart))
       return;
     driven = estimate;
