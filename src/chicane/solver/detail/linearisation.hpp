@@ -206,9 +206,9 @@ class Linearisation {
   }
   template <int Order, class R>
   static void add_sparse_end_row(const R& r, double value, [[maybe_unused]] double weight, Lq& lq) noexcept {
-    r.each_slope([&](std::size_t i, double slope) {
-      lq.terminal[kNx][i] += value * slope;
-      r.each_slope([&](std::size_t j, double other) { lq.terminal[i][j] += slope * other; });
+    r.each_slope([&](std::size_t i, double by_state) {
+      lq.terminal[kNx][i] += value * by_state;
+      r.each_slope([&](std::size_t j, double other) { lq.terminal[i][j] += by_state * other; });
     });
     if constexpr (Order == 2) {
       r.each_curvature([&](std::size_t i, std::size_t j, double curvature) {

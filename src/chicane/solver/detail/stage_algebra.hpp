@@ -349,19 +349,19 @@ class StageAlgebra {
 
   /// start + row · x
   CHICANE_INLINE static double dot_row(const double* row, const double (&x)[kNx], double start) noexcept {
-    constexpr std::size_t kSums = kNx < 4 ? 1 : (kNx < 8 ? 2 : 4);
-    double sum[kSums] = {start};
+    constexpr std::size_t kParts = kNx < 4 ? 1 : (kNx < 8 ? 2 : 4);
+    double sum[kParts] = {start};
     if constexpr (Layout::is_large()) {
       for (std::size_t i = 0; i < kNx; ++i)
-        sum[i % kSums] = fused_multiply_add<Arch>(row[i], x[i], sum[i % kSums]);
+        sum[i % kParts] = fused_multiply_add<Arch>(row[i], x[i], sum[i % kParts]);
       return (sum[0] + sum[1]) + (sum[2] + sum[3]);
     } else {
       unroll<kNx>([&](auto i) CHICANE_INLINE {
-        double& side = sum[i % kSums];
-        side = i > 0 && i < kSums ? row[i] * x[i] : fused_multiply_add<Arch>(row[i], x[i], side);
+        double& side = sum[i % kParts];
+        side = i > 0 && i < kParts ? row[i] * x[i] : fused_multiply_add<Arch>(row[i], x[i], side);
       });
-      if constexpr (kSums == 4) return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-      if constexpr (kSums == 2) return sum[0] + sum[1];
+      if constexpr (kParts == 4) return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+      if constexpr (kParts == 2) return sum[0] + sum[1];
       return sum[0];
     }
   }
