@@ -160,7 +160,8 @@ class HardSolver {
         progress = {};
       } else if (is_replaced = take_better(now.worst(), trajectory); !converged) {
         break;
-      } else if (is_certified_ || is_infeasible(problem, x0, trajectory, deadline, left, report)) {
+      } else if (is_certified_ ||
+                 (is_replaced = is_infeasible(problem, x0, trajectory, deadline, left, report))) {
         break;
       } else if (is_spent()) {
         break;
@@ -275,7 +276,6 @@ class HardSolver {
   }
 
   // ---- weights and multipliers
-
   void start(const P& problem, const State& x0, Trajectory& trajectory) noexcept {
     problem_.problem = &problem;
     problem_.cost_root = 1.0;
