@@ -15,7 +15,7 @@ constexpr std::size_t kKernelStages = 20;
 template <class Arch>
 void run_kernel(Kernel kernel, Shape shape) noexcept;
 
-/// What an iteration does with the functions of the described problem: simulate inputs, linearise at an
+/// Work of an iteration on the functions of the described problem: simulate inputs, linearise at an
 /// iterate with Hessians of first or second order, and, the last part of that, turn entries into stages of
 /// the quadratic program.
 enum class Part { kRollOut, kFirstOrder, kSecondOrder, kSetStages };

@@ -166,7 +166,7 @@ class Interpreter {
     setting_.budget_s = options["budget_s"].cast<double>();
   }
 
-  /// With `iterations` > 0 a log of so many.
+  /// Solves once; `iterations`: length of the log, 0 for none.
   py::dict solve(const Array& x0, const Array& parameters, const Array& x, const Array& u, bool goes_on,
                  std::size_t iterations) {
     if (main_ == nullptr) main_ = std::make_unique<Worker>(*this);

@@ -11,13 +11,13 @@ struct Estimate {
   double deviation = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation
 };
 
-/// What a run has found out about its car, over what was told: as estimated after the last measurement. What
-/// is driven with follows in steps (docs/identification.md).
+/// Estimates of the car that a run has made by the last measurement, beyond what was told. The car is driven
+/// with them in steps (docs/identification.md).
 struct LearnedCar {
-  Estimate delay;   ///< by which commands act later than told [s]
-  Estimate gain;    ///< of the steering: wheels turn to gain · command + offset
+  Estimate delay;   ///< time by which commands act later than told [s]
+  Estimate gain;    ///< steering gain: wheels turn to gain · command + offset
   Estimate offset;  ///< [rad]
-  Estimate grip;    ///< of the tyres, share of the told one
+  Estimate grip;    ///< grip of the tyres, share of the told one
 };
 
 }  // namespace chicane::controller

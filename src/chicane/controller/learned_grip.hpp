@@ -44,7 +44,7 @@ class LearnedGrip {
   }
   /// Of the model.
   [[nodiscard]] double share() const noexcept { return share_; }
-  /// As it is estimated now.
+  /// Present estimate of the grip and its deviation; NaN before anything is known.
   [[nodiscard]] Estimate estimate() const noexcept {
     if (!estimator_.is_known()) return {};
     return {share_ * estimator_.share(), share_ * estimator_.deviation()};

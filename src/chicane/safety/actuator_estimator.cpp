@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "chicane/base/math.hpp"
@@ -20,11 +21,11 @@ constexpr double kFarAside = 1.0;         // [m] a measurement that is another t
 constexpr double kPerfectSensor = 1e-8;   // of m and rad: that of a perfect sensor
 constexpr double kAverage = 0.5;          // [s] over which the estimators forget what they did not expect
 constexpr double kCounted = 0.5;          // [s] that the estimators count from one place at least
-constexpr double kKeptBehind = 0.5;
+constexpr double kKeptBehind = 0.5;       // share of the sums that is kept where the estimators move on
 constexpr double kFar = 1.0;  // deviations of the estimate from that place, from which on it is another one
-constexpr double kCorrelated = 2.0;  // [s] of which correlation and variance are the mean
-constexpr double kMostCorrelation = 0.98;
-constexpr double kSure = 3.0;  // deviations by which an estimate differs from what is driven with
+constexpr double kCorrelated = 2.0;        // [s] of which correlation and variance are the mean
+constexpr double kMostCorrelation = 0.98;  // from one measurement to the next: some information is left
+constexpr double kSure = 3.0;              // deviations by which an estimate differs from what is driven with
 constexpr double kTold = 0.1;  // of the usual deviation: an estimate that is less certain tells too little
 
 // Of delay [s], gain, offset [rad] and grip: by how much an estimator differs, what is assumed to be usual
@@ -53,16 +54,17 @@ double tire_use(const controller::StateEstimator& estimator) noexcept {
   return std::max(use.front, use.rear);
 }
 
+/// Estimators of the same car, as many as asked for.
+template <std::size_t Count>
+std::array<controller::StateEstimator, Count> estimators_of(const model::VehicleParams& vehicle) noexcept {
+  const auto make = [&](auto) { return controller::StateEstimator{model::PredictionModel{vehicle}}; };
+  return std::apply([&](auto... each) { return std::array{make(each)...}; }, std::array<int, Count>{});
+}
+
 }  // namespace
 
 ActuatorEstimator::ActuatorEstimator(const model::VehicleParams& vehicle) noexcept
-    : vehicle_{without_name(vehicle)},
-      estimators_{[this]<std::size_t... I>(std::index_sequence<I...>){
-          return std::array{((void)I, controller::StateEstimator{model::PredictionModel{vehicle_}})...};
-}  // namespace chicane::safety
-(std::make_index_sequence<kUnknowns + 1>{})
-}
-{
+    : vehicle_{without_name(vehicle)}, estimators_{estimators_of<kUnknowns + 1>(vehicle_)} {
   for (controller::StateEstimator& each : estimators_) each.average_over(kAverage);
   believe();
 }
