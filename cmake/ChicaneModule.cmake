@@ -69,7 +69,7 @@ endfunction()
 function(chicane_test_options target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Og>)
   target_link_libraries(${target} PRIVATE chicane_options chicane_test_support)
-  target_compile_definitions(${target} PRIVATE CHICANE_ENABLE_ASSERT CHICANE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_compile_definitions(${target} PRIVATE CHICANE_ENABLE_ASSERT CHICANE_NO_FORCED_INLINE CHICANE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 endfunction()
 
 function(chicane_test name)

@@ -1,11 +1,11 @@
 # shellcheck shell=bash
 # Configures and builds build/release. Sourced by run.sh and test.sh, after install_packages.sh.
 
-# As many compilers as cores, but no more than memory holds: the largest file takes 1.4 GB.
+# As many compilers as cores, but no more than memory holds: the largest file takes 2 GB.
 build_jobs() {
   local cores memory
   cores=$(nproc)
-  memory=$(awk '/^MemAvailable/ { print int($2 / 1500000) }' /proc/meminfo 2>/dev/null)
+  memory=$(awk '/^MemAvailable/ { print int($2 / 2000000) }' /proc/meminfo 2>/dev/null)
   [ "${memory:-0}" -ge 1 ] || memory=1
   echo $((cores < memory ? cores : memory))
 }

@@ -200,7 +200,6 @@ TEST(HardConstraints, SwingUpAPoleExactly) {
   expect_optimal<HardCartPole>({0, 1, 2, 3, 4, 5}, NaiveStart::kIdle);
   expect_optimal<HardCartPole>({0, 1, 2, 3, 4, 5}, NaiveStart::kLine);
 }
-TEST(HardConstraints, LeadAHandAlongALine) { expect_optimal<ArmOnALine>({0, 1, 3}, NaiveStart::kIdle); }
 // Multipliers of rounds as loose as the tolerance led a third of these astray.
 TEST(HardConstraints, AreMetToALooseTolerance) {
   const auto ocp = std::make_unique<solver::OcpSolver<CraneInLeastTime, CraneInLeastTime::kHorizon>>(
@@ -213,6 +212,19 @@ TEST(HardConstraints, AreMetToALooseTolerance) {
     EXPECT_LE(report.miss, 1e-4) << seed;
   }
 }
+// An inequality at the end that was active in early rounds only kept its multiplier: no optimum.
+TEST(HardConstraints, LetGoOfInequalitiesThatHoldWithRoomToSpare) {
+  expect_optimal<GoddardRocket>({4, 10, 12}, NaiveStart::kIdle);
+}
+TEST(HardConstraints, SetTheDurationAndTheFirstStateOfAMotion) {
+  expect_optimal<CraneInLeastTime>({0, 1, 2}, NaiveStart::kIdle);
+}
+
+#ifdef CHICANE_SLOW_TESTS
+TEST(HardConstraints, CloseAPeriod) {
+  expect_optimal<PeriodicPendulum>({0, 1, 2, 3, 4, 5}, NaiveStart::kIdle);
+}
+TEST(HardConstraints, LeadAHandAlongALine) { expect_optimal<ArmOnALine>({0, 1, 3}, NaiveStart::kIdle); }
 // Misses that came down slowly, in rounds of a few iterations each, were given up as going nowhere: stalled.
 TEST(HardConstraints, HavePatienceWithShortRounds) {
   expect_optimal<ArmOnALine>({117, 159}, NaiveStart::kIdle);
@@ -223,14 +235,7 @@ TEST(HardConstraints, LoseNothingByMoreTurns) {
   for (const int iterations : {500, 1000, 2000})
     expect_optimal<ArmOnALine>({4, 10, 26, 38}, NaiveStart::kIdle, {.max_iterations = iterations});
 }
-// An inequality at the end that was active in early rounds only kept its multiplier: no optimum.
-TEST(HardConstraints, LetGoOfInequalitiesThatHoldWithRoomToSpare) {
-  expect_optimal<GoddardRocket>({4, 10, 12}, NaiveStart::kIdle);
-}
-TEST(HardConstraints, SetTheDurationAndTheFirstStateOfAMotion) {
-  expect_optimal<CraneInLeastTime>({0, 1, 2}, NaiveStart::kIdle);
-  expect_optimal<PeriodicPendulum>({0, 1, 2, 3, 4, 5}, NaiveStart::kIdle);
-}
+#endif
 
 }  // namespace
 }  // namespace chicane::bench

@@ -70,7 +70,9 @@ TEST(OcpSolver, EqualsADenseReferenceOnLinearProblemsWithTwoInputs) { compare_wi
 TEST(OcpSolver, EqualsADenseReferenceOnLinearProblemsWithMoreInputsThanStates) {
   compare_with_dense<2, 4>(23, 200);
 }
+#ifdef CHICANE_SLOW_TESTS
 TEST(OcpSolver, EqualsADenseReferenceOnLinearProblemsWithManyStates) { compare_with_dense<12, 3>(24, 30); }
+#endif
 
 TEST(OcpSolver, SolvesAnUnboundedLinearProblemInOneTurnAndOneSweep) {
   using Problem = test::LinearProblem<3, 2>;

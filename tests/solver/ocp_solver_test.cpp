@@ -95,6 +95,7 @@ TEST_F(OcpSolverTest, SolvesEveryHorizonFromOneToItsCapacity) {
   }
 }
 
+#ifdef CHICANE_SLOW_TESTS
 TEST(OcpSolver, WorksWithACapacityOfOne) {
   DescribedInstance instance;
   instance.problem.path = {1.0, 0.2, 0.0, 0.0};
@@ -105,6 +106,7 @@ TEST(OcpSolver, WorksWithACapacityOfOne) {
   EXPECT_EQ(ocp.solve(instance.problem, instance.start, trajectory).status, SolveStatus::kOptimal);
   EXPECT_LE(bench::projected_gradient(instance.problem, instance.start, trajectory), 1e-6);
 }
+#endif
 
 TEST_F(OcpSolverTest, HoldsAllInputsAtTheirBoundsWhenThatIsOptimal) {
   instance.problem.path = {};

@@ -230,6 +230,7 @@ TEST(StructuredSolve, RefusesAConstraintThatIsNotANumberAtAnyStage) {
   }
 }
 
+#ifdef CHICANE_SLOW_TESTS
 TEST(StructuredSolve, SolvesARacingProblemAndSaysWhatBinds) {
   using Own = solver::OcpSolver<RacingProblem, kCapacity>;
   const auto own = std::make_unique<Own>(solver::SolverOptions{.max_iterations = 100});
@@ -249,6 +250,7 @@ TEST(StructuredSolve, SolvesARacingProblemAndSaysWhatBinds) {
     }
   }
 }
+#endif
 
 TEST(Describe, NamesConstraintStageAndUnit) {
   solver::SolveReport report;
