@@ -13,18 +13,17 @@
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/learned_grip.hpp"
 #include "chicane/model/grip.hpp"
-#include "chicane/model/prediction.hpp"
 #include "chicane/road/driven_road.hpp"
-#include "chicane/tracking/way_back.hpp"
-#include "chicane/tracking/command_history.hpp"
 #include "chicane/tracking/state_estimator.hpp"
 #include "chicane/tracking/tracking_solver.hpp"
+#include "chicane/tracking/way_back.hpp"
 
 namespace chicane::controller {
 namespace {
 
 using Problem = tracking::TrackingProblem;
 using Horizon = tracking::TrackingTrajectory;
+using Prediction = tracking::StateEstimator::Prediction;
 using StageState = std::array<double, Problem::kNx>;
 using StageInput = std::array<double, Problem::kNu>;
 
@@ -67,7 +66,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     estimator_.correct(now, sent_);
     if (options_.learns()) watch_grip(now);
     watch_sight(now);
-    const tracking::StateEstimator::Prediction start = estimator_.predict(act_time, sent_);
+    const Prediction start = estimator_.predict(act_time, sent_);
     is_returning_ = !place_on_line(now, start) || (is_returning_ && std::fabs(x0_[Problem::kE]) > kJoining);
     if (is_returning_ || estimator_.rolls_back()) return return_to_road(now, start, act_time);
     if (start.state.vx < kCrawl && stopping_speed(0.0) < kCrawl) return no_answer(act_time);
@@ -208,8 +207,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   /// The predicted start in coordinates along the line. False when the car or the road is lost.
-  bool place_on_line(const model::Measurement& now,
-                     const tracking::StateEstimator::Prediction& start) noexcept {
+  bool place_on_line(const model::Measurement& now, const Prediction& start) noexcept {
     StepReport& report = result_.report;
     report = {};
     report.solve.status = solver::SolveStatus::kNotFinite;  // until there is an answer
@@ -383,7 +381,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     road.acceleration_max[i] = longitudinal_acceleration(car, 1.0, v);
   }
 
-  const StepResult& accept(const tracking::StateEstimator::Prediction& start, double act_time) noexcept {
+  const StepResult& accept(const Prediction& start, double act_time) noexcept {
     has_horizon_ = true;
     result_.answer = Answer::kDrive;
     fill_plan(act_time);
@@ -399,7 +397,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   /// No time to solve, and the last plan is old: the wheel by feedback to the line, all useful braking.
-  const StepResult& stop_on_road(const tracking::StateEstimator::Prediction& start) noexcept {
+  const StepResult& stop_on_road(const Prediction& start) noexcept {
     const model::VehicleParams& car = model_.vehicle();
     const int ahead = std::min(static_cast<int>(kPreview / options_.step_length), options_.horizon_steps - 1);
     const double v = start.state.vx, braking = longitudinal_acceleration(car, -car.brake_throttle_limit, v);
@@ -416,8 +414,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   /// A car that has spun, or is far from its line: it brakes first, then drives back at walking pace.
-  const StepResult& return_to_road(const model::Measurement& now,
-                                   const tracking::StateEstimator::Prediction& start,
+  const StepResult& return_to_road(const model::Measurement& now, const Prediction& start,
                                    double act_time) noexcept {
     const road::ReferenceLine& line = this->line();
     const model::State& car = start.state;
