@@ -13,11 +13,12 @@
 #include <string>
 #include <vector>
 
-#include "chicane/controller/command_history.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/road/road.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"
+#include "chicane/tracking/command_history.hpp"
+#include "chicane/tracking/state_estimator.hpp"
 #include "problems/cpu_time.hpp"
 
 namespace chicane::bench {
@@ -106,8 +107,8 @@ Times time_road(const scenario::Scenario& scenario, const std::vector<Cycle>& cy
 
 Times time_estimator(const scenario::Scenario& scenario, const std::vector<Cycle>& cycles) {
   const model::PredictionModel model(scenario.vehicle);
-  controller::StateEstimator estimator(model);
-  controller::CommandHistory sent;
+  tracking::StateEstimator estimator(model);
+  tracking::CommandHistory sent;
   return least(
       cycles.size(),
       [&] {

@@ -1,7 +1,7 @@
 # One folder of src/chicane is one static library chicane::<name>; the libraries it may use are its arrows (docs/architecture.md).
 #
-#   chicane_module(path HEADERS path.hpp track.hpp SOURCES path.cpp DEPENDS base PRIVATE yaml-cpp)
-#   chicane_test(path SOURCES path_test.cpp LABELS slow)
+#   chicane_module(road HEADERS path.hpp track.hpp SOURCES path.cpp DEPENDS base model PRIVATE yaml-cpp)
+#   chicane_test(road SOURCES path_test.cpp LABELS slow)
 #
 # Without HEADERS and SOURCES all of the folder belong to the module: so in folders that get a file for each controller, plant, fault or
 # track format; PRIVATE_HEADERS are for our own sources and not installed. SIMD_SOURCES are compiled once for each instruction set

@@ -56,9 +56,9 @@ class Cart final : public sim::Plant {
 // [road]
 /// Reads a road of straights and bends, a line each: its length [m] and by how much it turns to the left
 /// [degrees]. It is 5 m wide to both sides.
-Result<path::Track> read_pieces(const std::string& text, const std::string& file) {
+Result<road::Track> read_pieces(const std::string& text, const std::string& file) {
   constexpr double kSpacing = 5.0, kPi = 3.14159265358979323846;
-  std::vector<path::TrackPoint> points;
+  std::vector<road::TrackPoint> points;
   std::istringstream lines(text);
   Vec2 here{0.0, 0.0};
   double heading = 0.0;
@@ -78,7 +78,7 @@ Result<path::Track> read_pieces(const std::string& text, const std::string& file
       heading += turn * kPi / 180.0 / steps / 2.0;
     }
   }
-  return path::Track::create(file, points, true);
+  return road::Track::create(file, points, true);
 }
 // [/road]
 

@@ -12,9 +12,9 @@
 #include <string>
 
 #include "chicane/base/angle.hpp"
-#include "chicane/path/track.hpp"
-#include "chicane/sim/plant_registry.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/sim/double_track.hpp"
+#include "chicane/sim/plant_registry.hpp"
 #include "chicane/sim/udacity_car.hpp"
 #include "chicane/sim/world.hpp"
 #include "sim/plant_experiment.hpp"
@@ -145,12 +145,12 @@ double microseconds(int count, Step&& step) {
 }
 
 void print_cost(Plant& plant) {
-  std::vector<path::TrackPoint> points;
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 200; ++i) {
     const double angle = kTwoPi * i / 200;
     points.push_back({Vec2{200.0 * std::cos(angle), 200.0 * std::sin(angle)}, 5.0, 5.0});
   }
-  const path::Track track = path::Track::create("circle", points, true).value();
+  const road::Track track = road::Track::create("circle", points, true).value();
   plant.reset({}, 20.0);
   const auto command = [](int i) {
     return model::Command{.steer = 0.02 * std::sin(i * 0.001), .throttle = 0.4};

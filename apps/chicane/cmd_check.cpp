@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <string>
 
-#include "chicane/path/track.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
+#include "chicane/road/track.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "guard_notice.hpp"
@@ -19,7 +19,7 @@ namespace {
 std::string metres(double length) { return fmt::format("{:.{}f}", length, length < 3.0 ? 2 : 1); }
 
 /// The road in words, as the run has it.
-std::string road_in_words(const path::Track& track) {
+std::string road_in_words(const road::Track& track) {
   const double length = track.centre().length();
   const double step = std::min(1.0, length / 1000.0);
   double narrowest = 1e9;

@@ -69,7 +69,7 @@ constexpr const char* kNotAsked = "not asked for (--limit)";
 /// Reason in a recording: its reader gives no options to this run any more.
 constexpr const char* kNotLookedFor = "this run was driven without looking for it";
 
-lap_time::LimitAnswer answer_of(const path::Track& track, const lap_time::PlantLimit& limit) {
+lap_time::LimitAnswer answer_of(const road::Track& track, const lap_time::PlantLimit& limit) {
   if (!limit.is_whole())
     return {.why_not = "its search has used up its budget; `chicane limit` has one to set"};
   return {.found = std::make_shared<const lap_time::Limit>(lap_time::bound_from_start(track, limit))};

@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "chicane/base/text.hpp"
-#include "chicane/path/point_fit.hpp"
 #include "chicane/protocol/csv_track.hpp"
 #include "chicane/protocol/foreign_tracks.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/origin.hpp"
+#include "chicane/road/point_fit.hpp"
 #include "commands.hpp"
 #include "import_preview.hpp"
 #include "many_runs.hpp"
@@ -29,10 +29,10 @@ constexpr double kPointsAcross = 5.0;  // spacing of the points is the width ove
 /// A road as it was read, and as it is written.
 struct Imported {
   TrackFile content;
-  path::Track track;
+  road::Track track;
   std::string kind;      ///< "occupancy map"
   double spacing = 0.0;  ///< distance between the written points [m]
-  path::PointFit fit{};
+  road::PointFit fit{};
   double narrowest = 1e9, widest = 0.0;  ///< [m]
   double sharpest = 0.0;                 ///< curvature [1/m]
 };
@@ -55,14 +55,14 @@ TrackReadOptions read_options(const Options::Import& import, double scale) {
 
 double mean_width(const TrackFile& content) {
   double sum = 0.0;
-  for (const path::TrackPoint& point : content.points) sum += point.left + point.right;
+  for (const road::TrackPoint& point : content.points) sum += point.left + point.right;
   return sum / static_cast<double>(content.points.size());
 }
 
 /// How far the points of the file are from the line, and what the road is like.
 void measure(Imported& road) {
-  const path::Path& centre = road.track.centre();
-  road.fit = path::point_fit(road.track);
+  const road::Path& centre = road.track.centre();
+  road.fit = road::point_fit(road.track);
   const double step = road.track.length() / std::ceil(road.track.length() / (0.5 * road.spacing));
   for (double s = 0.0; s < road.track.length(); s += step) {
     const double width = road.track.left_width(s) + road.track.right_width(s);
@@ -86,7 +86,7 @@ Result<Imported> read_road(const Options::Import& import) {
         import.file, mean_width(*content)));
   }
   const double usual = std::clamp(mean_width(*content) / kPointsAcross, 0.05, 2.0);
-  Result<path::Track> track = protocol::make_track(*content);
+  Result<road::Track> track = protocol::make_track(*content);
   if (!track) return fail(track.error());
   Imported road{.content = std::move(*content),
                 .track = std::move(*track),
@@ -173,7 +173,7 @@ Result<void> import_and_tell(const Options& options) {
   const Result<TrackFile> again = protocol::parse_track(
       csv, options.output_file.empty() ? import.file : options.output_file, {.scale = road->content.scale});
   if (!again) return fail(again.error());
-  if (const Result<path::Track> made = protocol::make_track(*again); !made) return fail(made.error());
+  if (const Result<road::Track> made = protocol::make_track(*again); !made) return fail(made.error());
   if (!options.output_file.empty())
     if (Result<void> kept = write_file(options.output_file, csv); !kept) return kept;
   if (!import.preview.empty())

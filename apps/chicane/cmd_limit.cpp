@@ -21,7 +21,7 @@ Result<void> print_limit(const Options& options) {
   catch_interrupts(wants_stop);
   const Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
-  const Result<path::Track> track = run::make_track(*scenario);
+  const Result<road::Track> track = run::make_track(*scenario);
   if (!track) return fail(track.error());
   print_notices(*scenario);
   if (!options.csv_file.empty()) {

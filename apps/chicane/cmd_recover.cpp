@@ -133,7 +133,7 @@ Result<CarOnTrack> pair_of(const Options& options, const std::string& track, con
   settings.emplace_back("car", car);
   Result<scenario::Scenario> scenario = protocol::compose({"", settings});
   if (!scenario) return fail(scenario.error());
-  const Result<path::Track> road = run::make_track(*scenario);
+  const Result<road::Track> road = run::make_track(*scenario);
   if (!road) return fail(road.error());
   auto starts = run::start_poses(*road, options.recover.starts, options.recover.seed);
   if (options.recover.only > static_cast<int>(starts.size()))

@@ -19,7 +19,7 @@ Result<wire::SimulateReport> connect_and_drive(const Options& options) {
   simulating.server_command = options.server;
   return drive_by_external(
       options, {}, stop,
-      [&](const scenario::Scenario& scenario, const path::Track&, const wire::SimulateHooks& hooks) {
+      [&](const scenario::Scenario& scenario, const road::Track&, const wire::SimulateHooks& hooks) {
         return wire::simulate(simulating, scenario, hooks, stop);
       });
 }

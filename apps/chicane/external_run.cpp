@@ -25,7 +25,7 @@ namespace chicane::apps {
 namespace {
 
 /// Our road and car; the controller is not known.
-protocol::Run description_of_external(const scenario::Scenario& scenario, const path::Track& track) {
+protocol::Run description_of_external(const scenario::Scenario& scenario, const road::Track& track) {
   protocol::Run run;
   run.controller = run.preset = "external";
   live::describe(scenario, run);
@@ -38,7 +38,7 @@ protocol::Run description_of_external(const scenario::Scenario& scenario, const 
 }  // namespace
 
 Result<wire::ServeSummary> drive_external_car(const Options& options, scenario::Scenario scenario,
-                                              std::optional<path::Track> track,
+                                              std::optional<road::Track> track,
                                               const std::function<std::string(std::uint16_t)>& partner,
                                               std::atomic<bool>& stop, const live::ServeFunction& serve) {
   Result<std::unique_ptr<controller::Controller>> controller = run::make_controller(scenario);
@@ -91,7 +91,7 @@ Result<wire::SimulateReport> drive_by_external(const Options& options, const Ext
                                                const SimulateFunction& simulate) {
   const Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
-  const Result<path::Track> track = run::make_track(*scenario);
+  const Result<road::Track> track = run::make_track(*scenario);
   if (!track) return fail(track.error());
   const auto kept = KeptRun::start(options, description_of_external(*scenario, *track), *scenario, 0.0);
   if (!kept) return fail(kept.error());

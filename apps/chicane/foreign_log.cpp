@@ -30,7 +30,7 @@ bool is_asked_for(const Options& options, std::string_view key) {
                      [&](const auto& setting) { return setting.first == key; });
 }
 
-std::string in_words(const identify::DriveLog& log, const path::Track* track, int laps, std::size_t frames) {
+std::string in_words(const identify::DriveLog& log, const road::Track* track, int laps, std::size_t frames) {
   std::string missing;
   if (log.told.empty()) missing += ", no commands";
   if (!log.told.empty() && !log.has_throttle()) missing += ", no pedal";
@@ -66,9 +66,9 @@ Result<void> convert_foreign_log(const std::string& file, const Options& options
   const Result<scenario::Scenario> scenario =
       protocol::compose({.scenario_file = {}, .settings = options.settings});
   if (!scenario) return fail(scenario.error());
-  std::optional<path::Track> track;
+  std::optional<road::Track> track;
   if (is_asked_for(options, "track")) {
-    Result<path::Track> made = run::make_track(*scenario);
+    Result<road::Track> made = run::make_track(*scenario);
     if (!made) return fail(made.error());
     track = std::move(*made);
   }

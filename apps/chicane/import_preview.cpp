@@ -69,7 +69,7 @@ void draw(const std::vector<Vec2>& line, bool is_closed, const View& view, surve
 
 }  // namespace
 
-std::string preview_of(const path::Track& track, const protocol::TrackFile& content) {
+std::string preview_of(const road::Track& track, const protocol::TrackFile& content) {
   const bool is_closed = track.centre().is_closed();
   std::vector<Vec2> line, left, right;
   constexpr int kSteps = 2000;
@@ -92,7 +92,7 @@ std::string preview_of(const path::Track& track, const protocol::TrackFile& cont
   survey::Picture picture(std::min(view.width(), 2 * kLongest), std::min(view.height(), 2 * kLongest),
                           kGround);
   if (const auto map = protocol::read_map(content.file)) draw_map(*map, view, picture);
-  for (const path::TrackPoint& point : content.points) {
+  for (const road::TrackPoint& point : content.points) {
     const Vec2 at = view.at(point.position);
     picture.draw_line(at.x() - 1.0, at.y(), at.x() + 1.0, at.y(), kPoint, 2);
   }

@@ -12,7 +12,7 @@
 
 namespace chicane::apps {
 
-Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario, const path::Track& track,
+Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario, const road::Track& track,
                                       const LimitQuestion& question, const std::atomic<bool>& wants_stop,
                                       double& wall_time) {
   using Clock = std::chrono::steady_clock;

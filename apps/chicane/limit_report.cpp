@@ -19,9 +19,9 @@ struct LineExtent {
   double least_speed = 0.0, top_speed = 0.0;
 };
 
-LineExtent extent_of(const path::RacingLine& line) {
+LineExtent extent_of(const road::RacingLine& line) {
   LineExtent extent{line.points.front().vx, line.points.front().vx};
-  for (const path::RacingLinePoint& p : line.points) {
+  for (const road::RacingLinePoint& p : line.points) {
     extent.least_speed = std::min(extent.least_speed, std::hypot(p.vx, p.vy));
     extent.top_speed = std::max(extent.top_speed, std::hypot(p.vx, p.vy));
   }
@@ -91,8 +91,8 @@ std::string to_json(const LimitRun& run, const lap_time::PlantLimit& limit) {
   return protocol::json_text(json, protocol::JsonLayout::kIndented) + "\n";
 }
 
-std::string to_csv(const LimitRun& run, const path::Track& track, const lap_time::PlantLimit& limit) {
-  const path::RacingLine& line = limit.witness ? limit.witness->line : limit.line;
+std::string to_csv(const LimitRun& run, const road::Track& track, const lap_time::PlantLimit& limit) {
+  const road::RacingLine& line = limit.witness ? limit.witness->line : limit.line;
   std::string text = fmt::format(
       "# A lap of {} on {} in {:.4f} s, planned for the plant {} with {:g} m to spare (chicane limit, "
       "docs/limit.md)\n"
@@ -101,8 +101,8 @@ std::string to_csv(const LimitRun& run, const path::Track& track, const lap_time
       "steer_asked_rad,ax_mps2,throttle\n",
       run.car, run.track, line.lap_time(), line.car, line.margin, track.kerb_width());
   for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {  // the last repeats the first
-    const path::RacingLinePoint& p = line.points[i];
-    const path::PathPoint foot = track.centre().at(p.s);
+    const road::RacingLinePoint& p = line.points[i];
+    const road::PathPoint foot = track.centre().at(p.s);
     const Vec2 place =
         foot.position + p.offset * Vec2{-chicane::sin(foot.heading), chicane::cos(foot.heading)};
     text += fmt::format(

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "chicane/lap_time/plant_limit.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 
 namespace chicane::apps {
 
@@ -19,8 +19,8 @@ struct LimitRun {
 /// One JSON object (docs/cli.md).
 [[nodiscard]] std::string to_json(const LimitRun& run, const lap_time::PlantLimit& limit);
 /// The line of the witness, which was driven, or else of the bound: the columns of a track first, so that it
-/// can be driven on, then the whole motion of the car (path::RacingLinePoint).
-[[nodiscard]] std::string to_csv(const LimitRun& run, const path::Track& track,
+/// can be driven on, then the whole motion of the car (road::RacingLinePoint).
+[[nodiscard]] std::string to_csv(const LimitRun& run, const road::Track& track,
                                  const lap_time::PlantLimit& limit);
 
 }  // namespace chicane::apps

@@ -74,9 +74,9 @@ Result<void> check_topics(const ros::TopicNames& topics) {
 Result<wire::ServeSummary> drive_until_stopped(const Options& options, const ros::NodeOptions& node) {
   Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
-  std::optional<path::Track> track;
+  std::optional<road::Track> track;
   if (node.topics.path.empty()) {
-    Result<path::Track> made = run::make_track(*scenario);
+    Result<road::Track> made = run::make_track(*scenario);
     if (!made) return fail(made.error());
     track = std::move(*made);
   }
@@ -105,12 +105,12 @@ ExitCode simulate_node(const Options& options, const ros::NodeOptions& node) {
       options,
       {.wants_limit = false,
        .on_start =
-           [&](const scenario::Scenario& scenario, const path::Track& track) {
+           [&](const scenario::Scenario& scenario, const road::Track& track) {
              return fmt::format("{} on {} waits for {} in DDS domain {} (Ctrl-C ends)", scenario.car,
                                 track.name(), node.topics.drive, node.network.domain);
            }},
       ros_stop,
-      [&](const scenario::Scenario& scenario, const path::Track&, const wire::SimulateHooks& hooks) {
+      [&](const scenario::Scenario& scenario, const road::Track&, const wire::SimulateHooks& hooks) {
         return ros::simulate(node, scenario, hooks, ros_stop);
       });
   if (!done) return report(done.error());

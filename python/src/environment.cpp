@@ -119,21 +119,21 @@ Result<void> Environment::reset(std::uint64_t seed) {
 
 /// Stands the car anywhere on the centre line.
 void Environment::place(Random& random) {
-  const path::Path& centre = loop_->track().centre();
-  const path::PathPoint at = centre.at(random.uniform(0.0, centre.length()));
+  const road::Path& centre = loop_->track().centre();
+  const road::PathPoint at = centre.at(random.uniform(0.0, centre.length()));
   loop_->restart_at({.x = at.position.x(), .y = at.position.y(), .psi = at.heading});
 }
 
 /// The foot of the measured place on the centre line. A place on the road near the foot before is that of no
-/// other road, as roads keep apart (path::Track): the whole line is searched for others only.
+/// other road, as roads keep apart (road::Track): the whole line is searched for others only.
 void Environment::find_foot() noexcept {
   if (options_.observation != Observation::kTrack || !std::isfinite(seen_.x + seen_.y + seen_.psi)) return;
-  const path::Track& track = loop_->track();
+  const road::Track& track = loop_->track();
   const scenario::Scenario& scenario = loop_->scenario();
   const Vec2 at(seen_.x, seen_.y);
   if (std::isfinite(foot_.distance)) {
     const double driven = std::fabs(seen_.speed) * scenario.control_period;
-    const path::Projection near =
+    const road::Projection near =
         track.centre().project(at, foot_.s, kNear * scenario.vehicle.scale + 2.0 * driven);
     const bool is_foot = near.distance <= std::fabs(near.d) + kRounding;  // not the end of what was searched
     if (is_foot && track.edge_distance(near) >= 0.0) {
@@ -185,7 +185,7 @@ void Environment::observe_track(std::span<double> to) const noexcept {
   to[3] = seen_.steer;
   to[4] = seen_.throttle;
   if (!std::isfinite(seen_.x + seen_.y + seen_.psi)) return;
-  const path::Path& centre = loop_->track().centre();
+  const road::Path& centre = loop_->track().centre();
   const double scale = loop_->scenario().vehicle.scale;
   to[1] = foot_.d;
   to[2] = wrap_angle(seen_.psi - centre.at(foot_.s).heading);

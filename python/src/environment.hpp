@@ -12,7 +12,7 @@
 #include "chicane/base/random.hpp"
 #include "chicane/base/result.hpp"
 #include "chicane/model/state.hpp"
-#include "chicane/path/path.hpp"
+#include "chicane/road/path.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/roads.hpp"
 #include "chicane/scenario/scenario.hpp"
@@ -101,7 +101,7 @@ class Environment {
   std::unique_ptr<run::ClosedLoop> loop_;
   Agent* agent_ = nullptr;  ///< the controller of loop_
   model::Measurement seen_;
-  path::Projection foot_;  ///< seen place on the track, where kTrack asks for it
+  road::Projection foot_;  ///< seen place on the track, where kTrack asks for it
   double progress_ = 0.0;
   int off_track_events_ = 0;
   bool has_ended_ = true;

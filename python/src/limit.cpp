@@ -16,13 +16,13 @@ namespace {
 
 struct Experiment {
   scenario::Scenario scenario;
-  path::Track track;
+  road::Track track;
 };
 
 Result<Experiment> experiment_of(const protocol::Request& request) {
   const Result<scenario::Scenario> scenario = protocol::compose(request);
   if (!scenario) return fail(scenario.error());
-  Result<path::Track> track = run::make_track(*scenario);
+  Result<road::Track> track = run::make_track(*scenario);
   if (!track) return fail(track.error());
   return Experiment{*scenario, std::move(*track)};
 }
@@ -52,10 +52,10 @@ struct FoundLimit {
   std::vector<Vec2> points;  ///< of its line, in W [m]
 };
 
-std::vector<Vec2> points_of(const path::RacingLine& line, const path::Track& track) {
+std::vector<Vec2> points_of(const road::RacingLine& line, const road::Track& track) {
   std::vector<Vec2> points;
-  for (const path::RacingLinePoint& each : line.points) {
-    const path::PathPoint centre = track.centre().at(each.s);
+  for (const road::RacingLinePoint& each : line.points) {
+    const road::PathPoint centre = track.centre().at(each.s);
     points.push_back(centre.position +
                      each.offset * Vec2(-chicane::sin(centre.heading), chicane::cos(centre.heading)));
   }
@@ -79,7 +79,7 @@ py::dict limit(const protocol::Request& request, bool wants_witness) {
   Result<FoundLimit> found = unlocked([&] { return plant_limit(request, wants_witness, signals); });
   signals.raise();
   const auto [limit, points] = value_of(std::move(found));
-  using Point = path::RacingLinePoint;
+  using Point = road::RacingLinePoint;
   py::dict told;
   told["bound_s"] = limit.bound.lap;
   told["sector_times_s"] = list_of(limit.bound.sectors);

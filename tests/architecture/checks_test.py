@@ -57,7 +57,7 @@ class Checks(unittest.TestCase):
         for path, text, reason in (
             ("src/chicane/base/math.hpp", '#include "chicane/solver/solve.hpp"\n', "base must not include solver/solve.hpp"),
             ("src/chicane/solver/solve.cpp", '#include "chicane/net/server.hpp"\n', "solver must not include net/server.hpp"),
-            ("src/chicane/path/path.hpp", '#include "chicane/model/state.hpp"\n', "path must not include model/state.hpp"),
+            ("src/chicane/road/path.hpp", '#include "chicane/model/state.hpp"\n', "path must not include model/state.hpp"),
             ("src/chicane/safety/gate.hpp", '#include "chicane/controller/mpc.hpp"\n', "must not include controller/mpc.hpp"),
             ("src/chicane/solver/CMakeLists.txt", ("chicane_module(solver DEPENDS base sim)",), "solver must not link sim"),
             ("src/chicane/solver/CMakeLists.txt", ("chicane_module(solver)",), "does not list base in DEPENDS"),

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "chicane/controller/cubic_mpc.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/sim/actuation_delay.hpp"
 #include "chicane/sim/sensor.hpp"

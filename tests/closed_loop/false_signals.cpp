@@ -228,8 +228,8 @@ void make_false(run::ClosedLoop& loop, const FalseSignal& signal, std::shared_pt
     };
   loop.intercept(std::move(interceptor));
   if (signal.put_on_lap < 0.0) return;
-  const path::Track& track = loop.track();
-  const path::PathPoint point = track.centre().at(track.start_s() + signal.put_on_lap * track.lap_length());
+  const road::Track& track = loop.track();
+  const road::PathPoint point = track.centre().at(track.start_s() + signal.put_on_lap * track.lap_length());
   loop.put_car({.x = point.position.x(), .y = point.position.y(), .psi = point.heading});
 }
 

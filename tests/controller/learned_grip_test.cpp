@@ -13,8 +13,8 @@ namespace {
 LearnedGrip driven_with(double grip, double seconds) {
   const model::VehicleParams told = model::road_car_params();
   model::PredictionModel believed{told};
-  StateEstimator truth{model::PredictionModel{model::with_grip(told, grip)}}, seen{believed};
-  CommandHistory sent;
+  tracking::StateEstimator truth{model::PredictionModel{model::with_grip(told, grip)}}, seen{believed};
+  tracking::CommandHistory sent;
   model::Measurement now{.speed = 25.0};
   truth.correct(now, sent);
   seen.correct(now, sent);

@@ -14,21 +14,21 @@ namespace {
 constexpr double kRadius = 30.0;
 
 /// 200 m straight on along x, then half a circle to the left.
-path::Path road() {
+road::Path road() {
   std::vector<Vec2> points;
   for (int i = 0; i < 40; ++i) points.emplace_back(5.0 * i, 0.0);
   for (int i = 0; i <= 40; ++i) {
     const double angle = kPi * i / 40.0;
     points.emplace_back(200.0 + kRadius * std::sin(angle), kRadius * (1.0 - std::cos(angle)));
   }
-  return path::Path::create(points, false).value();
+  return road::Path::create(points, false).value();
 }
 
 const SpeedHold kHold{{.speed_reference = 25.0, .speed_gain = 0.3, .lateral_acceleration_limit = 6.0},
                       model::udacity_params()};
 
 TEST(SpeedHold, AsksForTheReferenceUntilABendHasToBeBrakedFor) {
-  const path::Path path = road();
+  const road::Path path = road();
   EXPECT_EQ(kHold.reference(path, 0.0).speed, 25.0);
   EXPECT_EQ(kHold.reference(path, 0.0).limiter, SpeedLimiter::kAsked);
   const SpeedHold::Wanted before = kHold.reference(path, 180.0);

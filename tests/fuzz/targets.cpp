@@ -155,7 +155,7 @@ void map(std::string_view bytes) {
   }
   const auto loop = survey::find_loop(space, {});
   if (!loop) return check(loop.error());
-  for (const path::TrackPoint& point : loop->points)
+  for (const road::TrackPoint& point : loop->points)
     promise(point.position.is_finite() && point.left > 0.0 && point.right > 0.0 &&
             std::isfinite(point.left + point.right));
 }

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <vector>
 
-#include "chicane/path/track.hpp"
 #include "chicane/protocol/ros_messages.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/telemetry/frame.hpp"
 
 namespace chicane::demo {
 
 /// A winding closed road of about 1.3 km, drawn by hand for viewer tests.
-inline std::vector<path::TrackPoint> road_points() {
-  std::vector<path::TrackPoint> points;
+inline std::vector<road::TrackPoint> road_points() {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 240; ++i) {
     const double angle = 2.0 * M_PI * i / 240.0;
     const double radius = 170.0 + 42.0 * std::sin(2.0 * angle + 0.4) + 24.0 * std::sin(3.0 * angle) +
@@ -27,7 +27,7 @@ inline std::vector<path::TrackPoint> road_points() {
 /// the step count.
 class Drive {
  public:
-  Drive(const path::Track& track, double period) : track_{track}, period_{period} { reset(); }
+  Drive(const road::Track& track, double period) : track_{track}, period_{period} { reset(); }
 
   void reset() {
     frame_ = {};
@@ -67,7 +67,7 @@ class Drive {
     return std::min(46.0, std::sqrt(9.0 / curvature));
   }
   [[nodiscard]] model::Pose pose(double s) const {
-    const path::PathPoint at = track_.centre().at(s);
+    const road::PathPoint at = track_.centre().at(s);
     const double d = offset(s);
     const double slope = 1.4 * 2.0 * M_PI * 9.0 / length() * std::cos(2.0 * M_PI * 9.0 * s / length());
     return {at.position.x() - d * std::sin(at.heading), at.position.y() + d * std::cos(at.heading),
@@ -133,7 +133,7 @@ class Drive {
       plan.reference[i] = track_.centre().at(s_ + 3.0 * static_cast<double>(i)).position;
   }
 
-  const path::Track& track_;
+  const road::Track& track_;
   double period_;
   telemetry::Frame frame_;
   double s_ = 0.0;

@@ -58,7 +58,7 @@ struct Requests {
 constexpr std::string_view kSchema = R"([{"key": "demo.gain", "group": "demo", "kind": "number", "unit": "",
 "minimum": 0, "maximum": 10, "choices": [], "default": 1.5, "meaning": "Nothing.", "is_live": true}])";
 
-protocol::Run run_of(const path::Track& track, double period) {
+protocol::Run run_of(const road::Track& track, double period) {
   protocol::Run run;
   run.track = track.name();
   run.track_length = track.centre().length();
@@ -80,7 +80,7 @@ bool stdin_is_closed(int wait_ms) {
 
 int main(int argc, char** argv) {
   constexpr double kPeriod = 0.04;
-  const auto track = path::Track::create("demo road", demo::road_points(), true);
+  const auto track = road::Track::create("demo road", demo::road_points(), true);
   if (!track) return fmt::print(stderr, "{}\n", track.error().message), 1;
   net::ServerOptions server_options;
   server_options.port = 0;

@@ -18,14 +18,14 @@ namespace chicane::lap_time {
 namespace {
 
 /// Corners to both sides, some of them tight.
-path::Track road() {
-  std::vector<path::TrackPoint> points;
+road::Track road() {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 160; ++i) {
     const double angle = kTwoPi * i / 160.0;
     const double radius = 70.0 + 20.0 * std::cos(2.0 * angle) + 5.0 * std::sin(5.0 * angle);
     points.push_back({{radius * std::cos(angle), radius * std::sin(angle)}, 4.0, 4.0});
   }
-  return *path::Track::create("clover", points, true);
+  return *road::Track::create("clover", points, true);
 }
 
 /// Numbers in [low, high] that are the same on every machine.
@@ -43,7 +43,7 @@ class Numbers {
 class Adversary : public testing::TestWithParam<const char*> {};
 
 TEST_P(Adversary, BeatsNoBoundWithWhateverItBelievesAndRisks) {
-  const path::Track track = road();
+  const road::Track track = road();
   const PlantLimitOptions options{.time_step = 0.1, .wants_witness = false};
   const Result<PlantLimit> limit = find_plant_limit(track, GetParam(), {}, options);
   ASSERT_TRUE(limit) << limit.error().message;

@@ -13,19 +13,19 @@ namespace {
 
 constexpr double kRadius = 50.0, kInside = 2.0, kSpeed = 20.0;
 
-path::Track ring(double start_s) {
-  std::vector<path::TrackPoint> points;
+road::Track ring(double start_s) {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 90; ++i) {
     const double angle = kTwoPi * i / 90;
     points.push_back({kRadius * Vec2{std::cos(angle), std::sin(angle)}, 5.0, 5.0});
   }
-  path::TrackOptions options;
+  road::TrackOptions options;
   options.start_s = start_s;
-  return path::Track::create("ring", points, true, options).value();
+  return road::Track::create("ring", points, true, options).value();
 }
 
 /// A lap at a constant distance inside of the ring's centre line, at one speed.
-PlantLimit inner_lap(const path::Track& track) {
+PlantLimit inner_lap(const road::Track& track) {
   PlantLimit limit;
   limit.line.length = track.length();
   const double lap_time = kTwoPi * (kRadius - kInside) / kSpeed;
@@ -37,12 +37,12 @@ PlantLimit inner_lap(const path::Track& track) {
 }
 
 TEST(Limit, BeginsAtTheStartLineAndEndsThereALapLater) {
-  const path::Track track = ring(100.0);
+  const road::Track track = ring(100.0);
   const PlantLimit found = inner_lap(track);
   const Limit limit = bound_from_start(track, found);
   EXPECT_EQ(limit.times.lap, found.bound.lap);
   ASSERT_GE(limit.line.size(), 101U);
-  const path::LinePoint &first = limit.line.front(), &last = limit.line.back();
+  const road::LinePoint &first = limit.line.front(), &last = limit.line.back();
   EXPECT_NEAR(first.s, 100.0, 1e-9);
   EXPECT_NEAR(last.s, 100.0, 1e-9);
   EXPECT_EQ(first.time, 0.0);
@@ -50,7 +50,7 @@ TEST(Limit, BeginsAtTheStartLineAndEndsThereALapLater) {
   EXPECT_EQ(last.position, first.position);
   EXPECT_NEAR(last.heading - first.heading, kTwoPi, 1e-6) << "continuous along the lap";
   for (std::size_t i = 1; i < limit.line.size(); ++i) {
-    const path::LinePoint &before = limit.line[i - 1], &now = limit.line[i];
+    const road::LinePoint &before = limit.line[i - 1], &now = limit.line[i];
     EXPECT_GT(now.time, before.time) << i;
     EXPECT_LT(std::fabs(now.heading - before.heading), 0.1) << i;
     EXPECT_NEAR(now.curvature, 1.0 / (kRadius - kInside), 2e-4) << i;  // from differences of headings
@@ -60,7 +60,7 @@ TEST(Limit, BeginsAtTheStartLineAndEndsThereALapLater) {
 }
 
 TEST(Limit, OfARoadThatBeginsAtItsStartLineKeepsItsPoints) {
-  const path::Track track = ring(0.0);
+  const road::Track track = ring(0.0);
   const PlantLimit found = inner_lap(track);
   const Limit limit = bound_from_start(track, found);
   ASSERT_EQ(limit.line.size(), found.line.points.size());

@@ -15,16 +15,16 @@ namespace {
 
 /// A closed road with corners to both sides, one side wider than the other; `side` −1 mirrors it at the y
 /// axis, along which the original's helper has its gap.
-path::Track bean(double side = 1.0, double size = 1.0) {
-  std::vector<path::TrackPoint> points;
+road::Track bean(double side = 1.0, double size = 1.0) {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 140; ++i) {
     const double angle = kTwoPi * i / 140.0;
     const double radius = size * (75.0 + 25.0 * std::cos(2.0 * angle) + 12.0 * std::sin(3.0 * angle));
-    path::TrackPoint point{{side * radius * std::cos(angle), radius * std::sin(angle)}, 4.0, 5.0};
+    road::TrackPoint point{{side * radius * std::cos(angle), radius * std::sin(angle)}, 4.0, 5.0};
     if (side < 0.0) std::swap(point.left, point.right);
     points.push_back(point);
   }
-  return *path::Track::create("bean", points, true);
+  return *road::Track::create("bean", points, true);
 }
 
 const PlantLimitOptions kCoarse{.time_step = 0.1};
@@ -72,8 +72,8 @@ TEST_P(PlantLimitOf, TheLineTellsTheMotionOfALap) {
   EXPECT_NEAR(limit.bound.sectors[0] + limit.bound.sectors[1] + limit.bound.sectors[2], limit.bound.lap,
               1e-9);
   for (std::size_t i = 1; i < limit.line.points.size(); ++i) {
-    const path::RacingLinePoint& a = limit.line.points[i - 1];
-    const path::RacingLinePoint& b = limit.line.points[i];
+    const road::RacingLinePoint& a = limit.line.points[i - 1];
+    const road::RacingLinePoint& b = limit.line.points[i];
     ASSERT_NEAR(b.vx - a.vx, 0.5 * (a.acceleration + b.acceleration) * (b.time - a.time), 0.02)
         << a.s;  // the gap of the helper is not in `acceleration`
   }
@@ -92,13 +92,13 @@ INSTANTIATE_TEST_SUITE_P(Plants, PlantLimitOf, testing::Values("udacity", "road-
 
 TEST(PlantLimit, ARoadShorterThanTheCarsTightestCircleIsRefused) {
   // A ring of 4 m, 1.3 m to each side.
-  std::vector<path::TrackPoint> points;
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 60; ++i) {
     const double angle = kTwoPi * i / 60.0;
     points.push_back({{4.0 * std::cos(angle), 4.0 * std::sin(angle)}, 1.3, 1.3});
   }
-  const path::Track track =
-      *path::Track::create("ring", points, true, {.spacing = 0.3, .smoothing_sigma = 0.0});
+  const road::Track track =
+      *road::Track::create("ring", points, true, {.spacing = 0.3, .smoothing_sigma = 0.0});
   const Result<PlantLimit> limit = find_plant_limit(track, "road-car");
   ASSERT_FALSE(limit);
   EXPECT_EQ(limit.error().code, ErrorCode::kInvalidArgument);
@@ -109,20 +109,20 @@ TEST(PlantLimit, ARoadShorterThanTheCarsTightestCircleIsRefused) {
 }
 
 TEST(PlantLimit, ARoadNarrowerThanTheCarIsNamedWithItsPlace) {
-  std::vector<path::TrackPoint> points;
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 60; ++i) {
     const double angle = kTwoPi * i / 60.0;
     points.push_back({{60.0 * std::cos(angle), 60.0 * std::sin(angle)}, 0.8, 0.8});
   }
-  const Result<PlantLimit> limit = find_plant_limit(*path::Track::create("lane", points, true), "udacity");
+  const Result<PlantLimit> limit = find_plant_limit(*road::Track::create("lane", points, true), "udacity");
   ASSERT_FALSE(limit);
   EXPECT_NE(limit.error().message.find("the road is 1.6"), std::string::npos) << limit.error().message;
 }
 
 TEST(PlantLimit, RefusesWhatItCannotAnswer) {
-  std::vector<path::TrackPoint> straight;
+  std::vector<road::TrackPoint> straight;
   for (int i = 0; i < 20; ++i) straight.push_back({{10.0 * i, 0.0}, 4.0, 4.0});
-  EXPECT_FALSE(find_plant_limit(*path::Track::create("open", straight, false), "udacity"));
+  EXPECT_FALSE(find_plant_limit(*road::Track::create("open", straight, false), "udacity"));
   EXPECT_FALSE(find_plant_limit(bean(), "boat"));
   EXPECT_FALSE(find_plant_limit(bean(), "udacity", {}, {.time_step = 1.0}));
 }

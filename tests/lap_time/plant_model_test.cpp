@@ -14,13 +14,13 @@
 namespace chicane::lap_time {
 namespace {
 
-path::Track circle() {
-  std::vector<path::TrackPoint> points;
+road::Track circle() {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 120; ++i) {
     const double angle = kTwoPi * i / 120.0;
     points.push_back({{60.0 * std::cos(angle), 60.0 * std::sin(angle)}, 5.0, 4.0});
   }
-  return *path::Track::create("circle", points, true, {.smoothing_sigma = 0.0});
+  return *road::Track::create("circle", points, true, {.smoothing_sigma = 0.0});
 }
 
 class PlantModel : public testing::TestWithParam<const char*> {

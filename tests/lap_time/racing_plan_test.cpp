@@ -18,17 +18,17 @@ namespace chicane::lap_time {
 namespace {
 
 /// A closed road with corners to both sides, one side wider than the other; `side` −1 mirrors it.
-path::Track bean(double side = 1.0, double half_width = 4.0) {
-  std::vector<path::TrackPoint> points;
+road::Track bean(double side = 1.0, double half_width = 4.0) {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 140; ++i) {
     const double angle = kTwoPi * i / 140.0;
     const double radius = 75.0 + 25.0 * std::cos(2.0 * angle) + 12.0 * std::sin(3.0 * angle);
-    path::TrackPoint point{
+    road::TrackPoint point{
         {side * radius * std::cos(angle), radius * std::sin(angle)}, half_width, 1.2 * half_width};
     if (side < 0.0) std::swap(point.left, point.right);
     points.push_back(point);
   }
-  return *path::Track::create("bean", points, true);
+  return *road::Track::create("bean", points, true);
 }
 
 model::VehicleParams car_named(const std::string& name) {
@@ -56,10 +56,10 @@ TEST_P(RacingPlanOf, ItsModelHasTheDerivativesOfDifferences) {
 }
 
 /// By how much a plan brakes harder in bends than leaves a pole of kMostPole [m/s²].
-double most_excess_of_braking(const path::RacingLine& plan, const model::VehicleParams& car) {
+double most_excess_of_braking(const road::RacingLine& plan, const model::VehicleParams& car) {
   const model::BrakingStability stability(car);
   double most = -100.0;
-  for (const path::RacingLinePoint& at : plan.points) {
+  for (const road::RacingLinePoint& at : plan.points) {
     const double drag = car.drag_constant + car.drag_quadratic * at.vx * at.vx;
     const double use = stability.use(std::fabs(at.vx * at.yaw_rate), at.vx);
     const double force =
@@ -96,7 +96,7 @@ TEST_P(RacingPlanOf, WithoutReserveIsAsFastAsThePlantCanBe) {
 TEST_P(RacingPlanOf, KeepsWhatItIsToldToAndMirrors) {
   const RacingPlanOptions reserve{.margin = 0.3, .grip_share = 0.9, .brake_share = 0.9};
   const model::VehicleParams car = car_named(GetParam());
-  const path::Track track = bean();
+  const road::Track track = bean();
   const auto plan = plan_racing_line(track, car, reserve);
   const auto free = plan_racing_line(track, car);
   const auto mirrored = plan_racing_line(bean(-1.0), car, reserve);
@@ -105,7 +105,7 @@ TEST_P(RacingPlanOf, KeepsWhatItIsToldToAndMirrors) {
   EXPECT_NEAR(mirrored->lap_time() / plan->lap_time(), 1.0, 1e-3);
   const double beside = 0.5 * (car.track_width + car.tire_width);
   double least = 100.0;
-  for (const path::RacingLinePoint& p : plan->points) {
+  for (const road::RacingLinePoint& p : plan->points) {
     for (const double x : {car.front_axle, -car.rear_axle}) {
       // To first order in the small angles; the bend takes the rest.
       const double middle = p.offset + x * p.heading;
@@ -123,7 +123,7 @@ TEST_P(RacingPlanOf, UsesNoMoreSlipThanItIsToldTo) {
     const auto plan = plan_racing_line(bean(), car, {.slip_share = share});
     EXPECT_TRUE(plan) << share;
     double most = 0.0;
-    for (const path::RacingLinePoint& p : plan->points)
+    for (const road::RacingLinePoint& p : plan->points)
       most = std::max(most, std::abs(std::atan2(p.vy - car.rear_axle * p.yaw_rate, p.vx)));
     return most;
   };
@@ -141,7 +141,7 @@ TEST_P(RacingPlanOf, IsTheSameEachTime) {
 TEST_P(RacingPlanOf, KeepsToASpeedLimit) {
   const auto plan = plan_racing_line(bean(), car_named(GetParam()), {.speed_limit = 15.0});
   ASSERT_TRUE(plan) << plan.error().message;
-  for (const path::RacingLinePoint& p : plan->points) EXPECT_LE(p.vx, 15.01);
+  for (const road::RacingLinePoint& p : plan->points) EXPECT_LE(p.vx, 15.01);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cars, RacingPlanOf, testing::Values("udacity", "road-car"), [](const auto& param) {
@@ -157,22 +157,22 @@ TEST(RacingPlan, SaysWhyThereIsNone) {
 }
 
 TEST(RacingPlan, EntersAnOpenRoadAsItLeavesIt) {
-  std::vector<path::TrackPoint> points;  // a quarter of a circle between two straights
+  std::vector<road::TrackPoint> points;  // a quarter of a circle between two straights
   for (int i = 0; i < 20; ++i) points.push_back({{10.0 * i, 0.0}, 4.0, 4.0});
   for (int i = 1; i <= 10; ++i) {
     const double angle = 0.5 * kPi * i / 10.0;
     points.push_back({{190.0 + 40.0 * std::sin(angle), 40.0 - 40.0 * std::cos(angle)}, 4.0, 4.0});
   }
   for (int i = 1; i < 15; ++i) points.push_back({{230.0, 40.0 + 10.0 * i}, 4.0, 4.0});
-  const path::Track track = path::Track::create("open", points, false).value();
+  const road::Track track = road::Track::create("open", points, false).value();
   const auto plan = plan_racing_line(track, model::road_car_params());
   ASSERT_TRUE(plan) << plan.error().message;
-  const path::RacingLinePoint &first = plan->points.front(), &last = plan->points.back();
+  const road::RacingLinePoint &first = plan->points.front(), &last = plan->points.back();
   EXPECT_NEAR(last.s, track.length(), 1e-9);
   EXPECT_EQ(first.vx, last.vx);
   EXPECT_EQ(first.offset, last.offset);
   double slowest = first.vx;
-  for (const path::RacingLinePoint& p : plan->points) slowest = std::min(slowest, p.vx);
+  for (const road::RacingLinePoint& p : plan->points) slowest = std::min(slowest, p.vx);
   EXPECT_LT(slowest, first.vx - 3.0) << "the bend";
 }
 
@@ -180,7 +180,7 @@ TEST(RacingPlan, EntersAnOpenRoadAsItLeavesIt) {
 TEST(RacingPlan, TakesARoadThatIsWiderThanItsBendsAreTight) {
   constexpr double kRadius = 9.0;
   constexpr double kHalfWidth = 10.0;
-  std::vector<path::TrackPoint> points;
+  std::vector<road::TrackPoint> points;
   for (const double side : {1.0, -1.0}) {
     for (int i = 0; i < 15; ++i) points.push_back({{side * (10.0 * i - 70.0), -side * kRadius}, 0.0, 0.0});
     for (int i = 1; i < 8; ++i) {
@@ -189,12 +189,12 @@ TEST(RacingPlan, TakesARoadThatIsWiderThanItsBendsAreTight) {
           {{side * (70.0 + kRadius * std::sin(angle)), -side * kRadius * std::cos(angle)}, 0.0, 0.0});
     }
   }
-  for (path::TrackPoint& point : points) point.left = point.right = kHalfWidth;
-  const path::Track track = path::Track::create("wide", points, true).value();
+  for (road::TrackPoint& point : points) point.left = point.right = kHalfWidth;
+  const road::Track track = road::Track::create("wide", points, true).value();
   for (const std::string name : {"udacity", "road-car"}) {
     const auto plan = plan_racing_line(track, car_named(name), {.margin = 0.25, .grip_share = 0.93});
     ASSERT_TRUE(plan) << name << ": " << plan.error().message;
-    for (const path::RacingLinePoint& p : plan->points) {
+    for (const road::RacingLinePoint& p : plan->points) {
       const double bend = track.centre().at(p.s).curvature;
       EXPECT_GT(1.0 - bend * p.offset, 0.0) << name << ": beyond the bend's centre at s = " << p.s;
       EXPECT_LT(std::fabs(p.offset), kHalfWidth) << name;

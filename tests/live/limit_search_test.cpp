@@ -5,7 +5,7 @@
 
 #include <future>
 
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/run/make.hpp"
 
 namespace chicane::live {

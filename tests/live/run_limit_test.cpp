@@ -23,10 +23,10 @@ scenario::Scenario on(const std::string& track) {
   return scenario.value_or(scenario::Scenario{});
 }
 
-path::Track open_road() {
-  std::vector<path::TrackPoint> points;
+road::Track open_road() {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i <= 30; ++i) points.push_back({Vec2{10.0 * i, 0.0}, 5.0, 5.0});
-  return path::Track::create("open", points, false).value();
+  return road::Track::create("open", points, false).value();
 }
 
 telemetry::RunSummary one_lap(double time) {
@@ -77,10 +77,10 @@ TEST(RunLimit, SaysWhyThereIsNone) {
   limit.compare(run, kGoOn, kAsLongAsItTakes);
   EXPECT_EQ(run.why_no_limit, "nobody knows the road");
 
-  std::vector<path::TrackPoint> points;
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 60; ++i)
     points.push_back({50.0 * Vec2{std::cos(i * kTwoPi / 60), std::sin(i * kTwoPi / 60)}, 0.6, 0.6});
-  limit.search(path::Track::create("narrow", points, true).value(), on("oval"));
+  limit.search(road::Track::create("narrow", points, true).value(), on("oval"));
   limit.compare(run, kGoOn, kAsLongAsItTakes);
   EXPECT_NE(run.why_no_limit.find("the road is"), std::string::npos) << run.why_no_limit;
 }

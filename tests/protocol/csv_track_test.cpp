@@ -133,8 +133,8 @@ TEST(CsvTrack, AssumesLengthsOfTheRoadsOwnScale) {
   const TrackFile model = parse_track(text, "a.csv", {.scale = 0.1}).value();
   EXPECT_DOUBLE_EQ(model.points[0].left, 0.45);
   EXPECT_DOUBLE_EQ(model.options.smoothing_sigma, 0.01);
-  const path::Track small = make_track(model).value();
-  const path::Track large = make_track(parse_track(ring("x,y\n", ","), "a.csv").value()).value();
+  const road::Track small = make_track(model).value();
+  const road::Track large = make_track(parse_track(ring("x,y\n", ","), "a.csv").value()).value();
   EXPECT_NEAR(10.0 * small.length(), large.length(), 1e-3) << "six digits in the text";
   EXPECT_NEAR(0.1 * small.centre().at(1.0).curvature, large.centre().at(10.0).curvature, 1e-4);
 }
@@ -176,7 +176,7 @@ TEST(CsvTrack, ReadsRaceLinesWithWidthsMixedHeadersAndCommas) {
 }
 
 TEST(CsvTrack, ForgivesLineEndsMarksBlanksAndSeparators) {
-  const std::vector<path::TrackPoint> expected = parse_track(ring("x,y\n", ","), "a").value().points;
+  const std::vector<road::TrackPoint> expected = parse_track(ring("x,y\n", ","), "a").value().points;
   for (const std::string& text :
        {ring("x,y\r\n", ",", "", "\r\n"), ring("x,y\r", ",", "", "\r"), ring("\xef\xbb\xbfx,y\n", ","),
         ring("X;Y\n\n", " ; ", "", "\n\n  \n"), ring("x\ty\n", "\t"), ring("x y\n", "   "),
@@ -217,7 +217,7 @@ TEST(CsvTrack, TakesTheStartAndOptionsFromComments) {
   const TrackFile file =
       parse_track(ring("# a ring\n# start_s_m=258.5, start_d_m=-0.76, kerb_width_m=0.5\nx,y\n", ","), "a.csv")
           .value();
-  const path::Track track = make_track(file).value();
+  const road::Track track = make_track(file).value();
   EXPECT_EQ(track.start_s(), 258.5);
   EXPECT_EQ(track.start_d(), -0.76);
   EXPECT_EQ(track.kerb_width(), 0.5);
@@ -273,7 +273,7 @@ class BrokenTrack : public ::testing::TestWithParam<Broken> {};
 
 TEST_P(BrokenTrack, IsRefusedWithFileAndLine) {
   const std::string file = kSource + "/tests/protocol/fixtures/tracks/" + GetParam().file;
-  const Result<path::Track> track = read_track(file);
+  const Result<road::Track> track = read_track(file);
   ASSERT_FALSE(track);
   EXPECT_EQ(track.error().code, ErrorCode::kParse);
   EXPECT_THAT(track.error().message, ::testing::StartsWith(file + GetParam().message));
@@ -365,7 +365,7 @@ TEST(CsvTrack, SurvivesMutilatedFiles) {
                                                          HasSubstr("expected ")));
       continue;
     }
-    const Result<path::Track> track = make_track(*file);
+    const Result<road::Track> track = make_track(*file);
     if (track) {
       ++accepted;
       EXPECT_TRUE(std::isfinite(track->length()) && std::isfinite(track->centre().at(1.0).curvature));

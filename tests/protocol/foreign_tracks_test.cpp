@@ -25,7 +25,7 @@ using Direction = TrackReadOptions::Direction;
 
 const std::string kData = std::string(CHICANE_SOURCE_DIR) + "/tests/data/";
 
-double turned(const path::Track& track) {
+double turned(const road::Track& track) {
   return track.centre().at(track.length() - 1e-6).heading - track.centre().at(0.0).heading;
 }
 
@@ -54,7 +54,7 @@ TEST_P(ForeignTrack, HasTheLengthTheWidthAndTheDirectionOfTheRoad) {
   } else {
     EXPECT_THAT(content->warnings, Contains(AllOf(::testing::StartsWith(file), HasSubstr(kind.said))));
   }
-  const Result<path::Track> track = make_track(*content);
+  const Result<road::Track> track = make_track(*content);
   ASSERT_TRUE(track) << track.error().message;
   EXPECT_TRUE(track->centre().is_closed());
   EXPECT_NEAR(track->length(), kind.length, kind.length_tolerance);
@@ -259,7 +259,7 @@ TEST(ForeignTracks, SurviveMutilatedFiles) {
         EXPECT_THAT(content.error().message, AllOf(::testing::StartsWith("f:"), HasSubstr("got ")));
         continue;
       }
-      for (const path::TrackPoint& point : content->points)
+      for (const road::TrackPoint& point : content->points)
         EXPECT_TRUE(point.position.is_finite() && std::isfinite(point.left + point.right));
     }
   }

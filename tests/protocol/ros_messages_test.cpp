@@ -396,12 +396,12 @@ TEST(RosMessages, BytesEqualTheFixturesTheBrowserReads) {
 }
 
 TEST(RosMessages, RoadLinesCloseAndKeepTheirWidths) {
-  std::vector<path::TrackPoint> points;
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 90; ++i) {
     const double angle = 2.0 * M_PI * i / 90.0;
     points.push_back({{50.0 * std::cos(angle), 50.0 * std::sin(angle)}, 3.0, 5.0});
   }
-  const auto track = path::Track::create("ring", points, true);
+  const auto track = road::Track::create("ring", points, true);
   ASSERT_TRUE(track) << track.error().message;
   const RoadLines lines = road_lines(*track, 2.0);
   ASSERT_GE(lines.centre.size(), 157U);  // 2π · 50 m / 2 m

@@ -43,7 +43,7 @@ TEST(TrackCodec, RefusesTooMuchInEveryFormat) {
 }
 
 TEST(TrackCodec, NamesAMissingFile) {
-  const Result<path::Track> track = read_track("no/such/track.csv");
+  const Result<road::Track> track = read_track("no/such/track.csv");
   ASSERT_FALSE(track);
   EXPECT_EQ(track.error().code, ErrorCode::kNotFound);
 }

@@ -13,10 +13,10 @@ namespace chicane::road {
 namespace {
 
 std::shared_ptr<const RacingRoad> lap(bool is_learned) {
-  std::vector<path::LinePoint> points;
+  std::vector<road::LinePoint> points;
   for (int i = 0; i <= 100; ++i) {
     const double angle = kTwoPi * i / 100.0;
-    path::LinePoint point;
+    road::LinePoint point;
     point.position = {80.0 * std::cos(angle), 80.0 * std::sin(angle)};
     point.heading = angle + 0.5 * kPi;
     point.curvature = 1.0 / 80.0;

@@ -11,8 +11,8 @@ namespace chicane::road {
 namespace {
 
 /// A circle of 100 m to the left, 4 m of road on its left, 6 m on its right.
-path::RoadData ring() {
-  path::RoadData data;
+road::RoadData ring() {
+  road::RoadData data;
   data.is_closed = true;
   data.length = kTwoPi * 100.0;
   constexpr int kCount = 314;
@@ -44,7 +44,7 @@ TEST(KnownRoad, KnowsATracksEdgesFromTheBeginning) {
 }
 
 TEST(KnownRoad, KeepsAnOpenTracksOwnLine) {
-  path::RoadData data;
+  road::RoadData data;
   data.length = 100.0;
   for (int i = 0; i <= 50; ++i)
     data.points.push_back({.s = 2.0 * i, .position = {2.0 * i, 0.0}, .left = 3.0 + 0.02 * i, .right = 5.0});

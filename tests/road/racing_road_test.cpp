@@ -16,12 +16,12 @@ constexpr double kRadius = 80.0;
 
 /// A circle to the left (side 1) or right (-1), with 3 m of road inside and 5 m outside of it, faster in one
 /// half.
-std::vector<path::LinePoint> lap(double side) {
-  std::vector<path::LinePoint> points;
+std::vector<road::LinePoint> lap(double side) {
+  std::vector<road::LinePoint> points;
   constexpr int kCount = 200;
   for (int i = 0; i <= kCount; ++i) {
     const double angle = kTwoPi * i / kCount;
-    path::LinePoint point;
+    road::LinePoint point;
     point.position = {kRadius * std::sin(angle), side * kRadius * (1.0 - std::cos(angle))};
     point.heading = side * angle;
     point.curvature = side / kRadius;
@@ -73,7 +73,7 @@ TEST(RacingRoad, StopsBeforeTheEndOfAnOpenRoad) {
 
 TEST(RacingRoad, IsEmptyForNoLap) {
   EXPECT_TRUE(RacingRoad({}).line().is_empty());
-  const std::vector<path::LinePoint> few(4);
+  const std::vector<road::LinePoint> few(4);
   EXPECT_TRUE(RacingRoad(few).line().is_empty());
 }
 
@@ -82,7 +82,7 @@ TEST(RacingRoad, IsWhatAStopOnItFollows) {
   KnownRoad known(4.0, model::udacity_params());
   known.use_line(nullptr);
   EXPECT_TRUE(known.line().is_empty());
-  path::RoadData data;
+  road::RoadData data;
   data.length = 100.0;
   data.points = {{.s = 0.0, .left = 4.0, .right = 4.0},
                  {.s = 100.0, .position = {100.0, 0.0}, .left = 4.0, .right = 4.0}};
@@ -101,8 +101,8 @@ TEST(RacingRoad, IsWhatAStopOnItFollows) {
 // The waypoints' own line has been given up for one that runs 1 m to its left: as much less road on that
 // side.
 TEST(KnownRoadFromWaypoints, TakesALearnedLapUntilItsWaypointsAreForgotten) {
-  std::vector<path::LinePoint> points = lap(1.0);
-  for (path::LinePoint& point : points) point.d = 1.0;
+  std::vector<road::LinePoint> points = lap(1.0);
+  for (road::LinePoint& point : points) point.d = 1.0;
   const RacingRoad learned(points, 0.0, {.is_learned = true});
   KnownRoad road(3.5, model::udacity_params());
   const unsigned before = road.revision();

@@ -15,13 +15,13 @@ namespace {
 
 constexpr double kRadius = 200.0;
 
-path::Track circle() {
-  std::vector<path::TrackPoint> points;
+road::Track circle() {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 200; ++i) {
     const double angle = kTwoPi * i / 200;
     points.push_back({Vec2{kRadius * std::cos(angle), kRadius * std::sin(angle)}, 5.0, 5.0});
   }
-  return path::Track::create("circle", points, true).value();
+  return road::Track::create("circle", points, true).value();
 }
 
 /// The original's car on a circle, with the account of its run.
@@ -40,7 +40,7 @@ class AccountTest : public ::testing::Test {
     return world_.time() - start;
   }
 
-  path::Track track_ = circle();
+  road::Track track_ = circle();
   std::unique_ptr<sim::Plant> plant_ = std::move(*sim::make_plant("udacity", {}));
   sim::World world_{*plant_, track_};
 };

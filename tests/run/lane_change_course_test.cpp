@@ -43,11 +43,11 @@ TEST(LaneChangeCourse, HasAWayThatABodyGoesThroughAndConesBesideIt) {
 
 TEST(LaneChangeCourse, IsARoadWhoseEdgesAreTheCones) {
   const LaneChangeCourse course(1.8);
-  const path::Track road = course.road().value();
+  const road::Track road = course.road().value();
   for (const LaneChangeCourse::Lane& lane : course.lanes()) {
     for (double x = lane.begin; x <= lane.end; x += 0.5) {
       const double y = 0.5 * (lane.left + lane.right);
-      const path::Projection foot = road.centre().project({x, y});
+      const road::Projection foot = road.centre().project({x, y});
       EXPECT_NEAR(road.edge_distance(foot), 0.5 * (lane.left - lane.right), 0.05) << x;
     }
   }

@@ -98,7 +98,7 @@ TEST(LapPlanner, PlansTheSameBesideARun) {
 TEST(LapPlanner, PlansOnTheTrackWithTheGripThatIsWanted) {
   Learner learner({});
   const scenario::Scenario race = race_by_waypoints("road-car");
-  const path::Track oval = make_track(race).value();
+  const road::Track oval = make_track(race).value();
   const auto least_speed = [&](double grip) {
     learner.grip = grip;
     LapPlanner planner(LapPlanner::Clock::kVirtual);

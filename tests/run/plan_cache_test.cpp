@@ -19,13 +19,13 @@
 namespace chicane::run {
 namespace {
 
-path::Track ring(double radius = 60.0, double half_width = 4.0) {
-  std::vector<path::TrackPoint> points;
+road::Track ring(double radius = 60.0, double half_width = 4.0) {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 60; ++i) {
     const double angle = kTwoPi * i / 60.0;
     points.push_back({{radius * std::cos(angle), 0.7 * radius * std::sin(angle)}, half_width, half_width});
   }
-  return *path::Track::create("ring", points, true);
+  return *road::Track::create("ring", points, true);
 }
 
 /// A cache of this process for one test.
@@ -46,7 +46,7 @@ class PlanCacheTest : public testing::Test {
   }
 
   /// Iterations that it took.
-  int plan(path::RacingLine& line, lap_time::RacingPlanOptions options = {.time_step = 0.12}) {
+  int plan(road::RacingLine& line, lap_time::RacingPlanOptions options = {.time_step = 0.12}) {
     int iterations = 0;
     options.go_on = [&](int, double) { return ++iterations > 0; };
     line = cached_plan(ring(), model::udacity_params(), options).value();
@@ -59,7 +59,7 @@ class PlanCacheTest : public testing::Test {
 };
 
 TEST_F(PlanCacheTest, ACachedPlanHasTheBitsOfAFreshOne) {
-  path::RacingLine fresh, cached, again;
+  road::RacingLine fresh, cached, again;
   EXPECT_GT(plan(fresh), 0);
   EXPECT_EQ(plan(cached), 0);
   EXPECT_EQ(to_bytes(cached), to_bytes(fresh));
@@ -69,7 +69,7 @@ TEST_F(PlanCacheTest, ACachedPlanHasTheBitsOfAFreshOne) {
 }
 
 TEST_F(PlanCacheTest, ADamagedPlanIsPlannedAnewWithOneLine) {
-  path::RacingLine fresh, anew;
+  road::RacingLine fresh, anew;
   plan(fresh);
   const std::string name = name_of_plan(ring(), model::udacity_params(), {.time_step = 0.12});
   cache_->keep(name, "whole, and no plan");
@@ -80,7 +80,7 @@ TEST_F(PlanCacheTest, ADamagedPlanIsPlannedAnewWithOneLine) {
 }
 
 TEST_F(PlanCacheTest, TheNameTellsAllThatAPlanDependsOn) {
-  const path::Track road = ring();
+  const road::Track road = ring();
   const model::VehicleParams car = model::udacity_params();
   const std::string name = name_of_plan(road, car, {});
   ASSERT_EQ(name.size(), 32U) << "this program has no build id";
@@ -182,7 +182,7 @@ TEST_F(PlanCacheTest, AStoppedSearchIsNotKept) {
 }
 
 TEST(PlanBytes, EachCutOfAPlanIsRefused) {
-  path::RacingLine line{.car = "udacity", .track = "ring", .length = 10.0, .points = {{}, {.s = 10.0}}};
+  road::RacingLine line{.car = "udacity", .track = "ring", .length = 10.0, .points = {{}, {.s = 10.0}}};
   const std::string bytes = to_bytes(line);
   ASSERT_TRUE(line_from_bytes(bytes));
   for (std::size_t size = 0; size < bytes.size(); ++size)

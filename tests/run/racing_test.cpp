@@ -18,7 +18,7 @@ scenario::Scenario race_on(const char* track, const char* margin = "0.3") {
 
 TEST(PlanLap, IsForThoseWhoRaceOnAKnownRoad) {
   const scenario::Scenario race = race_on("oval");
-  const path::Track track = make_track(race).value();
+  const road::Track track = make_track(race).value();
   EXPECT_TRUE(races(race));
   EXPECT_EQ(plan_lap(race, nullptr).value(), nullptr) << "no road is known";
   const scenario::Scenario other = protocol::compose({.scenario_file = {}, .settings = {}}).value();
@@ -28,7 +28,7 @@ TEST(PlanLap, IsForThoseWhoRaceOnAKnownRoad) {
 
 TEST(PlanLap, KeepsTheMarginAndIsTheSameEachTime) {
   const scenario::Scenario race = race_on("oval");
-  const path::Track track = make_track(race).value();
+  const road::Track track = make_track(race).value();
   const auto lap = plan_lap(race, &track).value();
   const auto again = plan_lap(race, &track).value();
   ASSERT_NE(lap, nullptr);
@@ -45,7 +45,7 @@ TEST(PlanLap, KeepsTheMarginAndIsTheSameEachTime) {
 
 TEST(PlanLap, SaysWhyThereIsNone) {
   const scenario::Scenario race = race_on("lakeside", "3.9");
-  const path::Track track = make_track(race).value();
+  const road::Track track = make_track(race).value();
   const auto lap = plan_lap(race, &track);
   ASSERT_FALSE(lap);
   EXPECT_NE(lap.error().message.find("the road is"), std::string::npos) << lap.error().message;

@@ -63,15 +63,15 @@ TEST(MakeWaypoints, ThinsDenseNoisyPointsEvenlyAllRound) {
   std::mt19937 random{1};
   std::normal_distribution<double> noise{0.0, 0.1};
   for (const double spacing : {0.25, 1.0, 4.0}) {
-    std::vector<path::TrackPoint> points;
+    std::vector<road::TrackPoint> points;
     const int count = static_cast<int>(kTwoPi * 100.0 / spacing);
     for (int i = 0; i < count; ++i) {
       const double angle = kTwoPi * i / count;
       const double radius = 100.0 + noise(random);
       points.push_back({{radius * std::cos(angle), radius * std::sin(angle)}, 4.0, 4.0});
     }
-    const path::Track track = path::Track::create("dense", points, true).value();
-    const std::vector<path::TrackPoint> thinned = make_waypoints(track).value().raw_points();
+    const road::Track track = road::Track::create("dense", points, true).value();
+    const std::vector<road::TrackPoint> thinned = make_waypoints(track).value().raw_points();
     for (std::size_t i = 0; i < thinned.size(); ++i) {
       const double gap = (thinned[(i + 1) % thinned.size()].position - thinned[i].position).norm();
       EXPECT_TRUE(gap > 4.0 && gap < 19.0)

@@ -20,13 +20,13 @@ constexpr double kPeriod = 0.12;  // of telemetry with the original's latency [s
 
 /// Circle about the origin, counter-clockwise, s = 0 at (kRadius, 0), 5 m to the left edge and 4 m to the
 /// right.
-path::Track circle() {
-  std::vector<path::TrackPoint> points;
+road::Track circle() {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 120; ++i) {
     const double angle = kTwoPi * i / 120;
     points.push_back({Vec2{kRadius * std::cos(angle), kRadius * std::sin(angle)}, 5.0, 4.0});
   }
-  return path::Track::create("circle", points, true, {.spacing = 2.0, .smoothing_sigma = 0.0}).value();
+  return road::Track::create("circle", points, true, {.spacing = 2.0, .smoothing_sigma = 0.0}).value();
 }
 
 /// Somebody else's car that goes round, as telemetry tells of it.
@@ -59,7 +59,7 @@ class Telemetry {
 };
 
 TEST(Roadside, TimesLapsOfACarThatOthersSimulate) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Roadside roadside(&track, {});
   Telemetry car(roadside);
   EXPECT_TRUE(car.next().is_judged);
@@ -85,7 +85,7 @@ TEST(Roadside, TimesLapsOfACarThatOthersSimulate) {
 }
 
 TEST(Roadside, SeesWheelsBeyondTheEdge) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Roadside roadside(&track, {});
   Telemetry car(roadside);
   while (car.driven_for() < 1.2 * kLapTime) car.next(car.driven_for() < 0.5 * kLapTime ? 4.8 : 0.0);
@@ -124,7 +124,7 @@ TEST(Roadside, TimesLapsOnARoadThatNobodyKnows) {
 }
 
 TEST(Roadside, ForgetsWhatWasJudgedByAnotherRoad) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Roadside roadside(&track, {});
   Telemetry car(roadside);
   EXPECT_TRUE(car.next(20.0).is_off_track);
@@ -138,7 +138,7 @@ TEST(Roadside, ForgetsWhatWasJudgedByAnotherRoad) {
 }
 
 TEST(Roadside, KeepsTheLapsOverTelemetryThatWasBroken) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Roadside roadside(&track, {});
   Telemetry car(roadside);
   while (car.driven_for() < 1.1 * kLapTime) car.next();
@@ -148,7 +148,7 @@ TEST(Roadside, KeepsTheLapsOverTelemetryThatWasBroken) {
 }
 
 TEST(Roadside, GoesOnCountingWithTheNextCar) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Roadside roadside(&track, {});
   Telemetry first(roadside);
   while (first.driven_for() < 1.7 * kLapTime) first.next();
@@ -168,7 +168,7 @@ TEST(Roadside, GoesOnCountingWithTheNextCar) {
 }
 
 TEST(Roadside, AllocatesNothingWhileItLooks) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Roadside roadside(&track, {});
   Telemetry car(roadside);
   car.next();

@@ -12,13 +12,13 @@ namespace chicane::run {
 namespace {
 
 /// Circle of 60 m about the origin, 4 m to each edge.
-path::Track circle() {
-  std::vector<path::TrackPoint> points;
+road::Track circle() {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 120; ++i) {
     const double angle = kTwoPi * i / 120;
     points.push_back({Vec2{60.0 * std::cos(angle), 60.0 * std::sin(angle)}, 4.0, 4.0});
   }
-  return path::Track::create("circle", points, true).value();
+  return road::Track::create("circle", points, true).value();
 }
 
 /// Six waypoints on a circle of `radius`, `moved` metres to the east.
@@ -32,14 +32,14 @@ model::Measurement shown(double radius, double moved = 0.0) {
 }
 
 TEST(TrackFit, TakesWaypointsOnTheRoadAndCloseToIt) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   EXPECT_FALSE(distance_to_other_road(track, shown(60.0)));
   EXPECT_FALSE(distance_to_other_road(track, shown(63.0)));
   EXPECT_FALSE(distance_to_other_road(track, shown(60.0 + 4.0 + kBesideRoad - 0.5)));
 }
 
 TEST(TrackFit, SaysHowFarAnotherRoadIs) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   const auto distance = distance_to_other_road(track, shown(60.0, 63.0));
   ASSERT_TRUE(distance);
   EXPECT_NEAR(*distance, 63.0, 0.5);  // the first waypoint is the farthest
@@ -47,7 +47,7 @@ TEST(TrackFit, SaysHowFarAnotherRoadIs) {
 }
 
 TEST(TrackFit, OneWaypointAstrayOrTooFewSayNothing) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   model::Measurement measurement = shown(60.0);
   measurement.waypoints[2] = Vec2{500.0, 0.0};
   EXPECT_FALSE(distance_to_other_road(track, measurement));

@@ -18,7 +18,7 @@ scenario::Scenario scenario_of(const std::string& track, const std::string& car)
 }
 
 TEST(WayBack, StartsAreAllKindsWithinReachOfTheRoadAndTheSameForTheSameSeed) {
-  const path::Track track = make_track(scenario_of("oval", "udacity")).value();
+  const road::Track track = make_track(scenario_of("oval", "udacity")).value();
   const auto starts = start_poses(track, 200, 3);
   ASSERT_EQ(starts.size(), 200U);
   std::array<int, kStartKindNames.size()> kinds{};
@@ -97,7 +97,7 @@ TEST(WayBack, FrameSaysThatTheRoadIsTooFarAwayAndHowFar) {
     scenario.laps = 0;
     if (std::string_view(controller_road) == "waypoints") scenario.guard.road = safety::GuardRoad::kWaypoints;
     const auto loop = std::move(*ClosedLoop::create(scenario));
-    const path::PathPoint at = loop->track().centre().at(0.0);
+    const road::PathPoint at = loop->track().centre().at(0.0);
     // Outside of the lap, whichever side that is.
     const double side =
         loop->track().centre().at(0.5 * loop->track().length()).position.y() > at.position.y() ? -1.0 : 1.0;

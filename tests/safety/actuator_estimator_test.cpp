@@ -14,8 +14,8 @@
 namespace chicane::safety {
 namespace {
 
-using controller::CommandHistory;
-using controller::StateEstimator;
+using tracking::CommandHistory;
+using tracking::StateEstimator;
 
 constexpr double kPeriod = 0.04;
 constexpr double kTold = 0.1;  // [s] after which commands act, as told

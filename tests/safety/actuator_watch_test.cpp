@@ -33,7 +33,7 @@ struct Drive {
   ActuatorWatch after(double seconds, double* first = nullptr) const {
     ActuatorWatch watch{car};
     const model::PredictionModel model{car};
-    controller::CommandHistory sent;
+    tracking::CommandHistory sent;
     Random random(3);
     model::BodyMotion<double> body{.vx = speed};
     double psi = 0.0;
@@ -170,7 +170,7 @@ TEST(ActuatorWatch, KnowsTheCarWithTheBrakesThatItHas) {
 
 TEST(ActuatorWatch, JudgesNothingWhileNothingIsMeasured) {
   ActuatorWatch watch{model::road_car_params()};
-  controller::CommandHistory sent;
+  tracking::CommandHistory sent;
   sent.add(0.0, {0.2, 0.0});
   for (int i = 0; i < 200; ++i) {  // straight on although the wheels are turned
     model::Measurement now;

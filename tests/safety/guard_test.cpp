@@ -68,8 +68,8 @@ class GuardTest : public ::testing::Test {
 };
 
 /// `intervals` of 4 m, 10 m wide.
-path::RoadData straight_road(int intervals) {
-  path::RoadData road;
+road::RoadData straight_road(int intervals) {
+  road::RoadData road;
   road.length = 4.0 * intervals;
   for (int i = 0; i <= intervals; ++i)
     road.points.push_back({.s = 4.0 * i, .position = {4.0 * i, 0.0}, .left = 5.0, .right = 5.0});
@@ -124,7 +124,7 @@ TEST_F(GuardTest, SaysWhichAnswerWithoutAPlanWasGiven) {
 
 /// A way back is slow: whoever calls a fast drive one is checked like everybody.
 TEST(GuardOnARoad, RefusesAWayBackThatIsFast) {
-  const path::RoadData straight = straight_road(100);
+  const road::RoadData straight = straight_road(100);
   Scripted scripted;
   Guard guard{std::make_unique<test::Borrowed>(scripted), car(), {}, &straight};
   scripted.result.answer = Answer::kReturnToRoad;
@@ -147,7 +147,7 @@ TEST(GuardOnARoad, RefusesAWayBackThatIsFast) {
 /// On a straight road at `speed`, the command that is sent for what the controller asks in each of 8 cycles.
 model::Command sent_at(double speed, Answer answer, const model::Command& asked,
                        controller::StepResult& result) {
-  const path::RoadData straight = straight_road(100);
+  const road::RoadData straight = straight_road(100);
   Scripted scripted;
   Guard guard{std::make_unique<test::Borrowed>(scripted), model::udacity_params(), {}, &straight};
   for (int i = 1; i < 8; ++i) {
@@ -183,7 +183,7 @@ TEST(GuardOnARoad, KeepsACarThatStandsOutOfReverse) {
 /// The original car keeps its brakes applied at rest until they are released.
 /// No prediction holds for a car whose driven wheels spin (docs/safety_derivation.md, eq. 14).
 TEST(GuardOnARoad, AsksForNoMoreDriveThanTheTyresHave) {
-  const path::RoadData road = straight_road(100);
+  const road::RoadData road = straight_road(100);
   Scripted scripted;
   scripted.result.command = {.steer = 0.0, .throttle = 1.0};
   const auto sent = [&](const model::VehicleParams& vehicle) {
@@ -204,7 +204,7 @@ TEST(GuardOnARoad, AsksForNoMoreDriveThanTheTyresHave) {
 }
 
 TEST(GuardOnARoad, ReleasesTheBrakesOfACarThatStandsThoughItShouldDrive) {
-  const path::RoadData straight = straight_road(100);
+  const road::RoadData straight = straight_road(100);
   Scripted scripted;
   Guard guard{std::make_unique<test::Borrowed>(scripted), model::udacity_params(), {}, &straight};
   scripted.result.command = {.throttle = 0.5};
@@ -223,7 +223,7 @@ TEST(GuardOnARoad, ReleasesTheBrakesOfACarThatStandsThoughItShouldDrive) {
 /// Who sees nothing has nothing to plan anew by: the stop of the last cycle that saw is driven to its end, as
 /// a receiver would that is left alone.
 TEST(GuardOnARoad, DrivesTheStopAtHandWhereNothingIsMeasured) {
-  const path::RoadData straight = straight_road(200);
+  const road::RoadData straight = straight_road(200);
   Scripted scripted;
   Guard guard{std::make_unique<test::Borrowed>(scripted), model::road_car_params(), {}, &straight};
   controller::StepResult result;

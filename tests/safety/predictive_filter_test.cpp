@@ -13,7 +13,7 @@ namespace {
 
 /// A circle of 100 m radius, 10 m wide; `side` 1 turns left.
 road::KnownRoad round_road(double side) {
-  path::RoadData data;
+  road::RoadData data;
   constexpr double kRadius = 100.0;
   data.length = kTwoPi * kRadius;
   constexpr int kCount = 400;

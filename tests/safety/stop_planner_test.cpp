@@ -14,7 +14,7 @@ namespace {
 
 /// A circle, 10 m wide; `side` 1 turns left.
 road::KnownRoad circle(double radius, double side = 1.0) {
-  path::RoadData data;
+  road::RoadData data;
   data.length = kTwoPi * radius;
   constexpr int kCount = 400;
   for (int i = 0; i <= kCount; ++i) {
@@ -127,7 +127,7 @@ TEST(StopPlanner, MeasuresTheEdgeAtTheOutermostTyre) {
 }
 
 TEST(StopPlanner, NeedsTheRoadAsFarAsItStops) {
-  path::RoadData data;
+  road::RoadData data;
   data.length = 60.0;
   for (int i = 0; i <= 30; ++i)
     data.points.push_back({.s = 2.0 * i, .position = {2.0 * i, 0.0}, .left = 5.0, .right = 5.0});
@@ -200,7 +200,7 @@ TEST(StopPlanner, BrakesForTheBendsAhead) {
   const model::VehicleParams car = kCars[1];
   const StopPlanner planner(car);
   const auto braking = [&](double radius, double foreseen) {
-    path::RoadData data;
+    road::RoadData data;
     constexpr double kStraight = 120.0;
     data.length = kStraight + 0.5 * kPi * radius;
     for (double s = 0.0; s <= data.length; s += 2.0) {

@@ -15,7 +15,7 @@ namespace {
 /// Straight on for half of its length, then half a circle of `radius` [m] that a clothoid of 20 m leads into;
 /// 8 m wide. `side` 1 turns left.
 road::KnownRoad bend_ahead(double radius, double side) {
-  path::RoadData data;
+  road::RoadData data;
   constexpr int kCount = 600;
   constexpr double kSpacing = 0.5;
   constexpr double kBegin = 100.0, kClothoid = 20.0;  // [m]

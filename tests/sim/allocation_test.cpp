@@ -15,12 +15,12 @@ namespace chicane::sim {
 namespace {
 
 TEST(Simulation, AllocatesNothingOnceBuilt) {
-  std::vector<path::TrackPoint> points;
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 100; ++i) {
     const double angle = kTwoPi * i / 100;
     points.push_back({Vec2{80.0 * std::cos(angle), 80.0 * std::sin(angle)}, 5.0, 5.0});
   }
-  const path::Track track = path::Track::create("circle", points, true).value();
+  const road::Track track = road::Track::create("circle", points, true).value();
   for (const std::string_view name : plant_names()) {
     const auto plant = make_plant(name).value();
     World world{*plant, track};

@@ -15,14 +15,14 @@
 namespace chicane::sim {
 namespace {
 
-path::Track track_of(const std::string& name, double scale) {
+road::Track track_of(const std::string& name, double scale) {
   auto track = protocol::read_track(std::string(CHICANE_SOURCE_DIR) + "/tracks/" + name + ".csv");
   EXPECT_TRUE(track);
   return scale == 1.0 ? std::move(*track) : track->scaled(scale);
 }
 
 /// Where a beam leaves the road, by the road's own geometry: marched in steps, then halved.
-double range_by_geometry(const path::Track& track, const Vec2& from, double angle, double longest) {
+double range_by_geometry(const road::Track& track, const Vec2& from, double angle, double longest) {
   const Vec2 direction{std::cos(angle), std::sin(angle)};
   const auto inside = [&](double t) {
     return track.edge_distance(track.centre().project(from + t * direction)) + track.kerb_width() > 0.0;
@@ -42,7 +42,7 @@ struct Errors {
 };
 
 /// Random poses on the road, one beam of each in a random direction.
-Errors compare(const path::Track& track, int poses) {
+Errors compare(const road::Track& track, int poses) {
   auto scanner = RangeScanner::create(track);
   EXPECT_TRUE(scanner);
   std::vector<float> ranges(1080);
@@ -50,7 +50,7 @@ Errors compare(const path::Track& track, int poses) {
   Errors errors;
   while (errors.compared < poses) {
     const double s = random.uniform() * track.length();
-    const path::PathPoint at = track.centre().at(s);
+    const road::PathPoint at = track.centre().at(s);
     const double d = (2.0 * random.uniform() - 1.0) * 0.8;
     const Vec2 normal{-std::sin(at.heading), std::cos(at.heading)};
     const Vec2 here = at.position + d * (d > 0 ? track.left_width(s) : track.right_width(s)) * normal;
@@ -73,9 +73,9 @@ TEST(RangeScanner, AgreesWithTheRoadsGeometryWithinOneCentimetre) {
 }
 
 TEST(RangeScanner, SeesAStraightWallWhereItIs) {
-  std::vector<path::TrackPoint> points;
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i <= 20; ++i) points.push_back({.position = {5.0 * i, 0.0}, .left = 2.0, .right = 3.0});
-  auto track = path::Track::create("straight", points, false);
+  auto track = road::Track::create("straight", points, false);
   ASSERT_TRUE(track);
   auto scanner = RangeScanner::create(*track, {.beams = 3, .field_of_view = 3.14159265358979});
   ASSERT_TRUE(scanner);
@@ -89,7 +89,7 @@ TEST(RangeScanner, SeesAStraightWallWhereItIs) {
 }
 
 TEST(RangeScanner, ACrossingIsOpen) {
-  const path::Track track = track_of("crossover", 1.0);
+  const road::Track track = track_of("crossover", 1.0);
   ASSERT_EQ(track.crossings(), 1);
   const Errors errors = compare(track, 300);
   EXPECT_LE(errors.worst, 0.5);  // but for the corners of the crossing, which are rounded
@@ -103,7 +103,7 @@ TEST(RangeScanner, RefusesOptionsOutOfRange) {
 TEST(RangeScanner, TakesLittleTime) {
   auto scanner = RangeScanner::create(track_of("lakeside", 0.1));
   ASSERT_TRUE(scanner);
-  const path::PathPoint at = track_of("lakeside", 0.1).centre().at(3.0);
+  const road::PathPoint at = track_of("lakeside", 0.1).centre().at(3.0);
   std::vector<float> ranges(1080);
   double best = 1.0;
   for (int i = 0; i < 20; ++i) {

@@ -51,23 +51,23 @@ class Puppet final : public Plant {
 
 /// Circle about the origin, counter-clockwise, s = 0 at (kRadius, 0), 5 m to the left edge and 4 m to the
 /// right.
-path::Track circle(double kerb = 0.0) {
-  std::vector<path::TrackPoint> points;
+road::Track circle(double kerb = 0.0) {
+  std::vector<road::TrackPoint> points;
   const int count = 120;
   for (int i = 0; i < count; ++i) {
     const double angle = kTwoPi * i / count;
     points.push_back({Vec2{kRadius * std::cos(angle), kRadius * std::sin(angle)}, 5.0, 4.0});
   }
-  return path::Track::create("circle", points, true,
+  return road::Track::create("circle", points, true,
                              {.spacing = 2.0, .smoothing_sigma = 0.0, .kerb_width = kerb})
       .value();
 }
 
 /// Straight of 300 m along x, open.
-path::Track straight() {
-  std::vector<path::TrackPoint> points;
+road::Track straight() {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i <= 30; ++i) points.push_back({Vec2{10.0 * i, 0.0}, 5.0, 4.0});
-  return path::Track::create("straight", points, false, {.spacing = 2.0, .smoothing_sigma = 0.0}).value();
+  return road::Track::create("straight", points, false, {.spacing = 2.0, .smoothing_sigma = 0.0}).value();
 }
 
 /// On the circle at `angle` from the start, `left` of the line.
@@ -77,7 +77,7 @@ model::Pose on_circle(double angle, double left = 0.0) {
 }
 
 struct Drive {
-  explicit Drive(const path::Track& on, double step_length = 0.02) : puppet{step_length}, world{puppet, on} {}
+  explicit Drive(const road::Track& on, double step_length = 0.02) : puppet{step_length}, world{puppet, on} {}
   void to(double angle, double left = 0.0) {
     puppet.go(on_circle(angle, left));
     world.advance({});
@@ -92,7 +92,7 @@ struct Drive {
 };
 
 TEST(World, KnowsWhereTheCarIs) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Drive drive{track};
   drive.sweep(0.0, 1.0, 50, 1.5);
   // The spline through 120 points of a circle errs by 1e-5 of the radius at most; s by 1e-3 relative as Path
@@ -105,7 +105,7 @@ TEST(World, KnowsWhereTheCarIs) {
 }
 
 TEST(World, TimesALapToAFractionOfAStep) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Drive drive{track};
   // 0.4 rad/s: a lap takes 2π / 0.4 = 15.70796 s, not a multiple of 0.02 s.
   for (int i = 1; i <= 2000; ++i) drive.to(0.4 * 0.02 * i);
@@ -119,7 +119,7 @@ TEST(World, TimesALapToAFractionOfAStep) {
 }
 
 TEST(World, SectorTimesAddUpToTheLap) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Drive drive{track};
   for (int i = 1; i <= 1000; ++i) drive.to(0.4 * 0.02 * i);
   ASSERT_EQ(drive.state().lap, 1);
@@ -132,7 +132,7 @@ TEST(World, SectorTimesAddUpToTheLap) {
 }
 
 TEST(World, CountsALapOnceWhenTheLineIsCrossedBackAndForth) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Drive drive{track};
   drive.sweep(0.0, kTwoPi + 0.02, 400);
   EXPECT_EQ(drive.state().lap, 1);
@@ -146,7 +146,7 @@ TEST(World, CountsALapOnceWhenTheLineIsCrossedBackAndForth) {
 }
 
 TEST(World, DoesNotCountALapDrivenBackwards) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Drive drive{track};
   drive.sweep(0.0, -1.5 * kTwoPi, 600);
   EXPECT_EQ(drive.state().lap, 0);
@@ -154,7 +154,7 @@ TEST(World, DoesNotCountALapDrivenBackwards) {
 }
 
 TEST(World, VoidsARoundThatCutsAcross) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Drive drive{track};
   drive.sweep(0.0, 1.0, 60);
   // Straight across the infield, from one side of the circle to the other.
@@ -174,7 +174,7 @@ TEST(World, VoidsARoundThatCutsAcross) {
 }
 
 TEST(World, FirstDrivesToTheLineWhenItStartsElsewhere) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Drive drive{track};
   drive.world.reset(on_circle(1.0), 0.0);
   EXPECT_FALSE(drive.state().is_timed);
@@ -186,7 +186,7 @@ TEST(World, FirstDrivesToTheLineWhenItStartsElsewhere) {
 }
 
 TEST(World, MeasuresTheEdgeFromTheOutermostPatch) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Drive drive{track};
   drive.sweep(0.0, 0.5, 20);
   // The right rear and front patches lie 1 m right and 1.5 m along: √((60 + 1)² + 1.5²) − 60 = 1.01844 m off
@@ -199,7 +199,7 @@ TEST(World, MeasuresTheEdgeFromTheOutermostPatch) {
 }
 
 TEST(World, CountsAnOffTrackEventOnceUntilTheCarIsBackForAWhile) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Drive drive{track};
   drive.sweep(0.0, 0.2, 10, 0.0);
   drive.sweep(0.2, 0.4, 10, 4.2);  // left patches 0.2 m beyond the edge
@@ -219,7 +219,7 @@ TEST(World, CountsAnOffTrackEventOnceUntilTheCarIsBackForAWhile) {
 }
 
 TEST(World, KerbIsDrivable) {
-  const path::Track track = circle(0.5);
+  const road::Track track = circle(0.5);
   Drive drive{track};
   drive.sweep(0.0, 0.4, 20, 4.2);
   EXPECT_FALSE(drive.state().is_off_track);
@@ -228,7 +228,7 @@ TEST(World, KerbIsDrivable) {
 }
 
 TEST(World, AnOpenTrackEndsWithOneLap) {
-  const path::Track track = straight();
+  const road::Track track = straight();
   Puppet puppet;
   World world{puppet, track};
   for (int i = 1; i <= 1100; ++i) {
@@ -243,9 +243,9 @@ TEST(World, AnOpenTrackEndsWithOneLap) {
 // From the start line to the finish, whatever lies before and behind; also for a car that comes up to the
 // start.
 TEST(World, TimesAnOpenRoadFromStartToFinish) {
-  std::vector<path::TrackPoint> points;
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i <= 30; ++i) points.push_back({Vec2{10.0 * i, 0.0}, 5.0, 4.0});
-  const path::Track track = path::Track::create("straight", points, false,
+  const road::Track track = road::Track::create("straight", points, false,
                                                 {.smoothing_sigma = 0.0, .start_s = 40.0, .finish_s = 190.0})
                                 .value();
   for (const double from : {10.0, 40.0}) {
@@ -264,7 +264,7 @@ TEST(World, TimesAnOpenRoadFromStartToFinish) {
 }
 
 TEST(World, JudgesAPlantOfOneMillisecondEveryFiveSteps) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Drive drive{track, 0.001};
   for (int i = 1; i <= 16000; ++i) drive.to(0.4 * 0.001 * i);
   EXPECT_EQ(drive.state().lap, 1);
@@ -273,7 +273,7 @@ TEST(World, JudgesAPlantOfOneMillisecondEveryFiveSteps) {
 }
 
 TEST(World, RealCarsStandAtTheStart) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   for (const std::string_view name : plant_names()) {
     const auto plant = make_plant(name).value();
     World world{*plant, track};
@@ -285,7 +285,7 @@ TEST(World, RealCarsStandAtTheStart) {
 }
 
 TEST(SelectWaypoints, ShowsOneBehindAndTheOthersAhead) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   model::Measurement seen;
   const double step = kTwoPi / 120.0;
   EXPECT_EQ(select_waypoints(track, on_circle(10.3 * step), 6, seen), 6);
@@ -298,7 +298,7 @@ TEST(SelectWaypoints, ShowsOneBehindAndTheOthersAhead) {
 }
 
 TEST(SelectWaypoints, GoesAroundTheEndOfAClosedTrack) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   model::Measurement seen;
   const double step = kTwoPi / 120.0;
   EXPECT_EQ(select_waypoints(track, on_circle(118.4 * step), 6, seen), 6);
@@ -309,22 +309,22 @@ TEST(SelectWaypoints, GoesAroundTheEndOfAClosedTrack) {
   EXPECT_NEAR(seen.waypoints[0].x(), kRadius * std::cos(119.0 * step), 1e-9);
 }
 
-path::Track eight() {
-  std::vector<path::TrackPoint> points;
+road::Track eight() {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 60; ++i) {
     const double angle = kTwoPi * i / 60.0;
     points.push_back({{100.0 * std::sin(angle), 60.0 * std::sin(2.0 * angle)}, 5.0, 5.0});
   }
-  return path::Track::create("eight", points, true).value();
+  return road::Track::create("eight", points, true).value();
 }
 
 // Also for a car beside the line and not quite along it, and where both passages have a waypoint.
 TEST(SelectWaypoints, ShowsTheRoadThatIsDrivenWhereItCrossesItself) {
-  const path::Track track = eight();
+  const road::Track track = eight();
   for (const double side : {-4.0, 0.0, 4.0}) {
     for (const double turn : {-0.3, 0.0, 0.3}) {
       for (double s = 0.0; s < track.length(); s += 0.7) {
-        const path::PathPoint at = track.centre().at(s);
+        const road::PathPoint at = track.centre().at(s);
         model::Measurement seen;
         select_waypoints(track,
                          {.x = at.position.x() - side * std::sin(at.heading),
@@ -340,13 +340,13 @@ TEST(SelectWaypoints, ShowsTheRoadThatIsDrivenWhereItCrossesItself) {
 }
 
 TEST(World, TimesLapsOfAFigureOfEightFromAnyPlace) {
-  const path::Track track = eight();
+  const road::Track track = eight();
   for (const double start : {0.0, 0.25, 0.5, 0.52, 0.98}) {  // of the lap; it crosses itself at 0 and 0.5
     Puppet puppet{0.02};
     World world{puppet, track};
     const int lap_steps = 1000;
     for (int i = 0; i <= 2 * lap_steps + 20; ++i) {
-      const path::PathPoint at =
+      const road::PathPoint at =
           track.centre().at(track.length() * (start + static_cast<double>(i) / lap_steps));
       puppet.go({.x = at.position.x(), .y = at.position.y(), .psi = at.heading});
       if (i == 0) world.reset({.x = at.position.x(), .y = at.position.y(), .psi = at.heading}, 0.0);
@@ -360,7 +360,7 @@ TEST(World, TimesLapsOfAFigureOfEightFromAnyPlace) {
 }
 
 TEST(SelectWaypoints, StopsAtTheEndOfAnOpenTrackAndKeepsItsBounds) {
-  const path::Track track = straight();
+  const road::Track track = straight();
   model::Measurement seen;
   EXPECT_EQ(select_waypoints(track, {.x = 285.0, .y = 0.0, .psi = 0.0}, 6, seen), 3);  // 280, 290, 300
   EXPECT_EQ(select_waypoints(track, {.x = 1000.0, .y = 0.0, .psi = 0.0}, 6, seen), 1);
@@ -373,7 +373,7 @@ TEST(SelectWaypoints, StopsAtTheEndOfAnOpenTrackAndKeepsItsBounds) {
 
 /// Another place on the road is no way off it, and the clock goes on.
 TEST(World, PutsTheCarElsewhereInTheSameRun) {
-  const path::Track track = circle();
+  const road::Track track = circle();
   Puppet puppet;
   World world(puppet, track);
   puppet.go({.x = kRadius, .y = 0.0, .psi = 0.5 * kPi});

@@ -55,7 +55,7 @@ TEST(ConeLine, MissingConesAreNamedAndBridged) {
   ASSERT_EQ(road->gaps.size(), 1U);
   EXPECT_TRUE(road->gaps[0].is_left);
   EXPECT_NEAR(road->gaps[0].length, 2.0 * 18.0 * std::sin(0.5 * kTwoPi / 10.0), 1e-9);
-  for (const path::TrackPoint& point : road->points) EXPECT_NEAR(point.position.norm(), 20.0, 0.8);
+  for (const road::TrackPoint& point : road->points) EXPECT_NEAR(point.position.norm(), 20.0, 0.8);
 }
 
 TEST(ConeLine, OrangeConesBelongToTheNearerSide) {

@@ -47,7 +47,7 @@ void expect_ring(const FreeLoop& loop, double width, double tolerance) {
   ASSERT_GT(loop.points.size(), 30U);
   double turned = 0.0;
   for (std::size_t i = 0; i < loop.points.size(); ++i) {
-    const path::TrackPoint& point = loop.points[i];
+    const road::TrackPoint& point = loop.points[i];
     EXPECT_NEAR(point.position.norm(), 4.0, tolerance);
     EXPECT_NEAR(point.left + point.right, width - tolerance, 2.0 * tolerance);
     const Vec2& next = loop.points[(i + 1) % loop.points.size()].position;

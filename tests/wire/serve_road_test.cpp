@@ -17,17 +17,17 @@ using test::Served;
 using test::steer_of;
 
 /// A circle about the origin, 5 m to each edge.
-path::Track circle(double radius) {
-  std::vector<path::TrackPoint> points;
+road::Track circle(double radius) {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 100; ++i) {
     const double angle = 2.0 * 3.14159265358979 * i / 100;
     points.push_back({Vec2{radius * std::cos(angle), radius * std::sin(angle)}, 5.0, 5.0});
   }
-  return path::Track::create("circle", points, true).value();
+  return road::Track::create("circle", points, true).value();
 }
 
 TEST(Serve, SaysOnceThatTheToldRoadIsAnotherOneAndJudgesNothingByIt) {
-  const path::Track track = circle(60.0);  // the message's waypoints are 118 m from the origin and less
+  const road::Track track = circle(60.0);  // the message's waypoints are 118 m from the origin and less
   ServeOptions options = Served::immediate();
   options.track = &track;
   Served served(options);
@@ -44,7 +44,7 @@ TEST(Serve, SaysOnceThatTheToldRoadIsAnotherOneAndJudgesNothingByIt) {
 }
 
 TEST(Serve, JudgesByTheToldRoadWhereItFits) {
-  const path::Track track = circle(118.0);
+  const road::Track track = circle(118.0);
   ServeOptions options = Served::immediate();
   options.track = &track;
   Served served(options);

@@ -138,7 +138,7 @@ TEST(Simulate, SendsWhatTheOriginalSends) {
 TEST(Simulate, SendsTheWaypointsOfTheMeasuredPlaceAsDriveDoes) {
   scenario::Scenario noisy = short_run(1.0);
   noisy.sensor.position_noise = 8.0;  // other waypoints than those of the true place, now and then
-  const path::Track points = run::make_waypoints(run::make_track(noisy).value()).value();
+  const road::Track points = run::make_waypoints(run::make_track(noisy).value()).value();
   ScriptedServer server([](int, const std::string&) { return std::vector{kStraight}; });
   int frames = 0;
   const std::atomic<bool> stop{false};

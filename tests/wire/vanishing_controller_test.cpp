@@ -32,8 +32,8 @@ struct Outcome {
 
 Outcome vanish(scenario::Scenario scenario, double moment, bool has_plan = true) {
   scenario.guard.road = safety::GuardRoad::kWaypoints;
-  const path::Track track = run::make_track(scenario).value();
-  const path::Track waypoints = run::make_waypoints(track).value();
+  const road::Track track = run::make_track(scenario).value();
+  const road::Track waypoints = run::make_waypoints(track).value();
   const std::unique_ptr<sim::Plant> plant = run::make_plant(scenario).value();
   sim::World world(*plant, track);
   sim::Sensor sensor(scenario.sensor, scenario.seed);

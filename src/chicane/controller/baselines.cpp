@@ -13,15 +13,15 @@
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/speed_hold.hpp"
 #include "chicane/controller/tunable.hpp"
-#include "chicane/path/path.hpp"
+#include "chicane/road/path.hpp"
 
 namespace chicane::controller {
 namespace {
 
 /// What a steering law looks at.
 struct View {
-  const path::Path& line;  ///< through the waypoints just told
-  path::Projection here;   ///< of the centre of mass
+  const road::Path& line;  ///< through the waypoints just told
+  road::Projection here;   ///< of the centre of mass
   double heading_error;    ///< yaw minus the line's heading there [rad]
   const model::Measurement& now;
   double elapsed;  ///< since the step before [s], 0 when unknown
@@ -40,11 +40,11 @@ class WaypointLine {
     }
     return path_.rebuild({points_.data(), count}, false);
   }
-  [[nodiscard]] const path::Path& path() const noexcept { return path_; }
+  [[nodiscard]] const road::Path& path() const noexcept { return path_; }
   [[nodiscard]] std::span<const Vec2> points() const noexcept { return points_; }
 
  private:
-  path::Path path_ = path::Path::with_capacity(model::Measurement::kMaxWaypoints);
+  road::Path path_ = road::Path::with_capacity(model::Measurement::kMaxWaypoints);
   std::array<Vec2, model::Measurement::kMaxWaypoints> points_{};
 };
 
@@ -67,8 +67,8 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
   [[nodiscard]] const StepResult& step(const model::Measurement& now,
                                        Deadline /*unused: nothing is solved*/) noexcept override {
     if (!is_finite(now) || !line_.see(now)) return no_answer();
-    const path::Path& line = line_.path();
-    const path::Projection here = line.project({now.x, now.y});
+    const road::Path& line = line_.path();
+    const road::Projection here = line.project({now.x, now.y});
     const View view{line, here, angle_difference(now.psi, line.at(here.s).heading), now, elapsed(now.time)};
     const SpeedHold::Wanted wanted = speed_.reference(line, here.s);
     const double steer = std::clamp(law_.steer(view), -steer_limit_, steer_limit_);
@@ -237,7 +237,7 @@ class StanleyLaw {
   double steer(const View& view) noexcept {
     const double psi = view.now.psi;
     const Vec2 front{view.now.x + front_axle_ * cos(psi), view.now.y + front_axle_ * sin(psi)};
-    const path::Projection there = view.line.project(front);
+    const road::Projection there = view.line.project(front);
     const double heading_error = angle_difference(psi, view.line.at(there.s).heading);
     return -heading_error - atan2(options_.gain * there.d, options_.softening_speed + view.now.speed);
   }

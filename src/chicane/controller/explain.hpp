@@ -10,10 +10,10 @@
 
 #include "chicane/controller/cubic_problem.hpp"
 #include "chicane/controller/explanation.hpp"
-#include "chicane/controller/tracking_problem.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/reference_line.hpp"
 #include "chicane/solver/problem.hpp"
+#include "chicane/tracking/tracking_problem.hpp"
 
 /// What an optimal control problem's answer says about itself: cost by term, active constraints. Evaluates
 /// the residuals once along the plan (about 40 ns a stage), after the solver is done; changes nothing.
@@ -24,9 +24,9 @@ struct TrackingTerms {
   enum Group : std::uint8_t { kLateral, kHeading, kSpeed, kSteerRate, kJerk, kEdge, kSlip, kFriction, kYaw };
   static constexpr std::array<std::string_view, 9> kNames{
       "lateral", "heading", "speed", "steer_rate", "jerk", "edge", "slip", "friction", "end_yaw_rate"};
-  static constexpr std::array<Group, TrackingProblem::kNr> kStage{
+  static constexpr std::array<Group, tracking::TrackingProblem::kNr> kStage{
       kLateral, kHeading, kSpeed, kSteerRate, kJerk, kEdge, kEdge, kSlip, kSlip, kSteerRate, kFriction};
-  static constexpr std::array<Group, TrackingProblem::kNe> kEnd{kLateral, kHeading, kSpeed, kYaw};
+  static constexpr std::array<Group, tracking::TrackingProblem::kNe> kEnd{kLateral, kHeading, kSpeed, kYaw};
   /// Residuals that are not zero where a constraint is active.
   static constexpr std::array<std::pair<std::size_t, Constraint>, 6> kOneSided{
       {{5, Constraint::kLeftEdge},

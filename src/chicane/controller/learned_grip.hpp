@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chicane/controller/grip_estimator.hpp"
 #include "chicane/controller/learned_car.hpp"
+#include "chicane/tracking/grip_estimator.hpp"
 
 namespace chicane::controller {
 
@@ -27,12 +27,12 @@ class LearnedGrip {
     is_shown_ = false;
   }
   /// The estimate begins anew where `from` is, with the model as it is now.
-  void begin(const StateEstimator& from, const model::PredictionModel& model) noexcept {
+  void begin(const tracking::StateEstimator& from, const model::PredictionModel& model) noexcept {
     estimator_.begin(from, model);
   }
   /// What has changed by a measurement. After kModel the model has to follow share(), and then begin().
   enum class Change { kNothing, kShown, kModel };
-  [[nodiscard]] Change see(const model::Measurement& now, const CommandHistory& sent) noexcept {
+  [[nodiscard]] Change see(const model::Measurement& now, const tracking::CommandHistory& sent) noexcept {
     estimator_.see(now, sent);
     const bool is_other = estimator_.differs(kStep);
     if (!estimator_.is_known() || (is_shown_ && !is_other)) return Change::kNothing;
@@ -68,7 +68,7 @@ class LearnedGrip {
     return std::fabs(share - 1.0) <= kNearlyTold ? 1.0 : std::floor(100.0 * share + 0.5) / 100.0;
   }
 
-  GripEstimator estimator_;
+  tracking::GripEstimator estimator_;
   double share_ = 1.0;
   double unsure_ = 0.0;  ///< two standard deviations of share_ when it was found
   bool is_shown_ = false;

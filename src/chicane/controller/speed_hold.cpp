@@ -13,7 +13,7 @@ constexpr int kMaxSamples = 100;             ///< and how often
 
 }  // namespace
 
-SpeedHold::Wanted SpeedHold::reference(const path::Path& path, double s) const noexcept {
+SpeedHold::Wanted SpeedHold::reference(const road::Path& path, double s) const noexcept {
   double wanted_squared = options_.speed_reference * options_.speed_reference;
   SpeedLimiter limiter = SpeedLimiter::kAsked;
   const double sight = path.length() - s;

@@ -4,7 +4,7 @@
 #include "chicane/controller/baselines.hpp"
 #include "chicane/controller/explanation.hpp"
 #include "chicane/model/vehicle.hpp"
-#include "chicane/path/path.hpp"
+#include "chicane/road/path.hpp"
 
 namespace chicane::controller {
 
@@ -25,7 +25,7 @@ class SpeedHold {
   };
   /// Speed wanted at arc length s of `path`: at most the reference, and slow enough to meet v² |κ| <= limit
   /// everywhere ahead with comfortable braking.
-  [[nodiscard]] Wanted reference(const path::Path& path, double s) const noexcept;
+  [[nodiscard]] Wanted reference(const road::Path& path, double s) const noexcept;
   /// Pedal in [-brake_throttle_limit, 1] towards `wanted` [m/s] at speed v [m/s].
   [[nodiscard]] double throttle(double wanted, double v) const noexcept;
 

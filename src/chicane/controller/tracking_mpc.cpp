@@ -8,22 +8,22 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/base/owned.hpp"
 #include "chicane/controller/absence.hpp"
-#include "chicane/controller/command_history.hpp"
 #include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/copyable.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/learned_grip.hpp"
-#include "chicane/controller/tracking_solver.hpp"
-#include "chicane/controller/way_back.hpp"
 #include "chicane/model/grip.hpp"
-#include "chicane/model/prediction.hpp"
 #include "chicane/road/driven_road.hpp"
+#include "chicane/tracking/state_estimator.hpp"
+#include "chicane/tracking/tracking_solver.hpp"
+#include "chicane/tracking/way_back.hpp"
 
 namespace chicane::controller {
 namespace {
 
-using Problem = TrackingProblem;
-using Horizon = TrackingTrajectory;
+using Problem = tracking::TrackingProblem;
+using Horizon = tracking::TrackingTrajectory;
+using Prediction = tracking::StateEstimator::Prediction;
 using StageState = std::array<double, Problem::kNx>;
 using StageInput = std::array<double, Problem::kNu>;
 
@@ -47,7 +47,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
         model_{vehicle},
         road_{options.road(), vehicle},
         estimator_{model_},
-        solver_{make_tracking_solver(kMostTurns)} {
+        solver_{tracking::make_tracking_solver(kMostTurns)} {
     shape_raced();
   }
 
@@ -66,7 +66,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     estimator_.correct(now, sent_);
     if (options_.learns()) watch_grip(now);
     watch_sight(now);
-    const StateEstimator::Prediction start = estimator_.predict(act_time, sent_);
+    const Prediction start = estimator_.predict(act_time, sent_);
     is_returning_ = !place_on_line(now, start) || (is_returning_ && std::fabs(x0_[Problem::kE]) > kJoining);
     if (is_returning_ || estimator_.rolls_back()) return return_to_road(now, start, act_time);
     if (start.state.vx < kCrawl && stopping_speed(0.0) < kCrawl) return no_answer(act_time);
@@ -207,7 +207,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   /// The predicted start in coordinates along the line. False when the car or the road is lost.
-  bool place_on_line(const model::Measurement& now, const StateEstimator::Prediction& start) noexcept {
+  bool place_on_line(const model::Measurement& now, const Prediction& start) noexcept {
     StepReport& report = result_.report;
     report = {};
     report.solve.status = solver::SolveStatus::kNotFinite;  // until there is an answer
@@ -381,7 +381,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     road.acceleration_max[i] = longitudinal_acceleration(car, 1.0, v);
   }
 
-  const StepResult& accept(const StateEstimator::Prediction& start, double act_time) noexcept {
+  const StepResult& accept(const Prediction& start, double act_time) noexcept {
     has_horizon_ = true;
     result_.answer = Answer::kDrive;
     fill_plan(act_time);
@@ -397,7 +397,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   /// No time to solve, and the last plan is old: the wheel by feedback to the line, all useful braking.
-  const StepResult& stop_on_road(const StateEstimator::Prediction& start) noexcept {
+  const StepResult& stop_on_road(const Prediction& start) noexcept {
     const model::VehicleParams& car = model_.vehicle();
     const int ahead = std::min(static_cast<int>(kPreview / options_.step_length), options_.horizon_steps - 1);
     const double v = start.state.vx, braking = longitudinal_acceleration(car, -car.brake_throttle_limit, v);
@@ -414,7 +414,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   /// A car that has spun, or is far from its line: it brakes first, then drives back at walking pace.
-  const StepResult& return_to_road(const model::Measurement& now, const StateEstimator::Prediction& start,
+  const StepResult& return_to_road(const model::Measurement& now, const Prediction& start,
                                    double act_time) noexcept {
     const road::ReferenceLine& line = this->line();
     const model::State& car = start.state;
@@ -428,9 +428,9 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const bool rolls_back = estimator_.rolls_back();
     if (must_stop || !(place.distance < kLost) || !(rolls_back || std::fabs(car.vx) < kSlow))
       return no_answer(act_time);
-    result_.command = rolls_back
-                          ? model::Command{0.0, throttle_against_rolling_back(model_.vehicle(), now.speed)}
-                          : way_back(line, place, car, model_.vehicle());
+    result_.command =
+        rolls_back ? model::Command{0.0, tracking::throttle_against_rolling_back(model_.vehicle(), now.speed)}
+                   : tracking::way_back(line, place, car, model_.vehicle());
     return without_plan(Answer::kReturnToRoad);
   }
 
@@ -465,14 +465,14 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   model::PredictionModel model_;
   LearnedGrip grip_{model_};
   road::DrivenRoad road_;
-  StateEstimator estimator_;
-  CommandHistory sent_;
+  tracking::StateEstimator estimator_;
+  tracking::CommandHistory sent_;
   Problem problem_;
-  Owned<TrackingSolver> solver_;
+  Owned<tracking::TrackingSolver> solver_;
   Horizon horizon_;  ///< the last answer, then the guess, then the new answer
   Horizon old_;
   StageState x0_{};
-  Disturbance disturbance_;  ///< where the command acts
+  tracking::Disturbance disturbance_;  ///< where the command acts
   StepResult result_;
   double s_ = 0.0;  ///< arc length on the line where the command acts
   double act_time_ = 0.0;

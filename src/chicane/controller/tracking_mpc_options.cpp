@@ -2,7 +2,7 @@
 #include <array>
 
 #include "chicane/controller/tracking_mpc.hpp"
-#include "chicane/controller/tracking_problem.hpp"
+#include "chicane/tracking/tracking_problem.hpp"
 
 namespace chicane::controller {
 namespace {
@@ -10,7 +10,7 @@ namespace {
 using T = TrackingMpcOptions;
 constexpr double kHighestWeight = 1e6;
 constexpr std::array kOptions{
-    option<&T::horizon_steps>("horizon_steps", unit::kNone, 5, TrackingProblem::kCapacity,
+    option<&T::horizon_steps>("horizon_steps", unit::kNone, 5, tracking::TrackingProblem::kCapacity,
                               "Steps the plan looks ahead."),
     option<&T::step_length>("step_length", unit::kSecond, 0.01, 0.2, "Time between two points of the plan."),
     option<&T::speed_limit>("speed_limit", unit::kSpeed, 1, 110, "Speed that the plan never exceeds."),

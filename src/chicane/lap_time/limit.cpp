@@ -9,10 +9,10 @@ namespace chicane::lap_time {
 namespace {
 
 /// The closed line `lap`, with its first point at `start` [m] and its time counted from there.
-path::RacingLine beginning_at(const path::RacingLine& lap, double start) {
+road::RacingLine beginning_at(const road::RacingLine& lap, double start) {
   constexpr double kSamePlace = 1e-6;  // [m]
-  const path::RacingLinePoint first = lap.at(start);
-  path::RacingLine line = lap;
+  const road::RacingLinePoint first = lap.at(start);
+  road::RacingLine line = lap;
   line.points = {first};
   const auto add = [&](auto is_wanted) {
     for (std::size_t i = 0; i + 1 < lap.points.size(); ++i)
@@ -21,7 +21,7 @@ path::RacingLine beginning_at(const path::RacingLine& lap, double start) {
   add([](double ahead) { return ahead > kSamePlace; });
   add([](double ahead) { return ahead < -kSamePlace; });
   line.points.push_back(first);
-  for (path::RacingLinePoint& point : line.points) {
+  for (road::RacingLinePoint& point : line.points) {
     point.time -= first.time;
     if (point.time < 0.0) point.time += lap.lap_time();
   }
@@ -31,10 +31,10 @@ path::RacingLine beginning_at(const path::RacingLine& lap, double start) {
 
 }  // namespace
 
-Limit bound_from_start(const path::Track& track, const PlantLimit& limit) {
+Limit bound_from_start(const road::Track& track, const PlantLimit& limit) {
   Limit told{.times = limit.bound, .line = {}};
   if (limit.line.is_empty()) return told;
-  told.line = path::line_points(track, beginning_at(limit.line, track.centre().wrap(track.start_s())));
+  told.line = road::line_points(track, beginning_at(limit.line, track.centre().wrap(track.start_s())));
   for (std::size_t i = 1; i < told.line.size(); ++i)  // continuous across the beginning of the centre line
     told.line[i].heading =
         told.line[i - 1].heading + angle_difference(told.line[i].heading, told.line[i - 1].heading);

@@ -7,19 +7,19 @@
 
 #include "chicane/lap_time/lap_times.hpp"
 #include "chicane/lap_time/plant_limit.hpp"
-#include "chicane/path/road_data.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/road_data.hpp"
+#include "chicane/road/track.hpp"
 
 namespace chicane::lap_time {
 
 /// The bound of a plant as driven laps are compared with it (PlantLimit).
 struct Limit {
   LapTimes times;
-  std::vector<path::LinePoint> line;  ///< by rising time, from the start line; the last repeats the first
+  std::vector<road::LinePoint> line;  ///< by rising time, from the start line; the last repeats the first
 };
 
 /// Times and line of the bound, from the start line of `track` on.
-[[nodiscard]] Limit bound_from_start(const path::Track& track, const PlantLimit& limit);
+[[nodiscard]] Limit bound_from_start(const road::Track& track, const PlantLimit& limit);
 
 /// The limit of a run, or in one sentence why there is none (yet).
 struct LimitAnswer {

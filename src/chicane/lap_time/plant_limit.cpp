@@ -17,7 +17,7 @@
 namespace chicane::lap_time {
 namespace {
 
-LapTimes times_of(const path::RacingLine& line, double start_s) {
+LapTimes times_of(const road::RacingLine& line, double start_s) {
   LapTimes times;
   times.lap = line.lap_time();
   const auto since = [&](double share) {
@@ -32,7 +32,7 @@ LapTimes times_of(const path::RacingLine& line, double start_s) {
 
 class Finder {
  public:
-  Finder(const path::Track& track, std::string_view name, const sim::PlantDeviation& deviation,
+  Finder(const road::Track& track, std::string_view name, const sim::PlantDeviation& deviation,
          const PlantLimitOptions& options, LimitModel& model, sim::Plant& plant)
       : track_{track},
         name_{name},
@@ -95,7 +95,7 @@ class Finder {
     return {};
   }
 
-  const path::Track& track_;
+  const road::Track& track_;
   std::string_view name_;
   const PlantLimitOptions& options_;
   LimitModel& model_;
@@ -110,7 +110,7 @@ double PlantLimit::bracket() const noexcept {
   return witness ? gap(witness->lap_time, bound.lap) : std::numeric_limits<double>::quiet_NaN();
 }
 
-Result<PlantLimit> find_plant_limit(const path::Track& track, std::string_view plant,
+Result<PlantLimit> find_plant_limit(const road::Track& track, std::string_view plant,
                                     const sim::PlantDeviation& deviation, const PlantLimitOptions& options,
                                     const sim::DoubleTrackParams& params) {
   if (!track.centre().is_closed())

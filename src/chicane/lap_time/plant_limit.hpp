@@ -10,8 +10,8 @@
 #include "chicane/base/result.hpp"
 #include "chicane/lap_time/lap_times.hpp"
 #include "chicane/lap_time/plan_progress.hpp"
-#include "chicane/path/racing_line.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/racing_line.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/sim/double_track.hpp"
 #include "chicane/sim/plant.hpp"
 
@@ -24,7 +24,7 @@ struct Witness {
   double worst = 0.0;       ///< and the slowest [s]
   int laps = 0;             ///< in succession, without a boundary event since the start
   double least_edge = 0.0;  ///< of a contact patch to the edge of the drivable surface [m]
-  path::RacingLine line;    ///< that was driven after; its margin is what it planned to keep
+  road::RacingLine line;    ///< that was driven after; its margin is what it planned to keep
 };
 
 /// What a search took; work as PlanProgress counts it.
@@ -37,7 +37,7 @@ struct SearchEffort {
 /// equations, which no controller should beat, and the best lap that was driven. The truth lies between.
 struct PlantLimit {
   LapTimes bound;         ///< of the optimum [s]
-  path::RacingLine line;  ///< of the optimum, without any reserve; no bound where it is_best_so_far
+  road::RacingLine line;  ///< of the optimum, without any reserve; no bound where it is_best_so_far
   std::optional<Witness>
       witness{};              ///< none: no plan could be driven without an event, or none was asked for
   bool is_cut_short = false;  ///< the budget ended the search for the witness
@@ -69,7 +69,7 @@ struct PlantLimitOptions {
 /// `params`: of the plant `double-track`. kNotFound for a plant that has no model here; kInvalidArgument for
 /// an open road, a road too narrow for the car or with a bend too tight for its full lock (names the place
 /// and the radius), options out of range, and for a search that ended without an optimum.
-[[nodiscard]] Result<PlantLimit> find_plant_limit(const path::Track& track, std::string_view plant,
+[[nodiscard]] Result<PlantLimit> find_plant_limit(const road::Track& track, std::string_view plant,
                                                   const sim::PlantDeviation& deviation = {},
                                                   const PlantLimitOptions& options = {},
                                                   const sim::DoubleTrackParams& params = {});

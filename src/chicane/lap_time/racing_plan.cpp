@@ -55,7 +55,7 @@ class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
     z[kSteer] = car.wheelbase() * curvature + side / car.cornering_front - side / car.cornering_rear;
     z[kPedal] = a;
   }
-  [[nodiscard]] path::RacingLinePoint point(const double* z) const override {
+  [[nodiscard]] road::RacingLinePoint point(const double* z) const override {
     const model::VehicleParams& car = vehicle_;
     const model::BodyMotion<double> body{z[kVx], z[kVy], z[kYawRate], z[kSteer], z[kPedal]};
     return {.offset = z[kOffset],
@@ -75,7 +75,7 @@ class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
 
 }  // namespace
 
-Result<void> can_be_driven(const path::Track& track, const model::VehicleParams& vehicle, double beside,
+Result<void> can_be_driven(const road::Track& track, const model::VehicleParams& vehicle, double beside,
                            double scale) {
   if (!track.centre().is_closed()) return {};
   const VehiclePlan model(vehicle, 60.0);
@@ -87,7 +87,7 @@ Result<void> can_be_driven(const path::Track& track, const model::VehicleParams&
   return {};
 }
 
-Result<path::RacingLine> plan_racing_line(const path::Track& track, const model::VehicleParams& vehicle,
+Result<road::RacingLine> plan_racing_line(const road::Track& track, const model::VehicleParams& vehicle,
                                           const RacingPlanOptions& options) {
   if (Result<void> valid = model::validate(vehicle); !valid) return fail(valid.error());
   const auto is_share = [](double share, double most) { return share > 0.0 && share <= most; };

@@ -7,8 +7,8 @@
 #include "chicane/base/result.hpp"
 #include "chicane/lap_time/plan_progress.hpp"
 #include "chicane/model/vehicle.hpp"
-#include "chicane/path/racing_line.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/racing_line.hpp"
+#include "chicane/road/track.hpp"
 
 namespace chicane::lap_time {
 
@@ -37,7 +37,7 @@ struct RacingPlanOptions {
 /// lock (names the place and the radius), parameters or options out of range, and for a search that was
 /// stopped. kNotFound for one that ended without a plan. RacingLine::is_best_so_far where the budget ended
 /// it.
-[[nodiscard]] Result<path::RacingLine> plan_racing_line(const path::Track& track,
+[[nodiscard]] Result<road::RacingLine> plan_racing_line(const road::Track& track,
                                                         const model::VehicleParams& vehicle,
                                                         const RacingPlanOptions& options = {});
 
@@ -45,7 +45,7 @@ struct RacingPlanOptions {
 /// its lock is left to steer by; its centre of mass is at most `beside` from the middle of the road [m].
 /// `scale` of the lengths in the message. True of any open road. kInvalidArgument "the bend at s = 211.2 m
 /// leaves room for a radius of 10.60 m, and the car's full lock drives no less than 10.44 m", or the width.
-[[nodiscard]] Result<void> can_be_driven(const path::Track& track, const model::VehicleParams& vehicle,
+[[nodiscard]] Result<void> can_be_driven(const road::Track& track, const model::VehicleParams& vehicle,
                                          double beside, double scale = 1.0);
 
 }  // namespace chicane::lap_time

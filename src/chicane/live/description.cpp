@@ -5,14 +5,14 @@
 
 namespace chicane::live {
 
-void describe(const path::Track& track, protocol::Run& run) {
+void describe(const road::Track& track, protocol::Run& run) {
   constexpr double kRoadSpacing = 2.0;  // [m] between the drawn points of the road
   run.track = track.name();
   run.track_length = track.centre().length();
   run.is_closed = track.centre().is_closed();
   run.kerb_width = track.kerb_width();
   run.track_points = track.raw_points().size();
-  run.track_fit = path::point_fit(track);
+  run.track_fit = road::point_fit(track);
   run.road = protocol::road_lines(track, kRoadSpacing * run.vehicle.scale);
 }
 

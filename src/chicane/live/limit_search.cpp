@@ -10,7 +10,7 @@ namespace chicane::live {
 
 namespace {
 
-Result<lap_time::PlantLimit> bound_of(const path::Track& track, const scenario::Scenario& scenario,
+Result<lap_time::PlantLimit> bound_of(const road::Track& track, const scenario::Scenario& scenario,
                                       const std::atomic<bool>& is_wanted) {
   if (std::optional<lap_time::PlantLimit> known = run::known_limit(scenario, track)) return std::move(*known);
   const lap_time::PlantLimitOptions options{
@@ -25,7 +25,7 @@ Result<lap_time::PlantLimit> bound_of(const path::Track& track, const scenario::
 
 }  // namespace
 
-LimitSearch::LimitSearch(path::Track track, const scenario::Scenario& scenario, OnEnd on_end)
+LimitSearch::LimitSearch(road::Track track, const scenario::Scenario& scenario, OnEnd on_end)
     : on_end_{std::move(on_end)}, worker_{[this, track = std::move(track), scenario] {
         work(track, scenario);
       }} {
@@ -39,7 +39,7 @@ void LimitSearch::cancel() {
   is_wanted_ = false;
 }
 
-void LimitSearch::work(const path::Track& track, const scenario::Scenario& scenario) {
+void LimitSearch::work(const road::Track& track, const scenario::Scenario& scenario) {
   const Result<lap_time::PlantLimit> limit = bound_of(track, scenario, is_wanted_);
   {
     const std::lock_guard lock(telling_);

@@ -9,7 +9,7 @@
 #include "chicane/base/result.hpp"
 #include "chicane/lap_time/limit.hpp"
 #include "chicane/live/worker.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/scenario/scenario.hpp"
 
 namespace chicane::live {
@@ -24,7 +24,7 @@ class LimitSearch {
   using OnEnd = std::function<void(Result<std::shared_ptr<const lap_time::Limit>>)>;
 
   /// Begins. `on_end` is called once, on the other thread, unless the search was cancelled before.
-  LimitSearch(path::Track track, const scenario::Scenario& scenario, OnEnd on_end);
+  LimitSearch(road::Track track, const scenario::Scenario& scenario, OnEnd on_end);
   /// Cancels, and waits for the thread: for one iteration, 1 to 100 ms on an idle machine, but as long as
   /// others keep it from running on a busy one.
   ~LimitSearch();
@@ -37,7 +37,7 @@ class LimitSearch {
   [[nodiscard]] bool has_ended() const noexcept { return has_ended_.load(std::memory_order_acquire); }
 
  private:
-  void work(const path::Track& track, const scenario::Scenario& scenario);
+  void work(const road::Track& track, const scenario::Scenario& scenario);
 
   OnEnd on_end_;
   std::mutex telling_;

@@ -18,11 +18,11 @@ constexpr const char* kOpenRoad = "the road is open: it has no laps";
 
 RunLimit::~RunLimit() { retire(); }
 
-lap_time::LimitAnswer RunLimit::first_answer(const path::Track& track) {
+lap_time::LimitAnswer RunLimit::first_answer(const road::Track& track) {
   return {.why_not = track.centre().is_closed() ? "it is still being computed" : kOpenRoad};
 }
 
-void RunLimit::search(const path::Track& track, const scenario::Scenario& scenario) {
+void RunLimit::search(const road::Track& track, const scenario::Scenario& scenario) {
   if (!track.centre().is_closed()) return give_up(kOpenRoad);
   track_ = track;
   scenario_ = scenario;

@@ -12,7 +12,7 @@
 
 #include "chicane/lap_time/limit.hpp"
 #include "chicane/live/limit_search.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
@@ -36,9 +36,9 @@ class RunLimit {
   RunLimit& operator=(const RunLimit&) = delete;
 
   /// What viewers are told of a run on this road until there are news. An open road has no laps, nor a limit.
-  [[nodiscard]] static lap_time::LimitAnswer first_answer(const path::Track& track);
+  [[nodiscard]] static lap_time::LimitAnswer first_answer(const road::Track& track);
   /// Another run: gives up the one before, and begins to search where the road is closed. Does not wait.
-  void search(const path::Track& track, const scenario::Scenario& scenario);
+  void search(const road::Track& track, const scenario::Scenario& scenario);
   /// After each control cycle of a run whose settings change while it goes on: with another grip or mass of
   /// the car, what was found no longer holds. Says so, and searches again for the laps that begin from then
   /// on, once they have stood still for a moment. Does not wait.
@@ -73,7 +73,7 @@ class RunLimit {
   std::function<void(const lap_time::LimitAnswer&)> on_news_;
   std::shared_ptr<const lap_time::LimitAnswer> answer_;  ///< while a search goes on: written by it
   std::atomic<bool> has_news_{false};                    ///< it may be read
-  std::optional<path::Track> track_;            ///< of the run; none where there is nothing to search
+  std::optional<road::Track> track_;            ///< of the run; none where there is nothing to search
   scenario::Scenario scenario_;                 ///< its car, with the grip and mass of the newest search
   int first_lap_ = 1;                           ///< LimitAnswer::first_lap
   std::optional<Clock::time_point> begins_at_;  ///< the next search, when nothing changes until then

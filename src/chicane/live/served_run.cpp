@@ -22,7 +22,7 @@ constexpr const char* kUnknownRoad = "the simulator's road is not known: --track
 constexpr const char* kOtherRoad = "the simulator drives on another road than --track";
 
 protocol::Run describe_served(const scenario::Scenario& scenario, const controller::Controller& controller,
-                              const std::optional<path::Track>& track) {
+                              const std::optional<road::Track>& track) {
   protocol::Run run;
   run.mode = "serve";
   protocol::describe(controller, run);
@@ -42,7 +42,7 @@ protocol::Run describe_served(const scenario::Scenario& scenario, const controll
 }  // namespace
 
 ServedRun::ServedRun(const net::ServerOptions& server, const scenario::Scenario& scenario,
-                     std::unique_ptr<controller::Controller> controller, std::optional<path::Track> track,
+                     std::unique_ptr<controller::Controller> controller, std::optional<road::Track> track,
                      std::vector<net::Asset> assets, std::shared_ptr<const road::RacingRoad> lap)
     : scenario_{scenario},
       controller_{std::move(controller)},

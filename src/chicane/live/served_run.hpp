@@ -11,9 +11,9 @@
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/live/run_publisher.hpp"
-#include "chicane/path/track.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/recording/recorder.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/run/setting.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/wire/serve.hpp"
@@ -34,7 +34,7 @@ class ServedRun {
   /// `track`: the road that the simulator drives on, where it is known: laps are timed, and there is a limit.
   /// `assets`: files of the dashboard. `lap`: planned, of a controller that races (run/racing.hpp).
   ServedRun(const net::ServerOptions& server, const scenario::Scenario& scenario,
-            std::unique_ptr<controller::Controller> controller, std::optional<path::Track> track,
+            std::unique_ptr<controller::Controller> controller, std::optional<road::Track> track,
             std::vector<net::Asset> assets = {}, std::shared_ptr<const road::RacingRoad> lap = nullptr);
   ServedRun(const ServedRun&) = delete;
   ServedRun& operator=(const ServedRun&) = delete;
@@ -54,7 +54,7 @@ class ServedRun {
  private:
   scenario::Scenario scenario_;
   std::unique_ptr<controller::Controller> controller_;
-  std::optional<path::Track> track_;
+  std::optional<road::Track> track_;
   protocol::Run description_;
   wire::ServeOptions options_;
   std::vector<net::Asset> assets_;

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMostNamed = 5;  // gaps in warnings
 
 bool is_finite_place(double x, double y) {
-  return std::fabs(x) <= path::Path::kMaxCoordinate && std::fabs(y) <= path::Path::kMaxCoordinate;
+  return std::fabs(x) <= road::Path::kMaxCoordinate && std::fabs(y) <= road::Path::kMaxCoordinate;
 }
 
 }  // namespace

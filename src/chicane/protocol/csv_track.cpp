@@ -159,15 +159,15 @@ class TrackParser {
     }
     struct Setting {
       std::string_view key;
-      double path::TrackOptions::*field;
+      double road::TrackOptions::*field;
     };
     static constexpr std::array kSettings{
-        Setting{"start_s_m", &path::TrackOptions::start_s},
-        Setting{"finish_s_m", &path::TrackOptions::finish_s},
-        Setting{"start_d_m", &path::TrackOptions::start_d},
-        Setting{"spacing_m", &path::TrackOptions::spacing},
-        Setting{"smoothing_sigma_m", &path::TrackOptions::smoothing_sigma},
-        Setting{"kerb_width_m", &path::TrackOptions::kerb_width},
+        Setting{"start_s_m", &road::TrackOptions::start_s},
+        Setting{"finish_s_m", &road::TrackOptions::finish_s},
+        Setting{"start_d_m", &road::TrackOptions::start_d},
+        Setting{"spacing_m", &road::TrackOptions::spacing},
+        Setting{"smoothing_sigma_m", &road::TrackOptions::smoothing_sigma},
+        Setting{"kerb_width_m", &road::TrackOptions::kerb_width},
     };
     for (const Setting& setting : kSettings) {
       if (key != setting.key) continue;
@@ -310,7 +310,7 @@ class TrackParser {
     if (content_.points.size() == kMaxTrackPoints)
       return fail(fault("row", "another point", "at most 1000000"));
 
-    path::TrackPoint point{Vec2{}, options_.scale * options_.default_left,
+    road::TrackPoint point{Vec2{}, options_.scale * options_.default_left,
                            options_.scale * options_.default_right};
     for (std::size_t i = 0; i < fields_.size(); ++i) {
       if (Result<void> read = read_value(fields_[i], values[i], point); !read) return read;
@@ -320,7 +320,7 @@ class TrackParser {
     return {};
   }
 
-  Result<void> read_value(const Field& field, std::string_view text, path::TrackPoint& point) {
+  Result<void> read_value(const Field& field, std::string_view text, road::TrackPoint& point) {
     if (field.column == Column::kDerived || field.column == Column::kUnknown) return {};
     const std::optional<double> value = number(text, separator_);
     if (field.column == Column::kHeading) {
@@ -332,7 +332,7 @@ class TrackParser {
         field.column == Column::kRight || field.column == Column::kLeft || field.column == Column::kWidth;
     if (is_width && !(*value > 0.0 && *value <= kMaxTrackWidth))
       return fail(fault(field.name, shown(text), "a width > 0 and <= 1000 m"));
-    if (!is_width && std::fabs(*value) > path::Path::kMaxCoordinate)
+    if (!is_width && std::fabs(*value) > road::Path::kMaxCoordinate)
       return fail(fault(field.name, shown(text), "a coordinate within 1e7 m"));
     switch (field.column) {
       case Column::kX:
@@ -357,7 +357,7 @@ class TrackParser {
   Result<void> check_extent() {
     Vec2 low = content_.points.front().position;
     Vec2 high = low;
-    for (const path::TrackPoint& point : content_.points) {
+    for (const road::TrackPoint& point : content_.points) {
       low = {std::min(low.x(), point.position.x()), std::min(low.y(), point.position.y())};
       high = {std::max(high.x(), point.position.x()), std::max(high.y(), point.position.y())};
     }
@@ -376,7 +376,7 @@ class TrackParser {
 
   /// Headings are always recomputed; a column that counts from elsewhere is worth a word.
   void compare_headings() {
-    const std::vector<path::TrackPoint>& points = content_.points;
+    const std::vector<road::TrackPoint>& points = content_.points;
     if (headings_.size() != points.size() || points.size() < 3) return;
     std::size_t from_x = 0;
     std::size_t from_y = 0;
@@ -424,7 +424,7 @@ std::string write_csv_track(const TrackFile& content, std::string_view descripti
   std::string text;
   for (const std::string_view line : split(description, '\n'))
     fmt::format_to(std::back_inserter(text), "# {}\n", line);
-  const path::TrackOptions& o = content.options;
+  const road::TrackOptions& o = content.options;
   fmt::format_to(
       std::back_inserter(text),
       "# closed={}, start_s_m={}, start_d_m={}, spacing_m={}, smoothing_sigma_m={}, kerb_width_m={}\n",
@@ -432,7 +432,7 @@ std::string write_csv_track(const TrackFile& content, std::string_view descripti
   if (content.is_own_size) text += "# track_scale=1\n";
   if (o.finish_s != 0.0) fmt::format_to(std::back_inserter(text), "# finish_s_m={}\n", o.finish_s);
   text += "# x_m,y_m,w_tr_right_m,w_tr_left_m\n";
-  for (const path::TrackPoint& p : content.points) {
+  for (const road::TrackPoint& p : content.points) {
     fmt::format_to(std::back_inserter(text), "{},{},{},{}\n", p.position.x(), p.position.y(), p.right,
                    p.left);
   }

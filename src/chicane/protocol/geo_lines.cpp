@@ -97,7 +97,7 @@ Result<TrackFile> track_of_line(const GeoLine& line, const std::string& file,
     warn(content, fmt::format("smoothing: noise of {} m assumed (import --smoothing-m sets it)",
                               content.options.smoothing_sigma));
   if (line.width > 0.0 && line.width <= kMaxTrackWidth) {
-    for (path::TrackPoint& point : content.points) point.left = point.right = 0.5 * line.width;
+    for (road::TrackPoint& point : content.points) point.left = point.right = 0.5 * line.width;
   } else {
     assume_width(content, options);
   }

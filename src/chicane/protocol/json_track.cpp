@@ -56,7 +56,7 @@ Result<TrackFile> track_of_way_points(const Json& root, const std::string& file,
       return fail(ErrorCode::kParse, place + ": got something else, expected a way point");
     const auto x = number_at(each, "x_m"), y = number_at(each, "y_m"), left = number_at(each, "d_left"),
                right = number_at(each, "d_right");
-    if (!x || !y || std::fabs(*x) > path::Path::kMaxCoordinate || std::fabs(*y) > path::Path::kMaxCoordinate)
+    if (!x || !y || std::fabs(*x) > road::Path::kMaxCoordinate || std::fabs(*y) > road::Path::kMaxCoordinate)
       return fail(ErrorCode::kParse,
                   place + ": x_m, y_m: got something else, expected coordinates within 1e7 m");
     const bool has_width =
@@ -69,7 +69,7 @@ Result<TrackFile> track_of_way_points(const Json& root, const std::string& file,
   settle_ends(content, options.is_closed);
   content.is_own_size = true;
   double width = 0.0;
-  for (const path::TrackPoint& point : content.points)
+  for (const road::TrackPoint& point : content.points)
     width += (point.left + point.right) / static_cast<double>(content.points.size());
   content.options.spacing = std::clamp(0.1 * width, 0.05, 2.0);
   content.options.smoothing_sigma = std::min(0.02, 0.01 * width);

@@ -16,7 +16,7 @@ namespace {
 void begin_at_origin(TrackFile& content, const TrackReadOptions& options, double width) {
   const Vec2 origin{};
   double nearest = 1e9;
-  for (const path::TrackPoint& point : content.points)
+  for (const road::TrackPoint& point : content.points)
     nearest = std::min(nearest, (point.position - origin).norm());
   const bool is_on_road = nearest < 0.5 * width;
   begin_near(content, options.start.value_or(is_on_road ? origin : content.points.front().position));

@@ -74,7 +74,7 @@ struct OpenDriveRoad {
   std::string next = {}, previous = {};  ///< roads; empty: none
   bool next_begins = true, previous_ends = true;
   bool meets_junction = false;
-  std::vector<path::TrackPoint> points = {};  ///< middle of the lanes that are driven
+  std::vector<road::TrackPoint> points = {};  ///< middle of the lanes that are driven
 };
 
 /// Heading and place along one geometry element.
@@ -328,8 +328,8 @@ Result<std::vector<Vec2>> bound_of(const XmlNode& lanelet, const char* name, con
         return node != nullptr ? survey::number_in(node->text) : std::nullopt;
       };
       const std::optional<double> px = number(x), py = number(y);
-      if (!px || !py || std::fabs(*px) > path::Path::kMaxCoordinate ||
-          std::fabs(*py) > path::Path::kMaxCoordinate)
+      if (!px || !py || std::fabs(*px) > road::Path::kMaxCoordinate ||
+          std::fabs(*py) > road::Path::kMaxCoordinate)
         return fault(file, *point, "point", "something else", "x and y within 1e7 m");
       line.push_back({*px, *py});
     }

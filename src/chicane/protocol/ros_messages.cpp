@@ -147,9 +147,9 @@ std::string encode_limit(const Frame&, const Run& run) {
   for (const double sector : limit.times.sectors) writer.put(sector);
   const auto column = [&](auto value) {
     writer.count(limit.line.size());
-    for (const path::LinePoint& point : limit.line) writer.put(value(point));
+    for (const road::LinePoint& point : limit.line) writer.put(value(point));
   };
-  using Point = path::LinePoint;
+  using Point = road::LinePoint;
   column([](const Point& p) { return p.s; });
   column([](const Point& p) { return p.position.x(); });
   column([](const Point& p) { return p.position.y(); });
@@ -289,7 +289,7 @@ std::string encode_centre(const Frame&, const Run& run) { return encode_line(0.0
 std::string encode_racing_line(const Frame&, const Run& run) {
   std::vector<Vec2> line;
   if (run.limit.found) {
-    for (const path::LinePoint& point : run.limit.found->line) line.push_back(point.position);
+    for (const road::LinePoint& point : run.limit.found->line) line.push_back(point.position);
   }
   return encode_line(0.0, run, line);
 }
@@ -351,15 +351,15 @@ RosTopic topic(std::string_view name, std::string_view type, Cadence cadence,
 
 }  // namespace
 
-RoadLines road_lines(const path::Track& track, double spacing) {
+RoadLines road_lines(const road::Track& track, double spacing) {
   constexpr double kMaxPoints = 20'000.0;
-  const path::Path& centre = track.centre();
+  const road::Path& centre = track.centre();
   const double step = std::max(spacing, centre.length() / kMaxPoints);
   const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(centre.length() / step)));
   RoadLines lines;
   for (std::size_t i = 0; i <= count; ++i) {
     const double s = centre.length() * static_cast<double>(i) / static_cast<double>(count);
-    const path::PathPoint point = centre.at(s);
+    const road::PathPoint point = centre.at(s);
     const Vec2 normal{-chicane::sin(point.heading), chicane::cos(point.heading)};
     lines.centre.push_back(point.position);
     lines.left.emplace_back(point.position + track.left_width(s) * normal);

@@ -11,10 +11,10 @@
 #include "chicane/controller/controller.hpp"
 #include "chicane/lap_time/limit.hpp"
 #include "chicane/model/vehicle.hpp"
-#include "chicane/path/point_fit.hpp"
-#include "chicane/path/track.hpp"
 #include "chicane/protocol/guard_facts.hpp"
 #include "chicane/protocol/origin.hpp"
+#include "chicane/road/point_fit.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/lap_ledger.hpp"
 
@@ -29,7 +29,7 @@ struct RoadLines {
 };
 
 /// Samples a track every `spacing` [m]; spacing > 0, raised where a line would get more than 20,000 points.
-[[nodiscard]] RoadLines road_lines(const path::Track& track, double spacing);
+[[nodiscard]] RoadLines road_lines(const road::Track& track, double spacing);
 
 /// Names of the frames in messages (docs/viewer.md).
 struct FrameNames {
@@ -66,7 +66,7 @@ struct Run {
   Origin origin{};                     ///< of car and road
   double track_scale = 1.0;            ///< the road's size over that of its file
   std::size_t track_points = 0;        ///< in the road's file
-  path::PointFit track_fit{};          ///< of these points
+  road::PointFit track_fit{};          ///< of these points
 };
 
 /// What a controller says about itself, copied into a run.

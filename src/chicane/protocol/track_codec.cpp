@@ -41,16 +41,16 @@ std::string with_line(const std::string& message, const TrackFile& content) {
   return fmt::format("{}: {}", content.file, message);
 }
 
-std::vector<path::TrackPoint> full_size_points(const TrackFile& content) {
+std::vector<road::TrackPoint> full_size_points(const TrackFile& content) {
   const double scale = content.scale;
-  std::vector<path::TrackPoint> points = content.points;
-  for (path::TrackPoint& point : points)
+  std::vector<road::TrackPoint> points = content.points;
+  for (road::TrackPoint& point : points)
     point = {(1.0 / scale) * point.position, point.left / scale, point.right / scale};
   return points;
 }
 
-path::TrackOptions full_size_options(const TrackFile& content) {
-  path::TrackOptions options = content.options;
+road::TrackOptions full_size_options(const TrackFile& content) {
+  road::TrackOptions options = content.options;
   for (double* length : {&options.spacing, &options.smoothing_sigma, &options.kerb_width, &options.start_s,
                          &options.start_d, &options.finish_s})
     *length /= content.scale;
@@ -100,13 +100,13 @@ Result<TrackFile> parse_track(std::string_view text, const std::string& file,
   return content;
 }
 
-Result<path::Track> make_track(const TrackFile& content) {
+Result<road::Track> make_track(const TrackFile& content) {
   const std::string name = std::filesystem::path{content.file}.stem().string();
   const bool is_model = content.scale != 1.0;
-  Result<path::Track> track =
-      is_model ? path::Track::create(name, full_size_points(content), content.is_closed,
+  Result<road::Track> track =
+      is_model ? road::Track::create(name, full_size_points(content), content.is_closed,
                                      full_size_options(content))
-               : path::Track::create(name, content.points, content.is_closed, content.options);
+               : road::Track::create(name, content.points, content.is_closed, content.options);
   if (!track) {
     const std::string size =
         is_model ? fmt::format(" (in full size: metres of the file / {})", content.scale) : "";
@@ -115,7 +115,7 @@ Result<path::Track> make_track(const TrackFile& content) {
   return is_model ? track->scaled(content.scale) : std::move(track);
 }
 
-Result<path::Track> read_track(const std::string& file, const TrackReadOptions& options) {
+Result<road::Track> read_track(const std::string& file, const TrackReadOptions& options) {
   const Result<std::string> text = read_file(file);
   if (!text) return fail(text.error());
   const Result<TrackFile> content = parse_track(*text, file, options);

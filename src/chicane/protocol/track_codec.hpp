@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 
 /// Roads from files of any format in the list (docs/tracks.md).
 namespace chicane::protocol {
@@ -36,10 +36,10 @@ struct TrackReadOptions {
 /// What a file holds, before it becomes a road.
 struct TrackFile {
   std::string file;                      ///< for messages
-  std::vector<path::TrackPoint> points;  ///< a closing copy of the first point is taken away
+  std::vector<road::TrackPoint> points;  ///< a closing copy of the first point is taken away
   std::vector<int> lines;                ///< of each point in the file, from 1
   bool is_closed = true;
-  path::TrackOptions options;  ///< what the file says of them, else the defaults
+  road::TrackOptions options;  ///< what the file says of them, else the defaults
   double scale = 1.0;          ///< as TrackReadOptions has it
   /// The road is in the size in which it is driven, as maps that a model car made are: track_scale=1.
   bool is_own_size = false;
@@ -77,11 +77,11 @@ struct TrackFormat {
 [[nodiscard]] Result<TrackFile> parse_track(std::string_view text, const std::string& file,
                                             const TrackReadOptions& options = {});
 
-/// The road: smoothed, checked (path::Track::create); named after the file. Fails with kParse; faults of a
+/// The road: smoothed, checked (road::Track::create); named after the file. Fails with kParse; faults of a
 /// point have its line.
-[[nodiscard]] Result<path::Track> make_track(const TrackFile& content);
+[[nodiscard]] Result<road::Track> make_track(const TrackFile& content);
 
 /// Reads, parses and makes. Also kNotFound and kIo.
-[[nodiscard]] Result<path::Track> read_track(const std::string& file, const TrackReadOptions& options = {});
+[[nodiscard]] Result<road::Track> read_track(const std::string& file, const TrackReadOptions& options = {});
 
 }  // namespace chicane::protocol

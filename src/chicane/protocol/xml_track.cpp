@@ -37,7 +37,7 @@ void find_cones(const XmlNode& node, ConeMap& map) {
     const std::vector<std::string_view> values = split(trim(pose->text), ' ');
     const std::optional<double> x = values.empty() ? std::nullopt : number(values[0]);
     const std::optional<double> y = values.size() > 1 ? number(values[1]) : std::nullopt;
-    const bool is_place = x && y && std::max(std::fabs(*x), std::fabs(*y)) <= path::Path::kMaxCoordinate;
+    const bool is_place = x && y && std::max(std::fabs(*x), std::fabs(*y)) <= road::Path::kMaxCoordinate;
     if (!is_place || !map.add(tag, {*x, *y})) ++map.unknown;
   }
 }

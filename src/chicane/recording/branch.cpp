@@ -23,7 +23,7 @@ namespace {
 class Odometer {
  public:
   /// Distance from the start line of the lap in which the first frame is [m].
-  double add(const telemetry::Frame& frame, const path::Track& track) {
+  double add(const telemetry::Frame& frame, const road::Track& track) {
     const bool is_closed = track.centre().is_closed();
     const double length = track.lap_length();
     third_ = length / sim::WorldState::kSectors;
@@ -75,7 +75,7 @@ class Odometer {
 class FutureMeter {
  public:
   /// The distance that Odometer tells.
-  double add(const telemetry::Frame& frame, const path::Track& track) {
+  double add(const telemetry::Frame& frame, const road::Track& track) {
     if (count_ == 0) {
       start_ = frame.time;
       events_ = frame.off_track_events;

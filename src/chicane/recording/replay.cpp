@@ -24,7 +24,7 @@ bool is_same(double a, double b) {
 class Recomputation {
  public:
   Recomputation(const scenario::Scenario& scenario, std::unique_ptr<controller::Controller> controller,
-                std::optional<path::Track> track, std::shared_ptr<const road::RacingRoad> lap)
+                std::optional<road::Track> track, std::shared_ptr<const road::RacingRoad> lap)
       : scenario_{scenario},
         track_{std::move(track)},
         cycle_{std::move(controller), scenario, track_ ? &*track_ : nullptr} {
@@ -76,7 +76,7 @@ class Recomputation {
   }
 
   scenario::Scenario scenario_;
-  std::optional<path::Track> track_;  ///< what guard and racing controller knew
+  std::optional<road::Track> track_;  ///< what guard and racing controller knew
   run::ControlCycle cycle_;
   telemetry::Frame frame_;
 };
@@ -91,7 +91,7 @@ Result<ReplayReport> verify_recording(const std::string& path, const run::Factor
     if (const auto* scenario = std::get_if<scenario::Scenario>(&event)) {
       auto controller = make.controller(*scenario);
       if (!controller) return fail(controller.error());
-      std::optional<path::Track> track;
+      std::optional<road::Track> track;
       if (scenario->guard.road == safety::GuardRoad::kTrack) {
         auto found = make.track(*scenario);  // guard and racing controller knew it
         if (!found) return fail(found.error());

@@ -18,13 +18,13 @@ constexpr RoadOptions kSeen{
 
 }  // namespace
 
-KnownRoad::KnownRoad(const path::RoadData& data, const model::VehicleParams& vehicle)
+KnownRoad::KnownRoad(const road::RoadData& data, const model::VehicleParams& vehicle)
     : line_{static_cast<int>(data.points.size())} {
   const int intervals = static_cast<int>(data.points.size()) - 1;
   if (intervals < 1 || !line_.shape(data.length, intervals, data.is_closed)) return;
   edges_.reserve(data.points.size());
   for (std::size_t i = 0; i < data.points.size(); ++i) {
-    const path::RoadPoint& point = data.points[i];
+    const road::RoadPoint& point = data.points[i];
     line_.samples()[i].curve = {.position = point.position,
                                 .tangent = Vec2{cos(point.heading), sin(point.heading)},
                                 .heading = point.heading,
@@ -36,7 +36,7 @@ KnownRoad::KnownRoad(const path::RoadData& data, const model::VehicleParams& veh
 
 /// In the place of the track's own line the smooth one that a controller plans from its waypoints: as wide in
 /// the bends as that one is.
-void KnownRoad::smooth(const path::RoadData& data, const model::VehicleParams& vehicle) {
+void KnownRoad::smooth(const road::RoadData& data, const model::VehicleParams& vehicle) {
   std::vector<Vec2> waypoints;
   double next = 0.0;
   for (std::size_t i = 0; i + 1 < data.points.size(); ++i) {

@@ -7,10 +7,10 @@
 
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/vehicle.hpp"
-#include "chicane/path/road_data.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/reference_line.hpp"
 #include "chicane/road/road.hpp"
+#include "chicane/road/road_data.hpp"
 
 namespace chicane::road {
 
@@ -22,7 +22,7 @@ class KnownRoad {
   /// Nothing is known, and nothing is learned: for a guard that is off.
   KnownRoad() : line_{2} {}
   /// A track's road. Pre: `data` has at least two points.
-  KnownRoad(const path::RoadData& data, const model::VehicleParams& vehicle);
+  KnownRoad(const road::RoadData& data, const model::VehicleParams& vehicle);
   /// From waypoints; `half_width`: assumed each side of their line [m].
   KnownRoad(double half_width, const model::VehicleParams& vehicle);
 
@@ -61,7 +61,7 @@ class KnownRoad {
   [[nodiscard]] Edges assumed_edges(double offset) const noexcept {
     return {half_width_ - offset, half_width_ + offset};
   }
-  void smooth(const path::RoadData& data, const model::VehicleParams& vehicle);
+  void smooth(const road::RoadData& data, const model::VehicleParams& vehicle);
 
   ReferenceLine line_;
   std::vector<Edges> edges_;  ///< at the samples of line_

@@ -9,7 +9,7 @@
 namespace chicane::road {
 namespace {
 
-CurvePoint curve_of(const path::LinePoint& point) {
+CurvePoint curve_of(const road::LinePoint& point) {
   return {.position = point.position,
           .tangent = {cos(point.heading), sin(point.heading)},
           .heading = point.heading,
@@ -17,13 +17,13 @@ CurvePoint curve_of(const path::LinePoint& point) {
 }
 
 /// Arc length between two points of a line: the chord, and what its bend adds.
-double length_between(const path::LinePoint& from, const path::LinePoint& to) {
+double length_between(const road::LinePoint& from, const road::LinePoint& to) {
   const double chord = (to.position - from.position).norm();
   const double turn = to.heading - from.heading;
   return chord * (1.0 + turn * turn / 24.0);
 }
 
-std::vector<double> arc_lengths(std::span<const path::LinePoint> lap) {
+std::vector<double> arc_lengths(std::span<const road::LinePoint> lap) {
   std::vector<double> s(lap.size());
   for (std::size_t i = 1; i < lap.size(); ++i) s[i] = s[i - 1] + length_between(lap[i - 1], lap[i]);
   return s;
@@ -37,7 +37,7 @@ constexpr double kBehindTheEnd = 2.0;
 
 }  // namespace
 
-RacingRoad::RacingRoad(std::span<const path::LinePoint> lap, double kerb, const Basis& basis)
+RacingRoad::RacingRoad(std::span<const road::LinePoint> lap, double kerb, const Basis& basis)
     : line_{0}, basis_{basis} {
   if (lap.size() < kLeastPoints) return;
   const std::vector<double> s = arc_lengths(lap);
@@ -51,8 +51,8 @@ RacingRoad::RacingRoad(std::span<const path::LinePoint> lap, double kerb, const 
   for (std::size_t i = 0; i < rooms_.size(); ++i) {
     const double at = std::min(static_cast<double>(i) * line_.spacing(), length);
     while (from + 2 < lap.size() && s[from + 1] < at) ++from;
-    const path::LinePoint& a = lap[from];
-    const path::LinePoint& b = lap[from + 1];
+    const road::LinePoint& a = lap[from];
+    const road::LinePoint& b = lap[from + 1];
     const double piece = s[from + 1] - s[from];
     const double share = std::clamp((at - s[from]) / piece, 0.0, 1.0);
     const auto blend = [&](double of_a, double of_b) { return of_a + share * (of_b - of_a); };

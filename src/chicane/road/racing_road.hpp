@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "chicane/path/road_data.hpp"
 #include "chicane/road/reference_line.hpp"
 #include "chicane/road/road.hpp"
+#include "chicane/road/road_data.hpp"
 
 namespace chicane::road {
 
@@ -19,7 +19,7 @@ class RacingRoad {
 
   /// From a lap by rising time, whose last point repeats the first. `kerb`: drivable beyond the edges [m].
   /// Empty line for less than 8 points.
-  explicit RacingRoad(std::span<const path::LinePoint> lap, double kerb = 0.0)
+  explicit RacingRoad(std::span<const road::LinePoint> lap, double kerb = 0.0)
       : RacingRoad(lap, kerb, Basis{}) {}
   /// What a lap was planned from.
   struct Basis {
@@ -29,7 +29,7 @@ class RacingRoad {
     double braking = 0.0;      ///< ... with this deceleration [m/s²]
     double room_behind = 0.0;  ///< the finish, to the end [m]
   };
-  RacingRoad(std::span<const path::LinePoint> lap, double kerb, const Basis& basis);
+  RacingRoad(std::span<const road::LinePoint> lap, double kerb, const Basis& basis);
 
   /// In W, closed as the road is. The offset of its samples is that from the road's centre line [m].
   [[nodiscard]] const ReferenceLine& line() const noexcept { return line_; }

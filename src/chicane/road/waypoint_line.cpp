@@ -9,7 +9,7 @@
 
 namespace chicane::road {
 
-WaypointLine::WaypointLine() : raw_{path::Path::with_capacity(kWindow)} {
+WaypointLine::WaypointLine() : raw_{road::Path::with_capacity(kWindow)} {
   knots_.resize(static_cast<std::size_t>(kCapacity));
   along_.resize(static_cast<std::size_t>(kMostWaypoints));
 }
@@ -47,7 +47,7 @@ bool WaypointLine::extend(const WaypointMap& map, int newest) noexcept {
 }
 
 void WaypointLine::sample(double s, double raw_shift) noexcept {
-  const path::PathPoint at = raw_.at(s - raw_shift);
+  const road::PathPoint at = raw_.at(s - raw_shift);
   double heading = at.heading;
   if (knot_count_ > 0) {
     const double before = knots_[static_cast<std::size_t>(knot_count_ - 1)].heading;

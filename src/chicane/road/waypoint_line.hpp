@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "chicane/path/path.hpp"
+#include "chicane/road/path.hpp"
 #include "chicane/road/reference_line.hpp"
 #include "chicane/road/waypoint_map.hpp"
 
@@ -53,7 +53,7 @@ class WaypointLine {
 
   std::vector<CurvePoint> knots_;
   std::vector<double> along_;  ///< by waypoint [m]
-  path::Path raw_;             ///< through the newest waypoints
+  road::Path raw_;             ///< through the newest waypoints
   int knot_count_ = 0;
   int settled_knots_ = 0;
   int newest_ = -1;

@@ -26,7 +26,7 @@ bool is_lap(const std::vector<Vec2>& points) {
 
 }  // namespace
 
-CarSight::CarSight(const scenario::Scenario& scenario, const path::Track* track, bool is_base_at_rear_axle)
+CarSight::CarSight(const scenario::Scenario& scenario, const road::Track* track, bool is_base_at_rear_axle)
     : scenario_{scenario}, base_ahead_{is_base_at_rear_axle ? scenario.vehicle.rear_axle : 0.0} {
   if (track == nullptr) return;
   if (auto waypoints = run::make_waypoints(*track, scenario.vehicle.scale))
@@ -36,7 +36,7 @@ CarSight::CarSight(const scenario::Scenario& scenario, const path::Track* track,
 Result<void> CarSight::use_path(const std::vector<Vec2>& points) {
   if (points == path_) return {};
   const double width = kHalfWidth * scenario_.vehicle.scale;
-  std::vector<path::TrackPoint> road;
+  std::vector<road::TrackPoint> road;
   for (const Vec2& point : points) {
     if (road.empty() || (point - road.back().position).norm() > 1e-3)
       road.push_back({.position = point, .left = width, .right = width});
@@ -45,7 +45,7 @@ Result<void> CarSight::use_path(const std::vector<Vec2>& points) {
   if (closed && road.size() > 1 && (road.back().position - road.front().position).norm() <= 1e-3)
     road.pop_back();
   auto track =
-      path::Track::create("path", road, closed, {.spacing = std::max(0.05, 2.0 * scenario_.vehicle.scale)});
+      road::Track::create("path", road, closed, {.spacing = std::max(0.05, 2.0 * scenario_.vehicle.scale)});
   if (!track) return fail(track.error());
   auto waypoints = run::make_waypoints(*track, scenario_.vehicle.scale);
   if (!waypoints) return fail(waypoints.error());

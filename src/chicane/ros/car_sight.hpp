@@ -8,8 +8,8 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/model/measurement.hpp"
-#include "chicane/path/track.hpp"
 #include "chicane/protocol/car_messages.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/scenario/scenario.hpp"
 
 namespace chicane::ros {
@@ -19,7 +19,7 @@ namespace chicane::ros {
 class CarSight {
  public:
   /// `track`: the road, or null where it comes as a path. `is_base_at_rear_axle`: NodeOptions'.
-  CarSight(const scenario::Scenario& scenario, const path::Track* track, bool is_base_at_rear_axle);
+  CarSight(const scenario::Scenario& scenario, const road::Track* track, bool is_base_at_rear_axle);
 
   /// Another road: the points of a nav_msgs/Path in driving order, a lap when the last lies near the first.
   /// No change for one that is no road. Allocates.
@@ -43,7 +43,7 @@ class CarSight {
 
   scenario::Scenario scenario_;
   double base_ahead_;  ///< of the centre of mass before the base [m]
-  std::optional<path::Track> waypoints_;
+  std::optional<road::Track> waypoints_;
   std::vector<Vec2> path_;
   std::array<Sent, 64> sent_{};
   std::size_t count_ = 0;

@@ -50,7 +50,7 @@ Clock::duration duration(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-run::AccountTerms terms(const scenario::Scenario& scenario, const path::Track& track) {
+run::AccountTerms terms(const scenario::Scenario& scenario, const road::Track& track) {
   run::AccountTerms terms = run::terms_of(scenario, track.name());
   terms.controller = terms.preset = "external";
   terms.guard.reset();
@@ -99,7 +99,7 @@ struct SimTopics {
 /// What the laser sees: the walls of the road, or those of a map.
 class Walls {
  public:
-  static Result<Walls> create(const path::Track& track, double size, const std::string& map_file) {
+  static Result<Walls> create(const road::Track& track, double size, const std::string& map_file) {
     if (map_file.empty()) {
       auto road = sim::RangeScanner::create(track, {.spacing = std::max(0.05, 0.5 * size)});
       if (!road) return fail(road.error());
@@ -132,7 +132,7 @@ class Walls {
 
 /// The parts of the simulated world that are made once.
 struct Parts {
-  path::Track track;
+  road::Track track;
   std::unique_ptr<sim::Plant> plant;
   Walls walls;
 

@@ -11,7 +11,7 @@
 #include "chicane/base/owned.hpp"
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/run/account.hpp"
 #include "chicane/run/control_cycle.hpp"
 #include "chicane/run/make.hpp"
@@ -123,7 +123,7 @@ class ClosedLoop {
 
   [[nodiscard]] double time() const noexcept { return world_.time(); }
   [[nodiscard]] const telemetry::Frame& frame() const noexcept { return frame_; }
-  [[nodiscard]] const path::Track& track() const noexcept { return track_; }
+  [[nodiscard]] const road::Track& track() const noexcept { return track_; }
   [[nodiscard]] const sim::WorldState& world() const noexcept { return world_.state(); }
   /// The car as it is now, after the last physics step.
   [[nodiscard]] const model::State& car() const noexcept { return plant_->state(); }
@@ -153,8 +153,8 @@ class ClosedLoop {
   void move() noexcept;
 
   scenario::Scenario scenario_;
-  path::Track track_;
-  path::Track waypoints_;
+  road::Track track_;
+  road::Track waypoints_;
   Owned<sim::Plant> plant_;
   ControlCycle cycle_;
   sim::World world_;

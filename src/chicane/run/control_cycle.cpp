@@ -4,7 +4,7 @@
 #include <chrono>
 #include <utility>
 
-#include "chicane/path/road_data.hpp"
+#include "chicane/road/road_data.hpp"
 #include "chicane/run/make.hpp"
 
 namespace chicane::run {
@@ -15,17 +15,17 @@ constexpr double kRoadSpacing = 2.0;  // [m] of the road that the guard knows
 
 }  // namespace
 
-road::KnownRoad known_road(const scenario::Scenario& scenario, const path::Track* track) {
+road::KnownRoad known_road(const scenario::Scenario& scenario, const road::Track* track) {
   const model::VehicleParams car = full_size(scenario);
   if (track == nullptr) return safety::known_road(scenario.guard, nullptr, car);
   const model::Similarity similarity(scenario.vehicle);
-  const path::RoadData road =
-      path::road_data(similarity.is_identity() ? *track : track->scaled(similarity.length()), kRoadSpacing);
+  const road::RoadData road =
+      road::road_data(similarity.is_identity() ? *track : track->scaled(similarity.length()), kRoadSpacing);
   return safety::known_road(scenario.guard, &road, car);
 }
 
 ControlCycle::ControlCycle(std::unique_ptr<controller::Controller> controller,
-                           const scenario::Scenario& scenario, const path::Track* track)
+                           const scenario::Scenario& scenario, const road::Track* track)
     : ControlCycle(std::move(controller), scenario, known_road(scenario, track)) {}
 
 ControlCycle::ControlCycle(std::unique_ptr<controller::Controller> controller,

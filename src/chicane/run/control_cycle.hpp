@@ -9,8 +9,8 @@
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/similarity.hpp"
-#include "chicane/path/track.hpp"
 #include "chicane/road/racing_road.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/safety/guard.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -19,7 +19,7 @@
 namespace chicane::run {
 
 /// The road as the scenario's guard knows it at first; `track`: where it may know it, or null. Milliseconds.
-[[nodiscard]] road::KnownRoad known_road(const scenario::Scenario& scenario, const path::Track* track);
+[[nodiscard]] road::KnownRoad known_road(const scenario::Scenario& scenario, const road::Track* track);
 
 /// What holds in a control cycle beside the measurement. Recorded in the frame: with it and the measurement a
 /// cycle is computed again bit for bit.
@@ -43,7 +43,7 @@ class ControlCycle {
   /// Pre: `controller` is not null. The scenario's vehicle gives the model's parameters, its guard watches.
   /// `track`: the road, where the guard may know it; null: it is not known.
   ControlCycle(std::unique_ptr<controller::Controller> controller, const scenario::Scenario& scenario,
-               const path::Track* track);
+               const road::Track* track);
   /// The same with what known_road() has made of the track before.
   ControlCycle(std::unique_ptr<controller::Controller> controller, const scenario::Scenario& scenario,
                road::KnownRoad road);

@@ -79,7 +79,7 @@ void ExternalDrive::finish() {
   roadside_.judge(frame_);
   if (const auto lap = roadside_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
   if (hooks_.on_frame) hooks_.on_frame(frame_);
-  const path::Track* track = is_other_road_ ? nullptr : options_.track;
+  const road::Track* track = is_other_road_ ? nullptr : options_.track;
   const auto planned = planner_.advance(cycle_, scenario_, track, frame_.time);
   if (planned && hooks_.on_change) hooks_.on_change(*planned);
 }

@@ -8,8 +8,8 @@
 
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/measurement.hpp"
-#include "chicane/path/track.hpp"
 #include "chicane/road/racing_road.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/run/control_cycle.hpp"
 #include "chicane/run/lap_planner.hpp"
 #include "chicane/run/roadside.hpp"
@@ -27,7 +27,7 @@ struct ExternalDriveOptions {
   scenario::Scenario scenario;
   /// The road, where it is known: the car is judged by the positions that are measured. Outlives the drive;
   /// null: laps are timed all the same.
-  const path::Track* track = nullptr;
+  const road::Track* track = nullptr;
   std::shared_ptr<const road::RacingRoad> lap{};  ///< planned, of a controller that races (run/racing.hpp)
   std::chrono::nanoseconds step_budget{0};        ///< deadline of a control step; 0 = none
   /// From cycle to cycle, beside twice the delay: after so long nothing learned is trusted.

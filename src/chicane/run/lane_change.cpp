@@ -78,15 +78,15 @@ scenario::Scenario on_course(scenario::Scenario scenario) {
 }
 
 /// Each point of the way that telemetry shows.
-Result<path::Track> waypoints_on(const road::ReferenceLine& way) {
-  std::vector<path::TrackPoint> points;
+Result<road::Track> waypoints_on(const road::ReferenceLine& way) {
+  std::vector<road::TrackPoint> points;
   for (double s = 0.0; s < way.length();) {
     const Vec2 position = way.at(s).position;
     points.push_back({position, kShown, kShown});
     const bool is_in_course = position.x() > -kFarWaypoints && position.x() < LaneChangeCourse::kLength;
     s += is_in_course ? kWaypoints : kFarWaypoints;
   }
-  return path::Track::create("double lane change", points, false);
+  return road::Track::create("double lane change", points, false);
 }
 
 }  // namespace
@@ -95,10 +95,10 @@ Result<LaneChange> LaneChange::create(const model::VehicleParams& vehicle) {
   if (vehicle.scale != 1.0)
     return fail(ErrorCode::kInvalidArgument, "lane change: got a model car, expected one in full size");
   const LaneChangeCourse course(vehicle.width);
-  Result<path::Track> road = course.road();
+  Result<road::Track> road = course.road();
   if (!road) return fail(road.error());
   LaneChange change(vehicle, course, std::move(*road));
-  const Result<path::RacingLine> fastest = change.plan(1.0);
+  const Result<road::RacingLine> fastest = change.plan(1.0);
   if (!fastest) return fail(fastest.error());
   const double time = fastest->at(LaneChangeCourse::kRunUp + LaneChangeCourse::kLength).time -
                       fastest->at(LaneChangeCourse::kRunUp).time;
@@ -106,13 +106,13 @@ Result<LaneChange> LaneChange::create(const model::VehicleParams& vehicle) {
   return change;
 }
 
-Result<path::RacingLine> LaneChange::plan(double grip_share) const {
+Result<road::RacingLine> LaneChange::plan(double grip_share) const {
   return lap_time::plan_racing_line(
       road_, vehicle_, {.margin = margin_of(vehicle_), .grip_share = grip_share, .time_step = kPlanStep});
 }
 
 Result<LaneChange::Way> LaneChange::way_at(double speed) {
-  Result<path::RacingLine> line = fail(ErrorCode::kInvalidArgument, "");
+  Result<road::RacingLine> line = fail(ErrorCode::kInvalidArgument, "");
   // Where the grip of a walking pace has no optimum, that of the next speed has.
   for (int step = static_cast<int>(std::ceil(speed / kWayStep));; ++step) {
     if (const auto known = ways_.find(step); known != ways_.end()) return known->second;
@@ -122,7 +122,7 @@ Result<LaneChange::Way> LaneChange::way_at(double speed) {
     if (!line && of_way < full_speed_) continue;
     if (!line) return fail(line.error());
     const road::RacingRoad::Basis basis{.is_closed = false, .braking = kStopping};
-    Way way = std::make_shared<const road::RacingRoad>(path::line_points(road_, *line), 0.0, basis);
+    Way way = std::make_shared<const road::RacingRoad>(road::line_points(road_, *line), 0.0, basis);
     ways_.emplace(step, way);
     return way;
   }
@@ -133,7 +133,7 @@ Result<LaneChangeOutcome> LaneChange::drive(const scenario::Scenario& scenario, 
   const scenario::Scenario one = on_course(scenario);
   const Result<Way> way = way_at(speed);
   if (!way) return fail(way.error());
-  Result<path::Track> waypoints = waypoints_on((*way)->line());
+  Result<road::Track> waypoints = waypoints_on((*way)->line());
   if (!waypoints) return fail(waypoints.error());
   const Roads::Prepared road{road_, std::move(*waypoints), known_road(one, &road_),
                              races(one) ? *way : nullptr};

@@ -50,14 +50,14 @@ class LaneChange {
  private:
   using Way = std::shared_ptr<const road::RacingRoad>;
 
-  LaneChange(const model::VehicleParams& vehicle, const LaneChangeCourse& course, path::Track road)
+  LaneChange(const model::VehicleParams& vehicle, const LaneChangeCourse& course, road::Track road)
       : vehicle_{vehicle}, course_{course}, road_{std::move(road)} {}
-  [[nodiscard]] Result<path::RacingLine> plan(double grip_share) const;
+  [[nodiscard]] Result<road::RacingLine> plan(double grip_share) const;
   [[nodiscard]] Result<Way> way_at(double speed);
 
   model::VehicleParams vehicle_;
   LaneChangeCourse course_;
-  path::Track road_;
+  road::Track road_;
   double full_speed_ = 0.0;  ///< with all of the grip, mean in the course [m/s]
   std::map<int, Way> ways_;  ///< by speed, in steps
 };

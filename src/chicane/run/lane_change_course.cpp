@@ -63,13 +63,13 @@ double LaneChangeCourse::room(const model::Pose& car, double length, double widt
   return least;
 }
 
-Result<path::Track> LaneChangeCourse::road() const {
-  std::vector<path::TrackPoint> points;
+Result<road::Track> LaneChangeCourse::road() const {
+  std::vector<road::TrackPoint> points;
   const auto add = [&](double from, double to, double apart) {
     const int count = static_cast<int>(std::lround((to - from) / apart));
     for (int i = 0; i < count; ++i) {
       const double x = from + i * (to - from) / count;
-      path::TrackPoint point{{x, way(x)}, kBeside, kBeside};
+      road::TrackPoint point{{x, way(x)}, kBeside, kBeside};
       if (x < 0.0) point = {{x, 0.0}, lanes_[0].left, -lanes_[0].right};
       for (const Lane& lane : lanes_) {
         if (x < lane.begin - kReach || x > lane.end + kReach) continue;
@@ -82,7 +82,7 @@ Result<path::Track> LaneChangeCourse::road() const {
   add(-kRunUp, 0.0, kFarPoints);
   add(0.0, kLength, kEdgePoints);
   add(kLength, kLength + kRunOut, kFarPoints);
-  return path::Track::create("double lane change", points, false,
+  return road::Track::create("double lane change", points, false,
                              {.spacing = 0.5, .smoothing_sigma = 0.0, .start_s = kRunUp - kStart});
 }
 

@@ -5,7 +5,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/model/state.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 
 namespace chicane::run {
 
@@ -35,7 +35,7 @@ class LaneChangeCourse {
   [[nodiscard]] double room(const model::Pose& car, double length, double width) const noexcept;
   /// As an open road along that line: its edges are where the cones are, as wide as the entry lane before the
   /// entry, and wide where there are none.
-  [[nodiscard]] Result<path::Track> road() const;
+  [[nodiscard]] Result<road::Track> road() const;
 
  private:
   std::array<Lane, 3> lanes_;

@@ -23,7 +23,7 @@ telemetry::Change LapPlanner::lap_change(const road::RacingRoad& lap, std::uint6
 
 std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Controller& controller,
                                                            const scenario::Scenario& scenario,
-                                                           const path::Track* track, double time) {
+                                                           const road::Track* track, double time) {
   const controller::LapWish wish = controller.wants_lap();
   is_wanted_ = wish.is_wanted;
   if (thread_.joinable() && has_ended_.load(std::memory_order_acquire)) thread_.join();
@@ -63,14 +63,14 @@ std::optional<telemetry::Change> LapPlanner::advance(ClosedLoop& loop) {
 }
 
 std::optional<telemetry::Change> LapPlanner::advance(ControlCycle& cycle, const scenario::Scenario& scenario,
-                                                     const path::Track* track, double time) {
+                                                     const road::Track* track, double time) {
   const auto lap = follow(cycle.controller(), scenario, track, time);
   if (!lap) return {};
   cycle.use_line(lap);
   return lap_change(*lap, cycle.next(), time);
 }
 
-void LapPlanner::search(const scenario::Scenario& scenario, const path::Track* track,
+void LapPlanner::search(const scenario::Scenario& scenario, const road::Track* track,
                         const controller::LapWish& wish) {
   if (clock_ == Clock::kReal) {
     // Behind everything else, yet not starved: on cores that others keep busy, a tenth of one thread's share.

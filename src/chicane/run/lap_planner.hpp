@@ -9,8 +9,8 @@
 
 #include "chicane/base/vec2.hpp"
 #include "chicane/controller/controller.hpp"
-#include "chicane/path/track.hpp"
 #include "chicane/road/racing_road.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/change.hpp"
 
@@ -42,14 +42,14 @@ class LapPlanner {
   /// `track`: the road, where it is known, or null; outlives this.
   [[nodiscard]] std::shared_ptr<const road::RacingRoad> follow(const controller::Controller& controller,
                                                                const scenario::Scenario& scenario,
-                                                               const path::Track* track, double time);
+                                                               const road::Track* track, double time);
 
   /// follow() after a control cycle of a run: a lap that is ready is used from the next one on. Gives what
   /// recordings and viewers are to be told of it then.
   std::optional<telemetry::Change> advance(ClosedLoop& loop);
   /// The same for a run without a plant, at its time [s].
   std::optional<telemetry::Change> advance(ControlCycle& cycle, const scenario::Scenario& scenario,
-                                           const path::Track* track, double time);
+                                           const road::Track* track, double time);
 
   /// What recordings and viewers are told where `lap` is used from control cycle `cycle` on: the grip that it
   /// is planned with. Allocates.
@@ -58,7 +58,7 @@ class LapPlanner {
   static constexpr std::string_view kChange = "run.racing_line";
 
  private:
-  void search(const scenario::Scenario& scenario, const path::Track* track, const controller::LapWish& wish);
+  void search(const scenario::Scenario& scenario, const road::Track* track, const controller::LapWish& wish);
 
   Clock clock_;
   std::optional<double> wanted_since_;  ///< [s]

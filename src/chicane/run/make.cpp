@@ -35,23 +35,23 @@ Result<std::unique_ptr<sim::Plant>> make_plant(const scenario::Scenario& scenari
   return sim::make_plant(scenario.plant, scenario.plant_options, scenario.plant_params);
 }
 
-Result<path::Track> make_track(const scenario::Scenario& scenario) {
+Result<road::Track> make_track(const scenario::Scenario& scenario) {
   Result<std::string> file = protocol::locate(protocol::Shelf::kTrack, scenario.track);
   if (!file) return fail(file.error());
   const double size = scenario.size_of_track();
-  Result<path::Track> track = protocol::read_track(*file, {.scale = scenario.scale_of_file()});
+  Result<road::Track> track = protocol::read_track(*file, {.scale = scenario.scale_of_file()});
   return track && size != 1.0 ? track->scaled(size) : std::move(track);
 }
 
-Result<path::Track> make_waypoints(const path::Track& track, double scale) {
+Result<road::Track> make_waypoints(const road::Track& track, double scale) {
   const double spacing = std::min(kWaypointSpacing * scale, track.length() / kFewestWaypoints);
-  const std::vector<path::TrackPoint>& raw = track.raw_points();
+  const std::vector<road::TrackPoint>& raw = track.raw_points();
   const double mean_spacing = track.centre().length() / static_cast<double>(raw.size());
   if (mean_spacing > 0.6 * spacing) return track;
   const bool is_closed = track.centre().is_closed();
   double length = is_closed ? (raw.front().position - raw.back().position).norm() : 0.0;
   for (std::size_t i = 1; i < raw.size(); ++i) length += (raw[i].position - raw[i - 1].position).norm();
-  std::vector<path::TrackPoint> sparse{raw.front()};
+  std::vector<road::TrackPoint> sparse{raw.front()};
   double along = 0.0;
   double last = 0.0;
   for (std::size_t i = 1; i < raw.size(); ++i) {
@@ -63,9 +63,9 @@ Result<path::Track> make_waypoints(const path::Track& track, double scale) {
     last = along;
   }
   // In full size: how smooth a road is depends on how large it is.
-  for (path::TrackPoint& point : sparse)
+  for (road::TrackPoint& point : sparse)
     point = {(1.0 / scale) * point.position, point.left / scale, point.right / scale};
-  Result<path::Track> waypoints = path::Track::create(track.name(), sparse, is_closed);
+  Result<road::Track> waypoints = road::Track::create(track.name(), sparse, is_closed);
   return waypoints && scale != 1.0 ? waypoints->scaled(scale) : std::move(waypoints);
 }
 

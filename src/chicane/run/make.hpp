@@ -8,7 +8,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/plant.hpp"
 
@@ -22,7 +22,7 @@ namespace chicane::run {
 /// Gives a controller of make_controller() the scenario's settings while it drives (controller/tunable.hpp).
 void configure(controller::Controller& controller, const scenario::Scenario& scenario) noexcept;
 [[nodiscard]] Result<std::unique_ptr<sim::Plant>> make_plant(const scenario::Scenario& scenario);
-[[nodiscard]] Result<path::Track> make_track(const scenario::Scenario& scenario);
+[[nodiscard]] Result<road::Track> make_track(const scenario::Scenario& scenario);
 
 /// Makes the controller of a run, for the car in full_size().
 using ControllerFactory =
@@ -30,7 +30,7 @@ using ControllerFactory =
 /// Makes the simulated car of a run.
 using PlantFactory = std::function<Result<std::unique_ptr<sim::Plant>>(const scenario::Scenario&)>;
 /// Makes the road of a run, for a car of the size that scenario.size_of_track() says.
-using TrackFactory = std::function<Result<path::Track>(const scenario::Scenario&)>;
+using TrackFactory = std::function<Result<road::Track>(const scenario::Scenario&)>;
 
 /// Makes the parts of a run: as the scenario names them, or a program's own. A factory of the program's own
 /// is called instead of the named part and must do the same in every call with the same scenario. Functions
@@ -52,6 +52,6 @@ struct Factories {
 /// so-many-th of them where they are denser (surveyed tracks have one each 5 m or less, and six of those show
 /// nothing of the road).
 /// `scale`: of the car.
-[[nodiscard]] Result<path::Track> make_waypoints(const path::Track& track, double scale = 1.0);
+[[nodiscard]] Result<road::Track> make_waypoints(const road::Track& track, double scale = 1.0);
 
 }  // namespace chicane::run

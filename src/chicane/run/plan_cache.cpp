@@ -57,20 +57,20 @@ class Name {
     for (const Option& option : options) add(option.read(owner));
   }
   /// All that a search can ask of a road: its smoothed line and widths come of these points alone.
-  void add(const path::Track& track) {
+  void add(const road::Track& track) {
     constexpr double kSpacing = 1.0;  // [m]
     add(std::string_view(track.name()));
     add(track.centre().is_closed() ? 1.0 : 0.0);
     for (const double value : {track.length(), track.kerb_width(), track.start_s(), track.start_d(),
                                track.lap_length(), static_cast<double>(track.crossings())})
       add(value);
-    for (const path::TrackPoint& p : track.raw_points()) {
+    for (const road::TrackPoint& p : track.raw_points()) {
       for (const double value : {p.position.x(), p.position.y(), p.left, p.right}) add(value);
     }
     const auto count = static_cast<int>(std::ceil(track.length() / kSpacing));
     for (int i = 0; i <= count; ++i) {
       const double s = track.length() * i / count;
-      const path::PathPoint at = track.centre().at(s);
+      const road::PathPoint at = track.centre().at(s);
       for (const double value : {at.position.x(), at.position.y(), at.heading, at.curvature,
                                  track.left_width(s), track.right_width(s)})
         add(value);
@@ -150,33 +150,33 @@ class Reader {
   bool is_good_ = true;
 };
 
-constexpr std::array kFields{&path::RacingLinePoint::s,           &path::RacingLinePoint::time,
-                             &path::RacingLinePoint::offset,      &path::RacingLinePoint::heading,
-                             &path::RacingLinePoint::vx,          &path::RacingLinePoint::vy,
-                             &path::RacingLinePoint::yaw_rate,    &path::RacingLinePoint::steer,
-                             &path::RacingLinePoint::steer_asked, &path::RacingLinePoint::acceleration,
-                             &path::RacingLinePoint::throttle};
-static_assert(sizeof(path::RacingLinePoint) == kFields.size() * sizeof(double), "a field is missing here");
+constexpr std::array kFields{&road::RacingLinePoint::s,           &road::RacingLinePoint::time,
+                             &road::RacingLinePoint::offset,      &road::RacingLinePoint::heading,
+                             &road::RacingLinePoint::vx,          &road::RacingLinePoint::vy,
+                             &road::RacingLinePoint::yaw_rate,    &road::RacingLinePoint::steer,
+                             &road::RacingLinePoint::steer_asked, &road::RacingLinePoint::acceleration,
+                             &road::RacingLinePoint::throttle};
+static_assert(sizeof(road::RacingLinePoint) == kFields.size() * sizeof(double), "a field is missing here");
 
-void put(Writer& to, const path::RacingLine& line) {
+void put(Writer& to, const road::RacingLine& line) {
   to.put(std::string_view(line.car));
   to.put(std::string_view(line.track));
   to.put(line.length);
   to.put(line.margin);
   to.put(line.is_best_so_far ? 1.0 : 0.0);
   to.put(static_cast<double>(line.points.size()));
-  for (const path::RacingLinePoint& point : line.points)
+  for (const road::RacingLinePoint& point : line.points)
     for (const auto field : kFields) to.put(point.*field);
 }
 
-void get(Reader& from, path::RacingLine& line) {
+void get(Reader& from, road::RacingLine& line) {
   from.get(line.car);
   from.get(line.track);
   from.get(line.length);
   from.get(line.margin);
   from.get(line.is_best_so_far);
-  line.points.resize(from.count(sizeof(path::RacingLinePoint)));
-  for (path::RacingLinePoint& point : line.points)
+  line.points.resize(from.count(sizeof(road::RacingLinePoint)));
+  for (road::RacingLinePoint& point : line.points)
     for (const auto field : kFields) from.get(point.*field);
 }
 
@@ -193,7 +193,7 @@ std::optional<T> kept(const DiskCache* cache, const std::string& name, const Rea
 
 /// A limit that no budget ended, in the cache under one of two names: one with a witness answers for one
 /// without, too.
-std::optional<lap_time::PlantLimit> whole_limit(const path::Track& track, std::string_view plant,
+std::optional<lap_time::PlantLimit> whole_limit(const road::Track& track, std::string_view plant,
                                                 const sim::PlantDeviation& deviation,
                                                 lap_time::PlantLimitOptions options,
                                                 const sim::DoubleTrackParams& params) {
@@ -230,7 +230,7 @@ bool must_stop_planning() noexcept {
   return flag != nullptr && flag->load();
 }
 
-std::string name_of_plan(const path::Track& track, const model::VehicleParams& car,
+std::string name_of_plan(const road::Track& track, const model::VehicleParams& car,
                          const lap_time::RacingPlanOptions& options) {
   Name name("plan");
   name.add(track);
@@ -243,7 +243,7 @@ std::string name_of_plan(const path::Track& track, const model::VehicleParams& c
   return name.text();
 }
 
-std::string name_of_limit(const path::Track& track, std::string_view plant,
+std::string name_of_limit(const road::Track& track, std::string_view plant,
                           const sim::PlantDeviation& deviation, const lap_time::PlantLimitOptions& options,
                           const sim::DoubleTrackParams& params) {
   Name name("limit");
@@ -257,18 +257,18 @@ std::string name_of_limit(const path::Track& track, std::string_view plant,
   return name.text();
 }
 
-Result<path::RacingLine> cached_plan(const path::Track& track, const model::VehicleParams& car,
+Result<road::RacingLine> cached_plan(const road::Track& track, const model::VehicleParams& car,
                                      const lap_time::RacingPlanOptions& options) {
   const std::string name = name_of_plan(track, car, options);
   const std::shared_ptr<const DiskCache> cache = name.empty() ? nullptr : cache_in_use();
-  if (std::optional<path::RacingLine> known = kept<path::RacingLine>(cache.get(), name, line_from_bytes))
+  if (std::optional<road::RacingLine> known = kept<road::RacingLine>(cache.get(), name, line_from_bytes))
     return std::move(*known);
-  Result<path::RacingLine> found = lap_time::plan_racing_line(track, car, options);
+  Result<road::RacingLine> found = lap_time::plan_racing_line(track, car, options);
   if (cache && found) cache->keep(name, to_bytes(*found));
   return found;
 }
 
-Result<lap_time::PlantLimit> cached_limit(const path::Track& track, std::string_view plant,
+Result<lap_time::PlantLimit> cached_limit(const road::Track& track, std::string_view plant,
                                           const sim::PlantDeviation& deviation,
                                           const lap_time::PlantLimitOptions& options,
                                           const sim::DoubleTrackParams& params) {
@@ -287,7 +287,7 @@ Result<lap_time::PlantLimit> cached_limit(const path::Track& track, std::string_
   return found;
 }
 
-Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario, const path::Track& track,
+Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario, const road::Track& track,
                                       const lap_time::PlantLimitOptions& options) {
   if (scenario.vehicle.scale != 1.0)
     return fail(ErrorCode::kInvalidArgument,
@@ -296,13 +296,13 @@ Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario, const 
 }
 
 std::optional<lap_time::PlantLimit> known_limit(const scenario::Scenario& scenario,
-                                                const path::Track& track) {
+                                                const road::Track& track) {
   if (scenario.vehicle.scale != 1.0 || !track.centre().is_closed()) return {};
   return whole_limit(track, scenario.plant, scenario.plant_options, {.wants_witness = false},
                      scenario.plant_params);
 }
 
-Result<void> cached_room(const path::Track& track, const model::VehicleParams& car, double beside,
+Result<void> cached_room(const road::Track& track, const model::VehicleParams& car, double beside,
                          double scale) {
   constexpr std::string_view kFits = "fits";
   const std::shared_ptr<const DiskCache> cache = cache_in_use();
@@ -319,15 +319,15 @@ Result<void> cached_room(const path::Track& track, const model::VehicleParams& c
   return fits;
 }
 
-std::string to_bytes(const path::RacingLine& line) {
+std::string to_bytes(const road::RacingLine& line) {
   Writer writer;
   put(writer, line);
   return writer.take();
 }
 
-std::optional<path::RacingLine> line_from_bytes(std::string_view bytes) {
+std::optional<road::RacingLine> line_from_bytes(std::string_view bytes) {
   Reader reader(bytes);
-  path::RacingLine line;
+  road::RacingLine line;
   get(reader, line);
   if (!reader.is_at_end() || line.is_empty()) return {};
   return line;

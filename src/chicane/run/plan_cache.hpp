@@ -8,7 +8,7 @@
 
 #include "chicane/lap_time/plant_limit.hpp"
 #include "chicane/lap_time/racing_plan.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/run/disk_cache.hpp"
 #include "chicane/scenario/scenario.hpp"
 
@@ -25,41 +25,41 @@ void stop_planning_by(const std::atomic<bool>& flag) noexcept;
 
 /// Name of a plan: a hash of the road, the car, the options and the build of this program. Empty where the
 /// program carries no build id.
-[[nodiscard]] std::string name_of_plan(const path::Track& track, const model::VehicleParams& car,
+[[nodiscard]] std::string name_of_plan(const road::Track& track, const model::VehicleParams& car,
                                        const lap_time::RacingPlanOptions& options);
-[[nodiscard]] std::string name_of_limit(const path::Track& track, std::string_view plant,
+[[nodiscard]] std::string name_of_limit(const road::Track& track, std::string_view plant,
                                         const sim::PlantDeviation& deviation,
                                         const lap_time::PlantLimitOptions& options,
                                         const sim::DoubleTrackParams& params);
 
 /// lap_time::plan_racing_line(), from the cache where it is known.
-[[nodiscard]] Result<path::RacingLine> cached_plan(const path::Track& track, const model::VehicleParams& car,
+[[nodiscard]] Result<road::RacingLine> cached_plan(const road::Track& track, const model::VehicleParams& car,
                                                    const lap_time::RacingPlanOptions& options);
 /// lap_time::find_plant_limit(), from the cache where it is known. An answer that no budget ended is kept
 /// without regard to the budget it had, and answers every question with enough of it.
-[[nodiscard]] Result<lap_time::PlantLimit> cached_limit(const path::Track& track, std::string_view plant,
+[[nodiscard]] Result<lap_time::PlantLimit> cached_limit(const road::Track& track, std::string_view plant,
                                                         const sim::PlantDeviation& deviation,
                                                         const lap_time::PlantLimitOptions& options,
                                                         const sim::DoubleTrackParams& params);
 
 /// The limit of a scenario's plant on `track`: cached_limit(). kInvalidArgument for a model car, too.
 [[nodiscard]] Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario,
-                                                    const path::Track& track,
+                                                    const road::Track& track,
                                                     const lap_time::PlantLimitOptions& options);
 /// The same from the cache alone, without a witness: whole, whatever it took.
 [[nodiscard]] std::optional<lap_time::PlantLimit> known_limit(const scenario::Scenario& scenario,
-                                                              const path::Track& track);
+                                                              const road::Track& track);
 
 /// lap_time::can_be_driven(); that a car gets round is kept, too, as it takes longer to find than to start a
 /// run.
-[[nodiscard]] Result<void> cached_room(const path::Track& track, const model::VehicleParams& car,
+[[nodiscard]] Result<void> cached_room(const road::Track& track, const model::VehicleParams& car,
                                        double beside, double scale);
 
 /// Results as bytes: numbers as they are in memory.
-[[nodiscard]] std::string to_bytes(const path::RacingLine& line);
+[[nodiscard]] std::string to_bytes(const road::RacingLine& line);
 [[nodiscard]] std::string to_bytes(const lap_time::PlantLimit& limit);
 /// None for bytes that are not such a result.
-[[nodiscard]] std::optional<path::RacingLine> line_from_bytes(std::string_view bytes);
+[[nodiscard]] std::optional<road::RacingLine> line_from_bytes(std::string_view bytes);
 [[nodiscard]] std::optional<lap_time::PlantLimit> limit_from_bytes(std::string_view bytes);
 
 }  // namespace chicane::run

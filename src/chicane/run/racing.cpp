@@ -24,7 +24,7 @@ const controller::TrackingMpcOptions& options_of(const scenario::Scenario& scena
   return std::get<controller::TrackingMpcEntry::Options>(scenario.controllers);
 }
 
-Result<std::shared_ptr<const road::RacingRoad>> plan_on(const path::Track& track,
+Result<std::shared_ptr<const road::RacingRoad>> plan_on(const road::Track& track,
                                                         const scenario::Scenario& scenario,
                                                         const road::RacingRoad::Basis& basis,
                                                         const std::function<bool()>& go_on,
@@ -39,7 +39,7 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const path::Track& track
   planning.go_on = [&](int, double) { return !must_stop_planning() && (!go_on || go_on()); };
   planning.on_progress = hooks.on_progress;
   const model::VehicleParams car = model::with_grip(full_size(scenario), basis.grip);
-  const Result<path::RacingLine> lap = cached_plan(track, car, planning);
+  const Result<road::RacingLine> lap = cached_plan(track, car, planning);
   if (!lap && lap.error().code != ErrorCode::kNotFound) return fail(lap.error());
   if (!lap) {
     if (hooks.say) hooks.say("plan: none found (" + lap.error().message + "): driving without one");
@@ -54,13 +54,13 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const path::Track& track
   planned.braking =
       kShareAtTheEnd * options.brake_share *
       std::min(car.brake_acceleration * car.brake_throttle_limit, car.friction * car.load_constant);
-  return std::make_shared<const road::RacingRoad>(path::line_points(track, *lap), track.kerb_width(),
+  return std::make_shared<const road::RacingRoad>(road::line_points(track, *lap), track.kerb_width(),
                                                   planned);
 }
 
 /// What may be wrong with the road's size: a file in model size taken for one in full size, or the other way
 /// round.
-std::string size_remedy(const scenario::Scenario& scenario, const path::Track& track) {
+std::string size_remedy(const scenario::Scenario& scenario, const road::Track& track) {
   const double scale = scenario.vehicle.scale;
   if (scale != 1.0 && scenario.track_scale == 0.0)
     return "; the road is driven at " + number_text(scale) +
@@ -72,7 +72,7 @@ std::string size_remedy(const scenario::Scenario& scenario, const path::Track& t
 }
 
 /// As the controller of a model car sees the road.
-path::Track in_full_size(const path::Track& track, const scenario::Scenario& scenario) {
+road::Track in_full_size(const road::Track& track, const scenario::Scenario& scenario) {
   const model::Similarity similarity(scenario.vehicle);
   return similarity.is_identity() ? track : track.scaled(similarity.length());
 }
@@ -83,12 +83,12 @@ bool races(const scenario::Scenario& scenario) noexcept { return scenario.races(
 
 double plan_budget(const scenario::Scenario& scenario) noexcept { return options_of(scenario).plan_budget; }
 
-Result<void> check_room(const scenario::Scenario& scenario, const path::Track& track) {
+Result<void> check_room(const scenario::Scenario& scenario, const road::Track& track) {
   const bool keeps_to_the_middle =
       scenario.controller == controller::TrackingMpcEntry::kName && !races(scenario);
   const double beside =
       keeps_to_the_middle ? options_of(scenario).assumed_half_width : std::numeric_limits<double>::infinity();
-  const path::Track road = in_full_size(track, scenario);
+  const road::Track road = in_full_size(track, scenario);
   const model::VehicleParams car = full_size(scenario);
   // Kept for those alone whose start is to take no longer than the cached plan.
   const Result<void> fits = races(scenario)
@@ -100,7 +100,7 @@ Result<void> check_room(const scenario::Scenario& scenario, const path::Track& t
 }
 
 Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenario& scenario,
-                                                         const path::Track* track, const PlanHooks& hooks) {
+                                                         const road::Track* track, const PlanHooks& hooks) {
   const bool is_known = track != nullptr && scenario.guard.road == safety::GuardRoad::kTrack;
   if (!races(scenario) || !is_known) return std::shared_ptr<const road::RacingRoad>{};
   return plan_on(in_full_size(*track, scenario), scenario, {.grip = options_of(scenario).first_grip()}, {},
@@ -108,7 +108,7 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenari
 }
 
 Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::Scenario& scenario,
-                                                                const path::Track* track,
+                                                                const road::Track* track,
                                                                 const controller::LapWish& wish,
                                                                 const std::function<bool()>& go_on) {
   const road::RacingRoad::Basis basis{.is_learned = !wish.waypoints.empty(), .grip = wish.grip};
@@ -120,10 +120,10 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::
   const bool is_guarded = scenario.guard.mode == safety::GuardMode::kOn;
   const double granted = is_guarded ? scenario.guard.half_width : std::numeric_limits<double>::infinity();
   const double half_width = std::min(options_of(scenario).assumed_half_width + beside, granted);
-  std::vector<path::TrackPoint> points;
+  std::vector<road::TrackPoint> points;
   points.reserve(wish.waypoints.size());
   for (const Vec2& waypoint : wish.waypoints) points.push_back({waypoint, half_width, half_width});
-  const Result<path::Track> learned = path::Track::create("learned", points, true);
+  const Result<road::Track> learned = road::Track::create("learned", points, true);
   if (!learned) return fail(learned.error());
   return plan_on(*learned, scenario, basis, go_on, {});
 }

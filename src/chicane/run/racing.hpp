@@ -8,8 +8,8 @@
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/lap_time/plan_progress.hpp"
-#include "chicane/path/track.hpp"
 #include "chicane/road/racing_road.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/scenario/scenario.hpp"
 
 namespace chicane::run {
@@ -23,7 +23,7 @@ namespace chicane::run {
 /// Whether the scenario's car gets round `track` by what its controller may use of the width.
 /// kInvalidArgument "track: hairpins is not for the car indy: the bend at s = ..." names place and radius, or
 /// the width.
-[[nodiscard]] Result<void> check_room(const scenario::Scenario& scenario, const path::Track& track);
+[[nodiscard]] Result<void> check_room(const scenario::Scenario& scenario, const road::Track& track);
 
 /// What a caller of plan_lap() hears.
 struct PlanHooks {
@@ -41,7 +41,7 @@ struct PlanHooks {
 /// kInvalidArgument names why there is no such lap: a road that is too narrow or too tight, or
 /// must_stop_planning().
 [[nodiscard]] Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenario& scenario,
-                                                                       const path::Track* track,
+                                                                       const road::Track* track,
                                                                        const PlanHooks& hooks = {});
 
 /// The lap that a controller wants: with another grip, on `track`, or on a road through waypoints with
@@ -49,7 +49,7 @@ struct PlanHooks {
 /// the track, and that is null. `go_on` is asked in each iteration; false ends the search. The same scenario,
 /// track and wish give the same bits.
 [[nodiscard]] Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(
-    const scenario::Scenario& scenario, const path::Track* track, const controller::LapWish& wish,
+    const scenario::Scenario& scenario, const road::Track* track, const controller::LapWish& wish,
     const std::function<bool()>& go_on = {});
 
 }  // namespace chicane::run

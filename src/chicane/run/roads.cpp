@@ -47,9 +47,9 @@ Result<const Roads::Prepared*> Roads::of(const scenario::Scenario& scenario, con
   const auto known = std::find_if(entries_.begin(), entries_.end(),
                                   [&](const Entry& each) { return is_same_road(each.scenario, scenario); });
   if (known != entries_.end()) return &known->prepared;
-  Result<path::Track> track = make(scenario);
+  Result<road::Track> track = make(scenario);
   if (!track) return fail(track.error());
-  Result<path::Track> waypoints = make_waypoints(*track, scenario.vehicle.scale);
+  Result<road::Track> waypoints = make_waypoints(*track, scenario.vehicle.scale);
   if (!waypoints) return fail(waypoints.error());
   road::KnownRoad road = known_road(scenario, &*track);
   auto lap = plan_lap(scenario, &*track, hooks);

@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "chicane/base/result.hpp"
-#include "chicane/path/track.hpp"
 #include "chicane/protocol/remembered_files.hpp"
 #include "chicane/road/known_road.hpp"
 #include "chicane/road/racing_road.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/racing.hpp"
 #include "chicane/scenario/scenario.hpp"
@@ -25,8 +25,8 @@ class Roads {
   static constexpr std::size_t kRemembered = 16;
 
   struct Prepared {
-    path::Track track;
-    path::Track waypoints;                        ///< that telemetry shows
+    road::Track track;
+    road::Track waypoints;                        ///< that telemetry shows
     road::KnownRoad known;                        ///< to the guard, at the beginning
     std::shared_ptr<const road::RacingRoad> lap;  ///< planned, of a controller that races; null of any other
   };

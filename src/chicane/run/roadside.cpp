@@ -9,7 +9,7 @@
 namespace chicane::run {
 namespace {
 
-AccountTerms terms(const path::Track* track, const scenario::Scenario& scenario) {
+AccountTerms terms(const road::Track* track, const scenario::Scenario& scenario) {
   AccountTerms terms = terms_of(scenario, track != nullptr ? track->name() : "");
   terms.car = scenario.vehicle.name;
   terms.laps = 0;
@@ -28,7 +28,7 @@ sim::Sighting sighting_of(const model::Measurement& seen, const model::VehiclePa
 
 }  // namespace
 
-Roadside::Roadside(const path::Track* track, const scenario::Scenario& scenario)
+Roadside::Roadside(const road::Track* track, const scenario::Scenario& scenario)
     : scenario_{scenario}, account_{terms(track, scenario)} {
   if (track != nullptr) judge_.emplace(*track);
 }

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/run/account.hpp"
 #include "chicane/run/lap_learner.hpp"
 #include "chicane/scenario/scenario.hpp"
@@ -21,7 +21,7 @@ namespace chicane::run {
 class Roadside {
  public:
   /// `track` may be null: then laps are timed, and nothing is judged. It outlives this.
-  Roadside(const path::Track* track, const scenario::Scenario& scenario);
+  Roadside(const road::Track* track, const scenario::Scenario& scenario);
 
   /// Another car, or the same one from another place: the running lap does not count, the rest stays.
   void resume() noexcept;

@@ -5,12 +5,12 @@
 
 namespace chicane::run {
 
-std::optional<double> distance_to_other_road(const path::Track& track,
+std::optional<double> distance_to_other_road(const road::Track& track,
                                              const model::Measurement& shown) noexcept {
   int beside = 0;
   double farthest = 0.0;
   for (int i = 0; i < shown.waypoint_count; ++i) {
-    const path::Projection foot = track.centre().project(shown.waypoints[static_cast<std::size_t>(i)]);
+    const road::Projection foot = track.centre().project(shown.waypoints[static_cast<std::size_t>(i)]);
     if (track.edge_distance(foot) < -kBesideRoad) ++beside;
     farthest = std::max(farthest, foot.distance);
   }

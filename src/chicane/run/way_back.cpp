@@ -31,14 +31,14 @@ double either_sign(Random& chance, double low, double high) {
 
 }  // namespace
 
-std::vector<StartPose> start_poses(const path::Track& track, int count, std::uint64_t seed) {
+std::vector<StartPose> start_poses(const road::Track& track, int count, std::uint64_t seed) {
   Random chance(seed);
   std::vector<StartPose> starts;
   starts.reserve(static_cast<std::size_t>(std::max(count, 0)));
   for (int i = 0; i < count; ++i) {
     const auto kind = static_cast<StartKind>(static_cast<std::size_t>(i) % kStartKindNames.size());
     const double s = chance.uniform(0.0, track.length());
-    const path::PathPoint at = track.centre().at(s);
+    const road::PathPoint at = track.centre().at(s);
     const double d = chance.uniform(-track.right_width(s) - kFarthest, track.left_width(s) + kFarthest);
     StartPose start{.kind = kind};
     start.state.x = at.position.x() - d * sin(at.heading);

@@ -10,7 +10,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/model/state.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/roads.hpp"
 #include "chicane/scenario/scenario.hpp"
@@ -36,7 +36,7 @@ struct StartPose {
 /// `count` poses along a track, the kinds in turn, the centre of mass on the road or up to kFarthest beside
 /// it. The same for the same seed.
 inline constexpr double kFarthest = 30.0;  ///< from the nearest edge [m]
-[[nodiscard]] std::vector<StartPose> start_poses(const path::Track& track, int count, std::uint64_t seed);
+[[nodiscard]] std::vector<StartPose> start_poses(const road::Track& track, int count, std::uint64_t seed);
 
 /// What became of the car. It is back once it has been on the road for kBack, or has stood on it, with less
 /// than kAlong between its course and the road's; it laps when it is faster than walking pace then.

@@ -47,7 +47,7 @@ model::VehicleParams without_name(model::VehicleParams vehicle) noexcept {
 }
 
 /// Of the axle that uses more, 1 at its peak slip.
-double tire_use(const controller::StateEstimator& estimator) noexcept {
+double tire_use(const tracking::StateEstimator& estimator) noexcept {
   const model::State& car = estimator.state();
   const auto use =
       estimator.model().tire_use(model::BodyMotion<double>{car.vx, car.vy, car.r, car.steer, 0.0});
@@ -56,8 +56,8 @@ double tire_use(const controller::StateEstimator& estimator) noexcept {
 
 /// Estimators of the same car, as many as asked for.
 template <std::size_t Count>
-std::array<controller::StateEstimator, Count> estimators_of(const model::VehicleParams& vehicle) noexcept {
-  const auto make = [&](auto) { return controller::StateEstimator{model::PredictionModel{vehicle}}; };
+std::array<tracking::StateEstimator, Count> estimators_of(const model::VehicleParams& vehicle) noexcept {
+  const auto make = [&](auto) { return tracking::StateEstimator{model::PredictionModel{vehicle}}; };
   return std::apply([&](auto... each) { return std::array{make(each)...}; }, std::array<int, Count>{});
 }
 
@@ -65,7 +65,7 @@ std::array<controller::StateEstimator, Count> estimators_of(const model::Vehicle
 
 ActuatorEstimator::ActuatorEstimator(const model::VehicleParams& vehicle) noexcept
     : vehicle_{without_name(vehicle)}, estimators_{estimators_of<kUnknowns + 1>(vehicle_)} {
-  for (controller::StateEstimator& each : estimators_) each.average_over(kAverage);
+  for (tracking::StateEstimator& each : estimators_) each.average_over(kAverage);
   believe();
 }
 
@@ -85,20 +85,20 @@ void ActuatorEstimator::believe() noexcept {
 }
 
 /// How the wheels turn by what they were told, if they answered as `values` say.
-controller::CommandHistory ActuatorEstimator::effect(const controller::CommandHistory& told,
-                                                     const Values& values) const noexcept {
+tracking::CommandHistory ActuatorEstimator::effect(const tracking::CommandHistory& told,
+                                                   const Values& values) const noexcept {
   const ActuatorAnswer answer{.gain = values[kGain], .offset = values[kOffset]};
-  controller::CommandHistory sent =
+  tracking::CommandHistory sent =
       told.changed([&](const model::Command& command) { return answer.effect_of(command); });
   sent.delay(values[kDelay] - answer_.delay);
   return sent;
 }
 
-void ActuatorEstimator::see(const model::Measurement& now, const controller::CommandHistory& told) noexcept {
-  controller::StateEstimator& last = estimators_[kUnknowns];
+void ActuatorEstimator::see(const model::Measurement& now, const tracking::CommandHistory& told) noexcept {
+  tracking::StateEstimator& last = estimators_[kUnknowns];
   const double elapsed = now.time - last.time();
   last.correct(now, effect(told, here_));
-  const controller::StateEstimator::Surprise n = last.surprise();
+  const tracking::StateEstimator::Surprise n = last.surprise();
   Values aside{}, heading{};
   double sum = n.aside + n.heading;
   for (std::size_t i = 0; i < kUnknowns; ++i) {
@@ -106,7 +106,7 @@ void ActuatorEstimator::see(const model::Measurement& now, const controller::Com
     Values changed = here_;
     changed[i] += by;
     estimators_[i].correct(now, effect(told, changed));
-    const controller::StateEstimator::Surprise& other = estimators_[i].surprise();
+    const tracking::StateEstimator::Surprise& other = estimators_[i].surprise();
     aside[i] = (n.aside - other.aside) / by;
     heading[i] = (n.heading - other.heading) / by;
     sum += other.aside + other.heading;
@@ -156,7 +156,7 @@ void ActuatorEstimator::move_on() noexcept {
           &model::State::r, &model::State::steer})
       more.*each += share * (other.*each - last.*each);
   }
-  for (controller::StateEstimator& each : estimators_) each.move(more);
+  for (tracking::StateEstimator& each : estimators_) each.move(more);
   aside_.shift(by, kKeptBehind);
   heading_.shift(by, kKeptBehind);
   counted_ = 0.0;

@@ -5,16 +5,17 @@
 #include <cstddef>
 #include <limits>
 
-#include "chicane/controller/command_history.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/safety/actuator_answer.hpp"
+#include "chicane/tracking/command_history.hpp"
+#include "chicane/tracking/state_estimator.hpp"
 
 namespace chicane::safety {
 
 /// How late and by how much the wheels answer, beyond what was told, by which answer predicts the next
-/// measurement better (docs/identification.md, eq. 10 to 12). It is the method of controller::GripEstimator
+/// measurement better (docs/identification.md, eq. 10 to 12). It is the method of tracking::GripEstimator
 /// for four unknowns at once: one state estimator counts with the estimate, four have one unknown changed
 /// each, and least squares over the last kMemory of driving finds the unknowns with their deviations. The
 /// grip is among them, so that tyres that give less do not pass for another steering.
@@ -35,7 +36,7 @@ class ActuatorEstimator {
 
   /// A measurement that is not in doubt; `told`: the commands as the actuators were sent them, with the times
   /// at which they act by answer().
-  void see(const model::Measurement& now, const controller::CommandHistory& told) noexcept;
+  void see(const model::Measurement& now, const tracking::CommandHistory& told) noexcept;
   /// Between two cycles: answer() follows the estimate where it differs by enough. True: it changed.
   [[nodiscard]] bool take_up() noexcept;
 
@@ -70,16 +71,16 @@ class ActuatorEstimator {
     Values deviation{};
   };
 
-  [[nodiscard]] controller::CommandHistory effect(const controller::CommandHistory& told,
-                                                  const Values& values) const noexcept;
+  [[nodiscard]] tracking::CommandHistory effect(const tracking::CommandHistory& told,
+                                                const Values& values) const noexcept;
   void believe() noexcept;
   void move_on() noexcept;
   [[nodiscard]] Solution solve() const noexcept;
 
   model::VehicleParams vehicle_;  ///< as told, without a name
   ActuatorAnswer answer_;
-  Values here_{0.0, 1.0, 0.0, 1.0};                                   ///< that the estimators count with
-  std::array<controller::StateEstimator, kUnknowns + 1> estimators_;  ///< each but the last has one changed
+  Values here_{0.0, 1.0, 0.0, 1.0};                                 ///< that the estimators count with
+  std::array<tracking::StateEstimator, kUnknowns + 1> estimators_;  ///< each but the last has one changed
   Sums aside_, heading_;
   Solution solution_;
   Values taken_up_{};      ///< deviations of what is driven with when it was taken up; 0: as told

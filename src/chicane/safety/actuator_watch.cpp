@@ -57,7 +57,7 @@ void ActuatorWatch::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   model_.set_vehicle(without_name(vehicle));
 }
 
-void ActuatorWatch::see(const model::Measurement& now, const controller::CommandHistory& sent,
+void ActuatorWatch::see(const model::Measurement& now, const tracking::CommandHistory& sent,
                         const AxleUse& use) noexcept {
   use_ = use;
   const double elapsed = count_ > 0 ? now.time - back(0).time : 0.0;
@@ -80,8 +80,7 @@ void ActuatorWatch::see(const model::Measurement& now, const controller::Command
   judge_braking(elapsed);
 }
 
-void ActuatorWatch::add_sample(const model::Measurement& now,
-                               const controller::CommandHistory& sent) noexcept {
+void ActuatorWatch::add_sample(const model::Measurement& now, const tracking::CommandHistory& sent) noexcept {
   Sample next{.time = now.time, .turned = now.psi, .speed = std::fabs(now.speed), .place = {now.x, now.y}};
   if (count_ > 0) {
     const Sample& last = back(0);

@@ -5,11 +5,11 @@
 #include <cstddef>
 
 #include "chicane/base/vec2.hpp"
-#include "chicane/controller/command_history.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/safety/actuator_answer.hpp"
+#include "chicane/tracking/command_history.hpp"
 
 namespace chicane::safety {
 
@@ -40,9 +40,8 @@ class ActuatorWatch {
   };
   /// A measurement that is not in doubt; `sent`: what the actuators were told. While the rear axle slides the
   /// steering is not judged, and while either does the brakes are not.
-  void see(const model::Measurement& now, const controller::CommandHistory& sent,
-           const AxleUse& use) noexcept;
-  void see(const model::Measurement& now, const controller::CommandHistory& sent) noexcept {
+  void see(const model::Measurement& now, const tracking::CommandHistory& sent, const AxleUse& use) noexcept;
+  void see(const model::Measurement& now, const tracking::CommandHistory& sent) noexcept {
     see(now, sent, {});
   }
   /// Nothing is measured that can be believed.
@@ -77,7 +76,7 @@ class ActuatorWatch {
     return samples_[(count_ - 1 - count) % kSamples];
   }
   [[nodiscard]] std::size_t samples_back_to(double time) const noexcept;
-  void add_sample(const model::Measurement& now, const controller::CommandHistory& sent) noexcept;
+  void add_sample(const model::Measurement& now, const tracking::CommandHistory& sent) noexcept;
   /// The angles of one window: what was asked for, and what turns the car as it turned.
   struct Window {
     double asked = 0.0, angle = 0.0;  ///< [rad]

@@ -66,7 +66,7 @@ double act_time(const model::Measurement& seen, const controller::StepReport& re
 
 }  // namespace
 
-road::KnownRoad known_road(const GuardOptions& options, const path::RoadData* road,
+road::KnownRoad known_road(const GuardOptions& options, const road::RoadData* road,
                            const model::VehicleParams& vehicle) {
   if (options.mode == GuardMode::kOff) return {};
   const bool knows_track = options.road == GuardRoad::kTrack && road != nullptr && road->points.size() > 1;
@@ -74,7 +74,7 @@ road::KnownRoad known_road(const GuardOptions& options, const path::RoadData* ro
 }
 
 Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
-             const GuardOptions& options, const path::RoadData* road)
+             const GuardOptions& options, const road::RoadData* road)
     : Guard(std::move(controller), vehicle, options, known_road(options, road, vehicle)) {}
 
 Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
@@ -463,7 +463,7 @@ std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   most_drive_ = std::numeric_limits<double>::infinity();
   act_speed_ = estimator_.is_started() ? estimator_.state().vx : std::numeric_limits<double>::infinity();
   if (line.is_empty() || !estimator_.is_started() || !std::isfinite(act_time)) return std::nullopt;
-  const controller::StateEstimator::Prediction at = estimator_.predict(act_time, sent_);
+  const tracking::StateEstimator::Prediction at = estimator_.predict(act_time, sent_);
   const model::State& car = at.state;
   if (!std::isfinite(car.x + car.y + car.psi + car.vx + car.vy + car.r)) return std::nullopt;
   act_speed_ = car.vx;

@@ -7,15 +7,14 @@
 
 #include "chicane/base/deadline.hpp"
 #include "chicane/base/owned.hpp"
-#include "chicane/controller/command_history.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/controller/copyable.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
-#include "chicane/path/road_data.hpp"
 #include "chicane/road/known_road.hpp"
+#include "chicane/road/road_data.hpp"
 #include "chicane/safety/actuator_estimator.hpp"
 #include "chicane/safety/actuator_watch.hpp"
 #include "chicane/safety/command_gate.hpp"
@@ -27,12 +26,14 @@
 #include "chicane/safety/stop_plan.hpp"
 #include "chicane/safety/stop_planner.hpp"
 #include "chicane/safety/supervisor.hpp"
+#include "chicane/tracking/command_history.hpp"
+#include "chicane/tracking/state_estimator.hpp"
 
 namespace chicane::safety {
 
 /// The road as a guard knows it at first: `road`, where it may, or nothing yet. A guard that is off has no
 /// use for one.
-[[nodiscard]] road::KnownRoad known_road(const GuardOptions& options, const path::RoadData* road,
+[[nodiscard]] road::KnownRoad known_road(const GuardOptions& options, const road::RoadData* road,
                                          const model::VehicleParams& vehicle);
 
 /// The guard around a controller, the same for all of them (docs/safety.md):
@@ -53,7 +54,7 @@ class Guard {
   /// Pre: `controller` is not null. `vehicle`: the model's parameters, and the limits of what is sent.
   /// `road`: the track's; null, or GuardRoad::kWaypoints: the guard learns it from the waypoints it is shown.
   Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
-        const GuardOptions& options = {}, const path::RoadData* road = nullptr);
+        const GuardOptions& options = {}, const road::RoadData* road = nullptr);
   /// The same with what known_road() has made before: smoothing a road takes milliseconds.
   Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
         const GuardOptions& options, road::KnownRoad road);
@@ -144,11 +145,11 @@ class Guard {
   Fallback fallback_;
   CommandGate gate_;
   road::KnownRoad road_;
-  controller::StateEstimator estimator_;
-  controller::DirectionWatch direction_;  ///< by what is measured, plausible or not
-  controller::CommandHistory told_;       ///< what the actuators were told
-  controller::CommandHistory sent_;       ///< and what it makes of wheels and pedals
-  StopPlan stop_;                         ///< the stop at hand, for actuators that answer otherwise
+  tracking::StateEstimator estimator_;
+  tracking::DirectionWatch direction_;  ///< by what is measured, plausible or not
+  tracking::CommandHistory told_;       ///< what the actuators were told
+  tracking::CommandHistory sent_;       ///< and what it makes of wheels and pedals
+  StopPlan stop_;                       ///< the stop at hand, for actuators that answer otherwise
   PredictiveFilter filter_;
   model::PredictionModel model_;
   double s_ = 0.0;  ///< on the known road where the command acts [m]

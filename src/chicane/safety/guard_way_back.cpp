@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "chicane/base/math.hpp"
-#include "chicane/controller/way_back.hpp"
 #include "chicane/safety/guard.hpp"
+#include "chicane/tracking/way_back.hpp"
 
 namespace chicane::safety {
 namespace {
@@ -104,7 +104,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
       line.project_along({car.x, car.y}, car.psi, 2.0 * model_.vehicle().width);
   if (!(place.distance < kLost)) return false;
   result.command = rolls_back ? model::Command{0.0, against_rolling_back()}
-                              : controller::way_back(line, place, car, model_.vehicle());
+                              : tracking::way_back(line, place, car, model_.vehicle());
   const std::optional<StopStart> start = place_on_road(act);
   if (is_astray_) filter_.forget();
   const Fit fit = start ? verify(*start, cycle, result.command, nullptr, result.report, true) : Fit::kNone;
@@ -122,7 +122,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
 
 double Guard::against_rolling_back() const noexcept {
   const double speed = std::fabs(estimator_.state().vx);
-  const double pedal = controller::throttle_against_rolling_back(model_.vehicle(), speed);
+  const double pedal = tracking::throttle_against_rolling_back(model_.vehicle(), speed);
   return pedal > 0.0 && speed > kRollsBackAtMost ? 0.0 : std::min(pedal, kMostAgainstRolling);
 }
 

@@ -29,7 +29,7 @@ enum class Begin : signed char { kLast, kLine, kLineCarefully };
 }  // namespace
 
 StopSearch::StopSearch(const model::VehicleParams& vehicle)
-    : model_{vehicle}, stability_{vehicle}, solver_{controller::make_tracking_solver(kMostTurns)} {
+    : model_{vehicle}, stability_{vehicle}, solver_{tracking::make_tracking_solver(kMostTurns)} {
   set_vehicle(vehicle);
 }
 
@@ -81,7 +81,7 @@ void StopSearch::ask_road(const road::KnownRoad& road, double s0, int k) noexcep
 }
 
 void StopSearch::guess_from_last(const road::KnownRoad& road, const StopStart& start) noexcept {
-  const controller::TrackingTrajectory& old = last_;
+  const tracking::TrackingTrajectory& old = last_;
   double offset = start.s - s_;
   if (road.line().is_closed()) offset -= road.line().length() * std::round(offset / road.line().length());
   std::size_t j = 0;

@@ -4,12 +4,12 @@
 #include <memory>
 
 #include "chicane/base/owned.hpp"
-#include "chicane/controller/tracking_problem.hpp"
-#include "chicane/controller/tracking_solver.hpp"
 #include "chicane/model/braking_stability.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/road/known_road.hpp"
 #include "chicane/safety/stop_planner.hpp"
+#include "chicane/tracking/tracking_problem.hpp"
+#include "chicane/tracking/tracking_solver.hpp"
 
 namespace chicane::safety {
 
@@ -31,7 +31,7 @@ class StopSearch {
                                const StopPlanner& planner, StopCourse& out) noexcept;
 
  private:
-  using Problem = controller::TrackingProblem;
+  using Problem = tracking::TrackingProblem;
 
   void guess_from_last(const road::KnownRoad& road, const StopStart& start) noexcept;
   void guess_from_line(const road::KnownRoad& road, const StopStart& start) noexcept;
@@ -44,8 +44,8 @@ class StopSearch {
   model::PredictionModel model_;
   model::BrakingStability stability_;
   Problem problem_;
-  Owned<controller::TrackingSolver> solver_;
-  controller::TrackingTrajectory now_, last_;
+  Owned<tracking::TrackingSolver> solver_;
+  tracking::TrackingTrajectory now_, last_;
   double s_ = 0.0;     ///< where last_ begins [m]
   double time_ = 0.0;  ///< and when [s]
   bool has_last_ = false;

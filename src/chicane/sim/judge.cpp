@@ -28,13 +28,13 @@ double size_of(const Sighting& car) noexcept {
 
 }  // namespace
 
-path::Projection project_anywhere(const path::Track& track, const model::Pose& car) noexcept {
-  const path::Path& line = track.centre();
+road::Projection project_anywhere(const road::Track& track, const model::Pose& car) noexcept {
+  const road::Path& line = track.centre();
   const double s = line.project({car.x, car.y}).s;
   return line.project_along({car.x, car.y}, car.psi, 0.5 * (track.left_width(s) + track.right_width(s)));
 }
 
-Judge::Judge(const path::Track& track) noexcept : track_{&track}, lap_length_{track.lap_length()} {}
+Judge::Judge(const road::Track& track) noexcept : track_{&track}, lap_length_{track.lap_length()} {}
 
 void Judge::reset(double time, const Sighting& car) noexcept {
   covered_ = off_track_at_lap_start_ = back_on_track_ = 0.0;
@@ -45,7 +45,7 @@ void Judge::reset(double time, const Sighting& car) noexcept {
   state_.time = time;
   // A start on the line is timed from standstill; any other first drives to the line.
   constexpr double kOnTheLine = 1.0;  // [m]
-  const path::Path& line = track_->centre();
+  const road::Path& line = track_->centre();
   state_.s = project_anywhere(*track_, car.pose).s;
   state_.progress = line.difference(state_.s, track_->start_s());
   state_.is_timed = std::fabs(state_.progress) <= kOnTheLine * size_;
@@ -66,20 +66,20 @@ void Judge::see(double time, const Sighting& car) noexcept {
 }
 
 void Judge::locate(double elapsed, const Sighting& car) noexcept {
-  const path::Path& line = track_->centre();
+  const road::Path& line = track_->centre();
   const Vec2 position{car.pose.x, car.pose.y};
   const double reachable = 2.0 * car.speed * elapsed + 0.01 * size_;
-  path::Projection nearest = line.project(position, state_.s, kSearch * size_ + reachable);
+  road::Projection nearest = line.project(position, state_.s, kSearch * size_ + reachable);
   const bool is_far = nearest.distance >
                       kLost * size_ + std::max(track_->left_width(nearest.s), track_->right_width(nearest.s));
   lost_for_ = is_far ? lost_for_ + 1 : 0;
   bool has_jumped = false;
   if (lost_for_ % kLostPatience == 1) {
-    const path::Projection anywhere = project_anywhere(*track_, car.pose);
+    const road::Projection anywhere = project_anywhere(*track_, car.pose);
     has_jumped = anywhere.distance < 0.5 * nearest.distance;
     if (has_jumped) nearest = anywhere;
   }
-  const path::PathPoint foot = line.at(nearest.s);
+  const road::PathPoint foot = line.at(nearest.s);
   double advanced = line.difference(nearest.s, state_.s);
   if (!line.is_closed()) {
     // Beyond its ends an open line goes on straight.
@@ -102,7 +102,7 @@ void Judge::measure_edges(double elapsed, const Sighting& car) noexcept {
   double edge = std::numeric_limits<double>::infinity();
   for (const Vec2& patch : car.contact_points) {
     const Vec2 point{pose.x + c * patch.x() - s * patch.y(), pose.y + s * patch.x() + c * patch.y()};
-    const path::Projection at = track_->centre().project(point, state_.s, kSearch * size_);
+    const road::Projection at = track_->centre().project(point, state_.s, kSearch * size_);
     edge = std::min(edge, track_->edge_distance(at));
   }
   state_.edge_distance = edge + track_->kerb_width();

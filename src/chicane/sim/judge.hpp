@@ -5,7 +5,7 @@
 
 #include "chicane/base/vec2.hpp"
 #include "chicane/model/state.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 
 namespace chicane::sim {
 
@@ -49,7 +49,7 @@ struct Sighting {
 };
 
 /// Where a car is that nobody has followed: of roads that cross under it on the one it goes along.
-[[nodiscard]] path::Projection project_anywhere(const path::Track& track, const model::Pose& car) noexcept;
+[[nodiscard]] road::Projection project_anywhere(const road::Track& track, const model::Pose& car) noexcept;
 
 /// Judges a car by what is seen of it, one sighting after the other: where it is on the track, whether all of
 /// it is on the road, its laps. Knows no plant: the car may be simulated here (World) or elsewhere.
@@ -62,7 +62,7 @@ struct Sighting {
 class Judge {
  public:
   /// `track` must outlive the judge. Call reset() before anything else.
-  explicit Judge(const path::Track& track) noexcept;
+  explicit Judge(const road::Track& track) noexcept;
 
   /// A new run from any pose, at `time` [s]. Within 1 m of the start line the first lap is timed from now on,
   /// otherwise from the first crossing. For cars shorter than 1.5 m between the axles all lengths are smaller
@@ -72,10 +72,10 @@ class Judge {
   void see(double time, const Sighting& car) noexcept;
 
   /// The same judgement on a copy of the track, which must outlive the judge.
-  void stand_on(const path::Track& track) noexcept { track_ = &track; }
+  void stand_on(const road::Track& track) noexcept { track_ = &track; }
 
   [[nodiscard]] const WorldState& state() const noexcept { return state_; }
-  [[nodiscard]] const path::Track& track() const noexcept { return *track_; }
+  [[nodiscard]] const road::Track& track() const noexcept { return *track_; }
 
  private:
   void locate(double elapsed, const Sighting& car) noexcept;
@@ -84,7 +84,7 @@ class Judge {
   void cross_line(double crossing_time) noexcept;
   void start_lap(double crossing_time) noexcept;
 
-  const path::Track* track_;
+  const road::Track* track_;
   double size_ = 1.0;          ///< of the car, over one in full size: what is far for it
   double covered_ = 0.0;       ///< of the line since the lap began, without jumps [m]
   double lap_length_ = 0.0;    ///< Track::lap_length()

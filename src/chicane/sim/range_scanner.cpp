@@ -30,7 +30,7 @@ Result<void> check(const RangeScannerOptions& options) {
   return {};
 }
 
-Result<RangeScanner> RangeScanner::create(const path::Track& track, const RangeScannerOptions& options) {
+Result<RangeScanner> RangeScanner::create(const road::Track& track, const RangeScannerOptions& options) {
   if (const Result<void> sound = check(options); !sound) return fail(sound.error());
   RangeScanner scanner;
   scanner.options_ = options;
@@ -43,14 +43,14 @@ Result<RangeScanner> RangeScanner::create(const path::Track& track, const RangeS
   return scanner;
 }
 
-void RangeScanner::add_wall(const path::Track& track, double side) {
-  const path::Path& centre = track.centre();
+void RangeScanner::add_wall(const road::Track& track, double side) {
+  const road::Path& centre = track.centre();
   const double step = std::max(options_.spacing, 2.0 * centre.length() / kMaxWallPoints);
   const auto count = static_cast<std::size_t>(std::ceil(centre.length() / step));
   std::size_t begin = points_.size();
   for (std::size_t i = 0; i <= count; ++i) {
     const double s = centre.length() * static_cast<double>(i) / static_cast<double>(count);
-    const path::PathPoint at = centre.at(s);
+    const road::PathPoint at = centre.at(s);
     const double width = side > 0.0 ? track.left_width(s) : track.right_width(s);
     const Vec2 normal{-chicane::sin(at.heading), chicane::cos(at.heading)};
     const Vec2 point = at.position + side * (width + track.kerb_width()) * normal;

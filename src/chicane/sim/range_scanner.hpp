@@ -7,7 +7,7 @@
 #include "chicane/base/result.hpp"
 #include "chicane/base/vec2.hpp"
 #include "chicane/model/state.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 
 namespace chicane::sim {
 
@@ -35,7 +35,7 @@ struct RangeScannerOptions {
 class RangeScanner {
  public:
   /// kInvalidArgument for options out of range.
-  [[nodiscard]] static Result<RangeScanner> create(const path::Track& track,
+  [[nodiscard]] static Result<RangeScanner> create(const road::Track& track,
                                                    const RangeScannerOptions& options = {});
 
   /// Distances seen from `sensor` [m], from the first beam on the right to the last on the left, evenly about
@@ -58,7 +58,7 @@ class RangeScanner {
     double radius = 0.0;
   };
 
-  void add_wall(const path::Track& track, double side);
+  void add_wall(const road::Track& track, double side);
   void add_pieces(std::size_t begin);
   void draw(std::span<const Vec2> points, const model::Pose& sensor, std::span<float> ranges) const noexcept;
 

@@ -16,9 +16,9 @@ constexpr double kJudgementPeriod = 0.005;  // [s]
 
 /// The waypoint nearest to the car; on a road that crosses itself, the one nearest along the road that the
 /// car goes along.
-int nearest_waypoint(const path::Track& track, const model::Pose& pose) noexcept {
+int nearest_waypoint(const road::Track& track, const model::Pose& pose) noexcept {
   const auto& points = track.raw_points();
-  const path::Path& line = track.centre();
+  const road::Path& line = track.centre();
   const Vec2 position{pose.x, pose.y};
   const double s = track.crossings() > 0 ? project_anywhere(track, pose).s : 0.0;
   int nearest = 0;
@@ -36,7 +36,7 @@ int nearest_waypoint(const path::Track& track, const model::Pose& pose) noexcept
 
 }  // namespace
 
-World::World(Plant& plant, const path::Track& track) noexcept : plant_{&plant}, judge_{track} {
+World::World(Plant& plant, const road::Track& track) noexcept : plant_{&plant}, judge_{track} {
   // A model car lives faster: the time scale of its size (model/similarity.hpp).
   const auto patches = plant.contact_points();
   const double pace = std::min(std::sqrt(patches[0].x() - patches[2].x()), 1.0);
@@ -45,13 +45,13 @@ World::World(Plant& plant, const path::Track& track) noexcept : plant_{&plant}, 
   place(track.start_s(), track.start_d());
 }
 
-void World::stand_on(Plant& plant, const path::Track& track) noexcept {
+void World::stand_on(Plant& plant, const road::Track& track) noexcept {
   plant_ = &plant;
   judge_.stand_on(track);
 }
 
 void World::place(double s, double offset, double speed) noexcept {
-  const path::PathPoint point = track().centre().at(s);
+  const road::PathPoint point = track().centre().at(s);
   reset({.x = point.position.x() - offset * sin(point.heading),
          .y = point.position.y() + offset * cos(point.heading),
          .psi = point.heading},
@@ -101,7 +101,7 @@ Sighting World::sighting() const noexcept {
           .contact_points = plant_->contact_points()};
 }
 
-int select_waypoints(const path::Track& track, const model::Pose& pose, int count,
+int select_waypoints(const road::Track& track, const model::Pose& pose, int count,
                      model::Measurement& measurement) noexcept {
   const auto& points = track.raw_points();
   const int size = static_cast<int>(points.size());

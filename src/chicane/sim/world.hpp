@@ -4,7 +4,7 @@
 #include "chicane/base/vec2.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/sim/judge.hpp"
 #include "chicane/sim/plant.hpp"
 
@@ -16,7 +16,7 @@ namespace chicane::sim {
 class World {
  public:
   /// Both must outlive the world. The car stands at the track's start.
-  World(Plant& plant, const path::Track& track) noexcept;
+  World(Plant& plant, const road::Track& track) noexcept;
 
   /// A new run: the car at arc length s, `offset` to the left of the line [m], heading along it, rolling at
   /// `speed` [m/s].
@@ -35,14 +35,14 @@ class World {
   void put(const model::Pose& pose) noexcept;
 
   /// A copy of a world goes on with copies of its plant and its track, which must outlive it.
-  void stand_on(Plant& plant, const path::Track& track) noexcept;
+  void stand_on(Plant& plant, const road::Track& track) noexcept;
 
   /// One physics step of the plant with the command that acts.
   void advance(const model::Command& command) noexcept;
 
   [[nodiscard]] const WorldState& state() const noexcept { return judge_.state(); }
   [[nodiscard]] const Plant& plant() const noexcept { return *plant_; }
-  [[nodiscard]] const path::Track& track() const noexcept { return judge_.track(); }
+  [[nodiscard]] const road::Track& track() const noexcept { return judge_.track(); }
   /// Since reset() [s].
   [[nodiscard]] double time() const noexcept {
     return begin_ + static_cast<double>(step_count_) * plant_->step_length();
@@ -64,7 +64,7 @@ class World {
 /// after, `count` in all, around the lap when the track is closed, fewer at the end of an open one. Where a
 /// road crosses itself, which the original has nowhere, they are those of the passage along the car. Returns
 /// how many. count is clamped to [0, kMaxWaypoints]. O(points), no allocation.
-int select_waypoints(const path::Track& track, const model::Pose& pose, int count,
+int select_waypoints(const road::Track& track, const model::Pose& pose, int count,
                      model::Measurement& measurement) noexcept;
 
 }  // namespace chicane::sim

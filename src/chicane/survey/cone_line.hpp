@@ -6,7 +6,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/base/vec2.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 
 namespace chicane::survey {
 
@@ -24,7 +24,7 @@ struct ConeGap {
 };
 
 struct ConeRoad {
-  std::vector<path::TrackPoint> points = {};  ///< evenly spaced, in the direction that has `left` on its left
+  std::vector<road::TrackPoint> points = {};  ///< evenly spaced, in the direction that has `left` on its left
   bool is_closed = true;
   std::vector<ConeGap> gaps = {};
   double median_width = 0.0;  ///< [m]

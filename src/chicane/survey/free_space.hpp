@@ -9,7 +9,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/base/vec2.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 
 namespace chicane::survey {
 
@@ -37,7 +37,7 @@ struct LoopOptions {
 
 /// A loop round the largest obstacle of free space, counter-clockwise.
 struct FreeLoop {
-  std::vector<path::TrackPoint> points = {};  ///< in W, evenly spaced
+  std::vector<road::TrackPoint> points = {};  ///< in W, evenly spaced
   double median_width = 0.0;                  ///< [m]
   int spots = 0;                              ///< that were taken for noise
 };

@@ -261,7 +261,7 @@ Result<double> bound_of(const Settings& settings, const std::atomic<bool>& stop)
   if (!request) return fail(request.error());
   const Result<scenario::Scenario> scenario = protocol::compose(*request);
   if (!scenario) return fail(scenario.error());
-  const Result<path::Track> track = run::make_track(*scenario);
+  const Result<road::Track> track = run::make_track(*scenario);
   if (!track) return fail(track.error());
   lap_time::PlantLimitOptions options;
   options.wants_witness = false;

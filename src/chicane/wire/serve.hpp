@@ -16,11 +16,11 @@
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/net/server.hpp"
-#include "chicane/path/track.hpp"
 #include "chicane/protocol/foxglove_codec.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/road/racing_road.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/run/external_drive.hpp"
 #include "chicane/run/setting.hpp"
 #include "chicane/scenario/scenario.hpp"
@@ -39,7 +39,7 @@ struct ServeOptions {
   scenario::Scenario scenario;   ///< what the controller was made from: needed to change it while it drives
   /// The road that the simulator drives on, where it is known: the car is judged by the positions it sends.
   /// Outlives the endpoint; null: not known, laps are timed all the same.
-  const path::Track* track = nullptr;
+  const road::Track* track = nullptr;
   std::shared_ptr<const road::RacingRoad> lap{};  ///< planned, of a controller that races (run/racing.hpp)
   /// Artificial, between the end of a control step and its answer, as the original controller sleeps. [0, 0.5
   /// s]

@@ -50,7 +50,7 @@ std::string with_stop_plan(const std::string& url) {
   return fmt::format("{}{}{}", url, separator, protocol::kStopPlanItem);
 }
 
-run::AccountTerms terms(const scenario::Scenario& scenario, const path::Track& track) {
+run::AccountTerms terms(const scenario::Scenario& scenario, const road::Track& track) {
   run::AccountTerms terms = run::terms_of(scenario, track.name());
   terms.controller = terms.preset = "external";
   terms.guard.reset();
@@ -62,7 +62,7 @@ run::AccountTerms terms(const scenario::Scenario& scenario, const path::Track& t
 /// The physical side: plant, road and what is measured of them, and the account of the run.
 class Scene {
  public:
-  Scene(const scenario::Scenario& scenario, path::Track track, path::Track waypoints,
+  Scene(const scenario::Scenario& scenario, road::Track track, road::Track waypoints,
         std::unique_ptr<sim::Plant> plant)
       : waypoints_sent_{scenario.waypoints_sent},
         track_{std::move(track)},
@@ -110,8 +110,8 @@ class Scene {
 
  private:
   int waypoints_sent_;
-  path::Track track_;
-  path::Track waypoints_;
+  road::Track track_;
+  road::Track waypoints_;
   std::unique_ptr<sim::Plant> plant_;
   sim::World world_;
   sim::Sensor sensor_;
@@ -367,9 +367,9 @@ class Simulation {
 Result<SimulateReport> simulate(const SimulateOptions& options, const scenario::Scenario& scenario,
                                 const SimulateHooks& hooks, const std::atomic<bool>& stop) {
   if (auto url = net::parse_url(options.url); !url) return fail(url.error());
-  Result<path::Track> track = run::make_track(scenario);
+  Result<road::Track> track = run::make_track(scenario);
   if (!track) return fail(track.error());
-  Result<path::Track> waypoints = run::make_waypoints(*track, scenario.vehicle.scale);
+  Result<road::Track> waypoints = run::make_waypoints(*track, scenario.vehicle.scale);
   if (!waypoints) return fail(waypoints.error());
   Result<std::unique_ptr<sim::Plant>> plant = run::make_plant(scenario);
   if (!plant) return fail(plant.error());

@@ -2,10 +2,10 @@
 // A simulated car and a road that the library does not know, driven by one of its controllers, recorded, and
 // replayed by this program.
 #include <chicane/base/math.hpp>
-#include <chicane/path/track.hpp>
 #include <chicane/protocol/library.hpp>
 #include <chicane/recording/recorder.hpp>
 #include <chicane/recording/replay.hpp>
+#include <chicane/road/track.hpp>
 #include <chicane/run/closed_loop.hpp>
 #include <chicane/sim/plant.hpp>
 #include <cstdio>
@@ -49,13 +49,13 @@ class Cart final : public sim::Plant {
 };
 
 /// A circle of 80 m, 5 m to each side.
-Result<path::Track> make_ring(const scenario::Scenario&) {
-  std::vector<path::TrackPoint> points;
+Result<road::Track> make_ring(const scenario::Scenario&) {
+  std::vector<road::TrackPoint> points;
   for (int i = 0; i < 50; ++i) {
     const double angle = i * 2.0 * 3.14159265358979 / 50;
     points.push_back({Vec2(80.0 * chicane::cos(angle), 80.0 * chicane::sin(angle)), 5.0, 5.0});
   }
-  return path::Track::create("ring", points, true);
+  return road::Track::create("ring", points, true);
 }
 
 int say(const Error& error) {

@@ -67,7 +67,7 @@ class UdacityLimit final : public WithModel<UdacityModel> {
     z[kSteer] = (model_.car.front_axle + model_.car.rear_axle) * curvature;
     z[kPedal] = a + model_.car.linear_drag * v;
   }
-  [[nodiscard]] path::RacingLinePoint point(const double* z) const override {
+  [[nodiscard]] road::RacingLinePoint point(const double* z) const override {
     const auto m = model_.motion(z[kVx], z[kVy], z[kYawRate], z[kSteer], z[kPedal]);
     return {.offset = z[kOffset],
             .heading = z[kHeading],
@@ -178,7 +178,7 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
           share * a / (slope * (i < 2 ? car.stiffness_front : car.stiffness_rear));
     }
   }
-  [[nodiscard]] path::RacingLinePoint point(const double* z) const override {
+  [[nodiscard]] road::RacingLinePoint point(const double* z) const override {
     const auto m = model_.motion(z);
     const sim::DoubleTrackParams& car = model_.car;
     return {.offset = z[kOffset],

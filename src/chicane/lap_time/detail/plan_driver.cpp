@@ -62,7 +62,7 @@ sim::Sighting sighting_of(const sim::Plant& plant) {
 
 }  // namespace
 
-DrivenLaps drive_plan(const path::Track& track, LimitModel& model, const NodePlan& plan, sim::Plant& plant,
+DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePlan& plan, sim::Plant& plant,
                       const Tuning& tuning, int laps) {
   model.set_road(plan.road);
   const RingFeedback feedback(model, plan.road, plan.z, tuning);
@@ -70,11 +70,11 @@ DrivenLaps drive_plan(const path::Track& track, LimitModel& model, const NodePla
   const auto driven = static_cast<std::size_t>(model.driven());
   const auto input = static_cast<std::size_t>(model.input());
   const PlanTable table(plan, feedback, variables, driven, track.length());
-  const path::Path& line = track.centre();
+  const road::Path& line = track.centre();
 
   const std::size_t first = straightest(plan, variables);
   const double* z0 = plan.z.data() + first * variables;
-  const path::PathPoint foot = line.at(plan.road.s[first]);
+  const road::PathPoint foot = line.at(plan.road.s[first]);
   const Vec2 place =
       foot.position + z0[kOffset] * Vec2{-chicane::sin(foot.heading), chicane::cos(foot.heading)};
   plant.reset({place.x(), place.y(), foot.heading + z0[kHeading]}, z0[kVx]);

@@ -6,7 +6,7 @@
 
 #include "chicane/lap_time/detail/plan_search.hpp"
 #include "chicane/lap_time/detail/ring_feedback.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/sim/plant.hpp"
 
 namespace chicane::lap_time {
@@ -22,7 +22,7 @@ struct DrivenLaps {
 };
 
 /// Drives a plan in the plant with full state and without latency: what the plan asks for, and feedback.
-[[nodiscard]] DrivenLaps drive_plan(const path::Track& track, LimitModel& model, const NodePlan& plan,
+[[nodiscard]] DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePlan& plan,
                                     sim::Plant& plant, const Tuning& tuning, int laps);
 
 }  // namespace chicane::lap_time

@@ -5,7 +5,7 @@
 #include "chicane/lap_time/detail/plant_model.hpp"
 #include "chicane/lap_time/detail/road_nodes.hpp"
 #include "chicane/lap_time/detail/tightest_bend.hpp"
-#include "chicane/path/racing_line.hpp"
+#include "chicane/road/racing_line.hpp"
 
 namespace chicane::lap_time {
 
@@ -30,7 +30,7 @@ class PlanModel {
   virtual void set_reserve(const Reserve& reserve) = 0;
   /// The variables of a car that follows a curve steadily.
   virtual void guess(double speed, double acceleration, double curvature, double* z) const = 0;
-  [[nodiscard]] virtual path::RacingLinePoint point(const double* z) const = 0;
+  [[nodiscard]] virtual road::RacingLinePoint point(const double* z) const = 0;
 };
 
 /// A `Base`, PlanModel or an interface derived from it, whose functions are those of `Model`.

@@ -54,9 +54,9 @@ double lap_time_of(const RoadNodes& road, const std::vector<double>& z, int vari
   return sum;
 }
 
-path::RacingLine line_of(const path::Track& track, std::string_view car, const PlanModel& model,
+road::RacingLine line_of(const road::Track& track, std::string_view car, const PlanModel& model,
                          const NodePlan& plan, double margin) {
-  path::RacingLine line;
+  road::RacingLine line;
   line.car = car;
   line.track = track.name();
   line.length = track.length();
@@ -70,7 +70,7 @@ path::RacingLine line_of(const path::Track& track, std::string_view car, const P
   };
   double time = 0.0;
   for (std::size_t k = 0; k <= n; ++k) {
-    path::RacingLinePoint p = model.point(plan.z.data() + k % n * variables);
+    road::RacingLinePoint p = model.point(plan.z.data() + k % n * variables);
     p.s = k < n ? plan.road.s[k] : line.length;
     p.time = time;
     line.points.push_back(p);

@@ -9,8 +9,8 @@
 #include "chicane/base/result.hpp"
 #include "chicane/lap_time/detail/plan_model.hpp"
 #include "chicane/lap_time/plan_progress.hpp"
-#include "chicane/path/racing_line.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/racing_line.hpp"
+#include "chicane/road/track.hpp"
 
 namespace chicane::lap_time {
 
@@ -26,7 +26,7 @@ struct NodePlan {
 [[nodiscard]] double lap_time_of(const RoadNodes& road, const std::vector<double>& z, int variables);
 
 /// A plan of `car` as a line, which keeps `margin` [m] to edge and kerb.
-[[nodiscard]] path::RacingLine line_of(const path::Track& track, std::string_view car, const PlanModel& model,
+[[nodiscard]] road::RacingLine line_of(const road::Track& track, std::string_view car, const PlanModel& model,
                                        const NodePlan& plan, double margin);
 
 /// The fastest laps of one model on one road: from a first guess on coarse nodes to fine ones; then others
@@ -41,7 +41,7 @@ class PlanSearch {
     std::function<bool(int iteration, double lap_time)> go_on{};
     std::function<void(const PlanProgress&)> on_progress{};  ///< after each iteration; may be empty
   };
-  PlanSearch(const path::Track& track, PlanModel& model, const Options& options)
+  PlanSearch(const road::Track& track, PlanModel& model, const Options& options)
       : track_{track}, model_{model}, options_{options} {}
 
   /// The best so far where the budget ends the search. kNotFound when there is none: no optimum from any
@@ -63,7 +63,7 @@ class PlanSearch {
   [[nodiscard]] bool solve(NodePlan& plan, double barrier, int most_iterations, double tolerance);
   [[nodiscard]] bool goes_on(double lap_time, std::size_t nodes);
 
-  const path::Track& track_;
+  const road::Track& track_;
   PlanModel& model_;
   Options options_;
   int iterations_ = 0;

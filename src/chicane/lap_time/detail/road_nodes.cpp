@@ -43,8 +43,8 @@ std::vector<double> guess_speeds(const std::vector<double>& curvature, const std
   return v;
 }
 
-RoadNodes lay_nodes(const path::Track& track, const GuessCar& car, double time_step) {
-  const path::Path& line = track.centre();
+RoadNodes lay_nodes(const road::Track& track, const GuessCar& car, double time_step) {
+  const road::Path& line = track.centre();
   const double length = track.length();
   const auto samples = static_cast<std::size_t>(std::max(16.0, std::ceil(length / kSample)));
   const double sample = length / static_cast<double>(samples);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "chicane/lap_time/detail/plant_model.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 
 namespace chicane::lap_time {
 
@@ -22,6 +22,6 @@ struct GuessCar {
                                                const std::vector<double>& step, const GuessCar& car);
 
 /// Nodes about `time_step` [s] apart at the speed of the guess, from s = 0 on; at least `least` [m].
-[[nodiscard]] RoadNodes lay_nodes(const path::Track& track, const GuessCar& car, double time_step);
+[[nodiscard]] RoadNodes lay_nodes(const road::Track& track, const GuessCar& car, double time_step);
 
 }  // namespace chicane::lap_time

@@ -109,9 +109,9 @@ double CarSize::most_curvature() const noexcept {
   return rear / std::sqrt(1.0 + rear_axle * rear_axle * rear * rear);
 }
 
-Result<void> fits_road(const path::Track& track, const CarSize& car) { return fits_road(track, car, Fit{}); }
+Result<void> fits_road(const road::Track& track, const CarSize& car) { return fits_road(track, car, Fit{}); }
 
-Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& fit) {
+Result<void> fits_road(const road::Track& track, const CarSize& car, const Fit& fit) {
   const GuessCar pace{.grip = 2.0,
                       .drive = 2.0,
                       .brake = 2.0,

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "chicane/base/result.hpp"
-#include "chicane/path/track.hpp"
+#include "chicane/road/track.hpp"
 
 namespace chicane::lap_time {
 
@@ -22,7 +22,7 @@ struct CarSize {
 /// Whether the car can get round at walking pace: wide enough everywhere, and a line within the edges that
 /// its full lock can follow (docs/limit.md, section 4). kInvalidArgument with the place, and the radius there
 /// and of the full lock.
-[[nodiscard]] Result<void> fits_road(const path::Track& track, const CarSize& car);
+[[nodiscard]] Result<void> fits_road(const road::Track& track, const CarSize& car);
 
 /// How tight is too tight.
 struct Fit {
@@ -32,6 +32,6 @@ struct Fit {
   double scale = 1.0;                                       ///< of the lengths in messages
   std::function<bool()> go_on{};  ///< asked before each iteration; false: no answer, as if it fitted
 };
-[[nodiscard]] Result<void> fits_road(const path::Track& track, const CarSize& car, const Fit& fit);
+[[nodiscard]] Result<void> fits_road(const road::Track& track, const CarSize& car, const Fit& fit);
 
 }  // namespace chicane::lap_time

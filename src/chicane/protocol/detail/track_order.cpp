@@ -14,7 +14,7 @@ constexpr double kClosingCopy = 1e-3;  // a last point this near to the first re
 constexpr double kLoopGap = 1.5;       // a loop's last gap is at most this times the longest other one
 
 /// Twice the area that the points go round to the left [m²].
-double turned_area(const std::vector<path::TrackPoint>& points) {
+double turned_area(const std::vector<road::TrackPoint>& points) {
   double area = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec2 a = points[i].position - points[0].position;
@@ -51,7 +51,7 @@ TrackFile empty_track(const std::string& file, const TrackReadOptions& options) 
 }
 
 void settle_ends(TrackFile& content, std::optional<bool> closed, double near) {
-  std::vector<path::TrackPoint>& points = content.points;
+  std::vector<road::TrackPoint>& points = content.points;
   double longest = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i)
     longest = std::max(longest, (points[i].position - points[i - 1].position).norm());
@@ -73,15 +73,15 @@ void settle_ends(TrackFile& content, std::optional<bool> closed, double near) {
 }
 
 void reverse(TrackFile& content) {
-  std::vector<path::TrackPoint>& points = content.points;
+  std::vector<road::TrackPoint>& points = content.points;
   if (points.size() < 2) return;
-  path::TrackOptions& options = content.options;
+  road::TrackOptions& options = content.options;
   const double length = length_of(content);
   // A loop keeps its first point.
   const auto first = content.is_closed ? 1 : 0;
   std::reverse(points.begin() + first, points.end());
   if (content.lines.size() == points.size()) std::reverse(content.lines.begin() + first, content.lines.end());
-  for (path::TrackPoint& point : points) std::swap(point.left, point.right);
+  for (road::TrackPoint& point : points) std::swap(point.left, point.right);
   if (content.is_closed) {
     options.start_s = options.start_s != 0.0 ? length - options.start_s : 0.0;
   } else {
@@ -94,7 +94,7 @@ void reverse(TrackFile& content) {
 }
 
 void begin_near(TrackFile& content, const Vec2& place) {
-  std::vector<path::TrackPoint>& points = content.points;
+  std::vector<road::TrackPoint>& points = content.points;
   if (points.empty()) return;
   const auto nearest = std::min_element(points.begin(), points.end(), [&](const auto& a, const auto& b) {
     return (a.position - place).squared_norm() < (b.position - place).squared_norm();
@@ -124,7 +124,7 @@ void arrange(TrackFile& content, const TrackReadOptions& options) {
 
 void assume_width(TrackFile& content, const TrackReadOptions& options) {
   const double left = options.scale * options.default_left, right = options.scale * options.default_right;
-  for (path::TrackPoint& point : content.points) {
+  for (road::TrackPoint& point : content.points) {
     point.left = left;
     point.right = right;
   }

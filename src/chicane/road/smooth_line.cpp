@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/road/smooth_line.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "chicane/base/math.hpp"
+#include "chicane/road/detail/point_text.hpp"
+
+namespace chicane::road {
+namespace {
+
+constexpr double kCurvatureNoise = 0.003;  // accepted standard deviation of curvature [1/m]
+constexpr double kMinSmoothingLength =
+    0.05;                            // keeps the system regular where there are more knots than points [m]
+constexpr int kParameterPasses = 3;  // chord length, then twice the arc length of the line found
+constexpr int kOverlapPoints = 16;  // a closed line is unrolled by at least this many points at both ends ...
+constexpr double kOverlapLengths =
+    30.0;  // ... and this many smoothing lengths: what is beyond has no influence
+constexpr std::size_t kMaxKnots = 200'000;
+constexpr double kMinLength = 1.0;    // of a line [m]
+constexpr double kLeastShare = 0.01;  // of the length of the chords, in that of the line
+constexpr double kMostShare = 2.0;
+constexpr double kMostUnrolled = 4e6;       // points
+constexpr double kMaxShareOfLength = 0.02;  // of ℓ in the length of a short line
+
+/// Uniform cubic B-spline with values and derivatives, unit knot distance: coefficient i has its peak at i
+/// − 1.
+struct Basis {
+  std::size_t first = 0;
+  double t = 0.0;
+  explicit Basis(double u) noexcept {
+    const double whole = std::max(std::floor(u), 0.0);
+    first = static_cast<std::size_t>(whole);
+    t = u - whole;
+  }
+  [[nodiscard]] std::array<double, 4> value() const noexcept {
+    const double r = 1.0 - t;
+    return {r * r * r / 6.0, (t * t * (3.0 * t - 6.0) + 4.0) / 6.0,
+            (t * (t * (-3.0 * t + 3.0) + 3.0) + 1.0) / 6.0, t * t * t / 6.0};
+  }
+  [[nodiscard]] std::array<double, 4> slope() const noexcept {
+    const double r = 1.0 - t;
+    return {-0.5 * r * r, t * (1.5 * t - 2.0), t * (1.0 - 1.5 * t) + 0.5, 0.5 * t * t};
+  }
+};
+
+Vec2 combine(const std::array<double, 4>& weights, const Vec2* coefficients) noexcept {
+  return weights[0] * coefficients[0] + weights[1] * coefficients[1] + weights[2] * coefficients[2] +
+         weights[3] * coefficients[3];
+}
+
+/// Symmetric positive definite band matrix: row i holds entries (i, i … i + 3).
+using Band = std::vector<std::array<double, 4>>;
+
+/// Solves A x = b in place by L D Lᵀ.
+void solve_band(Band& a, std::vector<Vec2>& x) noexcept {
+  const std::size_t n = a.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::array<double, 4> row = a[i];
+    for (std::size_t k = 1; k < 4 && i + k < n; ++k) {
+      const double factor = row[k] / row[0];
+      for (std::size_t m = k; m < 4; ++m) a[i + k][m - k] -= factor * row[m];
+      x[i + k] -= factor * x[i];
+    }
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    for (std::size_t k = 1; k < 4 && i + k < n; ++k) x[i] -= a[i][k] * x[i + k];
+    x[i] /= a[i][0];
+  }
+}
+
+/// The points with the overlap of a closed line unrolled, and the grid of knots they lie on.
+struct Unrolled {
+  std::vector<double> s;
+  std::vector<std::size_t> point;
+  std::size_t lead = 0;   // knots before s = 0
+  std::size_t count = 0;  // coefficients
+};
+
+Unrolled unroll(const std::vector<double>& parameter, double length, bool closed, double spacing,
+                double smoothing) {
+  // Point k of all laps, also before the first: index k modulo n, lap k / n rounded down.
+  const auto n = static_cast<std::ptrdiff_t>(parameter.size());
+  const auto lap_of = [n](std::ptrdiff_t k) { return k >= 0 ? k / n : -((n - 1 - k) / n); };
+  const auto index_of = [&](std::ptrdiff_t k) { return static_cast<std::size_t>(k - lap_of(k) * n); };
+  const auto s_of = [&](std::ptrdiff_t k) {
+    const std::ptrdiff_t lap = lap_of(k);
+    return parameter[index_of(k)] + length * static_cast<double>(lap);
+  };
+  std::ptrdiff_t first = 0;
+  std::ptrdiff_t last = n - 1;
+  if (closed) {
+    const double reach = kOverlapLengths * smoothing;
+    while (first > -kOverlapPoints || s_of(first) > -reach) --first;
+    while (last < n - 1 + kOverlapPoints || s_of(last) < length + reach) ++last;
+  }
+  Unrolled rolled;
+  for (std::ptrdiff_t k = first; k <= last; ++k) {
+    rolled.s.push_back(s_of(k));
+    rolled.point.push_back(index_of(k));
+  }
+  rolled.lead =
+      static_cast<std::size_t>(std::ceil(-std::min(rolled.s.front(), 0.0) / spacing)) + (closed ? 1U : 0U);
+  rolled.count = rolled.lead +
+                 static_cast<std::size_t>(std::floor(std::max(rolled.s.back(), length) / spacing + 1e-9)) + 4;
+  return rolled;
+}
+
+struct Fit {
+  std::vector<Vec2> coefficients;
+  std::size_t lead = 0;
+  double spacing = 0.0;
+  double length = 0.0;
+  std::vector<double> parameter;
+
+  [[nodiscard]] Basis basis(double s) const noexcept {
+    return Basis{s / spacing + static_cast<double>(lead)};
+  }
+};
+
+/// Equation (1): B' W B + ℓ⁶/h⁵ D' D, with D the third differences of the coefficients.
+void solve(Fit& fit, std::span<const Vec2> points, bool closed, double smoothing) {
+  const Unrolled rolled = unroll(fit.parameter, fit.length, closed, fit.spacing, smoothing);
+  fit.lead = rolled.lead;
+  fit.coefficients.assign(rolled.count, Vec2{});
+  Band band(rolled.count, {0.0, 0.0, 0.0, 0.0});
+  for (std::size_t i = 0; i < rolled.s.size(); ++i) {
+    const double before = i > 0 ? rolled.s[i] - rolled.s[i - 1] : 0.0;
+    const double after = i + 1 < rolled.s.size() ? rolled.s[i + 1] - rolled.s[i] : 0.0;
+    const double weight = 0.5 * (before + after);
+    const Basis basis = fit.basis(rolled.s[i]);
+    const std::array<double, 4> value = basis.value();
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t m = k; m < 4; ++m) band[basis.first + k][m - k] += weight * value[k] * value[m];
+      fit.coefficients[basis.first + k] += weight * value[k] * points[rolled.point[i]];
+    }
+  }
+  const double ratio = smoothing / fit.spacing;
+  const double penalty = ratio * ratio * ratio * ratio * ratio * smoothing;
+  constexpr std::array<double, 4> kThird{-1.0, 3.0, -3.0, 1.0};
+  for (std::size_t i = 0; i + 3 < rolled.count; ++i) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t m = k; m < 4; ++m) band[i + k][m - k] += penalty * kThird[k] * kThird[m];
+    }
+  }
+  solve_band(band, fit.coefficients);
+}
+
+/// Replaces the parameter of the points by their arc length along the fitted line.
+void measure(Fit& fit) {
+  const std::size_t intervals = fit.coefficients.size() - 3;
+  std::vector<double> arc(intervals + 1, 0.0);
+  const auto speed = [&](std::size_t i, double t) {
+    return combine(Basis{t}.slope(), &fit.coefficients[i]).norm();
+  };
+  for (std::size_t i = 0; i < intervals;
+       ++i) {  // Simpson's rule; t = 1 lies in the next interval of the same spline
+    const double end = (0.5 * (fit.coefficients[i + 3] - fit.coefficients[i + 1])).norm();
+    arc[i + 1] = arc[i] + (speed(i, 0.0) + 4.0 * speed(i, 0.5) + end) / 6.0;
+  }
+  const auto arc_at = [&](double s) {
+    const Basis basis = fit.basis(s);
+    const std::size_t i = std::min(basis.first, intervals - 1);
+    const double t = basis.t + static_cast<double>(basis.first - i);
+    return arc[i] + t * (arc[i + 1] - arc[i]);
+  };
+  const double origin = arc_at(0.0);
+  const double length = arc_at(fit.length) - origin;
+  for (double& s : fit.parameter) s = arc_at(s) - origin;
+  fit.length = length;
+}
+
+Fit initial_fit(std::span<const Vec2> points, bool closed) {
+  Fit fit;
+  fit.parameter.resize(points.size());
+  for (std::size_t i = 1; i < points.size(); ++i)
+    fit.parameter[i] = fit.parameter[i - 1] + (points[i] - points[i - 1]).norm();
+  fit.length = fit.parameter.back() + (closed ? (points.front() - points.back()).norm() : 0.0);
+  return fit;
+}
+
+std::size_t interval_count(double length, double spacing) noexcept {
+  return static_cast<std::size_t>(std::clamp(std::round(length / spacing), 8.0, 1e9));
+}
+
+double median_of_gaps(std::span<const Vec2> points) {
+  std::vector<double> gaps;
+  gaps.reserve(points.size());
+  for (std::size_t i = 1; i < points.size(); ++i) gaps.push_back((points[i] - points[i - 1]).norm());
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  return *middle;
+}
+
+SmoothLine finish(Fit&& fit, std::span<const Vec2> points, bool closed) {
+  SmoothLine line;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Basis basis = fit.basis(fit.parameter[i]);
+    const std::size_t first = std::min(basis.first, fit.coefficients.size() - 4);
+    const Vec2 gap = points[i] - combine(basis.value(), &fit.coefficients[first]);
+    const Vec2 tangent = combine(basis.slope(), &fit.coefficients[first]);
+    const double across =
+        std::fabs(tangent.x() * gap.y() - tangent.y() * gap.x()) / std::max(tangent.norm(), 1e-12);
+    sum += across * across;
+    line.max_deviation = std::max(line.max_deviation, across);
+  }
+  line.rms_deviation = std::sqrt(sum / static_cast<double>(points.size()));
+  const std::size_t count = interval_count(fit.length, fit.spacing) + (closed ? 0U : 1U);
+  line.knots.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec2* c = &fit.coefficients[fit.lead + i];
+    line.knots.emplace_back((c[0] + 4.0 * c[1] + c[2]) / 6.0);
+  }
+  line.length = fit.length;
+  line.spacing = fit.spacing;
+  line.parameter = std::move(fit.parameter);
+  return line;
+}
+
+/// Where knots are many to each point rounding can win: the line then has any length, and memory with it.
+bool is_solvable(const Fit& fit, const Fit& raw, std::size_t points, double smoothing) noexcept {
+  const bool has_a_length = fit.length >= kLeastShare * raw.length && fit.length <= kMostShare * raw.length;
+  return has_a_length &&
+         kOverlapLengths * smoothing / fit.length * static_cast<double>(points) <= kMostUnrolled;
+}
+
+}  // namespace
+
+Result<SmoothLine> smooth_line(std::span<const Vec2> points, bool closed, double spacing, double sigma) {
+  const Fit raw = initial_fit(points, closed);
+  const double mean_gap = raw.length / static_cast<double>(points.size());
+  const double median_gap = median_of_gaps(points);
+  // Equation (2): white noise σ every Δ metres leaves a curvature noise of sqrt(0.0556 σ² Δ / ℓ⁵).
+  const double demanded =
+      sigma > 0.0 ? exp(0.2 * log(0.0556 * sigma * sigma * mean_gap / (kCurvatureNoise * kCurvatureNoise)))
+                  : 0.0;
+  double smoothing = std::max(std::min(demanded, kMaxShareOfLength * raw.length), kMinSmoothingLength);
+  while (true) {
+    if (!(raw.length >= kMinLength && raw.length <= spacing * static_cast<double>(kMaxKnots))) {
+      return fail(ErrorCode::kInvalidArgument, "points: got a line of " + number_text(raw.length) +
+                                                   " m, expected " + number_text(kMinLength) + " to " +
+                                                   number_text(spacing * static_cast<double>(kMaxKnots)) +
+                                                   " m");
+    }
+    Fit fit = raw;
+    for (int pass = 0; pass < kParameterPasses; ++pass) {
+      if (pass > 0) measure(fit);
+      if (!is_solvable(fit, raw, points.size(), smoothing)) {
+        return fail(ErrorCode::kInvalidArgument,
+                    "points: got points that no smooth line follows, expected more of them, or a wider "
+                    "spacing than " +
+                        number_text(spacing) + " m");
+      }
+      fit.spacing = fit.length / static_cast<double>(interval_count(fit.length, spacing));
+      solve(fit, points, closed, smoothing);
+    }
+    SmoothLine line = finish(std::move(fit), points, closed);
+    line.smoothing_length = smoothing;
+    const bool is_close = line.rms_deviation <= sigma + 0.002 && line.max_deviation <= 4.0 * sigma + 0.01;
+    if (is_close || smoothing <= kMinSmoothingLength) return line;
+    smoothing = std::max(0.5 * smoothing, kMinSmoothingLength);
+    spacing = std::min(spacing, std::max(2.0 * smoothing, 0.25 * median_gap));
+  }
+}
+
+}  // namespace chicane::road

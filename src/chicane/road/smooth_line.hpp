@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/base/vec2.hpp"
+
+namespace chicane::road {
+
+/// Noisy, unevenly spaced points as evenly spaced points of a smooth line.
+struct SmoothLine {
+  std::vector<Vec2> knots;        ///< spaced by `spacing` [m]; a closed line's last knot precedes its first
+  std::vector<double> parameter;  ///< of each given point: arc length along the smooth line [m]
+  double length = 0.0;            ///< [m]
+  double spacing = 0.0;           ///< of the knots [m]
+  double smoothing_length = 0.0;  ///< ℓ, equation (1) of docs/tracks.md [m]
+  double rms_deviation = 0.0;     ///< of the points from the line, across it [m]
+  double max_deviation = 0.0;     ///< [m]
+};
+
+/// Penalised cubic B-spline r(s) that minimises Σ Δsᵢ |r(sᵢ) − pᵢ|² + ℓ⁶ ∫ |r'''|² ds (docs/tracks.md, eq. 1;
+/// Eilers and Marx 1996). Wavelengths below about 2π ℓ are damped; straight lines and parabolas are kept
+/// exactly. ℓ is what `sigma` demands: noise of that size leaves 0.003 1/m of curvature noise (eq. 2). It
+/// shrinks (and the spacing with it) where the line would leave the points by more than their noise explains:
+/// rms > σ or any > 4 σ (plus millimetres, for σ = 0).
+///
+/// Pre: finite points, at least two different. Fails with kInvalidArgument when the line needs more than
+/// 200,000 knots, and where there are so many to each point that rounding wins. Memory: 400,000 knots.
+[[nodiscard]] Result<SmoothLine> smooth_line(std::span<const Vec2> points, bool closed, double spacing,
+                                             double sigma);
+
+}  // namespace chicane::road

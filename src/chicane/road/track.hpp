@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/road/path.hpp"
+
+namespace chicane::road {
+
+/// One cross-section of a road as files give it.
+struct TrackPoint {
+  Vec2 position{};     ///< point of the reference line in W [m]
+  double left = 0.0;   ///< distance to the left edge of the drivable surface [m], > 0
+  double right = 0.0;  ///< distance to the right edge [m], > 0
+};
+
+/// How raw points become a road.
+struct TrackOptions {
+  double spacing = 2.0;  ///< of the resampled knots [m]; [0.05, 10]; made smaller where the points demand it
+  double smoothing_sigma =
+      0.1;  ///< expected noise of the points [m]; the smoothed line stays within about this; [0, 1]
+  double kerb_width = 0.0;  ///< drivable kerb outside each edge [m]; touching it is not off-track; [0, 3]
+  double start_s = 0.0;     ///< where a car waits for the start, along the line [m]; wrapped when closed
+  double start_d = 0.0;     ///< and beside it, left positive [m]; within the road
+  double finish_s = 0.0;    ///< where an open road is timed to, along the line [m]; 0: to its end
+};
+
+/// A road: a reference line with the distances to its edges, open or closed. Immutable after create(), so
+/// that many threads may use it at once; references it returns are valid as long as it lives.
+///
+/// The line is resampled and smoothed without shifting the road (docs/tracks.md): where it leaves a raw point
+/// by d, the widths take d up, so the edges stay where the points put them. s = 0 is at the first raw point.
+class Track {
+ public:
+  /// Fails with kInvalidArgument and the index of the point, counted from 0, for: fewer than 4 different
+  /// points, non-finite numbers, widths <= 0 or > 1 km, gaps > 10 km, a line that crosses itself at less than
+  /// 30 degrees or again within four widths of the road; also for options out of range. 100,000 points take
+  /// less than a second.
+  [[nodiscard]] static Result<Track> create(std::string name, const std::vector<TrackPoint>& points,
+                                            bool closed, const TrackOptions& options = {});
+
+  /// The same road, `factor` > 0 times as large, for cars of that scale.
+  [[nodiscard]] Track scaled(double factor) const;
+
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  [[nodiscard]] const Path& centre() const noexcept { return centre_; }
+  [[nodiscard]] double length() const noexcept { return centre_.length(); }
+  /// Distance from the line to the edge at arc length s [m] (any s; wrapped when closed, clamped when open).
+  [[nodiscard]] double left_width(double s) const noexcept { return width_at(left_, s); }
+  [[nodiscard]] double right_width(double s) const noexcept { return width_at(right_, s); }
+  [[nodiscard]] double kerb_width() const noexcept { return kerb_width_; }
+  /// How often the road crosses itself, at grade: a figure of eight does once.
+  [[nodiscard]] int crossings() const noexcept { return crossings_; }
+  /// Distance to the nearer edge of the road at the projection's s [m]: positive on the road, negative beyond
+  /// the edge.
+  [[nodiscard]] double edge_distance(const Projection& foot) const noexcept;
+  /// The waypoints as given (before smoothing), which telemetry sends six of.
+  [[nodiscard]] const std::vector<TrackPoint>& raw_points() const noexcept { return raw_points_; }
+  /// And where along the line each of them lies [m].
+  [[nodiscard]] const std::vector<double>& raw_places() const noexcept { return raw_places_; }
+  /// Where a car waits for the start, heading along the line.
+  [[nodiscard]] double start_s() const noexcept { return start_s_; }
+  [[nodiscard]] double start_d() const noexcept { return start_d_; }
+  /// Where a lap ends: at the start line again, or at the finish of an open road, behind which it may go on.
+  [[nodiscard]] double lap_length() const noexcept { return lap_length_; }
+
+ private:
+  Track(std::string name, Path centre) : name_{std::move(name)}, centre_{std::move(centre)} {}
+  void set_widths(const std::vector<TrackPoint>& points, const std::vector<double>& guesses);
+  [[nodiscard]] double width_at(const std::vector<double>& table, double s) const noexcept;
+
+  std::string name_;
+  Path centre_;
+  int crossings_ = 0;
+  double kerb_width_ = 0.0;
+  double start_s_ = 0.0;
+  double start_d_ = 0.0;
+  double lap_length_ = 0.0;
+  double width_spacing_ = 1.0;
+  std::vector<double> left_;  // at s = k · width_spacing_, k = 0 … the last at s = length
+  std::vector<double> right_;
+  std::vector<TrackPoint> raw_points_;
+  std::vector<double> raw_places_;
+};
+
+}  // namespace chicane::road

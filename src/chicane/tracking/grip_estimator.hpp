@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "chicane/model/measurement.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/tracking/command_history.hpp"
+#include "chicane/tracking/state_estimator.hpp"
+
+namespace chicane::tracking {
+
+/// How much grip the tyres have, over what is believed, by which grip predicts the next measurement better
+/// (docs/racing_unknown.md, eq. 1 to 4). Two estimators see the same measurements and commands, one with the
+/// believed grip, one with a little less. What each did not expect is noise and the wrong grip; the noise is
+/// the same in both, so that their difference says what the grip does alone, and least squares over the last
+/// kMemory of cornering finds the share, without the bias of noise, and how sure it is.
+///
+/// Another mass, a side wind or steering that answers otherwise pass for grip. One thread; allocates nothing.
+class GripEstimator {
+ public:
+  static constexpr double kLeast = 3.0;  ///< [m/s²] of lateral acceleration by tyres: less tells too little
+  static constexpr double kMemory = 10.0;  ///< time constant of forgetting, of cornering [s]
+  static constexpr double kEnough = 1.0;   ///< of cornering [s] until something is known
+  static constexpr double kSure = 0.1;     ///< standard deviation of share() from which on it is known
+  static constexpr double kLow = 0.3, kHigh = 1.6;  ///< range of share()
+
+  explicit GripEstimator(const model::PredictionModel& model) noexcept : believed_{model}, less_{model} {}
+
+  /// Begins anew where `from` is, with the car as it is believed to be.
+  void begin(const StateEstimator& from, const model::PredictionModel& believed) noexcept;
+  void see(const model::Measurement& now, const CommandHistory& sent) noexcept;
+
+  [[nodiscard]] bool is_known() const noexcept { return time_ >= kEnough && deviation() <= kSure; }
+  /// Grip over the one that is believed; 1 until it is known.
+  [[nodiscard]] double share() const noexcept;
+  /// share() less two standard deviations: what may be relied on.
+  [[nodiscard]] double lower() const noexcept { return is_known() ? share() - 2.0 * deviation() : 1.0; }
+  /// Whether share() differs from one by more than `least`, and by more than noise does in one case of 20.
+  [[nodiscard]] bool differs(double least) const noexcept;
+  /// Standard deviation of share() by the noise that is seen; infinite before there is any corner.
+  [[nodiscard]] double deviation() const noexcept;
+
+ private:
+  static constexpr double kStep = 0.1;  ///< share of grip that the other estimator has less
+
+  /// What was not expected of one measured quantity, n, and what the grip does to it, h, times seconds.
+  struct Sums {
+    double hh = 0.0, hn = 0.0, nn = 0.0;
+
+    void add(double h, double n, double left, double elapsed) noexcept;
+    /// Of n about what the best share of h explains, per second.
+    [[nodiscard]] double variance(double time) const noexcept;
+  };
+
+  StateEstimator believed_, less_;
+  double time_ = 0.0;      ///< of cornering, as far as it is remembered [s]
+  double interval_ = 0.0;  ///< between measurements in corners, mean [s]
+  Sums aside_, heading_;
+};
+
+}  // namespace chicane::tracking

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/tracking/state_estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "chicane/base/angle.hpp"
+
+namespace chicane::tracking {
+namespace {
+
+constexpr double kMaxStep = 0.01;      // [s] integration step of the estimator
+constexpr double kLongestGap = 1.0;    // [s] after a longer silence the estimate starts anew
+constexpr double kLostPosition = 3.0;  // [m] a measurement further from the prediction starts anew
+constexpr double kForgetting = 0.1;    // of the means over innovations, in each measurement
+constexpr double kForgettingDisturbed =
+    0.03;  // noise must not pass for a disturbance, also where a few innovations agree by chance
+constexpr double kLeastVariance = 1e-12;
+constexpr double kAtRest = 0.3;         // [m/s] slower than that there is no direction
+constexpr double kMostlyAlong = 0.5;    // of the way, along the heading or against it
+constexpr double kMostDisplaced = 1.5;  // times the way that the speed says
+constexpr double kUncertain = 1.0;      // [m] more for a noisy sensor
+constexpr double kRestingSpeed = 2.0;   // [m/s] below which the drive that stops a car fades
+
+bool is_finite(const model::Measurement& m) {
+  return std::isfinite(m.x) && std::isfinite(m.y) && std::isfinite(m.psi) && std::isfinite(m.speed);
+}
+
+}  // namespace
+
+void InnovationGains::note(double x, double y, double elapsed) noexcept {
+  if (time_ > 0.0) {
+    const double root = exp(-elapsed / time_);
+    position_ = 1.0 - root * root;
+    velocity_ = 2.0 * (1.0 - root) * (1.0 - root);
+    return;
+  }
+  const double forgetting = is_disturbed_ ? kForgettingDisturbed : kForgetting;
+  square_ += forgetting * (x * x + y * y - square_);
+  product_ += forgetting * (x * last_x_ + y * last_y_ - product_);
+  last_x_ = x;
+  last_y_ = y;
+  const double noise = std::sqrt(std::max((1.0 - position_) * square_ - product_, kLeastVariance));
+  const double index = acceleration_ * elapsed * elapsed / noise;
+  const double root = 0.25 * (4.0 + index - std::sqrt(index * (8.0 + index)));
+  position_ = std::min(1.0 - root * root, kMostPosition);
+  velocity_ = std::min(2.0 * (1.0 - root) * (1.0 - root), most_velocity());
+}
+
+void InnovationGains::note_after_gap(double x, double y) noexcept {
+  last_x_ = x;
+  last_y_ = y;
+  position_ = kMostPosition;
+  velocity_ = most_velocity();
+}
+
+void StateEstimator::advance(Prediction& at, double from, double to,
+                             const CommandHistory& sent) const noexcept {
+  const model::VehicleParams& p = model_.vehicle();
+  model::State& state = at.state;
+  double now = from;
+  double lags_for = 0.0;  // [s]
+  model::PredictionModel::Lags lags;
+  while (now < to - 1e-9) {
+    const double dt = std::min(sent.next_change(now + 1e-9, to) - now, kMaxStep);
+    const model::Command command = sent.at(now + 1e-9);
+    if (dt != lags_for) {
+      lags = model_.lags(dt);
+      lags_for = dt;
+    }
+    const double reach = p.steer_rate_limit * dt / (1.0 - lags.steer.end);  // the wheel's, behind its lag
+    const double steer = std::clamp(command.steer, state.steer - reach, state.steer + reach);
+    const double asked = longitudinal_acceleration(p, command.throttle, state.vx);
+    model::BodyMotion<double> body =
+        model_.advance({state.vx, state.vy, state.r, state.steer, at.acceleration}, steer, asked, dt, lags);
+    body.vy += dt * at.disturbance.lateral;
+    body.r += dt * at.disturbance.yaw;
+    at.disturbance.fade(dt);
+    const double psi = state.psi + 0.5 * dt * (state.r + body.r);
+    const double mean_psi = 0.5 * (state.psi + psi);
+    const double vx = 0.5 * (state.vx + body.vx);
+    const double vy = 0.5 * (state.vy + body.vy);
+    state.x += dt * (vx * cos(mean_psi) - vy * sin(mean_psi));
+    state.y += dt * (vx * sin(mean_psi) + vy * cos(mean_psi));
+    state.psi = psi;
+    state.vx = std::max(body.vx, 0.0);
+    state.vy = body.vy;
+    state.r = body.r;
+    state.steer = body.steer;
+    at.acceleration = body.acceleration;
+    now += dt;
+  }
+}
+
+void DirectionWatch::see(const model::Measurement& now) noexcept {
+  const double elapsed = now.time - time_;
+  if (has_last_ && elapsed <= 0.0) return;  // an old or repeated measurement
+  if (!is_finite(now) || now.speed < kAtRest) return reset();
+  const double dx = now.x - x_;
+  const double dy = now.y - y_;
+  const double way = now.speed * elapsed;
+  if (!has_last_ || elapsed > kLongestGap || hypot(dx, dy) > kMostDisplaced * way + kUncertain) {
+    path_ = along_ = 0.0;  // it begins, or was put elsewhere
+  } else {
+    path_ += way;
+    along_ += dx * cos(now.psi) + dy * sin(now.psi);
+  }
+  if (path_ >= kPath) {
+    if (std::fabs(along_) > kMostlyAlong * path_) rolls_back_ = along_ < 0.0;
+    path_ = along_ = 0.0;
+  }
+  has_last_ = true;
+  time_ = now.time;
+  x_ = now.x;
+  y_ = now.y;
+}
+
+double throttle_against_rolling_back(const model::VehicleParams& vehicle, double speed) noexcept {
+  if (vehicle.reverse_speed > 0.0) return std::clamp(speed / kRestingSpeed, 0.0, 1.0);
+  const double braking = longitudinal_acceleration(vehicle, -vehicle.brake_throttle_limit, speed);
+  return throttle_to_rest(vehicle, braking, speed);
+}
+
+void StateEstimator::correct(const model::Measurement& now, const CommandHistory& sent) noexcept {
+  const double elapsed = now.time - time_;
+  direction_.see(now);
+  surprise_ = {};
+  const bool goes_on = is_started_ && elapsed > 0.0 && elapsed < kLongestGap;
+  if (!is_finite(now) && !goes_on) return;
+  if (goes_on) {
+    advance(now_, time_, now.time, sent);
+    const double dx = now.x - now_.state.x;
+    const double dy = now.y - now_.state.y;
+    const double dpsi = angle_difference(now.psi, now_.state.psi);
+    const bool is_near = dx * dx + dy * dy < kLostPosition * kLostPosition && std::fabs(dpsi) < 0.5;
+    if (!is_finite(now) || is_near) {
+      surprise_ = {dy * cos(now_.state.psi) - dx * sin(now_.state.psi), dpsi};
+      take_over(now, dx, dy, dpsi);
+      return;
+    }
+  } else if (is_started_ && elapsed <= 0.0 && elapsed > -kLongestGap) {
+    return;  // an old or repeated measurement
+  }
+  const double steer = std::isfinite(now.steer) ? now.steer : 0.0;
+  now_ = {};
+  now_.state = {.x = now.x,
+                .y = now.y,
+                .psi = now.psi,
+                .vx = now.speed,
+                .vy = 0.0,
+                .r = now.speed * tan(std::clamp(steer, -0.6, 0.6)) / model_.vehicle().wheelbase(),
+                .steer = steer};
+  time_ = place_seen_ = heading_seen_ = now.time;
+  is_started_ = true;
+}
+
+/// The innovation of a measurement, docs/tracking.md, eq. 21: of what there is of it. Where the speed is
+/// missing, the place says how fast the car is.
+void StateEstimator::take_over(const model::Measurement& now, double dx, double dy, double dpsi) noexcept {
+  const double before = std::exchange(time_, now.time);
+  const auto note = [&](InnovationGains& gains, double x, double y, double seen) {
+    if (before > seen) {
+      gains.note_after_gap(x, y);
+    } else {
+      gains.note(x, y, now.time - before);
+    }
+  };
+  model::State& state = now_.state;
+  Disturbance& more = now_.disturbance;
+  if (std::isfinite(dpsi)) {
+    const bool has_place = std::isfinite(dx) && std::isfinite(dy);
+    if (has_place) {
+      note(place_gains_, dx, dy, place_seen_);
+      state.x += place_gains_.position() * dx;
+      state.y += place_gains_.position() * dy;
+    }
+    note(heading_gains_, dpsi, 0.0, heading_seen_);
+    const double unturned = now.time - std::exchange(heading_seen_, now.time);
+    state.psi += heading_gains_.position() * dpsi;
+    state.r += heading_gains_.velocity() * dpsi / unturned;
+    more.yaw = std::clamp(more.yaw + heading_gains_.acceleration() * dpsi * (1.0 / (unturned * unturned)),
+                          -kMostYaw, kMostYaw);
+    if (has_place) {
+      const double unseen = now.time - std::exchange(place_seen_, now.time);
+      const double aside = dy * cos(state.psi) - dx * sin(state.psi);
+      state.vy += place_gains_.slide() * aside / unseen;
+      more.lateral =
+          std::clamp(more.lateral + place_gains_.acceleration() * aside * (1.0 / (unseen * unseen)),
+                     -kMostLateral, kMostLateral);
+      const double along = dx * cos(state.psi) + dy * sin(state.psi);
+      if (!std::isfinite(now.speed))
+        state.vx = std::max(0.0, state.vx + place_gains_.velocity() * along / unseen);
+    }
+  }
+  if (std::isfinite(now.speed))
+    state.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state.vy * state.vy));
+}
+
+void StateEstimator::move(const model::State& by) noexcept {
+  model::State& state = now_.state;
+  state.x += by.x;
+  state.y += by.y;
+  state.psi += by.psi;
+  state.vx += by.vx;
+  state.vy += by.vy;
+  state.r += by.r;
+  state.steer += by.steer;
+}
+
+StateEstimator::Prediction StateEstimator::predict(double time, const CommandHistory& sent) const noexcept {
+  Prediction result = now_;
+  advance(result, time_, std::min(time, time_ + kLongestGap), sent);
+  return result;
+}
+
+}  // namespace chicane::tracking

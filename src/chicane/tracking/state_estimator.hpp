@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "chicane/model/measurement.hpp"
+#include "chicane/model/prediction.hpp"
+#include "chicane/model/state.hpp"
+#include "chicane/tracking/command_history.hpp"
+
+namespace chicane::tracking {
+
+/// How much of an innovation, measured minus predicted, is taken over (docs/tracking.md, eq. 22 and 23): as
+/// much as a model that is a little wrong asks for, less the noisier the sensor is. That shows in the
+/// innovations themselves: a wrong model's agree from one to the next, noise does not.
+class InnovationGains {
+ public:
+  static constexpr double kMostPosition = 0.8;
+  static constexpr double kMostVelocity = 0.25;
+  static constexpr double kMostSlide = 0.2;  ///< of a lateral velocity
+  /// With a disturbance: that which belongs to kMostPosition, 2 (1 − √(1 − 0.8))².
+  static constexpr double kMostVelocityDisturbed = 0.61;
+
+  /// `acceleration`: what the model may be wrong by [unit of the innovation per s²].
+  explicit InnovationGains(double acceleration) noexcept : acceleration_{acceleration} {}
+  void reset() noexcept {
+    const bool is_disturbed = is_disturbed_;
+    const double time = time_;
+    *this = InnovationGains{acceleration_};
+    estimate_disturbance(is_disturbed);
+    average_over(time);
+  }
+  /// Whether accelerations that the model lacks are estimated, too.
+  void estimate_disturbance(bool is_on) noexcept {
+    is_disturbed_ = is_on;
+    velocity_ = most_velocity();
+  }
+  /// The gains of a filter that forgets over `time` [s], whatever the noise; 0: by the noise, as at first.
+  void average_over(double time) noexcept { time_ = time; }
+  /// Takes in the innovation (x, y), `elapsed` [s] after the one before.
+  void note(double x, double y, double elapsed) noexcept;
+  /// The same after a time without measurements: it says how well the model counts on, not how noisy the
+  /// sensor is.
+  void note_after_gap(double x, double y) noexcept;
+
+  /// Share taken over at once; (0, kMostPosition].
+  [[nodiscard]] double position() const noexcept { return position_; }
+  /// Share per `elapsed` taken as an error of the velocity; (0, kMostVelocity].
+  [[nodiscard]] double velocity() const noexcept { return velocity_; }
+  /// The same for a lateral velocity: (0, kMostSlide] without a disturbance.
+  [[nodiscard]] double slide() const noexcept {
+    return is_disturbed_ ? velocity_ : std::min(velocity_, kMostSlide);
+  }
+  /// Share per `elapsed`² taken as an acceleration that the model lacks.
+  [[nodiscard]] double acceleration() const noexcept {
+    return is_disturbed_ ? 0.5 * velocity_ * velocity_ / position_ : 0.0;
+  }
+
+ private:
+  [[nodiscard]] double most_velocity() const noexcept {
+    return is_disturbed_ ? kMostVelocityDisturbed : kMostVelocity;
+  }
+  double acceleration_;
+  double time_ = 0.0;     ///< average_over()
+  double square_ = 0.0;   ///< mean of innovation²
+  double product_ = 0.0;  ///< mean of innovation times the one before
+  double last_x_ = 0.0, last_y_ = 0.0;
+  double position_ = kMostPosition;
+  double velocity_ = kMostVelocity;
+  bool is_disturbed_ = false;
+};
+
+/// Whether a car rolls backwards: its speed is measured without a sign, so that only its displacement tells.
+class DirectionWatch {
+ public:
+  static constexpr double kPath = 2.0;  ///< [m] after which it is known
+  void reset() noexcept { *this = {}; }
+  void see(const model::Measurement& now) noexcept;
+  /// Over the last kPath the car has moved against its heading. False for a car that stands or slides across.
+  [[nodiscard]] bool rolls_back() const noexcept { return rolls_back_; }
+
+ private:
+  bool has_last_ = false;
+  double time_ = 0.0, x_ = 0.0, y_ = 0.0;  ///< of the measurement before
+  double path_ = 0.0;                      ///< by the measured speed [m]
+  double along_ = 0.0;                     ///< and what of it was along the heading [m]
+  bool rolls_back_ = false;
+};
+
+/// What the car accelerates by beyond the model, as measurements have shown lately; less and less true later.
+struct Disturbance {
+  /// Time constant by which it fades where it is not measured anew [s].
+  static constexpr double kTime = 0.5;
+
+  double lateral = 0.0;  ///< of v_y [m/s²]
+  double yaw = 0.0;      ///< of the yaw rate [rad/s²]
+
+  /// Leaves what is true of it `dt` [s] later, to first order in dt.
+  void fade(double dt) noexcept {
+    const double left = kTime / (kTime + dt);
+    lateral *= left;
+    yaw *= left;
+  }
+};
+
+/// Where the car is, and where it will be when the next command acts: the prediction model driven by the
+/// commands that are really in flight, and by a disturbance where one is asked for, corrected by each
+/// measurement. Yaw rate and sideslip, which telemetry does not hold, come from here.
+class StateEstimator {
+ public:
+  explicit StateEstimator(const model::PredictionModel& model) noexcept : model_{model} {}
+  void reset() noexcept {
+    is_started_ = false;
+    direction_.reset();
+    place_gains_.reset();
+    heading_gains_.reset();
+  }
+  /// Whether a disturbance is estimated from now on; off at first.
+  void estimate_disturbance(bool is_on) noexcept {
+    place_gains_.estimate_disturbance(is_on);
+    heading_gains_.estimate_disturbance(is_on);
+    now_.disturbance = {};
+  }
+  /// Innovations are averaged over `time` [s] from now on (InnovationGains).
+  void average_over(double time) noexcept {
+    place_gains_.average_over(time);
+    heading_gains_.average_over(time);
+  }
+  /// Another model from now on; the estimate stays.
+  void set_model(const model::PredictionModel& model) noexcept { model_ = model; }
+  [[nodiscard]] const model::PredictionModel& model() const noexcept { return model_; }
+
+  /// Takes in a measurement. Afterwards state() is the estimate at now.time; what of it is not finite is
+  /// replaced by what the model expects.
+  void correct(const model::Measurement& now, const CommandHistory& sent) noexcept;
+  [[nodiscard]] const model::State& state() const noexcept { return now_.state; }
+  /// Adds `by` to the estimate: what another model would have made of it.
+  void move(const model::State& by) noexcept;
+  [[nodiscard]] double time() const noexcept { return time_; }  ///< of state() [s]
+  [[nodiscard]] bool is_started() const noexcept { return is_started_; }
+  [[nodiscard]] double acceleration() const noexcept { return now_.acceleration; }
+  /// The last measurement beside what was expected of it; NaN where nothing was.
+  struct Surprise {
+    double aside = std::numeric_limits<double>::quiet_NaN();    ///< [m] to the left of the expected place
+    double heading = std::numeric_limits<double>::quiet_NaN();  ///< [rad]
+  };
+  [[nodiscard]] const Surprise& surprise() const noexcept { return surprise_; }
+  [[nodiscard]] const Disturbance& disturbance() const noexcept { return now_.disturbance; }
+  /// What state() has for a speed forward is one backwards (DirectionWatch).
+  [[nodiscard]] bool rolls_back() const noexcept { return direction_.rolls_back(); }
+
+  /// The state at `time` >= the last measurement's [s], commands in flight replayed for exactly the fractions
+  /// they act.
+  struct Prediction {
+    model::State state;
+    double acceleration = 0.0;  ///< net longitudinal acceleration then [m/s²]
+    Disturbance disturbance;
+  };
+  [[nodiscard]] Prediction predict(double time, const CommandHistory& sent) const noexcept;
+
+ private:
+  static constexpr double kPlaceAcceleration = 2.0;  ///< [m/s²] that the model may be wrong by
+  static constexpr double kYawAcceleration = 1.0;    ///< [rad/s²]
+  static constexpr double kMostLateral = 6.0;        ///< of a disturbance [m/s²]
+  static constexpr double kMostYaw = 6.0;            ///< [rad/s²]
+
+  void take_over(const model::Measurement& now, double dx, double dy, double dpsi) noexcept;
+  void advance(Prediction& at, double from, double to, const CommandHistory& sent) const noexcept;
+
+  model::PredictionModel model_;
+  InnovationGains place_gains_{kPlaceAcceleration};
+  InnovationGains heading_gains_{kYawAcceleration};
+  bool is_started_ = false;
+  double time_ = 0.0;
+  double place_seen_ = 0.0;    ///< time of the last place that was measured together with a heading [s]
+  double heading_seen_ = 0.0;  ///< and of the last heading
+  Prediction now_;             ///< at time_
+  Surprise surprise_;
+  DirectionWatch direction_;
+};
+
+/// The throttle that brings a car to rest that rolls backwards with `speed` [m/s], > 0: where the brake pedal
+/// is the reverse gear then, its drive has to.
+[[nodiscard]] double throttle_against_rolling_back(const model::VehicleParams& vehicle,
+                                                   double speed) noexcept;
+
+}  // namespace chicane::tracking

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <tuple>
+
+#include "chicane/base/inlining.hpp"
+#include "chicane/base/jet.hpp"
+#include "chicane/base/math.hpp"
+#include "chicane/model/actuator.hpp"
+#include "chicane/model/prediction.hpp"
+#include "chicane/solver/stage_data.hpp"
+#include "chicane/tracking/state_estimator.hpp"
+
+namespace chicane::tracking {
+
+/// The optimal control problem of the default controller (docs/tracking.md, eq. 15–20): the prediction model
+/// in coordinates along a reference line, squares of what should be small, one-sided squares of what must not
+/// be exceeded. In the solver's structured form (solver/problem.hpp).
+///
+/// State x = (s, d, e, v_x, v_y, r, δ, a): arc length from the start [m], offset to the left [m], heading
+/// error [rad], body velocity [m/s], yaw rate [rad/s], road-wheel angle [rad], net acceleration [m/s²]. Input
+/// u = (δ, a) as asked.
+struct TrackingProblem {
+  static constexpr int kNx = 8;
+  static constexpr int kNu = 2;
+  static constexpr int kNr = 11;
+  static constexpr int kNe = 4;
+  static constexpr int kNc = 0;
+  static constexpr int kCapacity = 100;
+  static constexpr bool kRealTime = true;
+  static constexpr bool kGaussNewton = true;  ///< a step has no time for exact Hessians
+
+  enum StateIndex { kS, kD, kE, kVx, kVy, kR, kSteer, kAcceleration };
+
+  using State = std::array<double, kNx>;
+  using Input = std::array<double, kNu>;
+  using Data = solver::StageData<kCapacity + 1>;
+
+  /// What the road asks at the stages 0..horizon, linear in arc length around `s`, and what else acts there.
+  struct Road {
+    Data s;                ///< where it was taken [m from the start]
+    Data curvature;        ///< [1/m]
+    Data curvature_slope;  ///< [1/m²]
+    Data speed;            ///< wanted [m/s]
+    Data speed_slope;      ///< [1/s]
+    Data sideslip;         ///< planned: from the body's heading to the line's [rad]
+    Data left;             ///< room for what is `nose` ahead of the centre of mass, left of the line [m]
+    Data right;            ///< and to the right [m]
+    Data tail_left;        ///< for what is `tail` behind [m]
+    Data tail_right;
+    Data acceleration_min;  ///< [m/s²]
+    Data acceleration_max;
+    Data pushed_vy;  ///< what a disturbance adds to v_y over the stage [m/s]
+    Data pushed_r;   ///< and to the yaw rate [rad/s]
+  };
+
+  /// Square roots of the prices.
+  struct RootWeights {
+    double lateral, heading, speed, steer_rate, jerk, edge, slip, excess_steer_rate, friction;
+  };
+
+  /// A kind of stage by its length.
+  struct Step {
+    double length = 0.05;  ///< [s]
+    model::PredictionModel::Lags lags;
+    /// Share of the difference between the angle asked for and the wheel that counts as the wheel's motion.
+    double steer_share = 1.0;
+
+    [[nodiscard]] static Step of(const model::PredictionModel& model, double length) noexcept {
+      const model::PredictionModel::Lags lags = model.lags(length);
+      const bool is_slow = model.vehicle().steer_lag > model::kSlowSteering;
+      return {length, lags, is_slow ? 1.0 - lags.steer.end : 1.0};
+    }
+    /// Mean rate of the wheel over the stage for a difference of one [1/s].
+    [[nodiscard]] double steer_speed() const noexcept { return steer_share / length; }
+  };
+
+  const model::PredictionModel* model = nullptr;
+  int horizon = 0;
+  Step first;   ///< of stage 0: its command is held until the next one comes
+  Step others;  ///< of all other stages
+  RootWeights weight{};
+  double nose = 0.0;  ///< what has to stay inside the edges reaches so far ahead of the centre of mass [m]
+  double tail = 0.0;  ///< and behind it
+  Road road;
+  /// What the model moves in a long first stage beyond one step of its length, at the first guess. Zero for
+  /// a short one.
+  State first_correction{};
+
+  /// Time from the start to stage k [s].
+  [[nodiscard]] double time(int k) const noexcept {
+    return k == 0 ? 0.0 : first.length + (k - 1) * others.length;
+  }
+  [[nodiscard]] const Step& step(int k) const noexcept { return k == 0 ? first : others; }
+
+  /// `now` acts on all stages from the start on, fading. Pre: horizon and lengths of stages are set.
+  void push(Disturbance now) noexcept {
+    for (int k = 0; k < horizon; ++k) {
+      const double length = step(k).length;
+      road.pushed_vy[static_cast<std::size_t>(k)] = length * now.lateral;
+      road.pushed_r[static_cast<std::size_t>(k)] = length * now.yaw;
+      now.fade(length);
+    }
+  }
+
+  template <class K, class X, class U>
+  [[nodiscard]] auto dynamics(K k, const X& x, const U& u) const noexcept {
+    const auto is_first = solver::stage_number(k) < 0.5;
+    const auto [s, d, e, vx, vy, r, steer, a] = move(k, x, u);
+    const State& more = first_correction;
+    return std::make_tuple(s + select(is_first, more[kS], 0.0), d + select(is_first, more[kD], 0.0),
+                           e + select(is_first, more[kE], 0.0), vx + select(is_first, more[kVx], 0.0),
+                           vy + (select(is_first, more[kVy], 0.0) + road.pushed_vy.at(k)),
+                           r + (select(is_first, more[kR], 0.0) + road.pushed_r.at(k)), steer, a);
+  }
+
+  template <class K, class X, class U>
+  [[nodiscard]] auto residual(K k, const X& x, const U& u) const noexcept {
+    const auto& [s, d, e, vx, vy, r, steer, a] = x;
+    const auto& [steer_asked, a_asked] = u;
+    const auto is_first = solver::stage_number(k) < 0.5;
+    const auto per_length = select(is_first, 1.0 / first.length, 1.0 / others.length);
+    const auto rate = (steer_asked - steer) * select(is_first, first.steer_speed(), others.steer_speed());
+    using T = Common<decltype(vx), decltype(vy), decltype(r), decltype(steer), decltype(a)>;
+    const auto use = model->tire_use(model::BodyMotion<T>{T(vx), T(vy), T(r), T(steer), T(a)});
+    const model::VehicleParams& car = model->vehicle();
+    // Offsets of the middles of the axles: the line bends away from the car.
+    const auto bend = 0.5 * road.curvature.at(k);
+    const auto ahead = d + nose * (e - nose * bend);
+    const auto behind = d - tail * (e + tail * bend);
+    const double friction = car.friction_coupling > 0.0 ? weight.friction : 0.0;
+    return std::make_tuple(
+        weight.lateral * d, weight.heading * (e + road.sideslip.at(k)),
+        weight.speed * (vx - (road.speed.at(k) + road.speed_slope.at(k) * (s - road.s.at(k)))),
+        weight.steer_rate * rate, (weight.jerk * per_length) * (a_asked - a),
+        weight.edge * positive_part(max(ahead - road.left.at(k), behind - road.tail_left.at(k))),
+        weight.edge *
+            positive_part(max(-1.0 * ahead - road.right.at(k), -1.0 * behind - road.tail_right.at(k))),
+        weight.slip * positive_part(use.front - kUsefulTireUse),
+        weight.slip * positive_part(use.rear - kUsefulTireUse),
+        weight.excess_steer_rate * positive_part(abs(rate) - car.steer_rate_limit),
+        friction *
+            (positive_part(use.along_front - kUsefulForce) + positive_part(use.along_rear - kUsefulForce)));
+  }
+
+  template <class X>
+  [[nodiscard]] auto terminal_residual(const X& x) const noexcept {
+    const auto& [s, d, e, vx, vy, r, steer, a] = x;
+    constexpr double kEndFactor =
+        3.0;  // the end stands for what follows: the square root of about ten stages
+    const double wanted = road.speed.at(horizon);
+    return std::make_tuple(
+        kEndFactor * weight.lateral * d, kEndFactor * weight.heading * (e + road.sideslip.at(horizon)),
+        kEndFactor * weight.speed * (vx - (wanted + road.speed_slope.at(horizon) * (s - road.s.at(horizon)))),
+        kEndFactor * weight.heading * 0.3 * (r - road.curvature.at(horizon) * vx));
+  }
+
+  [[nodiscard]] Input input_lower(int k) const noexcept {
+    return {-model->vehicle().steer_limit, road.acceleration_min.at(k)};
+  }
+  [[nodiscard]] Input input_upper(int k) const noexcept {
+    return {model->vehicle().steer_limit, road.acceleration_max.at(k)};
+  }
+  [[nodiscard]] Input within_bounds(int k, const Input& u) const noexcept {
+    const Input low = input_lower(k);
+    const Input high = input_upper(k);
+    Input inside{};
+    for (std::size_t q = 0; q < u.size(); ++q) inside[q] = std::clamp(u[q], low[q], high[q]);
+    return inside;
+  }
+
+ private:
+  template <class Row>
+  static State to_state(const Row& row) noexcept {
+    return std::apply([](const auto&... values) { return State{values...}; }, row);
+  }
+
+  template <class K, class X, class U>
+  [[nodiscard]] CHICANE_INLINE inline auto move(K k, const X& x, const U& u) const noexcept {
+    const auto is_first = solver::stage_number(k) < 0.5;
+    const auto either = [&](double of_first, double of_others)
+                            CHICANE_INLINE { return select(is_first, of_first, of_others); };
+    using D = decltype(either(0.0, 0.0));
+    struct {
+      struct {
+        D end, mean;
+      } steer, drive;
+    } const lags{{either(first.lags.steer.end, others.lags.steer.end),
+                  either(first.lags.steer.mean, others.lags.steer.mean)},
+                 {either(first.lags.drive.end, others.lags.drive.end),
+                  either(first.lags.drive.mean, others.lags.drive.mean)}};
+    return move_by(either(first.length, others.length), lags, k, x, u);
+  }
+
+  /// Motion over h [s] in coordinates along the line (eq. 15).
+  template <class D, class Lags, class K, class X, class U>
+  [[nodiscard]] CHICANE_INLINE inline auto move_by(const D& h, const Lags& lags, K k, const X& x,
+                                                   const U& u) const noexcept {
+    const auto& [s, d, e, vx, vy, r, steer, a] = x;
+    const auto& [steer_asked, a_asked] = u;
+    const auto late_steer = steer - steer_asked;
+    const auto late_a = a - a_asked;
+    using T = Common<decltype(vx), decltype(vy), decltype(r), decltype(steer), decltype(a),
+                     decltype(steer_asked), decltype(a_asked)>;
+    const model::BodyMotion<T> from{T(vx), T(vy), T(r), T(steer), T(a)};
+    const model::BodyMotion<T> to = model->advance(from, T(steer_asked + late_steer * lags.steer.mean),
+                                                   T(a_asked + late_a * lags.drive.mean), h);
+    // Means over the interval carry the car along the line: second order in h.
+    const auto mean_vx = 0.5 * (vx + to.vx);
+    const auto mean_vy = 0.5 * (vy + to.vy);
+    const D half_h = 0.5 * h;
+    const auto yaw = half_h * (r + to.r);
+    const auto kappa = road.curvature.at(k) + road.curvature_slope.at(k) * (s + half_h * vx - road.s.at(k));
+    const auto half = e + 0.5 * yaw - half_h * mean_vx * kappa;
+    const auto c = cos(half);
+    const auto sn = sin(half);
+    const auto ds = h * (mean_vx * c - mean_vy * sn) / (1.0 - kappa * d);
+    return std::make_tuple(s + ds, d + h * (mean_vx * sn + mean_vy * c), e + yaw - kappa * ds, to.vx, to.vy,
+                           to.r, steer_asked + late_steer * lags.steer.end,
+                           a_asked + late_a * lags.drive.end);
+  }
+
+  static constexpr double kUsefulForce =
+      0.93;  ///< of the longitudinal force: the rest keeps the car on its course
+  static constexpr double kUsefulTireUse = 1.0;  ///< slip beyond this gives hardly more force
+
+ public:
+  /// The motion over stage k in `parts` steps, without first_correction and what a disturbance adds.
+  [[nodiscard]] State move_in_parts(int k, const State& x, const Input& u, int parts) const noexcept {
+    const double h = step(k).length / parts;
+    const model::PredictionModel::Lags lags = model->lags(h);
+    State to = x;
+    for (int i = 0; i < parts; ++i) to = to_state(move_by(h, lags, k, to, u));
+    return to;
+  }
+};
+
+}  // namespace chicane::tracking

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/road/smooth_line.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/random.hpp"
+
+namespace chicane::road {
+namespace {
+
+std::vector<Vec2> circle(int count, double sigma) {
+  Random random{3};
+  std::vector<Vec2> points;
+  for (int i = 0; i < count; ++i) {
+    const double angle = kTwoPi * i / count;
+    const double radius = 50.0 + sigma * random.normal();
+    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+  }
+  return points;
+}
+
+TEST(SmoothLine, KeepsAStraightLineExactlyAndSpacesItEvenly) {
+  std::vector<Vec2> points;
+  for (const double x : {0.0, 3.0, 11.0, 20.0, 44.0, 60.0}) points.emplace_back(x, 0.5 * x);
+  const Result<SmoothLine> line = smooth_line(points, false, 2.0, 0.1);
+  ASSERT_TRUE(line) << line.error().message;
+  EXPECT_NEAR(line->length, 60.0 * std::hypot(1.0, 0.5), 1e-6);
+  EXPECT_LE(line->spacing, 2.0);
+  for (std::size_t i = 0; i < line->knots.size(); ++i) {
+    EXPECT_NEAR(line->knots[i].y(), 0.5 * line->knots[i].x(), 1e-6);
+    if (i > 0) {
+      EXPECT_NEAR((line->knots[i] - line->knots[i - 1]).norm(), line->spacing, 1e-6);
+    }
+  }
+  EXPECT_LT(line->max_deviation, 1e-6);
+}
+
+TEST(SmoothLine, TakesNoiseOffAClosedLineAndSaysHowMuch) {
+  const Result<SmoothLine> line = smooth_line(circle(300, 0.1), true, 2.0, 0.1);
+  ASSERT_TRUE(line) << line.error().message;
+  EXPECT_NEAR(line->length, kTwoPi * 50.0, 1.0);
+  double worst = 0.0;
+  for (const Vec2& knot : line->knots) worst = std::max(worst, std::fabs(knot.norm() - 50.0));
+  EXPECT_LT(worst, 0.15) << "the noise has peaks of 0.3 m";
+  EXPECT_NEAR(line->rms_deviation, 0.1, 0.02);
+  EXPECT_GE(line->max_deviation, line->rms_deviation);
+}
+
+TEST(SmoothLine, SaysWhereEachGivenPointIsAlongIt) {
+  const Result<SmoothLine> line = smooth_line(circle(100, 0.0), true, 1.0, 0.0);
+  ASSERT_TRUE(line) << line.error().message;
+  ASSERT_EQ(line->parameter.size(), 100u);
+  for (std::size_t i = 1; i < 100; ++i)
+    EXPECT_NEAR(line->parameter[i] - line->parameter[i - 1], kTwoPi * 50.0 / 100.0, 0.02) << i;
+}
+
+// Files of 300 and of six points took 12 GB and a minute.
+TEST(SmoothLine, RefusesPointsBetweenWhichThereAreTooManyKnots) {
+  for (const int count : {6, 60, 300}) {
+    std::vector<Vec2> points;
+    for (int i = 0; i < count; ++i) {
+      const double angle = kTwoPi * i / count;
+      const double radius = 1500.0 + (count == 6 ? 300.0 * std::sin(2.1 * i) : 0.0);
+      points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    }
+    constexpr double kFinest = 0.05;    // spacing [m]
+    constexpr double kMostNoise = 1.0;  // sigma [m]
+    const Result<SmoothLine> line = smooth_line(points, true, kFinest, kMostNoise);
+    if (line) {
+      EXPECT_LT(line->knots.size(), 400'000U) << count;
+    } else {
+      EXPECT_NE(line.error().message.find("points: got points that no smooth line follows"),
+                std::string::npos)
+          << line.error().message;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chicane::road

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/tracking/grip_estimator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "chicane/base/math.hpp"
+#include "chicane/base/random.hpp"
+#include "chicane/model/grip.hpp"
+
+namespace chicane::tracking {
+namespace {
+
+constexpr double kPeriod = 0.04;
+
+/// Standard deviations of what is measured.
+struct Noise {
+  double place = 0.0, heading = 0.0, speed = 0.0;
+};
+
+/// A car whose tyres have `grip` of what is believed weaves at about 25 m/s, up to `most` of steering [rad],
+/// and is measured.
+class Weaving {
+ public:
+  explicit Weaving(double grip, const Noise& noise = {}, double most = 0.05, std::uint64_t seed = 1)
+      : truth_{model::PredictionModel{model::with_grip(believed_.vehicle(), grip)}},
+        noise_{noise},
+        most_{most},
+        random_{seed} {
+    truth_.correct({.speed = 25.0}, sent_);
+    estimator.begin(truth_, believed_);
+  }
+  void drive(double seconds) {
+    for (const double end = time_ + seconds; time_ < end;) {
+      time_ += kPeriod;
+      sent_.add(time_ - kPeriod, {.steer = most_ * sin(1.3 * time_), .throttle = 0.2});
+      const model::State car = truth_.predict(time_, sent_).state;
+      model::Measurement now{.time = time_,
+                             .x = car.x,
+                             .y = car.y,
+                             .psi = car.psi,
+                             .speed = std::sqrt(car.vx * car.vx + car.vy * car.vy),
+                             .steer = car.steer};
+      truth_.correct(now, sent_);  // of what it predicts itself: nothing changes
+      now.x += noise_.place * random_.normal();
+      now.y += noise_.place * random_.normal();
+      now.psi += noise_.heading * random_.normal();
+      now.speed += noise_.speed * random_.normal();
+      estimator.see(now, sent_);
+    }
+  }
+
+ private:
+  model::PredictionModel believed_{model::road_car_params()};
+  StateEstimator truth_;
+  Noise noise_;
+  double most_;
+  Random random_;
+  CommandHistory sent_;
+  double time_ = 0.0;
+
+ public:
+  GripEstimator estimator{believed_};
+};
+
+TEST(GripEstimator, FindsTheGripOfTheTyres) {
+  for (const double grip : {0.8, 0.9, 1.0, 1.1}) {
+    Weaving car(grip);
+    car.drive(15.0);
+    ASSERT_TRUE(car.estimator.is_known()) << grip;
+    EXPECT_NEAR(car.estimator.share(), grip, 0.03) << grip;
+    EXPECT_LT(car.estimator.deviation(), 0.02) << grip;
+  }
+}
+
+/// Noise is no lack of grip: the mean over seeds is right, and each is within what it is said to be.
+TEST(GripEstimator, IsNotDeceivedByNoiseAndKnowsHowSureItIs) {
+  constexpr int kSeeds = 40;
+  for (const double grip : {0.9, 1.0}) {
+    double sum = 0.0;
+    int outside = 0;
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+      Weaving car(grip, {.place = 0.05, .heading = 0.005, .speed = 0.1}, 0.05,
+                  static_cast<std::uint64_t>(seed));
+      car.drive(20.0);
+      ASSERT_TRUE(car.estimator.is_known()) << grip << ' ' << car.estimator.deviation();
+      sum += car.estimator.share();
+      outside += std::fabs(car.estimator.share() - grip) > 2.0 * car.estimator.deviation() ? 1 : 0;
+    }
+    EXPECT_NEAR(sum / kSeeds, grip, 0.02) << grip;
+    EXPECT_LE(outside, kSeeds / 6) << grip;
+  }
+}
+
+TEST(GripEstimator, KnowsNothingBeforeACorner) {
+  Weaving straight(0.8, {}, 0.005);
+  straight.drive(20.0);
+  EXPECT_FALSE(straight.estimator.is_known());
+  EXPECT_EQ(straight.estimator.share(), 1.0);
+  EXPECT_EQ(straight.estimator.lower(), 1.0);
+  EXPECT_FALSE(straight.estimator.differs(0.0));
+}
+
+TEST(GripEstimator, IsLessSureWithNoiseAndReliesOnLess) {
+  Weaving quiet(1.0), noisy(1.0, {.place = 0.1, .heading = 0.01, .speed = 0.1});
+  quiet.drive(20.0);
+  noisy.drive(20.0);
+  EXPECT_GT(noisy.estimator.deviation(), 2.0 * quiet.estimator.deviation());
+  EXPECT_LT(noisy.estimator.lower(), noisy.estimator.share() - quiet.estimator.deviation());
+}
+
+TEST(GripEstimator, SaysWhenItDiffersFromWhatIsBelieved) {
+  Weaving same(1.0), less(0.8);
+  same.drive(15.0);
+  less.drive(15.0);
+  EXPECT_FALSE(same.estimator.differs(0.03));
+  EXPECT_TRUE(less.estimator.differs(0.03));
+  EXPECT_FALSE(less.estimator.differs(0.3));
+}
+
+TEST(GripEstimator, LeavesOutWhatIsNoMeasurement) {
+  Weaving car(0.9);
+  car.drive(10.0);
+  const double share = car.estimator.share();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const CommandHistory none;
+  car.estimator.see({.time = 10.04, .x = nan, .y = nan, .psi = nan, .speed = nan}, none);
+  car.estimator.see({.time = nan}, none);
+  EXPECT_EQ(car.estimator.share(), share);
+  EXPECT_TRUE(std::isfinite(car.estimator.deviation()));
+}
+
+}  // namespace
+}  // namespace chicane::tracking
