@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "chicane/run/make.hpp"
+#include "chicane/run/plan_cache.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "external_run.hpp"
@@ -41,6 +42,10 @@ Result<wire::ServeSummary> serve_until_stopped(const Options& options) {
 
 ExitCode serve(const Options& options) {
   const Result<wire::ServeSummary> summary = serve_until_stopped(options);
+  if (!summary && run::must_stop_planning()) {
+    fmt::print(stderr, "stopped before the run began\n");
+    return kRunFailed;
+  }
   if (!summary) return report(summary.error());
   return print(options, *summary, "answers", "simulators");
 }

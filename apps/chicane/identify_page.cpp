@@ -25,7 +25,7 @@ constexpr const char* kMeasured = "#1c2430";
 constexpr const char* kModel = "#c2571a";
 constexpr const char* kFront = "#3b6ea5";
 constexpr std::size_t kMostStretches = 6;
-constexpr std::size_t kMostDots = 1500;  // in one plot
+constexpr std::size_t kMostDots = 1500;  // dots in one plot
 
 /// A range that has some room about its values.
 struct Range {

@@ -19,12 +19,15 @@ using ::testing::IsEmpty;
 using Json = nlohmann::json;
 
 TEST(PlanCommand, CtrlCEndsPlanningAtOnce) {
-  const Outcome outcome = interrupted_program(
-      "drive --preset race --car road-car --track speedway --port 0 --no-cache", "the lap is planned first");
-  EXPECT_EQ(outcome.code, 1) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("stopped before the run began"));
-  EXPECT_THAT(outcome.err, HasSubstr("dashboard will be at http://localhost:"));
-  EXPECT_THAT(outcome.out, IsEmpty());
+  for (const std::string command : {"drive", "serve"}) {
+    const Outcome outcome =
+        interrupted_program(command + " --preset race --car road-car --track speedway --port 0 --no-cache",
+                            "the lap is planned first");
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("stopped before the run began")) << command;
+    EXPECT_THAT(outcome.err, HasSubstr("dashboard will be at http://localhost:")) << command;
+    EXPECT_THAT(outcome.out, IsEmpty());
+  }
 }
 
 TEST(PlanCommand, ABudgetEndsPlanningWithTheBestSoFar) {
