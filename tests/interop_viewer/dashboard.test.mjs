@@ -218,7 +218,7 @@ describe('the dashboard', () => {
       'its line',
     );
     assert.match(await plot.locator('.key b').innerText(), /\d\.\d{3}/);
-    assert.deepEqual(await dashboard.accessibilityFindings(undefined, '.side'), []);
+    assert.deepEqual(await dashboard.accessibilityFindings('.side'), []);
     await page.reload();
     await plot.waitFor();
     await field.fill('');

@@ -5,6 +5,7 @@ import { once } from 'node:events';
 import { readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { createRequire } from 'node:module';
+import { setTimeout as sleep } from 'node:timers/promises';
 import { PATIENCE } from './patience.mjs';
 
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
@@ -21,6 +22,9 @@ export const PHONE = {
 const workbench = readFileSync(new URL('../../web/src/views/workbench_view.tsx', import.meta.url), 'utf8');
 export const TABS = [...workbench.matchAll(/^ {2}\{ name: '(\w+)', title: /gm)].map((row) => row[1]);
 assert.ok(TABS.length >= 6, 'workbench_view.tsx lists its panels otherwise than these tests read them');
+
+/** Every size, theme and colour is looked at: a campaign (./test.sh --all). */
+export const EVERY_SIZE = Boolean(process.env.CHICANE_EVERY_SIZE);
 
 /** Between two repaints of a page [ms]: drawing costs much without a graphics card. */
 const REPAINT_MS = 250;
@@ -174,7 +178,7 @@ export class DashboardPage {
     const isSame = async () => {
       const before = last;
       last = await read();
-      await this.page.waitForTimeout(500);
+      await sleep(500);
       return last === before;
     };
     await this.until(isSame, Boolean, 'is it still?');
@@ -190,14 +194,14 @@ export class DashboardPage {
     await this.button('Pause').waitFor();
   }
 
-  /** Waits until `read` gives something that `accept` accepts. */
+  /** Waits until `read` gives something that `accept` accepts: looks soon again at first, then ever less often. */
   async until(read, accept, what) {
     const end = Date.now() + PATIENCE;
-    for (;;) {
+    for (let pause = 50; ; pause = Math.min(1.5 * pause, 400)) {
       const value = await read();
       if (accept(value)) return value;
       assert.ok(Date.now() < end, `${what}: still ${value}`);
-      await this.page.waitForTimeout(100);
+      await sleep(pause);
     }
   }
 
@@ -216,11 +220,17 @@ export class DashboardPage {
       });
   }
 
-  /** What axe objects to; `rules`: only these; `part`: a selector of the only part that is looked at. */
-  async accessibilityFindings(rules, part) {
+  /**
+   * What axe objects to; `part`: a selector of the only part that is looked at; `rules`: only these, or 'all'. Without
+   * it, the rule of contrast is used with CHICANE_EVERY_SIZE=1 alone: it takes two thirds of the time, and
+   * views.test.mjs uses it at every view.
+   */
+  async accessibilityFindings(part, rules) {
     if (!(await this.page.evaluate(() => 'axe' in globalThis))) await this.page.evaluate(axe);
     // Limits what axe describes of elements without findings, and what it loads; the findings are the same.
-    const options = { resultTypes: ['violations'], preload: false, ...(rules && { runOnly: rules }) };
+    const options = { resultTypes: ['violations'], preload: false };
+    if (Array.isArray(rules)) options.runOnly = rules;
+    else if (rules !== 'all' && !EVERY_SIZE) options.rules = { 'color-contrast': { enabled: false } };
     const { violations } = await this.page.evaluate(
       async ([within, given]) => {
         globalThis.isHeld = true;

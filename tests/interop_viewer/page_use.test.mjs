@@ -41,7 +41,7 @@ describe('the page', () => {
     await row.getByRole('button').click();
     await page.locator('.meaning-box:popover-open').waitFor();
     await page.keyboard.press('Escape');
-    assert.deepEqual(await dashboard.accessibilityFindings(undefined, '[data-testid="origin"]'), []);
+    assert.deepEqual(await dashboard.accessibilityFindings('[data-testid="origin"]'), []);
   });
 
   it('pauses by Space, whatever was clicked last', async () => {

@@ -101,7 +101,7 @@ it('is drawn in three dimensions, and left away', async () => {
   await page.locator('.map.has-3d').waitFor();
   await dashboard.button('Top').click(); // no sky in the picture
   await toggles(dashboard, 'canvas.map-3d', 5);
-  assert.deepEqual(await dashboard.accessibilityFindings(undefined, '.stage'), []);
+  assert.deepEqual(await dashboard.accessibilityFindings('.stage'), []);
   await close(dashboard);
 });
 
@@ -121,7 +121,7 @@ it('leaves the car in sight on a phone, light and dark', async () => {
       legend.y > map.y + map.height - 84 + 15,
       `the legend begins ${map.y + map.height - legend.y} px above the foot of the map`,
     );
-    assert.deepEqual(await dashboard.accessibilityFindings(undefined, '.stage'), []);
+    assert.deepEqual(await dashboard.accessibilityFindings('.stage'), []);
   }
   await close(dashboard);
 });

@@ -162,7 +162,7 @@ describe('a recording in the page', () => {
       (count) => count === 3,
       'three laps at once',
     );
-    assert.deepEqual(await dashboard.accessibilityFindings(undefined, '.side'), []);
+    assert.deepEqual(await dashboard.accessibilityFindings('.side'), []);
   });
 
   it('is played slower and faster', async () => {

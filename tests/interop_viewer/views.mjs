@@ -20,7 +20,10 @@ export const SIZES = {
 };
 export const THEMES = ['light', 'dark'];
 
-/** A tab changes its own side of the page; the rest was looked at with the first one. */
+/**
+ * `part`: what a view changes; the rest of the page was looked at with the first one. `isLong`: it takes seconds of
+ * processor time to come to.
+ */
 const tab = (name, i) => ({
   name,
   part: i === 0 ? undefined : '.side',
@@ -31,6 +34,7 @@ const tab = (name, i) => ({
 });
 const overlay = (name, key, selector) => ({
   name,
+  part: selector,
   async show({ page }) {
     await page.locator('body').press(key);
     await page.locator(selector).first().waitFor();
@@ -45,6 +49,7 @@ const LIVE = [
   ...TABS.filter((name) => name !== 'whatif').map(tab),
   {
     name: 'track plots',
+    part: '.side',
     async show(dashboard) {
       await dashboard.show('plots');
       await dashboard.button('Track').click();
@@ -54,6 +59,8 @@ const LIVE = [
   },
   {
     name: 'what if',
+    part: '.side',
+    isLong: true,
     async show(dashboard) {
       const { page } = dashboard;
       await dashboard.show('whatif');
@@ -73,6 +80,7 @@ const LIVE = [
   },
   {
     name: 'share',
+    part: 'dialog[open]',
     async show(dashboard) {
       await dashboard.show('drive');
       await dashboard.button('Share').click();
@@ -82,6 +90,7 @@ const LIVE = [
   },
   {
     name: 'wanted run',
+    part: 'dialog[open]',
     async show({ page }) {
       await page.evaluate(() => {
         location.hash = '#run?track=hairpins&latency_ms=60';
@@ -92,6 +101,7 @@ const LIVE = [
   },
   {
     name: 'tour',
+    part: '[data-testid="tour"]',
     async show(dashboard) {
       await dashboard.page.locator('body').press('h');
       await dashboard.page.getByTestId('tour').waitFor();
@@ -101,6 +111,7 @@ const LIVE = [
   overlay('help', '?', 'dialog[open]'),
   {
     name: 'layout',
+    part: 'dialog[open]',
     async show(dashboard) {
       await dashboard.button('Layout').click();
       await dashboard.page.getByRole('dialog', { name: 'Layout' }).waitFor();
@@ -109,6 +120,7 @@ const LIVE = [
   },
   {
     name: 'two panels',
+    part: '.panel-body.second',
     async show({ page }) {
       await page.evaluate(() => {
         location.hash = '#layout?tab=plots&beside=laps&plots=speed.own';
@@ -126,6 +138,8 @@ const LIVE = [
 const ENDED = [
   {
     name: 'end card',
+    part: '[data-testid="end-card"]',
+    isLong: true,
     async show({ page }) {
       const pace = page.locator('.panel-body [data-key="run.pace"] .number-box');
       await pace.fill('20'); // not before the page is there: the run must not end earlier
@@ -137,9 +151,9 @@ const ENDED = [
 ];
 const RECORDED = [
   { name: 'recording', show: (dashboard) => dashboard.show('plots') },
-  { name: 'recorded laps', show: (dashboard) => dashboard.show('laps') },
+  { name: 'recorded laps', part: '.side', show: (dashboard) => dashboard.show('laps') },
 ];
-const REPORTED = [{ name: 'report', show: ({ page }) => page.getByTestId('verdict').nth(1).waitFor() }];
+const REPORTED = [{ name: 'report', isLong: true, show: ({ page }) => page.getByTestId('verdict').nth(1).waitFor() }];
 
 /** Runs, recordings and a report to look at; stop() ends and removes them. */
 export async function startScenes() {
@@ -176,8 +190,12 @@ export async function startScenes() {
 /** What browsers say of software graphics, and of a program that has ended. */
 export const isExpected = (text) => /GPU|WebGL|GL Driver|WebSocket connection to|ERR_CONNECTION_REFUSED/i.test(text);
 
-/** Goes through all views of a group at one size in one theme; `look` is called at each. */
-export async function walk(browser, { address, state, views }, options, look) {
+/**
+ * Goes through the views of a group that `accept` takes, at one size in one theme; `look` is called at each.
+ */
+export async function walk(browser, { address, state, views: all }, options, look, accept = () => true) {
+  const views = all.filter(accept);
+  if (views.length === 0) return;
   const dashboard = await DashboardPage.open(browser, await address(), { tab: 'drive', state, ...options });
   for (const view of views) {
     await view.show(dashboard);

@@ -270,7 +270,7 @@ describe('the workbench', () => {
     await page.locator('body').press('o');
     assert.equal(await line.getAttribute('aria-pressed'), 'true');
     await dashboard.until(pink, (count) => count > 50, 'the plan of a second ago');
-    assert.deepEqual(await dashboard.accessibilityFindings(undefined, '.stage'), []);
+    assert.deepEqual(await dashboard.accessibilityFindings('.stage'), []);
     await line.click();
     await dashboard.until(pink, (count) => count === 0, 'the map without it');
   });
@@ -352,7 +352,7 @@ describe('the workbench', () => {
     assert.match(lap.content.toString(), /^s_m,time_s,speed_mps/);
     const picture = await download('Map as PNG');
     assert.equal(picture.content.subarray(1, 4).toString(), 'PNG');
-    assert.deepEqual(await dashboard.accessibilityFindings(undefined, '.side'), []);
+    assert.deepEqual(await dashboard.accessibilityFindings('.side'), []);
   });
 
   it('says in which corner a lap loses most to the limit, and why, in three clicks', async (test) => {
@@ -413,7 +413,7 @@ describe('the workbench', () => {
     await dialog.getByLabel('Name').fill('mine');
     await dialog.getByRole('button', { name: 'Save' }).click();
     const link = await dialog.getByLabel('Link', { exact: true }).inputValue();
-    assert.deepEqual(await dashboard.accessibilityFindings(undefined, 'dialog[open]'), []);
+    assert.deepEqual(await dashboard.accessibilityFindings('dialog[open]'), []);
     await dialog.getByRole('button', { name: 'Close' }).click();
     const check = async () => {
       assert.deepEqual(
