@@ -8,7 +8,7 @@ import { browserAndDrive } from './here.mjs';
 
 let shared = null;
 after(() => shared?.close()); // before the browser ends
-const here = browserAndDrive(['--track', 'oval', '--pace', '3']);
+const here = browserAndDrive(['--track', 'oval', '--pace', '6']);
 
 /** The page that the tests have in common, at a tab. */
 async function open({ tab = 'laps' } = {}) {
