@@ -315,7 +315,7 @@ it('says when the connection is lost, and comes back by itself', async () => {
   await demo.stop();
   await page.getByTestId('banner').waitFor();
   assert.match(await dashboard.text('banner'), /Connection lost/);
-  assert.deepEqual(await dashboard.accessibilityFindings(), []);
+  assert.deepEqual(await dashboard.accessibilityFindings('[data-testid="banner"]', 'all'), []);
   demo = await startDemo(port);
   await page.getByTestId('banner').waitFor({ state: 'detached' });
   const first = await dashboard.seconds();

@@ -65,7 +65,7 @@ describe('on the picture', () => {
     await page.locator('.alert.bad', { hasText: /Off the road, \d+\.\d m beyond the edge/ }).waitFor();
     await page.locator('.map.danger-bad').waitFor();
     await page.locator('[data-testid="edge-distance"].bad').waitFor();
-    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    assert.deepEqual(await dashboard.accessibilityFindings('.stage', 'all'), []);
     await page.keyboard.up('ArrowUp');
     await page.keyboard.up('ArrowLeft');
     await page.keyboard.press('Escape');

@@ -5,8 +5,8 @@
 // are, on the phone, the views that take long to come to.
 import assert from 'node:assert/strict';
 import { after, before, it } from 'node:test';
-import { misfits } from './fit.mjs';
 import { EVERY_SIZE } from './dashboard_page.mjs';
+import { misfits } from './fit.mjs';
 import { browserAlone } from './here.mjs';
 import { SIZES, startScenes, walk } from './views.mjs';
 
