@@ -87,6 +87,7 @@ TEST(Race, LearnsTheGripWithoutLeavingTheRoad) {
   }
 }
 
+#ifdef CHICANE_SLOW_TESTS
 // A car from a log: what is not known of its grip is margin, until its tyres have shown it.
 TEST(Race, CountsOnTheFrictionThatIsKnown) {
   const auto second_lap = [](const char* low, const char* learns) {
@@ -106,7 +107,6 @@ TEST(Race, CountsOnTheFrictionThatIsKnown) {
   EXPECT_LT(shown, 0.5 * (careful + kKnown));
 }
 
-#ifdef CHICANE_SLOW_TESTS
 // docs/tracking.md, eq. 18a: more speed where there is grip and room, less in neither.
 TEST(Race, IsFasterWhereSpeedHasAPrice) {
   const auto race = [](const char* progress) {
