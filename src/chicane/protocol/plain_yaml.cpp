@@ -9,7 +9,7 @@
 namespace chicane::protocol {
 namespace {
 
-using Kind = YamlNode::Kind;
+using NodeKind = YamlNode::Kind;
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \r");
@@ -66,11 +66,11 @@ class PlainReader {
     return fail(ErrorCode::kParse,
                 fmt::format("{}:{}: text: got {}, expected `key: value`", file_, line_, got));
   }
-  YamlNode* add(Kind kind, std::string_view text) {
+  YamlNode* add(NodeKind kind, std::string_view text) {
     return &tree_.nodes.emplace_back(YamlNode{.kind = kind,
                                               .line = line_,
                                               .text = std::string(text),
-                                              .tag = kind == Kind::kScalar ? "?" : "",
+                                              .tag = kind == NodeKind::kScalar ? "?" : "",
                                               .children = {}});
   }
 
@@ -82,14 +82,14 @@ class PlainReader {
       if (open_.empty() != is_first || (!is_first && waiting_ == nullptr))
         return refuse("another indentation");
       if (open_.size() == YamlTree::kMostDepth) return refuse("very deep nesting");
-      YamlNode* map = is_first ? add(Kind::kMap, "") : waiting_;
-      map->kind = Kind::kMap;
+      YamlNode* map = is_first ? add(NodeKind::kMap, "") : waiting_;
+      map->kind = NodeKind::kMap;
       map->line = line_;
       if (is_first) tree_.root = map;
       open_.push_back({indent, map});
     }
-    YamlNode* name = add(Kind::kScalar, key);
-    YamlNode* content = add(value.empty() ? Kind::kNothing : Kind::kScalar, value);
+    YamlNode* name = add(NodeKind::kScalar, key);
+    YamlNode* content = add(value.empty() ? NodeKind::kNothing : NodeKind::kScalar, value);
     open_.back().map->children.push_back(name);
     open_.back().map->children.push_back(content);
     waiting_ = value.empty() ? content : nullptr;

@@ -80,7 +80,7 @@ struct OpenDriveRoad {
 /// Heading and place along one geometry element.
 class Geometry {
  public:
-  explicit Geometry(const XmlNode& node) : node_{node} {
+  explicit Geometry(const XmlNode& node) {
     place_ = {node.number("x").value_or(NAN), node.number("y").value_or(NAN)};
     heading_ = node.number("hdg").value_or(NAN);
     length_ = node.number("length").value_or(NAN);
@@ -143,7 +143,6 @@ class Geometry {
     return {place_ + Vec2{c * u - si * v, si * u + c * v}, heading_ + atan2(dv, du)};
   }
 
-  const XmlNode& node_;
   Vec2 place_{};
   double heading_ = 0.0, length_ = 0.0, begin_ = 0.0, end_ = 0.0;
   const XmlNode* poly_ = nullptr;
