@@ -132,14 +132,18 @@ std::string json_of(const Identification& found) {
   return json.dump(2) + "\n";
 }
 
+bool has_wheels(const scenario::Scenario& scenario) {
+  return scenario.plant == sim::DoubleTrack::kName || scenario.plant == sim::DoubleTrack::kRoadCar;
+}
+
 /// A plant of four wheels becomes one with the model that was found; what turns by a helper stays the
 /// start's.
-void take_plant(scenario::Scenario& scenario) {
-  const bool has_wheels =
-      scenario.plant == sim::DoubleTrack::kName || scenario.plant == sim::DoubleTrack::kRoadCar;
-  if (!has_wheels || scenario.vehicle.steer_helper > 0.0) return;
+void take_plant(scenario::Scenario& scenario, const identify::Wheels& wheels) {
+  if (!has_wheels(scenario) || scenario.vehicle.steer_helper > 0.0) return;
   scenario.plant = sim::DoubleTrack::kName;
   scenario.plant_params = sim::plant_of(scenario.vehicle, scenario.plant_params);
+  scenario.plant_params.relaxation_across = wheels.relaxation;
+  scenario.plant_params.load_lag = wheels.load_lag;
 }
 
 /// The car file: the model as it was found, and a plant that has it.
@@ -156,7 +160,7 @@ std::string to_car(const Identification& found, scenario::Scenario scenario, con
   const scenario::Scenario fresh;
   scenario.vehicle = found.vehicle;
   scenario.friction_low = found.least_friction();
-  take_plant(scenario);
+  take_plant(scenario, found.wheels);
   std::string group;
   for (const protocol::Parameter& row : protocol::list()) {
     const bool is_vehicle = row.group == "vehicle";
@@ -257,6 +261,19 @@ bool is_nobodys(const std::vector<identify::DriveLog>& logs, const Options& opti
                                   [](const identify::DriveLog& log) { return log.is_centre_of_mass; });
 }
 
+/// What is expected of the wheels: those of the plant that the search begins with, where it has four.
+identify::Wheels wheels_of(const scenario::Scenario& start) {
+  if (!has_wheels(start)) return {};
+  const sim::DoubleTrackParams plant =
+      start.plant == sim::DoubleTrack::kRoadCar ? sim::DoubleTrackParams{} : start.plant_params;
+  const double turning = 4.0 * plant.wheel_inertia / (plant.wheel_radius * plant.wheel_radius);
+  return {.relaxation = plant.relaxation_across,
+          .load_lag = plant.load_lag,
+          .rotating = 1.0 + turning / plant.mass,
+          .brakes = {plant.abs_slip_start, plant.abs_slip_end},
+          .drive = {plant.traction_slip_start, plant.traction_slip_end}};
+}
+
 Result<void> identify_and_tell(const Options& options) {
   static std::atomic<bool> wants_stop{false};  // static: must outlive the last signal
   catch_interrupts(wants_stop);
@@ -288,7 +305,9 @@ Result<void> identify_and_tell(const Options& options) {
     Share share(wants_stop);
     return identify::identify(
         logs, start->vehicle,
-        {.hold_out = options.identify.hold_out, .progress = [&](double done) { return share(done); }});
+        {.hold_out = options.identify.hold_out,
+         .wheels = wheels_of(*start),
+         .progress = [&](double done) { return share(done); }});
   }();
   if (!found) return fail(found.error());
   if (wants_stop) fmt::print(stderr, "identify: interrupted, these are the values so far\n");

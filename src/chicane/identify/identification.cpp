@@ -18,11 +18,13 @@
 namespace chicane::identify {
 namespace {
 
-constexpr double kWindow = 3.0;      ///< of a car in full size [s]
+constexpr double kWindow = 5.0;            ///< of a car in full size [s]
 constexpr double kSeen = 0.5;        ///< samples from which a prediction starts [s]
-constexpr double kLeastSpeed = 0.7;  ///< below it there is standing and reversing [m/s]
+constexpr double kLeastSpeed = 3.0;  ///< of a car in full size: below it tyres creep, and brakes hold [m/s]
 constexpr std::size_t kMostWindows = 400;
 constexpr int kRoughSteps = 12;
+constexpr double kRoughAccuracy = 3e-2, kAccuracy = 1e-3;  ///< of what is believed: an interval is a tenth of it
+constexpr std::string_view kRotating = "rotating";  ///< estimated with the others, and not of use to anybody
 constexpr std::size_t kFewWindows = 12;  ///< for a rough look
 
 /// A number that is estimated: where it is in a car in full size, and what is expected of it.
@@ -69,7 +71,7 @@ void scale_wheelbase(Car& car, double to) {
 }
 
 /// `start`: in full size.
-std::vector<Row> rows_for(const model::VehicleParams& start, bool has_pedal, bool is_centre_of_mass) {
+std::vector<Row> rows_for(const model::VehicleParams& start, const Wheels& wheels, bool has_pedal, bool is_centre_of_mass) {
   std::vector<Row> rows{
       {"latency_ms", "ms", 1e3, false, 0.1, 0.1, [](Car& c) -> double& { return c.delay; }},
       {"steer_lag_ms", "ms", 1e3, true, std::max(start.steer_lag, 0.02), 1.0,
@@ -85,6 +87,14 @@ std::vector<Row> rows_for(const model::VehicleParams& start, bool has_pedal, boo
       {"yaw_inertia_kgm2", "kg m²", 1.0, true, start.yaw_inertia, 0.3,
        [](Car& c) -> double& { return c.vehicle.yaw_inertia; }},
   };
+  if (has_four_wheels(start)) {
+    rows.push_back({"relaxation_m", "m", 1.0, true, wheels.relaxation, 0.7,
+                    [](Car& c) -> double& { return c.wheels.relaxation; }});
+    rows.push_back({"load_lag_ms", "ms", 1e3, true, wheels.load_lag, 1.0,
+                    [](Car& c) -> double& { return c.wheels.load_lag; }});
+    rows.push_back({kRotating, "", 1.0, true, wheels.rotating, 0.03,
+                    [](Car& c) -> double& { return c.wheels.rotating; }});
+  }
   if (std::isfinite(start.steer_rate_limit))
     rows.push_back({"steer_rate_limit_degps", "deg/s", 180.0 / kPi, true, start.steer_rate_limit, 1.0,
                     [](Car& c) -> double& { return c.vehicle.steer_rate_limit; }});
@@ -122,14 +132,14 @@ void set(const Row& row, double value, Car& car) {
   }
 }
 
-Beliefs beliefs_of(const std::vector<Row>& rows, const model::VehicleParams& start) {
+Beliefs beliefs_of(const std::vector<Row>& rows, const model::VehicleParams& start, const Wheels& wheels) {
   Beliefs beliefs;
   for (const Row& row : rows) {
     beliefs.mean.push_back(row.is_log ? log(row.mean) : row.mean);
     beliefs.deviation.push_back(row.deviation);
   }
-  beliefs.car = [rows, start](const std::vector<double>& theta) {
-    Car car{.vehicle = start};
+  beliefs.car = [rows, start, wheels](const std::vector<double>& theta) {
+    Car car{.vehicle = start, .wheels = wheels};
     for (std::size_t i = 0; i < rows.size(); ++i) set(rows[i], value_of(rows[i], theta[i]), car);
     car.delay = std::max(0.0, car.delay);
     return car;
@@ -259,6 +269,9 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, con
                                           const IdentifyOptions& options) {
   const model::Similarity similarity(told);
   const model::VehicleParams start = similarity.full_size(told);
+  Wheels wheels = options.wheels;
+  wheels.relaxation *= similarity.length();
+  wheels.load_lag *= similarity.time();
   std::vector<Window> windows, held_out;
   Identification found;
   bool has_pedal = !logs.empty();
@@ -278,9 +291,9 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, con
     return fail(ErrorCode::kInvalidArgument,
                 fmt::format("logs: got {:.0f} s of driving to fit, expected at least {:.3g} s",
                             to_fit / similarity.time(), 10.0 / similarity.time()));
-  std::vector<Row> rows = rows_for(start, has_pedal, is_centre_of_mass);
+  std::vector<Row> rows = rows_for(start, wheels, has_pedal, is_centre_of_mass);
   for (Row& row : rows) row.per_full_size = per_full_size(row.unit, similarity);
-  const Beliefs beliefs = beliefs_of(rows, start);
+  const Beliefs beliefs = beliefs_of(rows, start, wheels);
   Noise noise{0.055, 0.055, 0.005, 0.1, 0.02};
   const Noise least{1e-3, 1e-3, 2e-4, 5e-3, 1e-3};
   // A limit that is believed too low explains every bend wrongly, one that is too high changes nothing: the
@@ -297,7 +310,8 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, con
   bool goes_on = true;
   for (int round = 0; round < rounds && goes_on; ++round) {
     int step = 0;
-    fit = fit_windows(logs, windows, round == 0 ? first : beliefs, fit.theta, noise, [&] {
+    fit = fit_windows(logs, windows, round == 0 ? first : beliefs, fit.theta, noise,
+                      round + 1 < rounds ? kRoughAccuracy : kAccuracy, [&] {
       goes_on = options.progress((round + std::min(1.0, 0.07 * step)) / rounds);
       return goes_on && (step++ < kRoughSteps || !options.is_rough);
     });
@@ -308,11 +322,12 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, con
   }
   found.loss = fit.loss;
   const Car car = beliefs.car(fit.theta);
-  Car as_it_is{.vehicle = told};
+  Car as_it_is{.vehicle = told, .wheels = options.wheels};
   for (std::size_t i = 0; i < rows.size(); ++i)
     set(rows[i], rows[i].per_full_size * value_of(rows[i], fit.theta[i]), as_it_is);
   found.vehicle = as_it_is.vehicle;
   found.delay = std::max(0.0, as_it_is.delay);
+  found.wheels = as_it_is.wheels;
   found.has_pedal = has_pedal;
   found.residual = {fit.residual[0] / similarity.length(), fit.residual[2],
                     fit.residual[3] / similarity.speed()};

@@ -8,6 +8,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/identify/drive_log.hpp"
+#include "chicane/identify/wheels.hpp"
 #include "chicane/model/vehicle.hpp"
 
 /// A car's model from logs of driving it (docs/identification.md).
@@ -54,6 +55,7 @@ struct SlipCover {
 
 struct Identification {
   model::VehicleParams vehicle;  ///< the start's, with what was estimated
+  Wheels wheels;                 ///< the same of what no controller's model has
   double delay = 0.0;            ///< from command to effect [s]
   std::vector<Estimate> estimates;
   std::vector<PredictionError>
@@ -87,6 +89,7 @@ inline constexpr double kRaceUse = 0.6, kLeastRaceUse = 0.4;
 struct IdentifyOptions {
   double hold_out = 0.3;  ///< share of each log, at its end, kept for the prediction errors, in [0, 0.8]
   bool is_rough = false;  ///< few stretches and steps: enough to compare cars to begin with by their loss
+  Wheels wheels{};        ///< of the car that `start` is of: what to expect
   /// Is told the share done, and ends the search by returning false: the best so far is the result.
   std::function<bool(double)> progress = [](double) { return true; };
 };

@@ -98,6 +98,8 @@ Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.f
   std::size_t sample = 0;
   double steer = log.told.front().steer;
   double acceleration = 0.0;
+  double pressed = 0.0;
+  const double most_steer = car.vehicle.steer_limit;
   for (std::size_t i = 0; i < count; ++i) {
     const double t = start_ + kStep * static_cast<double>(i);
     while (sample + 2 < log.samples.size() && log.samples[sample + 1].time <= t) ++sample;
@@ -106,44 +108,66 @@ Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.f
     const double share = b.time > a.time ? std::clamp((t - a.time) / (b.time - a.time), 0.0, 1.0) : 0.0;
     const MeasuredSpeed::Speed alone = has_throttle ? MeasuredSpeed::Speed{} : measured.at(t);
     const double speed = has_throttle ? a.speed + share * (b.speed - a.speed) : alone.value;
-    const double asked = steering.mean(t - car.delay, t - car.delay + kStep);
+    const double asked =
+        std::clamp(steering.mean(t - car.delay, t - car.delay + kStep), -most_steer, most_steer);
     const double throttle =
         has_throttle ? std::clamp(pedal.mean(t - car.delay, t - car.delay + kStep), -1.0, 1.0) : 0.0;
     const double wanted =
         has_throttle ? model::longitudinal_acceleration(car.vehicle, throttle, speed) : alone.acceleration;
-    if (i == 0) acceleration = wanted;
+    if (i == 0) {
+      acceleration = wanted;
+      pressed = throttle;
+    }
     steer_.push_back(steer);
     speed_.push_back(speed);
     throttle_.push_back(throttle);
+    pedal_.push_back(pressed);
     acceleration_.push_back(acceleration);
     const double most = car.vehicle.steer_rate_limit * kStep;
     steer += std::clamp(asked + (steer - asked) * lags.steer.end - steer, -most, most);
+    pressed = throttle + (pressed - throttle) * lags.drive.end;
     acceleration = has_throttle ? wanted + (acceleration - wanted) * lags.drive.end : wanted;
   }
 }
 
-void drive(const Car& car, const DriveLog& log, const Actuators& actuators, std::size_t first,
-           std::size_t last, const Start& start, std::vector<Expected>& expected) {
+namespace {
+
+/// What a moment that is not on the grid is, `ahead` of the one that is [s].
+struct Place {
+  double x, y, psi;
+};
+
+Expected seen_at(const Car& car, const Place& at, double ahead, double vx, double vy, double r, double acceleration,
+                 double steer) {
+  const double course = at.psi + 0.5 * ahead * r;
+  const double x = at.x + ahead * (vx * cos(course) - vy * sin(course));
+  const double y = at.y + ahead * (vx * sin(course) + vy * cos(course));
+  const double yaw = at.psi + ahead * r;
+  const double across = vy + car.reference * r;
+  return {x + car.reference * cos(yaw), y + car.reference * sin(yaw), yaw, hypot(vx + ahead * acceleration, across), r, vx, vy,
+          steer};
+}
+
+void move(Place& at, double dt, double vx, double vy, double r, double next_vx, double next_vy, double next_r) {
+  const double course = at.psi + 0.25 * dt * (r + next_r);
+  const double along = 0.5 * (vx + next_vx), across = 0.5 * (vy + next_vy);
+  at.x += dt * (along * cos(course) - across * sin(course));
+  at.y += dt * (along * sin(course) + across * cos(course));
+  at.psi += 0.5 * dt * (r + next_r);
+}
+
+/// By the model of the controllers: cars that FourWheels cannot stand for.
+void drive_single_track(const Car& car, const DriveLog& log, const Actuators& actuators, std::size_t first,
+                        std::size_t last, const Start& start, std::vector<Expected>& expected) {
   constexpr double kStep = Actuators::kStep;
   const model::PredictionModel model(car.vehicle);
   const auto lags = model.lags(kStep);
   const bool has_throttle = log.has_throttle();
-  double x = start[0], y = start[1], psi = start[2];
+  Place at{start[0], start[1], start[2]};
   model::BodyMotion<double> now{start[3], start[4], start[5], 0.0, 0.0};
   double t = log.samples[first].time;
   auto i = static_cast<std::size_t>((t - actuators.start()) / kStep);
   now.acceleration = actuators.acceleration(i);
-  expected.clear();
-  const auto keep = [&](double ahead) {  // a moment that is not on the grid
-    const double course = psi + 0.5 * ahead * now.r;
-    const double px = x + ahead * (now.vx * cos(course) - now.vy * sin(course));
-    const double py = y + ahead * (now.vx * sin(course) + now.vy * cos(course));
-    const double yaw = psi + ahead * now.r;
-    const double across = now.vy + car.reference * now.r;
-    expected.push_back({px + car.reference * cos(yaw), py + car.reference * sin(yaw), yaw,
-                        hypot(now.vx + ahead * now.acceleration, across), now.r, now.vx, now.vy,
-                        actuators.steer(i) + car.steer_offset});
-  };
   for (std::size_t sample = first; sample < last; ++sample) {
     const double until = log.samples[sample].time;
     while (until - t >= kStep && i + 1 < actuators.size()) {
@@ -156,16 +180,59 @@ void drive(const Car& car, const DriveLog& log, const Actuators& actuators, std:
       model::BodyMotion<double> next = midpoint_step(model, car, now, steer, mean, kStep);
       next.acceleration = has_throttle ? wanted + (now.acceleration - wanted) * lags.drive.end : wanted;
       if (!has_throttle) next.vx = now.vx + actuators.speed(i + 1) - actuators.speed(i);
-      const double course = psi + 0.25 * kStep * (now.r + next.r);
-      const double vx = 0.5 * (now.vx + next.vx), vy = 0.5 * (now.vy + next.vy);
-      x += kStep * (vx * cos(course) - vy * sin(course));
-      y += kStep * (vx * sin(course) + vy * cos(course));
-      psi += 0.5 * kStep * (now.r + next.r);
+      move(at, kStep, now.vx, now.vy, now.r, next.vx, next.vy, next.r);
       now = next;
       t += kStep;
       ++i;
     }
-    keep(until - t);
+    expected.push_back(seen_at(car, at, until - t, now.vx, now.vy, now.r, now.acceleration,
+                               actuators.steer(i) + car.steer_offset));
+  }
+}
+
+void drive_four_wheels(const Car& car, const DriveLog& log, const Actuators& actuators, std::size_t first,
+                       std::size_t last, const Start& start, std::vector<Expected>& expected) {
+  constexpr double kStep = Actuators::kStep;
+  const FourWheels wheels(car.vehicle, car.wheels, kStep);
+  const bool has_throttle = log.has_throttle();
+  Place at{start[0], start[1], start[2]};
+  double t = log.samples[first].time;
+  auto i = static_cast<std::size_t>((t - actuators.start()) / kStep);
+  const auto steer_at = [&](std::size_t n) { return actuators.steer(n) + car.steer_offset; };
+  FourWheels::Motion now = wheels.steady(start[3], start[4], start[5], steer_at(i), actuators.acceleration(i));
+  for (std::size_t sample = first; sample < last; ++sample) {
+    const double until = log.samples[sample].time;
+    while (until - t >= kStep && i + 1 < actuators.size()) {
+      const FourWheels::Motion before = now;
+      const double drag = -model::longitudinal_acceleration(car.vehicle, 0.0, now.vx);
+      double force = 0.0;
+      if (has_throttle) {
+        const double pedal = 0.5 * (actuators.pedal(i) + actuators.pedal(i + 1));
+        force = model::longitudinal_acceleration(car.vehicle, pedal, now.vx) + drag;
+      } else {
+        // What it takes that the speed is the measured one.
+        force = (actuators.speed(i + 1) - actuators.speed(i)) / kStep - now.r * now.vy + now.resistance + drag;
+      }
+      wheels.advance(now, steer_at(i), 0.5 * (steer_at(i) + steer_at(i + 1)), force, drag);
+      if (!has_throttle) now.vx = before.vx + actuators.speed(i + 1) - actuators.speed(i);
+      move(at, kStep, before.vx, before.vy, before.r, now.vx, now.vy, now.r);
+      t += kStep;
+      ++i;
+    }
+    expected.push_back(seen_at(car, at, until - t, now.vx, now.vy, now.r, now.forward + now.r * now.vy,
+                               steer_at(i)));
+  }
+}
+
+}  // namespace
+
+void drive(const Car& car, const DriveLog& log, const Actuators& actuators, std::size_t first,
+           std::size_t last, const Start& start, std::vector<Expected>& expected) {
+  expected.clear();
+  if (has_four_wheels(car.vehicle)) {
+    drive_four_wheels(car, log, actuators, first, last, start, expected);
+  } else {
+    drive_single_track(car, log, actuators, first, last, start, expected);
   }
 }
 

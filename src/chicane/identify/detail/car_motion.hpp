@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "chicane/identify/detail/four_wheels.hpp"
 #include "chicane/identify/drive_log.hpp"
 #include "chicane/model/vehicle.hpp"
 
@@ -15,6 +16,7 @@ struct Car {
   double delay = 0.1;         ///< from command to effect [s]
   double steer_offset = 0.0;  ///< of the road-wheel angle beyond what was commanded [rad]
   double reference = 0.0;     ///< the log's reference point ahead of the centre of mass [m]
+  Wheels wheels{};            ///< of a car that has_four_wheels()
 };
 
 /// Steering and drive of a log, on a grid: they need the commands and measured speeds alone.
@@ -29,11 +31,12 @@ class Actuators {
   [[nodiscard]] double steer(std::size_t i) const noexcept { return steer_[i]; }
   [[nodiscard]] double acceleration(std::size_t i) const noexcept { return acceleration_[i]; }
   [[nodiscard]] double throttle(std::size_t i) const noexcept { return throttle_[i]; }
+  [[nodiscard]] double pedal(std::size_t i) const noexcept { return pedal_[i]; }  ///< after its lag
   [[nodiscard]] double speed(std::size_t i) const noexcept { return speed_[i]; }  ///< as measured
 
  private:
   double start_;
-  std::vector<double> steer_, acceleration_, throttle_, speed_;
+  std::vector<double> steer_, acceleration_, throttle_, pedal_, speed_;
 };
 
 /// Where a window begins: x, y [m], psi [rad], vx, vy [m/s], r [rad/s].

@@ -189,15 +189,12 @@ Linearised linearise(const std::vector<DriveLog>& logs, const std::vector<Window
     const Car car = beliefs.car(other);
     return Side{car, actuators_of(logs, car)};
   };
-  std::vector<Side> sides;  // above and below for each number
-  const VectorXd steps = 1e-3 * beliefs.deviation;
+  std::vector<Side> sides;  // beside, for each number
+  const VectorXd steps = 1e-4 * beliefs.deviation;
   const Side here = side(-1, 0.0);
-  for (Eigen::Index i = 0; i < p; ++i) {
-    sides.push_back(side(i, steps[i]));
-    sides.push_back(side(i, -steps[i]));
-  }
+  for (Eigen::Index i = 0; i < p; ++i) sides.push_back(side(i, steps[i]));
   std::vector<Expected> expected;
-  VectorXd r, above, below;
+  VectorXd r, beside;
   for (const Window& window : windows) {
     const DriveLog& log = logs[window.log];
     const auto at = [&](const Side& s, VectorXd& to) {
@@ -207,9 +204,8 @@ Linearised linearise(const std::vector<DriveLog>& logs, const std::vector<Window
     at(here, r);
     MatrixXd by_theta(r.size(), p);
     for (Eigen::Index i = 0; i < p; ++i) {
-      at(sides[static_cast<std::size_t>(2 * i)], above);
-      at(sides[static_cast<std::size_t>(2 * i + 1)], below);
-      by_theta.col(i) = (above - below) / (2.0 * steps[i]);
+      at(sides[static_cast<std::size_t>(i)], beside);
+      by_theta.col(i) = (beside - r) / steps[i];
     }
     const VectorXd root = roots_of_weights(r);
     const MatrixXd by_start =
@@ -225,39 +221,30 @@ Linearised linearise(const std::vector<DriveLog>& logs, const std::vector<Window
   return now;
 }
 
-/// How much the numbers vary where one stretch of the log is left out, blocks of kBlock windows in turn (eq.
-/// 8).
+/// How much the numbers vary where one window of the log is left out (eq. 8).
 MatrixXd jackknife(const Linearised& at) {
-  constexpr std::size_t kBlock = 2;  // windows: a bend reaches into the next one
   const Eigen::Index p = at.slope.size();
   std::vector<VectorXd> moved;
   VectorXd mean = VectorXd::Zero(p);
-  for (std::size_t first = 0; first < at.slopes.size(); first += kBlock) {
-    MatrixXd rest = at.information;
-    VectorXd slope = VectorXd::Zero(p);
-    for (std::size_t w = first; w < std::min(first + kBlock, at.slopes.size()); ++w) {
-      rest -= at.informations[w];
-      slope += at.slopes[w];
-    }
-    moved.emplace_back(rest.ldlt().solve(slope));
+  for (std::size_t w = 0; w < at.slopes.size(); ++w) {
+    moved.emplace_back((at.information - at.informations[w]).ldlt().solve(at.slopes[w]));
     mean += moved.back();
   }
-  const double blocks = static_cast<double>(moved.size());
-  mean /= blocks;
+  const double windows = static_cast<double>(moved.size());
+  mean /= windows;
   MatrixXd covariance = MatrixXd::Zero(p, p);
   for (const VectorXd& each : moved) covariance += (each - mean) * (each - mean).transpose();
-  // Few blocks tell their own variance badly: Student's quantile in the place of 2.
-  const double quantile = 1.96 + 2.37 / std::max(1.0, blocks - 1.0);
-  return 0.25 * quantile * quantile * (blocks - 1.0) / blocks * covariance;
+  // Few windows tell their own variance badly: Student's quantile in the place of 2.
+  const double quantile = 1.96 + 2.37 / std::max(1.0, windows - 1.0);
+  return 0.25 * quantile * quantile * (windows - 1.0) / windows * covariance;
 }
 
 }  // namespace
 
 WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,
                       const Beliefs& believed, const std::vector<double>& from, const Noise& noise,
-                      const std::function<bool()>& go_on) {
+                      double accuracy, const std::function<bool()>& go_on) {
   constexpr int kMostIterations = 40;
-  constexpr double kSmallStep = 1e-4;  // of the deviations believed
   const Expectation beliefs(believed);
   VectorXd theta = mapped(from);
   WindowFit fit;
@@ -281,17 +268,18 @@ WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& wi
     for (std::size_t w = 0; w < windows.size() && then < now; ++w) {
       const Eliminated& e = at.windows[w];
       Window& window = tried[w];
-      then += move_start(
-          logs[window.log], window, car, actuators[window.log], noise,
-          -e.start_matrix.triangularView<Eigen::Upper>().solve(e.start_rest + e.start_theta * step));
+      move_start(logs[window.log], window, car, actuators[window.log], noise,
+                 -e.start_matrix.triangularView<Eigen::Upper>().solve(e.start_rest + e.start_theta * step));
+      // The starts follow along a bent valley.
+      then += improve_start(logs[window.log], window, car, actuators[window.log], noise, 1);
     }
     if (!(then < now)) {
       lambda *= 10.0;
       if (lambda > 1e8) break;
       continue;
     }
-    const bool is_done = step.cwiseQuotient(beliefs.deviation).cwiseAbs().maxCoeff() < kSmallStep &&
-                         now - then < 1e-6 * (1.0 + now);
+    const bool is_done = step.cwiseQuotient(beliefs.deviation).cwiseAbs().maxCoeff() < accuracy &&
+                         now - then < 1e-2 * accuracy * (1.0 + now);
     theta += step;
     windows = std::move(tried);
     now = then;

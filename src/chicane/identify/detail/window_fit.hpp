@@ -38,10 +38,11 @@ struct WindowFit {
 
 /// Multiple shooting (docs/identification.md, eq. 4–9): the numbers and the starts of all windows that
 /// explain the samples best, by Levenberg and Marquardt with the starts eliminated window by window. Huber's
-/// loss. Windows keep their fitted starts.
+/// loss. Windows keep their fitted starts. Ends where a step is below `accuracy` of the deviations believed.
 [[nodiscard]] WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,
                                     const Beliefs& beliefs, const std::vector<double>& theta,
-                                    const Noise& noise, const std::function<bool()>& go_on);
+                                    const Noise& noise, double accuracy,
+                                    const std::function<bool()>& go_on);
 
 /// The start alone, of one window in which only samples up to `fitted` count.
 void fit_start(const std::vector<DriveLog>& logs, Window& window, std::size_t fitted, const Car& car,
