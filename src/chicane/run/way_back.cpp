@@ -78,30 +78,30 @@ Result<WayBackOutcome> drive_back(const scenario::Scenario& scenario, const Star
   ClosedLoop& loop = **created;
   loop.restart_at(start.state);
   WayBackOutcome outcome{.start = start};
-  constexpr double kNever = WayBackOutcome::kNever;
-  double along_since = kNever;
+  constexpr double kNotYet = WayBackOutcome::kNever;
+  double along_since = kNotYet;
   const auto end = [&] {
-    return outcome.lapping < kNever ? outcome.lapping + kWatched : WayBackOutcome::kInTime;
+    return outcome.lapping < kNotYet ? outcome.lapping + kWatched : WayBackOutcome::kInTime;
   };
   while (loop.time() < end()) {
     const bool is_new = loop.advance();
     const telemetry::Frame& frame = loop.frame();
     const sim::WorldState& car = loop.world();
     const double edge = car.edge_distance;
-    if (outcome.back < kNever) outcome.least_edge = std::min(outcome.least_edge, edge);
+    if (outcome.back < kNotYet) outcome.least_edge = std::min(outcome.least_edge, edge);
     if (!is_new) continue;
     const double speed = hypot(frame.truth.vx, frame.truth.vy);
     const double slip = speed > kStandingSpeed ? atan2(frame.truth.vy, frame.truth.vx) : 0.0;
     const double course = wrap_angle(car.heading_error + slip);
     const bool is_along = edge >= 0.0 && std::fabs(course) < kAlong && std::fabs(car.heading_error) < kAlong;
-    if (!is_along) along_since = kNever;
-    if (is_along && along_since == kNever) along_since = loop.time();
-    if (outcome.back == kNever) {
+    if (!is_along) along_since = kNotYet;
+    if (is_along && along_since == kNotYet) along_since = loop.time();
+    if (outcome.back == kNotYet) {
       outcome.farthest = std::max(outcome.farthest, -edge);
       if (loop.time() - along_since > kBack || (is_along && speed < kStandingSpeed))
         outcome.back = loop.time();
     }
-    if (outcome.back < kNever && outcome.lapping == kNever && is_along && speed > kLapping)
+    if (outcome.back < kNotYet && outcome.lapping == kNotYet && is_along && speed > kLapping)
       outcome.lapping = loop.time();
   }
   return outcome;
