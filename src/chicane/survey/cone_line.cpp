@@ -119,7 +119,8 @@ class ZeroLines {
            raster_.cell * Vec2{x + 0.5 + (edge.second ? 0.0 : share), y + 0.5 + (edge.second ? share : 0.0)};
   }
 
-  std::pair<std::vector<Vec2>, bool> follow(const Edge& begin) {
+  /// By value: the first edge is taken out of next_ with the others.
+  std::pair<std::vector<Vec2>, bool> follow(Edge begin) {
     std::vector<Vec2> line{place(begin)};
     Edge at = begin;
     for (auto step = next_.find(at); step != next_.end(); step = next_.find(at)) {
