@@ -78,6 +78,11 @@ std::string advice(const Identification& found) {
         found.shown_friction() > 0.1
             ? fmt::format(":\nthe log shows --set friction_low={}", number_text(found.shown_friction(), 2))
             : " (friction_low)");
+  if (found.correlation > identify::kWrongModel)
+    text += fmt::format(
+        "What is left unexplained is not noise ({:.0f} samples tell as much as one that is): the model lacks "
+        "something of\nthis car. The intervals hold for the model, and may miss the car's own numbers.\n",
+        found.correlation);
   for (const Estimate& each : found.estimates) {
     if (each.key == "steer_offset_deg" && each.is_excited && (each.low > 0.1 || each.high < -0.1))
       text += fmt::format("The wheels point {} deg {} when 0 is asked: correct it where commands are sent.\n",
@@ -119,6 +124,7 @@ std::string json_of(const Identification& found) {
                                  {"assumed", each.assumed},
                                  {"is_excited", each.is_excited}});
   json["residual_m"] = found.residual[0];
+  json["correlation"] = found.correlation;
   json["tire_use"] = {found.use_front, found.use_rear};
   json["knows_tires"] = found.knows_tires();
   json["friction_low"] = found.least_friction();

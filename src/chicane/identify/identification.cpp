@@ -321,6 +321,7 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, con
       noise[kind] = std::max(fit.residual[kind], least[kind]);
   }
   found.loss = fit.loss;
+  found.correlation = fit.correlation;
   const Car car = beliefs.car(fit.theta);
   Car as_it_is{.vehicle = told, .wheels = options.wheels};
   for (std::size_t i = 0; i < rows.size(); ++i)

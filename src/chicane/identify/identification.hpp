@@ -70,7 +70,9 @@ struct Identification {
   std::vector<PredictedStretch> stretches;        ///< what held_out is the mean of
   std::vector<Compared> fitted;                   ///< samples that were fitted, each window from its start
   SlipCover slip;
-  double loss = 0.0;      ///< what was minimised (docs/identification.md, eq. 4)
+  /// Samples for each one that is independent: 1 where the model explains all but noise. Intervals count it.
+  double correlation = 1.0;
+  double loss = 0.0;      ///< what was minimised (docs/identification.md, eq. 6)
   bool has_pedal = true;  ///< else drive and brakes are the start's
   /// Whether the tyres were used enough for a lap near the limit: kRaceUse of the peak's slip at the axle
   /// that limits the car, kLeastRaceUse at the other one.
@@ -80,6 +82,8 @@ struct Identification {
   /// The friction that both axles have used.
   [[nodiscard]] double shown_friction() const noexcept;
 };
+/// Beyond it the model lacks something that the log shows: intervals hold for the model, not for the car.
+inline constexpr double kWrongModel = 2.0;
 inline constexpr double kRaceUse = 0.6, kLeastRaceUse = 0.4;
 
 /// Wheelbase of a car without slip that would turn as the logs do, by their gentler bends [m]: enough to tell

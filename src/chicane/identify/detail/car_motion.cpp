@@ -84,6 +84,23 @@ class MeasuredSpeed {
   std::size_t first_ = 0;
 };
 
+/// Steering over a step: at its end, and in its mean.
+struct Followed {
+  double end, mean;
+};
+/// At the largest rate while that is less than the lag asks for, then with the lag.
+Followed follow(double steer, double asked, double lag, double rate, const model::PredictionModel::Lag& alone) {
+  const double apart = std::fabs(asked - steer);
+  if (!(apart > rate * lag)) return {asked + (steer - asked) * alone.end, asked + (steer - asked) * alone.mean};
+  const double ramp = std::min(apart / rate - lag, Actuators::kStep);
+  const double left = apart - rate * ramp;
+  const double rest = Actuators::kStep - ramp;
+  const double decay = lag > 1e-4 ? exp(-rest / lag) : (rest > 0.0 ? 0.0 : 1.0);
+  const double area = (apart - 0.5 * rate * ramp) * ramp + left * lag * (1.0 - decay);
+  return {asked + std::copysign(left * decay, steer - asked),
+          asked + std::copysign(area / Actuators::kStep, steer - asked)};
+}
+
 }  // namespace
 
 Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.front().time} {
@@ -95,6 +112,7 @@ Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.f
   const bool has_throttle = log.has_throttle();
   MeasuredSpeed measured(log.samples);
   steer_.reserve(count);
+  steer_mean_.reserve(count);
   std::size_t sample = 0;
   double steer = log.told.front().steer;
   double acceleration = 0.0;
@@ -123,8 +141,9 @@ Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.f
     throttle_.push_back(throttle);
     pedal_.push_back(pressed);
     acceleration_.push_back(acceleration);
-    const double most = car.vehicle.steer_rate_limit * kStep;
-    steer += std::clamp(asked + (steer - asked) * lags.steer.end - steer, -most, most);
+    const Followed followed = follow(steer, asked, car.vehicle.steer_lag, car.vehicle.steer_rate_limit, lags.steer);
+    steer_mean_.push_back(followed.mean);
+    steer = followed.end;
     pressed = throttle + (pressed - throttle) * lags.drive.end;
     acceleration = has_throttle ? wanted + (acceleration - wanted) * lags.drive.end : wanted;
   }
@@ -199,6 +218,7 @@ void drive_four_wheels(const Car& car, const DriveLog& log, const Actuators& act
   double t = log.samples[first].time;
   auto i = static_cast<std::size_t>((t - actuators.start()) / kStep);
   const auto steer_at = [&](std::size_t n) { return actuators.steer(n) + car.steer_offset; };
+  const auto steer_mean = [&](std::size_t n) { return actuators.steer_mean(n) + car.steer_offset; };
   FourWheels::Motion now = wheels.steady(start[3], start[4], start[5], steer_at(i), actuators.acceleration(i));
   for (std::size_t sample = first; sample < last; ++sample) {
     const double until = log.samples[sample].time;
@@ -213,7 +233,7 @@ void drive_four_wheels(const Car& car, const DriveLog& log, const Actuators& act
         // What it takes that the speed is the measured one.
         force = (actuators.speed(i + 1) - actuators.speed(i)) / kStep - now.r * now.vy + now.resistance + drag;
       }
-      wheels.advance(now, steer_at(i), 0.5 * (steer_at(i) + steer_at(i + 1)), force, drag);
+      wheels.advance(now, 0.5 * (steer_mean(i > 0 ? i - 1 : i) + steer_mean(i)), steer_mean(i), force, drag);
       if (!has_throttle) now.vx = before.vx + actuators.speed(i + 1) - actuators.speed(i);
       move(at, kStep, before.vx, before.vy, before.r, now.vx, now.vy, now.r);
       t += kStep;

@@ -29,6 +29,7 @@ class Actuators {
   [[nodiscard]] std::size_t size() const noexcept { return steer_.size(); }
   /// At grid point `i`, and means of what is asked over the step from there.
   [[nodiscard]] double steer(std::size_t i) const noexcept { return steer_[i]; }
+  [[nodiscard]] double steer_mean(std::size_t i) const noexcept { return steer_mean_[i]; }
   [[nodiscard]] double acceleration(std::size_t i) const noexcept { return acceleration_[i]; }
   [[nodiscard]] double throttle(std::size_t i) const noexcept { return throttle_[i]; }
   [[nodiscard]] double pedal(std::size_t i) const noexcept { return pedal_[i]; }  ///< after its lag
@@ -36,7 +37,7 @@ class Actuators {
 
  private:
   double start_;
-  std::vector<double> steer_, acceleration_, throttle_, pedal_, speed_;
+  std::vector<double> steer_, steer_mean_, acceleration_, throttle_, pedal_, speed_;
 };
 
 /// Where a window begins: x, y [m], psi [rad], vx, vy [m/s], r [rad/s].

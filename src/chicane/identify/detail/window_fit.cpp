@@ -48,7 +48,7 @@ VectorXd roots_of_weights(const VectorXd& r) {
       [](double each) { return std::fabs(each) <= kHuber ? 1.0 : std::sqrt(kHuber / std::fabs(each)); });
 }
 
-/// A window's derivatives, its start eliminated (eq. 7).
+/// A window's derivatives, its start eliminated (eq. 9).
 struct Eliminated {
   MatrixXd by_theta;  ///< of what the start cannot explain
   VectorXd rest;
@@ -221,7 +221,7 @@ Linearised linearise(const std::vector<DriveLog>& logs, const std::vector<Window
   return now;
 }
 
-/// How much the numbers vary where one window of the log is left out (eq. 8).
+/// How much the numbers vary where one window of the log is left out (eq. 11).
 MatrixXd jackknife(const Linearised& at) {
   const Eigen::Index p = at.slope.size();
   std::vector<VectorXd> moved;
@@ -238,6 +238,41 @@ MatrixXd jackknife(const Linearised& at) {
   const double quantile = 1.96 + 2.37 / std::max(1.0, windows - 1.0);
   return 0.25 * quantile * quantile * (windows - 1.0) / windows * covariance;
 }
+
+/// By how much correlated residuals tell less than as many that are not: 1 + 2 Σ (1 − l/(L + 1)) ρ_l up to a
+/// second apart (eq. 10), at least 1; the largest of place, yaw and speed.
+class Correlation {
+ public:
+  void add(const DriveLog& log, const Window& window, const VectorXd& r) {
+    const auto count = static_cast<Eigen::Index>(window.last - window.first);
+    const double span = log.samples[window.last - 1].time - log.samples[window.first].time;
+    const auto most = std::min(kMost, static_cast<Eigen::Index>(static_cast<double>(count) / std::max(span, 0.1)));
+    reach_ = std::max(reach_, most);
+    for (Eigen::Index kind = 0; kind < kKinds; ++kind) {
+      const auto at = [&](Eigen::Index n) { return std::clamp(r[5 * n + kind], -kHuber, kHuber); };
+      for (Eigen::Index lag = 0; lag <= most; ++lag)
+        for (Eigen::Index n = 0; n + lag < count; ++n) sums_(lag, kind) += at(n) * at(n + lag);
+    }
+  }
+  [[nodiscard]] double factor() const {
+    double largest = 1.0;
+    for (Eigen::Index kind = 0; kind < kKinds; ++kind) {
+      if (!(sums_(0, kind) > 0.0)) continue;
+      double factor = 1.0;
+      for (Eigen::Index lag = 1; lag <= reach_; ++lag)
+        factor += 2.0 * (1.0 - static_cast<double>(lag) / static_cast<double>(reach_ + 1)) * sums_(lag, kind) /
+                  sums_(0, kind);
+      largest = std::max(largest, factor);
+    }
+    return largest;
+  }
+
+ private:
+  static constexpr Eigen::Index kMost = 100;  ///< samples in a second that are looked at
+  static constexpr Eigen::Index kKinds = 4;   ///< of residuals: yaw rate follows from yaw
+  MatrixXd sums_ = MatrixXd::Zero(kMost + 1, kKinds);
+  Eigen::Index reach_ = 0;
+};
 
 }  // namespace
 
@@ -289,8 +324,6 @@ WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& wi
   }
   const MatrixXd inverse = at.information.ldlt().solve(MatrixXd::Identity(theta.size(), theta.size()));
   const VectorXd weight = beliefs.deviation.cwiseAbs2().cwiseInverse();
-  const MatrixXd covariance = jackknife(at) + inverse * weight.asDiagonal() * inverse;
-  fit.deviation = listed(inverse.diagonal().cwiseMax(covariance.diagonal()).cwiseMax(0.0).cwiseSqrt());
   fit.theta = listed(theta);
   fit.loss = now;
   const VectorXd root = inverse.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -302,9 +335,11 @@ WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& wi
   std::array<std::vector<double>, 5> sizes;
   std::vector<Expected> expected;
   VectorXd r;
+  Correlation correlated;
   for (const Window& window : windows) {
     drive(car, logs[window.log], actuators[window.log], window.first, window.last, window.start, expected);
     residuals(logs[window.log], window, expected, window.start, noise, r);
+    correlated.add(logs[window.log], window, r);
     for (Eigen::Index i = 0; i + 1 < r.size(); ++i)
       sizes[static_cast<std::size_t>(i % 5)].push_back(std::fabs(r[i]) *
                                                        noise[static_cast<std::size_t>(i % 5)]);
@@ -315,6 +350,12 @@ WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& wi
     std::nth_element(sizes[kind].begin(), middle, sizes[kind].end());
     fit.residual[kind] = 1.4826 * *middle;  // of a normal distribution with this median
   }
+  // What was believed before is as certain as it was; samples tell as much as fewer independent ones.
+  fit.correlation = correlated.factor();
+  const MatrixXd believed_alone = inverse * weight.asDiagonal() * inverse;
+  const VectorXd plain = fit.correlation * (inverse - believed_alone).diagonal() + believed_alone.diagonal();
+  const VectorXd left_out = (jackknife(at) + believed_alone).diagonal();
+  fit.deviation = listed(plain.cwiseMax(left_out).cwiseMin(beliefs.deviation.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt());
   return fit;
 }
 

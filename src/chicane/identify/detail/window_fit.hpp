@@ -27,16 +27,17 @@ struct Beliefs {
 
 struct WindowFit {
   std::vector<double> theta;
-  /// Standard deviations: the larger of what the residuals' size says, and of what the windows' disagreement
-  /// does.
+  /// Standard deviations: the larger of what size and correlation of the residuals say, and of what the
+  /// windows' disagreement does. No larger than what was believed.
   std::vector<double> deviation;
+  double correlation = 1.0;  ///< samples for each one that is independent
   std::vector<std::vector<double>> correlations;  ///< of theta
   Noise residual{};                               ///< standard deviations of what is left, by its median
   double loss = 0.0;                              ///< of samples and beliefs
   int iterations = 0;
 };
 
-/// Multiple shooting (docs/identification.md, eq. 4–9): the numbers and the starts of all windows that
+/// Multiple shooting (docs/identification.md, eq. 6–12): the numbers and the starts of all windows that
 /// explain the samples best, by Levenberg and Marquardt with the starts eliminated window by window. Huber's
 /// loss. Windows keep their fitted starts. Ends where a step is below `accuracy` of the deviations believed.
 [[nodiscard]] WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,
