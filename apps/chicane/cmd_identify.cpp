@@ -309,11 +309,10 @@ Result<void> identify_and_tell(const Options& options) {
   }
   const auto found = [&] {
     Share share(wants_stop);
-    return identify::identify(
-        logs, start->vehicle,
-        {.hold_out = options.identify.hold_out,
-         .wheels = wheels_of(*start),
-         .progress = [&](double done) { return share(done); }});
+    return identify::identify(logs, start->vehicle,
+                              {.hold_out = options.identify.hold_out,
+                               .wheels = wheels_of(*start),
+                               .progress = [&](double done) { return share(done); }});
   }();
   if (!found) return fail(found.error());
   if (wants_stop) fmt::print(stderr, "identify: interrupted, these are the values so far\n");

@@ -103,7 +103,8 @@ TEST(FourWheels, StayFiniteBeyondTheTyres) {
   model::VehicleParams vehicle = model::road_car_params();
   for (const double friction : {0.05, 1.2, 3.0}) {
     vehicle.friction = friction;
-    const FourWheels wheels(vehicle, {.relaxation = 0.0, .load_lag = 0.0, .rotating = 1.0, .brakes = {}, .drive = {}}, kStep);
+    const FourWheels wheels(
+        vehicle, {.relaxation = 0.0, .load_lag = 0.0, .rotating = 1.0, .brakes = {}, .drive = {}}, kStep);
     FourWheels::Motion motion = wheels.steady(40.0, 3.0, 1.0, 0.4, 5.0);
     for (int i = 0; i < 500; ++i) wheels.advance(motion, 0.4, 0.4, i % 100 < 50 ? 30.0 : -30.0, 0.1);
     EXPECT_TRUE(std::isfinite(motion.vx + motion.vy + motion.r)) << friction;

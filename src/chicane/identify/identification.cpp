@@ -18,14 +18,15 @@
 namespace chicane::identify {
 namespace {
 
-constexpr double kWindow = 5.0;            ///< of a car in full size [s]
+constexpr double kWindow = 5.0;      ///< of a car in full size [s]
 constexpr double kSeen = 0.5;        ///< samples from which a prediction starts [s]
 constexpr double kLeastSpeed = 3.0;  ///< of a car in full size: below it tyres creep, and brakes hold [m/s]
 constexpr std::size_t kMostWindows = 400;
 constexpr int kRoughSteps = 12;
-constexpr double kRoughAccuracy = 3e-2, kAccuracy = 1e-3;  ///< of what is believed: an interval is a tenth of it
+constexpr double kRoughAccuracy = 3e-2,
+                 kAccuracy = 1e-3;                  ///< of what is believed: an interval is a tenth of it
 constexpr std::string_view kRotating = "rotating";  ///< estimated with the others, and not of use to anybody
-constexpr std::size_t kFewWindows = 12;  ///< for a rough look
+constexpr std::size_t kFewWindows = 12;             ///< for a rough look
 
 /// A number that is estimated: where it is in a car in full size, and what is expected of it.
 struct Row {
@@ -71,7 +72,8 @@ void scale_wheelbase(Car& car, double to) {
 }
 
 /// `start`: in full size.
-std::vector<Row> rows_for(const model::VehicleParams& start, const Wheels& wheels, bool has_pedal, bool is_centre_of_mass) {
+std::vector<Row> rows_for(const model::VehicleParams& start, const Wheels& wheels, bool has_pedal,
+                          bool is_centre_of_mass) {
   std::vector<Row> rows{
       {"latency_ms", "ms", 1e3, false, 0.1, 0.1, [](Car& c) -> double& { return c.delay; }},
       {"steer_lag_ms", "ms", 1e3, true, std::max(start.steer_lag, 0.02), 1.0,
@@ -312,9 +314,9 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, con
     int step = 0;
     fit = fit_windows(logs, windows, round == 0 ? first : beliefs, fit.theta, noise,
                       round + 1 < rounds ? kRoughAccuracy : kAccuracy, [&] {
-      goes_on = options.progress((round + std::min(1.0, 0.07 * step)) / rounds);
-      return goes_on && (step++ < kRoughSteps || !options.is_rough);
-    });
+                        goes_on = options.progress((round + std::min(1.0, 0.07 * step)) / rounds);
+                        return goes_on && (step++ < kRoughSteps || !options.is_rough);
+                      });
     // Both directions of the place are alike.
     fit.residual[0] = fit.residual[1] = std::max(fit.residual[0], fit.residual[1]);
     for (std::size_t kind = 0; kind < noise.size(); ++kind)

@@ -89,9 +89,11 @@ struct Followed {
   double end, mean;
 };
 /// At the largest rate while that is less than the lag asks for, then with the lag.
-Followed follow(double steer, double asked, double lag, double rate, const model::PredictionModel::Lag& alone) {
+Followed follow(double steer, double asked, double lag, double rate,
+                const model::PredictionModel::Lag& alone) {
   const double apart = std::fabs(asked - steer);
-  if (!(apart > rate * lag)) return {asked + (steer - asked) * alone.end, asked + (steer - asked) * alone.mean};
+  if (!(apart > rate * lag))
+    return {asked + (steer - asked) * alone.end, asked + (steer - asked) * alone.mean};
   const double ramp = std::min(apart / rate - lag, Actuators::kStep);
   const double left = apart - rate * ramp;
   const double rest = Actuators::kStep - ramp;
@@ -141,7 +143,8 @@ Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.f
     throttle_.push_back(throttle);
     pedal_.push_back(pressed);
     acceleration_.push_back(acceleration);
-    const Followed followed = follow(steer, asked, car.vehicle.steer_lag, car.vehicle.steer_rate_limit, lags.steer);
+    const Followed followed =
+        follow(steer, asked, car.vehicle.steer_lag, car.vehicle.steer_rate_limit, lags.steer);
     steer_mean_.push_back(followed.mean);
     steer = followed.end;
     pressed = throttle + (pressed - throttle) * lags.drive.end;
@@ -156,18 +159,25 @@ struct Place {
   double x, y, psi;
 };
 
-Expected seen_at(const Car& car, const Place& at, double ahead, double vx, double vy, double r, double acceleration,
-                 double steer) {
+Expected seen_at(const Car& car, const Place& at, double ahead, double vx, double vy, double r,
+                 double acceleration, double steer) {
   const double course = at.psi + 0.5 * ahead * r;
   const double x = at.x + ahead * (vx * cos(course) - vy * sin(course));
   const double y = at.y + ahead * (vx * sin(course) + vy * cos(course));
   const double yaw = at.psi + ahead * r;
   const double across = vy + car.reference * r;
-  return {x + car.reference * cos(yaw), y + car.reference * sin(yaw), yaw, hypot(vx + ahead * acceleration, across), r, vx, vy,
+  return {x + car.reference * cos(yaw),
+          y + car.reference * sin(yaw),
+          yaw,
+          hypot(vx + ahead * acceleration, across),
+          r,
+          vx,
+          vy,
           steer};
 }
 
-void move(Place& at, double dt, double vx, double vy, double r, double next_vx, double next_vy, double next_r) {
+void move(Place& at, double dt, double vx, double vy, double r, double next_vx, double next_vy,
+          double next_r) {
   const double course = at.psi + 0.25 * dt * (r + next_r);
   const double along = 0.5 * (vx + next_vx), across = 0.5 * (vy + next_vy);
   at.x += dt * (along * cos(course) - across * sin(course));
@@ -219,7 +229,8 @@ void drive_four_wheels(const Car& car, const DriveLog& log, const Actuators& act
   auto i = static_cast<std::size_t>((t - actuators.start()) / kStep);
   const auto steer_at = [&](std::size_t n) { return actuators.steer(n) + car.steer_offset; };
   const auto steer_mean = [&](std::size_t n) { return actuators.steer_mean(n) + car.steer_offset; };
-  FourWheels::Motion now = wheels.steady(start[3], start[4], start[5], steer_at(i), actuators.acceleration(i));
+  FourWheels::Motion now =
+      wheels.steady(start[3], start[4], start[5], steer_at(i), actuators.acceleration(i));
   for (std::size_t sample = first; sample < last; ++sample) {
     const double until = log.samples[sample].time;
     while (until - t >= kStep && i + 1 < actuators.size()) {
@@ -231,7 +242,8 @@ void drive_four_wheels(const Car& car, const DriveLog& log, const Actuators& act
         force = model::longitudinal_acceleration(car.vehicle, pedal, now.vx) + drag;
       } else {
         // What it takes that the speed is the measured one.
-        force = (actuators.speed(i + 1) - actuators.speed(i)) / kStep - now.r * now.vy + now.resistance + drag;
+        force =
+            (actuators.speed(i + 1) - actuators.speed(i)) / kStep - now.r * now.vy + now.resistance + drag;
       }
       wheels.advance(now, 0.5 * (steer_mean(i > 0 ? i - 1 : i) + steer_mean(i)), steer_mean(i), force, drag);
       if (!has_throttle) now.vx = before.vx + actuators.speed(i + 1) - actuators.speed(i);
@@ -239,8 +251,8 @@ void drive_four_wheels(const Car& car, const DriveLog& log, const Actuators& act
       t += kStep;
       ++i;
     }
-    expected.push_back(seen_at(car, at, until - t, now.vx, now.vy, now.r, now.forward + now.r * now.vy,
-                               steer_at(i)));
+    expected.push_back(
+        seen_at(car, at, until - t, now.vx, now.vy, now.r, now.forward + now.r * now.vy, steer_at(i)));
   }
 }
 

@@ -17,32 +17,33 @@ class FourWheels {
  public:
   /// At a moment. Slips and transfer are half a step older.
   struct Motion {
-    double vx = 0.0, vy = 0.0;            ///< of the centre of mass, in axes of the car [m/s]
-    double r = 0.0;                       ///< [rad/s]
-    std::array<double, 4> slip{};         ///< across: front left, front right, rear left, rear right
-    std::array<double, 4> slip_along{};   ///< forward; of the last step
-    std::array<double, 4> rolling{};      ///< speeds of the wheels' centres a step ago [m/s]
-    double along = 0.0, across = 0.0;     ///< lagged accelerations that shift load [m/s²]
-    double resistance = 0.0;              ///< what turned front wheels took along the car in the last step [m/s²]
-    double forward = 0.0, sideways = 0.0; ///< acceleration by all forces in the last step [m/s²]
+    double vx = 0.0, vy = 0.0;           ///< of the centre of mass, in axes of the car [m/s]
+    double r = 0.0;                      ///< [rad/s]
+    std::array<double, 4> slip{};        ///< across: front left, front right, rear left, rear right
+    std::array<double, 4> slip_along{};  ///< forward; of the last step
+    std::array<double, 4> rolling{};     ///< speeds of the wheels' centres a step ago [m/s]
+    double along = 0.0, across = 0.0;    ///< lagged accelerations that shift load [m/s²]
+    double resistance = 0.0;  ///< what turned front wheels took along the car in the last step [m/s²]
+    double forward = 0.0, sideways = 0.0;  ///< acceleration by all forces in the last step [m/s²]
   };
 
   FourWheels(const model::VehicleParams& vehicle, const Wheels& wheels, double dt) noexcept;
 
   /// The motion of a car that has driven like that for a while, with `acceleration` along it.
-  [[nodiscard]] Motion steady(double vx, double vy, double r, double steer, double acceleration) const noexcept;
+  [[nodiscard]] Motion steady(double vx, double vy, double r, double steer,
+                              double acceleration) const noexcept;
   /// One step of dt. `steer` is the road-wheel angle at its begin, `steer_middle` in its middle; `force` what
   /// drive and brakes ask of all wheels over mass, `drag` what holds the car back beside them [m/s²].
   void advance(Motion& motion, double steer, double steer_middle, double force, double drag) const noexcept;
 
  private:
   struct Axle {
-    double x, width_half;   ///< of its wheels ahead of the centre of mass, half of the track [m]
-    double cornering;       ///< over friction
-    double rest;            ///< share of the load of each wheel
-    double per_along;       ///< of a wheel's load at rest, for each m/s² along
-    double per_across;      ///< and across
-    double drive, brake;    ///< shares of each wheel
+    double x, width_half;  ///< of its wheels ahead of the centre of mass, half of the track [m]
+    double cornering;      ///< over friction
+    double rest;           ///< share of the load of each wheel
+    double per_along;      ///< of a wheel's load at rest, for each m/s² along
+    double per_across;     ///< and across
+    double drive, brake;   ///< shares of each wheel
   };
   [[nodiscard]] double secant(double square) const noexcept;
 
@@ -53,7 +54,7 @@ class FourWheels {
   Wheels wheels_;
   double rotating_;
   double inertia_;  ///< of a wheel, over the square of its radius and the car's mass
-  double turn_;            ///< mass over yaw inertia [1/m²]
+  double turn_;     ///< mass over yaw inertia [1/m²]
   std::array<Axle, 2> axles_;
 };
 

@@ -246,7 +246,8 @@ class Correlation {
   void add(const DriveLog& log, const Window& window, const VectorXd& r) {
     const auto count = static_cast<Eigen::Index>(window.last - window.first);
     const double span = log.samples[window.last - 1].time - log.samples[window.first].time;
-    const auto most = std::min(kMost, static_cast<Eigen::Index>(static_cast<double>(count) / std::max(span, 0.1)));
+    const auto most =
+        std::min(kMost, static_cast<Eigen::Index>(static_cast<double>(count) / std::max(span, 0.1)));
     reach_ = std::max(reach_, most);
     for (Eigen::Index kind = 0; kind < kKinds; ++kind) {
       const auto at = [&](Eigen::Index n) { return std::clamp(r[5 * n + kind], -kHuber, kHuber); };
@@ -260,8 +261,8 @@ class Correlation {
       if (!(sums_(0, kind) > 0.0)) continue;
       double factor = 1.0;
       for (Eigen::Index lag = 1; lag <= reach_; ++lag)
-        factor += 2.0 * (1.0 - static_cast<double>(lag) / static_cast<double>(reach_ + 1)) * sums_(lag, kind) /
-                  sums_(0, kind);
+        factor += 2.0 * (1.0 - static_cast<double>(lag) / static_cast<double>(reach_ + 1)) *
+                  sums_(lag, kind) / sums_(0, kind);
       largest = std::max(largest, factor);
     }
     return largest;
@@ -355,7 +356,8 @@ WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& wi
   const MatrixXd believed_alone = inverse * weight.asDiagonal() * inverse;
   const VectorXd plain = fit.correlation * (inverse - believed_alone).diagonal() + believed_alone.diagonal();
   const VectorXd left_out = (jackknife(at) + believed_alone).diagonal();
-  fit.deviation = listed(plain.cwiseMax(left_out).cwiseMin(beliefs.deviation.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt());
+  fit.deviation =
+      listed(plain.cwiseMax(left_out).cwiseMin(beliefs.deviation.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt());
   return fit;
 }
 

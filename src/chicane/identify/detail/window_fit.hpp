@@ -30,7 +30,7 @@ struct WindowFit {
   /// Standard deviations: the larger of what size and correlation of the residuals say, and of what the
   /// windows' disagreement does. No larger than what was believed.
   std::vector<double> deviation;
-  double correlation = 1.0;  ///< samples for each one that is independent
+  double correlation = 1.0;                       ///< samples for each one that is independent
   std::vector<std::vector<double>> correlations;  ///< of theta
   Noise residual{};                               ///< standard deviations of what is left, by its median
   double loss = 0.0;                              ///< of samples and beliefs
@@ -42,8 +42,7 @@ struct WindowFit {
 /// loss. Windows keep their fitted starts. Ends where a step is below `accuracy` of the deviations believed.
 [[nodiscard]] WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,
                                     const Beliefs& beliefs, const std::vector<double>& theta,
-                                    const Noise& noise, double accuracy,
-                                    const std::function<bool()>& go_on);
+                                    const Noise& noise, double accuracy, const std::function<bool()>& go_on);
 
 /// The start alone, of one window in which only samples up to `fitted` count.
 void fit_start(const std::vector<DriveLog>& logs, Window& window, std::size_t fitted, const Car& car,
