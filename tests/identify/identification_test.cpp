@@ -86,6 +86,7 @@ TEST(Identification, FindsTheCarThatDrove) {
   EXPECT_LT(found->held_out[2].position, 0.3);
 }
 
+#ifdef CHICANE_SLOW_TESTS
 // What the controllers' model leaves out was found in it: 9 % of the inertia, 3 % of the friction, 4 % of the
 // rear tyres' stiffness, and 12 to 50 % of the inertia from other logs.
 TEST(Identification, FindsTyresAndYawInertiaNearTheLimit) {
@@ -113,6 +114,7 @@ TEST(Identification, SaysThatTheModelLacksSomething) {
   };
   EXPECT_GT(std::log(width(*wrong)), 3.0 * std::log(width(*right)));
 }
+#endif
 
 TEST(Identification, SaysWhatTheLogDoesNotExcite) {
   // Nearly straight, at a steady speed.
