@@ -72,7 +72,7 @@ struct Identification {
   SlipCover slip;
   /// Samples for each one that is independent: 1 where the model explains all but noise. Intervals count it.
   double correlation = 1.0;
-  double loss = 0.0;      ///< what was minimised (docs/identification.md, eq. 6)
+  double loss = 0.0;      ///< what was minimised (docs/identification_method.md, eq. 6)
   bool has_pedal = true;  ///< else drive and brakes are the start's
   /// Whether the tyres were used enough for a lap near the limit: kRaceUse of the peak's slip at the axle
   /// that limits the car, kLeastRaceUse at the other one.

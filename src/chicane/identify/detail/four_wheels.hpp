@@ -8,9 +8,9 @@
 
 namespace chicane::identify {
 
-/// A car on four wheels as it is fitted (docs/identification.md, eq. 3, 4): the forces of the controllers'
-/// model, with what that model leaves out and a log near the limit shows. Tyres build up force over a way,
-/// load moves with a lag, angles are not small. Plain arithmetic, no allocation.
+/// A car on four wheels as it is fitted (docs/identification_method.md, eq. 3, 4): the forces of the
+/// controllers' model, with what that model leaves out and a log near the limit shows. Tyres build up force
+/// over a way, load moves with a lag, angles are not small. Plain arithmetic, no allocation.
 ///
 /// Pre: a tyre of the magic formula, no steering helper (has_four_wheels()).
 class FourWheels {
