@@ -2,6 +2,7 @@ import type { CarSize } from '../draw/car';
 import { addClosedBody, COUPE, type Profile, SALOON, VAN } from './closed_body';
 import { type Colour, colourOf, MeshBuilder, type MeshData, mirroredRing, type Vector } from './mesh';
 import { addModelCar } from './model_car';
+import type { Measures, Parts } from './parts';
 
 /** The parts of a car in its own axes: x forward, y left, z up from the road, origin at the centre of mass [m]. */
 export interface CarModel {
@@ -128,33 +129,6 @@ function helmetMesh(centre: Vector, radius: number): MeshData {
     }
   }
   return mesh.data();
-}
-
-/** The dimensions that the parts are built from [m]. */
-export interface Measures {
-  readonly k: number; // scale: 1 for a car of 4.5 m
-  readonly front: number; // axles, and ends of the body
-  readonly rear: number;
-  readonly nose: number;
-  readonly tail: number;
-  readonly radius: number; // of the wheels
-  readonly tyre: number; // width
-  readonly halfTrack: number;
-  readonly halfWidth: number;
-  readonly inner: number; // half the room between the wheels
-  readonly tub: number; // half widths
-  readonly pod: number;
-  readonly length: number;
-  /** Along the car: 0 at the rear axle, 1 at the front axle. */
-  at(share: number): number;
-}
-
-/** Meshes under construction, one for each kind of surface. */
-export interface Parts {
-  readonly paint: MeshBuilder;
-  readonly dark: MeshBuilder;
-  readonly lamps: MeshBuilder;
-  readonly headlamps: MeshBuilder;
 }
 
 function measure(size: CarSize, isClosed: boolean): Measures {

@@ -1,5 +1,5 @@
-import type { Measures, Parts } from './car_mesh';
 import { type Colour, colourOf, mirroredRing, type Vector } from './mesh';
+import type { Measures, Parts } from './parts';
 
 // Bodies with a roof: a saloon, a van and a coupé. Lengths and heights are those of the shape, drawn for a car of its
 // usual length and scaled to the one driven; axles, track, wheels and width are those of the car.

@@ -1,5 +1,5 @@
-import type { Measures, Parts } from './car_mesh';
 import { colourOf, type MeshBuilder, type Vector } from './mesh';
+import type { Measures, Parts } from './parts';
 
 // A model car with its computer, as F1TENTH builds it: chassis, battery, a plate on posts with computer and laser
 // scanner, aerials, and a bumper of foam. Drawn in the units of a car of 4.5 m, as the others.
