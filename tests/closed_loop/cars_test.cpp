@@ -86,10 +86,12 @@ TEST_P(EveryCar, TurnsLeftAsItTurnsRight) {
   EXPECT_DOUBLE_EQ(plant_->state().r, -mirrored->state().r);
 }
 
+class LapsOf : public testing::TestWithParam<std::string> {};
+
 // Three laps: the guard's stops once drove a car off the road in the third. The guard that is on refuses
 // nothing: its stops fit cars of much drag, too, and those that are hardly stable. vw-vanagon slides in two
 // bends of either track, its rear axle beyond the peak.
-TEST_P(EveryCar, LapsCleanlyWithTheDefaultSettings) {
+TEST_P(LapsOf, ACarAreCleanWithTheDefaultSettings) {
   for (const char* track : {"oval", "lakeside"}) {
     const auto run = drive({{"car", GetParam()}, {"track", track}, {"laps", "3"}});
     ASSERT_TRUE(run.completed) << track << ": " << run.end_reason;
@@ -143,13 +145,19 @@ TEST(Cars, DriveOnTracksOfTheirScale) {
   EXPECT_NEAR(make_track(*told)->length(), 0.2 * length, 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shelf, EveryCar, testing::ValuesIn(cars()), [](const auto& param) {
+std::string name_of(const testing::TestParamInfo<std::string>& car) {
   std::string name;
-  for (const char c : param.param) {
+  for (const char c : car.param) {
     if (std::isalnum(static_cast<unsigned char>(c)) != 0) name += c;
   }
   return name;
-});
+}
+INSTANTIATE_TEST_SUITE_P(Shelf, EveryCar, testing::ValuesIn(cars()), name_of);
+// Without the slow tests: one that is hardly stable, one with steering that lags, and the smallest.
+INSTANTIATE_TEST_SUITE_P(
+    Shelf, LapsOf,
+    testing::ValuesIn(kDrivesAll ? cars() : std::vector<std::string>{"bmw-320i", "f1tenth", "orca-1-43"}),
+    name_of);
 
 }  // namespace
 }  // namespace chicane::run

@@ -109,10 +109,12 @@ TEST(FaultCampaign, ASilenceMayLastAsLongAsTheGuardIsTold) {
     return edges;
   };
   EXPECT_THAT(least_edges("oval", 2.0, "2", {16.0}), testing::Each(testing::Gt(0.5)));
+#ifdef CHICANE_SLOW_TESTS
   EXPECT_THAT(least_edges("lakeside", kLasting, "30", {12.0}), testing::Each(testing::Gt(0.0)));
   // Where a car that brakes into a bend was lost by up to 60 m.
   EXPECT_THAT(least_edges("speedway", kLasting, "30", {27.0, 69.0}, "dead_controller"),
               testing::Each(testing::Gt(0.0)));
+#endif
 }
 
 /// What the guard is for: without it the same trials leave the road.

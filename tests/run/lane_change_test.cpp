@@ -37,12 +37,14 @@ TEST(LaneChange, HitsConesWhereNoTyreHoldsTheCar) {
   EXPECT_LT(outcome.room, -0.5);
 }
 
+#ifdef CHICANE_SLOW_TESTS
 TEST(LaneChange, IsPassedFasterByRaceThanByPurePursuitAndStanley) {
   constexpr double k60Kmph = 16.7;
   EXPECT_TRUE(drive("race", k60Kmph).has_passed());
   EXPECT_FALSE(drive("pure-pursuit", k60Kmph).has_passed());
   EXPECT_FALSE(drive("stanley", k60Kmph).has_passed());
 }
+#endif
 
 class Straight final : public controller::Controller {
  public:
