@@ -267,7 +267,7 @@ bool is_nobodys(const std::vector<identify::DriveLog>& logs, const Options& opti
                                   [](const identify::DriveLog& log) { return log.is_centre_of_mass; });
 }
 
-/// What is expected of the wheels: those of the plant that the search begins with, where it has four.
+/// Wheels that are expected: those of the plant that the search begins with, where it has four.
 identify::Wheels wheels_of(const scenario::Scenario& start) {
   if (!has_wheels(start)) return {};
   const sim::DoubleTrackParams plant =

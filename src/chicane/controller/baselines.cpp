@@ -21,7 +21,7 @@ namespace {
 /// What a steering law looks at.
 struct View {
   const road::Path& line;  ///< through the waypoints just told
-  road::Projection here;   ///< of the centre of mass
+  road::Projection here;   ///< nearest place to the centre of mass
   double heading_error;    ///< yaw minus the line's heading there [rad]
   const model::Measurement& now;
   double elapsed;  ///< since the step before [s], 0 when unknown

@@ -472,7 +472,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   Horizon horizon_;  ///< the last answer, then the guess, then the new answer
   Horizon old_;
   StageState x0_{};
-  tracking::Disturbance disturbance_;  ///< where the command acts
+  tracking::Disturbance disturbance_;  ///< estimated where the command acts
   StepResult result_;
   double s_ = 0.0;  ///< arc length on the line where the command acts
   double act_time_ = 0.0;

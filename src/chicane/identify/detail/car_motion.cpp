@@ -154,11 +154,12 @@ Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.f
 
 namespace {
 
-/// What a moment that is not on the grid is, `ahead` of the one that is [s].
+/// Place and heading of a car, in W [m], [rad].
 struct Place {
   double x, y, psi;
 };
 
+/// A sample is expected `ahead` [s] of a moment on the grid, where the car is `at`.
 Expected seen_at(const Car& car, const Place& at, double ahead, double vx, double vy, double r,
                  double acceleration, double steer) {
   const double course = at.psi + 0.5 * ahead * r;
@@ -185,7 +186,7 @@ void move(Place& at, double dt, double vx, double vy, double r, double next_vx, 
   at.psi += 0.5 * dt * (r + next_r);
 }
 
-/// By the model of the controllers: cars that FourWheels cannot stand for.
+/// Motion by the controllers' model: for cars that FourWheels cannot stand for.
 void drive_single_track(const Car& car, const DriveLog& log, const Actuators& actuators, std::size_t first,
                         std::size_t last, const Start& start, std::vector<Expected>& expected) {
   constexpr double kStep = Actuators::kStep;
@@ -241,7 +242,7 @@ void drive_four_wheels(const Car& car, const DriveLog& log, const Actuators& act
         const double pedal = 0.5 * (actuators.pedal(i) + actuators.pedal(i + 1));
         force = model::longitudinal_acceleration(car.vehicle, pedal, now.vx) + drag;
       } else {
-        // What it takes that the speed is the measured one.
+        // The acceleration that keeps the measured speed.
         force =
             (actuators.speed(i + 1) - actuators.speed(i)) / kStep - now.r * now.vy + now.resistance + drag;
       }

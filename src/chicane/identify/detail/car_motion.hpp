@@ -16,7 +16,7 @@ struct Car {
   double delay = 0.1;         ///< from command to effect [s]
   double steer_offset = 0.0;  ///< of the road-wheel angle beyond what was commanded [rad]
   double reference = 0.0;     ///< the log's reference point ahead of the centre of mass [m]
-  Wheels wheels{};            ///< of a car that has_four_wheels()
+  Wheels wheels{};            ///< used where has_four_wheels()
 };
 
 /// Steering and drive of a log, on a grid: they need the commands and measured speeds alone.
