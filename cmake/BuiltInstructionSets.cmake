@@ -1,7 +1,8 @@
 # CHICANE_SIMD: which instruction sets this build has. All of the processor family, as a package should; `native`: the best one that the
 # machine which builds has, the shortest build, good for this machine (run.sh); `runnable`: all that it has, what its tests can try
 # (test.sh); or a list of names, `native` among them.
-# In a `runnable` build all but the best one are built quickly, a quarter of the compiler's time: the same bits, but slower.
+# In a `runnable` build Baseline beside a better one is built quickly, a quarter of the compiler's time: the same bits, but slower. The
+# others keep forced inlining: a function left over would be code that the linker could take for Baseline's.
 # CHICANE_INSTRUCTION_SETS (InstructionSets.cmake) is reduced to these, and chicane_base tells all that include it what is missing.
 set(CHICANE_SIMD all CACHE STRING "Instruction sets to build: all, native, runnable, or a list such as baseline;avx2")
 
@@ -53,9 +54,8 @@ endforeach()
 set(CHICANE_LEFT_OUT ${CHICANE_INSTRUCTION_SETS})
 list(REMOVE_ITEM CHICANE_LEFT_OUT ${wanted})
 list(REMOVE_ITEM CHICANE_INSTRUCTION_SETS ${CHICANE_LEFT_OUT})
-if(CHICANE_SIMD STREQUAL "runnable")
-  set(CHICANE_QUICKLY_BUILT_SETS ${CHICANE_INSTRUCTION_SETS})
-  list(POP_BACK CHICANE_QUICKLY_BUILT_SETS)
+if(CHICANE_SIMD STREQUAL "runnable" AND NOT CHICANE_INSTRUCTION_SETS STREQUAL "Baseline")
+  set(CHICANE_QUICKLY_BUILT_SETS Baseline)
 endif()
 list(JOIN CHICANE_INSTRUCTION_SETS ", " names)
 string(TOLOWER "${names}" names)
