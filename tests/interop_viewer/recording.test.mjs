@@ -153,7 +153,7 @@ describe('a recording in the page', () => {
     assert.match(await losses.locator('h2').innerText(), /^Where lap \d of branch\.mcap loses time to lap 2 \+\d/);
     assert.match(await losses.locator('tr.most').innerText(), /T\d[\s\S]* s lost, .* s of it /);
     await losses.getByText(/^Mini-sectors of/).click();
-    assert.ok((await losses.locator('.mini-sector-table li').count()) > 30);
+    await losses.locator('.mini-sector-table li').nth(30).waitFor();
     const curves = page.locator('[aria-label="Speed along the track"] .key');
     assert.equal(await curves.count(), 2, 'laps A and B');
     for (const each of await page.getByLabel(/^Draw lap . too$/).all()) await each.check();
