@@ -49,6 +49,19 @@ TEST(LearnedGrip, FollowsWhatTheTyresShow) {
   }
 }
 
+// Up with what may be relied on, down only with what is sure.
+TEST(LearnedGrip, PlansForMoreOrLessOnlyWhereTheTyresSaySo) {
+  const LearnedGrip learned = driven_with(0.8, 20.0);
+  EXPECT_NEAR(learned.for_plan(0.6), 0.8, 0.05);
+  EXPECT_LE(learned.for_plan(0.6), learned.lower());
+  EXPECT_EQ(learned.for_plan(learned.lower()), learned.lower());
+  EXPECT_LT(learned.for_plan(1.0), 0.85);
+  for (const double near : {-0.01, 0.0, 0.01}) {
+    const double planned = learned.share() + near;
+    EXPECT_EQ(learned.for_plan(planned), planned) << near;
+  }
+}
+
 TEST(LearnedGrip, BelievesWhatWasToldUntilThen) {
   LearnedGrip learned = driven_with(0.8, 0.5);
   EXPECT_FALSE(learned.is_shown());

@@ -53,6 +53,17 @@ TEST(SpeedPlan, SaysWhatLimitsTheSpeedBeforeInAndBehindABend) {
   EXPECT_NEAR(samples[183].speed, std::sqrt(0.9 * car.cornering_friction() * car.load_constant * 40.0), 1e-9);
 }
 
+TEST(SpeedPlan, IsNoFasterThanTheCarsParametersHold) {
+  ReferenceLine line = with_a_bend(40.0);
+  model::VehicleParams car = uncoupled_car();
+  car.valid_speed = 30.0;
+  SpeedPlan speeds(401);
+  speeds.begin(car, {.speed_limit = 40.0});
+  for (int work = 1'000'000; !speeds.advance(work, line);) work = 1'000'000;
+  EXPECT_EQ(line.samples()[10].speed, 30.0);
+  EXPECT_EQ(line.samples()[10].limiter, SpeedLimiter::kAsked);
+}
+
 // To turn in, the front axle needs more than the bend; to turn out, the rear one (docs/tracking.md, eq. 11).
 TEST(SpeedPlan, HoldsTheAxleThatNeedsMoreWhereTheCurvatureChanges) {
   ReferenceLine line = with_a_bend(40.0);

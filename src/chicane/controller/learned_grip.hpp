@@ -51,16 +51,25 @@ class LearnedGrip {
   }
   /// Whether the tyres have shown anything yet.
   [[nodiscard]] bool is_shown() const noexcept { return is_shown_; }
-  /// For a plan: what may be relied on. Pre: is_shown().
-  [[nodiscard]] double lower() const noexcept {
-    return rounded(estimator_.is_known() ? share_ * estimator_.lower() : share_ - unsure_);
-  }
-  /// Whether a plan for `planned` has to be made anew for `wanted`.
-  [[nodiscard]] static bool is_other_plan(double planned, double wanted) noexcept {
-    return wanted > planned + kStep || wanted < planned - kStepDown;
+  /// What may be relied on. Pre: is_shown().
+  [[nodiscard]] double lower() const noexcept { return rounded(mean() - unsure()); }
+  /// The grip to plan for where there is a plan for `planned`: that, unless what may be relied on is more, or
+  /// the tyres surely give less. A plan of less grip has to be braked down to, wherever the car is; it takes
+  /// more than doubt. Pre: is_shown().
+  [[nodiscard]] double for_plan(double planned) const noexcept {
+    const bool is_more = lower() > planned + kStep;
+    const bool is_less = mean() + unsure() < planned - kStepDown;
+    return is_more || is_less ? lower() : planned;
   }
 
  private:
+  [[nodiscard]] double mean() const noexcept {
+    return estimator_.is_known() ? share_ * estimator_.share() : share_;
+  }
+  /// Two standard deviations of mean().
+  [[nodiscard]] double unsure() const noexcept {
+    return estimator_.is_known() ? 2.0 * share_ * estimator_.deviation() : unsure_;
+  }
   /// In hundredths. Nearly what was told is what was told: a car that is as believed ends with the plan that
   /// it would have had without learning.
   [[nodiscard]] static double rounded(double share) noexcept {

@@ -12,6 +12,7 @@
 #include "chicane/controller/copyable.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/learned_grip.hpp"
+#include "chicane/controller/other_line.hpp"
 #include "chicane/model/grip.hpp"
 #include "chicane/road/driven_road.hpp"
 #include "chicane/tracking/state_estimator.hpp"
@@ -88,18 +89,19 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   void use_line(std::shared_ptr<const road::RacingRoad> lap) noexcept override {
+    const bool goes_on = has_horizon_;
     road_.race_by(std::move(lap));
     shape_raced();
+    has_horizon_ = goes_on && move_to_line(line(), result_.plan, 2.0 * told_.width, kFarFromLine, horizon_);
   }
 
   [[nodiscard]] LapWish wants_lap() const noexcept override {
     const road::RacingRoad* lap = road_.lap();
     const std::span<const Vec2> waypoints = road_.seen().closed_waypoints();
     if (!options_.racing_line || (lap == nullptr && waypoints.empty())) return {};
-    const double grip = grip_.is_shown() ? grip_.lower()
-                        : lap != nullptr ? lap->grip()
-                                         : options_.first_grip();
-    return {.is_wanted = lap == nullptr || LearnedGrip::is_other_plan(lap->grip(), grip),
+    const double planned = lap != nullptr ? lap->grip() : options_.first_grip();
+    const double grip = grip_.is_shown() ? grip_.for_plan(planned) : planned;
+    return {.is_wanted = lap == nullptr || grip != planned,
             .waypoints = lap == nullptr || lap->is_learned() ? waypoints : std::span<const Vec2>{},
             .grip = grip};
   }
@@ -216,11 +218,11 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const road::ReferenceLine& line = this->line();
     if (line.is_empty() || !std::isfinite(start.state.x + start.state.y + start.state.psi + start.state.vx))
       return false;
-    const Vec2 position{start.state.x, start.state.y};
     if (revision_ != road_.revision()) has_place_ = false;
     const double* last = has_place_ ? &s_ : nullptr;
     const road::ReferenceLine::Projection place =
-        line.find(position, start.state.psi, 2.0 * model_.vehicle().width, last, 0.5 * kFarFromLine);
+        line.find({start.state.x, start.state.y}, start.state.psi, 2.0 * model_.vehicle().width, last,
+                  0.5 * kFarFromLine);
     if (!(place.distance < kFarFromLine)) return false;
     const double heading_error = angle_difference(start.state.psi, line.at(place.s).heading);
     const double most = start.state.vx < kSlow ? 0.25 * kPi : 0.5 * kPi;
@@ -247,8 +249,8 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   void prepare(double act_time) noexcept {
     problem_.model = &model_;  // here, so that a copy asks its own
     const double elapsed = act_time - act_time_;
-    const double old_end = old_first_ + (horizon_.horizon - 1) * old_step_;
-    const bool can_shift = has_horizon_ && elapsed >= 0.0 && elapsed < 0.5 * old_end;
+    const bool can_shift =
+        has_horizon_ && elapsed >= 0.0 && elapsed < 0.5 * (old_first_ + (horizon_.horizon - 1) * old_step_);
     const double step = options_.step_length;
     const double first = can_shift ? std::clamp(elapsed, step, kLongestHold) : step;
     problem_.first = first == step ? problem_.others : Problem::Step::of(model_, first);
@@ -336,9 +338,8 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   void correct_first() noexcept {
     const int parts = static_cast<int>(problem_.first.length / problem_.others.length + 0.75);
     if (parts < 2) return;
-    const StageInput& u = horizon_.u[0];
-    const StageState exact = problem_.move_in_parts(0, x0_, u, parts);
-    const StageState rough = problem_.move_in_parts(0, x0_, u, 1);
+    const StageState exact = problem_.move_in_parts(0, x0_, horizon_.u[0], parts);
+    const StageState rough = problem_.move_in_parts(0, x0_, horizon_.u[0], 1);
     for (std::size_t i = 0; i < exact.size(); ++i) problem_.first_correction[i] = exact[i] - rough[i];
   }
 
@@ -443,8 +444,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const road::ReferenceLine& line = this->line();
     Plan& plan = result_.plan;
     const int n = options_.horizon_steps;
-    plan.size = n + 1;
-    plan.reference_size = n + 1;
+    plan.size = plan.reference_size = n + 1;
     for (int k = 0; k <= n; ++k) {
       const auto i = static_cast<std::size_t>(k);
       const StageState& x = horizon_.x[i];

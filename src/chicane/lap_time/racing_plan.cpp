@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/lap_time/racing_plan.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -16,7 +17,7 @@ constexpr double kTolerance = 1e-4;     // of a plan: about a millisecond of a l
 class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
  public:
   VehiclePlan(const model::VehicleParams& vehicle, double speed_limit) : vehicle_{vehicle} {
-    model_.speed_limit = speed_limit;
+    model_.speed_limit = std::min(speed_limit, vehicle.valid_speed);
     model_.stability = model::BrakingStability(vehicle);
     model_.is_steered_slowly = vehicle.friction_coupling > 0.0 && vehicle.steer_rate_limit < kQuickSteering;
     set_reserve({.slip_share = 1.0});

@@ -37,6 +37,7 @@ class Similarity {
     car.load_per_speed /= speed();
     car.load_quadratic /= length_;
     car.drive_power_per_mass *= speed();
+    car.valid_speed *= speed();
     car.drag_linear /= time_;
     car.drag_quadratic /= length_;
     car.reverse_speed *= speed();

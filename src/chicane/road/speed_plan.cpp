@@ -97,7 +97,7 @@ void SpeedPlan::limit(ReferenceLine& line, int i) noexcept {
   const double slope = (curvature(i + reach) - curvature(i - reach)) / (2.0 * reach * line.spacing());
   demand_[index] = demand_of(curvature(i), slope, vehicle_);
   ReferenceLine::Sample& sample = samples[index];
-  sample.speed = options_.speed_limit;
+  sample.speed = std::min(options_.speed_limit, vehicle_.valid_speed);
   sample.limiter = SpeedLimiter::kAsked;
   limit_to(speed_for(demand_[index], vehicle_, options_.grip_share), SpeedLimiter::kCurvature, sample);
   sample.speed = std::max(sample.speed, kLowestSpeed);

@@ -9,17 +9,19 @@
 namespace chicane::tracking {
 
 /// How much grip the tyres have, over what is believed, by which grip predicts the next measurement better
-/// (docs/racing_unknown.md, eq. 1 to 4). Two estimators see the same measurements and commands, one with the
+/// (docs/racing_unknown.md, eq. 1 to 6). Two estimators see the same measurements and commands, one with the
 /// believed grip, one with a little less. What each did not expect is noise and the wrong grip; the noise is
 /// the same in both, so that their difference says what the grip does alone, and least squares over the last
-/// kMemory of cornering finds the share, without the bias of noise, and how sure it is.
+/// kMemory of cornering finds the share, without the bias of noise. How sure it is, is the larger of what
+/// noise explains and of what the bends disagree by: a model that lacks something is wrong for a whole bend.
 ///
 /// Another mass, a side wind or steering that answers otherwise pass for grip. One thread; allocates nothing.
 class GripEstimator {
  public:
   static constexpr double kLeast = 3.0;  ///< [m/s²] of lateral acceleration by tyres: less tells too little
   static constexpr double kMemory = 10.0;  ///< time constant of forgetting, of cornering [s]
-  static constexpr double kEnough = 1.0;   ///< of cornering [s] until something is known
+  static constexpr double kBend = 1.0;     ///< of cornering [s] that count as one observation
+  static constexpr int kEnough = 3;        ///< bends until something is known
   static constexpr double kSure = 0.1;     ///< standard deviation of share() from which on it is known
   static constexpr double kLow = 0.3, kHigh = 1.6;  ///< range of share()
 
@@ -29,14 +31,12 @@ class GripEstimator {
   void begin(const StateEstimator& from, const model::PredictionModel& believed) noexcept;
   void see(const model::Measurement& now, const CommandHistory& sent) noexcept;
 
-  [[nodiscard]] bool is_known() const noexcept { return time_ >= kEnough && deviation() <= kSure; }
+  [[nodiscard]] bool is_known() const noexcept { return bends_.count >= kEnough && deviation() <= kSure; }
   /// Grip over the one that is believed; 1 until it is known.
   [[nodiscard]] double share() const noexcept;
-  /// share() less two standard deviations: what may be relied on.
-  [[nodiscard]] double lower() const noexcept { return is_known() ? share() - 2.0 * deviation() : 1.0; }
   /// Whether share() differs from one by more than `least`, and by more than noise does in one case of 20.
   [[nodiscard]] bool differs(double least) const noexcept;
-  /// Standard deviation of share() by the noise that is seen; infinite before there is any corner.
+  /// Standard deviation of share(), eq. 6; infinite before there is any corner.
   [[nodiscard]] double deviation() const noexcept;
 
  private:
@@ -51,10 +51,27 @@ class GripEstimator {
     [[nodiscard]] double variance(double time) const noexcept;
   };
 
+  /// Of one bend, or of several: what it adds to the sums of (3), g and H, as squares.
+  struct Bends {
+    double gg = 0.0, gh = 0.0, hh = 0.0;
+    int count = 0;
+  };
+  /// Numerator and denominator of (3), by the variances that are seen now.
+  struct Evidence {
+    double hn = 0.0, hh = 0.0;
+  };
+  [[nodiscard]] Evidence weigh(const Sums& aside, const Sums& heading) const noexcept;
+  void end_bend() noexcept;
+  /// Variance of share() by what place and heading disagree by.
+  [[nodiscard]] double between_signals() const noexcept;
+
   StateEstimator believed_, less_;
   double time_ = 0.0;      ///< of cornering, as far as it is remembered [s]
   double interval_ = 0.0;  ///< between measurements in corners, mean [s]
   Sums aside_, heading_;
+  Sums bend_aside_, bend_heading_;  ///< of the bend that has not ended
+  double bend_time_ = 0.0;          ///< [s]
+  Bends bends_;
 };
 
 }  // namespace chicane::tracking

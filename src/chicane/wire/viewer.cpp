@@ -146,8 +146,8 @@ void ViewerEndpoint::set_end(std::string kind, std::string reason) {
 
 void ViewerEndpoint::dismiss(const Patience& patience) {
   if (server_ == nullptr) return;
-  using Clock = std::chrono::steady_clock;
-  const auto begin = Clock::now();
+  using Steady = std::chrono::steady_clock;
+  const auto begin = Steady::now();
   auto heard = begin;
   std::map<net::ConnectionId, std::pair<std::size_t, std::uint64_t>> reading;  // what waits, what was read
   std::promise<void> gone;
@@ -158,13 +158,13 @@ void ViewerEndpoint::dismiss(const Patience& patience) {
     for (const auto& [id, client] : clients_) {
       const std::pair<std::size_t, std::uint64_t> now{server_->waiting(id),
                                                       client.pace ? client.pace->received() : 0};
-      if (std::exchange(reading[id], now) != now) heard = Clock::now();
+      if (std::exchange(reading[id], now) != now) heard = Steady::now();
       if (has_all(id, client) && told.insert(id).second) {
-        heard = Clock::now();
+        heard = Steady::now();
         server_->close(id, kGoingAway, "the run is over");
       }
     }
-    const auto now = Clock::now();
+    const auto now = Steady::now();
     if (clients_.empty() || now >= heard + patience.silent || now >= begin + patience.whole)
       return gone.set_value();
     server_->run_after(std::chrono::milliseconds{5}, look);

@@ -74,7 +74,7 @@ struct VehicleModel {
     *out++ = 0.2 * (car.drive_acceleration - force);
     *out++ = 0.2 * (std::min(car.drive_power_per_mass, kMostPower) / vx - force);
     *out++ = 0.1 * (force + brake_share * car.brake_throttle_limit * car.brake_acceleration);
-    const T slip = slip_share * (1.0 - kSlipPerSpeed * vx);
+    const T slip = slip_share * (1.0 - (is_steered_slowly ? kSlipPerSpeedSlow : kSlipPerSpeed) * vx);
     *out++ = slip * slip - change.square_front;
     *out++ = slip * slip - change.square_rear;
     *out++ = kMostAlong - change.along_front;
@@ -101,6 +101,8 @@ struct VehicleModel {
   /// Of slip_share [s/m]: the faster a car, the less its yaw motion is damped, and the further it goes before
   /// a command acts. Three quarters are left at 50 m/s.
   static constexpr double kSlipPerSpeed = 0.005;
+  /// Where the steering is slow: with 0.005 `vw-vanagon` and `tum-1200` spin in bends of 35 to 45 m/s.
+  static constexpr double kSlipPerSpeedSlow = 0.01;
 };
 
 }  // namespace chicane::lap_time

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/controller/controller.hpp"
+#include "chicane/road/reference_line.hpp"
+#include "chicane/tracking/tracking_solver.hpp"
+
+namespace chicane::controller {
+
+/// Expresses the states of an answer along another line, so that it goes on as the first guess there: a guess
+/// made anew at the limit of the tyres is one from which a step does not converge. `plan`: where the states
+/// are in the world. `far` [m]: beside the line. False, and an answer of no use, where one is farther.
+/// Allocates nothing.
+[[nodiscard]] inline bool move_to_line(const road::ReferenceLine& line, const Plan& plan, double reach,
+                                       double far, tracking::TrackingTrajectory& answer) noexcept {
+  using Problem = tracking::TrackingProblem;
+  if (line.is_empty() || plan.size != answer.horizon + 1) return false;
+  double last = 0.0, driven = 0.0;
+  for (int k = 0; k <= answer.horizon; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const PlanPoint& point = plan.points[i];
+    const road::ReferenceLine::Projection place =
+        line.find({point.x, point.y}, point.psi, reach, k > 0 ? &last : nullptr, far);
+    if (!(place.distance < far)) return false;
+    if (k > 0) driven += line.is_closed() ? std::remainder(place.s - last, line.length()) : place.s - last;
+    answer.x[i][Problem::kS] = driven;
+    answer.x[i][Problem::kD] = place.d;
+    answer.x[i][Problem::kE] = angle_difference(point.psi, line.at(place.s).heading);
+    last = place.s;
+  }
+  return true;
+}
+
+}  // namespace chicane::controller
