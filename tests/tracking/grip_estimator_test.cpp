@@ -115,8 +115,8 @@ TEST(GripEstimator, IsLessSureWithNoise) {
   EXPECT_GT(noisy.estimator.deviation(), 2.0 * quiet.estimator.deviation());
 }
 
-/// What the model lacks is no noise: with another yaw inertia, which place and heading do not take for the
-/// same grip, the estimate is wrong by more than noise explains, and says so.
+/// What the model lacks is no noise: with another yaw inertia the estimate is wrong by more than noise
+/// explains, and says so.
 TEST(GripEstimator, IsUnsureWhereTheModelLacksSomething) {
   for (const double inertia : {0.7, 1.5}) {
     Weaving car(1.0, {.place = 0.002, .heading = 0.0002}, 0.05, 1, inertia);

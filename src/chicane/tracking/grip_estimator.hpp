@@ -9,7 +9,7 @@
 namespace chicane::tracking {
 
 /// How much grip the tyres have, over what is believed, by which grip predicts the next measurement better
-/// (docs/racing_unknown.md, eq. 1 to 6). Two estimators see the same measurements and commands, one with the
+/// (docs/racing_unknown.md, eq. 1 to 5). Two estimators see the same measurements and commands, one with the
 /// believed grip, one with a little less. What each did not expect is noise and the wrong grip; the noise is
 /// the same in both, so that their difference says what the grip does alone, and least squares over the last
 /// kMemory of cornering finds the share, without the bias of noise. How sure it is, is the larger of what
@@ -36,13 +36,13 @@ class GripEstimator {
   [[nodiscard]] double share() const noexcept;
   /// Whether share() differs from one by more than `least`, and by more than noise does in one case of 20.
   [[nodiscard]] bool differs(double least) const noexcept;
-  /// Standard deviation of share(), eq. 6; infinite before there is any corner.
+  /// Standard deviation of share(), the larger of eq. 4 and 5; infinite before there is any corner.
   [[nodiscard]] double deviation() const noexcept;
 
  private:
   static constexpr double kStep = 0.1;  ///< share of grip that the other estimator has less
 
-  /// What was not expected of one measured quantity, n, and what the grip does to it, h, times seconds.
+  /// What was not expected of the place, n, and what the grip does to it, h [m], times seconds.
   struct Sums {
     double hh = 0.0, hn = 0.0, nn = 0.0;
 
@@ -51,26 +51,19 @@ class GripEstimator {
     [[nodiscard]] double variance(double time) const noexcept;
   };
 
-  /// Of one bend, or of several: what it adds to the sums of (3), g and H, as squares.
+  /// Of bends: the squares of what each adds to the sums of (3).
   struct Bends {
-    double gg = 0.0, gh = 0.0, hh = 0.0;
+    double hnhn = 0.0, hnhh = 0.0, hhhh = 0.0;
     int count = 0;
   };
-  /// Numerator and denominator of (3), by the variances that are seen now.
-  struct Evidence {
-    double hn = 0.0, hh = 0.0;
-  };
-  [[nodiscard]] Evidence weigh(const Sums& aside, const Sums& heading) const noexcept;
   void end_bend() noexcept;
-  /// Variance of share() by what place and heading disagree by.
-  [[nodiscard]] double between_signals() const noexcept;
 
   StateEstimator believed_, less_;
   double time_ = 0.0;      ///< of cornering, as far as it is remembered [s]
   double interval_ = 0.0;  ///< between measurements in corners, mean [s]
-  Sums aside_, heading_;
-  Sums bend_aside_, bend_heading_;  ///< of the bend that has not ended
-  double bend_time_ = 0.0;          ///< [s]
+  Sums all_;
+  Sums bend_;               ///< that has not ended
+  double bend_time_ = 0.0;  ///< [s]
   Bends bends_;
 };
 
