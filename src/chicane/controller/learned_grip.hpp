@@ -53,13 +53,12 @@ class LearnedGrip {
   [[nodiscard]] bool is_shown() const noexcept { return is_shown_; }
   /// What may be relied on. Pre: is_shown().
   [[nodiscard]] double lower() const noexcept { return rounded(mean() - unsure()); }
-  /// The grip to plan for where there is a plan for `planned`: that, unless what may be relied on is more, or
-  /// the tyres surely give less. A plan of less grip has to be braked down to, wherever the car is; it takes
-  /// more than doubt. Pre: is_shown().
+  /// The grip to plan for where there is a plan for `planned`: what may be relied on where that is more, what
+  /// the tyres show where that is surely less. A plan of less grip has to be braked down to, wherever the car
+  /// is: it takes more than doubt, and asks for no more than was seen. Pre: is_shown().
   [[nodiscard]] double for_plan(double planned) const noexcept {
-    const bool is_more = lower() > planned + kStep;
-    const bool is_less = mean() + unsure() < planned - kStepDown;
-    return is_more || is_less ? lower() : planned;
+    if (lower() > planned + kStep) return lower();
+    return mean() + unsure() < planned - kStepDown ? rounded(mean()) : planned;
   }
 
  private:

@@ -40,7 +40,10 @@ void GripEstimator::see(const model::Measurement& now, const CommandHistory& sen
       elapsed > 0.0 && elapsed < kLongestSilence && std::fabs(n) < kFarAside && std::isfinite(less);
   const model::State& car = believed_.state();
   const double by_tyres = (1.0 - believed_.model().vehicle().steer_helper) * car.vx * car.r;
+  const bool goes_on = std::fabs(by_tyres) > 0.5 * kLeast && by_tyres * side_ >= 0.0;
+  if (bend_time_ >= (goes_on ? kLongestBend : kShortestBend)) end_bend();
   if (!is_seen || !(std::fabs(by_tyres) >= kLeast)) return;
+  side_ = by_tyres;
   const double left = kMemory / (kMemory + elapsed);
   time_ = left * time_ + elapsed;
   interval_ = interval_ > 0.0 ? interval_ + 0.05 * (elapsed - interval_) : elapsed;
@@ -48,7 +51,6 @@ void GripEstimator::see(const model::Measurement& now, const CommandHistory& sen
   all_.add(h, n, left, elapsed);
   bend_.add(h, n, 1.0, elapsed);
   bend_time_ += elapsed;
-  if (bend_time_ >= kBend) end_bend();
 }
 
 void GripEstimator::end_bend() noexcept {
@@ -85,7 +87,7 @@ double GripEstimator::deviation() const noexcept {
   const double by_noise = interval_ * all_.variance(time_) / all_.hh;
   const double d = all_.hn / all_.hh;
   const double scatter = std::max(bends_.hnhn - 2.0 * d * bends_.hnhh + d * d * bends_.hhhh, 0.0);
-  const double n = std::min(static_cast<double>(bends_.count), kMemory / kBend);
+  const double n = std::min(static_cast<double>(bends_.count), kMemory / kShortestBend);
   const double by_bends = n / (n - 1.0) * scatter / (all_.hh * all_.hh);  // the share takes up one of n
   return std::sqrt(std::max(by_noise, by_bends));
 }

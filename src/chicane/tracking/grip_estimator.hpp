@@ -19,10 +19,11 @@ namespace chicane::tracking {
 class GripEstimator {
  public:
   static constexpr double kLeast = 3.0;  ///< [m/s²] of lateral acceleration by tyres: less tells too little
-  static constexpr double kMemory = 10.0;  ///< time constant of forgetting, of cornering [s]
-  static constexpr double kBend = 1.0;     ///< of cornering [s] that count as one observation
-  static constexpr int kEnough = 3;        ///< bends until something is known
-  static constexpr double kSure = 0.1;     ///< standard deviation of share() from which on it is known
+  static constexpr double kMemory = 10.0;       ///< time constant of forgetting, of cornering [s]
+  static constexpr double kShortestBend = 1.0;  ///< of cornering [s]; shorter ones count together
+  static constexpr double kLongestBend = 4.0;   ///< longer ones count as several
+  static constexpr int kEnough = 3;             ///< bends until something is known
+  static constexpr double kSure = 0.1;          ///< standard deviation of share() from which on it is known
   static constexpr double kLow = 0.3, kHigh = 1.6;  ///< range of share()
 
   explicit GripEstimator(const model::PredictionModel& model) noexcept : believed_{model}, less_{model} {}
@@ -64,6 +65,7 @@ class GripEstimator {
   Sums all_;
   Sums bend_;               ///< that has not ended
   double bend_time_ = 0.0;  ///< [s]
+  double side_ = 0.0;       ///< sign of the side that the last measurement in a bend turned to
   Bends bends_;
 };
 
