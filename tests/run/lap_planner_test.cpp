@@ -132,8 +132,8 @@ TEST(LapPlanner, IsAskedByARunThatKnowsWaypointsOnly) {
       *loop, {.on_change = [&](const telemetry::Change& change) { changes.push_back(change); }});
   EXPECT_TRUE(run.completed) << run.end_reason;
   EXPECT_EQ(run.off_track_events, 0);
-  ASSERT_EQ(changes.size(), 1);
-  EXPECT_EQ(changes[0].name.view(), LapPlanner::kChange);
+  ASSERT_FALSE(changes.empty());  // the first plan, and others as the grip is found
+  for (const telemetry::Change& change : changes) EXPECT_EQ(change.name.view(), LapPlanner::kChange);
   EXPECT_GT(changes[0].time, run.laps[0].lap_time);
   EXPECT_LT(changes[0].time, run.laps[0].lap_time + 15.0);
 }

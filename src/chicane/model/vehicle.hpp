@@ -66,8 +66,8 @@ struct VehicleParams {
   double brake_throttle_limit =
       0.04;                ///< largest useful negative throttle: beyond it the wheels lock (1 = proportional)
   double drive_lag = 0.0;  ///< time constant of drive and brake [s]
-  double valid_speed =
-      std::numeric_limits<double>::infinity();  ///< up to which these parameters hold: planned no faster [m/s]
+  double valid_speed = std::numeric_limits<double>::infinity();  ///< up to which these parameters hold:
+                                                                 ///< planned no faster [m/s]
   double roll_share_front = 0.5;   ///< of the load that moves to the outer wheels in a bend
   double brake_share_front = 0.5;  ///< of the braking force
   double drive_share_front = 0.5;  ///< of the drive force
