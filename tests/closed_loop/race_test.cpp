@@ -12,7 +12,7 @@ namespace {
 struct Race {
   const char* car;
   const char* track;
-  double lap_time;  ///< of the third lap [s]: measured, and half a per cent more
+  double lap_time;  ///< limit of the third lap [s]: measured, and half a per cent more
 };
 
 constexpr Race kRaces[] = {

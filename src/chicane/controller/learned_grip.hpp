@@ -51,7 +51,7 @@ class LearnedGrip {
   }
   /// Whether the tyres have shown anything yet.
   [[nodiscard]] bool is_shown() const noexcept { return is_shown_; }
-  /// What may be relied on. Pre: is_shown().
+  /// Grip that may be relied on: the estimate less two standard deviations. Pre: is_shown().
   [[nodiscard]] double lower() const noexcept { return rounded(mean() - unsure()); }
   /// The grip to plan for where there is a plan for `planned`: what may be relied on where that is more, what
   /// the tyres show where that is surely less. A plan of less grip has to be braked down to, wherever the car

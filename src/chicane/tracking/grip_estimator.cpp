@@ -27,7 +27,7 @@ void GripEstimator::begin(const StateEstimator& from, const model::PredictionMod
   less_ = copy(1.0 - kStep);
   time_ = interval_ = 0.0;
   all_ = bend_ = {};
-  bend_time_ = 0.0;
+  bend_time_ = side_ = 0.0;
   bends_ = {};
 }
 
@@ -54,7 +54,7 @@ void GripEstimator::see(const model::Measurement& now, const CommandHistory& sen
 }
 
 void GripEstimator::end_bend() noexcept {
-  const double each = kMemory / (kMemory + bend_time_), left = each * each;  // of squares of what (3) sums
+  const double each = kMemory / (kMemory + bend_time_), left = each * each;  // squares fade twice as fast
   bends_ = {.hnhn = left * bends_.hnhn + bend_.hn * bend_.hn,
             .hnhh = left * bends_.hnhh + bend_.hn * bend_.hh,
             .hhhh = left * bends_.hhhh + bend_.hh * bend_.hh,

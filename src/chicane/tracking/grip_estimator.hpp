@@ -19,11 +19,12 @@ namespace chicane::tracking {
 class GripEstimator {
  public:
   static constexpr double kLeast = 3.0;  ///< [m/s²] of lateral acceleration by tyres: less tells too little
-  static constexpr double kMemory = 10.0;       ///< time constant of forgetting, of cornering [s]
-  static constexpr double kShortestBend = 1.0;  ///< of cornering [s]; shorter ones count together
-  static constexpr double kLongestBend = 4.0;   ///< longer ones count as several
-  static constexpr int kEnough = 3;             ///< bends until something is known
-  static constexpr double kSure = 0.1;          ///< standard deviation of share() from which on it is known
+  static constexpr double kMemory = 10.0;  ///< time constant of forgetting, of cornering [s]
+  static constexpr double kShortestBend =
+      1.0;  ///< cornering [s] that counts as one; shorter bends count together
+  static constexpr double kLongestBend = 4.0;  ///< longer ones count as several
+  static constexpr int kEnough = 3;            ///< bends until something is known
+  static constexpr double kSure = 0.1;         ///< standard deviation of share() from which on it is known
   static constexpr double kLow = 0.3, kHigh = 1.6;  ///< range of share()
 
   explicit GripEstimator(const model::PredictionModel& model) noexcept : believed_{model}, less_{model} {}
@@ -43,7 +44,7 @@ class GripEstimator {
  private:
   static constexpr double kStep = 0.1;  ///< share of grip that the other estimator has less
 
-  /// What was not expected of the place, n, and what the grip does to it, h [m], times seconds.
+  /// Sums of the unexpected part of the place, n, and of the grip's effect on it, h [m], times seconds.
   struct Sums {
     double hh = 0.0, hn = 0.0, nn = 0.0;
 
@@ -52,7 +53,7 @@ class GripEstimator {
     [[nodiscard]] double variance(double time) const noexcept;
   };
 
-  /// Of bends: the squares of what each adds to the sums of (3).
+  /// Squares of what each bend adds to the sums of (3).
   struct Bends {
     double hnhn = 0.0, hnhh = 0.0, hhhh = 0.0;
     int count = 0;
@@ -63,7 +64,7 @@ class GripEstimator {
   double time_ = 0.0;      ///< of cornering, as far as it is remembered [s]
   double interval_ = 0.0;  ///< between measurements in corners, mean [s]
   Sums all_;
-  Sums bend_;               ///< that has not ended
+  Sums bend_;               ///< sums of the bend that goes on
   double bend_time_ = 0.0;  ///< [s]
   double side_ = 0.0;       ///< sign of the side that the last measurement in a bend turned to
   Bends bends_;
