@@ -29,7 +29,6 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   const auto factors = problem_.price_factor;
   double unit = std::max(kFirstUnit, measure(problem, trajectory, nullptr).worst());
   double share = 1.0;
-  int budget = most_of_a_trial();
   double last = 0.0;
   for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
   problem_.terminal_shift.fill(0.0);
@@ -46,16 +45,15 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
       least_unit_ = unit;
     }
     SolveReport seen;
-    const int most = std::max(1, std::min(left, budget));
+    const int most = std::max(1, std::min(left, most_of_a_trial()));
     const bool converged = inner_.follow_barrier(problem_, nullptr, x0, trajectory, deadline, most, seen);
     inner_.start_from_states(true);
     report.iterations += seen.iterations;
     report.sweeps += seen.sweeps;
     left -= seen.iterations;
-    budget -= seen.iterations;
     const double worst = measure(problem, trajectory, &report).worst();
     is_minimum = converged && worst > options_.tolerance && worst > kKept[phase] * last;
-    if (!is_minimum || std::min(left, budget) <= 0) {
+    if (!is_minimum || left <= 0) {
       is_minimum = is_minimum && phase + 1 == kPhases;
       break;
     }
@@ -80,6 +78,26 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
     problem_.terminal_shift[n] =
         multiplier / weight * (n < kNeh ? terminal_[n] : std::max(0.0, terminal_[n]));
   }
+  return false;
+}
+/// is_infeasible() from an answer that is no solution, with the iterations that were kept back. False, and
+/// nothing but the count of iterations changed, where it finds none.
+template <HardProblem P, int Capacity, class Arch>
+bool HardSolver<P, Capacity, Arch>::is_infeasible_near(const P& problem, const State& x0,
+                                                       Trajectory& trajectory, const Deadline& deadline,
+                                                       int left, HardReport& report) noexcept {
+  kept_ = trajectory;
+  const Prices prices = prices_;
+  HardReport seen = report;
+  inner_.start_from_states(true);
+  if (is_infeasible(problem, x0, trajectory, deadline, left, seen)) {
+    report = seen;
+    return true;
+  }
+  trajectory = kept_;
+  prices_ = prices;
+  report.iterations = seen.iterations;
+  report.sweeps = seen.sweeps;
   return false;
 }
 /// The answer is the point of least violation, with the multipliers of the violation alone: its certificate.

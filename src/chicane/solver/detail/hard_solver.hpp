@@ -131,6 +131,8 @@ class HardSolver {
     RoundProgress progress;
     bool is_replaced = false;  // by a point that `report` is not of
     Misses before;
+    const int reserve = reserve_of_rounds();
+    left -= reserve;
     const auto is_spent = [&] { return left <= 0 || deadline.spent() || report.rounds >= kMostRounds; };
     for (;;) {
       const bool converged = has_begun ? round(x0, trajectory, deadline, left, report)
@@ -174,7 +176,9 @@ class HardSolver {
     if (is_replaced) assess(x0, trajectory, true, report);
     Misses now = measure(problem, trajectory, &report);
     for (std::size_t n = kNeh; n < kEnd; ++n) count_distance(now, n);
-    const bool is_close = !is_replaced && usable(report.status) && now.worst() <= options_.loose_tolerance;
+    if (!is_certified_ && reserve > 0 && !deadline.spent())
+      is_infeasible_near(problem, x0, trajectory, deadline, reserve + std::max(0, left), report);
+    const bool is_close = !is_replaced && !is_certified_ && usable(report.status) && now.worst() <= options_.loose_tolerance;
     if (is_close) return finish(SolveStatus::kBudgetSpent, now, report);
     if (is_certified_) return tell_infeasible(problem, x0, trajectory, report);
     if (take_guess(problem, x0, trajectory, report)) now = measure(problem, trajectory, &report);
@@ -185,6 +189,11 @@ class HardSolver {
   /// more iterations gets to the other ways, too.
   [[nodiscard]] int most_of_a_trial() const noexcept {
     return std::max(1, std::min(100, options_.max_iterations / 5));
+  }
+  /// Iterations that rounds leave for the search of the least violation: none where few are allowed.
+  [[nodiscard]] int reserve_of_rounds() const noexcept {
+    constexpr int kFew = 100;
+    return options_.max_iterations > kFew ? std::min(300, options_.max_iterations / 5) : 0;
   }
   bool first_round(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
                    HardReport& report) noexcept;
@@ -381,6 +390,8 @@ class HardSolver {
 
   bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
                      int& left, HardReport& report) noexcept;
+  bool is_infeasible_near(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
+                          int left, HardReport& report) noexcept;
   HardReport tell_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                              HardReport report) noexcept;
   double finest_tolerance(const P& problem, int horizon) const noexcept;
