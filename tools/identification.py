@@ -164,9 +164,10 @@ def print_tally(table, title):
     print(f"\n| {title} | inside | mean error, in halves of the interval | its rms | median error | median half of the interval |")
     print("|---|--:|--:|--:|--:|--:|")
     median = lambda values: sorted(values)[len(values) // 2]
+    percent = lambda value: "–" if math.isnan(value) else f"{100 * value:.1f} %"
     for key, rows in sorted(table.items()):
         print(f"| {key} | {sum(r[0] for r in rows)} of {len(rows)} | {sum(r[1] for r in rows) / len(rows):+.2f} | "
-              f"{math.sqrt(sum(r[1]**2 for r in rows) / len(rows)):.2f} | {100 * median([abs(r[2]) for r in rows]):.1f} % | {100 * median([r[3] for r in rows]):.1f} % |")
+              f"{math.sqrt(sum(r[1]**2 for r in rows) / len(rows)):.2f} | {percent(median([abs(r[2]) for r in rows]))} | {percent(median([r[3] for r in rows]))} |")
 
 
 def main():
@@ -185,15 +186,16 @@ def main():
         options.keep = options.keep or away
         campaign = Campaign(options)
         head = "| car | track | seed | delay | found | left unexplained | 2 s ahead | tyres used |"
-        print(head + ("" if options.no_race else " race, true model | race, found |"))
-        print("|---|---|--:|--:|--:|--:|--:|--:|" + ("" if options.no_race else "--:|--:|"))
+        runs = sys.stderr if options.no_race else sys.stdout
+        print(head + ("" if options.no_race else " race, true model | race, found |"), file=runs)
+        print("|---|---|--:|--:|--:|--:|--:|--:|" + ("" if options.no_race else "--:|--:|"), file=runs)
         rows = []
         for seed in range(options.first_seed, options.first_seed + options.seeds):
             for track in options.tracks.split(","):
                 for car in options.cars.split(","):
                     answer = campaign.answer(car, track, seed)
                     if "refused" in answer:
-                        print(f"| {car} | {track} | {seed} | | {answer['refused']} |", flush=True)
+                        print(f"| {car} | {track} | {seed} | | {answer['refused']} |", file=runs, flush=True)
                         continue
                     rows.append((car, answer))
                     delay = answer["delay_true_ms"]
@@ -201,11 +203,11 @@ def main():
                     ahead = next((e["position_m"] for e in answer["held_out"][1:2]), float("nan"))
                     use = answer["tire_use"]
                     print(f"| {car} | {track} | {seed} | {delay:.0f} | {answer['delay_ms']:.0f} | {answer['residual_m']:.3f} m | {ahead:.2f} m | "
-                          f"{100 * use[0]:.0f}, {100 * use[1]:.0f} % |{laps}", flush=True)
+                          f"{100 * use[0]:.0f}, {100 * use[1]:.0f} % |{laps}", file=runs, flush=True)
         by_key, by_car = tally_of(campaign, rows)
         inside = sum(r[0] for each in by_key.values() for r in each)
         total = sum(len(each) for each in by_key.values())
-        print(f"\n{inside} of {total} excited numbers inside their 95 % interval.")
+        print(f"{inside} of {total} excited numbers lie inside their 95 % interval:")
         print_tally(by_key, "number")
         print_tally(by_car, "car")
     return 0

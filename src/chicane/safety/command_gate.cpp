@@ -86,6 +86,12 @@ GateResult CommandGate::limited(const model::Command& asked, double elapsed) con
   return result;
 }
 
+double drive_to_valid_speed(const model::VehicleParams& car, double v) noexcept {
+  constexpr double kExcess = 1.02;   // of the speed
+  constexpr double kApproach = 0.5;  // [s] time constant: of the order of steering and drive lags
+  return (kExcess * car.valid_speed - v) / kApproach;
+}
+
 GateResult CommandGate::pass(const model::Command& asked, double elapsed) noexcept {
   const GateResult result = limited(asked, elapsed);
   wheel_ = wheel_after(elapsed);

@@ -64,6 +64,9 @@ double act_time(const model::Measurement& seen, const controller::StepReport& re
   return std::fabs(report.act_time - usual) < kMostDoubt ? report.act_time : usual;
 }
 
+/// [m/s] near the speed v₀ of docs/model.md, eq. 5: slower, turned wheels brake the model's car and no other.
+constexpr double kRollsSlowly = 1.0;
+
 }  // namespace
 
 road::KnownRoad known_road(const GuardOptions& options, const road::RoadData* road,
@@ -372,13 +375,14 @@ bool Guard::slow_down(const StopStart& start, const Cycle& cycle, const controll
   return true;
 }
 
-/// The command inside range and rate, without the reverse gear: a stop ends in standstill.
+/// The command inside range and rate, without the reverse gear: a stop ends in standstill. No drive beyond
+/// the speed up to which the car's parameters hold: no stop can be computed from there.
 model::Command Guard::limited(const model::Command& command, double interval) const noexcept {
   model::Command inside = answer().effect_of(gate_.limited(answer().command_for(command), interval).command);
   const model::VehicleParams& car = model_.vehicle();
   const double v = act_speed_;
   if (inside.throttle > 0.0) {
-    const double most = throttle_for(car, most_drive_, v);
+    const double most = throttle_for(car, std::min(most_drive_, drive_to_valid_speed(car, v)), v);
     inside.throttle = std::min(inside.throttle, std::max(most, 0.0));
   }
   if (car.latches_brakes() && inside.throttle == car.brake_release_throttle) return inside;
@@ -464,8 +468,9 @@ std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   act_speed_ = estimator_.is_started() ? estimator_.state().vx : std::numeric_limits<double>::infinity();
   if (line.is_empty() || !estimator_.is_started() || !std::isfinite(act_time)) return std::nullopt;
   const tracking::StateEstimator::Prediction at = estimator_.predict(act_time, sent_);
-  const model::State& car = at.state;
+  model::State car = at.state;
   if (!std::isfinite(car.x + car.y + car.psi + car.vx + car.vy + car.r)) return std::nullopt;
+  if (car.vx < kRollsSlowly) car.vx = std::max(car.vx, estimator_.rolling_speed(act_time, sent_));
   act_speed_ = car.vx;
   most_drive_ = traction(model_, {car.vx, car.vy, car.r, car.steer, 0.0});
   if (revision_ != road_.revision()) {

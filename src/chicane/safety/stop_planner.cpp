@@ -195,12 +195,7 @@ model::Command StopPlanner::law(const road::KnownRoad& road, const StopStart& at
                                 const Braking& braking) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double v = std::max(at.body.vx, 1.0);
-  const double ahead = road.line().demand(at.s + kPreview * v).curvature;
-  const double course = at.e + at.body.vy / v;
-  // Towards the middle of the road, where there is most room on both sides, or the line that is raced by.
-  const double beside =
-      at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + kStopMargin);
-  const double curvature = ahead + back_to(beside, course, v);
+  const double curvature = wanted_curvature(road, at);
   // The wheel that gives the yaw rate this asks for, by the model: a braking car oversteers.
   const double yaw_acceleration = kYawBandwidth * (v * curvature - at.body.r);
   const double steer =
@@ -208,12 +203,25 @@ model::Command StopPlanner::law(const road::KnownRoad& road, const StopStart& at
   return {steer, throttle_to_rest(car, slowing(road, at, braking), at.body.vx)};
 }
 
+/// That of the line ahead, and what brings the car towards the middle of the road, where there is most room
+/// on both sides, or to the line that is raced by [1/m].
+double StopPlanner::wanted_curvature(const road::KnownRoad& road, const StopStart& at) const noexcept {
+  const model::VehicleParams& car = model_.vehicle();
+  const double v = std::max(at.body.vx, 1.0);
+  const double ahead = road.line().demand(at.s + kPreview * v).curvature;
+  const double course = at.e + at.body.vy / v;
+  const double beside =
+      at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + kStopMargin);
+  return ahead + back_to(beside, course, v);
+}
+
 double StopPlanner::slowing(const road::KnownRoad& road, const StopStart& at,
                             const Braking& braking) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double v = std::max(at.body.vx, 1.0);
-  const double ahead = road.line().demand(at.s + kPreview * v).curvature;
-  const double bend = std::max(std::fabs(ahead), std::fabs(road.line().demand(at.s).curvature));
+  const double ahead = std::fabs(road.line().demand(at.s + kPreview * v).curvature);
+  const double bend =
+      std::max({ahead, std::fabs(road.line().demand(at.s).curvature), std::fabs(wanted_curvature(road, at))});
   const double sideways = (1.0 - car.steer_helper) * std::max(bend * v * v, std::fabs(at.body.r) * v);
   const double raced = raced_slowing(road, at);
   const double useful = longitudinal_acceleration(car, lowest_throttle(car, v), v);

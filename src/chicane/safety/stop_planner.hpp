@@ -124,6 +124,7 @@ class StopPlanner {
   [[nodiscard]] double instability(model::BodyMotion<double> m, double deceleration) const noexcept;
   [[nodiscard]] double stable_share(const model::BodyMotion<double>& m, double deceleration,
                                     double stability) const noexcept;
+  [[nodiscard]] double wanted_curvature(const road::KnownRoad& road, const StopStart& at) const noexcept;
   [[nodiscard]] double raced_slowing(const road::KnownRoad& road, const StopStart& at) const noexcept;
   [[nodiscard]] double foreseen(const road::KnownRoad& road, const StopStart& at, double most) const noexcept;
   [[nodiscard]] double braking_share(double sideways, double deceleration, double v) const noexcept;

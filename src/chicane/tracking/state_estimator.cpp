@@ -214,4 +214,16 @@ StateEstimator::Prediction StateEstimator::predict(double time, const CommandHis
   return result;
 }
 
+double StateEstimator::rolling_speed(double time, const CommandHistory& sent) const noexcept {
+  const double to = std::min(time, time_ + kLongestGap);
+  double speed = now_.state.vx;
+  for (double now = time_; now < to - 1e-9;) {
+    const double dt = std::min(sent.next_change(now + 1e-9, to) - now, kMaxStep);
+    const double pedal = sent.at(now + 1e-9).throttle;
+    speed = std::max(speed + dt * longitudinal_acceleration(model_.vehicle(), pedal, speed), 0.0);
+    now += dt;
+  }
+  return speed;
+}
+
 }  // namespace chicane::tracking

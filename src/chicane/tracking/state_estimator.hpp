@@ -158,6 +158,9 @@ class StateEstimator {
     Disturbance disturbance;
   };
   [[nodiscard]] Prediction predict(double time, const CommandHistory& sent) const noexcept;
+  /// Speed at `time` [m/s] by the pedals alone: of a slow car whose wheels are turned, which the model brakes
+  /// by the slip of a car that stands (PredictionModel), and which rolls on.
+  [[nodiscard]] double rolling_speed(double time, const CommandHistory& sent) const noexcept;
 
  private:
   static constexpr double kPlaceAcceleration = 2.0;  ///< [m/s²] that the model may be wrong by

@@ -121,6 +121,21 @@ HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, cons
   problem_.violation_price = 0.0;
   return finish(SolveStatus::kInfeasible, now, report);
 }
+/// The guess, simulated, if its inputs miss less than those of `trajectory` and cost less, too: true then.
+template <HardProblem P, int Capacity, class Arch>
+bool HardSolver<P, Capacity, Arch>::take_guess(const P& problem, const State& x0, Trajectory& trajectory,
+                                               HardReport& report) noexcept {
+  if (!roll_out(problem, x0, guess_)) return false;
+  const Misses guess = measure(problem, guess_, nullptr);
+  kept_ = trajectory;
+  if (roll_out(problem, x0, kept_)) {
+    const Misses own = measure(problem, kept_, nullptr);
+    if (!(guess.worst() < own.worst() && guess.cost < own.cost)) return false;
+  }
+  kept_ = trajectory = guess_;
+  assess(x0, kept_, false, report);
+  return true;
+}
 /// A ten thousandth of the narrowest bounds' distance, at most 1e-8: steps from one to the other are
 /// no longer than the distance, whatever the slope.
 template <HardProblem P, int Capacity, class Arch>

@@ -178,7 +178,8 @@ class HardSolver {
     for (std::size_t n = kNeh; n < kEnd; ++n) count_distance(now, n);
     if (!is_certified_ && reserve > 0 && !deadline.spent())
       is_infeasible_near(problem, x0, trajectory, deadline, reserve + std::max(0, left), report);
-    const bool is_close = !is_replaced && !is_certified_ && usable(report.status) && now.worst() <= options_.loose_tolerance;
+    const bool is_close =
+        !is_replaced && !is_certified_ && usable(report.status) && now.worst() <= options_.loose_tolerance;
     if (is_close) return finish(SolveStatus::kBudgetSpent, now, report);
     if (is_certified_) return tell_infeasible(problem, x0, trajectory, report);
     if (take_guess(problem, x0, trajectory, report)) now = measure(problem, trajectory, &report);
@@ -206,19 +207,7 @@ class HardSolver {
     trajectory = guess_;
     start_with_weights(trajectory.horizon, factor);
   }
-  /// The guess, simulated, if its inputs miss less than those of `trajectory` and cost less, too: true then.
-  bool take_guess(const P& problem, const State& x0, Trajectory& trajectory, HardReport& report) noexcept {
-    if (!roll_out(problem, x0, guess_)) return false;
-    const Misses guess = measure(problem, guess_, nullptr);
-    kept_ = trajectory;
-    if (roll_out(problem, x0, kept_)) {
-      const Misses own = measure(problem, kept_, nullptr);
-      if (!(guess.worst() < own.worst() && guess.cost < own.cost)) return false;
-    }
-    kept_ = trajectory = guess_;
-    assess(x0, kept_, false, report);
-    return true;
-  }
+  bool take_guess(const P& problem, const State& x0, Trajectory& trajectory, HardReport& report) noexcept;
   /// The residuals of `trajectory`, simulated or with its states, become those of `report`.
   void assess(const State& x0, Trajectory& trajectory, bool with_states, HardReport& report) noexcept {
     inner_.allow_iterations(0);
