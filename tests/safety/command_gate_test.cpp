@@ -191,8 +191,8 @@ TEST(CommandGate, DrivesTowardsTheSpeedThatTheParametersHoldTo) {
   EXPECT_EQ(drive_to_valid_speed(car, 1000.0), kInfinity);
   car.valid_speed = 20.0;
   EXPECT_GT(drive_to_valid_speed(car, 10.0), 10.0);
-  EXPECT_NEAR(drive_to_valid_speed(car, 20.4), 0.0, 1e-9);
-  EXPECT_LT(drive_to_valid_speed(car, 21.0), 0.0);
+  EXPECT_NEAR(drive_to_valid_speed(car, 21.0), 0.0, 1e-9);
+  EXPECT_LT(drive_to_valid_speed(car, 22.0), 0.0);
 }
 
 }  // namespace

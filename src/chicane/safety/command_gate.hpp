@@ -14,9 +14,9 @@ struct GateResult {
   GateReason reason = GateReason::kNone;  ///< worst one that applied
 };
 
-/// Acceleration that leads a car of speed `v` [m/s] to VehicleParams::valid_speed, and ends 2 % above it
-/// [m/s²]. Controllers that follow a plan of that speed are a little faster now and then; from 10 % above it
-/// `f1tenth` spins in a stop that was computed with its parameters.
+/// Acceleration that leads a car of speed `v` [m/s] to VehicleParams::valid_speed, and ends 5 % above it
+/// [m/s²]. Controllers that follow a plan of that speed are a little faster now and then, and need drive in
+/// bends; from 10 % above it `f1tenth` spins in a stop that was computed with its parameters.
 [[nodiscard]] double drive_to_valid_speed(const model::VehicleParams& vehicle, double v) noexcept;
 
 /// The only way to an actuator: whatever is asked, what leaves is finite, inside the vehicle's steering and

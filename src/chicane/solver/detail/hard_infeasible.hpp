@@ -81,7 +81,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   return false;
 }
 /// is_infeasible() from an answer that is no solution, with the iterations that were kept back. False, and
-/// nothing but the count of iterations changed, where it finds none.
+/// the answer as it was, where it finds none.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::is_infeasible_near(const P& problem, const State& x0,
                                                        Trajectory& trajectory, const Deadline& deadline,
@@ -98,6 +98,8 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible_near(const P& problem, const S
   prices_ = prices;
   report.iterations = seen.iterations;
   report.sweeps = seen.sweeps;
+  put_prices(trajectory.horizon);
+  assess(x0, trajectory, true, report);
   return false;
 }
 /// The answer is the point of least violation, with the multipliers of the violation alone: its certificate.

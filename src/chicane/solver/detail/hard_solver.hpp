@@ -125,14 +125,12 @@ class HardSolver {
     trial_ = 0;
     is_certified_ = false;
     start(problem, x0, trajectory);
-    int left = options_.max_iterations;
+    int left = options_.max_iterations - reserve_of_rounds();
     bool has_begun = prices_.is_known;
     bool may_start_again = !prices_.is_known;
     RoundProgress progress;
     bool is_replaced = false;  // by a point that `report` is not of
     Misses before;
-    const int reserve = reserve_of_rounds();
-    left -= reserve;
     const auto is_spent = [&] { return left <= 0 || deadline.spent() || report.rounds >= kMostRounds; };
     for (;;) {
       const bool converged = has_begun ? round(x0, trajectory, deadline, left, report)
@@ -176,10 +174,13 @@ class HardSolver {
     if (is_replaced) assess(x0, trajectory, true, report);
     Misses now = measure(problem, trajectory, &report);
     for (std::size_t n = kNeh; n < kEnd; ++n) count_distance(now, n);
-    if (!is_certified_ && reserve > 0 && !deadline.spent())
+    bool is_close = !is_replaced && usable(report.status) && now.worst() <= options_.loose_tolerance;
+    if (const int reserve = reserve_of_rounds();
+        !is_certified_ && reserve > 0 && !deadline.spent() &&
+        !(is_close && now.worst() <= 0.5 * options_.loose_tolerance)) {
       is_infeasible_near(problem, x0, trajectory, deadline, reserve + std::max(0, left), report);
-    const bool is_close =
-        !is_replaced && !is_certified_ && usable(report.status) && now.worst() <= options_.loose_tolerance;
+      is_close = false;
+    }
     if (is_close) return finish(SolveStatus::kBudgetSpent, now, report);
     if (is_certified_) return tell_infeasible(problem, x0, trajectory, report);
     if (take_guess(problem, x0, trajectory, report)) now = measure(problem, trajectory, &report);
@@ -191,10 +192,10 @@ class HardSolver {
   [[nodiscard]] int most_of_a_trial() const noexcept {
     return std::max(1, std::min(100, options_.max_iterations / 5));
   }
-  /// Iterations that rounds leave for the search of the least violation: none where few are allowed.
+  /// Iterations that rounds leave for the search of the least violation: none where few are allowed. It
+  /// follows an answer that misses more than half the loose tolerance; closer ones are used as they are.
   [[nodiscard]] int reserve_of_rounds() const noexcept {
-    constexpr int kFew = 100;
-    return options_.max_iterations > kFew ? std::min(300, options_.max_iterations / 5) : 0;
+    return options_.max_iterations > 100 ? std::min(300, options_.max_iterations / 5) : 0;
   }
   bool first_round(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
                    HardReport& report) noexcept;
