@@ -19,8 +19,7 @@ namespace chicane::solver {
 /// OcpSolver for problems with something that must hold beside dynamics and bounds (hard_constraints.hpp):
 /// the primal-dual method of detail/hard_rows.hpp, then full steps from its multipliers
 /// (docs/solver_hard.md). Where that gets nowhere, the misses alone are minimised: what cannot hold is
-/// reported. Else the method begins again from the point that keeps everything, and then an augmented
-/// Lagrangian: each round is one solve and an update of multipliers, weights and prices.
+/// reported. Else an augmented Lagrangian: each round is one solve and an update of multipliers and weights.
 template <HardProblem P, int Capacity, class Arch>
 class HardSolver {
  public:
