@@ -36,6 +36,8 @@ TEST(Attack, DoesNotLeadOffTheRoad) {
                              {"creep", "road-car", "lakeside", 12.0},
                              {"lock", "f1tenth", "lakeside", 8.0},
                              {"rock", "f1tenth", "lakeside", 8.0},
+                             {"blind_throttle", "f1tenth", "lakeside", 23.0},
+                             {"random_hold", "udacity", "lakeside", 60.0},
                              {"stop_on_road", "bmw-320i", "speedway", 10.0}}) {
     const auto scenario = scenario_of({.car = trial.car, .track = trial.track});
     ASSERT_TRUE(scenario);
@@ -43,6 +45,8 @@ TEST(Attack, DoesNotLeadOffTheRoad) {
         drive_adversary(*scenario, roads, *adversary_named(trial.adversary), 0, trial.seconds);
     ASSERT_TRUE(outcome);
     EXPECT_GE(outcome->least_edge, 0.0) << trial.adversary << " with " << trial.car;
+    EXPECT_LE(outcome->fastest, 1.06 * scenario->vehicle.valid_speed)
+        << trial.adversary << " with " << trial.car;
   }
 }
 

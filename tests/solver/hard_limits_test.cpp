@@ -87,6 +87,16 @@ TEST(HardLimits, ThatBoundedInputsCannotKeepAreInfeasible) {
   }
 }
 
+/// From idle inputs the three problems of the certificate take up to 130 iterations together.
+TEST(HardLimits, AreInfeasibleWhereTheLeastViolationIsFar) {
+  for (int seed = 0; seed < 5; ++seed) {
+    for (const NaiveStart start : {NaiveStart::kIdle, NaiveStart::kLine}) {
+      const auto solved = solve<Gates>(seed, true, start);
+      EXPECT_EQ(solved->report.status, SolveStatus::kInfeasible) << seed << to_string(start);
+    }
+  }
+}
+
 double total_violation(const Tanks& problem, const std::array<double, 2>& start,
                        FamilyMeasurement<Tanks>::Trajectory t) {
   solver::roll_out(problem, start, t);

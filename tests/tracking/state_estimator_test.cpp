@@ -41,6 +41,20 @@ TEST_F(Estimating, SaysWhatAMeasurementIsBesideTheExpectation) {
   EXPECT_FALSE(std::isfinite(estimator.surprise().aside)) << "an old measurement";
 }
 
+TEST_F(Estimating, LetsASlowCarRollOnWhoseWheelsAreTurned) {
+  const model::VehicleParams& car = model.vehicle();
+  sent.add(-1.0, {.steer = car.steer_limit, .throttle = 0.0});
+  for (int i = 0; i <= 25; ++i) estimator.correct({.time = 0.04 * i, .speed = 0.3}, sent);
+  EXPECT_LT(estimator.predict(1.1, sent).state.vx, estimator.rolling_speed(1.1, sent) - 0.02)
+      << "the model's slip brakes it";
+  EXPECT_NEAR(estimator.rolling_speed(1.1, sent), estimator.state().vx, 0.1 * car.drag_linear * 0.3 + 1e-3);
+  sent.add(1.0, {.steer = car.steer_limit, .throttle = -0.1});
+  EXPECT_NEAR(estimator.rolling_speed(1.05, sent),
+              estimator.state().vx - 0.05 * 0.1 * car.reverse_acceleration, 5e-3);
+  sent.add(1.05, {.steer = car.steer_limit, .throttle = -1.0});
+  EXPECT_EQ(estimator.rolling_speed(1.4, sent), 0.0) << "it does not roll back";
+}
+
 /// Lag and rate limit as the actuator has them, whatever the steps are that it is replayed in.
 TEST(StateEstimator, TurnsTheWheelAsFastAsTheActuatorDoes) {
   const model::VehicleParams car = model::road_car_params();

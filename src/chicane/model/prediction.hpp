@@ -181,6 +181,9 @@ class PredictionModel {
            (m.vy + p.front_axle * m.r) * tires.inverse_speed;
   }
 
+  /// Least speed that slip angles are computed with, about [m/s]: below it a car whose wheels are turned is
+  /// braked and turned by more slip than it has.
+  static constexpr double kSpeedFloor = 1.0;
   /// Normal acceleration carried by the tyres at speed v [m/s²].
   [[nodiscard]] double load(double v) const noexcept { return vehicle_.load(v); }
   [[nodiscard]] const model::VehicleParams& vehicle() const noexcept { return vehicle_; }
@@ -188,8 +191,6 @@ class PredictionModel {
  private:
   static constexpr double kGravity = 9.81;  ///< [m/s²]
   static constexpr double kLeastDeterminant = 0.2;
-  static constexpr double kSpeedFloor =
-      1.0;  ///< [m/s] slip angles are computed with at least about this speed
 
   template <class T>
   struct Tires {

@@ -62,9 +62,9 @@ constexpr std::array kOptions{
     option<&P::brake_throttle_limit>("brake_throttle_limit", unit::kNone, 0.001, 1,
                                      "Largest useful negative throttle; beyond it the wheels lock."),
     option<&P::drive_lag>("drive_lag", unit::kMillisecond, 0, 5000, "Time constant of drive and brake."),
-    option<&P::valid_speed>(
-        "valid_speed", unit::kSpeed, 0.1, 200,
-        "Speed up to which the car's parameters hold: no plan is faster, and the guard drives no faster.")
+    option<&P::valid_speed>("valid_speed", unit::kSpeed, 0.1, 200,
+                            "Speed up to which the car's parameters hold: no plan is faster, and the guard "
+                            "cuts the drive at 5 % more.")
         .or_infinite(),
     option<&P::brake_share_front>("brake_share_front", unit::kNone, 0, 1,
                                   "Share of the front wheels in the braking force."),

@@ -87,7 +87,7 @@ GateResult CommandGate::limited(const model::Command& asked, double elapsed) con
 }
 
 double drive_to_valid_speed(const model::VehicleParams& car, double v) noexcept {
-  constexpr double kExcess = 1.05;   // of the speed
+  constexpr double kExcess = 1.05;   // share of the valid speed
   constexpr double kApproach = 0.5;  // [s] time constant: of the order of steering and drive lags
   return (kExcess * car.valid_speed - v) / kApproach;
 }

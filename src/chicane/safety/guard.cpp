@@ -64,9 +64,6 @@ double act_time(const model::Measurement& seen, const controller::StepReport& re
   return std::fabs(report.act_time - usual) < kMostDoubt ? report.act_time : usual;
 }
 
-/// [m/s] near the speed v₀ of docs/model.md, eq. 5: slower, turned wheels brake the model's car and no other.
-constexpr double kRollsSlowly = 1.0;
-
 }  // namespace
 
 road::KnownRoad known_road(const GuardOptions& options, const road::RoadData* road,
@@ -470,7 +467,8 @@ std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   const tracking::StateEstimator::Prediction at = estimator_.predict(act_time, sent_);
   model::State car = at.state;
   if (!std::isfinite(car.x + car.y + car.psi + car.vx + car.vy + car.r)) return std::nullopt;
-  if (car.vx < kRollsSlowly) car.vx = std::max(car.vx, estimator_.rolling_speed(act_time, sent_));
+  if (car.vx < model::PredictionModel::kSpeedFloor)
+    car.vx = std::max(car.vx, estimator_.rolling_speed(act_time, sent_));
   act_speed_ = car.vx;
   most_drive_ = traction(model_, {car.vx, car.vy, car.r, car.steer, 0.0});
   if (revision_ != road_.revision()) {

@@ -16,7 +16,6 @@ namespace {
 constexpr double kStep = 0.05;      // [s] of the simulation
 constexpr int kStepsPerPoint = 2;   // of the simulation, in the plan
 constexpr double kStanding = 0.3;   // [m/s] slower than that the car counts as standing
-constexpr double kSlipSpeed = 1.0;  // [m/s] at which PredictionModel takes the slip of a car that stands
 constexpr double kSlow = 3.0;       // [m/s] below which its turning is corrected
 constexpr double kBandwidth = 1.0;  // [rad/s] of the feedback to the line
 constexpr double kDamping = 0.7;
@@ -195,33 +194,33 @@ model::Command StopPlanner::law(const road::KnownRoad& road, const StopStart& at
                                 const Braking& braking) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double v = std::max(at.body.vx, 1.0);
-  const double curvature = wanted_curvature(road, at);
+  const Curvatures curvatures = curvatures_of(road, at);
   // The wheel that gives the yaw rate this asks for, by the model: a braking car oversteers.
-  const double yaw_acceleration = kYawBandwidth * (v * curvature - at.body.r);
+  const double yaw_acceleration = kYawBandwidth * (v * curvatures.wanted - at.body.r);
   const double steer =
       std::clamp(model_.steer_for(at.body, yaw_acceleration), -car.steer_limit, car.steer_limit);
-  return {steer, throttle_to_rest(car, slowing(road, at, braking), at.body.vx)};
+  return {steer, throttle_to_rest(car, slowing(road, at, braking, curvatures), at.body.vx)};
 }
 
-/// That of the line ahead, and what brings the car towards the middle of the road, where there is most room
-/// on both sides, or to the line that is raced by [1/m].
-double StopPlanner::wanted_curvature(const road::KnownRoad& road, const StopStart& at) const noexcept {
+/// What is wanted brings the car towards the middle of the road, where there is most room on both sides, or
+/// to the line that is raced by.
+StopPlanner::Curvatures StopPlanner::curvatures_of(const road::KnownRoad& road,
+                                                   const StopStart& at) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double v = std::max(at.body.vx, 1.0);
   const double ahead = road.line().demand(at.s + kPreview * v).curvature;
   const double course = at.e + at.body.vy / v;
   const double beside =
       at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + kStopMargin);
-  return ahead + back_to(beside, course, v);
+  return {.ahead = ahead, .wanted = ahead + back_to(beside, course, v)};
 }
 
-double StopPlanner::slowing(const road::KnownRoad& road, const StopStart& at,
-                            const Braking& braking) const noexcept {
+double StopPlanner::slowing(const road::KnownRoad& road, const StopStart& at, const Braking& braking,
+                            const Curvatures& curvatures) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double v = std::max(at.body.vx, 1.0);
-  const double ahead = std::fabs(road.line().demand(at.s + kPreview * v).curvature);
-  const double bend =
-      std::max({ahead, std::fabs(road.line().demand(at.s).curvature), std::fabs(wanted_curvature(road, at))});
+  const double bend = std::max({std::fabs(curvatures.ahead), std::fabs(curvatures.wanted),
+                                std::fabs(road.line().demand(at.s).curvature)});
   const double sideways = (1.0 - car.steer_helper) * std::max(bend * v * v, std::fabs(at.body.r) * v);
   const double raced = raced_slowing(road, at);
   const double useful = longitudinal_acceleration(car, lowest_throttle(car, v), v);
@@ -265,8 +264,8 @@ void StopPlanner::move(const StopCar& car, const road::KnownRoad& road, StopStar
   model::BodyMotion<double>& to = moved.body;
   to.vx = std::max(to.vx, 0.0);
   const double vx = 0.5 * (at.body.vx + to.vx);
-  // The model turns a car that stands with its wheels turned as if it rolled with kSlipSpeed.
-  const double rolls = vx < kSlow ? vx / hypot(vx, kSlipSpeed) : 1.0;
+  // The model turns a car that stands with its wheels turned as if it rolled with kSpeedFloor.
+  const double rolls = vx < kSlow ? vx / hypot(vx, model::PredictionModel::kSpeedFloor) : 1.0;
   const double vy = rolls * 0.5 * (at.body.vy + to.vy);
   const double turned = rolls * 0.5 * dt * (at.body.r + to.r);
   const double curvature = road.line().demand(at.s).curvature;

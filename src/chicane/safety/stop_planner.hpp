@@ -116,15 +116,24 @@ class StopPlanner {
   /// And its acceleration [m/s²], negative: what the bend, and a car that shall stay stable, leave of the
   /// braking. A car of much drag may need its drive for that.
   [[nodiscard]] double slowing(const road::KnownRoad& road, const StopStart& at,
-                               const Braking& braking) const noexcept;
+                               const Braking& braking) const noexcept {
+    return slowing(road, at, braking, curvatures_of(road, at));
+  }
   /// Of the outermost contact patch to the believed edge [m].
   [[nodiscard]] double edge(const road::KnownRoad& road, const StopStart& at) const noexcept;
 
  private:
+  /// Curvatures at a place of a stop [1/m].
+  struct Curvatures {
+    double ahead = 0.0;   ///< of the line, a moment later
+    double wanted = 0.0;  ///< the same, and what brings the car back to the line
+  };
+  [[nodiscard]] Curvatures curvatures_of(const road::KnownRoad& road, const StopStart& at) const noexcept;
+  [[nodiscard]] double slowing(const road::KnownRoad& road, const StopStart& at, const Braking& braking,
+                               const Curvatures& curvatures) const noexcept;
   [[nodiscard]] double instability(model::BodyMotion<double> m, double deceleration) const noexcept;
   [[nodiscard]] double stable_share(const model::BodyMotion<double>& m, double deceleration,
                                     double stability) const noexcept;
-  [[nodiscard]] double wanted_curvature(const road::KnownRoad& road, const StopStart& at) const noexcept;
   [[nodiscard]] double raced_slowing(const road::KnownRoad& road, const StopStart& at) const noexcept;
   [[nodiscard]] double foreseen(const road::KnownRoad& road, const StopStart& at, double most) const noexcept;
   [[nodiscard]] double braking_share(double sideways, double deceleration, double v) const noexcept;

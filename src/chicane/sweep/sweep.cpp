@@ -73,6 +73,7 @@ Result<std::optional<telemetry::RunSummary>> drive_while(const Settings& setting
   const Result<scenario::Scenario> scenario = protocol::compose(*request, roads.files());
   if (!scenario) return fail(scenario.error());
   const auto loop = run::ClosedLoop::create(*scenario, roads);
+  if (!loop && stop) return std::optional<telemetry::RunSummary>{};  // planning was stopped
   if (!loop) return fail(loop.error());
   telemetry::RunSummary summary = run::run_closed_loop(
       **loop, {}, [&] { return stop.load() || (is_hasty && (*loop)->world().off_track_events > 0); });

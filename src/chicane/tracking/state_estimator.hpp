@@ -158,8 +158,8 @@ class StateEstimator {
     Disturbance disturbance;
   };
   [[nodiscard]] Prediction predict(double time, const CommandHistory& sent) const noexcept;
-  /// Speed at `time` [m/s] by the pedals alone: of a slow car whose wheels are turned, which the model brakes
-  /// by the slip of a car that stands (PredictionModel), and which rolls on.
+  /// Speed at `time` [m/s] by the pedals alone. A car slower than PredictionModel::kSpeedFloor rolls on where
+  /// the model has it braked by its turned wheels.
   [[nodiscard]] double rolling_speed(double time, const CommandHistory& sent) const noexcept;
 
  private:

@@ -101,7 +101,7 @@ struct VehicleModel {
   /// Of slip_share [s/m]: the faster a car, the less its yaw motion is damped, and the further it goes before
   /// a command acts. Three quarters are left at 50 m/s.
   static constexpr double kSlipPerSpeed = 0.005;
-  /// The same for slow steering: with 0.005 `vw-vanagon` and `tum-1200` spin in bends of 35 to 45 m/s.
+  /// Share for cars with slow steering: with 0.005 `vw-vanagon` and `tum-1200` spin in bends of 35 to 45 m/s.
   static constexpr double kSlipPerSpeedSlow = 0.01;
 };
 

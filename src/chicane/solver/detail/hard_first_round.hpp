@@ -17,7 +17,6 @@ template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& trajectory,
                                                 const Deadline& deadline, int& left,
                                                 HardReport& report) noexcept {
-  constexpr int kMoreIterations = 500;
   constexpr double kFew = 1e-2;  // of the guess's misses are left where a path leads to a solution
   if constexpr (has_filter_method<P>()) {
     if (!options_.may_start_short) return round(x0, trajectory, deadline, left, report);
@@ -29,9 +28,7 @@ bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& tra
       return round(x0, trajectory, deadline, left, report);
     kept_ = trajectory;
     begin_again(trajectory, 1.0);
-    if (is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report)) {
-      left = std::min(left, kMoreIterations);
-    } else if (has_path) {
+    if (!is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report) && has_path) {
       trajectory = kept_;
       start_with_weights(trajectory.horizon, 1.0);
       put_prices(trajectory.horizon);

@@ -80,28 +80,6 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   }
   return false;
 }
-/// is_infeasible() from an answer that is no solution, with the iterations that were kept back. False, and
-/// the answer as it was, where it finds none.
-template <HardProblem P, int Capacity, class Arch>
-bool HardSolver<P, Capacity, Arch>::is_infeasible_near(const P& problem, const State& x0,
-                                                       Trajectory& trajectory, const Deadline& deadline,
-                                                       int left, HardReport& report) noexcept {
-  kept_ = trajectory;
-  const Prices prices = prices_;
-  HardReport seen = report;
-  inner_.start_from_states(true);
-  if (is_infeasible(problem, x0, trajectory, deadline, left, seen)) {
-    report = seen;
-    return true;
-  }
-  trajectory = kept_;
-  prices_ = prices;
-  report.iterations = seen.iterations;
-  report.sweeps = seen.sweeps;
-  put_prices(trajectory.horizon);
-  assess(x0, trajectory, true, report);
-  return false;
-}
 /// The answer is the point of least violation, with the multipliers of the violation alone: its certificate.
 template <HardProblem P, int Capacity, class Arch>
 HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, const State& x0,
@@ -122,21 +100,6 @@ HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, cons
   keep_prices(trajectory.horizon);
   problem_.violation_price = 0.0;
   return finish(SolveStatus::kInfeasible, now, report);
-}
-/// The guess, simulated, if its inputs miss less than those of `trajectory` and cost less, too: true then.
-template <HardProblem P, int Capacity, class Arch>
-bool HardSolver<P, Capacity, Arch>::take_guess(const P& problem, const State& x0, Trajectory& trajectory,
-                                               HardReport& report) noexcept {
-  if (!roll_out(problem, x0, guess_)) return false;
-  const Misses guess = measure(problem, guess_, nullptr);
-  kept_ = trajectory;
-  if (roll_out(problem, x0, kept_)) {
-    const Misses own = measure(problem, kept_, nullptr);
-    if (!(guess.worst() < own.worst() && guess.cost < own.cost)) return false;
-  }
-  kept_ = trajectory = guess_;
-  assess(x0, kept_, false, report);
-  return true;
 }
 /// A ten thousandth of the narrowest bounds' distance, at most 1e-8: steps from one to the other are
 /// no longer than the distance, whatever the slope.

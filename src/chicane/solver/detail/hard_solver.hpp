@@ -19,7 +19,8 @@ namespace chicane::solver {
 /// OcpSolver for problems with something that must hold beside dynamics and bounds (hard_constraints.hpp):
 /// the primal-dual method of detail/hard_rows.hpp, then full steps from its multipliers
 /// (docs/solver_hard.md). Where that gets nowhere, the misses alone are minimised: what cannot hold is
-/// reported. Else an augmented Lagrangian: each round is one solve and an update of multipliers and weights.
+/// reported. Else the method begins again from the point that keeps everything, and then an augmented
+/// Lagrangian: each round is one solve and an update of multipliers, weights and prices.
 template <HardProblem P, int Capacity, class Arch>
 class HardSolver {
  public:
@@ -124,7 +125,7 @@ class HardSolver {
     trial_ = 0;
     is_certified_ = false;
     start(problem, x0, trajectory);
-    int left = options_.max_iterations - reserve_of_rounds();
+    int left = options_.max_iterations;
     bool has_begun = prices_.is_known;
     bool may_start_again = !prices_.is_known;
     RoundProgress progress;
@@ -173,13 +174,7 @@ class HardSolver {
     if (is_replaced) assess(x0, trajectory, true, report);
     Misses now = measure(problem, trajectory, &report);
     for (std::size_t n = kNeh; n < kEnd; ++n) count_distance(now, n);
-    bool is_close = !is_replaced && usable(report.status) && now.worst() <= options_.loose_tolerance;
-    if (const int reserve = reserve_of_rounds();
-        !is_certified_ && reserve > 0 && !deadline.spent() &&
-        !(is_close && now.worst() <= 0.5 * options_.loose_tolerance)) {
-      is_infeasible_near(problem, x0, trajectory, deadline, reserve + std::max(0, left), report);
-      is_close = false;
-    }
+    const bool is_close = !is_replaced && usable(report.status) && now.worst() <= options_.loose_tolerance;
     if (is_close) return finish(SolveStatus::kBudgetSpent, now, report);
     if (is_certified_) return tell_infeasible(problem, x0, trajectory, report);
     if (take_guess(problem, x0, trajectory, report)) now = measure(problem, trajectory, &report);
@@ -190,11 +185,6 @@ class HardSolver {
   /// more iterations gets to the other ways, too.
   [[nodiscard]] int most_of_a_trial() const noexcept {
     return std::max(1, std::min(100, options_.max_iterations / 5));
-  }
-  /// Iterations that rounds leave for the search of the least violation: none where few are allowed. It
-  /// follows an answer that misses more than half the loose tolerance; closer ones are used as they are.
-  [[nodiscard]] int reserve_of_rounds() const noexcept {
-    return options_.max_iterations > 100 ? std::min(300, options_.max_iterations / 5) : 0;
   }
   bool first_round(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
                    HardReport& report) noexcept;
@@ -207,7 +197,19 @@ class HardSolver {
     trajectory = guess_;
     start_with_weights(trajectory.horizon, factor);
   }
-  bool take_guess(const P& problem, const State& x0, Trajectory& trajectory, HardReport& report) noexcept;
+  /// The guess, simulated, if its inputs miss less than those of `trajectory` and cost less, too: true then.
+  bool take_guess(const P& problem, const State& x0, Trajectory& trajectory, HardReport& report) noexcept {
+    if (!roll_out(problem, x0, guess_)) return false;
+    const Misses guess = measure(problem, guess_, nullptr);
+    kept_ = trajectory;
+    if (roll_out(problem, x0, kept_)) {
+      const Misses own = measure(problem, kept_, nullptr);
+      if (!(guess.worst() < own.worst() && guess.cost < own.cost)) return false;
+    }
+    kept_ = trajectory = guess_;
+    assess(x0, kept_, false, report);
+    return true;
+  }
   /// The residuals of `trajectory`, simulated or with its states, become those of `report`.
   void assess(const State& x0, Trajectory& trajectory, bool with_states, HardReport& report) noexcept {
     inner_.allow_iterations(0);
@@ -379,8 +381,6 @@ class HardSolver {
 
   bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
                      int& left, HardReport& report) noexcept;
-  bool is_infeasible_near(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
-                          int left, HardReport& report) noexcept;
   HardReport tell_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                              HardReport report) noexcept;
   double finest_tolerance(const P& problem, int horizon) const noexcept;
