@@ -144,7 +144,9 @@ def otherwise(runs):
         names = {"plant_options.friction_scale": "grip", "plant_options.mass_scale": "mass"}
         found = [f"{name} {float(setting(run, key)):g}" for key, name in names.items() if float(setting(run, key)) != 1.0]
         late = float(setting(run, "latency_ms")) - 100.0
-        return ", ".join(found + ([f"latency +{late:g} ms"] if late else [])) or "as believed"
+        jitter = float(setting(run, "latency_jitter_ms"))
+        found += [f"latency +{late:g} ms"] if late else []
+        return ", ".join(found + ([f"jitter {jitter:g} ms"] if jitter else [])) or "as believed"
 
     return pivot(runs, lambda run: f"`{setting(run, 'car')}`, {what(run)}", road, lap_and_edge, ("car, what is otherwise", "{}"))
 

@@ -32,11 +32,23 @@ telemetry::RunSummary example() {
   lap.top_speed = 44.704;
   lap.min_edge_distance = 0.75;
   lap.sector_times = {9.0, 9.5, 10.0};
+  lap.corner_times = {12.25, 16.25};
+  run.corners = {{.begin = 10.0, .apex = 30.0, .end = 50.0, .turn = 0.5 * kPi},
+                 {.begin = 90.0, .apex = 110.0, .end = 120.0, .turn = -kPi}};
   run.laps = {lap};
   run.total = lap;
   run.step_time.p50 = 25e-6;
   run.state_hash = 0xabcULL;
   return run;
+}
+
+TEST(JsonReport, NumbersCornersWithTheirSides) {
+  const Json report = Json::parse(to_json(example()));
+  ASSERT_EQ(report["corners"].size(), 2U);
+  EXPECT_EQ(report["corners"][0]["apex_m"], 30.0);
+  EXPECT_NEAR(report["corners"][1]["turn_deg"].get<double>(), -180.0, 1e-9);
+  EXPECT_EQ(report["laps"][0]["corner_times_s"], (Json{12.25, 16.25}));
+  EXPECT_THAT(to_table(example()), HasSubstr("corners [s]         1 left  12.25    2 right 16.25"));
 }
 
 TEST(JsonReport, HasEveryDocumentedKey) {
@@ -52,6 +64,7 @@ TEST(JsonReport, HasEveryDocumentedKey) {
                           "laps_completed",
                           "off_track_events",
                           "out_of_track_time_s",
+                          "corners",
                           "laps",
                           "step_time_is",
                           "step_time_us",
@@ -69,7 +82,7 @@ TEST(JsonReport, HasEveryDocumentedKey) {
   for (const char* key : {"lap_time_s", "mean_speed_mps", "top_speed_mps", "top_speed_mph",
                           "rms_lateral_error_m", "max_abs_lateral_error_m", "min_edge_distance_m",
                           "max_lateral_acceleration_mps2", "steering_rate_rms_radps", "sector_times_s",
-                          "gap_to_limit_percent", "sector_gaps_to_limit_percent"}) {
+                          "corner_times_s", "gap_to_limit_percent", "sector_gaps_to_limit_percent"}) {
     EXPECT_TRUE(report["laps"][0].contains(key)) << key;
   }
   for (const char* key : {"p50", "p99", "p999", "max"}) {

@@ -66,5 +66,22 @@ TEST(ActuationDelay, DropsTheOldestWaitingWhenFull) {
   EXPECT_EQ(delay.at(200.0).throttle, 0.2);
 }
 
+TEST(RandomDelay, IsEvenlyDistributedAndDependsOnSeedAndTimeOnly) {
+  constexpr int kCount = 10000;
+  double sum = 0.0, squares = 0.0;
+  for (int i = 0; i < kCount; ++i) {
+    const double late = random_delay(1, 0.04 * i, 0.06);
+    ASSERT_GE(late, 0.0);
+    ASSERT_LT(late, 0.06);
+    sum += late;
+    squares += late * late;
+  }
+  EXPECT_NEAR(sum / kCount, 0.03, 0.0006);
+  EXPECT_NEAR(squares / kCount, 0.06 * 0.06 / 3.0, 3e-5);
+  EXPECT_EQ(random_delay(1, 0.4, 0.06), random_delay(1, 0.4, 0.06));
+  EXPECT_NE(random_delay(1, 0.4, 0.06), random_delay(2, 0.4, 0.06));
+  EXPECT_EQ(random_delay(1, 0.4, 0.0), 0.0);
+}
+
 }  // namespace
 }  // namespace chicane::sim

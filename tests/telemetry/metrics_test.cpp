@@ -53,6 +53,25 @@ TEST(Metrics, MeasuresALapFromEveryPhysicsStep) {
   EXPECT_FALSE(run.laps[0].gap_to_limit.has_value());
 }
 
+TEST(Metrics, KeepsTheCornersOfEachLap) {
+  Metrics metrics(2, 0.1, 2);
+  metrics.lap_completed(1.0, {0.3, 0.3, 0.4}, std::array{0.4, 0.6});
+  metrics.lap_completed(1.1, {0.3, 0.3, 0.5}, std::array{0.5, 0.6});
+  metrics.lap_completed(1.2, {0.3, 0.3, 0.6}, std::array{0.6, 0.6});
+  const RunSummary run = metrics.summary();
+  ASSERT_EQ(run.laps.size(), 2u);
+  EXPECT_EQ(run.laps[0].corner_times, (std::vector{0.4, 0.6}));
+  EXPECT_EQ(run.laps[1].corner_times, (std::vector{0.5, 0.6}));
+}
+
+TEST(Metrics, SaysNothingOfCornersThatWereNotTimed) {
+  Metrics metrics(2, 0.1, 2);
+  metrics.lap_completed(1.0);
+  const RunSummary run = metrics.summary();
+  ASSERT_EQ(run.laps[0].corner_times.size(), 2u);
+  EXPECT_TRUE(std::isnan(run.laps[0].corner_times[0]));
+}
+
 TEST(Metrics, ANewLapStartsFromZeroAndTheTotalGoesOn) {
   Metrics metrics(3, 0.1);
   metrics.add_physics(sample(40.0, 4.0, -1.0));

@@ -23,8 +23,8 @@ using protocol::Kind;
 using protocol::Value;
 
 /// Settings of a preset say nothing of the world: those of the run that goes on stay.
-constexpr std::array<std::string_view, 6> kOfTheWorld{"laps",         "seed",           "latency_ms",
-                                                      "time_limit_s", "turn_around_ms", "waypoints_sent"};
+constexpr std::array<std::string_view, 7> kOfTheWorld{
+    "laps", "seed", "latency_ms", "latency_jitter_ms", "time_limit_s", "turn_around_ms", "waypoints_sent"};
 
 /// Settings whose text may name a file.
 std::optional<protocol::Shelf> shelf_of(std::string_view key) {

@@ -22,6 +22,8 @@ using telemetry::TimeSummary;
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json to_object(const LapSummary& lap) {
+  Json corner_times = Json::array();
+  for (const double time : lap.corner_times) corner_times.push_back(number(time));
   return {{"lap_time_s", number(lap.lap_time)},
           {"mean_speed_mps", number(lap.mean_speed)},
           {"top_speed_mps", number(lap.top_speed)},
@@ -33,10 +35,34 @@ Json to_object(const LapSummary& lap) {
           {"steering_rate_rms_radps", number(lap.steering_rate_rms)},
           {"sector_times_s",
            {number(lap.sector_times[0]), number(lap.sector_times[1]), number(lap.sector_times[2])}},
+          {"corner_times_s", corner_times},
           {"gap_to_limit_percent", lap.gap_to_limit ? number(100.0 * *lap.gap_to_limit) : Json(nullptr)},
           {"sector_gaps_to_limit_percent",
            {number(100.0 * lap.sector_gaps[0]), number(100.0 * lap.sector_gaps[1]),
             number(100.0 * lap.sector_gaps[2])}}};
+}
+
+/// Numbered by their order.
+Json to_object(const std::vector<road::Corner>& corners) {
+  Json json = Json::array();
+  for (const road::Corner& each : corners) {
+    json.push_back({{"begin_m", each.begin},
+                    {"apex_m", each.apex},
+                    {"end_m", each.end},
+                    {"turn_deg", radians_to_degrees(each.turn)}});
+  }
+  return json;
+}
+
+/// "corners [s]         1 left 10.44   2 right 3.80", six a line.
+std::string corner_lines(const RunSummary& run, const LapSummary& lap) {
+  std::string text;
+  for (std::size_t i = 0; i < lap.corner_times.size() && i < run.corners.size(); ++i) {
+    if (i % 6 == 0) text += i == 0 ? "\ncorners [s]     " : "\n                ";
+    text += fmt::format("{:>5} {:<5}{:6.2f}", i + 1, run.corners[i].turn > 0.0 ? "left" : "right",
+                        lap.corner_times[i]);
+  }
+  return text;
 }
 
 Json to_object(const std::optional<lap_time::LapTimes>& limit) {
@@ -228,6 +254,7 @@ std::string to_json(const RunSummary& run) {
       {"laps_completed", run.laps_completed},
       {"off_track_events", run.off_track_events},
       {"out_of_track_time_s", number(run.out_of_track_time)},
+      {"corners", to_object(run.corners)},
       {"laps", laps},
       {"total", to_object(run.total)},
       {"limit", to_object(run.limit)},
@@ -261,10 +288,11 @@ std::string to_table(const RunSummary& run) {
   int lap = 0;
   for (const LapSummary& summary : run.laps) text += row(fmt::format("{}", ++lap), summary);
   text += row("all", run.total);
+  const auto best =
+      std::min_element(run.laps.begin(), run.laps.end(),
+                       [](const LapSummary& a, const LapSummary& b) { return a.lap_time < b.lap_time; });
+  if (best != run.laps.end()) text += corner_lines(run, *best);
   if (run.limit) {
-    const auto best =
-        std::min_element(run.laps.begin(), run.laps.end(),
-                         [](const LapSummary& a, const LapSummary& b) { return a.lap_time < b.lap_time; });
     text += fmt::format("\nlimit              {:.3f} s", run.limit->lap);
     if (best != run.laps.end())
       text += fmt::format(", the best lap {:+.2f} %", 100.0 * lap_time::gap(best->lap_time, run.limit->lap));

@@ -51,7 +51,7 @@ Clock::duration duration(double seconds) {
 }
 
 run::AccountTerms terms(const scenario::Scenario& scenario, const road::Track& track) {
-  run::AccountTerms terms = run::terms_of(scenario, track.name());
+  run::AccountTerms terms = run::terms_of(scenario, &track);
   terms.controller = terms.preset = "external";
   terms.guard.reset();
   terms.step_deadline = std::numeric_limits<double>::infinity();  // there is none
@@ -245,7 +245,9 @@ class SimNode {
   void accept(const protocol::DriveMessage& message) {
     ++report_.answers;
     const double time = std::max(world_.time(), 0.0);
-    const double act = std::max(time + scenario_.latency, in_flight_.last_time());
+    const double act =
+        std::max(time + scenario_.latency + sim::random_delay(scenario_.seed, time, scenario_.latency_jitter),
+                 in_flight_.last_time());
     in_flight_.push(act, {.steer = message.steer,
                           .throttle = node_.drive.is_by_speed ? message.speed : message.acceleration});
     safety::StopPlan stop;

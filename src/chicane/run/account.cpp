@@ -15,7 +15,7 @@ constexpr const char* kTimeLimit = "time limit reached";
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 telemetry::Metrics empty_metrics(const AccountTerms& terms) {
-  return {std::max(terms.laps, Account::kLapsRemembered), terms.step_deadline};
+  return {std::max(terms.laps, Account::kLapsRemembered), terms.step_deadline, terms.corners.size()};
 }
 
 telemetry::PhysicsSample physics_sample(const sim::World& world) noexcept {
@@ -29,11 +29,12 @@ telemetry::PhysicsSample physics_sample(const sim::World& world) noexcept {
 
 }  // namespace
 
-AccountTerms terms_of(const scenario::Scenario& scenario, const std::string& track) {
-  return {.track = track,
+AccountTerms terms_of(const scenario::Scenario& scenario, const road::Track* track) {
+  return {.track = track != nullptr ? track->name() : "",
           .car = scenario.car,
           .controller = scenario.controller,
           .preset = scenario.preset,
+          .corners = track != nullptr ? road::corners_of(*track) : std::vector<road::Corner>{},
           .notices = scenario.notices,
           .seed = scenario.seed,
           .scale = scenario.vehicle.scale,
@@ -75,16 +76,18 @@ void Account::add_physics(const sim::World& world, bool is_manual) noexcept {
   edge_distance_ = world.state().edge_distance;
   const bool stands = std::fabs(world.plant().output().speed) < kStanding;
   stood_for_ = stands ? stood_for_ + world.plant().step_length() : 0.0;
-  count_laps(world.state());
+  count_laps(world.state(), world.judge().last_corner_times());
   look_for_end(world.state(), world.time(), world.plant().step_length(), is_manual);
 }
 
-void Account::add_sighting(const sim::WorldState& car) noexcept { count_laps(car); }
+void Account::add_sighting(const sim::WorldState& car, std::span<const double> corner_times) noexcept {
+  count_laps(car, corner_times);
+}
 
-void Account::count_laps(const sim::WorldState& car) noexcept {
+void Account::count_laps(const sim::WorldState& car, std::span<const double> corner_times) noexcept {
   if (car.lap <= laps_seen_) return;
   laps_seen_ = car.lap;
-  metrics_.lap_completed(car.last_lap_time, car.last_sector_times);
+  metrics_.lap_completed(car.last_lap_time, car.last_sector_times, corner_times);
   const telemetry::LapSummary& measured = metrics_.last_lap();
   completed_lap_ = {.lap = metrics_.laps_completed(),
                     .lap_time = measured.lap_time,
@@ -143,6 +146,7 @@ telemetry::RunSummary Account::summary(std::optional<double> duration) const {
   run.car = terms_.car;
   run.controller = terms_.controller;
   run.preset = terms_.preset;
+  run.corners = terms_.corners;
   run.guard = terms_.guard;
   run.notices = terms_.notices;
   run.seed = terms_.seed;

@@ -3,9 +3,11 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "chicane/road/corners.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/world.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -16,6 +18,7 @@ namespace chicane::run {
 /// What the account of a run is told of it beforehand.
 struct AccountTerms {
   std::string track{}, car{}, controller{}, preset{};  ///< names in the report
+  std::vector<road::Corner> corners{};                 ///< of the track
   std::vector<std::string> notices{};                  ///< scenario.notices
   std::uint64_t seed = 0;
   double scale = 1.0;                           ///< of the car: what is far is so many times as far
@@ -25,8 +28,8 @@ struct AccountTerms {
   double time_limit = 0.0;                      ///< [s]; 0: 10 min per lap, none without a number of laps
   double step_deadline = 0.0;                   ///< control steps that take longer are counted as misses [s]
 };
-/// Those of a run in which `scenario.controller` drives on the named track.
-[[nodiscard]] AccountTerms terms_of(const scenario::Scenario& scenario, const std::string& track);
+/// Those of a run in which `scenario.controller` drives on a track; null where the road is not known.
+[[nodiscard]] AccountTerms terms_of(const scenario::Scenario& scenario, const road::Track* track);
 
 /// The account of a run: laps and sectors, metrics, when it is over and why, and the report. The one place
 /// where that is kept: `drive`, `serve`, `simulate` and branches of recordings all use it, with a plant of
@@ -60,8 +63,8 @@ class Account {
 
   /// After each physics step of our plant. `is_manual`: a person drives.
   void add_physics(const sim::World& world, bool is_manual) noexcept;
-  /// After each sighting of a car that others simulate.
-  void add_sighting(const sim::WorldState& car) noexcept;
+  /// After each sighting of a car that others simulate. `corner_times`: Judge::last_corner_times().
+  void add_sighting(const sim::WorldState& car, std::span<const double> corner_times = {}) noexcept;
   /// Each control cycle.
   void add(const telemetry::Frame& frame) noexcept { metrics_.add(frame); }
 
@@ -80,7 +83,7 @@ class Account {
   [[nodiscard]] telemetry::RunSummary summary(std::optional<double> duration = std::nullopt) const;
 
  private:
-  void count_laps(const sim::WorldState& car) noexcept;
+  void count_laps(const sim::WorldState& car, std::span<const double> corner_times) noexcept;
   void look_for_end(const sim::WorldState& car, double time, double step, bool is_manual) noexcept;
   [[nodiscard]] double time_limit() const noexcept;
 

@@ -32,7 +32,7 @@ ClosedLoop::ClosedLoop(const scenario::Scenario& scenario, const Roads::Prepared
       sensor_{scenario.sensor, scenario.seed},
       faults_{scenario.faults, scenario.seed},
       receiver_{scenario.vehicle, scenario.control_period, scenario.guard.receiver},
-      account_{terms_of(scenario, track_.name())} {
+      account_{terms_of(scenario, &track_)} {
   cycle_.use_line(road.lap);
   restart();
 }
@@ -80,6 +80,7 @@ void ClosedLoop::restart() {
   world_.place(track_.start_s(), track_.start_d());
   cycle_.begin();
   in_flight_.reset({});
+  told_act_time_ = -std::numeric_limits<double>::infinity();
   manual_.restart();
   faults_.reset();
   receiver_.reset();
@@ -195,7 +196,7 @@ model::Measurement ClosedLoop::measure() noexcept {
   now = faults_.seen(now);
   if (interceptor_.measured) interceptor_.measured(now);
   // Commands act in the order they are sent: behind a latency that has just been shortened they still wait.
-  now.delay = std::max(scenario_.latency + step_time_, in_flight_.last_time() - now.time);
+  now.delay = std::max(scenario_.latency + step_time_, told_act_time_ - now.time);
   return now;
 }
 
@@ -230,7 +231,9 @@ void ClosedLoop::control(double budget, const GivenStep* given, const model::Com
   cycle_.step(input, frame_);
   if (budget > 0.0) step_time_ += 0.1 * (std::min(frame_.step_time, budget) - step_time_);
   if (faults_.is_delivered()) {
-    const double act_time = frame_.measurement.time + frame_.measurement.delay;
+    told_act_time_ = frame_.measurement.time + frame_.measurement.delay;
+    const double act_time =
+        told_act_time_ + sim::random_delay(scenario_.seed, time(), scenario_.latency_jitter);
     in_flight_.push(act_time, frame_.result.command);
     receiver_.arrived(act_time, cycle_.stop());
   }

@@ -170,6 +170,8 @@ class ClosedLoop {
   std::optional<model::Measurement> seen_;  ///< by look(), of the step that is due
   double next_control_ = 0.0;
   double step_time_ = 0.0;  ///< of the control step, smoothed; 0 in virtual time [s]
+  /// When the last command acts by what the controller is told [s].
+  double told_act_time_ = -std::numeric_limits<double>::infinity();
 };
 
 /// What is told of a run on the thread that runs it; must not block. Empty functions are not called.

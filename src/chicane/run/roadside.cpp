@@ -10,7 +10,7 @@ namespace chicane::run {
 namespace {
 
 AccountTerms terms(const road::Track* track, const scenario::Scenario& scenario) {
-  AccountTerms terms = terms_of(scenario, track != nullptr ? track->name() : "");
+  AccountTerms terms = terms_of(scenario, track);
   terms.car = scenario.vehicle.name;
   terms.laps = 0;
   terms.time_limit = 0.0;
@@ -52,7 +52,7 @@ void Roadside::judge(telemetry::Frame& frame) noexcept {
   if (frame.is_judged) look(frame);
   account_.add(frame);
   if (frame.is_judged) {
-    account_.add_sighting(judge_->state());
+    account_.add_sighting(judge_->state(), judge_->last_corner_times());
     frame.lap = account_.laps_completed();
   } else if (!judge_ && frame.has_measurement) {
     learn(frame);

@@ -2,7 +2,10 @@
 #include "chicane/sim/actuation_delay.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
+
+#include "chicane/base/random.hpp"
 
 namespace chicane::sim {
 
@@ -36,6 +39,12 @@ const model::Command& ActuationDelay::at(double time) noexcept {
     --count_;
   }
   return acting_;
+}
+
+double random_delay(std::uint64_t seed, double time, double most) noexcept {
+  if (!(most > 0.0)) return 0.0;
+  Random seeded(seed);
+  return Random(seeded.bits() ^ std::bit_cast<std::uint64_t>(time)).uniform(0.0, most);
 }
 
 }  // namespace chicane::sim

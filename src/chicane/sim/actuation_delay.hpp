@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "chicane/model/state.hpp"
 
@@ -31,5 +32,9 @@ class ActuationDelay {
   int count_ = 0;
   model::Command acting_;
 };
+
+/// Delay that chance adds to a command sent at `time` [s]: evenly distributed in [0, most) [s]. The same for
+/// the same seed and time, whatever was drawn before: a run that is continued from within goes on as it did.
+[[nodiscard]] double random_delay(std::uint64_t seed, double time, double most) noexcept;
 
 }  // namespace chicane::sim

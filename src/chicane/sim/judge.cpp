@@ -34,11 +34,19 @@ road::Projection project_anywhere(const road::Track& track, const model::Pose& c
   return line.project_along({car.x, car.y}, car.psi, 0.5 * (track.left_width(s) + track.right_width(s)));
 }
 
-Judge::Judge(const road::Track& track) noexcept : track_{&track}, lap_length_{track.lap_length()} {}
+Judge::Judge(const road::Track& track)
+    : track_{&track},
+      lap_length_{track.lap_length()},
+      corners_{road::corners_of(track)},
+      corner_ends_{road::corner_sectors(track, corners_)},
+      corner_times_(corners_.size()),
+      last_corner_times_(corners_.size()) {}
 
 void Judge::reset(double time, const Sighting& car) noexcept {
   covered_ = off_track_at_lap_start_ = back_on_track_ = 0.0;
-  lap_start_ = sector_start_ = time;
+  lap_start_ = sector_start_ = corner_start_ = time;
+  corner_ = 0;
+  std::fill(last_corner_times_.begin(), last_corner_times_.end(), 0.0);
   lost_for_ = 0;
   state_ = {};
   size_ = size_of(car);
@@ -125,6 +133,9 @@ void Judge::time_laps(double progress_before, double elapsed) noexcept {
   };
   const double third = lap_length_ / WorldState::kSectors;
   while (!state_.is_finished) {
+    const auto corner_end = [&] { return next_line_ - lap_length_ + corner_ends_[corner_]; };
+    while (state_.is_timed && corner_ + 1 < corner_ends_.size() && state_.progress >= corner_end())
+      end_corner(crossing(corner_end()));
     const bool is_last = !state_.is_timed || state_.sector == WorldState::kSectors - 1;
     const double mark = next_line_ - (is_last ? 0.0 : (WorldState::kSectors - 1 - state_.sector) * third);
     if (state_.progress < mark) break;
@@ -139,6 +150,11 @@ void Judge::time_laps(double progress_before, double elapsed) noexcept {
   state_.lap_time = state_.is_timed && !state_.is_finished ? state_.time - lap_start_ : 0.0;
 }
 
+void Judge::end_corner(double crossing_time) noexcept {
+  corner_times_[corner_++] = crossing_time - corner_start_;
+  corner_start_ = crossing_time;
+}
+
 void Judge::cross_line(double crossing_time) noexcept {
   if (state_.is_timed && covered_ < kCoveredShare * lap_length_) {
     ++state_.void_laps;
@@ -146,6 +162,8 @@ void Judge::cross_line(double crossing_time) noexcept {
     ++state_.lap;
     state_.sector_times.back() = crossing_time - sector_start_;
     state_.last_sector_times = state_.sector_times;
+    if (corner_ < corner_times_.size()) end_corner(crossing_time);
+    last_corner_times_ = corner_times_;
     state_.last_lap_time = crossing_time - lap_start_;
     const bool is_best = state_.lap == 1 || state_.last_lap_time < state_.best_lap_time;
     if (is_best) state_.best_lap_time = state_.last_lap_time;
@@ -161,7 +179,8 @@ void Judge::start_lap(double crossing_time) noexcept {
   state_.sector = 0;
   state_.sector_times = {};
   covered_ = 0.0;
-  lap_start_ = sector_start_ = crossing_time;
+  lap_start_ = sector_start_ = corner_start_ = crossing_time;
+  corner_ = 0;
   off_track_at_lap_start_ = state_.off_track_time;
 }
 

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <array>
+#include <span>
+#include <vector>
 
 #include "chicane/base/vec2.hpp"
 #include "chicane/model/state.hpp"
+#include "chicane/road/corners.hpp"
 #include "chicane/road/track.hpp"
 
 namespace chicane::sim {
@@ -57,12 +60,12 @@ struct Sighting {
 /// The drivable surface reaches to the edge plus the kerb: a patch is off when its outer edge is beyond. The
 /// start line lies across the road at Track::start_s(). A lap counts when it is crossed forward for the first
 /// time after driving at least 95 % of the line: crossing back and forth counts once, a short cut makes the
-/// round void. Between two sightings the car is taken to go evenly. Allocates nothing, cannot fail. One
-/// thread.
+/// round void. Between two sightings the car is taken to go evenly. Allocates in the constructor only, cannot
+/// fail. One thread.
 class Judge {
  public:
   /// `track` must outlive the judge. Call reset() before anything else.
-  explicit Judge(const road::Track& track) noexcept;
+  explicit Judge(const road::Track& track);
 
   /// A new run from any pose, at `time` [s]. Within 1 m of the start line the first lap is timed from now on,
   /// otherwise from the first crossing. For cars shorter than 1.5 m between the axles all lengths are smaller
@@ -76,6 +79,9 @@ class Judge {
 
   [[nodiscard]] const WorldState& state() const noexcept { return state_; }
   [[nodiscard]] const road::Track& track() const noexcept { return *track_; }
+  [[nodiscard]] const std::vector<road::Corner>& corners() const noexcept { return corners_; }
+  /// Of the last completed lap, for each corner with half of the straights beside it [s]; zeros before it.
+  [[nodiscard]] std::span<const double> last_corner_times() const noexcept { return last_corner_times_; }
 
  private:
   void locate(double elapsed, const Sighting& car) noexcept;
@@ -83,6 +89,7 @@ class Judge {
   void time_laps(double progress_before, double elapsed) noexcept;
   void cross_line(double crossing_time) noexcept;
   void start_lap(double crossing_time) noexcept;
+  void end_corner(double crossing_time) noexcept;
 
   const road::Track* track_;
   double size_ = 1.0;          ///< of the car, over one in full size: what is far for it
@@ -91,6 +98,11 @@ class Judge {
   double next_line_ = 0.0;     ///< progress at the next crossing of the line [m]
   double lap_start_ = 0.0;     ///< [s]
   double sector_start_ = 0.0;  ///< [s]
+  std::vector<road::Corner> corners_;
+  std::vector<double> corner_ends_;                       ///< road::corner_sectors()
+  std::vector<double> corner_times_, last_corner_times_;  ///< [s]
+  std::size_t corner_ = 0;                                ///< of the running lap
+  double corner_start_ = 0.0;                             ///< [s]
   double off_track_at_lap_start_ = 0.0;
   double back_on_track_ = 0.0;  ///< how long already [s]
   int lost_for_ = 0;            ///< sightings far from the line

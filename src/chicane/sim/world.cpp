@@ -36,7 +36,7 @@ int nearest_waypoint(const road::Track& track, const model::Pose& pose) noexcept
 
 }  // namespace
 
-World::World(Plant& plant, const road::Track& track) noexcept : plant_{&plant}, judge_{track} {
+World::World(Plant& plant, const road::Track& track) : plant_{&plant}, judge_{track} {
   // A model car lives faster: the time scale of its size (model/similarity.hpp).
   const auto patches = plant.contact_points();
   const double pace = std::min(std::sqrt(patches[0].x() - patches[2].x()), 1.0);

@@ -11,12 +11,12 @@
 namespace chicane::sim {
 
 /// A car on a track: advances the plant, and has a judge look at it every 5 ms or every physics step,
-/// whichever is longer, by the plant's own contact patches. Allocates nothing, cannot fail. One thread at a
-/// time; what it returns by reference changes with the next advance(), place() or reset().
+/// whichever is longer, by the plant's own contact patches. Allocates in the constructor only, cannot fail.
+/// One thread at a time; what it returns by reference changes with the next advance(), place() or reset().
 class World {
  public:
   /// Both must outlive the world. The car stands at the track's start.
-  World(Plant& plant, const road::Track& track) noexcept;
+  World(Plant& plant, const road::Track& track);
 
   /// A new run: the car at arc length s, `offset` to the left of the line [m], heading along it, rolling at
   /// `speed` [m/s].
@@ -41,6 +41,7 @@ class World {
   void advance(const model::Command& command) noexcept;
 
   [[nodiscard]] const WorldState& state() const noexcept { return judge_.state(); }
+  [[nodiscard]] const Judge& judge() const noexcept { return judge_; }
   [[nodiscard]] const Plant& plant() const noexcept { return *plant_; }
   [[nodiscard]] const road::Track& track() const noexcept { return judge_.track(); }
   /// Since reset() [s].

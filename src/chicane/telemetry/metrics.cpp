@@ -53,8 +53,10 @@ LapSummary Metrics::Stretch::summary(double lap_time) const noexcept {
   return lap;
 }
 
-Metrics::Metrics(int lap_capacity, double deadline) : deadline_{deadline} {
+Metrics::Metrics(int lap_capacity, double deadline, std::size_t corners)
+    : corners_{corners}, deadline_{deadline} {
   laps_.reserve(static_cast<std::size_t>(std::max(0, lap_capacity)));
+  corner_times_.reserve(laps_.capacity() * corners_);
 }
 
 void Metrics::add_physics(const PhysicsSample& sample) noexcept {
@@ -106,11 +108,16 @@ void Metrics::add(const Frame& frame) noexcept {
   learned_ = report.learned;
 }
 
-void Metrics::lap_completed(double lap_time, const std::array<double, 3>& sector_times) noexcept {
+void Metrics::lap_completed(double lap_time, const std::array<double, 3>& sector_times,
+                            std::span<const double> corner_times) noexcept {
   ++laps_completed_;
   last_lap_ = lap_.summary(lap_time);
   last_lap_.sector_times = sector_times;
-  if (laps_.size() < laps_.capacity()) laps_.push_back(last_lap_);
+  if (laps_.size() < laps_.capacity()) {
+    laps_.push_back(last_lap_);
+    for (std::size_t i = 0; i < corners_; ++i)
+      corner_times_.push_back(corner_times.size() == corners_ ? corner_times[i] : kNotMeasured);
+  }
   lap_ = {};
 }
 
@@ -121,6 +128,10 @@ RunSummary Metrics::summary() const {
   run.out_of_track_time = out_of_track_time_;
   run.duration = total_.time;
   run.laps = laps_;
+  for (std::size_t lap = 0; lap < laps_.size(); ++lap) {
+    const auto first = corner_times_.begin() + static_cast<std::ptrdiff_t>(lap * corners_);
+    run.laps[lap].corner_times.assign(first, first + static_cast<std::ptrdiff_t>(corners_));
+  }
   run.total = total_.summary(total_.time);
   run.step_time = summarise(step_times_);
   run.solve_time = summarise(solve_times_);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "chicane/base/fnv.hpp"
 #include "chicane/lap_time/lap_times.hpp"
 #include "chicane/model/state.hpp"
+#include "chicane/road/corners.hpp"
 #include "chicane/safety/guard_options.hpp"
 #include "chicane/telemetry/frame.hpp"
 
@@ -43,6 +45,8 @@ struct LapSummary {
   std::optional<double>
       gap_to_limit{};  ///< lap time over the physical limit's, minus one; none when not computed
   std::array<double, 3> sector_gaps = {kNotMeasured, kNotMeasured, kNotMeasured};  ///< the same of the thirds
+  /// For each of RunSummary::corners, with half of the straights beside it [s]; empty where not measured.
+  std::vector<double> corner_times{};
 };
 
 /// Percentiles of durations [s]; bins are 4.4 % wide (base/durations.hpp), `max` is exact.
@@ -71,6 +75,7 @@ struct RunSummary {
   double duration = 0.0;                    ///< of the run, in its own time [s]
   double wall_time = 0.0;                   ///< of the run, on the wall [s]; filled by the run time
   std::vector<LapSummary> laps;             ///< completed laps
+  std::vector<road::Corner> corners;        ///< of the track, in the order of a lap
   std::optional<lap_time::LapTimes> limit;  ///< the fastest lap the car can drive; none when not computed
   std::string why_no_limit;  ///< in one sentence; empty when there is one, or none was asked for
   LapSummary total;          ///< the whole run, unfinished lap included; lap_time is its duration
@@ -106,15 +111,16 @@ void compare_with_limit(RunSummary& run, const lap_time::LapTimes& limit, int fi
 /// distance to the edge, from what the controller was told.
 class Metrics {
  public:
-  /// Remembers up to `lap_capacity` laps one by one (more are only counted). `deadline` [s]: longer steps are
-  /// misses.
-  Metrics(int lap_capacity, double deadline);
+  /// Remembers up to `lap_capacity` laps one by one (more are only counted), with the times of so many
+  /// `corners`. `deadline` [s]: longer steps are misses.
+  Metrics(int lap_capacity, double deadline, std::size_t corners = 0);
 
   void add_physics(const PhysicsSample& sample) noexcept;
   void add(const Frame& frame) noexcept;
-  /// The running lap ended; `lap_time` [s] may be interpolated between physics steps, as may its thirds.
-  void lap_completed(double lap_time,
-                     const std::array<double, 3>& sector_times = LapSummary{}.sector_times) noexcept;
+  /// The running lap ended; `lap_time` [s] may be interpolated between physics steps, as may its thirds and
+  /// corners. Times of another number of corners than the constructor was told are left out.
+  void lap_completed(double lap_time, const std::array<double, 3>& sector_times = LapSummary{}.sector_times,
+                     std::span<const double> corner_times = {}) noexcept;
 
   /// The running lap does not count: another one begins.
   void drop_lap() noexcept { lap_ = {}; }
@@ -146,7 +152,9 @@ class Metrics {
     [[nodiscard]] LapSummary summary(double lap_time) const noexcept;
   };
 
-  std::vector<LapSummary> laps_;
+  std::vector<LapSummary> laps_;  ///< without corner times
+  std::size_t corners_;
+  std::vector<double> corner_times_{};  ///< of all laps, one after the other [s]
   LapSummary last_lap_;
   double deadline_;
   Stretch lap_, total_;

@@ -51,7 +51,7 @@ std::string with_stop_plan(const std::string& url) {
 }
 
 run::AccountTerms terms(const scenario::Scenario& scenario, const road::Track& track) {
-  run::AccountTerms terms = run::terms_of(scenario, track.name());
+  run::AccountTerms terms = run::terms_of(scenario, &track);
   terms.controller = terms.preset = "external";
   terms.guard.reset();
   terms.latency = 0.0;
