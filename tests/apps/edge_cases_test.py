@@ -171,6 +171,9 @@ class Files(unittest.TestCase):
         code, _, err = run("drive", "--fast", "--laps", "1", "--car", "f1tenth", "--track", "28_rect_0.7.csv")
         self.assertEqual(code, 2)
         self.assertIn("0.1 of its file's size, the car's scale: track_scale=1", err)
+        code, _, err = run("drive", "--fast", "--laps", "1", "--car", "f1tenth", "--preset", "race", "--track", "28_rect_0.7.csv")
+        self.assertEqual(code, 2)
+        self.assertIn("track_scale=1", err)
         self.assert_read("01_total_width.csv", "is driven at 0.1 of its size, the scale of the car f1tenth", words=["--car", "f1tenth"])
         self.assert_refused("28_rect_0.7.csv", "--car f1tenth --set track_scale=1")
 

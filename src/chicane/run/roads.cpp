@@ -51,12 +51,18 @@ Result<const Roads::Prepared*> Roads::of(const scenario::Scenario& scenario, con
   if (!track) return fail(track.error());
   Result<road::Track> waypoints = make_waypoints(*track, scenario.vehicle.scale);
   if (!waypoints) return fail(waypoints.error());
+  // Of a road that the car does not fit nothing is planned.
+  std::optional<scenario::Scenario> has_room;
+  if (races(scenario)) {
+    if (const Result<void> fits = run::check_room(scenario, *track); !fits) return fail(fits.error());
+    has_room = scenario;
+  }
   road::KnownRoad road = known_road(scenario, &*track);
   auto lap = plan_lap(scenario, &*track, hooks);
   if (!lap) return fail(lap.error());
   if (entries_.size() == kRemembered) entries_.pop_back();
   entries_.push_front(
-      {scenario, {std::move(*track), std::move(*waypoints), std::move(road), std::move(*lap)}});
+      {scenario, {std::move(*track), std::move(*waypoints), std::move(road), std::move(*lap)}, has_room});
   return &entries_.front().prepared;
 }
 
