@@ -121,7 +121,7 @@ struct VehicleParams {
 [[nodiscard]] double throttle_to_rest(const VehicleParams& params, double acceleration, double v) noexcept;
 inline constexpr double kRestTime = 0.4;  ///< [s]
 
-/// Models of the shipped plants, fitted to them by `chicane_plant_report` (docs/plants.md). The
+/// Models of the shipped plants, fitted to them by `chicane_plant_report` (docs/plants_model.md). The
 /// original simulator's car: the defaults above.
 [[nodiscard]] VehicleParams udacity_params();
 /// An ordinary car: 1300 kg, about 1.2 g, proportional brakes, 90°/s steering.
