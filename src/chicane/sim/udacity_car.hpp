@@ -11,8 +11,7 @@
 namespace chicane::sim {
 
 /// The original simulator's car as its scene and scripts define it (udacity/self-driving-car-sim v1.45:
-/// Car.prefab, CarController.cs; PhysX 3 vehicle defaults). Origin of each number: docs/plants_udacity.md,
-/// table 1.
+/// Car.prefab, CarController.cs; PhysX 3 vehicle defaults). Origin of all: docs/plants_udacity.md, table 1.
 struct UdacityCarParams {
   double mass = 1000.0;         ///< rigid body without wheels [kg]
   double yaw_inertia = 1600.0;  ///< [kg m²]
