@@ -18,7 +18,6 @@
 #include "chicane/live/worker.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/lap_planner.hpp"
-#include "chicane/run/setting.hpp"
 #include "chicane/run/thread_queue.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/change.hpp"
