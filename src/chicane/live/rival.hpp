@@ -67,7 +67,7 @@ class Rival {
   /// of the race, as a text. kInvalidArgument in a sentence for viewers: for a setting that is unknown, out
   /// of range, or cannot change while a run goes on.
   [[nodiscard]] Result<std::string> ask(std::string_view json, const scenario::Scenario& scenario);
-  /// GET /rival.json (docs/viewer.md). Any thread.
+  /// GET /rival.json (docs/viewer_laps.md). Any thread.
   [[nodiscard]] std::string answer() const;
 
   /// The run's thread: after each control cycle, completed lap and change. Neither waits nor allocates.
