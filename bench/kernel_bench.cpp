@@ -43,8 +43,7 @@ const struct {
 const struct {
   const char* name;
   Kernel kernel;
-} kKernels[] = {
-    {"Backward", Kernel::kBackward}, {"Forward", Kernel::kForward}, {"Adjoint", Kernel::kAdjoint}};
+} kKernels[] = {{"Backward", Kernel::kBackward}, {"Forward", Kernel::kForward}};
 
 const struct {
   const char* name;

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "chicane/base/random.hpp"
-#include "chicane/solver/detail/adjoint.hpp"
 #include "chicane/solver/detail/linearisation.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
 #include "chicane/solver/detail/problem_pattern.hpp"
@@ -22,7 +21,6 @@ struct Passes {
   using Solver = solver::LqSolver<Arch, Pattern, kCapacity>;
   using Layout = solver::Layout<Pattern>;
   Solver qp;
-  solver::Adjoint<Pattern, Solver::Lq::kStages> adjoint;
 
   Passes() noexcept {
     Random random{1};
@@ -47,7 +45,6 @@ struct Passes {
   void run(Kernel kernel) noexcept {
     if (kernel == Kernel::kBackward) qp.backward(kKernelStages);
     if (kernel == Kernel::kForward) qp.forward(kKernelStages, Solver::Repair::kLast);
-    if (kernel == Kernel::kAdjoint) adjoint.template solve<Arch>(qp.lq, kKernelStages);
   }
 };
 

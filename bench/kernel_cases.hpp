@@ -6,7 +6,7 @@
 namespace chicane::bench {
 
 /// The passes over the stages of one quadratic program.
-enum class Kernel { kBackward, kForward, kAdjoint };
+enum class Kernel { kBackward, kForward };
 /// The described problem's pattern, or a full one of so many states.
 enum class Shape { kDescribed, kFull4, kFull6, kFull8, kFull10, kFull12 };
 constexpr std::size_t kKernelStages = 20;

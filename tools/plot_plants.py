@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the figures of docs/plants.md from the CSV files of chicane_plant_report.
+"""Draws the figures of docs/plants*.md from the CSV files of chicane_plant_report.
 
     build/release/tests/sim/chicane_plant_report csv /tmp && /usr/bin/python3 tools/plot_plants.py /tmp docs/figures
 """

@@ -14,15 +14,14 @@
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
-#include "chicane/recording/temporary_file.hpp"
 #include "chicane/run/fault_campaign.hpp"
 #include "chicane/run/parallel.hpp"
 #include "chicane/sweep/campaign.hpp"
 #include "chicane/sweep/trial.hpp"
 #include "commands.hpp"
-#include "experiment.hpp"
 #include "interrupt.hpp"
 #include "many_runs.hpp"
+#include "plan_runs.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -232,23 +231,20 @@ ExitCode campaign(const Options& options) {
   catch_interrupts(wants_stop);
   const Result<sweep::Campaign> campaign = campaign_of(options);
   if (!campaign) return report(campaign.error());
-  const recording::TemporaryFile unnamed(".jsonl");
-  const std::string& file = options.campaign.results.empty() ? unnamed.path() : options.campaign.results;
-  RunCounter counter("groups of trials");
-  const auto done = sweep::drive_campaign(*campaign,
-                                          {.jobs = run::threads_for(options.jobs),
-                                           .file = file,
-                                           .on_progress =
-                                               [&](const sweep::Progress& progress) {
-                                                 counter.show(progress.found + progress.driven, progress.runs,
-                                                              progress.driven);
-                                               }},
-                                          wants_stop);
-  counter.end();
-  if (!done) return report(done.error());
-  const auto groups = sweep::read_campaign(file);
-  if (!groups) return report(groups.error());
-  const std::vector<Row> rows = rows_of(*groups, campaign->settings);
+  const int jobs = run::threads_for(options.jobs);
+  const PlanRuns runs{.plan = sweep::plan_of(*campaign),
+                      .rule = sweep::rule_of(*campaign, jobs, wants_stop),
+                      .what = "groups of trials",
+                      .keeps_failed = true};
+  const Result<RunLines> driven = drive_runs(runs, 1, options.campaign.results, wants_stop);
+  if (!driven) return report(driven.error());
+  std::vector<CampaignGroup> groups;
+  for (const auto& [run, line] : driven->lines) {
+    Result<CampaignGroup> group = sweep::group_of(line);
+    if (!group) return report(group.error());
+    groups.push_back(std::move(*group));
+  }
+  const std::vector<Row> rows = rows_of(groups, campaign->settings);
   if (options.is_json) {
     print_json(rows);
   } else if (options.is_markdown) {
@@ -256,13 +252,13 @@ ExitCode campaign(const Options& options) {
   } else {
     print_table(rows);
   }
-  tell_errors(*groups);
-  if (!done->is_complete())
-    fmt::print(stderr, "stopped after {} of {} groups of trials{}\n", done->found + done->driven, done->runs,
-               options.campaign.results.empty() ? "" : ": the same command goes on with what is missing");
+  tell_errors(groups);
   const bool is_kept =
       std::none_of(rows.begin(), rows.end(), [](const Row& row) { return row.off + row.off_anyway > 0; });
-  return is_kept && done->is_complete() && done->failed == 0 ? kSuccess : kRunFailed;
+  const bool are_tried = driven->progress.is_complete() &&
+                         std::all_of(groups.begin(), groups.end(),
+                                     [](const CampaignGroup& group) { return group.error.empty(); });
+  return is_kept && are_tried ? kSuccess : kRunFailed;
 }
 
 }  // namespace chicane::apps

@@ -8,13 +8,11 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <mutex>
 #include <optional>
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
-#include "chicane/run/parallel.hpp"
 #include "chicane/sweep/claim.hpp"
 #include "chicane/sweep/sweep.hpp"
 #include "chicane/sweep/trial.hpp"

@@ -22,7 +22,6 @@
 #include "identify_page.hpp"
 #include "interrupt.hpp"
 #include "many_runs.hpp"
-#include "setting_options.hpp"
 
 namespace chicane::apps {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 
 #include "chicane/protocol/json.hpp"

@@ -19,6 +19,7 @@ struct PlanRuns {
   sweep::Plan plan;
   sweep::RunRule rule{};      ///< empty: as a sweep does
   const char* what = "runs";  ///< the word for what is counted
+  bool keeps_failed = false;  ///< a run that cannot be driven is a line with the reason, and no failure
 };
 
 /// Their lines by number; those that were stopped are missing.

@@ -38,6 +38,25 @@ class PlanRuns : public testing::Test {
       fs::path(::testing::TempDir()) / ("chicane_plan_runs_" + std::to_string(::getpid()) + ".jsonl");
 };
 
+TEST_F(PlanRuns, ACampaignGoesOnWithWhatIsMissingAndPastWhatCannotBeDriven) {
+  const std::string command =
+      "campaign --faults link_lost --for-s 1,2 --onsets 2 --tracks hairpins,oval --cars indy --jobs 1 "
+      "--results '" +
+      file_.string() + "'";
+  const Outcome whole = chicane_program(command);
+  const std::vector<std::string> told = lines();
+  ASSERT_EQ(told.size(), 5U) << whole.err;
+  EXPECT_EQ(whole.code, 1);
+  EXPECT_THAT(whole.err, HasSubstr("not tried: track: hairpins is not for the car indy"));
+  EXPECT_THAT(whole.out, HasSubstr("link_lost"));
+
+  keep({told[0], told[1], told[2], told[3]});
+  const Outcome resumed = chicane_program(command);
+  EXPECT_EQ(lines(), told) << "the same bytes";
+  EXPECT_EQ(resumed.out, whole.out);
+  EXPECT_EQ(resumed.code, 1) << "the hairpins are still not tried";
+}
+
 TEST_F(PlanRuns, RecoverGoesOnWithWhatIsMissingAndSaysTheSame) {
   const std::string command =
       "recover --tracks oval --cars udacity --starts 3 --seed 2 --jobs 1 --json --results '" +

@@ -208,8 +208,9 @@ std::vector<SignalTrial> signal_trials(const Choice& choice, const run::FlyingLa
 /// All chosen signals, onsets and durations on one road.
 void falsify_place(const Choice& choice, const Place& place, Table& table) {
   const auto scenario = scenario_of(place);
-  const auto lap =
-      scenario ? run::find_flying_lap(*scenario) : Result<run::FlyingLap>{fail(scenario.error())};
+  auto lap =
+      scenario ? run::drive_undisturbed(*scenario, 0.0) : Result<run::FlyingLap>{fail(scenario.error())};
+  if (lap && !lap->off.empty()) lap = fail(ErrorCode::kInvalidArgument, "off the road without any attack");
   const auto loop =
       lap ? run::ClosedLoop::create(*scenario) : Result<std::unique_ptr<run::ClosedLoop>>{fail(lap.error())};
   if (!loop) {

@@ -121,7 +121,7 @@ TEST(Race, CountsOnTheFrictionThatIsKnown) {
   EXPECT_LT(shown, 0.5 * (careful + kKnown));
 }
 
-// docs/tracking.md, eq. 18a: more speed where there is grip and room, less in neither.
+// docs/tracking_problem.md, eq. 18a: more speed where there is grip and room, less in neither.
 TEST(Race, IsFasterWhereSpeedHasAPrice) {
   const auto race = [](const char* progress) {
     return drive({{"preset", "race"},

@@ -64,7 +64,8 @@ TEST(SpeedPlan, IsNoFasterThanTheCarsParametersHold) {
   EXPECT_EQ(line.samples()[10].limiter, SpeedLimiter::kAsked);
 }
 
-// To turn in, the front axle needs more than the bend; to turn out, the rear one (docs/tracking.md, eq. 11).
+// To turn in, the front axle needs more than the bend; to turn out, the rear one (docs/tracking_line.md, eq.
+// 11).
 TEST(SpeedPlan, HoldsTheAxleThatNeedsMoreWhereTheCurvatureChanges) {
   ReferenceLine line = with_a_bend(40.0);
   plan(line, {.speed_limit = 40.0});

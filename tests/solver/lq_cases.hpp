@@ -28,9 +28,6 @@ struct LqData {
 struct LqAnswer {
   double dx[LqData::kMostStages + 1][LqData::kMostStates]{};
   double du[LqData::kMostStages][LqData::kMostInputs]{};
-  double price[LqData::kMostStages]
-              [LqData::kMostStates]{};  ///< from the adjoint of the stages' gradients at 0
-  double slope[LqData::kMostStages][LqData::kMostInputs]{};
   double shift = 0.0;         ///< of the first backward sweep
   int sweeps = 0;             ///< until nothing contradicts; 100 when that does not happen
   bool ends_inside = false;   ///< with the interior point's step, whose working set was contradicted

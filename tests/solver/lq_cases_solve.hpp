@@ -4,7 +4,6 @@
 #include <cstring>
 #include <memory>
 
-#include "chicane/solver/detail/adjoint.hpp"
 #include "chicane/solver/detail/interior_point.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
 #include "solver/lq_cases.hpp"
@@ -85,21 +84,9 @@ void solve_lq(const LqData& data, LqAnswer& answer) noexcept {
       if (answer.ends_inside) interior->put_step(*qp, data.horizon);
     }
   }
-  const auto adjoint = std::make_unique<solver::Adjoint<Pattern, Solver::Lq::kStages>>();
   for (std::size_t k = 0; k < data.horizon; ++k) {
-    for (std::size_t j = 0; j < kNx + kNu; ++j) adjoint->gradient[j][k] = data.L[k][kNx][j < kNx ? j : j + 1];
-  }
-  for (std::size_t i = 0; i < kNx; ++i) adjoint->terminal[i] = data.terminal[kNx][i];
-  adjoint->template solve<Arch>(qp->lq, data.horizon);
-  for (std::size_t k = 0; k < data.horizon; ++k) {
-    for (std::size_t i = 0; i < kNx; ++i) {
-      answer.dx[k + 1][i] = qp->dx[k + 1][i];
-      answer.price[k][i] = adjoint->price[i][k];
-    }
-    for (std::size_t m = 0; m < kNu; ++m) {
-      answer.du[k][m] = qp->du[k][m];
-      answer.slope[k][m] = adjoint->slope[m][k];
-    }
+    for (std::size_t i = 0; i < kNx; ++i) answer.dx[k + 1][i] = qp->dx[k + 1][i];
+    for (std::size_t m = 0; m < kNu; ++m) answer.du[k][m] = qp->du[k][m];
   }
 }
 

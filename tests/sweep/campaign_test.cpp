@@ -10,7 +10,9 @@
 #include <fstream>
 #include <iterator>
 
+#include "chicane/protocol/json.hpp"
 #include "chicane/run/fault_campaign.hpp"
+#include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/trial.hpp"
 
 namespace chicane::sweep {
@@ -34,11 +36,21 @@ class CampaignTest : public testing::Test {
   }
   Result<Progress> drive(const char* file, std::uint64_t stop_after = 1000, int jobs = 2) {
     std::atomic<bool> stop{false};
-    return drive_campaign(campaign_,
-                          {.jobs = jobs,
-                           .file = path(file),
-                           .on_progress = [&](const Progress& now) { stop = now.driven >= stop_after; }},
-                          stop);
+    return drive_plan(
+        plan_of(campaign_), {},
+        {.file = path(file), .on_progress = [&](const Progress& now) { stop = now.driven >= stop_after; }},
+        rule_of(campaign_, jobs, stop), stop);
+  }
+  [[nodiscard]] Result<std::vector<CampaignGroup>> groups_of(const char* file) const {
+    std::vector<CampaignGroup> groups;
+    const auto add = [&](const LinePlace&, const std::string& line) -> Result<void> {
+      Result<CampaignGroup> group = group_of(protocol::parse_json(line));
+      if (!group) return fail(group.error());
+      groups.push_back(std::move(*group));
+      return {};
+    };
+    if (const auto read = read_lines(path(file), add); !read) return fail(read.error());
+    return groups;
   }
 
   fs::path folder_ = fs::temp_directory_path() / ("chicane_campaign_test." + std::to_string(getpid()));
@@ -70,7 +82,7 @@ TEST_F(CampaignTest, TriesFaultsAndPairsForEachDuration) {
   const auto done = drive("a.jsonl");
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_TRUE(done->is_complete());
-  const auto groups = read_campaign(path("a.jsonl"));
+  const auto groups = groups_of("a.jsonl");
   ASSERT_TRUE(groups) << groups.error().message;
   ASSERT_EQ(groups->size(), 12U);
   for (const CampaignGroup& group : *groups) {
@@ -101,7 +113,7 @@ TEST_F(CampaignTest, WritesTheSameFileWhenItIsStoppedAndGoesOn) {
 
 TEST_F(CampaignTest, TellsTheRunThatRepeatsATrial) {
   ASSERT_TRUE(drive("a.jsonl"));
-  const auto groups = read_campaign(path("a.jsonl"));
+  const auto groups = groups_of("a.jsonl");
   ASSERT_TRUE(groups);
   int repeated = 0;
   run::Roads roads;
@@ -131,7 +143,7 @@ TEST_F(CampaignTest, TellsWhereTheCarLeavesTheRoadWithoutAnyFault) {
   campaign_.settings.emplace_back("pid.lateral_acceleration_limit_mps2", "11");
   campaign_.settings.emplace_back("pid.proportional_gain", "0.03");
   ASSERT_TRUE(drive("a.jsonl"));
-  const auto groups = read_campaign(path("a.jsonl"));
+  const auto groups = groups_of("a.jsonl");
   ASSERT_TRUE(groups);
   ASSERT_EQ(groups->size(), 1U);
   int anyway = 0;
@@ -151,7 +163,7 @@ TEST_F(CampaignTest, GoesOnPastAPlaceThatCannotBeDriven) {
   ASSERT_TRUE(done);
   EXPECT_TRUE(done->is_complete());
   EXPECT_EQ(done->failed, 2U);
-  const auto groups = read_campaign(path("a.jsonl"));
+  const auto groups = groups_of("a.jsonl");
   ASSERT_TRUE(groups);
   EXPECT_THAT((*groups)[0].error, HasSubstr("nowhere"));
   EXPECT_EQ((*groups)[2].trials.size(), 2U);

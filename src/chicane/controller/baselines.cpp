@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"

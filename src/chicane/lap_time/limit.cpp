@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/lap_time/limit.hpp"
 
-#include <utility>
-
 #include "chicane/base/angle.hpp"
 
 namespace chicane::lap_time {

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/lap_time/plant_limit.hpp"
 
-#include <array>
-#include <cmath>
 #include <limits>
 #include <memory>
-#include <span>
-#include <utility>
 
 #include "chicane/lap_time/detail/limit_model.hpp"
 #include "chicane/lap_time/detail/plan_driver.hpp"

@@ -2,7 +2,6 @@
 #include "chicane/lap_time/racing_plan.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
 
 #include "chicane/lap_time/detail/plan_search.hpp"

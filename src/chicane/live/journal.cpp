@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/journal.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <utility>

@@ -18,7 +18,6 @@
 #include "chicane/live/worker.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/lap_planner.hpp"
-#include "chicane/run/setting.hpp"
 #include "chicane/run/thread_queue.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/change.hpp"
@@ -68,7 +67,7 @@ class Rival {
   /// of the race, as a text. kInvalidArgument in a sentence for viewers: for a setting that is unknown, out
   /// of range, or cannot change while a run goes on.
   [[nodiscard]] Result<std::string> ask(std::string_view json, const scenario::Scenario& scenario);
-  /// GET /rival.json (docs/viewer.md). Any thread.
+  /// GET /rival.json (docs/viewer_laps.md). Any thread.
   [[nodiscard]] std::string answer() const;
 
   /// The run's thread: after each control cycle, completed lap and change. Neither waits nor allocates.

@@ -59,7 +59,7 @@ class WhatIf {
 
   /// Begins, and does not wait; the number of the question, as a text.
   [[nodiscard]] Result<std::string> ask(std::string_view json);
-  /// The newest answer, or how far it is: GET /what_if.json (docs/viewer.md).
+  /// The newest answer, or how far it is: GET /what_if.json (docs/viewer_laps.md).
   [[nodiscard]] std::string answer();
 
  private:

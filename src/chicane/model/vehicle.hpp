@@ -39,7 +39,7 @@ struct VehicleParams {
   double steer_lag = 0.0;  ///< time constant of the steering actuator [s], 0 = instant
 
   // Tyres: force = load · friction · curve(cornering · slip / friction), load = mass · (load_0 + load_v · v +
-  // load_vv · v²) by axle (docs/tracking.md, eq. 3).
+  // load_vv · v²) by axle (docs/tracking_model.md, eq. 4a–4c).
   double cornering_front = 5.0;   ///< normalised cornering stiffness [1/rad]
   double cornering_rear = 4.92;   ///< [1/rad]
   double friction = 1.08;         ///< peak force over load
@@ -91,7 +91,7 @@ struct VehicleParams {
   /// Whether brakes that stopped the car have to be released before it drives off.
   [[nodiscard]] bool latches_brakes() const noexcept { return brake_latch_speed > 0.0; }
   /// Peak lateral force over load of the whole car: what load transfer to the outer wheels leaves of the
-  /// friction (docs/tracking.md, eq. 3b).
+  /// friction (docs/tracking_model.md, eq. 4f).
   [[nodiscard]] double cornering_friction() const noexcept;
 
   friend bool operator==(const VehicleParams&, const VehicleParams&) = default;
@@ -121,7 +121,7 @@ struct VehicleParams {
 [[nodiscard]] double throttle_to_rest(const VehicleParams& params, double acceleration, double v) noexcept;
 inline constexpr double kRestTime = 0.4;  ///< [s]
 
-/// Models of the shipped plants, fitted to them by `chicane_plant_report` (docs/plants.md). The
+/// Models of the shipped plants, fitted to them by `chicane_plant_report` (docs/plants_model.md). The
 /// original simulator's car: the defaults above.
 [[nodiscard]] VehicleParams udacity_params();
 /// An ordinary car: 1300 kg, about 1.2 g, proportional brakes, 90°/s steering.

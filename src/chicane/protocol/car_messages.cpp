@@ -100,23 +100,6 @@ std::string encode_autoware(const DriveMessage& message) {
   return to.bytes();
 }
 
-std::optional<DriveMessage> decode_autoware(std::string_view bytes) {
-  CdrSource from(bytes);
-  DriveMessage message;
-  message.stamp = from.stamp();
-  for (int i = 0; i < 3; ++i) from.stamp();
-  message.steer = static_cast<double>(from.get<float>());
-  from.get<float>();
-  from.flag();
-  for (int i = 0; i < 2; ++i) from.stamp();
-  message.speed = static_cast<double>(from.get<float>());
-  message.acceleration = static_cast<double>(from.get<float>());
-  from.get<float>();
-  from.flag();
-  from.flag();
-  return checked(from, std::move(message));
-}
-
 std::string encode(const ImuMessage& message) {
   CdrWriter to{384};
   put_header(to, message.stamp, message.frame);
@@ -205,24 +188,6 @@ std::string encode(const ScanMessage& message) {
   for (const float range : message.ranges) to.put(range);
   to.count(0);
   return to.bytes();
-}
-
-std::optional<ScanMessage> decode_scan(std::string_view bytes) {
-  CdrSource from(bytes);
-  ScanMessage message;
-  get_header(from, message);
-  const auto number = [&] { return static_cast<double>(from.get<float>()); };
-  message.angle_min = number();
-  number();
-  message.angle_increment = number();
-  number();
-  message.scan_time = number();
-  message.range_min = number();
-  message.range_max = number();
-  const std::uint32_t count = from.count(sizeof(float));
-  for (std::uint32_t i = 0; i < count; ++i) message.ranges.push_back(from.get<float>());
-  for (std::uint32_t i = from.count(sizeof(float)); i > 0; --i) from.get<float>();
-  return checked(from, std::move(message));
 }
 
 std::string encode(const TransformMessage& message) {

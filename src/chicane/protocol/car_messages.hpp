@@ -42,7 +42,6 @@ struct DriveMessage {
 [[nodiscard]] std::string encode(const DriveMessage& message);
 [[nodiscard]] std::string encode_autoware(const DriveMessage& message);
 [[nodiscard]] std::optional<DriveMessage> decode_drive(std::string_view bytes);
-[[nodiscard]] std::optional<DriveMessage> decode_autoware(std::string_view bytes);
 
 /// sensor_msgs/msg/Imu, the part that a planar car has.
 struct ImuMessage {
@@ -90,7 +89,6 @@ struct ScanMessage {
   std::vector<float> ranges{};   ///< [m]
 };
 [[nodiscard]] std::string encode(const ScanMessage& message);
-[[nodiscard]] std::optional<ScanMessage> decode_scan(std::string_view bytes);
 
 /// tf2_msgs/msg/TFMessage with one transform in the plane.
 struct TransformMessage {

@@ -2,11 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
-#include "chicane/base/text.hpp"
 #include "chicane/protocol/detail/geo_lines.hpp"
 #include "chicane/protocol/detail/track_order.hpp"
 #include "chicane/protocol/foreign_tracks.hpp"

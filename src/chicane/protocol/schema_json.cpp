@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"

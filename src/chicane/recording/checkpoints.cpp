@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/recording/checkpoints.hpp"
 
-#include <algorithm>
 #include <variant>
 
 namespace chicane::recording {

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <optional>
-#include <utility>
 #include <variant>
 
 #include "chicane/base/instruction_set.hpp"

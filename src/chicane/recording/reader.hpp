@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "chicane/base/result.hpp"
 #include "chicane/protocol/step_codec.hpp"

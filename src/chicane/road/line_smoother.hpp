@@ -9,8 +9,8 @@
 
 namespace chicane::road {
 
-/// The line of least bending within a strip around a given one (docs/tracking.md, eq. 6–9): minimises, over
-/// the offsets n to the left at equally spaced knots,
+/// The line of least bending within a strip around a given one (docs/tracking_line.md, eq. 6–9): minimises,
+/// over the offsets n to the left at equally spaced knots,
 ///
 ///     Σ κ_new² + ℓ² (Δκ_new/h)² + w n²,      κ_new = κ (1 + κ n) + (n₋ − 2 n + n₊)/h²
 ///

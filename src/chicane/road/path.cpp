@@ -2,13 +2,11 @@
 #include "chicane/road/path.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "chicane/base/angle.hpp"
-#include "chicane/base/assert.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/road/detail/point_text.hpp"
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
 
 #include "chicane/base/math.hpp"
 #include "chicane/road/detail/point_text.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <cstdint>
 
 #include "chicane/base/result.hpp"
 #include "chicane/ros/node_options.hpp"

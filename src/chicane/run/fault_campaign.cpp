@@ -14,10 +14,7 @@
 #include <cmath>
 #include <csignal>
 #include <deque>
-#include <memory>
-#include <new>
 #include <numeric>
-#include <utility>
 
 #include "chicane/base/math.hpp"
 #include "chicane/run/closed_loop.hpp"
@@ -159,35 +156,6 @@ Result<FlyingLap> drive_undisturbed(const scenario::Scenario& scenario, double w
   lap.time = is_open ? (*loop)->time() : (*loop)->world().last_lap_time;
   while ((*loop)->time() < lap.begins + lap.time + wait && !(*loop)->is_over()) advance();
   return lap;
-}
-
-Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario, const Factories& make) {
-  Result<FlyingLap> lap = drive_undisturbed(scenario, 0.0, make);
-  if (lap && !lap->off.empty()) {
-    return fail(ErrorCode::kInvalidArgument,
-                fmt::format("{} on {} with {}: no lap without leaving the road is driven "
-                            "without any fault: {} times off the road",
-                            scenario.car, scenario.track, scenario.preset, lap->off.size()));
-  }
-  return lap;
-}
-
-Result<FaultOutcome> drive_trial(const scenario::Scenario& scenario, const FlyingLap& lap,
-                                 const FaultTrial& trial, Roads& roads, const Factories& make) {
-  auto loop = ClosedLoop::create(endless(scenario), roads, make);
-  if (!loop) return fail(loop.error());
-  const double at = onset_of(lap, trial);
-  Driven driven{**loop};
-  drive_up_to(driven, at);
-  return drive_on(driven, trial, at);
-}
-
-std::vector<FaultTrial> trials_over_lap(const FlyingLap& lap, sim::Fault fault, double duration,
-                                        double step) {
-  std::vector<FaultTrial> trials;
-  for (int i = 0; i * step < lap.time; ++i)
-    trials.push_back({fault, i * step, duration, sim::kind_of(fault).strength});
-  return trials;
 }
 
 Result<std::vector<FaultOutcome>> drive_trials(const scenario::Scenario& scenario, const FlyingLap& lap,

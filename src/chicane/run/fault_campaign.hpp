@@ -8,7 +8,6 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/run/make.hpp"
-#include "chicane/run/roads.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/fault.hpp"
 
@@ -63,26 +62,12 @@ struct FlyingLap {
 /// laps, or an open road, are not driven in half an hour.
 [[nodiscard]] Result<FlyingLap> drive_undisturbed(const scenario::Scenario& scenario,
                                                   double wait = kLongestWait, const Factories& make = {});
-/// The same; kInvalidArgument also when the car leaves the road.
-[[nodiscard]] Result<FlyingLap> find_flying_lap(const scenario::Scenario& scenario,
-                                                const Factories& make = {});
-
-/// Drives one trial from the start of the run: `scenario` without its own faults. Deterministic; independent
-/// of other trials.
-[[nodiscard]] Result<FaultOutcome> drive_trial(const scenario::Scenario& scenario, const FlyingLap& lap,
-                                               const FaultTrial& trial, Roads& roads,
-                                               const Factories& make = {});
-
-/// Trials of one fault at each `step` [s] of the flying lap.
-[[nodiscard]] std::vector<FaultTrial> trials_over_lap(const FlyingLap& lap, sim::Fault fault, double duration,
-                                                      double step);
-
-/// Drives all trials, each as drive_trial() does, bit for bit. What comes before a fault is driven once for
-/// all: from its onset on a trial is a copy of the process (fork), at most `jobs` of them at a time, and a
-/// trial that crashes is an error that names it. The outcomes are in the order of the trials, whatever the
-/// number of processes. `on_done` is told, in this process, how many are done; false ends early, with the
-/// outcomes so far (a trial that was not driven has an infinite least_edge). Pre: no other thread of this
-/// process holds a lock.
+/// Drives trials of `scenario` without its own faults, each from the start of a run. Deterministic; no trial
+/// depends on others. What comes before a fault is driven once for all: from its onset on a trial is a copy
+/// of the process (fork), at most `jobs` of them at a time, and a trial that crashes is an error that names
+/// it. The outcomes are in the order of the trials, whatever the number of processes. `on_done` is told, in
+/// this process, how many are done; false ends early, with the outcomes so far (a trial that was not driven
+/// has an infinite least_edge). Pre: no other thread of this process holds a lock.
 [[nodiscard]] Result<std::vector<FaultOutcome>> drive_trials(
     const scenario::Scenario& scenario, const FlyingLap& lap, const std::vector<FaultTrial>& trials, int jobs,
     const std::function<bool(std::size_t)>& on_done = {}, const Factories& make = {});

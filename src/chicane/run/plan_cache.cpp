@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/plan_cache.hpp"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>

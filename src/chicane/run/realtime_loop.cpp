@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/realtime_loop.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <thread>
 

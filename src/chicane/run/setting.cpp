@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/setting.hpp"
 
-#include <algorithm>
-#include <array>
 #include <charconv>
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 
 #include "chicane/base/range.hpp"
 #include "chicane/base/text.hpp"

@@ -2,15 +2,12 @@
 #include "chicane/run/way_back.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <utility>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/parallel.hpp"
 
 namespace chicane::run {
 namespace {
@@ -105,26 +102,6 @@ Result<WayBackOutcome> drive_back(const scenario::Scenario& scenario, const Star
       outcome.lapping = loop.time();
   }
   return outcome;
-}
-
-Result<std::vector<WayBackOutcome>> drive_all_back(const scenario::Scenario& scenario,
-                                                   const std::vector<StartPose>& starts, int jobs,
-                                                   const std::function<bool(std::size_t)>& on_done,
-                                                   const Factories& make) {
-  std::vector<Result<WayBackOutcome>> outcomes(starts.size());
-  std::atomic<std::size_t> done{0};
-  for_each_run(starts.size(), jobs, [&](std::uint64_t i, Roads& roads) {
-    outcomes[i] = drive_back(scenario, starts[i], roads, make);
-    const std::size_t count = ++done;
-    return !on_done || on_done(count);
-  });
-  std::vector<WayBackOutcome> all;
-  all.reserve(done);
-  for (std::size_t i = 0; i < std::min<std::size_t>(done, outcomes.size()); ++i) {
-    if (!outcomes[i]) return fail(outcomes[i].error());
-    all.push_back(*outcomes[i]);
-  }
-  return all;
 }
 
 }  // namespace chicane::run

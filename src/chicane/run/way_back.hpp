@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <string_view>
 #include <vector>
@@ -58,10 +57,5 @@ inline constexpr double kWatched = 15.0;  ///< [s] driven on after it laps
 /// Drives one start: `scenario` from `start` until kWatched after it laps, or kInTime. Deterministic.
 [[nodiscard]] Result<WayBackOutcome> drive_back(const scenario::Scenario& scenario, const StartPose& start,
                                                 Roads& roads, const Factories& make = {});
-/// All of them with `jobs` threads, in the order of the starts, whatever the number of threads. `on_done` is
-/// told how many are done, on any thread; false ends early, with the outcomes so far.
-[[nodiscard]] Result<std::vector<WayBackOutcome>> drive_all_back(
-    const scenario::Scenario& scenario, const std::vector<StartPose>& starts, int jobs,
-    const std::function<bool(std::size_t)>& on_done = {}, const Factories& make = {});
 
 }  // namespace chicane::run

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/safety/command_gate.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "chicane/base/math.hpp"

@@ -46,7 +46,7 @@ bool is_of(const controller::Plan& plan, const model::Command& answered) noexcep
 }
 
 /// The acceleration [m/s²] that the driven axles can give beside the force that they carry sideways
-/// (docs/safety_derivation.md, eq. 14). Infinite for cars whose tyres share nothing between the directions.
+/// (docs/safety_watch.md, eq. 14). Infinite for cars whose tyres share nothing between the directions.
 double traction(const model::PredictionModel& model, const model::BodyMotion<double>& body) noexcept {
   const model::VehicleParams& car = model.vehicle();
   if (!(car.friction_coupling > 0.0)) return std::numeric_limits<double>::infinity();

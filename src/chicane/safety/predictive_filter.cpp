@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "chicane/base/math.hpp"
-#include "chicane/model/grip.hpp"
 
 namespace chicane::safety {
 namespace {

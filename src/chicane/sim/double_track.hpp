@@ -86,8 +86,8 @@ struct DoubleTrackParams {
 [[nodiscard]] std::span<const Option> double_track_options() noexcept;
 
 /// A controller's model of that car: what it is built of, and what follows from it, as the inertia of its
-/// wheels and the friction that its tyres lose under downforce (docs/plants.md, eq. 9-14). `name`, `length`
-/// and `width` are not the plant's: they stay as in `body`.
+/// wheels and the friction that its tyres lose under downforce (docs/plants_model.md, eq. 9–13). `name`,
+/// `length` and `width` are not the plant's: they stay as in `body`.
 [[nodiscard]] model::VehicleParams model_of(const DoubleTrackParams& plant, model::VehicleParams body = {});
 
 /// A plant with that model: the other way round. What no model has (wheels, relaxation, anti-lock) stays as

@@ -2,7 +2,6 @@
 #include "chicane/sim/plant_registry.hpp"
 
 #include <array>
-#include <string>
 
 #include "chicane/base/text.hpp"
 #include "chicane/sim/udacity_car.hpp"

@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -15,7 +16,6 @@
 #include "chicane/run/fault_campaign.hpp"
 #include "chicane/sweep/detail/settings_reader.hpp"
 #include "chicane/sweep/detail/text_hash.hpp"
-#include "chicane/sweep/result_file.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -117,109 +117,81 @@ Result<Place> place_of(const Campaign& campaign, const CampaignGroup& group) {
   return Place{std::move(*scenario), std::move(*lap)};
 }
 
-std::string line_of(std::uint64_t run, const CampaignGroup& group) {
-  const Json settings{{"track", group.track},
-                      {"car", group.car},
-                      {"preset", group.preset},
-                      {"fault", group.fault},
-                      {"for_s", group.lasts}};
-  Json trials = Json::array();
-  for (const CampaignTrial& trial : group.trials)
-    trials.push_back({{"at_s", trial.at},
-                      {"until_s", trial.until},
-                      {"for_s", duration_text(trial.duration)},
-                      {"least_edge_m", trial.least_edge},
-                      {"off_anyway", trial.is_off_anyway},
-                      {"stands", trial.stands},
-                      {"not_controller", trial.replaced}});
-  const Json rest = group.error.empty() ? Json{{"trials", trials}} : Json{{"error", group.error}};
-  return fmt::format("{{\"run\":{},\"settings\":{},{}", run, protocol::json_text(settings),
-                     protocol::json_text(rest).substr(1));
+std::string members_of(const std::vector<CampaignTrial>& trials) {
+  Json all = Json::array();
+  for (const CampaignTrial& trial : trials)
+    all.push_back({{"at_s", trial.at},
+                   {"until_s", trial.until},
+                   {"for_s", duration_text(trial.duration)},
+                   {"least_edge_m", trial.least_edge},
+                   {"off_anyway", trial.is_off_anyway},
+                   {"stands", trial.stands},
+                   {"not_controller", trial.replaced}});
+  return "\"trials\":" + protocol::json_text(all);
 }
 
-/// Drives one campaign into its file.
+/// Drives groups of trials. Those that follow at the same place are driven with one that is asked for.
 class Driver {
  public:
-  Driver(const Campaign& campaign, const CampaignOptions& options, ResultFile& file, const Plan& plan,
-         const std::atomic<bool>& stop)
-      : campaign_{campaign}, options_{options}, file_{file}, plan_{plan}, stop_{stop} {
-    progress_ = {.runs = plan.size(), .found = file.done()};
-  }
+  Driver(const Campaign& campaign, int jobs, const std::atomic<bool>& stop)
+      : campaign_{campaign}, plan_{plan_of(campaign)}, jobs_{jobs}, stop_{stop} {}
 
-  Result<Progress> drive() {
-    for (std::uint64_t run = 0; run < plan_.size() && !stop_; ++run) {
-      if (file_.has(run)) continue;
-      CampaignGroup group = group_at(plan_, run);
-      if (!place_ || !is_same_place(group, at_)) {
-        if (Result<void> done = drive_batch(); !done) return fail(done.error());
-        if (stop_) break;
-        at_ = group;
-        place_ = place_of(campaign_, group);
-      }
-      Result<void> done = add(run, std::move(group));
-      if (done && trials_.size() >= kBatch) done = drive_batch();
-      if (!done) return fail(done.error());
+  /// The members of the group's line; none when it was stopped.
+  Result<std::optional<std::string>> drive(std::uint64_t run) {
+    const CampaignGroup group = group_at(plan_, run);
+    if (!place_ || !is_same_place(group, at_)) {
+      at_ = group;
+      place_ = place_of(campaign_, group);
+      ready_.clear();
     }
-    if (Result<void> done = drive_batch(); !done) return fail(done.error());
-    return progress_;
+    if (!*place_) return fail(place_->error());
+    if (const auto parts = parts_of(group.fault); !parts) return fail(parts.error());
+    if (ready_.count(run) == 0) {
+      if (Result<void> done = drive_from(run); !done) return fail(done.error());
+    }
+    const auto found = ready_.find(run);
+    if (found == ready_.end()) return std::optional<std::string>{};
+    return std::optional(std::move(ready_.extract(found).mapped()));
   }
 
  private:
-  struct Waiting {
-    std::uint64_t run;
-    CampaignGroup group;
-    std::size_t trials;
-  };
-
-  /// A group whose trials are driven with the next batch.
-  Result<void> add(std::uint64_t run, CampaignGroup group) {
-    const auto parts = parts_of(group.fault);
-    if (!*place_ || !parts) {
-      group.error = (*place_ ? parts.error() : place_->error()).message;
-      if (progress_.failed++ == 0) progress_.why = group.error;
-      waiting_.push_back({run, std::move(group), 0});
-      return {};
+  /// Drives this group and as many after it as make kBatch trials.
+  Result<void> drive_from(std::uint64_t first) {
+    std::vector<run::FaultTrial> trials;
+    std::vector<std::size_t> ends;  // of the trials of a group
+    for (std::uint64_t run = first; run < plan_.size() && trials.size() < kBatch; ++run) {
+      const CampaignGroup group = group_at(plan_, run);
+      if (!is_same_place(group, at_)) break;
+      add_trials(group, trials);
+      ends.push_back(trials.size());
     }
-    const std::vector<double> onsets = onsets_of(campaign_, group, (*place_)->lap.time);
-    for (const double onset : onsets) {
+    const auto goes_on = [&](std::size_t) { return !stop_.load(); };
+    const auto driven = run::drive_trials((*place_)->scenario, (*place_)->lap, trials, jobs_, goes_on);
+    if (!driven) return fail(driven.error());
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < ends.size() && !stop_; ++i) {
+      std::vector<CampaignTrial> of_group;
+      for (; next < ends[i]; ++next) of_group.push_back(trial_of((*driven)[next]));
+      ready_[first + i] = members_of(of_group);
+    }
+    return {};
+  }
+
+  /// None for a name that is no fault.
+  void add_trials(const CampaignGroup& group, std::vector<run::FaultTrial>& trials) const {
+    const auto parts = parts_of(group.fault);
+    if (!parts) return;
+    for (const double onset : onsets_of(campaign_, group, (*place_)->lap.time)) {
       run::FaultTrial trial{.fault = parts->front(),
                             .onset = onset,
                             .duration = duration_of(group, *parts),
                             .strength = sim::kind_of(parts->front()).strength};
       if (parts->size() > 1) trial.second = parts->at(1);
-      trials_.push_back(trial);
+      trials.push_back(trial);
     }
-    waiting_.push_back({run, std::move(group), onsets.size()});
-    return {};
   }
 
-  /// Drives what waits and writes the groups that are complete, in the order of the plan.
-  Result<void> drive_batch() {
-    std::vector<run::FaultOutcome> outcomes;
-    if (!trials_.empty() && !stop_) {
-      const auto goes_on = [&](std::size_t) { return !stop_.load(); };
-      auto driven = run::drive_trials((*place_)->scenario, (*place_)->lap, trials_, options_.jobs, goes_on);
-      if (!driven) return fail(driven.error());
-      outcomes = std::move(*driven);
-    }
-    outcomes.resize(trials_.size());
-    trials_.clear();
-    auto next = outcomes.cbegin();
-    for (Waiting& each : std::exchange(waiting_, {})) {
-      const auto begin = std::exchange(next, next + static_cast<std::ptrdiff_t>(each.trials));
-      const bool is_whole =
-          std::all_of(begin, next, [](const auto& outcome) { return std::isfinite(outcome.least_edge); });
-      if (!is_whole) return {};
-      std::transform(begin, next, std::back_inserter(each.group.trials),
-                     [&](const auto& outcome) { return trial_of(outcome); });
-      if (Result<void> done = file_.append(line_of(each.run, each.group)); !done) return done;
-      ++progress_.driven;
-      if (options_.on_progress) options_.on_progress(progress_);
-    }
-    return {};
-  }
-
-  CampaignTrial trial_of(const run::FaultOutcome& outcome) const {
+  [[nodiscard]] CampaignTrial trial_of(const run::FaultOutcome& outcome) const {
     return {
         .at = outcome.at,
         .until = outcome.until,
@@ -230,16 +202,13 @@ class Driver {
         .replaced = outcome.not_controller};
   }
 
-  const Campaign& campaign_;
-  const CampaignOptions& options_;
-  ResultFile& file_;
-  const Plan& plan_;
+  Campaign campaign_;
+  Plan plan_;
+  int jobs_;
   const std::atomic<bool>& stop_;
-  CampaignGroup at_;                    ///< any group of the place
-  std::optional<Result<Place>> place_;  ///< of what waits
-  std::vector<Waiting> waiting_;
-  std::vector<run::FaultTrial> trials_;  ///< of all that waits
-  Progress progress_;
+  CampaignGroup at_;                            ///< any group of the place
+  std::optional<Result<Place>> place_;          ///< of the last group
+  std::map<std::uint64_t, std::string> ready_;  ///< driven before they were asked for
 };
 
 CampaignTrial trial_in(const Json& json) {
@@ -253,13 +222,18 @@ CampaignTrial trial_in(const Json& json) {
           .replaced = json.at("not_controller")};
 }
 
+/// A name or a number.
+std::string text_in(const Json& json) {
+  return json.is_string() ? json.get<std::string>() : protocol::json_text(json);
+}
+
 CampaignGroup group_in(const Json& json) {
   const Json& settings = json.at("settings");
-  CampaignGroup group{.track = settings.at("track"),
-                      .car = settings.at("car"),
-                      .preset = settings.at("preset"),
+  CampaignGroup group{.track = text_in(settings.at("track")),
+                      .car = text_in(settings.at("car")),
+                      .preset = text_in(settings.at("preset")),
                       .fault = settings.at("fault"),
-                      .lasts = settings.at("for_s"),
+                      .lasts = text_in(settings.at("for_s")),
                       .error = json.value("error", "")};
   for (const Json& trial : json.value("trials", Json::array())) group.trials.push_back(trial_in(trial));
   return group;
@@ -306,26 +280,19 @@ Settings settings_of(const Settings& fixed, const CampaignGroup& group, const Ca
   return settings;
 }
 
-Result<Progress> drive_campaign(const Campaign& campaign, const CampaignOptions& options,
-                                const std::atomic<bool>& stop) {
-  const Plan plan = plan_of(campaign);
-  Result<ResultFile> file = ResultFile::open(options.file, plan, {});
-  if (!file) return fail(file.error());
-  return Driver(campaign, options, *file, plan, stop).drive();
+RunRule rule_of(const Campaign& campaign, int jobs, const std::atomic<bool>& stop) {
+  return [driver = std::make_shared<Driver>(campaign, jobs, stop)](std::uint64_t run, run::Roads&) {
+    return driver->drive(run);
+  };
 }
 
-Result<std::vector<CampaignGroup>> read_campaign(const std::string& file) {
-  std::vector<CampaignGroup> groups;
-  const auto read = read_lines(file, [&](const LinePlace&, const std::string& line) -> Result<void> {
-    try {
-      groups.push_back(group_in(protocol::parse_json(line)));
-    } catch (const Json::exception&) {
-      return fail(ErrorCode::kParse, fmt::format("got {}, expected a group of trials", printable(line)));
-    }
-    return {};
-  });
-  if (!read) return fail(read.error());
-  return groups;
+Result<CampaignGroup> group_of(const protocol::Json& line) {
+  try {
+    return group_in(line);
+  } catch (const Json::exception&) {
+    return fail(ErrorCode::kParse,
+                fmt::format("got {}, expected a group of trials", printable(protocol::json_text(line))));
+  }
 }
 
 }  // namespace chicane::sweep

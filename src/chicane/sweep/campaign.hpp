@@ -3,11 +3,11 @@
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/sweep/plan.hpp"
 #include "chicane/sweep/sweep.hpp"
 
@@ -54,20 +54,12 @@ struct CampaignGroup {
 [[nodiscard]] Settings settings_of(const Settings& fixed, const CampaignGroup& group,
                                    const CampaignTrial& trial);
 
-struct CampaignOptions {
-  int jobs = 1;        ///< processes
-  std::string file{};  ///< results; an older file is completed
-  std::function<void(const Progress&)> on_progress{};
-};
+/// What drives a group of trials as a run of the campaign's plan, for drive_plan() with one thread: trials
+/// are processes, at most `jobs` at a time (run::drive_trials()). What comes before the faults is driven once
+/// for the trials of several groups. A line depends on the campaign and its number alone.
+[[nodiscard]] RunRule rule_of(const Campaign& campaign, int jobs, const std::atomic<bool>& stop);
 
-/// Drives the groups that are not in the file yet, in the order of the plan, as run::drive_trials() does:
-/// what comes before the faults is driven once for many trials. Each line depends on the campaign and its
-/// number alone, so a file that was completed later has the same bytes. Ends early with what there is when
-/// `stop` is set; kIo when the file cannot be written. One thread of this process at most.
-[[nodiscard]] Result<Progress> drive_campaign(const Campaign& campaign, const CampaignOptions& options,
-                                              const std::atomic<bool>& stop);
-
-/// The groups of a file, in its order. Fails as read_lines() does.
-[[nodiscard]] Result<std::vector<CampaignGroup>> read_campaign(const std::string& file);
+/// The group of a line of the results; kParse for another line.
+[[nodiscard]] Result<CampaignGroup> group_of(const protocol::Json& line);
 
 }  // namespace chicane::sweep

@@ -16,9 +16,9 @@
 
 namespace chicane::tracking {
 
-/// The optimal control problem of the default controller (docs/tracking.md, eq. 15–20): the prediction model
-/// in coordinates along a reference line, squares of what should be small, one-sided squares of what must not
-/// be exceeded. In the solver's structured form (solver/problem.hpp).
+/// The optimal control problem of the default controller (docs/tracking_problem.md, eq. 15–20): the
+/// prediction model in coordinates along a reference line, squares of what should be small, one-sided squares
+/// of what must not be exceeded. In the solver's structured form (solver/problem.hpp).
 ///
 /// State x = (s, d, e, v_x, v_y, r, δ, a): arc length from the start [m], offset to the left [m], heading
 /// error [rad], body velocity [m/s], yaw rate [rad/s], road-wheel angle [rad], net acceleration [m/s²]. Input

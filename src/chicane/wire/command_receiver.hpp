@@ -11,9 +11,9 @@
 
 namespace chicane::wire {
 
-/// What the actuators do at the simulator's end of the connection (docs/protocol.md §5): the answers are
-/// picked up one telemetry later, and when they cease the car is stopped (safety/stop_player.hpp) by what
-/// came with the last one. All times are the simulated world's [s]; they do not decrease. One thread.
+/// What the actuators do at the simulator's end of the connection (docs/protocol_behaviour.md §5): the
+/// answers are picked up one telemetry later, and when they cease the car is stopped (safety/stop_player.hpp)
+/// by what came with the last one. All times are the simulated world's [s]; they do not decrease. One thread.
 ///
 /// A controller that sends no stop plan is waited for max(0.25 s, 3 times the median of its last nine
 /// cycles): what it answers so slowly as a rule is no silence.

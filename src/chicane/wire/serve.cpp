@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <condition_variable>
 #include <deque>
-#include <limits>
 #include <mutex>
-#include <optional>
 #include <thread>
 #include <utility>
 #include <variant>

@@ -8,8 +8,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdlib>
-#include <thread>
 
 namespace chicane::wire {
 namespace {

@@ -51,11 +51,11 @@ struct SimulateReport {
   std::uint64_t late_answers = 0;  ///< not used, because the car was being stopped when they came
 };
 
-/// `chicane simulate`: our car and track as the original simulator's client, in real time (docs/protocol.md
-/// §5). Physics never waits; each answer is picked up `scenario.turn_around` after it came, when the next
-/// telemetry is sampled, and acts from there until the next one. A broken answer is named, counted, and
-/// driven past with the command that was. When commands cease the car is stopped as `scenario.guard.receiver`
-/// says (command_receiver.hpp); when they come again it drives on.
+/// `chicane simulate`: our car and track as the original simulator's client, in real time
+/// (docs/protocol_behaviour.md §5). Physics never waits; each answer is picked up `scenario.turn_around`
+/// after it came, when the next telemetry is sampled, and acts from there until the next one. A broken answer
+/// is named, counted, and driven past with the command that was. When commands cease the car is stopped as
+/// `scenario.guard.receiver` says (command_receiver.hpp); when they come again it drives on.
 ///
 /// Uses of the scenario: track, car, plant_options, vehicle, guard.receiver, sensor, seed, laps, time_limit,
 /// turn_around, waypoints_sent. Ends when the laps are driven, the car is lost, time is up, the controller

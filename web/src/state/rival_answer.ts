@@ -1,6 +1,6 @@
 import { inSpeedUnit, speedUnit } from '../lib/units';
 
-// A race of two settings, as GET /rival.json tells it (docs/viewer.md): A is the run's own car, B the rival.
+// A race of two settings, as GET /rival.json gives it (docs/viewer_laps.md): A is the run's own car, B the rival.
 
 /** A lap of one car; each list has three values, one for each third. */
 export interface RaceLap {

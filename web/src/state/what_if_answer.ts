@@ -1,6 +1,6 @@
 import { mix } from '../lib/math';
 
-// Two futures of a run from one moment on, as GET /what_if.json tells them (docs/viewer.md).
+// Two futures of a run from one moment on, as GET /what_if.json gives them (docs/viewer_laps.md).
 
 export const TRACE_COLUMNS = [
   'time_s',

@@ -2,8 +2,6 @@
 #include "chicane/lap_time/detail/plan_search.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <string>
 #include <utility>
 
 namespace chicane::lap_time {

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/net/detail/gunzip.hpp"
 
-#include <algorithm>
 #include <boost/beast/zlib/inflate_stream.hpp>
-#include <cctype>
-#include <cstring>
 
 namespace chicane::net {
 namespace {

@@ -2,7 +2,6 @@
 #include "chicane/road/detail/crossing.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 

@@ -4,8 +4,6 @@
 #include "chicane/ros/detail/endpoints.hpp"
 
 #include <string>
-#include <string_view>
-#include <utility>
 
 #include "chicane/protocol/car_messages.hpp"
 

@@ -13,8 +13,8 @@ namespace chicane::solver {
 
 /// The quadratic program with all bounds on inputs and their changes as barriers: for when corrections of a
 /// working set go in circles, which they may with bounds on changes. A primal-dual interior point
-/// (docs/solver.md, eq. 27–29): each sweep is one Newton step, their number hardly depends on the problem,
-/// and bounds whose multiplier outgrows their distance are the working set.
+/// (docs/solver_constraints.md, eq. 27–29): each sweep is one Newton step, their number hardly depends on the
+/// problem, and bounds whose multiplier outgrows their distance are the working set.
 template <class Solver>
 class InteriorPoint {
  public:

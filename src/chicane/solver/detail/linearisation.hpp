@@ -24,8 +24,8 @@
 namespace chicane::solver {
 
 /// Linearises an iterate: values and derivatives of every stage, exact adjoint, optimality measures, and the
-/// stages of the quadratic program (docs/solver.md, eq. 4–8, 12, 13, 22). Goes through the horizon from its
-/// end, eight stages at a time: evaluate them in lanes, run the adjoint through them, add up their costs.
+/// stages of the quadratic program (docs/solver.md, eq. 4–13; docs/solver_constraints.md, eq. 22). From the
+/// horizon's end, eight stages at a time: evaluate them in lanes, run the adjoint through them, add up costs.
 template <OcpProblem P, std::size_t Capacity, class Arch>
 class Linearisation {
  public:

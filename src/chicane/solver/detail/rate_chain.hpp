@@ -8,7 +8,7 @@
 
 namespace chicane::solver {
 
-/// What one input may be over a horizon when its change is bounded, too (docs/solver.md, eq. 23–26):
+/// What one input may be when its change is bounded, too (docs/solver_constraints.md, eq. 23–26):
 ///
 ///     low_k <= u_k <= high_k,   rate_low_k <= u_k − u_{k−1} <= rate_high_k,   u_{−1} = previous
 ///

@@ -8,10 +8,10 @@
 
 namespace chicane::solver {
 
-/// The working set of one input over the stages where its change is bounded as well (docs/solver.md, bounds
-/// on changes). Inputs tied by changes at their bounds are a chain: with no member at a bound of its own, the
-/// first is free and each other one follows its predecessor (kRate…); with one at its bound, those before it
-/// are fixed by their successors (kNext…) and those behind it still follow.
+/// Working set of one input over the stages where its change is bounded, too (docs/solver_constraints.md).
+/// Inputs tied by changes at their bounds are a chain: with no member at a bound of its own, the first is
+/// free and each other one follows its predecessor (kRate…); with one at its bound, those before it are fixed
+/// by their successors (kNext…) and those behind it still follow.
 ///
 /// `Tag`: the instruction set that its translation unit is compiled for, so that the linker tells them apart.
 template <std::size_t Nu, class Tag = void>
