@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -33,6 +34,21 @@ namespace chicane::controller {
     last = place.s;
   }
   return true;
+}
+
+/// How far beside another line [m] the first `time` [s] of a plan lead at most. Allocates nothing.
+[[nodiscard]] inline double most_beside(const road::ReferenceLine& line, const Plan& plan, double reach,
+                                        double far, double time) noexcept {
+  double most = 0.0, last = 0.0;
+  for (int k = 0; k < plan.size && !line.is_empty(); ++k) {
+    const PlanPoint& point = plan.points[static_cast<std::size_t>(k)];
+    if (point.time > plan.points[0].time + time) break;
+    const road::ReferenceLine::Projection place =
+        line.find({point.x, point.y}, point.psi, reach, k > 0 ? &last : nullptr, far);
+    most = std::max(most, place.distance);
+    last = place.s;
+  }
+  return most;
 }
 
 }  // namespace chicane::controller

@@ -38,6 +38,7 @@ constexpr double kSpeedAhead = 4.0;    // [m/s] wanted at most beyond what the l
 constexpr double kLongestHold = 0.3;   // [s] the first command is assumed to be held at most this long
 constexpr double kBlindAfter = 0.3;    // [s] without a measurement, or a waypoint: stop
 constexpr double kPreview = 0.3;       // [s] the car answers the wheel about so late
+constexpr double kJoiningTime = 1.5;   // [s] ahead for which a car is compared with another lap
 constexpr double kCrawl = 3.0;  // [m/s] below it the fallback brings the car to rest, and no plan races
 
 class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable<TrackingMpcOptions> {
@@ -104,6 +105,12 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     return {.is_wanted = lap == nullptr || grip != planned,
             .waypoints = lap == nullptr || lap->is_learned() ? waypoints : std::span<const Vec2>{},
             .grip = grip};
+  }
+
+  /// Less grip than believed is braked for at once; the line through waypoints is far from any lap.
+  [[nodiscard]] double beside(const road::RacingRoad& lap) const noexcept override {
+    if (road_.lap() == nullptr || lap.grip() < road_.lap()->grip()) return 0.0;
+    return most_beside(lap.line(), result_.plan, 2.0 * told_.width, kFarFromLine, kJoiningTime);
   }
 
   void reset() noexcept override {

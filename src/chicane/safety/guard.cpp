@@ -136,11 +136,21 @@ void Guard::forget_road() {
 
 void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
   // The road that the lap was planned for has to be the one that the guard knows.
-  if (lap && lap->is_learned() == (options_.road == GuardRoad::kWaypoints)) road_.use_line(lap.get());
-  has_place_ = false;
-  filter_.forget();
+  if (lap && lap->is_learned() == (options_.road == GuardRoad::kWaypoints)) {
+    filter_.leave_line(road_.line());
+    road_.use_line(lap.get());
+    take_up_line();
+  }
   believe_grip(lap ? lap->grip() : 1.0);
   controller_->use_line(std::move(lap));
+}
+
+/// The road's line is another one. The backup in store was verified on the same road: it stays.
+void Guard::take_up_line() noexcept {
+  if (revision_ == road_.revision()) return;
+  revision_ = road_.revision();
+  has_place_ = false;
+  filter_.join_line(road_.line());
 }
 
 void Guard::learn_actuators(bool is_on) {
@@ -285,7 +295,9 @@ const model::Measurement& Guard::look(const model::Measurement& measured) noexce
     expected.reset();
   }
   const model::Measurement& seen = monitor_.check(measured, expected ? &*expected : nullptr);
+  if (options_.road == GuardRoad::kWaypoints) filter_.leave_line(road_.line());
   road_.add(seen);
+  take_up_line();
   watch_actuators(seen);
   estimator_.correct(seen, sent_);
   return options_.mode == GuardMode::kOn ? seen : measured;
@@ -471,11 +483,6 @@ std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
     car.vx = std::max(car.vx, estimator_.rolling_speed(act_time, sent_));
   act_speed_ = car.vx;
   most_drive_ = traction(model_, {car.vx, car.vy, car.r, car.steer, 0.0});
-  if (revision_ != road_.revision()) {
-    has_place_ = false;
-    filter_.forget();
-  }
-  revision_ = road_.revision();
   const Vec2 position{car.x, car.y};
   const double* last = has_place_ ? &s_ : nullptr;
   const road::ReferenceLine::Projection place =

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/model/grip.hpp"
 
@@ -56,6 +57,7 @@ constexpr Braking kStops[] = {{kGentle, kOpenStability, kHeldByFeedback},
                               {1.0, 0.0}};
 constexpr int kStopCount = static_cast<int>(std::size(kStops));
 constexpr int kDriveOnCount = static_cast<int>(std::size(kDriveOn));
+constexpr double kFar = 10.0;     // [m] beside a line: of another road
 constexpr double kUnfit = 200.0;  // [m] worse than any candidate that fits
 
 }  // namespace
@@ -230,6 +232,35 @@ bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start
     if (tried_->stop.size > 0) consider(found);
   }
   return is_current_ && backup_->stop.size > 0;
+}
+
+void PredictiveFilter::leave_line(const road::ReferenceLine& line) noexcept {
+  const auto size = static_cast<std::size_t>(backup_->stop.size);
+  for (std::size_t i = 0; i < size; ++i) {
+    const StopStart& place = backup_->places[i];
+    const road::CurvePoint here = line.at(place.s);
+    poses_[i] = {here.position + place.d * Vec2{-here.tangent.y(), here.tangent.x()}, here.heading + place.e};
+  }
+}
+
+void PredictiveFilter::join_line(const road::ReferenceLine& line) noexcept {
+  const auto size = static_cast<std::size_t>(backup_->stop.size);
+  search_.forget();
+  if (line.is_empty()) return forget();
+  double guess = 0.0, s = 0.0;
+  for (std::size_t i = 0; i < size; ++i) {
+    const Pose& pose = poses_[i];
+    const road::ReferenceLine::Projection found =
+        line.find(pose.position, pose.heading, 2.0 * model_.vehicle().width, i > 0 ? &guess : nullptr, kFar);
+    if (!(found.distance < kFar)) return forget();
+    const double driven = found.s - guess;
+    s += i > 0 && line.is_closed() ? std::remainder(driven, line.length()) : driven;
+    guess = found.s;
+    StopStart& place = backup_->places[i];
+    place.s = s;
+    place.d = found.d;
+    place.e = angle_difference(pose.heading, line.at(found.s).heading);
+  }
 }
 
 /// Whether the car is where the backup is at that place, and as fast.
