@@ -68,7 +68,7 @@ PredictiveFilter::Candidate PredictiveFilter::judge(const road::KnownRoad& road,
                                                     const StopCheck& check, const Goal& goal) const noexcept {
   Candidate candidate{.check = check};
   candidate.check.least_edge = std::min(check.least_edge, goal.edge_before);
-  candidate.worth = candidate.check.least_edge - kUnfit;
+  candidate.worth = candidate.check.least_edge - kUnfit - check.spins_at;
   if (!check.stands || !(candidate.check.least_edge >= goal.margin)) return candidate;
 
   candidate.fit = Fit::kOpen;

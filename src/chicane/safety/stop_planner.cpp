@@ -37,7 +37,14 @@ constexpr double kStride = 10.0;           // [m] between the places ahead
 constexpr double kHorizon = 200.0;         // [m]
 constexpr double kSpeedTime = 0.4;         // [s] in which a planned speed is met again
 constexpr double kPlanSpacing = 0.08;      // [s] between the places of a controller's plan
+constexpr double kMostSlide = 0.35;        // [rad] of slip: a car that slides more spins, by no model known
+constexpr double kSlideGrows = 0.1;        // [rad] by which one that slides more already may slide further
 constexpr double kMostOffset = 20.0;       // [m] beside the line the stop is given up
+
+/// How far the car's course is off its heading [rad], where slip angles say something.
+double slide(const model::BodyMotion<double>& body) noexcept {
+  return hypot(body.vx, body.vy) > kSlow ? std::fabs(atan2(body.vy, body.vx)) : 0.0;
+}
 
 }  // namespace
 
@@ -409,6 +416,7 @@ StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start
                              StopCourse& out, double least) const noexcept {
   const double reach = steer_reach(kStep);
   const double end = road.line().is_closed() ? start.s + road.line().length() : road.line().length();
+  const double most_slide = std::max(kMostSlide, slide(start.body) + kSlideGrows);
   StopCheck check{.least_edge = edge(road, start)};
   StopStart at = start;
   double driven = 0.0;
@@ -426,8 +434,10 @@ StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start
     speed = hypot(at.body.vx, at.body.vy);
     driven += 0.5 * kStep * (before + speed);
     check.least_edge = std::min(check.least_edge, edge(road, at));
+    if (!(check.spins_at > 0.0) && slide(at.body) > most_slide) check.spins_at = speed;
   }
-  check.stands = speed < kStanding && at.s < end && !(check.least_edge < least);
+  check.stands =
+      speed < kStanding && at.s < end && !(check.least_edge < least) && !(check.spins_at > 0.0);
   check.distance = driven;
   return check;
 }
