@@ -23,6 +23,7 @@ constexpr double kLawUse = 0.75;        // tyre use up to which the stop law's m
 constexpr double kRacedUse = 1.0;       // the same along a planned lap, which the stop drives more slowly
 constexpr double kLawUseUnplanned = 0.65;  // the same without a published plan: no reserve for its error
 constexpr double kMostUse = 1.2;           // tyre use beyond which no command is sent: the car slides
+constexpr double kTurnReserve = 1.5;       // times the room in which a car that stood turns back to the road
 constexpr double kWalkingPace = 3.0;       // [m/s] below it slip angles say little
 constexpr double kDriveOn[] = {0.5, 1.0, 1.5, 2.0, 2.5};  // [s] along the controller's plan before the stop
 
@@ -70,6 +71,11 @@ PredictiveFilter::Candidate PredictiveFilter::judge(const road::KnownRoad& road,
   candidate.check.least_edge = std::min(check.least_edge, goal.edge_before);
   candidate.worth = candidate.check.least_edge - kUnfit - check.spins_at;
   if (!check.stands || !(candidate.check.least_edge >= goal.margin)) return candidate;
+  if (goal.drives_on) {
+    const StopStart& end = tried_->places[static_cast<std::size_t>(tried_->stop.size - 1)];
+    const double room = kTurnReserve * planner_.turning_room(road, end);
+    if (!(planner_.edge(road, end) - room >= goal.margin)) return candidate;
+  }
 
   candidate.fit = Fit::kOpen;
   candidate.worth = candidate.check.least_edge;
@@ -109,6 +115,7 @@ Fit PredictiveFilter::verify(const Request& request, controller::StepReport& rep
   const auto tires = model_.tire_use(undriven);
   const double use = next.body.vx > kWalkingPace ? std::max(tires.front, tires.rear) : 0.0;
   const bool plans = goal.is_planned = intends(request);
+  goal.drives_on = !request.is_led;
 
   Fit fit = Fit::kNone;
   if (use < kMostUse && goal.edge_before >= goal.margin) {

@@ -95,6 +95,7 @@ class PredictiveFilter {
     double edge_before = 0.0;  ///< least distance to the edge until it begins [m]
     double margin = 0.0;       ///< [m]
     double open_time = 0.0;    ///< [s]
+    bool drives_on = false;    ///< where it ends, the car can turn back along the road
     bool is_planned = true;    ///< by a controller that publishes its plan, which stays away from the limit
   };
   /// One simulated candidate.

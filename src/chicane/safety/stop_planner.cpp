@@ -131,6 +131,20 @@ double StopPlanner::edge(const road::KnownRoad& road, const StopStart& at) const
   return least;
 }
 
+double StopPlanner::turning_room(const road::KnownRoad& road, const StopStart& at) const noexcept {
+  const model::VehicleParams& car = model_.vehicle();
+  const double radius = car.wheelbase() / tan(car.steer_limit);  // of the middle of the rear axle
+  const double half_track = 0.5 * (car.track_width + car.tire_width);
+  const double side = at.e < 0.0 ? -1.0 : 1.0;
+  const double tail = side * (at.d - car.rear_axle * sin(at.e));
+  const double farthest = tail - radius * cos(at.e) + hypot(radius + half_track, car.wheelbase());
+  const double ahead = radius * std::fabs(sin(at.e)) - car.rear_axle;
+  const road::KnownRoad::Edges edges = road.edges(at.s + ahead);
+  const double bend = 0.5 * side * road.line().demand(at.s).curvature * ahead * ahead;
+  const double left = (side > 0.0 ? edges.left : edges.right) + bend - farthest;
+  return std::max(edge(road, at) - left, 0.0);
+}
+
 /// One over the static stability of a car that moves like `m` and brakes: (1 − h) v² (a k_f − b k_r) over
 /// k_f k_r L², with the slopes of the axles' forces at their slip angles. Above 1 it turns away from its path
 /// by itself; negative where it understeers, infinite where the rear axle slides.

@@ -120,6 +120,9 @@ class StopPlanner {
                                const Braking& braking) const noexcept {
     return slowing(road, at, braking, curvatures_of(road, at));
   }
+  /// How much nearer to the edge [m] a car comes that stands at `at` and turns back along the road at full
+  /// lock: equation 6a. 0: no nearer.
+  [[nodiscard]] double turning_room(const road::KnownRoad& road, const StopStart& at) const noexcept;
   /// Of the outermost contact patch to the believed edge [m].
   [[nodiscard]] double edge(const road::KnownRoad& road, const StopStart& at) const noexcept;
 
