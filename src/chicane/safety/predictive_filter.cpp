@@ -106,9 +106,11 @@ Fit PredictiveFilter::verify(const Request& request, controller::StepReport& rep
   const double edge_now = planner_.edge(road, request.start);
   Goal goal{.edge_before = edge_now, .margin = terms_.margin, .open_time = terms_.open_time};
   const StopStart next = planner_.advance(road, request.start, request.command, held, goal.edge_before);
-  // A car that is led back from within the margin comes no nearer to the edge.
-  if (request.is_led && next.body.vx < 2.0 * kWalkingPace)
-    goal.margin = std::min(terms_.margin, std::max(edge_now, terms_.least_edge));
+  // A car that is led back from within the margin comes no nearer to the edge than it takes to turn.
+  if (request.is_led && next.body.vx < 2.0 * kWalkingPace) {
+    const double turned = edge_now - kTurnReserve * planner_.turning_room(road, request.start);
+    goal.margin = std::min(terms_.margin, std::max(turned, terms_.least_edge));
+  }
 
   model::BodyMotion<double> undriven = next.body;  // a stop does not ask for its drive
   undriven.acceleration = std::min(undriven.acceleration, 0.0);
