@@ -38,7 +38,6 @@ constexpr double kSpeedAhead = 4.0;    // [m/s] wanted at most beyond what the l
 constexpr double kLongestHold = 0.3;   // [s] the first command is assumed to be held at most this long
 constexpr double kBlindAfter = 0.3;    // [s] without a measurement, or a waypoint: stop
 constexpr double kPreview = 0.3;       // [s] the car answers the wheel about so late
-constexpr double kJoiningTime = 1.5;   // [s] ahead for which a car is compared with another lap
 constexpr double kCrawl = 3.0;  // [m/s] below it the fallback brings the car to rest, and no plan races
 
 class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable<TrackingMpcOptions> {
@@ -107,10 +106,8 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
             .grip = grip};
   }
 
-  /// Less grip than believed is braked for at once; the line through waypoints is far from any lap.
   [[nodiscard]] double beside(const road::RacingRoad& lap) const noexcept override {
-    if (road_.lap() == nullptr || lap.grip() < road_.lap()->grip()) return 0.0;
-    return most_beside(lap.line(), result_.plan, 2.0 * told_.width, kFarFromLine, kJoiningTime);
+    return beside_lap(lap, road_.lap(), result_.plan, 2.0 * told_.width, kFarFromLine);
   }
 
   void reset() noexcept override {
@@ -394,14 +391,10 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     result_.answer = Answer::kDrive;
     fill_plan(act_time);
     result_.command = {horizon_.u[0][0], throttle_for(model_.vehicle(), horizon_.u[0][1], start.state.vx)};
-    explain_answer(start.state.vx);
+    explain<TrackingTerms>(problem_, horizon_, result_.report.explanation);
+    explain_speed(line().demand(s_), start.state.vx, road_.is_raced() ? &model_.vehicle() : nullptr,
+                  result_.report.explanation);
     return result_;
-  }
-
-  void explain_answer(double speed) noexcept {
-    Explanation& explanation = result_.report.explanation;
-    explain<TrackingTerms>(problem_, horizon_, explanation);
-    explain_speed(line().demand(s_), speed, road_.is_raced() ? &model_.vehicle() : nullptr, explanation);
   }
 
   /// No time to solve, and the last plan is old: the wheel by feedback to the line, all useful braking.

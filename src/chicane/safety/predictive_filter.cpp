@@ -36,7 +36,7 @@ constexpr double kTubeYawRate = 0.08;  // [rad/s]
 
 // The tube of a planned lap: deviations from which the car comes back to it, measured in laps of `race`.
 constexpr double kLapOffset = 0.5;  // [m]
-constexpr double kLapAcross = 1.5;  // [m/s]
+constexpr double kLapAcross = 2.5;  // [m/s]
 constexpr double kLapFaster = 1.0;  // [m/s]
 constexpr double kWideLap = 4.0;    // times as much where no verified backup is in store
 

@@ -39,6 +39,7 @@ constexpr double kSpeedTime = 0.4;         // [s] in which a planned speed is me
 constexpr double kPlanSpacing = 0.08;      // [s] between the places of a controller's plan
 constexpr double kMostSlide = 0.35;        // [rad] of slip: a car that slides more spins, by no model known
 constexpr double kSlideGrows = 0.1;        // [rad] by which one that slides more already may slide further
+constexpr double kLeastTurning = 0.02;     // [1/m] of a car that turns back along the road
 constexpr double kMostOffset = 20.0;       // [m] beside the line the stop is given up
 
 /// How far the car's course is off its heading [rad], where slip angles say something.
@@ -133,16 +134,14 @@ double StopPlanner::edge(const road::KnownRoad& road, const StopStart& at) const
 
 double StopPlanner::turning_room(const road::KnownRoad& road, const StopStart& at) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
-  const double radius = car.wheelbase() / tan(car.steer_limit);  // of the middle of the rear axle
-  const double half_track = 0.5 * (car.track_width + car.tire_width);
+  const double length = car.wheelbase();
   const double side = at.e < 0.0 ? -1.0 : 1.0;
-  const double tail = side * (at.d - car.rear_axle * sin(at.e));
-  const double farthest = tail - radius * cos(at.e) + hypot(radius + half_track, car.wheelbase());
-  const double ahead = radius * std::fabs(sin(at.e)) - car.rear_axle;
-  const road::KnownRoad::Edges edges = road.edges(at.s + ahead);
-  const double bend = 0.5 * side * road.line().demand(at.s).curvature * ahead * ahead;
-  const double left = (side > 0.0 ? edges.left : edges.right) + bend - farthest;
-  return std::max(edge(road, at) - left, 0.0);
+  const double bend = side * road.line().demand(at.s).curvature;  // the road turns away, or after the car
+  const double radius = 1.0 / std::max(tan(car.steer_limit) / length + bend, kLeastTurning);
+  const double outside = radius + 0.5 * (car.track_width + car.tire_width);
+  const double now = outside * cos(at.e) + length * side * sin(at.e);  // the front wheel, from the centre
+  const bool comes_nearer = std::fabs(at.e) > atan2(length, outside);
+  return comes_nearer ? hypot(outside, length) - now : 0.0;
 }
 
 /// One over the static stability of a car that moves like `m` and brakes: (1 − h) v² (a k_f − b k_r) over
