@@ -18,10 +18,10 @@ using controller::Answer;
 using controller::GuardReason;
 using controller::Rung;
 
-constexpr int kShown = 64;             // points of a backup that is drawn
-constexpr double kShownStep = 0.1;     // [s]
-constexpr double kMostDoubt = 0.5;     // [s] by which a controller's own time may differ from the measured
-constexpr double kSameSteer = 0.01;    // [rad] by which a plan's first command may differ from the answer
+constexpr int kShown = 64;           // points of a backup that is drawn
+constexpr double kShownStep = 0.1;   // [s]
+constexpr double kMostDoubt = 0.5;   // [s] by which a controller's own time may differ from the measured
+constexpr double kSameSteer = 0.01;  // [rad] by which a plan's first command may differ from the answer
 constexpr double kSamePedal = 0.05;
 // Braking of a car that is too fast for a silence: gentle, and stable without feedback.
 constexpr Braking kHeldBack{0.8, 1.6, 0.7};

@@ -11,7 +11,7 @@
 namespace chicane::safety {
 namespace {
 
-constexpr double kFarFromRoad = 20.0;  // [m] beside its line there is no stop along the road
+constexpr double kFarFromRoad = 20.0;    // [m] beside its line there is no stop along the road
 constexpr double kTraction = 0.9;        // of the grip of a driven axle: beyond it no prediction holds
 constexpr double kLeastTraction = 0.04;  // square of what is left of an axle that slides
 

@@ -24,6 +24,7 @@ constexpr double kRacedUse = 1.0;       // the same along a planned lap, which t
 constexpr double kLawUseUnplanned = 0.65;  // the same without a published plan: no reserve for its error
 constexpr double kMostUse = 1.2;           // tyre use beyond which no command is sent: the car slides
 constexpr double kTurnReserve = 1.5;       // times the room in which a car that stood turns back to the road
+constexpr double kLedShare = 0.5;          // of the margin that turning back leaves at least
 constexpr double kWalkingPace = 3.0;       // [m/s] below it slip angles say little
 constexpr double kDriveOn[] = {0.5, 1.0, 1.5, 2.0, 2.5};  // [s] along the controller's plan before the stop
 
@@ -109,7 +110,8 @@ Fit PredictiveFilter::verify(const Request& request, controller::StepReport& rep
   // A car that is led back from within the margin comes no nearer to the edge than it takes to turn.
   if (request.is_led && next.body.vx < 2.0 * kWalkingPace) {
     const double turned = edge_now - kTurnReserve * planner_.turning_room(road, request.start);
-    goal.margin = std::min(terms_.margin, std::max(turned, terms_.least_edge));
+    const double least = std::min(edge_now, kLedShare * terms_.margin);
+    goal.margin = std::min(terms_.margin, std::max({turned, least, terms_.least_edge}));
   }
 
   model::BodyMotion<double> undriven = next.body;  // a stop does not ask for its drive

@@ -449,8 +449,7 @@ StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start
     check.least_edge = std::min(check.least_edge, edge(road, at));
     if (!(check.spins_at > 0.0) && slide(at.body) > most_slide) check.spins_at = speed;
   }
-  check.stands =
-      speed < kStanding && at.s < end && !(check.least_edge < least) && !(check.spins_at > 0.0);
+  check.stands = speed < kStanding && at.s < end && !(check.least_edge < least) && !(check.spins_at > 0.0);
   check.distance = driven;
   return check;
 }
