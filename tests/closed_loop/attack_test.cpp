@@ -38,6 +38,8 @@ TEST(Attack, DoesNotLeadOffTheRoad) {
                              {"rock", "f1tenth", "lakeside", 8.0},
                              {"blind_throttle", "f1tenth", "lakeside", 23.0},
                              {"random_hold", "udacity", "lakeside", 60.0},
+                             {"return_slowly", "road-car", "lakeside", 8.0},
+                             {"straight_on", "bmw-320i", "speedway", 46.0},
                              {"stop_on_road", "bmw-320i", "speedway", 10.0}}) {
     const auto scenario = scenario_of({.car = trial.car, .track = trial.track});
     ASSERT_TRUE(scenario);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "chicane/base/math.hpp"
 
@@ -79,6 +80,34 @@ TEST(MoveToLine, RefusesALineThatIsFarOrEmptyAndAnAnswerWithoutAPlan) {
   EXPECT_FALSE(move_to_line(road::ReferenceLine(10), answer.plan, 2.0, 15.0, answer.along));
   answer.plan.size = 0;
   EXPECT_FALSE(move_to_line(ring(50.0), answer.plan, 2.0, 15.0, answer.along));
+}
+
+/// A ring as a lap, planned with a share of the grip.
+road::RacingRoad lap(double radius, double grip) {
+  std::vector<road::LinePoint> points;
+  for (int i = 0; i <= 240; ++i) {
+    const double angle = kTwoPi * i / 240.0;
+    road::LinePoint point;
+    point.position = {radius * std::cos(angle), radius * std::sin(angle)};
+    point.heading = angle + 0.5 * kPi;
+    point.curvature = 1.0 / radius;
+    point.speed = 20.0;
+    points.push_back(point);
+  }
+  return road::RacingRoad(points, 0.0, {.grip = grip});
+}
+
+TEST(BesideLap, IsHowFarThePlanWillHaveToBeCorrected) {
+  Answer answer;
+  for (std::size_t k = 0; k < 11; ++k) answer.plan.points[k].time = 0.3 * static_cast<double>(k);
+  answer.plan.points[3].x += 1.5;  // 0.9 s ahead
+  answer.plan.points[8].x += 9.0;  // 2.4 s ahead: there is time for that
+  const road::RacingRoad now = lap(52.0, 0.6);
+  EXPECT_NEAR(beside_lap(lap(52.4, 0.8), &now, answer.plan, 2.0, 15.0), 1.1, 0.01);
+  EXPECT_EQ(beside_lap(lap(52.4, 0.5), &now, answer.plan, 2.0, 15.0), 0.0) << "less grip is braked for";
+  EXPECT_EQ(beside_lap(lap(52.4, 0.8), nullptr, answer.plan, 2.0, 15.0), 0.0) << "the first lap";
+  answer.plan.size = 0;
+  EXPECT_EQ(beside_lap(lap(52.4, 0.8), &now, answer.plan, 2.0, 15.0), 0.0) << "nothing is planned";
 }
 
 }  // namespace

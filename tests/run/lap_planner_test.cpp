@@ -42,8 +42,11 @@ class Learner final : public controller::Controller {
   void reset() noexcept override {}
   [[nodiscard]] std::string_view name() const noexcept override { return "learner"; }
 
+  [[nodiscard]] double beside(const road::RacingRoad& /*lap*/) const noexcept override { return offset; }
+
   bool is_wanted = true;
   double grip = 1.0;
+  double offset = 0.0;  ///< from any lap [m]
 
  private:
   std::vector<Vec2> waypoints_;
@@ -76,6 +79,25 @@ TEST(LapPlanner, PlansInVirtualTimeAsLateAsAPlanTakes) {
   EXPECT_TRUE(lap->is_learned());
   EXPECT_NEAR(lap->line().length(), kTwoPi * 70.0, kTwoPi * 4.0);
   EXPECT_EQ(planner.follow(learner, race, nullptr, 20.0), nullptr) << "once";
+}
+
+/// A second lap, taken up a metre beside it before a bend, spun `vw-vanagon` on speedway.
+TEST(LapPlanner, WaitsUntilTheCarIsNearTheLap) {
+  Learner learner(circle(70.0));
+  const scenario::Scenario race = race_by_waypoints();
+  const auto taken_up = [&](double offset, double later) {
+    learner.offset = offset;
+    LapPlanner planner(LapPlanner::Clock::kVirtual);
+    static_cast<void>(planner.follow(learner, race, nullptr, 0.0));
+    for (double time = LapPlanner::kPlanningTime; time < 200.0; time += 0.5) {
+      if (time > LapPlanner::kPlanningTime + later) learner.offset = 0.0;
+      if (planner.follow(learner, race, nullptr, time)) return time - LapPlanner::kPlanningTime;
+    }
+    return 200.0;
+  };
+  EXPECT_EQ(taken_up(0.1, 100.0), 0.0) << "near enough";
+  EXPECT_NEAR(taken_up(1.0, 7.0), 7.0, 0.6) << "as soon as it is near";
+  EXPECT_NEAR(taken_up(1.0, 100.0), 0.8 / LapPlanner::kJoiningGrows, 0.6) << "not for ever";
 }
 
 TEST(LapPlanner, PlansTheSameBesideARun) {

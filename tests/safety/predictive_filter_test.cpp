@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/road/racing_road.hpp"
 #include "support/alloc_guard.hpp"
 
 namespace chicane::safety {
@@ -145,6 +147,68 @@ TEST(PredictiveFilter, GoesOnWithTheBackupByTimeWhereNothingIsMeasured) {
   EXPECT_EQ(filter.stop().points[0].command.steer, before.points[3].command.steer);
   EXPECT_EQ(filter.stop().points[0].command.throttle, before.points[3].command.throttle);
   EXPECT_EQ(filter.stop().size, before.size - 3);
+}
+
+/// The same circle by a line that is 2 m outside of its middle.
+road::KnownRoad round_road_by_another_line() {
+  std::vector<road::LinePoint> lap;
+  constexpr double kRadius = 102.0;
+  for (int i = 0; i <= 400; ++i) {
+    const double angle = kTwoPi * (i / 400.0 - 0.3);  // and begins elsewhere
+    road::LinePoint point;
+    point.position = {kRadius * std::sin(angle), 100.0 - kRadius * std::cos(angle)};
+    point.heading = angle;
+    point.curvature = 1.0 / kRadius;
+    point.speed = 25.0;
+    point.left = 7.0;
+    point.right = 3.0;
+    lap.push_back(point);
+  }
+  const road::RacingRoad planned(lap);
+  road::KnownRoad road = round_road(1.0);
+  road.use_line(&planned);
+  return road;
+}
+
+TEST(PredictiveFilter, CarriesTheBackupOverToAnotherLineOfTheRoad) {
+  const road::KnownRoad road = round_road(1.0);
+  const road::KnownRoad other = round_road_by_another_line();
+  PredictiveFilter filter(model::road_car_params(), {.open_time = 0.0});
+  controller::StepReport report;
+  ASSERT_NE(filter.verify({road, driving(20.0, 1.0), {0.03, 0.1}, kNoPlan, 0.04}, report), Fit::kNone);
+  const StopPlan before = filter.stop();
+  const double edge = report.stop_edge;
+  filter.leave_line(road.line());
+  filter.join_line(other.line());
+  ASSERT_EQ(filter.stop().size, before.size);
+  StopStart car = driving(20.0, 1.0);
+  car.s = other.line().project({100.0 * std::sin(0.5), 100.0 - 100.0 * std::cos(0.5)}).s + 2.0;
+  car.d = 2.0;
+  car.time = before.points[0].time;
+  ASSERT_TRUE(filter.drive(other, car, false, report)) << "where the car was going to be";
+  EXPECT_NEAR(report.stop_edge, edge, 0.3);
+  for (const int i : {0, 5, 10}) {
+    const auto k = static_cast<std::size_t>(i);
+    EXPECT_NEAR(filter.stop().points[k].command.throttle, before.points[k].command.throttle, 0.1) << i;
+  }
+  filter.join_line(road::ReferenceLine(2));
+  EXPECT_EQ(filter.stop().size, 0) << "there is no line to express it by";
+}
+
+/// A stop that ends across the road beside its edge leaves no way on but over the edge.
+TEST(PredictiveFilter, KeepsTheRoomToTurnBackAlongTheRoad) {
+  const road::KnownRoad road = round_road(1.0);
+  const model::VehicleParams car = model::road_car_params();
+  PredictiveFilter filter(car, {});
+  controller::StepReport report;
+  StopStart start{.time = 2.0, .s = 50.0, .d = 2.8, .e = 0.7, .body = {.vx = 1.0}};
+  EXPECT_EQ(filter.verify({road, start, {0.43, 0.0}, kNoPlan, 0.04}, report), Fit::kNone);
+  EXPECT_GT(filter.planner().edge(road, start), 0.5) << "though it stands on the road";
+  start.d = 0.0;
+  EXPECT_NE(filter.verify({road, start, {0.43, 0.0}, kNoPlan, 0.04}, report), Fit::kNone);
+  start.d = 2.8;
+  start.e = 0.2;
+  EXPECT_NE(filter.verify({road, start, {-0.43, 0.0}, kNoPlan, 0.04}, report), Fit::kNone) << "along it";
 }
 
 TEST(PredictiveFilter, AllocatesNothing) {

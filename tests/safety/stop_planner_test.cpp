@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -375,6 +376,50 @@ TEST(StopPlanner, AllocatesNothing) {
   static_cast<void>(planner.plan(road, start_at(20.0, 18.0), {.share = 0.8}, stop));
   static_cast<void>(planner.played_edge(road, start_at(20.0, 18.0), stop.stop, 2.0));
   EXPECT_EQ(guard.count(), 0);
+}
+
+/// No model says where a car goes that spins: it came 2 m off speedway where its stop was to keep 2 m.
+TEST(StopPlanner, TakesASpinForNoStop) {
+  const road::KnownRoad road = circle(1e5);
+  const StopPlanner planner(model::road_car_params());
+  StopCourse stop;
+  StopStart spinning = start_at(100.0, 30.0);
+  spinning.body.r = 2.5;
+  const StopCheck check = planner.plan(road, spinning, {.share = 1.0, .stability = 0.0}, stop);
+  double most = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(stop.stop.size); ++i)
+    most = std::max(most, std::fabs(std::atan2(stop.places[i].body.vy, stop.places[i].body.vx)));
+  EXPECT_GT(most, 0.35);
+  EXPECT_FALSE(check.stands);
+  EXPECT_GT(check.spins_at, 10.0);
+  EXPECT_EQ(planner.plan(road, start_at(100.0, 30.0), {.share = 1.0}, stop).spins_at, 0.0);
+}
+
+/// Against the path of a car that turns back at full lock at walking pace.
+TEST(StopPlanner, KnowsTheRoomThatTurningBackTakes) {
+  for (const double side : {1.0, -1.0}) {
+    for (const double radius : {1e5, 40.0}) {
+      const road::KnownRoad road = circle(radius);
+      for (const model::VehicleParams& car : kCars) {
+        const StopPlanner planner(car);
+        EXPECT_NEAR(planner.turning_room(road, start_at(50.0, 0.0)), 0.0, 0.05);
+        for (const double e : {0.3, 0.6}) {
+          StopStart at = start_at(50.0, 1.0, 0.0, side * e);
+          at.body.steer = -side * car.steer_limit;
+          const double room = planner.turning_room(road, at);
+          const double before = planner.edge(road, at);
+          double least = before;
+          for (int i = 0; i < 400 && side * at.e > 0.0; ++i) {
+            at = planner.advance(road, at, {-side * car.steer_limit, 0.1}, 0.05, least);
+            at.body.vx = 1.0;
+            at.body.vy = car.rear_axle * at.body.r;
+            at.body.r = -side * std::tan(car.steer_limit) / car.wheelbase();
+          }
+          EXPECT_NEAR(before - least, room, 0.1 + 0.2 * room) << car.name << ' ' << e << ' ' << side * radius;
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

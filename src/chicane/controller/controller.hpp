@@ -86,6 +86,9 @@ class Controller {
   virtual void use_line(std::shared_ptr<const road::RacingRoad> /*lap*/) noexcept {}
   /// The lap to race by that the controller would rather have than what it drives by. Valid until step().
   [[nodiscard]] virtual LapWish wants_lap() const noexcept { return {}; }
+  /// How far beside `lap` [m] the controller is about to drive: what taking it up now makes it correct. 0: to
+  /// be taken up at once.
+  [[nodiscard]] virtual double beside(const road::RacingRoad& /*lap*/) const noexcept { return 0.0; }
   /// Forget everything learned (map, warm start): a new run begins. A planned lap stays, one of a road that
   /// was learned does not.
   virtual void reset() noexcept = 0;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/controller/controller.hpp"
+#include "chicane/road/racing_road.hpp"
 #include "chicane/road/reference_line.hpp"
 #include "chicane/tracking/tracking_solver.hpp"
 
@@ -33,6 +35,25 @@ namespace chicane::controller {
     last = place.s;
   }
   return true;
+}
+
+/// How far beside `lap` [m] the beginning of `plan` leads at most. 0 where `lap` is to be taken up at once:
+/// after no other lap (`now` is null), since the line through waypoints is far from any, and where it has
+/// less grip, which has to be braked for. Allocates nothing.
+[[nodiscard]] inline double beside_lap(const road::RacingRoad& lap, const road::RacingRoad* now,
+                                       const Plan& plan, double reach, double far) noexcept {
+  constexpr double kJoiningTime = 1.5;  // [s]
+  if (now == nullptr || lap.grip() < now->grip() || lap.line().is_empty()) return 0.0;
+  double most = 0.0, last = 0.0;
+  for (int k = 0; k < plan.size; ++k) {
+    const PlanPoint& point = plan.points[static_cast<std::size_t>(k)];
+    if (point.time > plan.points[0].time + kJoiningTime) break;
+    const road::ReferenceLine::Projection place =
+        lap.line().find({point.x, point.y}, point.psi, reach, k > 0 ? &last : nullptr, far);
+    most = std::max(most, place.distance);
+    last = place.s;
+  }
+  return most;
 }
 
 }  // namespace chicane::controller

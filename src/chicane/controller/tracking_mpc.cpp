@@ -106,6 +106,10 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
             .grip = grip};
   }
 
+  [[nodiscard]] double beside(const road::RacingRoad& lap) const noexcept override {
+    return beside_lap(lap, road_.lap(), result_.plan, 2.0 * told_.width, kFarFromLine);
+  }
+
   void reset() noexcept override {
     road_.reset();
     estimator_.reset();
@@ -387,14 +391,10 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     result_.answer = Answer::kDrive;
     fill_plan(act_time);
     result_.command = {horizon_.u[0][0], throttle_for(model_.vehicle(), horizon_.u[0][1], start.state.vx)};
-    explain_answer(start.state.vx);
+    explain<TrackingTerms>(problem_, horizon_, result_.report.explanation);
+    explain_speed(line().demand(s_), start.state.vx, road_.is_raced() ? &model_.vehicle() : nullptr,
+                  result_.report.explanation);
     return result_;
-  }
-
-  void explain_answer(double speed) noexcept {
-    Explanation& explanation = result_.report.explanation;
-    explain<TrackingTerms>(problem_, horizon_, explanation);
-    explain_speed(line().demand(s_), speed, road_.is_raced() ? &model_.vehicle() : nullptr, explanation);
   }
 
   /// No time to solve, and the last plan is old: the wheel by feedback to the line, all useful braking.

@@ -34,6 +34,7 @@ std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Con
   if (!wanted_since_ || time < *wanted_since_) {
     if (thread_.joinable()) return {};  // one that nobody waits for any more
     wanted_since_ = time;
+    ready_since_.reset();
     has_answered_ = false;
     has_ended_ = false;
     lap_.reset();
@@ -46,11 +47,14 @@ std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Con
     return {};
   }
   if (has_answered_) return {};
-  if (clock_ == Clock::kVirtual) {
+  if (clock_ == Clock::kVirtual && !ready_since_) {
     if (time - *wanted_since_ < kPlanningTime) return {};
     search(scenario, track, wish);
   }
   if (!has_ended_.load(std::memory_order_acquire)) return {};
+  if (!ready_since_) ready_since_ = time;
+  const double near = kJoining + kJoiningGrows * (time - *ready_since_);
+  if (lap_ && controller.beside(*lap_) > near) return {};
   has_answered_ = true;
   return std::exchange(lap_, nullptr);
 }

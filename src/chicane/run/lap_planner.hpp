@@ -36,6 +36,11 @@ class LapPlanner {
   LapPlanner(const LapPlanner&) = delete;
   LapPlanner& operator=(const LapPlanner&) = delete;
 
+  /// A lap is taken up where the car is about to drive so near to it [m]; the longer it is ready, the farther
+  /// [m/s]. A car at the limit of its tyres has nothing left to come to another line with.
+  static constexpr double kJoining = 0.2;
+  static constexpr double kJoiningGrows = 0.03;
+
   /// After each control cycle, at the run's time [s]: the lap that is to be used from the next one on, once.
   /// Null otherwise, and where the road has none. Allocates when a search begins; waits for none in real
   /// time.
@@ -62,6 +67,7 @@ class LapPlanner {
 
   Clock clock_;
   std::optional<double> wanted_since_;  ///< [s]
+  std::optional<double> ready_since_;   ///< lap_ [s]
   bool has_answered_ = false;           ///< to what is wanted now
   std::atomic<bool> is_wanted_{false};
   std::atomic<bool> has_ended_{false};           ///< the thread: lap_ may be read

@@ -99,6 +99,7 @@ class Guard {
   static constexpr double kRollsBackAtMost =
       3.0;  ///< [m/s] faster a car does not roll back: its heading is wrong
 
+  void take_up_line() noexcept;
   void choose(const model::Measurement& seen, const Cycle& cycle, controller::StepResult& result) noexcept;
   [[nodiscard]] bool filter(const StopStart& start, const Cycle& cycle,
                             controller::StepResult& result) noexcept;

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::safety {
@@ -21,6 +22,8 @@ constexpr double kLawUse = 0.75;        // tyre use up to which the stop law's m
 constexpr double kRacedUse = 1.0;       // the same along a planned lap, which the stop drives more slowly
 constexpr double kLawUseUnplanned = 0.65;  // the same without a published plan: no reserve for its error
 constexpr double kMostUse = 1.2;           // tyre use beyond which no command is sent: the car slides
+constexpr double kTurnReserve = 1.5;       // times the room in which a car that stood turns back to the road
+constexpr double kLedShare = 0.5;          // of the margin that turning back leaves at least
 constexpr double kWalkingPace = 3.0;       // [m/s] below it slip angles say little
 constexpr double kDriveOn[] = {0.5, 1.0, 1.5, 2.0, 2.5};  // [s] along the controller's plan before the stop
 
@@ -33,7 +36,7 @@ constexpr double kTubeYawRate = 0.08;  // [rad/s]
 
 // The tube of a planned lap: deviations from which the car comes back to it, measured in laps of `race`.
 constexpr double kLapOffset = 0.5;  // [m]
-constexpr double kLapAcross = 1.5;  // [m/s]
+constexpr double kLapAcross = 2.5;  // [m/s]
 constexpr double kLapFaster = 1.0;  // [m/s]
 constexpr double kWideLap = 4.0;    // times as much where no verified backup is in store
 
@@ -55,6 +58,7 @@ constexpr Braking kStops[] = {{kGentle, kOpenStability, kHeldByFeedback},
                               {1.0, 0.0}};
 constexpr int kStopCount = static_cast<int>(std::size(kStops));
 constexpr int kDriveOnCount = static_cast<int>(std::size(kDriveOn));
+constexpr double kFar = 10.0;     // [m] beside a line: of another road
 constexpr double kUnfit = 200.0;  // [m] worse than any candidate that fits
 
 }  // namespace
@@ -65,8 +69,13 @@ PredictiveFilter::Candidate PredictiveFilter::judge(const road::KnownRoad& road,
                                                     const StopCheck& check, const Goal& goal) const noexcept {
   Candidate candidate{.check = check};
   candidate.check.least_edge = std::min(check.least_edge, goal.edge_before);
-  candidate.worth = candidate.check.least_edge - kUnfit;
+  candidate.worth = candidate.check.least_edge - kUnfit - check.spins_at;
   if (!check.stands || !(candidate.check.least_edge >= goal.margin)) return candidate;
+  if (goal.drives_on) {
+    const StopStart& end = tried_->places[static_cast<std::size_t>(tried_->stop.size - 1)];
+    const double room = kTurnReserve * planner_.turning_room(road, end);
+    if (!(planner_.edge(road, end) - room >= goal.margin)) return candidate;
+  }
 
   candidate.fit = Fit::kOpen;
   candidate.worth = candidate.check.least_edge;
@@ -97,15 +106,19 @@ Fit PredictiveFilter::verify(const Request& request, controller::StepReport& rep
   const double edge_now = planner_.edge(road, request.start);
   Goal goal{.edge_before = edge_now, .margin = terms_.margin, .open_time = terms_.open_time};
   const StopStart next = planner_.advance(road, request.start, request.command, held, goal.edge_before);
-  // A car that is led back from within the margin comes no nearer to the edge.
-  if (request.is_led && next.body.vx < 2.0 * kWalkingPace)
-    goal.margin = std::min(terms_.margin, std::max(edge_now, terms_.least_edge));
+  // A car that is led back from within the margin comes no nearer to the edge than it takes to turn.
+  if (request.is_led && next.body.vx < 2.0 * kWalkingPace) {
+    const double turned = edge_now - kTurnReserve * planner_.turning_room(road, request.start);
+    const double least = std::min(edge_now, kLedShare * terms_.margin);
+    goal.margin = std::min(terms_.margin, std::max({turned, least, terms_.least_edge}));
+  }
 
   model::BodyMotion<double> undriven = next.body;  // a stop does not ask for its drive
   undriven.acceleration = std::min(undriven.acceleration, 0.0);
   const auto tires = model_.tire_use(undriven);
   const double use = next.body.vx > kWalkingPace ? std::max(tires.front, tires.rear) : 0.0;
   const bool plans = goal.is_planned = intends(request);
+  goal.drives_on = !request.is_led;
 
   Fit fit = Fit::kNone;
   if (use < kMostUse && goal.edge_before >= goal.margin) {
@@ -229,6 +242,35 @@ bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start
     if (tried_->stop.size > 0) consider(found);
   }
   return is_current_ && backup_->stop.size > 0;
+}
+
+void PredictiveFilter::leave_line(const road::ReferenceLine& line) noexcept {
+  const auto size = static_cast<std::size_t>(backup_->stop.size);
+  for (std::size_t i = 0; i < size; ++i) {
+    const StopStart& place = backup_->places[i];
+    const road::CurvePoint here = line.at(place.s);
+    poses_[i] = {here.position + place.d * Vec2{-here.tangent.y(), here.tangent.x()}, here.heading + place.e};
+  }
+}
+
+void PredictiveFilter::join_line(const road::ReferenceLine& line) noexcept {
+  const auto size = static_cast<std::size_t>(backup_->stop.size);
+  search_.forget();
+  if (line.is_empty()) return forget();
+  double guess = 0.0, s = 0.0;
+  for (std::size_t i = 0; i < size; ++i) {
+    const Pose& pose = poses_[i];
+    const road::ReferenceLine::Projection found =
+        line.find(pose.position, pose.heading, 2.0 * model_.vehicle().width, i > 0 ? &guess : nullptr, kFar);
+    if (!(found.distance < kFar)) return forget();
+    const double driven = found.s - guess;
+    s += i > 0 && line.is_closed() ? std::remainder(driven, line.length()) : driven;
+    guess = found.s;
+    StopStart& place = backup_->places[i];
+    place.s = s;
+    place.d = found.d;
+    place.e = angle_difference(pose.heading, line.at(found.s).heading);
+  }
 }
 
 /// Whether the car is where the backup is at that place, and as fast.

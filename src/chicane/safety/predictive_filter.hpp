@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 
 #include "chicane/base/owned.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/known_road.hpp"
+#include "chicane/road/reference_line.hpp"
 #include "chicane/safety/stop_plan.hpp"
 #include "chicane/safety/stop_planner.hpp"
 #include "chicane/safety/stop_search.hpp"
@@ -51,7 +54,11 @@ class PredictiveFilter {
     search_.set_vehicle(vehicle);
     model_.set_vehicle(vehicle);
   }
-  /// Forgets the stored backup: its places belong to another line or another run.
+  /// The stored backup's places in the world, along the line that they are expressed by; and back, along
+  /// another line of the same road. The backup is forgotten where it is nowhere near that one.
+  void leave_line(const road::ReferenceLine& line) noexcept;
+  void join_line(const road::ReferenceLine& line) noexcept;
+  /// Forgets the stored backup: another road or another run begins.
   void forget() noexcept {
     backup_->stop.size = 0;
     held_ = 0;
@@ -88,6 +95,7 @@ class PredictiveFilter {
     double edge_before = 0.0;  ///< least distance to the edge until it begins [m]
     double margin = 0.0;       ///< [m]
     double open_time = 0.0;    ///< [s]
+    bool drives_on = false;    ///< where it ends, the car can turn back along the road
     bool is_planned = true;    ///< by a controller that publishes its plan, which stays away from the limit
   };
   /// One simulated candidate.
@@ -121,6 +129,11 @@ class PredictiveFilter {
   Owned<StopCourse> backup_;    ///< in store
   Owned<StopCourse> tried_;     ///< the candidate being simulated, then the spare
   Owned<StopCourse> intended_;  ///< the controller's plan along the line
+  struct Pose {
+    Vec2 position;
+    double heading = 0.0;  ///< [rad]
+  };
+  std::array<Pose, StopPlan::kCapacity> poses_{};  ///< of the backup's places, between two lines
   Fit backup_fit_ = Fit::kNone;
   int held_ = 0;             ///< the kind of backup that held last, stop_by()
   bool is_current_ = false;  ///< the backup was stored or shifted in this cycle

@@ -37,7 +37,15 @@ constexpr double kStride = 10.0;           // [m] between the places ahead
 constexpr double kHorizon = 200.0;         // [m]
 constexpr double kSpeedTime = 0.4;         // [s] in which a planned speed is met again
 constexpr double kPlanSpacing = 0.08;      // [s] between the places of a controller's plan
+constexpr double kMostSlide = 0.35;        // [rad] of slip: a car that slides more spins, by no model known
+constexpr double kSlideGrows = 0.1;        // [rad] by which one that slides more already may slide further
+constexpr double kLeastTurning = 0.02;     // [1/m] of a car that turns back along the road
 constexpr double kMostOffset = 20.0;       // [m] beside the line the stop is given up
+
+/// How far the car's course is off its heading [rad], where slip angles say something.
+double slide(const model::BodyMotion<double>& body) noexcept {
+  return hypot(body.vx, body.vy) > kSlow ? std::fabs(atan2(body.vy, body.vx)) : 0.0;
+}
 
 }  // namespace
 
@@ -122,6 +130,18 @@ double StopPlanner::edge(const road::KnownRoad& road, const StopStart& at) const
     least = std::min({least, edges.left - middle - beside, edges.right + middle - beside});
   }
   return least;
+}
+
+double StopPlanner::turning_room(const road::KnownRoad& road, const StopStart& at) const noexcept {
+  const model::VehicleParams& car = model_.vehicle();
+  const double length = car.wheelbase();
+  const double side = at.e < 0.0 ? -1.0 : 1.0;
+  const double bend = side * road.line().demand(at.s).curvature;  // the road turns away, or after the car
+  const double radius = 1.0 / std::max(tan(car.steer_limit) / length + bend, kLeastTurning);
+  const double outside = radius + 0.5 * (car.track_width + car.tire_width);
+  const double now = outside * cos(at.e) + length * side * sin(at.e);  // the front wheel, from the centre
+  const bool comes_nearer = std::fabs(at.e) > atan2(length, outside);
+  return comes_nearer ? hypot(outside, length) - now : 0.0;
 }
 
 /// One over the static stability of a car that moves like `m` and brakes: (1 − h) v² (a k_f − b k_r) over
@@ -409,6 +429,7 @@ StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start
                              StopCourse& out, double least) const noexcept {
   const double reach = steer_reach(kStep);
   const double end = road.line().is_closed() ? start.s + road.line().length() : road.line().length();
+  const double most_slide = std::max(kMostSlide, slide(start.body) + kSlideGrows);
   StopCheck check{.least_edge = edge(road, start)};
   StopStart at = start;
   double driven = 0.0;
@@ -426,8 +447,9 @@ StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start
     speed = hypot(at.body.vx, at.body.vy);
     driven += 0.5 * kStep * (before + speed);
     check.least_edge = std::min(check.least_edge, edge(road, at));
+    if (!(check.spins_at > 0.0) && slide(at.body) > most_slide) check.spins_at = speed;
   }
-  check.stands = speed < kStanding && at.s < end && !(check.least_edge < least);
+  check.stands = speed < kStanding && at.s < end && !(check.least_edge < least) && !(check.spins_at > 0.0);
   check.distance = driven;
   return check;
 }

@@ -29,7 +29,8 @@ struct StopStart {
 struct StopCheck {
   double least_edge = 0.0;  ///< of the outermost contact patch to the believed edge [m]; < 0: off the road
   double distance = 0.0;    ///< to standstill [m]
-  bool stands = false;      ///< it ends at standstill before the end of the known road
+  bool stands = false;      ///< it ends at standstill before the end of the known road, without a spin
+  double spins_at = 0.0;    ///< speed at which the car begins to spin [m/s]; 0: it does not
 };
 
 /// A stop, and where the car is at each of its points.
@@ -119,6 +120,9 @@ class StopPlanner {
                                const Braking& braking) const noexcept {
     return slowing(road, at, braking, curvatures_of(road, at));
   }
+  /// How much nearer to the edge [m] a car comes that stands at `at` and turns back along the road at full
+  /// lock: equation 6a. 0: no nearer.
+  [[nodiscard]] double turning_room(const road::KnownRoad& road, const StopStart& at) const noexcept;
   /// Of the outermost contact patch to the believed edge [m].
   [[nodiscard]] double edge(const road::KnownRoad& road, const StopStart& at) const noexcept;
 
