@@ -91,7 +91,6 @@ class FilterMethod {
       }
     }
     last_shift_ = forced_shift_ = 0.0;
-    if (rows_ != nullptr) forced_shift_ = kFirstShift * unit_;
     failures_ = simulations_ = 0;
     stops_at_barriers_ = false;
     candidate_ = t;
@@ -179,7 +178,6 @@ class FilterMethod {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr double kShort = 0.1;
   static constexpr int kShortInSuccession = 3, kMostLeaps = 4;
-  static constexpr double kFirstShift = 1.0;
   static constexpr double kRowWeight = 1e6;  ///< ρ of rows that must hold, and the price of hard limits, in
   static constexpr double kHardPrice = 1e6;  ///< the unit of costs
   static constexpr double kSolvedAt = 10.0;  ///< a barrier's problem is solved at this many times the barrier
