@@ -194,8 +194,11 @@ class Evaluation {
   requires(Order >= 0 && kIsLarge) struct DenseOf<T, Order> {
     using Type = BlockJet<T>;
   };
+  /// Jets of fewer variables fit the registers: computing their zeros is quicker than finding them.
+  static constexpr int kFewestLoose = 5;
   template <class T, int Order>
-  requires(Order == 2 && !kIsLarge && !std::is_same_v<T, double>) struct DenseOf<T, Order> {
+  requires(Order == 2 && !kIsLarge && kVariables >= kFewestLoose &&
+           !std::is_same_v<T, double>) struct DenseOf<T, Order> {
     using Type = LooseJet<T, kVariables>;
   };
   template <class T, int Order>
