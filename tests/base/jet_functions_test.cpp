@@ -78,6 +78,56 @@ TEST(JetFunctions, HaveTheDerivativesThatDifferencesShow) {
   }
 }
 
+/// Every function of two variables of one type.
+template <class J>
+auto all_of(const J& a, const J& b) {
+  return std::apply([](const auto&... x) { return std::array<J, sizeof...(x)>{x...}; },
+                    models::all_functions(a, b));
+}
+
+TEST(JetFunctions, HaveTheSameBitsWithLoosePatterns) {
+  using Loose = LooseJet<double, 2>;
+  using Dense = Jet<double, 2, 3, 0, Pairs::of(3, 3)>;
+  static_assert(std::is_same_v<Common<double, Loose, Loose>, Loose>);
+  Random random{14};
+  for (int turn = 0; turn < 100; ++turn) {
+    const double a = random.uniform(-0.9, 0.9), b = random.uniform(0.2, 2.0);
+    Dense dense_a(a), dense_b(b);
+    dense_a.slopes[0] = dense_b.slopes[1] = 1.0;
+    const auto expected = all_of(dense_a, dense_b);
+    const auto found = all_of(Loose::variable(a, 0), Loose::variable(b, 1));
+    for (std::size_t n = 0; n < kFunctions; ++n) {
+      std::array<double, 2> slopes{};
+      std::array<double, 3> curvatures{};
+      found[n].each_slope([&](std::size_t i, double slope) { slopes[i] = slope; });
+      found[n].each_curvature([&](std::size_t i, std::size_t j, double curvature) {
+        curvatures[j * (j + 1) / 2 + i] = curvature;
+      });
+      EXPECT_EQ(found[n].v, expected[n].v) << n;
+      EXPECT_EQ(slopes, expected[n].slopes) << n;
+      EXPECT_EQ(found[n].slopes, expected[n].slopes) << n;
+      EXPECT_EQ(curvatures, expected[n].curvatures) << n;
+    }
+  }
+}
+
+TEST(JetFunctions, KnowLoosePatterns) {
+  using Loose = LooseJet<double, 4>;
+  const Loose a = Loose::variable(0.3, 0), b = Loose::variable(0.5, 1), d = Loose::variable(0.7, 3);
+  const auto expect = [](const Loose& x, Variables first, Variables second) {
+    EXPECT_EQ(x.first, first);
+    EXPECT_EQ(x.second, second);
+  };
+  expect(Loose(2.0), 0, 0);
+  expect(2.0 * a - d + 1.0, 9, 0);
+  expect(sin(a) - d, 9, 1);
+  expect(a * b + d, 11, 3);
+  expect(select(true, a, b * b), 3, 2);
+  Loose copy = a * b;
+  copy = d;
+  expect(copy, 8, 0);
+}
+
 TEST(JetFunctions, AgreeWithTheStandardLibrary) {
   Random random{12};
   for (int turn = 0; turn < 1000; ++turn) {

@@ -50,6 +50,32 @@ TEST(HardLimits, TakeFewIterationsInAConvexProgram) {
   }
 }
 
+/// Counts how often eight stages are evaluated with second derivatives.
+struct Counted : BrysonDenham {
+  int* count = nullptr;
+  template <class K, class T>
+  std::array<T, 2> dynamics(K k, const std::array<T, 2>& x, const std::array<T, 1>& u) const {
+    if constexpr (requires { requires T::kOrder == 2; }) ++*count;
+    return BrysonDenham::dynamics(k, x, u);
+  }
+};
+
+TEST(HardLimits, AreLinearisedOnceAnIteration) {
+  const auto instance = FamilyMeasurement<BrysonDenham>::instance(0);
+  int count = 0;
+  Counted problem;
+  static_cast<BrysonDenham&>(problem) = instance.problem;
+  problem.count = &count;
+  solver::Trajectory<2, 1, Counted::kHorizon> answer;
+  answer.horizon = Counted::kHorizon;
+  const auto ocp = std::make_unique<solver::OcpSolver<Counted, Counted::kHorizon>>();
+  const HardReport report = ocp->solve(problem, instance.start, answer);
+  ASSERT_EQ(report.status, SolveStatus::kOptimal);
+  constexpr int kGroups = (Counted::kHorizon + 7) / 8;
+  EXPECT_LE(count,
+            kGroups * (report.iterations + 2));  // not once more for each barrier
+}
+
 TEST(HardLimits, CostNoMoreThanTheToleranceByTheirBarrier) {
   for (int seed = 0; seed < 5; ++seed) {
     const auto solved = solve<BrysonDenham>(seed, false, NaiveStart::kIdle);

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "chicane/base/detail/jet_rules.hpp"
+#include "chicane/base/detail/loose_jet.hpp"
 #include "chicane/base/inlining.hpp"
 
 namespace chicane {
@@ -236,6 +237,15 @@ struct Common {
   static constexpr Pairs kPairs = kOrder == 2 ? Pairs::of(kAll, kAll) : Pairs{};
   using Value = std::common_type_t<typename Traits<T>::Value...>;
   using Type = std::conditional_t<kOrder == 0, Value, Jet<Value, kOrder, kAll, 0, kPairs>>;
+};
+template <class T, class... Rest>
+struct LooseOf : LooseOf<Rest...> {};
+template <AnyLooseJet T, class... Rest>
+struct LooseOf<T, Rest...> {
+  using Type = T;
+};
+template <class... T>
+requires(AnyLooseJet<T> || ...) struct Common<T...> : LooseOf<T...> {
 };
 
 }  // namespace jet

@@ -102,7 +102,9 @@ class Barrier {
   /// Keeps its derivatives, for soft_change().
   template <class J>
   CHICANE_INLINE void store_row(std::size_t c, std::size_t k, const J& constraint) noexcept {
-    if constexpr (AnySparseRow<J>) {
+    if constexpr (AnyLooseJet<J>) {
+      for (std::size_t j = 0; j < kNz; ++j) constraint.slopes[j].store(row_[c][j] + k);
+    } else if constexpr (AnySparseRow<J>) {
       constraint.each_slope([&](std::size_t j, const V& slope) { slope.store(row_[c][j] + k); });
     } else if constexpr (AnyJet<J>) {
       jet::repeat<size_of(J::kFirst)>([&](auto n) CHICANE_INLINE {
@@ -120,6 +122,27 @@ class Barrier {
     for (std::size_t i = 0; i < P::kNx; ++i) sum += V::load(row_[c][i] + k) * V::load(step.x[i] + k);
     for (std::size_t m = 0; m < P::kNu; ++m) sum += V::load(row_[c][P::kNx + m] + k) * V::load(step.u[m] + k);
     return sum;
+  }
+
+  /// Calls add(k, j, what the slope of the stage's model by variable j has more of since the barrier was
+  /// `from`) (eq. 20).
+  template <class Add>
+  void each_pull(const P& problem, double from, std::size_t horizon, const Add& add) const noexcept {
+    for (std::size_t k = 0; k < horizon && count() > 0; k += 8) {
+      std::array<V, kNz> pull;
+      pull.fill(V(0.0));
+      for (std::size_t c = 0; c < count(); ++c) {
+        const SoftConstraint<V> soft = load(c, k);
+        const SoftPenalty price = price_of(problem, c);
+        const V more = soft.model(price, mu_).slope - soft.model(price, from).slope;
+        for (std::size_t j = 0; j < kNz; ++j) pull[j] += more * V::load(row_[c][j] + k);
+      }
+      for (std::size_t j = 0; j < kNz; ++j) {
+        for (std::size_t lane = 0; lane < 8 && k + lane < horizon; ++lane) {
+          if (pull[j][lane] != 0.0) add(k + lane, j, pull[j][lane]);
+        }
+      }
+    }
   }
 
   /// Value of constraint c of stage k at the last linearisation.

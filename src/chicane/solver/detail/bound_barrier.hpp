@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "chicane/base/math_pack.hpp"
+#include "chicane/solver/detail/filter.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
 #include "chicane/solver/detail/rate_set.hpp"
@@ -146,8 +147,8 @@ class BoundBarrier {
     });
     return mu * sum(total);
   }
-  /// Miss and barriers at `length` of the direction: bounds are linear.
-  void measure(double length, double mu, double& miss, double& cost) noexcept {
+  /// Adds miss and logarithms at `length` of the direction: bounds are linear.
+  void measure(double length, Merit& merit) noexcept {
     V misses(0.0);
     V logs(0.0);
     each([&](std::size_t, Kind, Side& side, std::size_t k, const auto&) {
@@ -157,13 +158,12 @@ class BoundBarrier {
       misses += abs(V::load(side.miss + k));
       logs += log(at);
     });
-    miss += (1.0 - length) * sum(misses);
-    cost -= mu * sum(logs);
+    merit.miss += (1.0 - length) * sum(misses);
+    merit.logs += sum(logs);
   }
   /// The same at another point than the step's, from where the bounds in `qp` are of.
   template <class Point>
-  void measure_at(const Solver& qp, double mu, const Point& point, const Point& from, double& miss,
-                  double& cost) noexcept {
+  void measure_at(const Solver& qp, const Point& point, const Point& from, Merit& merit) noexcept {
     V misses(0.0);
     V logs(0.0);
     each([&](std::size_t m, Kind kind, Side& side, std::size_t k, const auto& exists) {
@@ -178,8 +178,8 @@ class BoundBarrier {
       misses += select(exists, abs(distance - at), V(0.0));
       logs += log(at);
     });
-    miss += sum(misses);
-    cost -= mu * sum(logs);
+    merit.miss += sum(misses);
+    merit.logs += sum(logs);
   }
   /// To where the last measure() was; multipliers by `dual_length` of their direction.
   void move(double dual_length, double mu) noexcept {

@@ -194,6 +194,13 @@ class Evaluation {
   requires(Order >= 0 && kIsLarge) struct DenseOf<T, Order> {
     using Type = BlockJet<T>;
   };
+  /// Jets of fewer variables fit the registers: computing their zeros is quicker than finding them.
+  static constexpr int kFewestLoose = 5;
+  template <class T, int Order>
+  requires(Order == 2 && !kIsLarge && kVariables >= kFewestLoose &&
+           !std::is_same_v<T, double>) struct DenseOf<T, Order> {
+    using Type = LooseJet<T, kVariables>;
+  };
   template <class T, int Order>
   using Dense = typename DenseOf<T, Order>::Type;
   static constexpr bool takes_lanes() noexcept {
@@ -303,7 +310,10 @@ class Evaluation {
   CHICANE_INLINE static auto dense(const Values& values, std::size_t k0) noexcept {
     std::array<Dense<T, Order>, static_cast<std::size_t>(Count)> result;
     for (std::size_t n = 0; n < static_cast<std::size_t>(Count); ++n) {
-      if constexpr (std::is_same_v<T, double>) {
+      if constexpr (AnyLooseJet<Dense<T, Order>>) {
+        result[n] = Dense<T, Order>::variable(T::load(values[n] + k0), Begin + static_cast<int>(n));
+        continue;
+      } else if constexpr (std::is_same_v<T, double>) {
         result[n] = Dense<T, Order>(values[n][k0]);
       } else {
         result[n] = Dense<T, Order>(T::load(values[n] + k0));
@@ -328,8 +338,8 @@ class Evaluation {
         for (const double d : row[i].curvatures) numbers[i][at++][lane] = d;
       }
     }
-    [[nodiscard]] std::array<Dense<V, Order>, Count> rows() const noexcept {
-      std::array<Dense<V, Order>, Count> result;
+    [[nodiscard]] std::array<DenseJet<P, V, Order>, Count> rows() const noexcept {
+      std::array<DenseJet<P, V, Order>, Count> result;
       for (std::size_t i = 0; i < Count; ++i) {
         std::size_t at = 0;
         result[i].v = V::load(numbers[i][at++]);

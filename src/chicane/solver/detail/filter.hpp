@@ -11,7 +11,8 @@ namespace chicane::solver {
 /// barriers.
 struct Merit {
   double miss = 0.0;
-  double cost = 0.0;
+  double cost = 0.0;  ///< `logs` times the barrier less than without
+  double logs = 0.0;  ///< sum of the slacks' logarithms
   [[nodiscard]] bool is_finite() const noexcept { return std::isfinite(miss + cost); }
 };
 

@@ -63,6 +63,7 @@ class FilterMethod {
     has_prices_ = false;
     is_exact_ = is_exact;
     is_fresh_ = is_new_barrier_ = are_sides_new_ = true;
+    is_here_known_ = false;
     mu_ = kFirstBarrier;
     slacks.set_mu(kFirstBarrier);
     if constexpr (kHasHardRows<P>) {
@@ -90,7 +91,6 @@ class FilterMethod {
       }
     }
     last_shift_ = forced_shift_ = 0.0;
-    if (rows_ != nullptr) forced_shift_ = kFirstShift * unit_;
     failures_ = simulations_ = 0;
     stops_at_barriers_ = false;
     candidate_ = t;
@@ -106,6 +106,7 @@ class FilterMethod {
   void go_on(Slacks& slacks, bool centre) noexcept {
     lower_barrier(slacks);
     is_fresh_ = centre;
+    is_here_known_ = false;
   }
   [[nodiscard]] double mu() const noexcept { return mu_; }
   [[nodiscard]] bool is_at_last_barrier() const noexcept { return mu_ <= final_mu_; }
@@ -124,6 +125,7 @@ class FilterMethod {
     for (std::size_t i = 0; i < kNx; ++i) std::copy(prices_[i], prices_[i] + t.horizon, now.adjoint[i]);
     slacks.set_mu(mu_);
     is_fresh_ = is_new_barrier_ = true;
+    is_here_known_ = false;
     return true;
   }
   /// Of the last iterations this many in succession have taken a small share of their step.
@@ -144,15 +146,13 @@ class FilterMethod {
     if (error <= (stops_at_barriers_ ? 1.0 : kSolvedAt) * mu_) {
       candidate_ = t;
       if (mu_ <= final_mu_ || stops_at_barriers_) return Outcome::kSolved;
+      const double last = mu_;
       lower_barrier(slacks);
-      if constexpr (kHasHardRows<P>) {
-        if (rows_ != nullptr) {
-          now.hard.set_ends(*rows_, mu_);
-        }
-      }
-      linearise(problem, now, lq, slacks, t, report);
+      follow_barrier(problem, last, now, lq, slacks, t.horizon);
     }
-    const Merit here = measure(problem, now, slacks, t, 0.0);
+    if (!is_here_known_) here_ = measure(problem, now, slacks, t, 0.0);
+    is_here_known_ = false;
+    const Merit here = here_;
     if (!here.is_finite()) return Outcome::kStuck;
     if (is_new_barrier_) {
       filter_.reset(1e4 * std::max(1.0, here.miss));
@@ -178,7 +178,6 @@ class FilterMethod {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr double kShort = 0.1;
   static constexpr int kShortInSuccession = 3, kMostLeaps = 4;
-  static constexpr double kFirstShift = 1.0;
   static constexpr double kRowWeight = 1e6;  ///< ρ of rows that must hold, and the price of hard limits, in
   static constexpr double kHardPrice = 1e6;  ///< the unit of costs
   static constexpr double kSolvedAt = 10.0;  ///< a barrier's problem is solved at this many times the barrier
@@ -242,10 +241,23 @@ class FilterMethod {
     return std::max(std::max({dual, sides.product, report.complementarity}) / scale, missed);
   }
   void lower_barrier(Slacks& slacks) noexcept {
-    const double share = mu_ / unit_;
+    const double share = mu_ / unit_, last = mu_;
     mu_ = std::max(final_mu_, unit_ * std::min(0.2 * share, share * std::sqrt(share)));
+    here_.cost += (last - mu_) * here_.logs;
     slacks.set_mu(mu_);
     is_new_barrier_ = true;
+  }
+
+  /// The linearisation of the present point with the barrier lowered from `last`: slopes alone change, by
+  /// what slacks pull (eq. 20, 53).
+  void follow_barrier(const P& problem, double last, Linearised& now, Lq& lq, const Slacks& slacks,
+                      std::size_t horizon) noexcept {
+    slacks.each_pull(problem, last, horizon, [&](std::size_t k, std::size_t j, double pull) {
+      lq.lq.set_cost(k, z(j), Layout::kOne, lq.lq.cost(k, z(j), Layout::kOne) + pull);
+    });
+    if constexpr (kHasHardRows<P>) {
+      if (rows_ != nullptr) now.hard.set_ends(*rows_, mu_, lq.lq.terminal[kNx]);
+    }
   }
 
   // ---- the step
@@ -334,6 +346,8 @@ class FilterMethod {
       short_steps_ = length < kShort ? short_steps_ + 1 : 0;
       moved_ = longest_move(t, candidate_);
       t = candidate_;
+      here_ = there;
+      is_here_known_ = true;
       bounds_.move(dual, mu_);
       soft_.move(slacks, t.horizon, dual);
       const double share = has_prices_ ? length : 1.0;
@@ -461,6 +475,8 @@ class FilterMethod {
   int leaps_ = 0;        ///< whole steps that the filter had refused
   P* rows_ = nullptr;    ///< the problem, where its rows that must hold are unknowns' equations
   double moved_ = 0.0;
+  Merit here_{};                ///< of the present point
+  bool is_here_known_ = false;  ///< from the line search that found it
   int failures_ = 0;
   int simulations_ = 0;
 };

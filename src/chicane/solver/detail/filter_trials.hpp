@@ -16,13 +16,14 @@ Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]
                                                const Lq* lq, const Point* from) noexcept {
   V cost(0.0);
   V miss(0.0);
+  V logs(0.0);
   for (std::size_t k = 0; k < point.horizon; k += 8) {
     const auto live =
         stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(point.horizon));
     const auto values = Evaluate::values(problem, point, k);
     cost += select(live, values.cost, V(0.0));
     for (std::size_t c = 0; c < slacks.count(); ++c)
-      soft_.measure(price_of(problem, c), slacks, c, k, values.constraint[c], length, live, miss, cost);
+      soft_.measure(price_of(problem, c), slacks, c, k, values.constraint[c], length, live, miss, cost, logs);
     for (std::size_t i = 0; i < kNx; ++i)
       miss += select(live, abs(values.next[i] - V::load_unaligned(point.x[i] + k + 1)), V(0.0));
     if constexpr (Evaluate::kHardRows > 0) {
@@ -34,12 +35,12 @@ Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]
       }
     }
   }
-  Merit merit{sum(miss), sum(cost)};
+  Merit merit{sum(miss), sum(cost), sum(logs)};
   if constexpr (kHasHardRows<P>) {
     if (rows_ != nullptr) {
       double ends[P::kNe + 1];
       merit.cost += Evaluate::end_cost(problem, point, ends);
-      now.hard.measure_end(unshifted(problem, ends), length, mu_, merit.miss, merit.cost);
+      now.hard.measure_end(unshifted(problem, ends), length, merit);
     } else {
       merit.cost += Evaluate::end_cost(problem, point);
     }
@@ -47,10 +48,11 @@ Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]
     merit.cost += Evaluate::end_cost(problem, point);
   }
   if (from == nullptr) {
-    bounds_.measure(length, mu_, merit.miss, merit.cost);
+    bounds_.measure(length, merit);
   } else {
-    bounds_.measure_at(*lq, mu_, point, *from, merit.miss, merit.cost);
+    bounds_.measure_at(*lq, point, *from, merit);
   }
+  merit.cost -= mu_ * merit.logs;
   return merit;
 }
 

@@ -26,15 +26,8 @@ bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& tra
     const double enough = kFew * std::max(1.0, first_.worst());
     if (has_path && measure(*problem_.problem, trajectory, nullptr).worst() <= enough)
       return round(x0, trajectory, deadline, left, report);
-    kept_ = trajectory;
     begin_again(trajectory, 1.0);
-    if (!is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report) && has_path) {
-      trajectory = kept_;
-      start_with_weights(trajectory.horizon, 1.0);
-      put_prices(trajectory.horizon);
-      inner_.start_from_states(true);
-      return round(x0, trajectory, deadline, left, report);
-    }
+    is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report);
     begin_again(trajectory, 1.0);
     trial_ = most_of_a_trial();
   }

@@ -10,6 +10,7 @@
 #include "chicane/base/math.hpp"
 #include "chicane/base/math_pack.hpp"
 #include "chicane/solver/detail/bound_barrier.hpp"
+#include "chicane/solver/detail/filter.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/sparse_row.hpp"
 
@@ -110,6 +111,18 @@ class HardRows {
     }
   }
 
+  /// The same after a change of μ alone; `slope`, the gradient of the end, follows.
+  void set_ends(P& problem, double mu, double* slope) noexcept {
+    for (std::size_t n = kEqualities; n < kEndRows; ++n) {
+      if (!is_there_[n]) continue;
+      const double shift = t_[n] + mu / z_[n];
+      const double change = problem.terminal_weight[n].root * (shift - problem.terminal_shift[n]);
+      problem.terminal_shift[n] = shift;
+      end_value_[n] += change;
+      for (std::size_t i = 0; i < kNx; ++i) slope[i] += change * end_row_[n][i];
+    }
+  }
+
   /// Multipliers, and how far they and slacks may be followed, of a step from the present iterate.
   StepLengths find(const P& problem, const Step& step, double mu, double fraction) noexcept {
     slope_ = 0.0;
@@ -156,16 +169,16 @@ class HardRows {
     const V shift = problem.equality_shift[n].at(StageLanes<V>{static_cast<int>(k)});
     return abs(value * (1.0 / problem.equality_weight[n].root) - shift);
   }
-  /// Miss and barriers of the end, whose rows are `h`, at `length` of the direction.
+  /// Adds miss and logarithms of the end, whose rows are `h`, at `length` of the direction.
   template <class Values>
-  void measure_end(const Values& h, double length, double mu, double& miss, double& cost) noexcept {
-    for (std::size_t n = 0; n < kEqualities; ++n) miss += std::fabs(h[n]);
+  void measure_end(const Values& h, double length, Merit& merit) noexcept {
+    for (std::size_t n = 0; n < kEqualities; ++n) merit.miss += std::fabs(h[n]);
     for (std::size_t n = kEqualities; n < kEndRows; ++n) {
       if (!is_there_[n]) continue;
       t_at_[n] = t_[n];
       if (length > 0.0) t_at_[n] = std::max(t_[n] + length * dt_[n], -h[n]);  // more room costs nothing
-      miss += std::fabs(h[n] + t_at_[n]);
-      cost -= mu * log(t_at_[n]);
+      merit.miss += std::fabs(h[n] + t_at_[n]);
+      merit.logs += log(t_at_[n]);
     }
   }
   /// Largest residual of the rows and of their complementarity at the present iterate.

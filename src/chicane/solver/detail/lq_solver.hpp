@@ -185,7 +185,7 @@ class LqSolver {
         }
         load(k, P);
       }
-      if (shift_states) {
+      if (shift_states && shift != 0.0) {
         for (std::size_t i = 0; i < kNx; ++i) value_[k][i][i] += shift;
         load(k, P);
       }

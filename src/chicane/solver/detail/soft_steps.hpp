@@ -56,11 +56,11 @@ class SoftSteps {
   /// Slope along the direction of what the slacks cost, less what the stages' gradients have of it.
   [[nodiscard]] double slope() const noexcept { return slope_; }
 
-  /// Miss and cost of constraint c of the stages from k on, which has `value` there, at `length` of the
-  /// direction.
+  /// Adds miss, cost without barriers and logarithms of constraint c of the stages from k on, which has
+  /// `value` there, at `length` of the direction.
   template <class Mask>
   void measure(const SoftPenalty& price, const Slacks& slacks, std::size_t c, std::size_t k, const V& value,
-               double length, const Mask& live, V& miss, V& cost) noexcept {
+               double length, const Mask& live, V& miss, V& cost, V& logs) noexcept {
     const SoftConstraint<V> soft = slacks.load(c, k);
     V s = soft.s;
     V t = soft.t;
@@ -72,8 +72,8 @@ class SoftSteps {
     s.store(s_at_[c] + k);
     t.store(t_at_[c] + k);
     miss += select(live, abs(s - value - t), V(0.0));
-    const V own = s * (price.linear + 0.5 * price.quadratic * s) - slacks.mu() * (log(s) + log(t));
-    cost += select(live, own, V(0.0));
+    cost += select(live, s * (price.linear + 0.5 * price.quadratic * s), V(0.0));
+    logs += select(live, log(s) + log(t), V(0.0));
   }
   /// To where the last measure() was; multipliers by `dual_length` of their direction.
   void move(Slacks& slacks, std::size_t horizon, double dual_length) noexcept {
