@@ -95,9 +95,10 @@ TEST(LapPlanner, WaitsUntilTheCarIsNearTheLap) {
     }
     return 200.0;
   };
-  EXPECT_EQ(taken_up(0.1, 100.0), 0.0) << "near enough";
-  EXPECT_NEAR(taken_up(1.0, 7.0), 7.0, 0.6) << "as soon as it is near";
-  EXPECT_NEAR(taken_up(1.0, 100.0), 0.8 / LapPlanner::kJoiningGrows, 0.6) << "not for ever";
+  EXPECT_EQ(taken_up(0.9 * LapPlanner::kJoining, 100.0), 0.0) << "near enough";
+  EXPECT_NEAR(taken_up(1.0, 3.0), 3.0, 0.6) << "as soon as it is near";
+  EXPECT_NEAR(taken_up(1.0, 100.0), (1.0 - LapPlanner::kJoining) / LapPlanner::kJoiningGrows, 0.6)
+      << "not for ever";
 }
 
 TEST(LapPlanner, PlansTheSameBesideARun) {

@@ -38,8 +38,8 @@ class LapPlanner {
 
   /// A lap is taken up where the car is about to drive so near to it [m]; the longer it is ready, the farther
   /// [m/s]. A car at the limit of its tyres has nothing left to come to another line with.
-  static constexpr double kJoining = 0.2;
-  static constexpr double kJoiningGrows = 0.03;
+  static constexpr double kJoining = 0.4;
+  static constexpr double kJoiningGrows = 0.1;
 
   /// After each control cycle, at the run's time [s]: the lap that is to be used from the next one on, once.
   /// Null otherwise, and where the road has none. Allocates when a search begins; waits for none in real
