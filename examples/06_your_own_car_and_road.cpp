@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/protocol/library.hpp"
@@ -57,7 +58,7 @@ class Cart final : public sim::Plant {
 /// Reads a road of straights and bends, a line each: its length [m] and by how much it turns to the left
 /// [degrees]. It is 5 m wide to both sides.
 Result<road::Track> read_pieces(const std::string& text, const std::string& file) {
-  constexpr double kSpacing = 5.0, kPi = 3.14159265358979323846;
+  constexpr double kSpacing = 5.0;
   std::vector<road::TrackPoint> points;
   std::istringstream lines(text);
   Vec2 here{0.0, 0.0};

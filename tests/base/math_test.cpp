@@ -68,8 +68,10 @@ TEST(Math, KeepsNotANumberAndTheAxes) {
 template <class Function>
 void expect_same_bits(Function f, double low, double high) {
   using P = Pack<arch::Native, 8>;
-  constexpr double kOdd[] = {0.0,  -0.0,  1e300,  -1e300, 1e-310, 5e-324, INFINITY, -INFINITY, NAN,  1.0,
-                             -1.0, 709.5, -708.5, 0.4375, 0.6875, 1.1875, 2.4375,   22.5,      1e-5, 1e9};
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kOdd[] = {0.0,  -0.0,  1e300,  -1e300, 1e-310, 5e-324, kInf,   -kInf, kNan, 1.0,
+                             -1.0, 709.5, -708.5, 0.4375, 0.6875, 1.1875, 2.4375, 22.5,  1e-5, 1e9};
   Random random{11};
   for (int turn = 0; turn < 3000; ++turn) {
     P x;

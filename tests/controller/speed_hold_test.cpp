@@ -11,7 +11,7 @@
 namespace chicane::controller {
 namespace {
 
-constexpr double kRadius = 30.0;
+constexpr double kBendRadius = 30.0;
 
 /// 200 m straight on along x, then half a circle to the left.
 road::Path road() {
@@ -19,7 +19,7 @@ road::Path road() {
   for (int i = 0; i < 40; ++i) points.emplace_back(5.0 * i, 0.0);
   for (int i = 0; i <= 40; ++i) {
     const double angle = kPi * i / 40.0;
-    points.emplace_back(200.0 + kRadius * std::sin(angle), kRadius * (1.0 - std::cos(angle)));
+    points.emplace_back(200.0 + kBendRadius * std::sin(angle), kBendRadius * (1.0 - std::cos(angle)));
   }
   return road::Path::create(points, false).value();
 }
@@ -37,7 +37,7 @@ TEST(SpeedHold, AsksForTheReferenceUntilABendHasToBeBrakedFor) {
   const SpeedHold::Wanted within = kHold.reference(path, 240.0);
   EXPECT_LE(within.speed, before.speed);
   // v² κ = 6 m/s² where the spline has the circle's curvature within 2 %.
-  EXPECT_NEAR(within.speed, std::sqrt(6.0 * kRadius), 0.02 * std::sqrt(6.0 * kRadius));
+  EXPECT_NEAR(within.speed, std::sqrt(6.0 * kBendRadius), 0.02 * std::sqrt(6.0 * kBendRadius));
 }
 
 TEST(SpeedHold, HoldsASpeedAgainstDragAndActsAgainstAnError) {

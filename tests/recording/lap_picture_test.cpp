@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "chicane/recording/detail/canvas.hpp"
 #include "chicane/recording/detail/stroke_font.hpp"
@@ -61,7 +62,10 @@ TEST(Canvas, WhatLiesOutsideIsLeftOut) {
   canvas.clear({});
   canvas.rectangle(100.0, 0.0, 5.0, 5.0, kWhite);
   canvas.line(std::vector<Vec2>{{-10, 500}, {900, 700}}, 3.0, kWhite);
-  canvas.fill({{{NAN, 0.0}, {1.0, 1.0}, {2.0, INFINITY}}}, kWhite);
+  canvas.fill({{{std::numeric_limits<double>::quiet_NaN(), 0.0},
+                {1.0, 1.0},
+                {2.0, std::numeric_limits<double>::infinity()}}},
+              kWhite);
   EXPECT_LT(white_area(canvas), 20.0);
 }
 

@@ -30,7 +30,7 @@ std::unique_ptr<Frame> frame(double time, double steer) {
   return f;
 }
 
-constexpr double kRounding = 1e-12;  // sums of a few exact numbers
+constexpr double kSumRounding = 1e-12;  // sums of a few exact numbers
 
 TEST(Metrics, MeasuresALapFromEveryPhysicsStep) {
   Metrics metrics(3, 0.1);
@@ -44,9 +44,9 @@ TEST(Metrics, MeasuresALapFromEveryPhysicsStep) {
   EXPECT_EQ(run.laps_completed, 1);
   EXPECT_EQ(run.laps[0].lap_time, 0.93);
   EXPECT_EQ(run.laps[0].sector_times[2], 0.33);
-  EXPECT_NEAR(run.laps[0].mean_speed, 20.0, kRounding);
+  EXPECT_NEAR(run.laps[0].mean_speed, 20.0, kSumRounding);
   EXPECT_EQ(run.laps[0].top_speed, 30.0);
-  EXPECT_NEAR(run.laps[0].rms_lateral_error, std::sqrt(5.0), kRounding);
+  EXPECT_NEAR(run.laps[0].rms_lateral_error, std::sqrt(5.0), kSumRounding);
   EXPECT_EQ(run.laps[0].max_abs_lateral_error, 3.0);
   EXPECT_EQ(run.laps[0].min_edge_distance, 0.5);
   EXPECT_EQ(run.laps[0].max_lateral_acceleration, 7.0);
@@ -84,7 +84,7 @@ TEST(Metrics, ANewLapStartsFromZeroAndTheTotalGoesOn) {
   EXPECT_EQ(run.laps[1].min_edge_distance, 3.0);
   EXPECT_EQ(run.total.top_speed, 40.0);
   EXPECT_EQ(run.total.min_edge_distance, -1.0);
-  EXPECT_NEAR(run.duration, 1.0, kRounding);
+  EXPECT_NEAR(run.duration, 1.0, kSumRounding);
 }
 
 TEST(Metrics, CountsEachExcursionOnceAndItsWholeTime) {
@@ -95,7 +95,7 @@ TEST(Metrics, CountsEachExcursionOnceAndItsWholeTime) {
   metrics.add_physics(sample(1, 0, 0.01, true));  // back on the road, not yet judged so
   const RunSummary run = metrics.summary();
   EXPECT_EQ(run.off_track_events, 3);
-  EXPECT_NEAR(run.out_of_track_time, 1.5, kRounding);
+  EXPECT_NEAR(run.out_of_track_time, 1.5, kSumRounding);
 }
 
 TEST(Metrics, IsCompletedOnTheRoadWithAllLapsAndAllTyresOnTheRoad) {
@@ -114,7 +114,7 @@ TEST(Metrics, SteeringRateIsTakenFromCycleToCycle) {
   metrics.add(*frame(0.0, 0.0));
   metrics.add(*frame(0.1, 0.02));
   metrics.add(*frame(0.2, 0.00));
-  EXPECT_NEAR(metrics.summary().total.steering_rate_rms, 0.2, kRounding);
+  EXPECT_NEAR(metrics.summary().total.steering_rate_rms, 0.2, kSumRounding);
 }
 
 TEST(Metrics, CountsWhatWentWrongInTheSteps) {
@@ -157,7 +157,7 @@ TEST(Metrics, WithoutTruthItMeasuresWhatTheControllerWasTold) {
   f->measurement.speed = std::nan("");
   metrics.add(*f);
   const RunSummary run = metrics.summary();
-  EXPECT_NEAR(run.total.mean_speed, 12.0, kRounding);
+  EXPECT_NEAR(run.total.mean_speed, 12.0, kSumRounding);
   EXPECT_EQ(run.total.max_abs_lateral_error, 0.5);
   EXPECT_TRUE(std::isnan(run.total.min_edge_distance));
 }
