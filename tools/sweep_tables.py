@@ -116,11 +116,6 @@ def race(runs):
     return pivot(runs, lambda run: f"`{setting(run, 'car')}`, {road(run)}", name, lap_and_edge, ("car, track", "{}"))
 
 
-def circuits(runs):
-    return pivot(runs, lambda run: f"`{setting(run, 'car')}`, {road(run)}", lambda run: setting(run, "guard.mode"), lap_and_edge,
-                 ("car, circuit", "guard {}"))
-
-
 def lap_and_millimetres(run):
     """As lap_and_edge, for roads of model cars, too."""
     if "error" in run:
@@ -171,7 +166,7 @@ def noise(runs):
     return markdown(("car, track", "learns the grip", "does not"), rows, 2)
 
 
-TABLES = {"numbers": numbers, "pid": pid, "cars": cars, "sensors": sensors, "race": race, "circuits": circuits,
+TABLES = {"numbers": numbers, "pid": pid, "cars": cars, "sensors": sensors, "race": race,
           "waypoints": waypoints, "otherwise": otherwise, "noise": noise, "maps": maps,
           "race_cars": race_cars}
 

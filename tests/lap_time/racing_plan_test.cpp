@@ -148,22 +148,6 @@ INSTANTIATE_TEST_SUITE_P(Cars, RacingPlanOf, testing::Values("udacity", "road-ca
   return std::string(param.param) == "udacity" ? "Udacity" : "RoadCar";
 });
 
-/// A bend of 3 m between two straights is too tight for any car of full size; an open road may end before it.
-TEST(CanBeDriven, RefusesBendsOfAClosedRoadAlone) {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i < 60; ++i) {
-    const double angle = kTwoPi * i / 60.0;
-    points.push_back({{40.0 * std::cos(angle), 4.0 * std::sin(angle)}, 1.3, 1.3});
-  }
-  const double all = 10.0;
-  for (const bool is_closed : {true, false}) {
-    const auto track = road::Track::create("flat", points, is_closed);
-    ASSERT_TRUE(track) << track.error().message;
-    EXPECT_EQ(can_be_driven(*track, model::road_car_params(), all).has_value(), !is_closed);
-  }
-  EXPECT_TRUE(can_be_driven(bean(), model::road_car_params(), all));
-}
-
 TEST(RacingPlan, SaysWhyThereIsNone) {
   const auto narrow = plan_racing_line(bean(1.0, 0.9), model::udacity_params());
   ASSERT_FALSE(narrow);
