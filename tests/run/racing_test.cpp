@@ -48,7 +48,7 @@ TEST(PlanLap, SaysWhyThereIsNone) {
   const scenario::Scenario race = race_on("lakeside", "3.9");
   const road::Track track = make_track(race).value();
   std::string said;
-  const auto lap = plan_lap(race, &track, {.say = [&](const std::string& line) { said = line; }});
+  const auto lap = plan_lap(race, &track, {.say = [&](std::string_view line) { said = line; }});
   ASSERT_TRUE(lap) << lap.error().message;
   EXPECT_EQ(*lap, nullptr);
   EXPECT_NE(said.find("the road is"), std::string::npos) << said;
