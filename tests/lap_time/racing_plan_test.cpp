@@ -151,7 +151,6 @@ INSTANTIATE_TEST_SUITE_P(Cars, RacingPlanOf, testing::Values("udacity", "road-ca
 TEST(RacingPlan, SaysWhyThereIsNone) {
   const auto narrow = plan_racing_line(bean(1.0, 0.9), model::udacity_params());
   ASSERT_FALSE(narrow);
-  EXPECT_EQ(narrow.error().code, ErrorCode::kNotFound);
   EXPECT_NE(narrow.error().message.find("road"), std::string::npos) << narrow.error().message;
   EXPECT_FALSE(plan_racing_line(bean(), model::udacity_params(), {.grip_share = 0.0}));
   EXPECT_FALSE(plan_racing_line(bean(), model::udacity_params(), {.margin = -0.1}));

@@ -101,8 +101,7 @@ Result<road::RacingLine> plan_racing_line(const road::Track& track, const model:
   Fit fit;
   bool is_stopped = false;
   if (options.go_on) fit.go_on = [&] { return !(is_stopped = is_stopped || !options.go_on(0, 0.0)); };
-  if (Result<void> fits = fits_road(track, size, fit); !fits)
-    return fail(ErrorCode::kNotFound, fits.error().message);
+  if (Result<void> fits = fits_road(track, size, fit); !fits) return fail(fits.error());
   if (is_stopped) return fail(ErrorCode::kInvalidArgument, "limit: stopped");
   model.set_reserve({.margin = options.margin,
                      .grip_share = options.grip_share,

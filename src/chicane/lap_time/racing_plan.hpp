@@ -33,10 +33,10 @@ struct RacingPlanOptions {
 ///
 /// An open road's plan enters as it leaves: the same speed and place across the road at both ends.
 ///
-/// kInvalidArgument for parameters or options out of range, and for a search that was stopped. kNotFound for
-/// one that ended without a plan, and for a road too narrow for the car and its margins or with a bend too
-/// tight for its full lock (names the place and the radius). RacingLine::is_best_so_far where the budget
-/// ended it.
+/// kInvalidArgument for a road too narrow for the car or with a bend too tight for its full
+/// lock (names the place and the radius), parameters or options out of range, and for a search that was
+/// stopped. kNotFound for one that ended without a plan. RacingLine::is_best_so_far where the budget ended
+/// it.
 [[nodiscard]] Result<road::RacingLine> plan_racing_line(const road::Track& track,
                                                         const model::VehicleParams& vehicle,
                                                         const RacingPlanOptions& options = {});
