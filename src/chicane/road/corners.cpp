@@ -62,7 +62,7 @@ std::vector<Corner> corners_of(const Track& track) {
     const double curvature = size * bends.at(i);
     return std::fabs(curvature) < kLeastCurvature ? 0 : curvature > 0.0 ? 1 : -1;
   };
-  // From a place on where the road is straight or changes its side, so that no corner is cut in two.
+  // Begins where the road is straight or changes its side, so that no corner is cut in two.
   int first = 0;
   while (bends.is_closed && first < bends.count && side(first) != 0 && side(first - 1) == side(first))
     ++first;

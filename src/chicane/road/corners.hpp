@@ -10,7 +10,7 @@ namespace chicane::road {
 /// Bend of a road. Places are arc lengths of its line [m], within one lap.
 struct Corner {
   double begin = 0.0;
-  double apex = 0.0;  ///< where the line bends most
+  double apex = 0.0;  ///< sharpest place of the line
   double end = 0.0;   ///< less than `begin` where the corner crosses s = 0 of a closed road
   double turn = 0.0;  ///< change of heading from begin to end [rad], left positive
 };
@@ -25,7 +25,7 @@ struct Corner {
 [[nodiscard]] std::vector<Corner> corners_of(const Track& track);
 inline constexpr int kMostCorners = 128;
 
-/// Where each corner's part of a lap ends, as distances from the start line [m]: half-way along the straight
+/// Ends of each corner's part of a lap, as distances from the start line [m]: half-way along the straight
 /// to the next corner, the last one at the end of the lap. Empty without corners. Allocates.
 [[nodiscard]] std::vector<double> corner_sectors(const Track& track, const std::vector<Corner>& corners);
 

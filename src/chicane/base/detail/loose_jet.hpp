@@ -31,8 +31,8 @@ struct LooseJet {
   V v;                                    ///< value
   Variables first = 0;                    ///< variables with a slope; other slopes are stored zeros
   Variables second = 0;                   ///< pairs of these have a curvature; others are not initialised
-  std::array<V, kSlopes> slopes;          ///< by variable
-  std::array<V, kCurvatures> curvatures;  ///< by pair, in the order of members<kSecond>()
+  std::array<V, kSlopes> slopes;          ///< one for each variable
+  std::array<V, kCurvatures> curvatures;  ///< one for each pair, in the order of members<kSecond>()
 
   LooseJet() noexcept {}  // NOLINT: not initialised, like a plain double
   template <class S>
@@ -100,7 +100,7 @@ struct LooseJet {
       }
     }
   }
-  /// The same for all variables, in loops of fixed length.
+  /// Visits the pairs of all variables, in loops of fixed length.
   template <class Visit>
   CHICANE_INLINE static void each_row(const Visit& visit) noexcept {
     std::size_t at = 0;
@@ -169,7 +169,7 @@ template <AnyLooseJet A, class PA, class PB, class AA, class AB, class BB>
   });
   return r;
 }
-/// The same with a constant.
+/// Chain rule with a constant.
 template <AnyLooseJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
 requires(B::kFirst == 0) [[nodiscard]] inline A
     chain(const A& a, const B& b, const typename A::Value& value, const Partials<PA, PB, AA, AB, BB>& f) {
