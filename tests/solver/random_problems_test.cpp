@@ -69,6 +69,14 @@ TEST(RandomProblems, KeepTheVerdictThatBelongsToTheAnswer) {
 TEST(RandomProblems, AreSolvedBetweenBoundsCloserThanTheTolerance) {
   expect_confirmed<bench::RandomHard<2, 1, 1, 0, 1, 0>>(304300, 300, 100);
 }
+// One was "infeasible": a slope of 4e-5 by the input, whose bounds leave it 4e7, is flat by the tolerance.
+TEST(RandomProblems, AreInfeasibleOnlyWhereNoLargeChangeHelps) {
+  expect_confirmed<bench::RandomHard<2, 1, 1, 0, 1, 0>>(20003996, 12, 2);
+}
+// One was "at the floor" with the residuals of its inputs' simulation, 20 times what that allows.
+TEST(RandomProblems, AreAtTheFloorWithResidualsOfTheAnswer) {
+  expect_confirmed<bench::RandomStructured<1, 1, 0>>(21003901, 10, 3);
+}
 
 }  // namespace
 }  // namespace chicane

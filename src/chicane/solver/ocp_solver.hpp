@@ -155,6 +155,7 @@ class OcpSolver {
   static constexpr double kDefectShare = 1e-7;   ///< of the tolerance: Hessians amplify defects
   static constexpr double kDefectFloor = 2e-15;  ///< what rounding leaves
   static constexpr double kRounding = 2.2e-16;
+  static constexpr double kFloorResidual = 1e-6;  ///< most that kAtFloor may have
   static constexpr bool kCanFilter = has_filter_method<P>();
   /// Steps this short: exact curvature from here on. Dense problems pay for it.
   static constexpr double kNear = has_cheap_curvature<P>() ? 1e-1 : 1e-2;
@@ -247,8 +248,7 @@ class OcpSolver {
     }
     return options_.tolerance;
   }
-  /// The inputs of the warm start; its states or those of a simulation, of inputs of zero where that
-  /// diverges.
+  /// The inputs of the warm start, with its states or simulated; inputs of zero where that diverges.
   bool take_guess(const P& problem, const Trajectory& trajectory) noexcept {
     t_.horizon = target_;
     for (std::size_t m = 0; m < kNu; ++m) {
@@ -262,7 +262,6 @@ class OcpSolver {
     if (kCanFilter) hold_states();
     return kCanFilter;
   }
-  /// All states as the first one.
   void hold_states() noexcept {
     stands_still_ = true;
     for (std::size_t i = 0; i < kNx; ++i) std::fill(t_.x[i] + 1, t_.x[i] + t_.horizon + 1, t_.x[i][0]);
@@ -288,6 +287,7 @@ class OcpSolver {
   static double nearest(double value, double low, double high) noexcept {
     return std::min(std::max(std::isfinite(value) ? value : 0.0, low), high);
   }
+  bool bring_inside() noexcept;
   /// Inputs of zero, or their bounds, from stage k on.
   void fill_inputs(std::size_t from) noexcept {
     for (std::size_t m = 0; m < kNu; ++m) {

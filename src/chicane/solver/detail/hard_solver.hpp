@@ -381,6 +381,7 @@ class HardSolver {
 
   bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
                      int& left, HardReport& report) noexcept;
+  bool leads_downhill(const P& problem, const State& x0, Trajectory& trajectory, HardReport& report) noexcept;
   HardReport tell_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                              HardReport report) noexcept;
   double finest_tolerance(const P& problem, int horizon) const noexcept;
@@ -475,6 +476,7 @@ class HardSolver {
   Trajectory guess_;
   Trajectory kept_;          ///< of the first weights, where others were tried as well
   double kept_miss_ = 0.0;   ///< largest of its misses
+  Trajectory downhill_;      ///< a step from there that is tried
   Trajectory least_;         ///< where misses have a local minimum above zero, with is_certified_
   double tolerance_ = 0.0;   ///< of the next round
   int last_iterations_ = 0;  ///< of the last round

@@ -39,6 +39,7 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
       report = best_report_;
       if (!shows_best_) look_at_best(problem, report);
     }
+    if (kCanFilter && has_best_ && bring_inside()) linearise(problem, report);
     if (kCanFilter && !(has_best_ && is_close(report))) take_cheapest(problem, trajectory, report);
     if (is_growing() || !has_best_) {
       while (is_growing()) grow(problem);
@@ -47,7 +48,7 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
     }
     report.iterations = iterations;
     report.sweeps = sweeps;
-    if (status != SolveStatus::kAtFloor)
+    if (status != SolveStatus::kAtFloor || !(residual(report) <= kFloorResidual))
       status = is_close(report) ? SolveStatus::kBudgetSpent : SolveStatus::kStalled;
   } else if (barrier_.exceeds_a_cap(problem, t_.horizon)) {
     status = SolveStatus::kInfeasible;
@@ -62,6 +63,22 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
   tell_violation(problem, barrier_, t_.horizon, report);
   report.status = status;
   return report;
+}
+
+/// Inputs that iterations have left outside their bounds become the nearest inside. True when that moves one
+/// by more than rounding does.
+template <OcpProblem P, int Capacity, class Arch>
+bool OcpSolver<P, Capacity, Arch>::bring_inside() noexcept {
+  constexpr double kMoved = 1e-12;
+  bool has_moved = false;
+  for (std::size_t m = 0; m < kNu; ++m) {
+    for (std::size_t k = 0; k < t_.horizon; ++k) {
+      const double inside = nearest(t_.u[m][k], now_.lower[m][k], now_.upper[m][k]);
+      has_moved |= std::fabs(inside - t_.u[m][k]) > kMoved * (1.0 + std::fabs(inside));
+      t_.u[m][k] = inside;
+    }
+  }
+  return has_moved;
 }
 
 }  // namespace chicane::solver

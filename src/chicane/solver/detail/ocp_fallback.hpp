@@ -177,7 +177,6 @@ void OcpSolver<P, Capacity, Arch>::record_filter_iteration(const SolveReport& re
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::is_at_floor(const SolveReport& report) noexcept {
   constexpr double kFloor = 1e-8;  // of the inputs
-  constexpr double kClose = 1e-6;
   if (!kCanFilter || !is_finite(report) || !has_best_ || !full_steps_ || is_growing() || !barrier_.is_final())
     return false;
   double largest = 1.0;
@@ -185,7 +184,7 @@ bool OcpSolver<P, Capacity, Arch>::is_at_floor(const SolveReport& report) noexce
     for (std::size_t k = 0; k < t_.horizon; ++k) largest = std::max(largest, std::fabs(t_.u[m][k]));
   }
   const bool is_short = progress_.shortest() <= kFloor * largest;
-  if (!is_short || !(residual(report) <= std::min(kClose, options_.loose_tolerance))) return false;
+  if (!is_short || !(residual(report) <= std::min(kFloorResidual, options_.loose_tolerance))) return false;
   best_ = t_;
   best_report_ = report;
   return shows_best_ = true;
@@ -209,7 +208,10 @@ void OcpSolver<P, Capacity, Arch>::take_cheapest(const P& problem, const Traject
       step_ = t_;
       return true;
     };
-    if (has_filtered_) t_ = filter_.point();
+    if (has_filtered_) {
+      t_ = filter_.point();
+      bring_inside();
+    }
     if (!has_filtered_ || !consider(true)) {
       if (has_filtered_) consider(false);
       if (has_best_) {
