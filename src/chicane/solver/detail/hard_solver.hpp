@@ -378,7 +378,6 @@ class HardSolver {
   }
 
   // ---- what cannot hold (detail/hard_infeasible.hpp)
-
   bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
                      int& left, HardReport& report) noexcept;
   bool leads_downhill(const P& problem, const State& x0, Trajectory& trajectory, HardReport& report) noexcept;
@@ -388,7 +387,6 @@ class HardSolver {
   void weigh_misses(double share, double unit) noexcept;
 
   // ---- values
-
   static bool is_hard([[maybe_unused]] const P& problem, [[maybe_unused]] std::size_t c) noexcept {
     if constexpr (detail::SaysWhatIsHard<P>) return problem.is_hard(static_cast<int>(c));
     return false;
