@@ -37,17 +37,18 @@ namespace chicane::controller {
   return true;
 }
 
-/// How far beside `lap` [m] the beginning of `plan` leads at most. 0 where `lap` is to be taken up at once:
-/// after no other lap (`now` is null), since the line through waypoints is far from any, and where it has
-/// less grip, which has to be braked for. Allocates nothing.
+/// How far beside `lap` [m] the plan of the next 1.5 s leads at most. Of the first lap (`now` is null) the
+/// car's own place counts: the line through waypoints leaves grip to join it with, and crosses it before
+/// long. 0 where `lap` is to be taken up at once, since it has less grip, which has to be braked for.
+/// Allocates nothing.
 [[nodiscard]] inline double beside_lap(const road::RacingRoad& lap, const road::RacingRoad* now,
                                        const Plan& plan, double reach, double far) noexcept {
-  constexpr double kJoiningTime = 1.5;  // [s]
-  if (now == nullptr || lap.grip() < now->grip() || lap.line().is_empty()) return 0.0;
+  const double joining_time = now == nullptr ? 0.0 : 1.5;  // [s]
+  if (lap.line().is_empty() || (now != nullptr && lap.grip() < now->grip())) return 0.0;
   double most = 0.0, last = 0.0;
   for (int k = 0; k < plan.size; ++k) {
     const PlanPoint& point = plan.points[static_cast<std::size_t>(k)];
-    if (point.time > plan.points[0].time + kJoiningTime) break;
+    if (point.time > plan.points[0].time + joining_time) break;
     const road::ReferenceLine::Projection place =
         lap.line().find({point.x, point.y}, point.psi, reach, k > 0 ? &last : nullptr, far);
     most = std::max(most, place.distance);
