@@ -82,18 +82,19 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   }
   return false;
 }
-/// Whether `least_` is no minimum of the misses after all (docs/solver_hard.md, eq. 55a): inputs against the
-/// slope of (55) without the cost, by a factor of 1 to 1e20, simulate to misses that are a tenth less.
-/// `trajectory` is that simulation then. True as well where the slope is not a number.
+/// Whether `least_` is no minimum of the violation after all (docs/solver_hard.md, eq. 55a): inputs against
+/// the slope of (55) without the cost, by a factor of 1 to 1e20, simulate to a tenth less of it than its own
+/// do. `trajectory` is that simulation then.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::leads_downhill(const P& problem, const State& x0, Trajectory& trajectory,
                                                    HardReport& report) noexcept {
   constexpr double kLess = 0.9, kFarthest = 1e20;
+  if (kHasRateBounds<P>) return false;
   weigh_misses(0.0, least_unit_);
   HardReport seen;
   assess(x0, least_, true, seen);
-  const double worst = measure(problem, least_, nullptr).worst();
-  for (double step = 1.0; step <= kFarthest && !kHasRateBounds<P>; step *= 10.0) {
+  double least = std::numeric_limits<double>::infinity();
+  for (double step = 0.0; step <= kFarthest; step = step > 0.0 ? 10.0 * step : 1.0) {
     downhill_ = least_;
     for (int k = 0; k < downhill_.horizon; ++k) {
       const auto low = problem.input_lower(k), high = problem.input_upper(k);
@@ -103,13 +104,17 @@ bool HardSolver<P, Capacity, Arch>::leads_downhill(const P& problem, const State
       }
     }
     if (!roll_out(problem, x0, downhill_)) break;
-    if (!(measure(problem, downhill_, nullptr).worst() < kLess * worst)) continue;
-    trajectory = downhill_;
-    measure(problem, trajectory, &report);
-    return true;
+    const double violation = measure(problem, downhill_, nullptr).violation;
+    if (step == 0.0) {
+      least = violation;
+    } else if (violation < kLess * least) {
+      trajectory = downhill_;
+      measure(problem, trajectory, &report);
+      return true;
+    }
   }
   measure(problem, trajectory, &report);
-  return !std::isfinite(seen.stationarity + seen.defect + seen.complementarity);
+  return false;
 }
 /// The answer is the point of least violation, with the multipliers of the violation alone: its certificate.
 template <HardProblem P, int Capacity, class Arch>

@@ -87,23 +87,22 @@ class HardSolver {
   using Evaluate = Evaluation<Problem, Arch>;
   using One = typename Evaluate::One;
   using Kind = HardReport::Kind;
-  static constexpr std::size_t kNh = Problem::kEqualities;
+  static constexpr std::size_t kNh = Problem::kEqualities, kNc = P::kNc;
   static constexpr std::size_t kNeh = Problem::kEndEqualities;
   static constexpr std::size_t kEnd = kNeh + Problem::kEndConstraints;
-  static constexpr std::size_t kNc = P::kNc;
   static constexpr int kMostRounds = 40;
   static constexpr int kTrialSpent = -1;
   static constexpr double kFirstShare = 10.0;  ///< of the guess's cost in its misses
   static constexpr double kLeastWeight = 1e-2, kMostFirstWeight = 10.0, kMostWeight = 1e9;
-  static constexpr double kHeavier = 10.0;  ///< times these, where the first ones lead nowhere in short
-  static constexpr double kHeavy = 1e3;     ///< times these, where they lead nowhere at all
+  static constexpr double kHeavier = 10.0, kHeavy = 1e3;  ///< times these, where the first ones lead nowhere
 
   /// What a trajectory misses, by rows: the largest of each.
   struct Misses {
     std::array<double, kNh> equality{};
     std::array<double, kEnd> terminal{};
     std::array<double, kNc> constraint{};
-    double cost = 0.0;  ///< the problem's own, with its first prices
+    double cost = 0.0;       ///< the problem's own, with its first prices
+    double violation = 0.0;  ///< of (55), misses in multiples of least_unit_
 
     [[nodiscard]] double worst() const noexcept {
       double worst = 0.0;
@@ -313,8 +312,7 @@ class HardSolver {
   /// y ← y + ρ h; a weight or price whose row has not come down enough rises (eq. 57). `mu`: the barrier,
   /// which leaves soft constraints a violation of mu over their price.
   void update(Misses& now, const Misses* before, int horizon, double mu = 0.0) noexcept {
-    constexpr double kEnough = 0.1;
-    constexpr double kRise = 10.0;
+    constexpr double kEnough = 0.1, kRise = 10.0;
     const auto rises = [&](double miss, double last) {
       return before != nullptr && miss > options_.tolerance && miss > kEnough * last;
     };
@@ -396,6 +394,8 @@ class HardSolver {
     Misses misses;
     double worst = 0.0;
     const auto note = [&](double& miss, double value, Kind kind, int stage, std::size_t row) {
+      const double share = value / least_unit_;
+      misses.violation += kind == Kind::kConstraint ? share : 0.5 * share * share;
       miss = value > miss ? value : miss;
       if (report == nullptr || !(value > worst)) return;
       worst = value;
