@@ -135,6 +135,24 @@ TEST(SensorWatch, DoubtsNothingOfACarInAHairpin) {
     for (const double ahead : {0.58, -0.58}) EXPECT_FALSE(is_doubted_in_a_hairpin(side, ahead)) << side;
 }
 
+/// It slides to either side for 1.5 s, by no estimate, and drives calmly from then on.
+TEST(SensorWatch, ForgetsTheSlideOfACarThatIsCalmAgain) {
+  constexpr double kSlip = 0.5, kSlides = 1.5;  // [rad], [s]
+  for (const double side : {1.0, -1.0}) {
+    SensorWatch watch{kLength, kWheelbase};
+    for (double time = 0.0; time < 20.0; time += kCycle) {
+      const double slid = std::min(time, kSlides);
+      model::State car = car_at(time, 0.0);
+      car.x += kSpeed * slid * (std::cos(kSlip) - 1.0);
+      car.y += side * kSpeed * slid * std::sin(kSlip);
+      model::Measurement now = measured(time, car);
+      if (time < kSlides) car.y -= side;
+      const SensorDoubts doubts = watch.see(now, car);
+      ASSERT_FALSE(doubts.late || doubts.place || doubts.heading || doubts.speed) << time;
+    }
+  }
+}
+
 /// Its course turns off its heading by as much as wind pushes it.
 TEST(SensorWatch, DoubtsNothingOfACarThatWindPushesAside) {
   const auto pushed = [](model::Measurement& now) {

@@ -102,6 +102,7 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
   }
   if (!has_doubts()) {
     learn(seen, most, elapsed);
+    if (!is_sure()) clean_from_ = now.time - calm_;
     if (calm_ > kCalmTime) judge_sums(now);
   }
   if (!doubts_.place) {
