@@ -106,9 +106,10 @@ BlindCheck StopPlanner::doubted_edge(const road::KnownRoad& road, const StopStar
 
 BlindCheck StopPlanner::played_edge(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
                                     double time) const noexcept {
+  std::array<int, 2> point{};
   return doubted_edge(road, start, time,
-                      [&](std::size_t, int, const StopStart&, double driven, double speed) {
-                        return played(stop, driven, speed, model_.vehicle());
+                      [&](std::size_t k, int, const StopStart&, double driven, double speed) {
+                        return played(stop, driven, speed, model_.vehicle(), point[k]);
                       });
 }
 
@@ -131,8 +132,8 @@ double StopPlanner::followed_edge(const road::KnownRoad& road, const StopStart& 
 double StopPlanner::edge(const road::KnownRoad& road, const StopStart& at) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double half_track = 0.5 * (car.track_width + car.tire_width);
-  const double sine = sin(at.e);
-  const double beside = half_track * cos(at.e);
+  const auto [sine, cosine] = sine_cosine(at.e);
+  const double beside = half_track * cosine;
   double least = std::numeric_limits<double>::infinity();
   for (const double x : {car.front_axle, -car.rear_axle}) {
     const double middle = at.d + x * sine;
@@ -303,7 +304,7 @@ void StopPlanner::move(const StopCar& car, const road::KnownRoad& road, StopStar
   const double curvature = road.line().demand(at.s).curvature;
   const double shrink = std::max(1.0 - curvature * at.d, 0.2);
   const double e = at.e + 0.5 * turned - 0.5 * dt * curvature * vx / shrink;
-  const double cosine = cos(e), sine = sin(e);
+  const auto [sine, cosine] = sine_cosine(e);
   const double along = dt * (vx * cosine - vy * sine) / shrink;
   at.s += along;
   at.d += dt * (vx * sine + vy * cosine);
@@ -357,7 +358,9 @@ model::Command StopPlanner::along(const StopCourse& before, std::size_t& place, 
   const double curvature = back_to(at.d - between(from.d, to.d), at.e + at.body.vy / v - course_then, v);
   const double r = between(from.body.r, to.body.r) * v / v_then + v * curvature;
   const double distance = between(before.stop.points[place].distance, before.stop.points[place + 1].distance);
-  model::Command command = played(before.stop, distance, hypot(at.body.vx, at.body.vy), model_.vehicle());
+  int point = static_cast<int>(place);
+  model::Command command =
+      played(before.stop, distance, hypot(at.body.vx, at.body.vy), model_.vehicle(), point);
   if (const double drive = before.stop.points[place].command.throttle; drive > 0.0) {
     const double lost = between(from.body.vx, to.body.vx) - at.body.vx;
     const double wanted = longitudinal_acceleration(model_.vehicle(), drive, at.body.vx) + lost / kSpeedTime;
