@@ -43,6 +43,14 @@ TEST(Math, IsWithinOneUlpOfLongDouble) {
   EXPECT_LT(worst([](double x) { return log(x); }, [](L x) { return std::log(x); }, 1e-6, 50.0), 1.0);
 }
 
+TEST(Math, SineAndCosineTogetherHaveTheSameBits) {
+  for (double x = -30.0; x < 30.0; x += 0.0371) {
+    const auto [sine, cosine] = sine_cosine(x);
+    EXPECT_EQ(sine, sin(x)) << x;
+    EXPECT_EQ(cosine, cos(x)) << x;
+  }
+}
+
 TEST(Math, CompositesAreWithinFourUlp) {
   using L = long double;
   EXPECT_LT(worst([](double x) { return tan(x); }, [](L x) { return std::tan(x); }, -1.5, 1.5), 3.0);

@@ -43,6 +43,14 @@ TEST(MagicFormula, HasSlopeBcdAtZeroAndPeakD) {
   EXPECT_LT(tire(1.0), 1.2);
 }
 
+TEST(MagicFormula, HasItsSecantWithoutAnAngle) {
+  for (const double shape : {1.3, 1.5, 1.6}) {
+    const MagicFormula curve{.stiffness = 1.0 / shape, .shape = shape};
+    for (double slip = 1e-4; slip < 20.0; slip *= 1.3)
+      EXPECT_NEAR(magic_secant(shape, slip * slip), curve(slip) / slip, 4e-16) << shape << ' ' << slip;
+  }
+}
+
 TEST(TireCurves, AreOddAndDualsGiveTheirSlope) {
   const FrictionCurve curve;
   const MagicFormula magic{.stiffness = 9.0, .shape = 1.4, .peak = 1.1, .curvature = -0.5};

@@ -56,6 +56,31 @@ TEST(MeasurementMonitor, AcceptsACarThatDrivesBrakesAndTurns) {
   }
 }
 
+/// 30 m/s on a circle, turning by 2.9 rad/s: in a second the car has moved by two thirds of the way it drove.
+/// Its speed is measured as `unit` times what it is.
+Findings after_a_hairpin(double unit) {
+  constexpr double kSpeed = 30.0, kRate = 2.9;
+  MeasurementMonitor monitor{4.5, 2.7};
+  Findings found;
+  for (int i = 0; i < 50; ++i) {
+    model::Measurement now = at(i);
+    now.psi = kRate * now.time;
+    now.x = kSpeed / kRate * std::sin(now.psi);
+    now.y = kSpeed / kRate * (1.0 - std::cos(now.psi));
+    now.speed = unit * kSpeed;
+    const model::State state{.x = now.x, .y = now.y, .psi = now.psi, .vx = now.speed, .r = kRate};
+    const Findings& look_now = look(monitor, now, state);
+    found.speed_mismatch |= look_now.speed_mismatch;
+  }
+  return found;
+}
+
+TEST(MeasurementMonitor, AcceptsACarInAHairpin) {
+  EXPECT_FALSE(after_a_hairpin(1.0).speed_mismatch);
+  EXPECT_TRUE(after_a_hairpin(2.24).speed_mismatch) << "miles per hour";
+  EXPECT_TRUE(after_a_hairpin(0.4).speed_mismatch);
+}
+
 TEST(MeasurementMonitor, AcceptsACarThatStands) {
   MeasurementMonitor monitor{4.5, 2.7};
   for (int i = 0; i < 100; ++i) {

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/random.hpp"
 
 namespace chicane::safety {
@@ -106,6 +108,49 @@ TEST(SensorWatch, CountsOnFromWhereTheDriftBegan) {
   }
   EXPECT_TRUE(watch.doubts().place);
   EXPECT_LT(std::fabs(off), 0.8);  // 3.5 m by the sensor
+}
+
+/// 20 m/s through a hairpin of 20 m, to either side; its place is measured `ahead` of its centre of mass [m].
+/// The displacement is much shorter than the way, along which errors add up.
+bool is_doubted_in_a_hairpin(double side, double ahead) {
+  constexpr double kBegins = 12.0, kRate = 1.0;
+  SensorWatch watch{kLength, kWheelbase};
+  for (double time = 0.0; time < 20.0; time += kCycle) {
+    const double turned = std::clamp(kRate * (time - kBegins), 0.0, kPi);
+    const double before = kSpeed * std::min(time, kBegins);
+    const double after = kSpeed * std::max(time - kBegins - kPi / kRate, 0.0);
+    model::State car{.psi = side * turned, .vx = kSpeed};
+    car.r = turned > 0.0 && turned < kPi ? side * kRate : 0.0;
+    car.steer = std::atan(car.r * kWheelbase / kSpeed);
+    car.x = before + kSpeed / kRate * std::sin(turned) - after + ahead * std::cos(car.psi);
+    car.y = side * kSpeed / kRate * (1.0 - std::cos(turned)) + ahead * std::sin(car.psi);
+    const SensorDoubts doubts = watch.see(measured(time, car), car);
+    if (doubts.late || doubts.place || doubts.heading || doubts.speed) return true;
+  }
+  return false;
+}
+
+TEST(SensorWatch, DoubtsNothingOfACarInAHairpin) {
+  for (const double side : {1.0, -1.0})
+    for (const double ahead : {0.58, -0.58}) EXPECT_FALSE(is_doubted_in_a_hairpin(side, ahead)) << side;
+}
+
+/// It slides to either side for 1.5 s, by no estimate, and drives calmly from then on.
+TEST(SensorWatch, ForgetsTheSlideOfACarThatIsCalmAgain) {
+  constexpr double kSlip = 0.5, kSlides = 1.5;  // [rad], [s]
+  for (const double side : {1.0, -1.0}) {
+    SensorWatch watch{kLength, kWheelbase};
+    for (double time = 0.0; time < 20.0; time += kCycle) {
+      const double slid = std::min(time, kSlides);
+      model::State car = car_at(time, 0.0);
+      car.x += kSpeed * slid * (std::cos(kSlip) - 1.0);
+      car.y += side * kSpeed * slid * std::sin(kSlip);
+      model::Measurement now = measured(time, car);
+      if (time < kSlides) car.y -= side;
+      const SensorDoubts doubts = watch.see(now, car);
+      ASSERT_FALSE(doubts.late || doubts.place || doubts.heading || doubts.speed) << time;
+    }
+  }
 }
 
 /// Its course turns off its heading by as much as wind pushes it.

@@ -46,7 +46,7 @@ TEST(StopCar, TurnsAsThePlantWhereItBrakesInABend) {
       for (int i = 0; i < 30; ++i) {
         const auto asked = [&](double v) { return longitudinal_acceleration(params, command.throttle, v); };
         heading += 0.5 * kStep * at.body.r;
-        at = car.advance(at, command.steer, asked(at.body.vx), kStep);
+        at = car.advance(at, command.steer, asked(at.body.vx), car.step(kStep));
         heading += 0.5 * kStep * at.body.r;
         heading_of_simple += 0.5 * kStep * simple.r;
         simple = model.advance(simple, command.steer, asked(simple.vx), kStep, model.lags(kStep));
@@ -69,8 +69,8 @@ TEST(StopCar, IsTheSameInAMirror) {
   StopMotion left{.body = {30.0, -0.8, 0.2, 0.03, -1.0}, .load_along = 0.5, .load_across = 5.0};
   StopMotion right{.body = {30.0, 0.8, -0.2, -0.03, -1.0}, .load_along = 0.5, .load_across = -5.0};
   for (int i = 0; i < 40; ++i) {
-    left = car.advance(left, 0.02, -5.0, 0.05);
-    right = car.advance(right, -0.02, -5.0, 0.05);
+    left = car.advance(left, 0.02, -5.0, car.step(0.05));
+    right = car.advance(right, -0.02, -5.0, car.step(0.05));
     EXPECT_NEAR(left.body.vx, right.body.vx, 1e-12);
     EXPECT_NEAR(left.body.vy, -right.body.vy, 1e-12);
     EXPECT_NEAR(left.body.r, -right.body.r, 1e-12);
@@ -83,7 +83,7 @@ TEST(StopCar, IsOfSecondOrderInTheStep) {
   const StopCar car(plain_car());
   const auto yaw_rate = [&](int steps) {
     StopMotion at{.body = {35.0, -1.9, 0.24, 0.034, 0.6}, .load_along = 0.6, .load_across = 8.4};
-    for (int i = 0; i < steps; ++i) at = car.advance(at, 0.016, -1.4, 0.4 / steps);
+    for (int i = 0; i < steps; ++i) at = car.advance(at, 0.016, -1.4, car.step(0.4 / steps));
     return at.body.r;
   };
   const double exact = yaw_rate(400);
@@ -95,7 +95,7 @@ TEST(StopCar, IsOfSecondOrderInTheStep) {
 TEST(StopCar, MovesItsLoadsWithALag) {
   const StopCar car(plain_car());
   const StopMotion from{.body = {35.0, -1.9, 0.24, 0.034, 0.6}, .load_along = 0.6, .load_across = 8.4};
-  const StopMotion to = car.advance(from, 0.034, -6.0, 0.05);
+  const StopMotion to = car.advance(from, 0.034, -6.0, car.step(0.05));
   EXPECT_LT(to.body.acceleration, -1.5);
   EXPECT_GT(to.load_along, to.body.acceleration + 0.5);
   EXPECT_LT(to.load_along, 0.6);
@@ -107,7 +107,7 @@ TEST(StopCar, IsThePredictionModelWhereThatIsEnough) {
     const StopCar car(params);
     const model::PredictionModel model(params);
     const model::BodyMotion<double> body{params.friction_coupling > 0.0 ? 8.0 : 30.0, 0.1, 0.1, 0.02, -1.0};
-    const StopMotion to = car.advance({.body = body}, 0.03, -3.0, 0.05);
+    const StopMotion to = car.advance({.body = body}, 0.03, -3.0, car.step(0.05));
     const model::BodyMotion<double> expected = model.advance(body, 0.03, -3.0, 0.05, model.lags(0.05));
     EXPECT_EQ(to.body.vx, expected.vx);
     EXPECT_EQ(to.body.vy, expected.vy);
@@ -123,7 +123,7 @@ TEST(StopCar, StaysFiniteHoweverItSlides) {
       for (const double asked : {-30.0, 0.0, 10.0}) {
         StopMotion at{.body = {40.0, vy, r, 0.0, 0.0}};
         for (int i = 0; i < 100; ++i) {
-          at = car.advance(at, 0.4, asked, 0.05);
+          at = car.advance(at, 0.4, asked, car.step(0.05));
           at.body.vx = std::max(at.body.vx, 0.0);  // as its user does
         }
         EXPECT_TRUE(std::isfinite(at.body.vx + at.body.vy + at.body.r + at.load_along + at.load_across));
@@ -133,7 +133,7 @@ TEST(StopCar, StaysFiniteHoweverItSlides) {
 TEST(StopCar, AllocatesNothing) {
   const StopCar car(plain_car());
   const test::AllocationGuard guard;
-  static_cast<void>(car.advance({.body = {30.0, 0.0, 0.1, 0.0, 0.0}}, 0.01, -3.0, 0.05));
+  static_cast<void>(car.advance({.body = {30.0, 0.0, 0.1, 0.0, 0.0}}, 0.01, -3.0, car.step(0.05)));
   EXPECT_EQ(guard.count(), 0);
 }
 

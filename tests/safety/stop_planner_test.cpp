@@ -324,7 +324,7 @@ TEST(StopPlanner, BeginsAStopLaterAsTheControllerIntends) {
     intended.points[static_cast<std::size_t>(intended.size++)] = {
         .time = start.time + 0.05 * i, .x = 100.0 + 1.25 * i, .speed = 25.0, .command = {.throttle = drive}};
   StopCourse course, at_once, later;
-  planner.course_of(road, start, intended, course);
+  planner.course_of(road, start, intended, StopPlanner::kLongestDriveOn, course);
   ASSERT_GT(course.stop.size, 15);
   const StopCheck now = planner.plan(road, start, {.share = 1.0}, at_once);
   const StopCheck then = planner.plan_later(road, start, course, 1.0, {.share = 1.0}, later);
@@ -344,10 +344,10 @@ TEST(StopPlanner, TakesNoCourseFromAPlanThatIsNone) {
   for (int i = 0; i < 3; ++i)
     plan.points[static_cast<std::size_t>(i)] = {
         .time = 2.0 + 0.05 * i, .x = 1e6 * i, .speed = 25.0, .command = {}};
-  planner.course_of(road, start_at(100.0, 25.0), plan, course);
+  planner.course_of(road, start_at(100.0, 25.0), plan, StopPlanner::kLongestDriveOn, course);
   EXPECT_EQ(course.stop.size, 0);
   plan.points[1].x = std::numeric_limits<double>::quiet_NaN();
-  planner.course_of(road, start_at(100.0, 25.0), plan, course);
+  planner.course_of(road, start_at(100.0, 25.0), plan, StopPlanner::kLongestDriveOn, course);
   EXPECT_EQ(course.stop.size, 0);
 }
 

@@ -137,6 +137,27 @@ TEST_F(Estimating, StartsAnewAfterAJump) {
   EXPECT_EQ(estimator.state().vx, 3.0);
 }
 
+/// A run may begin with a car that slides: what is expected stays beside it.
+TEST_F(Estimating, FollowsACarThatSlidesWhenItStarts) {
+  constexpr double kCycle = 0.04, kForward = 12.0, kBraking = 11.0;
+  for (const double across : {18.0, -18.0}) {
+    estimator.reset();
+    for (int i = 0; i < 25; ++i) {
+      const double time = kCycle * i;
+      const double vy = across - std::copysign(kBraking, across) * time;
+      const model::Measurement now{.time = time,
+                                   .x = kForward * time,
+                                   .y = 0.5 * (across + vy) * time,
+                                   .speed = std::hypot(kForward, vy)};
+      if (i > 0) {
+        const model::State expected = estimator.predict(time, sent).state;
+        EXPECT_LT(std::hypot(now.x - expected.x, now.y - expected.y), 1.5) << across << ' ' << time;
+      }
+      estimator.correct(now, sent);
+    }
+  }
+}
+
 TEST_F(Estimating, CountsOnWithoutNumbersAndIgnoresWhatIsOutOfOrder) {
   estimator.correct({.time = 0.0, .speed = 10.0}, sent);
   estimator.correct({.time = 0.05, .x = std::numeric_limits<double>::quiet_NaN(), .speed = 10.0}, sent);

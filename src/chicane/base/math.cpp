@@ -7,6 +7,7 @@ namespace chicane {
 
 double sin(double x) noexcept { return elementary::sin(x); }
 double cos(double x) noexcept { return elementary::cos(x); }
+SineCosine sine_cosine(double x) noexcept { return {elementary::sin(x), elementary::cos(x)}; }
 double tan(double x) noexcept { return elementary::sin(x) / elementary::cos(x); }
 double atan(double x) noexcept { return elementary::atan(x); }
 double atan2(double y, double x) noexcept { return elementary::atan2(y, x); }

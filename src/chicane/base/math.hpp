@@ -9,10 +9,14 @@ namespace chicane {
 /// and multiplications in a fixed order, no library call (the C library picks another kernel, with other last
 /// bits, for each processor). Algorithms and coefficients after fdlibm (Sun Microsystems, 1993, freely
 /// distributable); error below 1 ulp in the stated ranges, NaN in gives NaN out. No allocation, no errno.
-[[nodiscard]] double sin(double x) noexcept;   ///< |x| < 1e6 [rad]; error grows with |x| beyond
-[[nodiscard]] double cos(double x) noexcept;   ///< as sin
-[[nodiscard]] double tan(double x) noexcept;   ///< sin / cos: error up to 2 ulp
-[[nodiscard]] double atan(double x) noexcept;  ///< all x
+[[nodiscard]] double sin(double x) noexcept;  ///< |x| < 1e6 [rad]; error grows with |x| beyond
+[[nodiscard]] double cos(double x) noexcept;  ///< as sin
+struct SineCosine {
+  double sine, cosine;
+};
+[[nodiscard]] SineCosine sine_cosine(double x) noexcept;  ///< the bits of sin and cos, for the price of one
+[[nodiscard]] double tan(double x) noexcept;              ///< sin / cos: error up to 2 ulp
+[[nodiscard]] double atan(double x) noexcept;             ///< all x
 [[nodiscard]] double atan2(double y, double x) noexcept;
 [[nodiscard]] double exp(double x) noexcept;   ///< |x| < 700, saturates to 0 and infinity beyond
 [[nodiscard]] double log(double x) noexcept;   ///< x > 0; NaN for x < 0, -inf for 0

@@ -100,7 +100,8 @@ void KnownRoad::add(const model::Measurement& now) noexcept {
 KnownRoad::Edges KnownRoad::edges(double s) const noexcept {
   if (is_learning()) return assumed_edges(seen_->line().demand(s).offset);
   const double length = line_.length();
-  const double along = line_.is_closed() ? s - std::floor(s / length) * length : std::clamp(s, 0.0, length);
+  double along = std::clamp(s, 0.0, length);
+  if (line_.is_closed() && along != s) along = s - std::floor(s / length) * length;
   const auto last = edges_.size() - 2;
   const double place = along / line_.spacing();
   const auto i = std::min(static_cast<std::size_t>(std::max(place, 0.0)), last);

@@ -118,10 +118,19 @@ bool MeasurementMonitor::jumps(const model::Measurement& now, double elapsed) co
   return hypot(x, y) > kJumpBack + kMismatchShare * driven;
 }
 
-/// Equation 8: over the last second, or what there is of it.
+/// Equation 8: over the last second, or what there is of it. A way that bends is longer than the
+/// displacement.
 bool MeasurementMonitor::contradicts_displacement(const model::Measurement& now, double elapsed) noexcept {
   if (!has_last_ || elapsed > kLongestGap) sample_count_ = 0;
-  driven_ = sample_count_ == 0 ? 0.0 : driven_ + 0.5 * elapsed * (now.speed + last_.speed);
+  if (sample_count_ == 0) {
+    driven_ = way_x_ = way_y_ = 0.0;
+  } else {
+    const double driven = 0.5 * elapsed * (now.speed + last_.speed);
+    const double heading = now.psi + 0.5 * angle_difference(last_.psi, now.psi);
+    driven_ += driven;
+    way_x_ += driven * cos(heading);
+    way_y_ += driven * sin(heading);
+  }
   // A jump of the place would look like a speed.
   const bool has_jumped =
       sample_count_ > 0 && hypot(now.x - last_.x, now.y - last_.y) >
@@ -132,7 +141,9 @@ bool MeasurementMonitor::contradicts_displacement(const model::Measurement& now,
     const Sample& first = samples_[0];
     const double displacement = hypot(now.x - first.x, now.y - first.y);
     const double driven = driven_ - first.driven;
-    is_wrong = std::fabs(displacement - driven) > kMismatch + kMismatchShare * std::max(displacement, driven);
+    const double chord = hypot(way_x_ - first.way_x, way_y_ - first.way_y);
+    const double tolerance = kMismatch + kMismatchShare * std::max(displacement, driven);
+    is_wrong = displacement > driven + tolerance || displacement < chord - tolerance;
   }
   const auto last = static_cast<std::size_t>(std::max(sample_count_ - 1, 0));
   if (sample_count_ == 0 || now.time - samples_[last].time >= kSampleSpacing) {
@@ -140,7 +151,7 @@ bool MeasurementMonitor::contradicts_displacement(const model::Measurement& now,
       std::move(samples_.begin() + 1, samples_.end(), samples_.begin());
       --sample_count_;
     }
-    samples_[static_cast<std::size_t>(sample_count_++)] = {now.time, now.x, now.y, driven_};
+    samples_[static_cast<std::size_t>(sample_count_++)] = {now.time, now.x, now.y, driven_, way_x_, way_y_};
   }
   return is_wrong;
 }

@@ -54,7 +54,8 @@ class MeasurementMonitor {
     double time = 0.0;
     double x = 0.0;
     double y = 0.0;
-    double driven = 0.0;  ///< integral of the measured speed [m]
+    double driven = 0.0;              ///< integral of the measured speed [m]
+    double way_x = 0.0, way_y = 0.0;  ///< integral of the measured speed along the measured heading [m]
   };
   static constexpr int kSamples = 16;
   static constexpr double kSampleSpacing = 0.06;  ///< [s]
@@ -75,6 +76,7 @@ class MeasurementMonitor {
   std::array<Sample, kSamples> samples_{};
   int sample_count_ = 0;
   double driven_ = 0.0;
+  double way_x_ = 0.0, way_y_ = 0.0;
 };
 
 }  // namespace chicane::safety

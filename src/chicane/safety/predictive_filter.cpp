@@ -41,6 +41,7 @@ constexpr double kLapFaster = 1.0;  // [m/s]
 constexpr double kWideLap = 4.0;    // times as much where no verified backup is in store
 
 // By how much the beginning of a published plan may be off the car's estimated place and speed.
+constexpr double kPlanBegins = 0.2;  // [s] of it that are looked at
 constexpr double kPlanLate = 0.02;   // [s]
 constexpr double kPlanOffset = 0.4;  // of the car's width
 constexpr double kPlanFaster = 1.5;  // [m/s]
@@ -124,10 +125,15 @@ Fit PredictiveFilter::verify(const Request& request, controller::StepReport& rep
   if (use < kMostUse && goal.edge_before >= goal.margin) {
     const bool can_stop_now = use < (!plans ? kLawUseUnplanned : road.is_raced() ? kRacedUse : kLawUse);
     // Where a backup need not be held blindly, any that holds will do: first the kind that held a cycle ago.
-    if (plans && !(goal.open_time > 0.0) && (can_stop_now || held_ >= kStopCount))
+    if (plans && !(goal.open_time > 0.0) && (can_stop_now || held_ >= kStopCount)) {
+      if (held_ >= kStopCount) read_plan(request, StopPlanner::kLongestDriveOn);
       fit = stop_by(held_, road, next, goal, fit, report);
+    }
     if (fit == Fit::kNone && can_stop_now) fit = stop_now(road, next, goal, report);
-    if (fit == Fit::kNone && plans) fit = stop_later(road, next, goal, report);
+    if (fit == Fit::kNone && plans) {
+      read_plan(request, StopPlanner::kLongestDriveOn);
+      fit = stop_later(road, next, goal, report);
+    }
     if (fit == Fit::kNone && plans && !road.is_raced()) fit = stop_searched(road, next, goal, report);
   }
   if (fit == Fit::kNone && plans && road.is_raced() && is_in_tube(road, next)) {
@@ -142,10 +148,15 @@ Fit PredictiveFilter::verify(const Request& request, controller::StepReport& rep
   return Fit::kOpen;
 }
 
+/// The first `longest` [s] of the published plan, in coordinates along the line.
+void PredictiveFilter::read_plan(const Request& request, double longest) noexcept {
+  planner_.course_of(request.road, request.start, *request.intended, longest, *intended_);
+}
+
 /// Whether the published plan begins where the car is, so that a backup may go on along it.
 bool PredictiveFilter::intends(const Request& request) noexcept {
   if (request.intended == nullptr) return false;
-  planner_.course_of(request.road, request.start, *request.intended, *intended_);
+  read_plan(request, kPlanBegins);
   if (intended_->stop.size < 2) return false;
   const StopStart& first = intended_->places[0];
   const StopStart& car = request.start;

@@ -115,6 +115,7 @@ class PredictiveFilter {
                                controller::StepReport& report) noexcept;
   [[nodiscard]] Fit stop_searched(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
                                   controller::StepReport& report) noexcept;
+  void read_plan(const Request& request, double longest) noexcept;
   [[nodiscard]] bool intends(const Request& request) noexcept;
   [[nodiscard]] bool is_in_tube(const road::KnownRoad& road, const StopStart& at) const noexcept;
   [[nodiscard]] bool drives_planned_lap(const road::KnownRoad& road, const StopStart& at,

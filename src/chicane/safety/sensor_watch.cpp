@@ -102,6 +102,7 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
   }
   if (!has_doubts()) {
     learn(seen, most, elapsed);
+    if (!is_sure()) clean_from_ = now.time - calm_;
     if (calm_ > kCalmTime) judge_sums(now);
   }
   if (!doubts_.place) {
@@ -130,6 +131,7 @@ void SensorWatch::count_on(double elapsed, const model::Measurement& now,
   const double dx = way * cos(course);
   const double dy = way * sin(course);
   moved_ = hypot(now.x - last_.x - dx, now.y - last_.y - dy);
+  driven_ += way;
   way_x_ += dx;
   way_y_ += dy;
   slip_x_ += dx - way * cos(course - slip);
@@ -145,8 +147,8 @@ void SensorWatch::count_on(double elapsed, const model::Measurement& now,
 
 void SensorWatch::add_sample(const model::Measurement& now, const model::State& expected) noexcept {
   if (count_ > 0 && now.time - back(0).time < kSpacing) return;
-  samples_[count_ % kSamples] = {now.time, now.x,   now.y,   way_x_, way_y_,
-                                 slip_x_,  slip_y_, turned_, asked_, expected};
+  samples_[count_ % kSamples] = {now.time, now.x,   now.y,   driven_, way_x_,  way_y_,
+                                 slip_x_,  slip_y_, turned_, asked_,  expected};
   ++count_;
 }
 
@@ -253,7 +255,7 @@ void SensorWatch::judge_sums(const model::Measurement& now) noexcept {
     const double length = hypot(way_x + left_x, way_y + left_y) - way;
     const double aside = way > 0.0 ? std::fabs(left_y * way_x - left_x * way_y) / way : 0.0;
     const double sum = hypot(length, std::max(aside - kCrab * way, 0.0));
-    const double speed = way / elapsed;
+    const double speed = (driven_ - from.driven) / elapsed;
     const double most = kSum * size_ + kSumShare * speed * std::sqrt(elapsed) + kSumWay * way +
                         kSumDeviations * sums_[k].deviation() + kDeviations * place_.deviation();
     if (sum < 0.5 * most) sums_[k].learn(sum);

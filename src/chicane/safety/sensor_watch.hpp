@@ -47,6 +47,7 @@ class SensorWatch {
   struct Sample {
     double time = 0.0;
     double x = 0.0, y = 0.0;            ///< measured [m]
+    double driven = 0.0;                ///< its length, along its bends [m]
     double way_x = 0.0, way_y = 0.0;    ///< the way that speed and heading describe [m]
     double slip_x = 0.0, slip_y = 0.0;  ///< what of it comes from the slip of the estimate [m]
     double turned = 0.0, asked = 0.0;   ///< the heading, unwrapped, and what the wheels asked for [rad]
@@ -90,6 +91,7 @@ class SensorWatch {
   bool has_last_ = false;
   model::Measurement last_;
   double time_ = 0.0;                                                      ///< of the last call [s]
+  double driven_ = 0.0;                                                    ///< [m]
   double way_x_ = 0.0, way_y_ = 0.0;                                       ///< [m]
   double slip_x_ = 0.0, slip_y_ = 0.0;                                     ///< [m]
   double turned_ = 0.0, asked_ = 0.0;                                      ///< [rad]

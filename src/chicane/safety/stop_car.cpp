@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "chicane/base/math.hpp"
+#include "chicane/model/tire.hpp"
 
 namespace chicane::safety {
 namespace {
@@ -70,10 +71,7 @@ StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
       // The slip along that gives the force asked for beside the slip across, by similarity.
       const double use = std::clamp((asked - rolling * load) / most, -kMostAlong, kMostAlong);
       const double z = axle.cornering * slip;
-      const auto secant = [&p](double square) {
-        const double size = std::sqrt(square + kLeastSquare);
-        return sin(p.tire_shape * atan(size / p.tire_shape)) / size;
-      };
+      const auto secant = [&p](double to) { return model::magic_secant(p.tire_shape, to + kLeastSquare); };
       const double square = use * use;
       const double first = secant(z * z + square / std::sqrt(1.0 - square * square));
       const double force_across = most * z * secant(z * z + square / (first * first));
@@ -88,27 +86,32 @@ StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
   return {along + m.r * m.vy, across - m.r * m.vx, p.mass / p.yaw_inertia * moment, along, across};
 }
 
-StopMotion StopCar::advance(const StopMotion& from, double steer_asked, double acceleration_asked,
-                            double dt) const noexcept {
+StopCar::Step StopCar::step(double dt) const noexcept {
   const model::VehicleParams& p = vehicle();
+  const auto left = [&](double h) {
+    return Left{left_of(kLoadLag, h), left_of(p.steer_lag, h), left_of(p.drive_lag, h)};
+  };
+  return {dt, model_.lags(dt), left(0.5 * dt), left(dt)};
+}
+
+StopMotion StopCar::advance(const StopMotion& from, double steer_asked, double acceleration_asked,
+                            const Step& step) const noexcept {
   const model::BodyMotion<double>& m = from.body;
   if (!has_wheels_ || !(m.vx > kSlowest)) {
-    StopMotion to{.body = model_.advance(m, steer_asked, acceleration_asked, dt, model_.lags(dt))};
+    StopMotion to{.body = model_.advance(m, steer_asked, acceleration_asked, step.dt, step.lags)};
     to.load_along = to.body.acceleration;
     to.load_across = to.body.vx * to.body.r;
     return to;
   }
   // The midpoint rule, with the lags' exact solutions.
-  const auto later = [&](double h, const Change& change) {
-    const double followed = left_of(kLoadLag, h);
-    return StopMotion{
-        .body = {m.vx + h * change.vx, m.vy + h * change.vy, m.r + h * change.r,
-                 steer_asked + (m.steer - steer_asked) * left_of(p.steer_lag, h),
-                 acceleration_asked + (m.acceleration - acceleration_asked) * left_of(p.drive_lag, h)},
-        .load_along = change.along + (from.load_along - change.along) * followed,
-        .load_across = change.across + (from.load_across - change.across) * followed};
+  const auto later = [&](double h, const Left& left, const Change& change) {
+    return StopMotion{.body = {m.vx + h * change.vx, m.vy + h * change.vy, m.r + h * change.r,
+                               steer_asked + (m.steer - steer_asked) * left.steer,
+                               acceleration_asked + (m.acceleration - acceleration_asked) * left.drive},
+                      .load_along = change.along + (from.load_along - change.along) * left.load,
+                      .load_across = change.across + (from.load_across - change.across) * left.load};
   };
-  return later(dt, change(later(0.5 * dt, change(from))));
+  return later(step.dt, step.end, change(later(0.5 * step.dt, step.middle, change(from))));
 }
 
 }  // namespace chicane::safety

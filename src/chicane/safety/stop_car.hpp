@@ -24,9 +24,22 @@ class StopCar {
   explicit StopCar(const model::VehicleParams& vehicle) noexcept : model_{vehicle} { set_vehicle(vehicle); }
   void set_vehicle(const model::VehicleParams& vehicle) noexcept;
 
-  /// The motion after dt [s], 0 < dt <= 0.1, towards a road-wheel angle and a net acceleration as asked for.
+  /// What lags leave of a difference.
+  struct Left {
+    double load, steer, drive;
+  };
+  /// A step of `dt` [s], and what is the same in all of its length.
+  struct Step {
+    double dt;
+    model::PredictionModel::Lags lags;
+    Left middle, end;
+  };
+  /// 0 < dt <= 0.1.
+  [[nodiscard]] Step step(double dt) const noexcept;
+  /// The motion after a step towards a road-wheel angle and a net acceleration as asked for. Pre: `step` is
+  /// of a car with the same lags.
   [[nodiscard]] StopMotion advance(const StopMotion& from, double steer_asked, double acceleration_asked,
-                                   double dt) const noexcept;
+                                   const Step& step) const noexcept;
   /// Whether it is more than the PredictionModel.
   [[nodiscard]] bool has_wheels() const noexcept { return has_wheels_; }
   [[nodiscard]] const model::VehicleParams& vehicle() const noexcept { return model_.vehicle(); }

@@ -2,6 +2,7 @@
 #include "chicane/safety/stop_planner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -62,33 +63,42 @@ void StopPlanner::set_vehicle(const model::VehicleParams& vehicle) noexcept {
 }
 
 /// The least distance to the edge [m] of the two cars that are a little other than believed, in the first
-/// `time` [s] of what `command_at` says at a place, after `driven` [m] and at `speed` [m/s].
+/// `time` [s] of what `command_at` says at a place, after `driven` [m] and at `speed` [m/s]. Step by step in
+/// turn: what one of them waits for, the other computes meanwhile.
 template <class Law>
 BlindCheck StopPlanner::doubted_edge(const road::KnownRoad& road, const StopStart& start, double time,
                                      const Law& command_at) const noexcept {
   const double reach = steer_reach(kStep);
+  const StopCar::Step step = car_.step(kStep);
   constexpr double kFar = std::numeric_limits<double>::infinity();
   BlindCheck check{.edge_for = kFar, .edge = kFar};
-  for (const double side : {1.0, -1.0}) {
-    const StopCar& car = side > 0.0 ? softer_ : stiffer_;
-    const double inwards = std::copysign(side, start.body.r);
-    StopStart at = start;
-    at.body.r += inwards * doubt_ * kYawRateDoubt;
-    at.e += inwards * doubt_ * kHeadingDoubt;
-    double driven = 0.0;
-    double speed = hypot(at.body.vx, at.body.vy);
-    for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity && speed >= kStanding; ++i) {
-      const double before = speed;
-      move(car, road, at, command_at(i, at, driven, speed), kStep, reach);
-      speed = hypot(at.body.vx, at.body.vy);
-      driven += 0.5 * kStep * (before + speed);
-      const double now = edge(road, at);
+  struct Doubted {
+    const StopCar& car;
+    StopStart at;
+    double speed, driven = 0.0;
+    bool is_on_road = true;
+  };
+  const double speed = hypot(start.body.vx, start.body.vy);
+  std::array<Doubted, 2> cars{{{softer_, start, speed}, {stiffer_, start, speed}}};
+  for (std::size_t k = 0; k < cars.size(); ++k) {
+    const double inwards = std::copysign(k == 0 ? 1.0 : -1.0, start.body.r);
+    cars[k].at.body.r += inwards * doubt_ * kYawRateDoubt;
+    cars[k].at.e += inwards * doubt_ * kHeadingDoubt;
+  }
+  const auto drives = [](const Doubted& each) { return each.is_on_road && each.speed >= kStanding; };
+  for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity && (drives(cars[0]) || drives(cars[1])); ++i) {
+    for (std::size_t k = 0; k < cars.size(); ++k) {
+      Doubted& each = cars[k];
+      if (!drives(each)) continue;
+      const double before = each.speed;
+      move(each.car, road, each.at, command_at(k, i, each.at, each.driven, before), step, reach);
+      each.speed = hypot(each.at.body.vx, each.at.body.vy);
+      each.driven += 0.5 * kStep * (before + each.speed);
+      const double now = edge(road, each.at);
       check.edge = std::min(check.edge, now);
-      if (at.time < start.time + time + 0.5 * kStep) check.edge_for = std::min(check.edge_for, now);
-      if (now < 0.0) {
-        check.speed = std::max(check.speed, speed);
-        break;
-      }
+      if (each.at.time < start.time + time + 0.5 * kStep) check.edge_for = std::min(check.edge_for, now);
+      each.is_on_road = now >= 0.0;
+      if (!each.is_on_road) check.speed = std::max(check.speed, each.speed);
     }
   }
   return check;
@@ -96,24 +106,25 @@ BlindCheck StopPlanner::doubted_edge(const road::KnownRoad& road, const StopStar
 
 BlindCheck StopPlanner::played_edge(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
                                     double time) const noexcept {
-  return doubted_edge(road, start, time, [&](int, const StopStart&, double driven, double speed) {
-    return played(stop, driven, speed, model_.vehicle());
-  });
+  std::array<int, 2> point{};
+  return doubted_edge(road, start, time,
+                      [&](std::size_t k, int, const StopStart&, double driven, double speed) {
+                        return played(stop, driven, speed, model_.vehicle(), point[k]);
+                      });
 }
 
 double StopPlanner::followed_edge(const road::KnownRoad& road, const StopStart& start,
                                   const StopCourse& stop) const noexcept {
-  std::size_t place = 0;
-  model::Command command;
+  std::array<std::size_t, 2> place{};
+  std::array<model::Command, 2> command;
   const auto last = static_cast<std::size_t>(stop.stop.size - 1);
   constexpr double kForEver = 1e9;
   return doubted_edge(road, start, kForEver,
-                      [&](int i, const StopStart& at, double, double) {
-                        if (i == 0) place = 0;
+                      [&](std::size_t k, int i, const StopStart& at, double, double) {
                         if (i % kStepsPerPoint == 0)
-                          command =
-                              at.s < stop.places[last].s ? along(stop, place, 0.0, at) : law(road, at, {});
-                        return command;
+                          command[k] =
+                              at.s < stop.places[last].s ? along(stop, place[k], 0.0, at) : law(road, at, {});
+                        return command[k];
                       })
       .edge;
 }
@@ -121,8 +132,8 @@ double StopPlanner::followed_edge(const road::KnownRoad& road, const StopStart& 
 double StopPlanner::edge(const road::KnownRoad& road, const StopStart& at) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double half_track = 0.5 * (car.track_width + car.tire_width);
-  const double sine = sin(at.e);
-  const double beside = half_track * cos(at.e);
+  const auto [sine, cosine] = sine_cosine(at.e);
+  const double beside = half_track * cosine;
   double least = std::numeric_limits<double>::infinity();
   for (const double x : {car.front_axle, -car.rear_axle}) {
     const double middle = at.d + x * sine;
@@ -277,10 +288,12 @@ double StopPlanner::foreseen(const road::KnownRoad& road, const StopStart& at, d
 }
 
 void StopPlanner::move(const StopCar& car, const road::KnownRoad& road, StopStart& at,
-                       const model::Command& command, double dt, double steer_reach) noexcept {
+                       const model::Command& command, const StopCar::Step& step,
+                       double steer_reach) noexcept {
+  const double dt = step.dt;
   const double steer = std::clamp(command.steer, at.body.steer - steer_reach, at.body.steer + steer_reach);
   const double asked = longitudinal_acceleration(car.vehicle(), command.throttle, at.body.vx);
-  StopMotion moved = car.advance({at.body, at.load_along, at.load_across}, steer, asked, dt);
+  StopMotion moved = car.advance({at.body, at.load_along, at.load_across}, steer, asked, step);
   model::BodyMotion<double>& to = moved.body;
   to.vx = std::max(to.vx, 0.0);
   const double vx = 0.5 * (at.body.vx + to.vx);
@@ -291,9 +304,10 @@ void StopPlanner::move(const StopCar& car, const road::KnownRoad& road, StopStar
   const double curvature = road.line().demand(at.s).curvature;
   const double shrink = std::max(1.0 - curvature * at.d, 0.2);
   const double e = at.e + 0.5 * turned - 0.5 * dt * curvature * vx / shrink;
-  const double along = dt * (vx * cos(e) - vy * sin(e)) / shrink;
+  const auto [sine, cosine] = sine_cosine(e);
+  const double along = dt * (vx * cosine - vy * sine) / shrink;
   at.s += along;
-  at.d += dt * (vx * sin(e) + vy * cos(e));
+  at.d += dt * (vx * sine + vy * cosine);
   at.e += turned - curvature * along;
   at.body = to;
   at.load_along = moved.load_along;
@@ -312,9 +326,10 @@ StopStart StopPlanner::advance(const road::KnownRoad& road, const StopStart& fro
   const int steps = std::max(1, static_cast<int>(std::ceil(time / kStep)));
   const double dt = time / steps;
   const double reach = steer_reach(dt);
+  const StopCar::Step step = car_.step(dt);
   StopStart at = from;
   for (int i = 0; i < steps; ++i) {
-    move(car_, road, at, command, dt, reach);
+    move(car_, road, at, command, step, reach);
     least_edge = std::min(least_edge, edge(road, at));
   }
   return at;
@@ -343,7 +358,9 @@ model::Command StopPlanner::along(const StopCourse& before, std::size_t& place, 
   const double curvature = back_to(at.d - between(from.d, to.d), at.e + at.body.vy / v - course_then, v);
   const double r = between(from.body.r, to.body.r) * v / v_then + v * curvature;
   const double distance = between(before.stop.points[place].distance, before.stop.points[place + 1].distance);
-  model::Command command = played(before.stop, distance, hypot(at.body.vx, at.body.vy), model_.vehicle());
+  int point = static_cast<int>(place);
+  model::Command command =
+      played(before.stop, distance, hypot(at.body.vx, at.body.vy), model_.vehicle(), point);
   if (const double drive = before.stop.points[place].command.throttle; drive > 0.0) {
     const double lost = between(from.body.vx, to.body.vx) - at.body.vx;
     const double wanted = longitudinal_acceleration(model_.vehicle(), drive, at.body.vx) + lost / kSpeedTime;
@@ -381,7 +398,8 @@ StopCheck StopPlanner::follow(const road::KnownRoad& road, const StopStart& star
 }
 
 void StopPlanner::course_of(const road::KnownRoad& road, const StopStart& start,
-                            const controller::Plan& intended, StopCourse& out) const noexcept {
+                            const controller::Plan& intended, double longest,
+                            StopCourse& out) const noexcept {
   out.stop.size = 0;
   const road::ReferenceLine& line = road.line();
   const auto size = static_cast<std::size_t>(std::clamp(intended.size, 0, controller::Plan::kCapacity));
@@ -392,7 +410,7 @@ void StopPlanner::course_of(const road::KnownRoad& road, const StopStart& start,
     const double dt = to.time - from.time, dx = to.x - from.x, dy = to.y - from.y;
     const double length = hypot(dx, dy);
     if (!(dt > 0.0) || !(length < kStride) || !std::isfinite(from.psi + from.speed + to.psi)) return;
-    if (from.time - start.time > kLongestDriveOn) return;
+    if (from.time - start.time > longest) return;
     if (from.time >= next && length > 0.0) {
       next = from.time + kPlanSpacing;
       const road::ReferenceLine::Projection place = line.project({from.x, from.y}, s, kStride);
@@ -428,6 +446,7 @@ template <class Law>
 StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start, const Law& command_at,
                              StopCourse& out, double least) const noexcept {
   const double reach = steer_reach(kStep);
+  const StopCar::Step step = car_.step(kStep);
   const double end = road.line().is_closed() ? start.s + road.line().length() : road.line().length();
   const double most_slide = std::max(kMostSlide, slide(start.body) + kSlideGrows);
   StopCheck check{.least_edge = edge(road, start)};
@@ -443,7 +462,7 @@ StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start
     if (i % kStepsPerPoint == 0 || has_ended) out.add(at, driven, speed, command);
     if (has_ended) break;
     const double before = speed;
-    move(car_, road, at, command, kStep, reach);
+    move(car_, road, at, command, step, reach);
     speed = hypot(at.body.vx, at.body.vy);
     driven += 0.5 * kStep * (before + speed);
     check.least_edge = std::min(check.least_edge, edge(road, at));

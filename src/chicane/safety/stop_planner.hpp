@@ -88,10 +88,10 @@ class StopPlanner {
   /// there, and the law where it ends. Pre: as plan(), before.stop.size > 0.
   [[nodiscard]] StopCheck follow(const road::KnownRoad& road, const StopStart& start,
                                  const StopCourse& before, StopCourse& out) const noexcept;
-  /// The motion that a controller publishes, in coordinates along the line: a course to drive on along. At
-  /// most kLongestDriveOn long. Pre: as plan().
+  /// The first `longest` [s] of the motion that a controller publishes, in coordinates along the line: a
+  /// course to drive on along. Pre: as plan().
   void course_of(const road::KnownRoad& road, const StopStart& start, const controller::Plan& intended,
-                 StopCourse& out) const noexcept;
+                 double longest, StopCourse& out) const noexcept;
   /// Drives on along `intended` for `time` [s], then brakes by the law. Pre: as plan(); intended.stop.size
   /// > 1.
   [[nodiscard]] StopCheck plan_later(const road::KnownRoad& road, const StopStart& start,
@@ -151,7 +151,7 @@ class StopPlanner {
                                      const StopStart& at) const noexcept;
   [[nodiscard]] double back_to(double beside, double course, double v) const noexcept;
   static void move(const StopCar& car, const road::KnownRoad& road, StopStart& at,
-                   const model::Command& command, double dt, double steer_reach) noexcept;
+                   const model::Command& command, const StopCar::Step& step, double steer_reach) noexcept;
   [[nodiscard]] double steer_reach(double dt) const noexcept;
 
   model::PredictionModel model_;

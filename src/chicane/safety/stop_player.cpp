@@ -15,14 +15,20 @@ constexpr double kStanding = 0.5;   // [m/s] a plan that ends faster is not comp
 
 model::Command played(const StopPlan& stop, double distance, double speed,
                       const model::VehicleParams& vehicle) noexcept {
-  int i = 0;
-  while (i + 1 < stop.size && stop.points[static_cast<std::size_t>(i + 1)].distance <= distance) ++i;
-  const StopPoint& here = stop.points[static_cast<std::size_t>(i)];
-  const StopPoint& next = stop.points[static_cast<std::size_t>(std::min(i + 1, stop.size - 1))];
+  int first = 0;
+  return played(stop, distance, speed, vehicle, first);
+}
+
+model::Command played(const StopPlan& stop, double distance, double speed,
+                      const model::VehicleParams& vehicle, int& point) noexcept {
+  while (point + 1 < stop.size && stop.points[static_cast<std::size_t>(point + 1)].distance <= distance)
+    ++point;
+  const StopPoint& here = stop.points[static_cast<std::size_t>(point)];
+  const StopPoint& next = stop.points[static_cast<std::size_t>(std::min(point + 1, stop.size - 1))];
   const double length = next.distance - here.distance;
   const double share = length > 1e-6 ? std::clamp((distance - here.distance) / length, 0.0, 1.0) : 0.0;
   const double size = std::sqrt(vehicle.scale);
-  const bool ends_rolling = i + 1 == stop.size && here.speed >= size * kStanding;  // where the road ended
+  const bool ends_rolling = point + 1 == stop.size && here.speed >= size * kStanding;  // where the road ended
   const double planned = ends_rolling ? 0.0 : here.speed + share * (next.speed - here.speed);
   const double wanted = longitudinal_acceleration(vehicle, here.command.throttle, speed) +
                         (planned - speed) / (size * kSpeedTime);

@@ -15,6 +15,9 @@ namespace chicane::safety {
 /// steering of that place, and what meets the planned speed there again. Pre: stop.size > 0.
 [[nodiscard]] model::Command played(const StopPlan& stop, double distance, double speed,
                                     const model::VehicleParams& vehicle) noexcept;
+/// The same in a stop that is played on: `point` is the one that acts, from 0 on, at or before that place.
+[[nodiscard]] model::Command played(const StopPlan& stop, double distance, double speed,
+                                    const model::VehicleParams& vehicle, int& point) noexcept;
 
 /// The receiver's side of a broken link: what the actuators do when commands cease. A watchdog at the sender
 /// could not help. It knows the clock, its own wheel speed, and what has arrived; no position.

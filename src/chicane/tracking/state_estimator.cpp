@@ -36,6 +36,8 @@ void InnovationGains::note(double x, double y, double elapsed) noexcept {
     velocity_ = 2.0 * (1.0 - root) * (1.0 - root);
     return;
   }
+  // The first one says nothing of noise: the car may have started with any slide.
+  if (!has_last_) return note_after_gap(x, y);
   const double forgetting = is_disturbed_ ? kForgettingDisturbed : kForgetting;
   square_ += forgetting * (x * x + y * y - square_);
   product_ += forgetting * (x * last_x_ + y * last_y_ - product_);
@@ -51,6 +53,7 @@ void InnovationGains::note(double x, double y, double elapsed) noexcept {
 void InnovationGains::note_after_gap(double x, double y) noexcept {
   last_x_ = x;
   last_y_ = y;
+  has_last_ = true;
   position_ = kMostPosition;
   velocity_ = most_velocity();
 }

@@ -66,6 +66,7 @@ class InnovationGains {
   double square_ = 0.0;   ///< mean of innovation²
   double product_ = 0.0;  ///< mean of innovation times the one before
   double last_x_ = 0.0, last_y_ = 0.0;
+  bool has_last_ = false;
   double position_ = kMostPosition;
   double velocity_ = kMostVelocity;
   bool is_disturbed_ = false;
