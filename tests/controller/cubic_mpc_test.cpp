@@ -236,6 +236,18 @@ TEST(CubicMpc, ForgetsOnReset) {
   EXPECT_EQ(first.throttle, again.throttle);
 }
 
+TEST(CubicMpc, SaysWhichOptionIsMissingBesideAnother) {
+  CubicMpcOptions options{.heading_error_integrated = false, .lateral_error_integrated = true};
+  const std::vector<OptionContradiction> found = CubicMpcEntry::contradictions(options);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].option, "lateral_error_integrated");
+  EXPECT_NE(found[0].message.find("got true, expected cubic_mpc.heading_error_integrated=true beside it"),
+            std::string::npos)
+      << found[0].message;
+  options.heading_error_integrated = true;
+  EXPECT_TRUE(CubicMpcEntry::contradictions(options).empty());
+}
+
 TEST(CubicMpc, RefusesOptionsOutOfRangeByName) {
   const auto refused = [](auto change, const char* name) {
     CubicMpcOptions options;

@@ -57,6 +57,20 @@ TEST(TrackingMpc, DoesNotCareWhereNorthIs) {
   EXPECT_NEAR(here.command.throttle, there.command.throttle, 1e-6);
 }
 
+/// The last answer is only a first guess: what the road asks is what is seen now.
+TEST(TrackingMpc, SteersByTheRoadThatItSeesNow) {
+  const auto controller = make();
+  model::Measurement now = on_a_left_bend();
+  for (int i = 0; i < 5; ++i, now.time += 0.001) controller->step(now, Deadline::never());
+  model::Measurement right = mirrored(on_a_left_bend());
+  right.time = now.time;
+  for (int i = 0; i < 20; ++i, right.time += 0.001) controller->step(right, Deadline::never());
+  const StepResult changed = controller->step(right, Deadline::never());
+  const StepResult as_always = after_cycles(mirrored(on_a_left_bend()), 21);
+  EXPECT_NEAR(changed.command.steer, as_always.command.steer, 1e-3);
+  EXPECT_LT(changed.command.steer, -0.01);
+}
+
 TEST(TrackingMpc, AnswersAnythingWithABoundedCommand) {
   const auto controller = make();
   const model::VehicleParams car = model::udacity_params();

@@ -62,27 +62,29 @@ void fill(CyclicSystem& system, int nodes, int nz, int nx, double convexity) {
 }
 
 TEST(CyclicSystem, SolvesARing) {
-  constexpr int nodes = 7, nz = 5, nx = 3, na = 1, nb = nz + nx + na;
-  CyclicSystem system(nodes, nz, nx, na);
-  fill(system, nodes, nz, nx, 1.0);
-  ASSERT_TRUE(system.factor());
-  Numbers numbers;
-  std::vector<double> x(nodes * nb), b(nodes * nb, 0.0);
-  for (double& value : x) value = numbers.next();
-  for (int k = 0; k < nodes; ++k) {
-    const int next = (k + 1) % nodes;
-    for (int i = 0; i < nb; ++i)
-      for (int j = 0; j < nb; ++j) b[k * nb + i] += system.diagonal(k)[i * nb + j] * x[k * nb + j];
-    for (int i = 0; i < nx; ++i) {
-      for (int j = 0; j < nz; ++j) {
-        const double entry = system.coupling(k)[i * nz + j];
-        b[next * nb + nz + i] += entry * x[k * nb + j];
-        b[k * nb + j] += entry * x[next * nb + nz + i];
+  constexpr int nz = 5, nx = 3, na = 1, nb = nz + nx + na;
+  for (const int nodes : {2, 3, 7}) {
+    CyclicSystem system(nodes, nz, nx, na);
+    fill(system, nodes, nz, nx, 1.0);
+    ASSERT_TRUE(system.factor());
+    Numbers numbers;
+    std::vector<double> x(static_cast<std::size_t>(nodes * nb)), b(x.size(), 0.0);
+    for (double& value : x) value = numbers.next();
+    for (int k = 0; k < nodes; ++k) {
+      const int next = (k + 1) % nodes;
+      for (int i = 0; i < nb; ++i)
+        for (int j = 0; j < nb; ++j) b[k * nb + i] += system.diagonal(k)[i * nb + j] * x[k * nb + j];
+      for (int i = 0; i < nx; ++i) {
+        for (int j = 0; j < nz; ++j) {
+          const double entry = system.coupling(k)[i * nz + j];
+          b[next * nb + nz + i] += entry * x[k * nb + j];
+          b[k * nb + j] += entry * x[next * nb + nz + i];
+        }
       }
     }
+    system.solve(b);
+    for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(b[i], x[i], 1e-9) << nodes << ' ' << i;
   }
-  system.solve(b);
-  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(b[i], x[i], 1e-9) << i;
 }
 
 TEST(CyclicSystem, RefusesACostThatIsNotConvexWhereTheEquationsHold) {

@@ -156,6 +156,16 @@ TEST(RacingPlan, SaysWhyThereIsNone) {
   EXPECT_FALSE(plan_racing_line(bean(), model::udacity_params(), {.margin = -0.1}));
 }
 
+TEST(RacingPlan, SaysWhetherALapCanBeDriven) {
+  EXPECT_TRUE(can_be_driven(bean(), model::road_car_params(), 4.0, 1.0));
+  const auto narrow = can_be_driven(bean(1.0, 0.7), model::road_car_params(), 4.0, 1.0);
+  ASSERT_FALSE(narrow);
+  EXPECT_EQ(narrow.error().message.find("the road is "), 0U) << narrow.error().message;
+  const road::Track open =
+      road::Track::create("open", std::vector<road::TrackPoint>(bean(1.0, 0.7).raw_points()), false).value();
+  EXPECT_TRUE(can_be_driven(open, model::road_car_params(), 4.0, 1.0)) << "it need not come round";
+}
+
 TEST(RacingPlan, EntersAnOpenRoadAsItLeavesIt) {
   std::vector<road::TrackPoint> points;  // a quarter of a circle between two straights
   for (int i = 0; i < 20; ++i) points.push_back({{10.0 * i, 0.0}, 4.0, 4.0});

@@ -145,8 +145,8 @@ TEST(Client, TalksToTheServerOfTheOriginalControllers) {
 
 TEST(Client, SaysWhyItCannotConnect) {
   EXPECT_FALSE(Client::connect("ws://127.0.0.1:1/", 1s));
-  for (const char* url :
-       {"http://localhost", "ws://", "ws://host:0/", "ws://host:99999/", "ws://host:12x/", "ws://a b/"}) {
+  for (const char* url : {"http://localhost", "ws://", "ws://:80/", "ws://host:0/", "ws://host:99999/",
+                          "ws://host:12x/", "ws://a b/"}) {
     const auto parsed = parse_url(url);
     ASSERT_FALSE(parsed) << url;
     EXPECT_THAT(parsed.error().message, HasSubstr(std::string("got '") + url)) << url;

@@ -66,6 +66,23 @@ TEST(CarSight, SeesWaypointsOfAPathThatIsALap) {
   EXPECT_GT(seen->waypoints[5].y(), 20.0);
 }
 
+/// Planners repeat the first point of a lap as its last one, or do not.
+TEST(CarSight, SeesTheSameRoadOfALapThatEndsWhereItBegan) {
+  CarSight sight(scenario(), nullptr, true), repeating(scenario(), nullptr, true);
+  std::vector<Vec2> lap = circle(100, 100.0);
+  ASSERT_TRUE(sight.use_path(lap));
+  lap.push_back(lap.front());
+  ASSERT_TRUE(repeating.use_path(lap));
+  for (const double angle : {-0.08, 0.0, 0.08, 3.0}) {
+    const model::Pose pose{100.0 * std::cos(angle), 100.0 * std::sin(angle), angle + 1.57};
+    const auto one = sight.measure({.pose = pose}, 0.0), other = repeating.measure({.pose = pose}, 0.0);
+    ASSERT_TRUE(one && other);
+    ASSERT_EQ(one->waypoint_count, other->waypoint_count);
+    for (std::size_t i = 0; i < 6; ++i)
+      EXPECT_NEAR((one->waypoints[i] - other->waypoints[i]).norm(), 0.0, 1e-6) << angle << ' ' << i;
+  }
+}
+
 TEST(CarSight, KeepsTheRoadWhenAPathIsNone) {
   CarSight sight(scenario(), nullptr, true);
   ASSERT_TRUE(sight.use_path(circle(100, 100.0)));

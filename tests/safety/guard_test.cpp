@@ -180,6 +180,51 @@ TEST(GuardOnARoad, KeepsACarThatStandsOutOfReverse) {
   EXPECT_LT(sent_at(10.0, Answer::kDrive, {0.0, -0.03}, result).throttle, -0.02);
 }
 
+/// How far the stop goes [m] that a guard has at hand on a straight road at 20 m/s.
+double stop_at_hand(Guard& guard) {
+  guard.reset();
+  controller::StepResult result;
+  for (int i = 1; i < 8; ++i) guard.step(at(0.04 * i), Deadline::never(), {.interval = 0.04}, result);
+  const StopPlan& stop = guard.stop();
+  return stop.size > 0 ? stop.points[static_cast<std::size_t>(stop.size - 1)].distance : 0.0;
+}
+
+/// A lap over a road with `grip` of what the vehicle's parameters tell.
+std::shared_ptr<const road::RacingRoad> lap_with_grip(double grip) {
+  std::vector<road::LinePoint> lap;
+  for (int i = 0; i <= 100; ++i)
+    lap.push_back({.position = {4.0 * i, 0.0}, .speed = 25.0, .left = 5.0, .right = 5.0});
+  return std::make_shared<road::RacingRoad>(
+      lap, 0.0, road::RacingRoad::Basis{.is_learned = true, .grip = grip, .is_closed = false});
+}
+
+/// Tyres that have shown less grip brake less.
+TEST(GuardOnARoad, CountsItsStopsWithTheGripOfTheLap) {
+  const road::RoadData straight = straight_road(200);
+  model::VehicleParams vehicle = model::road_car_params();
+  vehicle.brake_acceleration *= 3.0;  // grip alone is what it brakes by
+  Scripted scripted;
+  Guard guard{std::make_unique<test::Borrowed>(scripted), vehicle, {}, &straight};
+  const double usual = stop_at_hand(guard);
+  EXPECT_GT(usual, 10.0);
+  guard.use_line(lap_with_grip(0.5));
+  EXPECT_GT(stop_at_hand(guard), 1.5 * usual);
+  guard.use_line(nullptr);
+  EXPECT_EQ(stop_at_hand(guard), usual);
+}
+
+/// Without a road there is no stop at hand along it, nor what was known of its grip.
+TEST(GuardOnARoad, ForgetsTheRoadWithWhatWasLearnedOfIt) {
+  const road::RoadData straight = straight_road(200);
+  Scripted scripted;
+  Guard guard{std::make_unique<test::Borrowed>(scripted), model::road_car_params(), {}, &straight};
+  guard.use_line(lap_with_grip(0.5));
+  EXPECT_GT(stop_at_hand(guard), 20.0);
+  guard.forget_road();
+  EXPECT_EQ(guard.stop().size, 0);
+  EXPECT_EQ(stop_at_hand(guard), 0.0);
+}
+
 /// The original car keeps its brakes applied at rest until they are released.
 /// No prediction holds for a car whose driven wheels spin (docs/safety_watch.md, eq. 14).
 TEST(GuardOnARoad, AsksForNoMoreDriveThanTheTyresHave) {

@@ -149,6 +149,61 @@ TEST(PredictiveFilter, GoesOnWithTheBackupByTimeWhereNothingIsMeasured) {
   EXPECT_EQ(filter.stop().size, before.size - 3);
 }
 
+/// A published plan along round_road() at its speed, which begins at `at`.
+controller::Plan plan_from(const StopStart& at) {
+  controller::Plan plan;
+  plan.size = 60;
+  for (int i = 0; i < plan.size; ++i) {
+    const double angle = (at.s + at.body.vx * 0.05 * i) / 100.0, radius = 100.0 - at.d;
+    plan.points[static_cast<std::size_t>(i)] = {.time = at.time + 0.05 * i,
+                                                .x = radius * std::sin(angle),
+                                                .y = 100.0 - radius * std::cos(angle),
+                                                .psi = angle,
+                                                .speed = at.body.vx,
+                                                .command = {0.03, 0.2}};
+  }
+  return plan;
+}
+
+/// Who says where it drives may use more of the grip, where it is the car that drives there.
+TEST(PredictiveFilter, CountsOnAPublishedPlanThatBeginsAtTheCar) {
+  const road::KnownRoad road = round_road(1.0);
+  StopStart car = driving(33.0, 1.0);
+  car.d = 0.4;
+  const auto fit_with = [&](const controller::Plan* plan) {
+    PredictiveFilter filter(model::road_car_params(), {});
+    controller::StepReport report;
+    return filter.verify({road, car, {0.03, 0.2}, plan, 0.04}, report);
+  };
+  const auto fit_where = [&](double StopStart::*which, double off) {
+    StopStart begin = car;
+    begin.*which += off;
+    const controller::Plan plan = plan_from(begin);
+    return fit_with(&plan);
+  };
+  EXPECT_EQ(fit_with(kNoPlan), Fit::kNone);
+  EXPECT_EQ(fit_where(&StopStart::d, 0.0), Fit::kSeen);
+  for (const double side : {1.0, -1.0}) {
+    EXPECT_EQ(fit_where(&StopStart::time, 0.01 * side), Fit::kSeen) << side;
+    EXPECT_EQ(fit_where(&StopStart::time, 0.03 * side), Fit::kNone) << side;
+    EXPECT_EQ(fit_where(&StopStart::s, 0.5 * side), Fit::kSeen) << side;
+    EXPECT_EQ(fit_where(&StopStart::s, 1.0 * side), Fit::kNone) << side;
+    EXPECT_EQ(fit_where(&StopStart::d, 0.5 * side), Fit::kSeen) << side;
+    EXPECT_EQ(fit_where(&StopStart::d, 1.0 * side), Fit::kNone) << side;
+    for (const double faster : {1.0, 2.0}) {
+      StopStart begin = car;
+      begin.body.vx += faster * side;
+      const controller::Plan plan = plan_from(begin);
+      EXPECT_EQ(fit_with(&plan), faster < 1.5 ? Fit::kSeen : Fit::kNone) << faster * side;
+    }
+  }
+  controller::Plan brief = plan_from(car);
+  brief.size = 4;
+  EXPECT_EQ(fit_with(&brief), Fit::kSeen);
+  brief.size = 2;
+  EXPECT_EQ(fit_with(&brief), Fit::kNone) << "one place is no way to drive on";
+}
+
 /// The same circle by a line that is 2 m outside of its middle.
 road::KnownRoad round_road_by_another_line() {
   std::vector<road::LinePoint> lap;

@@ -195,7 +195,7 @@ TEST(SensorWatch, DoubtsASpeedThatChangesAtOnce) {
 }
 
 TEST(SensorWatch, TellsLateMeasurementsFromOtherPlaces) {
-  for (const double age : {0.1, 0.3, 0.8, 1.5}) {
+  for (const double age : {0.05, 0.1, 0.3, 0.8, 1.5}) {
     const auto late = [=](model::Measurement& now) {
       const double time = now.time;
       now = measured(time - age, car_at(time - age, kYawRate));
@@ -205,6 +205,18 @@ TEST(SensorWatch, TellsLateMeasurementsFromOtherPlaces) {
     EXPECT_TRUE(doubts.late && doubts.is_old) << age;
     EXPECT_FALSE(doubts.place || doubts.heading || doubts.speed) << age;
   }
+}
+
+/// A sensor is not late by seconds: then it is another place.
+TEST(SensorWatch, TellsAPlaceOfLongAgoFromALateMeasurement) {
+  const auto long_ago = [](model::Measurement& now) {
+    const double time = now.time;
+    now = measured(time - 3.0, car_at(time - 3.0, 0.0));
+    now.time = time;
+  };
+  const SensorDoubts doubts = doubts_of(long_ago, kCycle, 0.0);
+  EXPECT_TRUE(doubts.place);
+  EXPECT_FALSE(doubts.late || doubts.is_old || doubts.heading || doubts.speed);
 }
 
 TEST(SensorWatch, BelievesMeasurementsOfNowAgain) {
@@ -232,6 +244,23 @@ TEST(SensorWatch, DoubtsNothingAfterASilence) {
     const SensorDoubts& doubts = watch.see(measured(time, expected), expected);
     EXPECT_FALSE(doubts.late || doubts.place || doubts.heading || doubts.speed) << time;
   }
+}
+
+/// Of longer motions nothing is known then.
+TEST(SensorWatch, DoubtsADriftSoonAfterASilence) {
+  SensorWatch watch{kLength, kWheelbase};
+  double found = 0.0, off = 0.0;  // of the estimate, which follows
+  for (double time = 0.0; time < 11.0 && found == 0.0; time += kCycle) {
+    if (time > 5.0 && time < 7.0) continue;
+    model::State expected = car_at(time, 0.0);
+    model::Measurement now = measured(time, expected);
+    expected.x += off;
+    off = std::max(0.0, 0.9 * (time - 9.04));
+    now.x += off;
+    if (watch.see(now, expected).place) found = time;
+  }
+  EXPECT_GT(found, 9.04);
+  EXPECT_LT(found, 9.6);
 }
 
 TEST(SensorWatch, NeverBelievesAPlaceBecauseItLasts) {

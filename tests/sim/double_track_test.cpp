@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "chicane/base/angle.hpp"
@@ -147,6 +148,38 @@ TEST(DoubleTrack, DownforceLetsItCornerFaster) {
   // Of the load at rest, and less friction at more load; the axles reach their peaks one after the other.
   const double load = 2.6 * v * v / (params.mass * DoubleTrackParams::kGravity);
   EXPECT_NEAR(more, 1.0 + (1.0 - params.load_sensitivity) * load, 0.07);
+}
+
+/// The load moves to the outer wheels: with the same torque, the inner ones slip more.
+TEST(DoubleTrack, SlipsMoreWithItsInnerWheels) {
+  for (const double side : {1.0, -1.0}) {
+    for (const double pedal : {0.6, -0.4}) {
+      DoubleTrack car;
+      car.reset({}, 20.0);
+      for (int i = 0; i < 1000; ++i) car.advance({.steer = 0.05 * side, .throttle = i < 400 ? 0.2 : pedal});
+      const std::array<double, 4>& slip = car.output().slip_ratio;
+      for (const std::size_t front : {0U, 2U}) {
+        const double inner = std::fabs(slip[side > 0.0 ? front : front + 1]);
+        const double outer = std::fabs(slip[side > 0.0 ? front + 1 : front]);
+        EXPECT_GT(inner, 1.2 * outer) << side << ' ' << pedal << ' ' << front;
+      }
+    }
+  }
+}
+
+TEST(DoubleTrack, ShowsNothingOfTheLastDriveAfterAReset) {
+  DoubleTrack car;
+  car.reset({}, 20.0);
+  for (int i = 0; i < 500; ++i) car.advance({.steer = 0.1, .throttle = 0.5});
+  car.reset({}, 7.0);
+  const PlantOutput& seen = car.output();
+  EXPECT_EQ(seen.speed, 7.0);
+  EXPECT_EQ(seen.ax, 0.0);
+  EXPECT_EQ(seen.ay, 0.0);
+  EXPECT_EQ(seen.throttle, 0.0);
+  EXPECT_EQ(seen.slip_angle, (std::array<double, 4>{}));
+  EXPECT_EQ(seen.slip_ratio, (std::array<double, 4>{}));
+  EXPECT_EQ(seen.tire_use, (std::array<double, 2>{}));
 }
 
 TEST(DoubleTrack, TractionControlKeepsTheDrivenWheelsFromSpinning) {

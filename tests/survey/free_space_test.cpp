@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "chicane/base/angle.hpp"
@@ -65,6 +66,42 @@ TEST(FreeSpace, TheLoopIsInTheMiddleOfTheRing) {
     expect_ring(*loop, width, 0.05);
     EXPECT_NEAR(loop->median_width, width - 0.05, 0.06) << "between the tips of the cells";
   }
+}
+
+/// By how much more a road widens where its outer wall begins to step back, at `angle` [rad], than where that
+/// ends: in the first half of what is wider against the second half [m].
+double lead_of_a_bay(double angle) {
+  FreeSpace space = ring(2.4);
+  for (int y = 0; y < space.height; ++y)
+    for (int x = 0; x < space.width; ++x) {
+      const Vec2 place = space.to_world({x + 0.5, y + 0.5});
+      const double beside = angle_difference(std::atan2(place.y(), place.x()), angle);
+      if (place.norm() > 5.1 && place.norm() < 5.7 && std::fabs(beside) < 0.24)
+        space.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(space.width) +
+                    static_cast<std::size_t>(x)] = Cell::kFree;
+    }
+  const FreeLoop loop = *find_loop(space, {});
+  const std::size_t count = loop.points.size();
+  const auto is_opposite = [&](const road::TrackPoint& point) {
+    return std::fabs(angle_difference(std::atan2(point.position.y(), point.position.x()), angle)) > 2.5;
+  };
+  std::size_t first = 0;
+  while (!is_opposite(loop.points[first])) ++first;
+  std::vector<double> wider;
+  for (std::size_t i = 0; i < count; ++i) {
+    const road::TrackPoint& point = loop.points[(first + i) % count];
+    if (const double by = point.left + point.right - loop.median_width; by > 0.06) wider.push_back(by);
+  }
+  EXPECT_GE(wider.size(), 4U);
+  const auto half = static_cast<std::ptrdiff_t>(wider.size() / 2);
+  return std::accumulate(wider.begin(), wider.begin() + half, 0.0) -
+         std::accumulate(wider.end() - half, wider.end(), 0.0);
+}
+
+TEST(FreeSpace, TheRoadWidensAsItNarrowsAlongABay) {
+  double sum = 0.0;  // over where the first cell and the first point may lie
+  for (int i = 0; i < 16; ++i) sum += lead_of_a_bay(0.1 + 0.37 * i);
+  EXPECT_NEAR(sum / 16.0, 0.0, 0.02);
 }
 
 TEST(FreeSpace, CoarseAndFineCellsAndATurnedMapGiveTheSameRoad) {

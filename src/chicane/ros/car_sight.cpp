@@ -41,11 +41,8 @@ Result<void> CarSight::use_path(const std::vector<Vec2>& points) {
     if (road.empty() || (point - road.back().position).norm() > 1e-3)
       road.push_back({.position = point, .left = width, .right = width});
   }
-  const bool closed = is_lap(points);
-  if (closed && road.size() > 1 && (road.back().position - road.front().position).norm() <= 1e-3)
-    road.pop_back();
-  auto track =
-      road::Track::create("path", road, closed, {.spacing = std::max(0.05, 2.0 * scenario_.vehicle.scale)});
+  auto track = road::Track::create("path", road, is_lap(points),
+                                   {.spacing = std::max(0.05, 2.0 * scenario_.vehicle.scale)});
   if (!track) return fail(track.error());
   auto waypoints = run::make_waypoints(*track, scenario_.vehicle.scale);
   if (!waypoints) return fail(waypoints.error());

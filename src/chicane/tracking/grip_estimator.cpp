@@ -23,12 +23,7 @@ void GripEstimator::begin(const StateEstimator& from, const model::PredictionMod
     estimator.set_model(model::PredictionModel{model::with_grip(believed.vehicle(), share)});
     return estimator;
   };
-  believed_ = copy(1.0);
-  less_ = copy(1.0 - kStep);
-  time_ = interval_ = 0.0;
-  all_ = bend_ = {};
-  bend_time_ = side_ = 0.0;
-  bends_ = {};
+  *this = GripEstimator{copy(1.0), copy(1.0 - kStep)};
 }
 
 void GripEstimator::see(const model::Measurement& now, const CommandHistory& sent) noexcept {

@@ -44,6 +44,9 @@ class GripEstimator {
  private:
   static constexpr double kStep = 0.1;  ///< share of grip that the other estimator has less
 
+  GripEstimator(const StateEstimator& believed, const StateEstimator& less) noexcept
+      : believed_{believed}, less_{less} {}
+
   /// Sums of the unexpected part of the place, n, and of the grip's effect on it, h [m], times seconds.
   struct Sums {
     double hh = 0.0, hn = 0.0, nn = 0.0;
