@@ -46,6 +46,13 @@ TEST_P(PlantLimitOf, IsBracketedByALapThatWasDriven) {
   EXPECT_LE(limit.bracket(), 0.01);
 }
 
+/// Steps that go past the bounds would be halved, and cost time.
+TEST_P(PlantLimitOf, IsFoundInFewSteps) {
+  const bool is_udacity = GetParam() == std::string("udacity");
+  EXPECT_GT(limit_of(GetParam()).of_optimum.iterations, 20);
+  EXPECT_LE(limit_of(GetParam()).of_optimum.iterations, is_udacity ? 110 : 160);
+}
+
 TEST_P(PlantLimitOf, AMirroredRoadHasTheMirroredLine) {
   const PlantLimit& limit = limit_of(GetParam());
   const Result<PlantLimit> mirrored =

@@ -78,10 +78,10 @@ class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
 Result<void> can_be_driven(const road::Track& track, const model::VehicleParams& vehicle, double beside,
                            double scale) {
   if (!track.centre().is_closed()) return {};
-  const VehiclePlan model(vehicle, 60.0);
+  const CarSize size = VehiclePlan(vehicle, vehicle.valid_speed).size();
   // A tenth of the lock steers; a middle of the road with a fifth more room is a line that can be driven.
   const Fit fit{.reserve = 1.1, .surely = 1.32, .beside = beside, .scale = scale};
-  Result<void> fits = fits_road(track, model.size(), fit);
+  Result<void> fits = fits_road(track, size, fit);
   constexpr std::string_view kPrefix = "limit: ";
   if (!fits) return fail(fits.error().code, fits.error().message.substr(kPrefix.size()));
   return {};

@@ -2,6 +2,7 @@
 #include "chicane/lap_time/detail/cyclic_system.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace chicane::lap_time {
 
@@ -90,15 +91,12 @@ void CyclicSystem::solve_once(std::vector<double>& b) const {
     blocks_[index(k)].solve(block(k), 1);
   }
   blocks_[0].solve(block(0), 1);
+  std::vector<double> known(index(width_));  // λ of the next node, z of node 0
+  std::copy_n(block(0), nz_, known.begin() + nx_);
   for (int k = n_ - 1; k > 0; --k) {
-    const double* y = spread(k);
-    const double* next = block(k + 1 < n_ ? k + 1 : 0);
-    for (int i = 0; i < nb_; ++i) {
-      double sum = 0.0;
-      for (int j = 0; j < nx_; ++j) sum += y[i * width_ + j] * next[nz_ + j];
-      for (int j = 0; j < nz_; ++j) sum += y[i * width_ + nx_ + j] * block(0)[j];
-      block(k)[i] -= sum;
-    }
+    std::copy_n(block(k + 1 < n_ ? k + 1 : 0) + nz_, nx_, known.begin());
+    for (int i = 0; i < nb_; ++i)
+      block(k)[i] -= std::inner_product(known.begin(), known.end(), spread(k) + i * width_, 0.0);
   }
 }
 
