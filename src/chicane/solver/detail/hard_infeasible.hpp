@@ -92,7 +92,8 @@ bool HardSolver<P, Capacity, Arch>::leads_downhill(const P& problem, const State
   if (kHasRateBounds<P>) return false;
   weigh_misses(0.0, least_unit_);
   HardReport seen;
-  assess(x0, least_, true, seen);
+  downhill_ = least_;  // which finish() may change
+  assess(x0, downhill_, true, seen);
   double least = std::numeric_limits<double>::infinity();
   for (double step = 0.0; step <= kFarthest; step = step > 0.0 ? 10.0 * step : 1.0) {
     downhill_ = least_;
@@ -126,7 +127,8 @@ HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, cons
   problem_.terminal_shift.fill(0.0);
   trajectory = least_;
   HardReport seen;
-  assess(x0, least_, true, seen);
+  downhill_ = least_;  // which finish() may change
+  assess(x0, downhill_, true, seen);
   const Misses now = measure(problem, trajectory, &report);
   for (std::size_t n = 0; n < kNh; ++n) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(trajectory.horizon); ++k)
