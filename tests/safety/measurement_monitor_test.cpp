@@ -81,6 +81,22 @@ TEST(MeasurementMonitor, AcceptsACarInAHairpin) {
   EXPECT_TRUE(after_a_hairpin(0.4).speed_mismatch);
 }
 
+/// Counted on with the estimate's own slip, a place would tell the estimate that its slip is right.
+TEST(MeasurementMonitor, HandsOnNoPlaceAfterAJump) {
+  for (const double side : {1.0, -1.0}) {
+    MeasurementMonitor monitor{4.5, 2.7};
+    for (int i = 0; i < 200; ++i) {
+      model::Measurement now = at(i);
+      const model::State expected{.x = now.x, .y = now.y, .psi = now.psi, .vx = now.speed, .vy = 0.5 * side};
+      const bool is_wrong = i >= 150;
+      if (is_wrong) now.y += 5.0 * side;
+      const model::Measurement& seen = monitor.check(now, &expected);
+      ASSERT_EQ(std::isnan(seen.x), is_wrong) << i;
+      ASSERT_EQ(std::isnan(seen.y), is_wrong) << i;
+    }
+  }
+}
+
 TEST(MeasurementMonitor, AcceptsACarThatStands) {
   MeasurementMonitor monitor{4.5, 2.7};
   for (int i = 0; i < 100; ++i) {

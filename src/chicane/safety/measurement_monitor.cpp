@@ -93,7 +93,7 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
     checked_.x = checked_.y = checked_.psi = checked_.speed = kNaN;
   if (findings_.position_jump) checked_.x = checked_.y = kNaN;
   if (watch_.doubts().place && !findings_.frozen && !watch_.doubts().is_old && !findings_.heading_jump &&
-      !findings_.speed_mismatch && !findings_.unmeasured) {
+      !findings_.speed_mismatch && !findings_.unmeasured && watch_.x() != expected->x) {
     checked_.x = watch_.x();
     checked_.y = watch_.y();
   }

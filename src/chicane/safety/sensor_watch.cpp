@@ -96,6 +96,7 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
     const bool was_doubted = doubts_.place;
     if (!doubts_.is_old) begin_doubts(seen, most);
     if (doubts_.place && !was_doubted) {
+      has_jumped_ = true;
       x_ = expected.x;
       y_ = expected.y;
     }
@@ -141,8 +142,9 @@ void SensorWatch::count_on(double elapsed, const model::Measurement& now,
   const bool is_blind = doubts_.is_old || doubts_.heading || doubts_.speed;
   drift_ += (is_blind ? kBlindDrift : kDrift) * elapsed * expected.vx;
   if (!doubts_.place) return;
-  x_ = is_blind ? expected.x : x_ + dx;
-  y_ = is_blind ? expected.y : y_ + dy;
+  // After a jump the estimate counts on by itself. Its slip must not come back to it as a measured place.
+  x_ = is_blind || has_jumped_ ? expected.x : x_ + dx;
+  y_ = is_blind || has_jumped_ ? expected.y : y_ + dy;
 }
 
 void SensorWatch::add_sample(const model::Measurement& now, const model::State& expected) noexcept {
@@ -265,6 +267,7 @@ void SensorWatch::judge_sums(const model::Measurement& now) noexcept {
       doubts_.heading = true;
     } else {
       doubts_.place = true;
+      has_jumped_ = false;
       x_ = now.x - dx;
       y_ = now.y - dy;
     }

@@ -105,6 +105,7 @@ class SensorWatch {
   double retry_ = 0.0;           ///< from when on the car may start again [s]
   double agreed_heading_ = 0.0;  ///< what the heading differs by since it agrees [rad]
   double moved_ = 0.0;           ///< of the last step: place against speed and heading [m]
+  bool has_jumped_ = false;      ///< a place in doubt: at once, not by a drift
   double x_ = 0.0, y_ = 0.0;
   double drift_ = 0.0;   ///< of the expected place, while it is not measured [m]
   double unseen_ = 0.0;  ///< for how long something has not been measured [s]
