@@ -16,7 +16,7 @@ struct Race {
 };
 
 constexpr Race kRaces[] = {
-    {"udacity", "lakeside", 23.2},   {"udacity", "hairpins", 26.05},  {"road-car", "lakeside", 37.93},
+    {"udacity", "lakeside", 23.2},   {"udacity", "hairpins", 25.5},  {"road-car", "lakeside", 37.93},
     {"udacity", "oval", 13.5},       {"udacity", "speedway", 64.32},  {"road-car", "oval", 22.41},
     {"road-car", "hairpins", 47.26}, {"road-car", "speedway", 72.05},
 };
