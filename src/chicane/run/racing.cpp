@@ -54,8 +54,7 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const road::Track& track
   planned.braking =
       kShareAtTheEnd * options.brake_share *
       std::min(car.brake_acceleration * car.brake_throttle_limit, car.friction * car.load_constant);
-  return std::make_shared<const road::RacingRoad>(road::line_points(track, *lap), track.kerb_width(),
-                                                  planned);
+  return std::make_shared<const road::RacingRoad>(road::line_points(track, *lap), track, planned);
 }
 
 /// What may be wrong with the road's size: a file in model size taken for one in full size, or the other way
