@@ -51,6 +51,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
         road_{options.road(), vehicle},
         estimator_{model_},
         solver_{tracking::make_tracking_solver(kMostTurns)} {
+    grip_.tell(told_);
     shape_raced();
   }
 
@@ -58,6 +59,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     if (options.learns() != options_.learns()) grip_.forget();
     options_ = options;
     told_ = vehicle;
+    grip_.tell(told_);
     believe();
     grip_.begin(estimator_, model_);
   }
@@ -103,9 +105,13 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     if (!options_.racing_line || (lap == nullptr && waypoints.empty())) return {};
     const double planned = lap != nullptr ? lap->grip() : options_.first_grip();
     const double grip = grip_.is_shown() ? grip_.for_plan(planned) : planned;
-    return {.is_wanted = lap == nullptr || grip != planned,
-            .waypoints = lap == nullptr || lap->is_learned() ? waypoints : std::span<const Vec2>{},
-            .grip = grip};
+    const bool is_known = lap != nullptr && !lap->is_learned();  // else its edges are assumed
+    const bool slides =
+        options_.slide && is_known && grip_.may_slide(grip, result_.report.delay, lap->slides());
+    return {.is_wanted = lap == nullptr || grip != planned || slides != lap->slides(),
+            .waypoints = is_known ? std::span<const Vec2>{} : waypoints,
+            .grip = grip,
+            .slides = slides};
   }
 
   [[nodiscard]] double beside(const road::RacingRoad& lap) const noexcept override {
@@ -152,11 +158,14 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     shape_edges();
   }
 
-  /// Raced by a planned lap, the edges are those of the road, and the axles stay inside; otherwise the centre
-  /// of mass keeps to an assumed width.
+  /// Raced by a planned lap, the edges are those of the road, the axles stay inside, and slip is free up to
+  /// that lap's; otherwise the centre of mass keeps to an assumed width.
   void shape_edges() noexcept {
     problem_.nose = road_.is_raced() ? model_.vehicle().front_axle : 0.0;
     problem_.tail = road_.is_raced() ? model_.vehicle().rear_axle : 0.0;
+    const road::RacingRoad::Slips most = road_.is_raced() ? road_.lap()->slips() : road::RacingRoad::Slips{};
+    problem_.useful_front = most.front;
+    problem_.useful_rear = most.rear;
   }
 
   /// A planned lap begins to be raced by, or ends.
@@ -267,8 +276,8 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     turns_ = kMostTurns;
     if (can_shift) {
       const double more = std::min(elapsed / kTimePerTurn, static_cast<double>(kMostTurns));
-      turns_ =
-          std::clamp(options_.turns - 1 + static_cast<int>(std::lround(more)), options_.turns, kMostTurns);
+      const int least = problem_.useful_rear > 1.0 ? kMostTurns : options_.turns;  // slides converge late
+      turns_ = std::clamp(least - 1 + static_cast<int>(std::lround(more)), least, kMostTurns);
       shift_answer(elapsed);
     } else {
       follow_line();
