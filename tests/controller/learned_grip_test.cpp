@@ -62,6 +62,27 @@ TEST(LearnedGrip, PlansForMoreOrLessOnlyWhereTheTyresSaySo) {
   }
 }
 
+// docs/racing_gap.md, eq. 9.
+TEST(LearnedGrip, LetsACarSlideThatIsAsToldAndAnsweredSoon) {
+  LearnedGrip learned = driven_with(1.0, 20.0);
+  learned.tell(model::udacity_params());
+  const double longest = model::SlidingBound::longest_delay(model::udacity_params());
+  const double most = longest - 0.04 - 0.005;  // less the period, and what the test's car is unsure by
+  EXPECT_TRUE(learned.may_slide(1.0, most, false));
+  EXPECT_TRUE(learned.may_slide(0.95, most, false));
+  EXPECT_TRUE(learned.may_slide(1.05, most, false));
+  EXPECT_FALSE(learned.may_slide(0.94, most, false));
+  EXPECT_FALSE(learned.may_slide(1.06, most, false));
+  EXPECT_FALSE(learned.may_slide(1.0, longest - 0.039, false));
+  EXPECT_TRUE(learned.may_slide(1.0, longest - 0.039, true)) << "which slides already";
+  EXPECT_FALSE(learned.may_slide(1.0, longest, true));
+  learned.tell(model::road_car_params());
+  EXPECT_FALSE(learned.may_slide(1.0, 0.0, false)) << "its tyres share their force";
+  learned.tell(model::udacity_params());
+  learned.forget();
+  EXPECT_FALSE(learned.may_slide(1.0, most, false)) << "before its tyres have shown anything";
+}
+
 TEST(LearnedGrip, BelievesWhatWasToldUntilThen) {
   LearnedGrip learned = driven_with(0.8, 0.5);
   EXPECT_FALSE(learned.is_shown());

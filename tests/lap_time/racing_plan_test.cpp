@@ -44,6 +44,8 @@ TEST_P(RacingPlanOf, ItsModelHasTheDerivativesOfDifferences) {
   vehicle.road = &road;
   vehicle.stability = model::BrakingStability(car_named(GetParam()));
   vehicle.is_steered_slowly = car_named(GetParam()).friction_coupling > 0.0;
+  vehicle.sliding = model::SlidingBound(car_named(GetParam()));
+  vehicle.slides = vehicle.sliding.permits();
   const ModelFunctions<VehicleModel> f(vehicle);
   // Coasting, braking and driving in bends to both sides.
   for (const double side : {1.0, -1.0}) {
@@ -128,6 +130,42 @@ TEST_P(RacingPlanOf, UsesNoMoreSlipThanItIsToldTo) {
     return most;
   };
   EXPECT_LT(most_slip(0.6), 0.85 * most_slip(1.0)) << "of the rear axle";
+}
+
+/// Two straights of 60 m between half circles of 14 m radius, 4 m of road each side.
+road::Track two_hairpins() {
+  std::vector<road::TrackPoint> points;
+  constexpr double kRadius = 14.0, kStraight = 60.0;
+  const auto add = [&](double x, double y) { points.push_back({{x, y}, 4.0, 4.0}); };
+  for (double x = 0.0; x < kStraight; x += 4.0) add(x, -kRadius);
+  for (int i = 0; i < 12; ++i)
+    add(kStraight + kRadius * std::sin(kPi * i / 12.0), -kRadius * std::cos(kPi * i / 12.0));
+  for (double x = kStraight; x > 0.0; x -= 4.0) add(x, kRadius);
+  for (int i = 0; i < 12; ++i) add(-kRadius * std::sin(kPi * i / 12.0), kRadius * std::cos(kPi * i / 12.0));
+  return *road::Track::create("two hairpins", points, true);
+}
+
+/// docs/racing_gap.md: the rear slides as far as the closed loop is stable, the front keeps its slope.
+TEST(RacingPlan, SlidesWhereThatIsFasterAndStable) {
+  const model::VehicleParams car = model::udacity_params();
+  const road::Track tight = two_hairpins();
+  const auto grips = plan_racing_line(tight, car);
+  const auto slides = plan_racing_line(tight, car, {.slides = true});
+  const auto late = plan_racing_line(tight, car, {.slides = true, .delay = 0.4});
+  ASSERT_TRUE(grips && slides && late);
+  EXPECT_LT(slides->lap_time(), 0.995 * grips->lap_time());
+  EXPECT_EQ(late->lap_time(), grips->lap_time()) << "with that delay it is not stable";
+  const model::SlidingBound bound(car);
+  const model::PredictionModel model(car);
+  double most = 0.0;
+  for (const road::RacingLinePoint& p : slides->points) {
+    const auto use =
+        model.tire_use(model::BodyMotion<double>{p.vx, p.vy, p.yaw_rate, p.steer, p.acceleration});
+    EXPECT_LT(use.front, bound.front() + 0.01);
+    EXPECT_LT(use.rear, bound.rear(p.vx) + 0.01);
+    most = std::max(most, use.rear);
+  }
+  EXPECT_GT(most, 1.2);
 }
 
 TEST_P(RacingPlanOf, IsTheSameEachTime) {

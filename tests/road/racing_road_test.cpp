@@ -71,6 +71,31 @@ TEST(RacingRoad, StopsBeforeTheEndOfAnOpenRoad) {
   EXPECT_EQ(road.room(-10.0).left, road.room(0.0).left) << "nothing comes round again";
 }
 
+/// Laps on a circle of 8 m whose centre is 4 m beside that of the road, whose inner edge is one of 6 m.
+/// `side`: 1 to the left, -1 mirrored.
+TEST(RacingRoad, HasTheRoomAcrossItsLine) {
+  for (const double side : {1.0, -1.0}) {
+    std::vector<TrackPoint> points;
+    for (int i = 0; i < 90; ++i) {
+      const double angle = side * kTwoPi * i / 90.0;
+      points.push_back({{12.0 * std::cos(angle), 12.0 * std::sin(angle)}, 6.0, 6.0});
+    }
+    const Track track = *Track::create("circle", points, true);
+    std::vector<LinePoint> lap(91);
+    for (int i = 0; i <= 90; ++i) {
+      const double angle = side * kTwoPi * i / 90.0;
+      LinePoint& at = lap[static_cast<std::size_t>(i)];
+      at.position = {4.0 + 8.0 * std::cos(angle), 8.0 * std::sin(angle)};
+      at.heading = angle + side * 0.5 * kPi;
+      at.curvature = side / 8.0;
+    }
+    const RacingRoad road(lap, track, {});
+    const Road::Room room = road.room(0.25 * kTwoPi * 8.0);  // at (4, 8 side)
+    EXPECT_NEAR(side > 0.0 ? room.left : room.right, 8.0 - std::sqrt(36.0 - 16.0), 0.05) << side;
+    EXPECT_NEAR(side > 0.0 ? room.right : room.left, 18.0 - std::sqrt(80.0), 0.05) << "far off";
+  }
+}
+
 TEST(RacingRoad, IsEmptyForNoLap) {
   EXPECT_TRUE(RacingRoad({}).line().is_empty());
   const std::vector<road::LinePoint> few(4);

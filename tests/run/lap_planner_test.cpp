@@ -14,6 +14,7 @@
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/racing.hpp"
+#include "chicane/run/setting.hpp"
 
 namespace chicane::run {
 namespace {
@@ -37,7 +38,7 @@ class Learner final : public controller::Controller {
     return result_;
   }
   [[nodiscard]] controller::LapWish wants_lap() const noexcept override {
-    return {.is_wanted = is_wanted, .waypoints = waypoints_, .grip = grip};
+    return {.is_wanted = is_wanted, .waypoints = waypoints_, .grip = grip, .slides = slides};
   }
   void reset() noexcept override {}
   [[nodiscard]] std::string_view name() const noexcept override { return "learner"; }
@@ -46,6 +47,7 @@ class Learner final : public controller::Controller {
 
   bool is_wanted = true;
   double grip = 1.0;
+  bool slides = false;
   double offset = 0.0;  ///< from any lap [m]
 
  private:
@@ -139,6 +141,28 @@ TEST(LapPlanner, PlansOnTheTrackWithTheGripThatIsWanted) {
   LapPlanner planner(LapPlanner::Clock::kVirtual);
   static_cast<void>(planner.follow(learner, race, nullptr, 0.0));
   EXPECT_EQ(planner.follow(learner, race, nullptr, 10.0), nullptr) << "no track is known";
+}
+
+// Recordings hold what was wanted, so that a replay plans the same lap.
+TEST(LapPlanner, TellsOfALapThatSlides) {
+  Learner learner({});
+  learner.slides = true;
+  learner.grip = 0.97;
+  const scenario::Scenario race = race_by_waypoints();
+  const road::Track oval = make_track(race).value();
+  LapPlanner planner(LapPlanner::Clock::kVirtual);
+  static_cast<void>(planner.follow(learner, race, &oval, 0.0));
+  const auto lap = planner.follow(learner, race, &oval, 10.0);
+  ASSERT_NE(lap, nullptr);
+  EXPECT_TRUE(lap->slides());
+  EXPECT_GT(lap->slips().rear, 1.0);
+  const telemetry::Change change = LapPlanner::lap_change(*lap, 7, 1.0);
+  EXPECT_EQ(change.value.view(), "0.97, slides");
+  const Result<Setting> read = read_setting(change);
+  ASSERT_TRUE(read) << read.error().message;
+  const auto& learned = std::get<LearnedLap>(read->action);
+  EXPECT_EQ(learned.grip, 0.97);
+  EXPECT_TRUE(learned.slides);
 }
 
 TEST(LapPlanner, HasNoneWhereTheRoadHasNone) {

@@ -121,6 +121,20 @@ TEST(ActuatorWatch, JudgesNothingOfACarWhoseTyresSlide) {
   EXPECT_FALSE(braked.after(kOnset + 1.5).has_weak_brakes());
 }
 
+// The wheel angle that turns a car follows from its sideslip: what is not sure of that is not sure of this.
+TEST(ActuatorWatch, IsNoSurerOfTheWheelsThanOfTheSlide) {
+  for (const double sign : {1.0, -1.0}) {
+    Drive drive{.sign = sign};
+    drive.effect = [sign](const model::Command& c) {
+      return model::Command{c.steer + 0.04 * sign, c.throttle};
+    };
+    drive.use.sideslip = 0.0;
+    EXPECT_FALSE(drive.after(12.0).answer().is_usual()) << sign;
+    drive.use.sideslip = 0.06 * sign;
+    EXPECT_TRUE(drive.after(12.0).answer().is_usual()) << sign;
+  }
+}
+
 TEST(ActuatorWatch, ForgetsAnAnswerThatHasEnded) {
   Drive drive;
   drive.effect = [](const model::Command& c) { return model::Command{0.5 * c.steer, c.throttle}; };

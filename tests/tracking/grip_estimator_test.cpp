@@ -44,7 +44,9 @@ class Weaving {
   void drive(double seconds) {
     for (const double end = time_ + seconds; time_ < end;) {
       time_ += kPeriod;
-      sent_.add(time_ - kPeriod, {.steer = most_ * sin(1.3 * time_), .throttle = 0.2});
+      const model::Command command{.steer = most_ * sin(1.3 * time_), .throttle = 0.2};
+      told_.add(time_ - kPeriod, command);
+      sent_.add(time_ - kPeriod + (jitter > 0.0 ? random_.uniform(0.0, jitter) : 0.0), command);
       const model::State car = truth_.predict(time_, sent_).state;
       model::Measurement now{.time = time_,
                              .x = car.x,
@@ -57,9 +59,10 @@ class Weaving {
       now.y += noise_.place * random_.normal();
       now.psi += noise_.heading * random_.normal();
       now.speed += noise_.speed * random_.normal();
-      estimator.see(now, sent_);
+      estimator.see(now, told_);
     }
   }
+  double jitter = 0.0;  ///< [s] by which a command acts later than told, at most
 
  private:
   static model::VehicleParams true_car(model::VehicleParams car, double grip, double inertia) {
@@ -72,7 +75,7 @@ class Weaving {
   Noise noise_;
   double most_;
   Random random_;
-  CommandHistory sent_;
+  CommandHistory sent_, told_;
   double time_ = 0.0;
 
  public:
@@ -164,6 +167,21 @@ TEST(GripEstimator, SaysWhenItDiffersFromWhatIsBelieved) {
   EXPECT_FALSE(same.estimator.differs(0.03));
   EXPECT_TRUE(less.estimator.differs(0.03));
   EXPECT_FALSE(less.estimator.differs(0.3));
+}
+
+/// docs/racing_gap.md, eq. 8. Evenly distributed jitter has a root mean square of 0.58 of the most.
+TEST(GripEstimator, SaysHowSureTheTimeOfCommandsIs) {
+  const auto unsure_time = [](double jitter, const Noise& noise) {
+    Weaving car(1.0, noise, 0.2);
+    car.jitter = jitter;
+    EXPECT_FALSE(std::isfinite(car.estimator.unsure_time())) << "before a corner";
+    car.drive(20.0);
+    return car.estimator.unsure_time();
+  };
+  EXPECT_LT(unsure_time(0.0, {}), 0.002);
+  for (const double jitter : {0.01, 0.02, 0.03})
+    EXPECT_NEAR(unsure_time(jitter, {}), 0.58 * jitter, 0.2 * jitter) << jitter;
+  EXPECT_GT(unsure_time(0.0, {.heading = 0.005}), 0.05) << "noise is no knowledge of it, either";
 }
 
 TEST(GripEstimator, LeavesOutWhatIsNoMeasurement) {

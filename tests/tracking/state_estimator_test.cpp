@@ -28,6 +28,21 @@ TEST_F(Estimating, ReplaysACommandForExactlyTheFractionItActs) {
   EXPECT_NEAR(prediction.state.vx, 0.063 * model.vehicle().drive_acceleration, 0.01);
 }
 
+TEST_F(Estimating, CountsWithTheGapOfTheSteerHelperWhereItIsAskedTo) {
+  const model::VehicleParams& car = model.vehicle();
+  const model::State turning{.x = 0.0, .y = 0.0, .psi = 1.5, .vx = 20.0, .vy = 0.0, .r = 2.0};
+  const auto vy_after = [&](double time, bool minds) {
+    estimator.reset();
+    estimator.mind_helper_gap(minds);
+    estimator.correct({.time = 0.0, .psi = turning.psi, .speed = turning.vx}, sent);
+    estimator.move({.r = turning.r - estimator.state().r});
+    return estimator.predict(time, sent).state.vy;
+  };
+  EXPECT_EQ(vy_after(0.03, true), vy_after(0.03, false)) << "the heading is 1.56";
+  EXPECT_NEAR(vy_after(0.04, true) - vy_after(0.04, false), -20.0 * car.steer_helper * car.helper_gap * 2.0,
+              0.1);
+}
+
 TEST_F(Estimating, SaysWhatAMeasurementIsBesideTheExpectation) {
   estimator.correct({.time = 0.0, .speed = 10.0}, sent);
   EXPECT_FALSE(std::isfinite(estimator.surprise().aside)) << "nothing was expected";

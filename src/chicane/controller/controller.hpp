@@ -67,6 +67,7 @@ struct LapWish {
   std::span<const Vec2> waypoints{};  ///< of the closed road that was learned, in driving order; empty: the
                                       ///< track's, which is known
   double grip = 1.0;                  ///< over the one that the vehicle's parameters tell
+  bool slides = false;                ///< beyond the peak of the tyres, where that is stable
 };
 
 /// The contract every controller fulfils: a measurement goes in, an answer or none comes out. What happens

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "chicane/controller/learned_car.hpp"
+#include "chicane/model/sliding.hpp"
 #include "chicane/tracking/grip_estimator.hpp"
 
 namespace chicane::controller {
@@ -16,10 +17,16 @@ class LearnedGrip {
  public:
   static constexpr double kStep =
       0.03;  ///< the model, and a plan upwards, follow where the grip differs by more
-  static constexpr double kStepDown = 0.015;  ///< a plan downwards
+  static constexpr double kStepDown = 0.015;   ///< a plan downwards
+  static constexpr double kOtherGrip = 0.055;  ///< of a car that does not slide, beside the told one
+  static constexpr double kSlidesOn = 0.01;    ///< by which a lap that slides may be answered later [s]
 
   explicit LearnedGrip(const model::PredictionModel& told) noexcept : estimator_{told} {}
 
+  /// What the car was told to be.
+  void tell(const model::VehicleParams& told) noexcept {
+    longest_delay_ = model::SlidingBound::longest_delay(told);
+  }
   /// Nothing is known; begin() has to follow.
   void forget() noexcept {
     share_ = 1.0;
@@ -51,6 +58,14 @@ class LearnedGrip {
   }
   /// Whether the tyres have shown anything yet.
   [[nodiscard]] bool is_shown() const noexcept { return is_shown_; }
+  /// Whether the car is so much what was told, and answered so soon and surely, that a lap planned for `grip`
+  /// may slide (docs/racing_gap.md, eq. 9). `delay`: that is told, from a measurement to its command's
+  /// effect [s]; `slides`: it does already.
+  [[nodiscard]] bool may_slide(double grip, double delay, bool slides) const noexcept {
+    const double answered = delay + estimator_.interval() + estimator_.unsure_time();
+    return is_shown_ && std::fabs(grip - 1.0) < kOtherGrip &&
+           answered < longest_delay_ + (slides ? kSlidesOn : 0.0);
+  }
   /// Grip that may be relied on: the estimate less two standard deviations. Pre: is_shown().
   [[nodiscard]] double lower() const noexcept { return rounded(mean() - unsure()); }
   /// The grip to plan for where there is a plan for `planned`: what may be relied on where that is more, what
@@ -77,6 +92,7 @@ class LearnedGrip {
   }
 
   tracking::GripEstimator estimator_;
+  double longest_delay_ = 0.0;  ///< with which the told car may slide [s]
   double share_ = 1.0;
   double unsure_ = 0.0;  ///< two standard deviations of share_ when it was found
   bool is_shown_ = false;

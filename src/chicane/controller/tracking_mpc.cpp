@@ -12,7 +12,9 @@
 #include "chicane/controller/copyable.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/learned_grip.hpp"
+#include "chicane/controller/minded_gap.hpp"
 #include "chicane/controller/other_line.hpp"
+#include "chicane/controller/path_law.hpp"
 #include "chicane/model/grip.hpp"
 #include "chicane/road/driven_road.hpp"
 #include "chicane/tracking/state_estimator.hpp"
@@ -49,6 +51,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
         road_{options.road(), vehicle},
         estimator_{model_},
         solver_{tracking::make_tracking_solver(kMostTurns)} {
+    grip_.tell(told_);
     shape_raced();
   }
 
@@ -56,6 +59,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     if (options.learns() != options_.learns()) grip_.forget();
     options_ = options;
     told_ = vehicle;
+    grip_.tell(told_);
     believe();
     grip_.begin(estimator_, model_);
   }
@@ -101,9 +105,13 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     if (!options_.racing_line || (lap == nullptr && waypoints.empty())) return {};
     const double planned = lap != nullptr ? lap->grip() : options_.first_grip();
     const double grip = grip_.is_shown() ? grip_.for_plan(planned) : planned;
-    return {.is_wanted = lap == nullptr || grip != planned,
-            .waypoints = lap == nullptr || lap->is_learned() ? waypoints : std::span<const Vec2>{},
-            .grip = grip};
+    const bool is_known = lap != nullptr && !lap->is_learned();  // else its edges are assumed
+    const bool slides =
+        options_.slide && is_known && grip_.may_slide(grip, result_.report.delay, lap->slides());
+    return {.is_wanted = lap == nullptr || grip != planned || slides != lap->slides(),
+            .waypoints = is_known ? std::span<const Vec2>{} : waypoints,
+            .grip = grip,
+            .slides = slides};
   }
 
   [[nodiscard]] double beside(const road::RacingRoad& lap) const noexcept override {
@@ -150,17 +158,22 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     shape_edges();
   }
 
-  /// Raced by a planned lap, the edges are those of the road, and the axles stay inside; otherwise the centre
-  /// of mass keeps to an assumed width.
+  /// Raced by a planned lap, the edges are those of the road, the axles stay inside, and slip is free up to
+  /// that lap's; otherwise the centre of mass keeps to an assumed width.
   void shape_edges() noexcept {
     problem_.nose = road_.is_raced() ? model_.vehicle().front_axle : 0.0;
     problem_.tail = road_.is_raced() ? model_.vehicle().rear_axle : 0.0;
+    const road::RacingRoad::Slips most = road_.is_raced() ? road_.lap()->slips() : road::RacingRoad::Slips{};
+    problem_.useful_front = most.front;
+    problem_.useful_rear = most.rear;
   }
 
   /// A planned lap begins to be raced by, or ends.
   void shape_raced() noexcept {
     has_horizon_ = false;
-    estimator_.estimate_disturbance(road_.is_raced() || options_.learns());
+    const bool races = road_.is_raced() || options_.learns();
+    estimator_.estimate_disturbance(races);
+    estimator_.mind_helper_gap(races);
     believe();
   }
 
@@ -263,12 +276,13 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     turns_ = kMostTurns;
     if (can_shift) {
       const double more = std::min(elapsed / kTimePerTurn, static_cast<double>(kMostTurns));
-      turns_ =
-          std::clamp(options_.turns - 1 + static_cast<int>(std::lround(more)), options_.turns, kMostTurns);
+      const int least = problem_.useful_rear > 1.0 ? kMostTurns : options_.turns;  // slides converge late
+      turns_ = std::clamp(least - 1 + static_cast<int>(std::lround(more)), least, kMostTurns);
       shift_answer(elapsed);
     } else {
       follow_line();
     }
+    if (road_.is_raced()) mind_helper_gap(problem_, horizon_, line(), s_);
     correct_first();
     act_time_ = act_time;
     old_first_ = first;
@@ -323,19 +337,11 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     for (int k = 0; k < horizon_.horizon; ++k) {
       const auto i = static_cast<std::size_t>(k);
       ask_road(k, horizon_.x[i]);
-      horizon_.u[i] = problem_.within_bounds(k, following(k, horizon_.x[i]));
+      horizon_.u[i] = problem_.within_bounds(k, path_law(problem_, k, horizon_.x[i]));
       horizon_.x[i + 1] = solver::next_state(problem_, k, horizon_.x[i], horizon_.u[i]);
       keep_sane(horizon_.x[i + 1]);
     }
     ask_road(horizon_.horizon, horizon_.x[static_cast<std::size_t>(horizon_.horizon)]);
-  }
-
-  /// The law: towards the line in state x, on the road as stage k sees it.
-  [[nodiscard]] StageInput following(int k, const StageState& x) const noexcept {
-    const double v = std::max(x[Problem::kVx], 1.0);
-    const double curvature =
-        problem_.road.curvature.at(k) - x[Problem::kD] / (v * v) - 1.4 * x[Problem::kE] / v;
-    return {model_.vehicle().wheelbase() * curvature, problem_.road.speed.at(k) - x[Problem::kVx]};
   }
 
   /// A long first stage moves as several steps would, at least for the first guess of its input.
@@ -345,13 +351,6 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const StageState exact = problem_.move_in_parts(0, x0_, horizon_.u[0], parts);
     const StageState rough = problem_.move_in_parts(0, x0_, horizon_.u[0], 1);
     for (std::size_t i = 0; i < exact.size(); ++i) problem_.first_correction[i] = exact[i] - rough[i];
-  }
-
-  /// A guess far from the road is no place to linearise: pull it back.
-  static void keep_sane(StageState& x) noexcept {
-    x[Problem::kD] = std::clamp(x[Problem::kD], -5.0, 5.0);
-    x[Problem::kE] = std::clamp(x[Problem::kE], -0.6, 0.6);
-    x[Problem::kVx] = std::max(x[Problem::kVx], 0.0);
   }
 
   /// What the road asks at stage k where the car is about to be in state x.
@@ -402,8 +401,9 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const model::VehicleParams& car = model_.vehicle();
     const int ahead = std::min(static_cast<int>(kPreview / options_.step_length), options_.horizon_steps - 1);
     const double v = start.state.vx, braking = longitudinal_acceleration(car, -car.brake_throttle_limit, v);
-    result_.command = {std::clamp(following(ahead, horizon_.x[0])[0], -car.steer_limit, car.steer_limit),
-                       throttle_for(car, braking, v)};
+    result_.command = {
+        std::clamp(path_law(problem_, ahead, horizon_.x[0])[0], -car.steer_limit, car.steer_limit),
+        throttle_for(car, braking, v)};
     return without_plan(Answer::kStopOnRoad);
   }
 

@@ -37,6 +37,7 @@ struct TrackingMpcOptions {
   bool racing_line = false;         ///< race by the minimum-time line of track or learned road
   double edge_margin = 0.2;         ///< that the tyres keep from the edges of a road that is raced on [m]
   double slip_share = 1.0;    ///< most slip of an axle in the plan to race by, over that of its peak force
+  bool slide = false;         ///< beyond the peak where that is stable in closed loop (model::SlidingBound)
   double plan_budget = 90.0;  ///< work that a plan to race by may take (lap_time::PlanProgress) [s]
   int turns = 3;              ///< of the solver in a step, at least
   bool learn_grip = false;    ///< race with the grip that the tyres have shown (docs/racing.md)

@@ -45,6 +45,8 @@ constexpr std::array kOptions{
         "Race with the grip that the tyres have shown; the first plan has 0.6 of what was told."),
     option<&T::slip_share>("slip_share", unit::kNone, 0.1, 2,
                            "Most slip of an axle in the plan to race by, over that of its peak force."),
+    option<&T::slide>("slide",
+                      "Race with the rear tyres beyond their peak where the closed loop is stable there."),
     option<&T::edge_margin>("edge_margin", unit::kMetre, 0, 5,
                             "Distance that the tyres keep from the edges of a road that is raced on."),
     option<&T::plan_budget>("plan_budget", unit::kSecond, 0.1, 36000,

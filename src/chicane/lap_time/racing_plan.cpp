@@ -15,8 +15,11 @@ constexpr double kTolerance = 1e-4;     // of a plan: about a millisecond of a l
 
 class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
  public:
-  VehiclePlan(const model::VehicleParams& vehicle, double speed_limit) : vehicle_{vehicle} {
-    model_.speed_limit = std::min(speed_limit, vehicle.valid_speed);
+  explicit VehiclePlan(const model::VehicleParams& vehicle, const RacingPlanOptions& options = {})
+      : vehicle_{vehicle} {
+    model_.speed_limit = std::min(options.speed_limit, vehicle.valid_speed);
+    model_.sliding = model::SlidingBound(vehicle, options.delay);
+    model_.slides = options.slides && model_.sliding.permits();
     model_.stability = model::BrakingStability(vehicle);
     model_.is_steered_slowly = vehicle.friction_coupling > 0.0 && vehicle.steer_rate_limit < kQuickSteering;
     set_reserve({.slip_share = 1.0});
@@ -78,7 +81,7 @@ class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
 Result<void> can_be_driven(const road::Track& track, const model::VehicleParams& vehicle, double beside,
                            double scale) {
   if (!track.centre().is_closed()) return {};
-  const CarSize size = VehiclePlan(vehicle, vehicle.valid_speed).size();
+  const CarSize size = VehiclePlan(vehicle).size();
   // A tenth of the lock steers; a middle of the road with a fifth more room is a line that can be driven.
   const Fit fit{.reserve = 1.1, .surely = 1.32, .beside = beside, .scale = scale};
   Result<void> fits = fits_road(track, size, fit);
@@ -93,9 +96,9 @@ Result<road::RacingLine> plan_racing_line(const road::Track& track, const model:
   const auto is_share = [](double share, double most) { return share > 0.0 && share <= most; };
   if (!(options.margin >= 0.0 && is_share(options.grip_share, 1.0) && is_share(options.brake_share, 1.0) &&
         is_share(options.slip_share, 2.0) && options.speed_limit > 3.0 && options.time_step >= 0.01 &&
-        options.time_step <= 0.2 && options.budget > 0.0))
+        options.time_step <= 0.2 && options.budget > 0.0 && options.delay > 0.0))
     return fail(ErrorCode::kInvalidArgument, "racing plan: an option is out of its range");
-  VehiclePlan model(vehicle, options.speed_limit);
+  VehiclePlan model(vehicle, options);
   CarSize size = model.size();
   size.half_width += options.margin;
   Fit fit;

@@ -6,6 +6,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/lap_time/plan_progress.hpp"
+#include "chicane/model/sliding.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/racing_line.hpp"
 #include "chicane/road/track.hpp"
@@ -14,12 +15,14 @@ namespace chicane::lap_time {
 
 /// What a plan to race by leaves unused.
 struct RacingPlanOptions {
-  double margin = 0.0;         ///< of each contact patch from its edge, kerb included [m], >= 0
-  double grip_share = 1.0;     ///< of the friction, (0, 1]
-  double slip_share = 1.0;     ///< most slip of an axle over that of its peak force, (0, 2]
-  double brake_share = 1.0;    ///< of the largest useful deceleration, (0, 1]
-  double speed_limit = 100.0;  ///< [m/s], > 3
-  double time_step = 0.08;     ///< between nodes, about [s]; [0.01, 0.2]
+  double margin = 0.0;       ///< of each contact patch from its edge, kerb included [m], >= 0
+  double grip_share = 1.0;   ///< of the friction, (0, 1]
+  double slip_share = 1.0;   ///< most slip of an axle over that of its peak force, (0, 2]
+  double brake_share = 1.0;  ///< of the largest useful deceleration, (0, 1]
+  bool slides = false;       ///< the rear tyres beyond their peak where model::SlidingBound permits it ...
+  double delay = model::SlidingBound::kAssumedDelay;  ///< ... with this delay of the controller [s], > 0
+  double speed_limit = 100.0;                         ///< [m/s], > 3
+  double time_step = 0.08;                            ///< between nodes, about [s]; [0.01, 0.2]
   /// Work after which the best plan so far is the answer (PlanProgress) [s], > 0. The same on every machine.
   double budget = std::numeric_limits<double>::infinity();
   /// Told how far it has come, and the lap time, after each iteration; false ends the search. May be empty.

@@ -34,6 +34,7 @@ class Similarity {
     car.steer_rate_limit /= time_;
     car.steer_lag *= time_;
     car.drive_lag *= time_;
+    car.helper_gap *= time_;
     car.load_per_speed /= speed();
     car.load_quadratic /= length_;
     car.drive_power_per_mass *= speed();

@@ -48,6 +48,9 @@ constexpr std::array kOptions{
                                "Growth of the normal acceleration with the square of the speed."),
     option<&P::steer_helper>("steer_helper", unit::kNone, 0, 0.99,
                              "Share of each yaw change by which the velocity turns along; 0 for a real car."),
+    option<&P::helper_gap>(
+        "helper_gap", unit::kMillisecond, 0, 100,
+        "Time for which the steer helper does nothing when the heading passes +y; 0: never."),
     option<&P::drive_acceleration>("drive_acceleration", unit::kAcceleration, 0.01, 100,
                                    "Acceleration at full throttle and rest."),
     option<&P::drive_power_per_mass>("drive_power_per_mass", unit::kPowerPerMass, 0.1, 1e5,
@@ -134,7 +137,11 @@ double throttle_to_rest(const VehicleParams& p, double acceleration, double v) n
   return std::min(throttle_for(p, std::max(acceleration, -std::max(v, 0.0) / rest_time), v), 0.0);
 }
 
-VehicleParams udacity_params() { return {}; }
+VehicleParams udacity_params() {
+  VehicleParams p;
+  p.helper_gap = 0.02;
+  return p;
+}
 
 double VehicleParams::cornering_friction() const noexcept {
   const auto lost = [&](double other_axle, double share) {

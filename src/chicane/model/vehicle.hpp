@@ -52,6 +52,8 @@ struct VehicleParams {
   double load_quadratic = 0.0;     ///< and with its square [1/m]
   double steer_helper =
       0.768;  ///< share of each yaw change by which the car turns its velocity along; 0 = a real car
+  double helper_gap =
+      0.0;  ///< for which the helper does nothing when the heading passes +y [s] (helper_gap.hpp)
 
   // Longitudinal: a = drive_acceleration · throttle − drag_linear · v − drag_quadratic · v² for throttle >=
   // 0, and − brake_acceleration · |throttle| − drag for throttle < 0 (reverse_acceleration below
@@ -122,7 +124,7 @@ struct VehicleParams {
 inline constexpr double kRestTime = 0.4;  ///< [s]
 
 /// Models of the shipped plants, fitted to them by `chicane_plant_report` (docs/plants_model.md). The
-/// original simulator's car: the defaults above.
+/// original simulator's car: the defaults above, and the gap of its helper.
 [[nodiscard]] VehicleParams udacity_params();
 /// An ordinary car: 1300 kg, about 1.2 g, proportional brakes, 90°/s steering.
 [[nodiscard]] VehicleParams road_car_params();

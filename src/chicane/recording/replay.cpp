@@ -38,6 +38,7 @@ class Recomputation {
     if (const auto* learned = std::get_if<run::LearnedLap>(&setting->action)) {
       controller::LapWish wish = cycle_.controller().wants_lap();
       wish.grip = learned->grip;
+      wish.slides = learned->slides;
       const auto lap = run::plan_wanted_lap(scenario_, track_ ? &*track_ : nullptr, wish);
       if (lap) cycle_.use_line(*lap);
     }

@@ -52,6 +52,8 @@ class KnownRoad {
   }
   /// A line to race by takes the place of the road's own: its demand().speed is that of the planned lap.
   [[nodiscard]] bool is_raced() const noexcept { return is_raced_; }
+  /// Whether the lap that is raced by slides beyond the peak of the tyres.
+  [[nodiscard]] bool slides() const noexcept { return is_raced_ && slides_; }
   /// Increases with every new line: positions along an older one mean nothing any more.
   [[nodiscard]] unsigned revision() const noexcept { return lines_ + (seen_ ? seen_->revision() : 0U); }
 
@@ -69,6 +71,7 @@ class KnownRoad {
   double half_width_ = 0.0;
   unsigned lines_ = 0;
   bool is_raced_ = false;
+  bool slides_ = false;  ///< the line that was used last
 };
 
 }  // namespace chicane::road

@@ -34,6 +34,22 @@ constexpr std::size_t kLeastPoints = 8;
 // less room is behind that, so that it is passed [m].
 constexpr double kBeforeTheEnd = 14.0;
 constexpr double kBehindTheEnd = 2.0;
+constexpr double kFootReach = 12.0;  // [m] along the road, from the foot of a sample to that of the next
+constexpr double kNear = 4.0;        // [m] a nearer edge is found across the line: it may be driven along
+constexpr int kSteps = 4;            // in which it is
+
+/// From `here`, whose foot on the road's line is near s, to the edge on the left (side 1) or right (-1).
+double room_beside(const Track& track, const CurvePoint& here, double s, double side) noexcept {
+  const Vec2 across = side * Vec2{-here.tangent.y(), here.tangent.x()};
+  const auto left_over = [&](double way) {
+    const Projection foot = track.centre().project(here.position + way * across, s, kFootReach);
+    const double width = side > 0.0 ? track.left_width(foot.s) : track.right_width(foot.s);
+    return width + track.kerb_width() - side * foot.d;
+  };
+  double room = left_over(0.0);
+  for (int k = 0; k < kSteps && room < kNear; ++k) room += left_over(room);
+  return room;
+}
 
 }  // namespace
 
@@ -65,6 +81,16 @@ RacingRoad::RacingRoad(std::span<const road::LinePoint> lap, double kerb, const 
     rooms_[i] = {blend(a.left, b.left) + kerb, blend(a.right, b.right) + kerb};
   }
   if (!basis.is_closed) stop_at_end();
+}
+
+void RacingRoad::look_at(const Track& track, std::span<const road::LinePoint> lap) noexcept {
+  double s = rooms_.empty() ? 0.0 : lap.front().s;
+  for (std::size_t i = 0; i < rooms_.size(); ++i) {
+    const CurvePoint& here = line_.samples()[i].curve;
+    s = track.centre().project(here.position, s, kFootReach).s;
+    rooms_[i].left = std::min(rooms_[i].left, room_beside(track, here, s, 1.0));
+    rooms_[i].right = std::min(rooms_[i].right, room_beside(track, here, s, -1.0));
+  }
 }
 
 void RacingRoad::stop_at_end() noexcept {

@@ -7,6 +7,7 @@
 #include "chicane/road/reference_line.hpp"
 #include "chicane/road/road.hpp"
 #include "chicane/road/road_data.hpp"
+#include "chicane/road/track.hpp"
 
 namespace chicane::road {
 
@@ -21,15 +22,28 @@ class RacingRoad {
   /// Empty line for less than 8 points.
   explicit RacingRoad(std::span<const road::LinePoint> lap, double kerb = 0.0)
       : RacingRoad(lap, kerb, Basis{}) {}
+  /// Slips of the axles over that of their tyres' peak.
+  struct Slips {
+    double front = 1.0;
+    double rear = 1.0;
+  };
   /// What a lap was planned from.
   struct Basis {
     bool is_learned = false;   ///< see is_learned()
     double grip = 1.0;         ///< see grip()
+    bool slides = false;       ///< see slides()
     bool is_closed = true;     ///< the road; else the car is planned to stop at its end ...
     double braking = 0.0;      ///< ... with this deceleration [m/s²]
     double room_behind = 0.0;  ///< the finish, to the end [m]
+    Slips slips{};             ///< see slips()
   };
   RacingRoad(std::span<const road::LinePoint> lap, double kerb, const Basis& basis);
+  /// On `track`, which tells the room beside the line. Where a road bends tightly, that across the line is
+  /// another one than across the road, and changes between the points of the lap.
+  RacingRoad(std::span<const road::LinePoint> lap, const Track& track, const Basis& basis)
+      : RacingRoad(lap, track.kerb_width(), basis) {
+    look_at(track, lap);
+  }
 
   /// In W, closed as the road is. The offset of its samples is that from the road's centre line [m].
   [[nodiscard]] const ReferenceLine& line() const noexcept { return line_; }
@@ -42,6 +56,10 @@ class RacingRoad {
   [[nodiscard]] bool is_learned() const noexcept { return basis_.is_learned; }
   /// The grip that it was planned with, over the one that the vehicle's parameters tell.
   [[nodiscard]] double grip() const noexcept { return basis_.grip; }
+  /// Whether it was asked to slide beyond the peak of the tyres.
+  [[nodiscard]] bool slides() const noexcept { return basis_.slides; }
+  /// Beyond which slip has a price for who drives it.
+  [[nodiscard]] const Slips& slips() const noexcept { return basis_.slips; }
 
  private:
   /// Between two samples: the first, and the share of the second.
@@ -51,6 +69,7 @@ class RacingRoad {
   };
   [[nodiscard]] Place place(double s) const noexcept;
   void stop_at_end() noexcept;
+  void look_at(const Track& track, std::span<const road::LinePoint> lap) noexcept;
 
   ReferenceLine line_;
   std::vector<Road::Room> rooms_;  ///< at the line's samples

@@ -163,6 +163,7 @@ void ClosedLoop::take(const FaultSwitch& fault) noexcept {
 void ClosedLoop::take(LearnedLap learned) noexcept {
   controller::LapWish wish = controller().wants_lap();
   wish.grip = learned.grip;
+  wish.slides = learned.slides;
   const auto lap = plan_wanted_lap(scenario_, &track_, wish);
   if (lap) use_line(*lap);
 }

@@ -18,7 +18,9 @@ LapPlanner::~LapPlanner() {
 }
 
 telemetry::Change LapPlanner::lap_change(const road::RacingRoad& lap, std::uint64_t cycle, double time) {
-  return {.cycle = cycle, .time = time, .name = kChange, .value = number_text(lap.grip())};
+  std::string value = number_text(lap.grip());
+  if (lap.slides()) value += kSlides;
+  return {.cycle = cycle, .time = time, .name = kChange, .value = value};
 }
 
 std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Controller& controller,
@@ -39,11 +41,12 @@ std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Con
     has_ended_ = false;
     lap_.reset();
     if (clock_ == Clock::kReal)
-      thread_ =
-          std::thread([this, scenario, track,
-                       points = std::vector(wish.waypoints.begin(), wish.waypoints.end()), grip = wish.grip] {
-            search(scenario, track, {.is_wanted = true, .waypoints = points, .grip = grip});
-          });
+      thread_ = std::thread([this, scenario, track,
+                             points = std::vector(wish.waypoints.begin(), wish.waypoints.end()),
+                             wanted = controller::LapWish(wish)]() mutable {
+        wanted.waypoints = points;
+        search(scenario, track, wanted);
+      });
     return {};
   }
   if (has_answered_) return {};

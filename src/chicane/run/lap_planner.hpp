@@ -57,10 +57,11 @@ class LapPlanner {
                                            const road::Track* track, double time);
 
   /// What recordings and viewers are told where `lap` is used from control cycle `cycle` on: the grip that it
-  /// is planned with. Allocates.
+  /// is planned with, and kSlides where it slides. Allocates.
   [[nodiscard]] static telemetry::Change lap_change(const road::RacingRoad& lap, std::uint64_t cycle,
                                                     double time);
   static constexpr std::string_view kChange = "run.racing_line";
+  static constexpr std::string_view kSlides = ", slides";
 
  private:
   void search(const scenario::Scenario& scenario, const road::Track* track, const controller::LapWish& wish);

@@ -236,8 +236,9 @@ std::string name_of_plan(const road::Track& track, const model::VehicleParams& c
   name.add(model::vehicle_options(), &car);
   name.add(std::string_view(car.name));
   name.add(car.scale);
-  for (const double value : {options.margin, options.grip_share, options.slip_share, options.brake_share,
-                             options.speed_limit, options.time_step, options.budget})
+  for (const double value :
+       {options.margin, options.grip_share, options.slip_share, options.brake_share, options.speed_limit,
+        options.time_step, options.budget, options.slides ? options.delay : 0.0})
     name.add(value);
   return name.text();
 }

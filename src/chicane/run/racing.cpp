@@ -11,6 +11,7 @@
 #include "chicane/lap_time/racing_plan.hpp"
 #include "chicane/model/grip.hpp"
 #include "chicane/model/similarity.hpp"
+#include "chicane/model/sliding.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/plan_cache.hpp"
 
@@ -24,6 +25,12 @@ const controller::TrackingMpcOptions& options_of(const scenario::Scenario& scena
   return std::get<controller::TrackingMpcEntry::Options>(scenario.controllers);
 }
 
+/// From a measurement until the next command acts, for the car in full size [s]; no less than assumed.
+double delay_of(const scenario::Scenario& scenario) {
+  return std::max((scenario.latency + scenario.control_period) * model::Similarity(scenario.vehicle).time(),
+                  model::SlidingBound::kAssumedDelay);
+}
+
 Result<std::shared_ptr<const road::RacingRoad>> plan_on(const road::Track& track,
                                                         const scenario::Scenario& scenario,
                                                         const road::RacingRoad::Basis& basis,
@@ -34,6 +41,8 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const road::Track& track
                                        .grip_share = options.grip_share,
                                        .slip_share = options.slip_share,
                                        .brake_share = options.brake_share,
+                                       .slides = basis.slides,
+                                       .delay = delay_of(scenario),
                                        .speed_limit = options.speed_limit,
                                        .budget = options.plan_budget};
   planning.go_on = [&](int, double) { return !must_stop_planning() && (!go_on || go_on()); };
@@ -49,13 +58,15 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const road::Track& track
     hooks.say("plan: the best so far, no optimum: tracking_mpc.plan_budget_s ended the search after " +
               number_text(options.plan_budget) + " s");
   road::RacingRoad::Basis planned = basis;
+  const model::SlidingBound sliding(car, planning.delay);
+  if (planning.slides && sliding.permits())
+    planned.slips = {options.slip_share * sliding.front(), options.slip_share * sliding.most_rear()};
   planned.is_closed = track.centre().is_closed();
   planned.room_behind = track.length() - track.start_s() - track.lap_length();
   planned.braking =
       kShareAtTheEnd * options.brake_share *
       std::min(car.brake_acceleration * car.brake_throttle_limit, car.friction * car.load_constant);
-  return std::make_shared<const road::RacingRoad>(road::line_points(track, *lap), track.kerb_width(),
-                                                  planned);
+  return std::make_shared<const road::RacingRoad>(road::line_points(track, *lap), track, planned);
 }
 
 /// What may be wrong with the road's size: a file in model size taken for one in full size, or the other way
@@ -111,7 +122,8 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::
                                                                 const road::Track* track,
                                                                 const controller::LapWish& wish,
                                                                 const std::function<bool()>& go_on) {
-  const road::RacingRoad::Basis basis{.is_learned = !wish.waypoints.empty(), .grip = wish.grip};
+  const road::RacingRoad::Basis basis{
+      .is_learned = !wish.waypoints.empty(), .grip = wish.grip, .slides = wish.slides};
   if (!basis.is_learned && track == nullptr) return std::shared_ptr<const road::RacingRoad>{};
   if (!basis.is_learned) return plan_on(in_full_size(*track, scenario), scenario, basis, go_on, {});
   const model::VehicleParams car = full_size(scenario);

@@ -68,9 +68,11 @@ Result<Action> read_action(std::string_view key, std::string_view value) {
   if (key.starts_with("fault.")) return read_fault_switch(key, value);
   if (key.starts_with("manual.")) return read_manual(key, value);
   if (key == LapPlanner::kChange) {
+    const bool slides = value.ends_with(LapPlanner::kSlides);
+    if (slides) value.remove_suffix(LapPlanner::kSlides.size());
     const Result<double> grip = number_in(key, value, 0.01, 2.0);
     if (!grip) return fail(grip.error());
-    return LearnedLap{*grip};
+    return LearnedLap{*grip, slides};
   }
   if (key != "run.pace") return read_field(key, value);
   const Result<double> pace = number_in(key, value, kSlowestPace, kFastestPace);

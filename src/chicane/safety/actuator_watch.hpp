@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "chicane/base/vec2.hpp"
 #include "chicane/model/measurement.hpp"
@@ -37,6 +38,7 @@ class ActuatorWatch {
   struct AxleUse {
     double front = 0.0;
     double rear = 0.0;
+    std::optional<double> sideslip{};  ///< of the car [rad], as estimated
   };
   /// A measurement that is not in doubt; `sent`: what the actuators were told. While the rear axle slides the
   /// steering is not judged, and while either does the brakes are not.
@@ -92,6 +94,7 @@ class ActuatorWatch {
   };
   [[nodiscard]] bool slides(const Sample& from, double sideslip) const noexcept;
   [[nodiscard]] bool measure(Window& window, double length, double elapsed) const noexcept;
+  [[nodiscard]] double unsure_slide(const Window& window) const noexcept;
   void judge_steering(Window& window, double length, double elapsed) noexcept;
   void fit_steering(const Window& window, double length, double elapsed) noexcept;
   void judge_braking(double elapsed) noexcept;

@@ -209,7 +209,7 @@ void Guard::watch_actuators(const model::Measurement& seen) noexcept {
   const model::State& car = estimator_.state();
   if (estimator_.is_started() && car.vx > kRollsBackAtMost) {
     const auto tires = model_.tire_use(model::BodyMotion<double>{car.vx, car.vy, car.r, car.steer, 0.0});
-    use = {tires.front, tires.rear};
+    use = {tires.front, tires.rear, car.vy / car.vx};
   }
   if (learned_) {
     const ActuatorAnswer& usual = learned_->answer();

@@ -54,6 +54,7 @@ void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
     road_.use_line(lap.get());
     take_up_line();
   }
+  estimator_.mind_helper_gap(lap != nullptr);
   believe_grip(lap ? lap->grip() : 1.0);
   controller_->use_line(std::move(lap));
 }

@@ -120,6 +120,7 @@ class PredictiveFilter {
   [[nodiscard]] bool is_in_tube(const road::KnownRoad& road, const StopStart& at) const noexcept;
   [[nodiscard]] bool drives_planned_lap(const road::KnownRoad& road, const StopStart& at,
                                         double wide) const noexcept;
+  [[nodiscard]] bool returns_to_lap(const road::KnownRoad& road, const StopStart& at) const noexcept;
   [[nodiscard]] bool shift_to(double time) noexcept;
   void shift_to_place(const road::KnownRoad& road, const StopStart& at) noexcept;
 

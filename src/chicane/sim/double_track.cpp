@@ -134,6 +134,7 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
   // The tyres lose friction under it as under any load.
   m.load_quadratic = (1.0 - p.load_sensitivity) * (p.downforce_front + p.downforce_rear) / p.mass;
   m.steer_helper = 0.0;
+  m.helper_gap = 0.0;
   // What speeds the car up turns its wheels up, too.
   const double inertia = p.mass + 4.0 * p.wheel_inertia / (p.wheel_radius * p.wheel_radius);
   m.drive_acceleration = p.drive_force / inertia;

@@ -23,13 +23,16 @@ void GripEstimator::begin(const StateEstimator& from, const model::PredictionMod
     estimator.set_model(model::PredictionModel{model::with_grip(believed.vehicle(), share)});
     return estimator;
   };
-  *this = GripEstimator{copy(1.0), copy(1.0 - kStep)};
+  *this = GripEstimator{copy(1.0), copy(1.0 - kStep), copy(1.0)};
 }
 
 void GripEstimator::see(const model::Measurement& now, const CommandHistory& sent) noexcept {
   const double elapsed = now.time - believed_.time();
   believed_.correct(now, sent);
   less_.correct(now, sent);
+  model::Measurement later = now;  // on a clock that is late all commands are
+  later.time -= kLate;
+  late_.correct(later, sent);
   const double n = believed_.surprise().aside, less = less_.surprise().aside;
   const bool is_seen =
       elapsed > 0.0 && elapsed < kLongestSilence && std::fabs(n) < kFarAside && std::isfinite(less);
@@ -46,6 +49,10 @@ void GripEstimator::see(const model::Measurement& now, const CommandHistory& sen
   all_.add(h, n, left, elapsed);
   bend_.add(h, n, 1.0, elapsed);
   bend_time_ += elapsed;
+  const double off = believed_.surprise().heading, late = late_.surprise().heading;
+  if (!std::isfinite(late)) return;
+  off_ = left * off_ + elapsed * off * off;
+  by_time_ = left * by_time_ + elapsed * (late - off) * (late - off) / (kLate * kLate);
 }
 
 void GripEstimator::end_bend() noexcept {
@@ -71,6 +78,10 @@ double GripEstimator::Sums::variance(double time) const noexcept {
 
 double GripEstimator::share() const noexcept {
   return is_known() ? std::clamp(1.0 + all_.hn / all_.hh, kLow, kHigh) : 1.0;
+}
+
+double GripEstimator::unsure_time() const noexcept {
+  return by_time_ > 0.0 ? std::sqrt(off_ / by_time_) : std::numeric_limits<double>::infinity();
 }
 
 bool GripEstimator::differs(double least) const noexcept {

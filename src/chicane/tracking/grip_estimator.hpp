@@ -15,7 +15,11 @@ namespace chicane::tracking {
 /// kMemory of cornering finds the share, without the bias of noise. How sure it is, is the larger of what
 /// noise explains and of what the bends disagree by: a model that lacks something is wrong for a whole bend.
 ///
-/// Another mass, a side wind or steering that answers otherwise pass for grip. One thread; allocates nothing.
+/// Another mass, a side wind or steering that answers otherwise pass for grip.
+///
+/// A third estimator sees the commands act a little later. What the headings are off by, beside what that
+/// makes of them, says how much another time than told explains (docs/racing_gap.md, eq. 8). One thread;
+/// allocates nothing.
 class GripEstimator {
  public:
   static constexpr double kLeast = 3.0;  ///< [m/s²] of lateral acceleration by tyres: less tells too little
@@ -27,7 +31,8 @@ class GripEstimator {
   static constexpr double kSure = 0.1;         ///< standard deviation of share() from which on it is known
   static constexpr double kLow = 0.3, kHigh = 1.6;  ///< range of share()
 
-  explicit GripEstimator(const model::PredictionModel& model) noexcept : believed_{model}, less_{model} {}
+  explicit GripEstimator(const model::PredictionModel& model) noexcept
+      : believed_{model}, less_{model}, late_{model} {}
 
   /// Begins anew where `from` is, with the car as it is believed to be.
   void begin(const StateEstimator& from, const model::PredictionModel& believed) noexcept;
@@ -40,12 +45,19 @@ class GripEstimator {
   [[nodiscard]] bool differs(double least) const noexcept;
   /// Standard deviation of share(), the larger of eq. 4 and 5; infinite before there is any corner.
   [[nodiscard]] double deviation() const noexcept;
+  /// By how much a command may act otherwise than told so that it explains what headings are off by, root
+  /// mean square [s]: jitter, and all else that is not known. Infinite before there is any corner.
+  [[nodiscard]] double unsure_time() const noexcept;
+  /// Mean time between measurements in corners [s].
+  [[nodiscard]] double interval() const noexcept { return interval_; }
 
  private:
-  static constexpr double kStep = 0.1;  ///< share of grip that the other estimator has less
+  static constexpr double kStep = 0.1;   ///< share of grip that the other estimator has less
+  static constexpr double kLate = 0.02;  ///< by which commands act later for the third [s]
 
-  GripEstimator(const StateEstimator& believed, const StateEstimator& less) noexcept
-      : believed_{believed}, less_{less} {}
+  GripEstimator(const StateEstimator& believed, const StateEstimator& less,
+                const StateEstimator& late) noexcept
+      : believed_{believed}, less_{less}, late_{late} {}
 
   /// Sums of the unexpected part of the place, n, and of the grip's effect on it, h [m], times seconds.
   struct Sums {
@@ -63,7 +75,7 @@ class GripEstimator {
   };
   void end_bend() noexcept;
 
-  StateEstimator believed_, less_;
+  StateEstimator believed_, less_, late_;
   double time_ = 0.0;      ///< of cornering, as far as it is remembered [s]
   double interval_ = 0.0;  ///< between measurements in corners, mean [s]
   Sums all_;
@@ -71,6 +83,8 @@ class GripEstimator {
   double bend_time_ = 0.0;  ///< [s]
   double side_ = 0.0;       ///< sign of the side that the last measurement in a bend turned to
   Bends bends_;
+  /// Sums over corners of squares: what the heading was off by, and what it changes by with the time [rad/s].
+  double off_ = 0.0, by_time_ = 0.0;
 };
 
 }  // namespace chicane::tracking

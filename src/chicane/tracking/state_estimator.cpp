@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/model/helper_gap.hpp"
 
 namespace chicane::tracking {
 namespace {
@@ -81,6 +82,11 @@ void StateEstimator::advance(Prediction& at, double from, double to,
     body.r += dt * at.disturbance.yaw;
     at.disturbance.fade(dt);
     const double psi = state.psi + 0.5 * dt * (state.r + body.r);
+    if (minds_gap_ && model::helper_gap_within(state.psi, psi) > 0.0) {
+      const double turn = model::helper_gap_turn(p, state.r), along = body.vx;
+      body.vx += turn * body.vy;
+      body.vy -= turn * along;
+    }
     const double mean_psi = 0.5 * (state.psi + psi);
     const double vx = 0.5 * (state.vx + body.vx);
     const double vy = 0.5 * (state.vy + body.vy);

@@ -123,6 +123,8 @@ class StateEstimator {
     heading_gains_.estimate_disturbance(is_on);
     now_.disturbance = {};
   }
+  /// Whether what the steer helper leaves out is counted from now on (model/helper_gap.hpp); off at first.
+  void mind_helper_gap(bool is_on) noexcept { minds_gap_ = is_on; }
   /// Innovations are averaged over `time` [s] from now on (InnovationGains).
   void average_over(double time) noexcept {
     place_gains_.average_over(time);
@@ -175,6 +177,7 @@ class StateEstimator {
   model::PredictionModel model_;
   InnovationGains place_gains_{kPlaceAcceleration};
   InnovationGains heading_gains_{kYawAcceleration};
+  bool minds_gap_ = false;
   bool is_started_ = false;
   double time_ = 0.0;
   double place_seen_ = 0.0;    ///< time of the last place that was measured together with a heading [s]

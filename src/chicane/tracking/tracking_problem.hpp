@@ -85,6 +85,9 @@ struct TrackingProblem {
   RootWeights weight{};
   double nose = 0.0;  ///< what has to stay inside the edges reaches so far ahead of the centre of mass [m]
   double tail = 0.0;  ///< and behind it
+  double useful_front =
+      1.0;                   ///< slip of the front tyres over that of their peak, beyond which it has a price
+  double useful_rear = 1.0;  ///< and of the rear tyres
   Road road;
   /// What the model moves in a long first stage beyond one step of its length, at the first guess. Zero for
   /// a short one.
@@ -139,8 +142,8 @@ struct TrackingProblem {
         weight.edge * positive_part(max(ahead - road.left.at(k), behind - road.tail_left.at(k))),
         weight.edge *
             positive_part(max(-1.0 * ahead - road.right.at(k), -1.0 * behind - road.tail_right.at(k))),
-        weight.slip * positive_part(use.front - kUsefulTireUse),
-        weight.slip * positive_part(use.rear - kUsefulTireUse),
+        weight.slip * positive_part(use.front - useful_front),
+        weight.slip * positive_part(use.rear - useful_rear),
         weight.excess_steer_rate * positive_part(abs(rate) - car.steer_rate_limit),
         friction *
             (positive_part(use.along_front - kUsefulForce) + positive_part(use.along_rear - kUsefulForce)));
@@ -225,7 +228,6 @@ struct TrackingProblem {
 
   static constexpr double kUsefulForce =
       0.93;  ///< of the longitudinal force: the rest keeps the car on its course
-  static constexpr double kUsefulTireUse = 1.0;  ///< slip beyond this gives hardly more force
 
  public:
   /// The motion over stage k in `parts` steps, without first_correction and what a disturbance adds.

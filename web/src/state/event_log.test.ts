@@ -61,6 +61,8 @@ describe('event log', () => {
     expect(events.value).toMatchObject([{ text: 'latency_ms set to 150', time: 3.5 }]);
     noteChange({ stamp: { sec: 5, nsec: 0 }, cycle: 92n, name: 'run.racing_line', value: '0.87' });
     expect(events.value[0]?.text).toBe('Races by a new lap, planned with 87 % of the grip');
+    noteChange({ stamp: { sec: 6, nsec: 0 }, cycle: 93n, name: 'run.racing_line', value: '0.97, slides' });
+    expect(events.value[0]?.text).toBe('Races by a new lap, planned with 97 % of the grip, and to slide');
   });
 
   it('lists once what was assumed as the run began', () => {

@@ -99,7 +99,9 @@ export const faultInWords = (name: string): string => nameInWords(name.replace(/
 export function noteChange({ stamp, name, value }: Change): void {
   const isPlan = name === 'run.racing_line';
   if (/^(manual|fault|run)\./.test(name) && !isPlan) return; // noteEvents() or the page itself shows these
-  const planned = `Races by a new lap, planned with ${Math.round(100 * Number(value))} % of the grip`;
+  const [grip, slides] = value.split(',');
+  const share = `${Math.round(100 * Number(grip))} % of the grip${slides ? ', and to slide' : ''}`;
+  const planned = `Races by a new lap, planned with ${share}`;
   add({
     id: kept.nextId++,
     severity: isPlan ? 'good' : 'unknown',

@@ -5,7 +5,9 @@
 
 #include "chicane/lap_time/detail/plan_model.hpp"
 #include "chicane/model/braking_stability.hpp"
+#include "chicane/model/helper_gap.hpp"
 #include "chicane/model/prediction.hpp"
+#include "chicane/model/sliding.hpp"
 
 namespace chicane::lap_time {
 
@@ -24,6 +26,8 @@ struct VehicleModel {
   model::PredictionModel model{model::VehicleParams{}};
   model::BrakingStability stability{model::VehicleParams{}};  ///< with all of the grip
   bool is_steered_slowly = false;                             ///< then the plan keeps to it
+  model::SlidingBound sliding{model::VehicleParams{}};
+  bool slides = false;  ///< the rear tyres slip as far as `sliding` permits
   const RoadNodes* road = nullptr;
   double margin = 0.0;         ///< kept from the edges [m]
   double slip_share = 1.0;     ///< most slip of an axle over that of its peak
@@ -50,7 +54,13 @@ struct VehicleModel {
     const T& jerk = z[8];
     const OnRoad<T> on(at.curvature[k], n, z[kHeading], vx, z[kVy]);
     const model::BodyMotion<T> body{vx, z[kVy], z[kYawRate], steer, net};
-    const auto change = model.change(body);
+    auto change = model.change(body);
+    if (slides && car.helper_gap > 0.0) {
+      const T turn = car.steer_helper * model::helper_left_out(car, at.heading[k], z[kHeading], z[kYawRate]) *
+                     z[kYawRate];
+      change.vx = change.vx + turn * z[kVy];
+      change.vy = change.vy - turn * vx;
+    }
     *out++ = (on.s * vx + on.c * z[kVy]) * on.slowness;
     *out++ = z[kYawRate] * on.slowness;  // the line's own turn is in the intervals
     *out++ = change.vx * on.slowness;
@@ -75,8 +85,10 @@ struct VehicleModel {
     *out++ = 0.2 * (std::min(car.drive_power_per_mass, kMostPower) / vx - force);
     *out++ = 0.1 * (force + brake_share * car.brake_throttle_limit * car.brake_acceleration);
     const T slip = slip_share * (1.0 - (is_steered_slowly ? kSlipPerSpeedSlow : kSlipPerSpeed) * vx);
-    *out++ = slip * slip - change.square_front;
-    *out++ = slip * slip - change.square_rear;
+    const T front = slides ? T(slip_share * sliding.front()) : slip;
+    const T rear = slides ? T(slip_share * sliding.rear(vx)) : slip;
+    *out++ = front * front - change.square_front;
+    *out++ = rear * rear - change.square_rear;
     *out++ = kMostAlong - change.along_front;
     *out++ = kMostAlong - change.along_rear;
     *out++ = stable_braking(T(net + drag(vx)), vx, z[kYawRate]);
