@@ -58,8 +58,8 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   void configure(const TrackingMpcOptions& options, const model::VehicleParams& vehicle) noexcept override {
     if (options.learns() != options_.learns()) grip_.forget();
     options_ = options;
+    if (!(vehicle == told_)) grip_.tell(vehicle);
     told_ = vehicle;
-    grip_.tell(told_);
     believe();
     grip_.begin(estimator_, model_);
   }
