@@ -104,8 +104,9 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const std::span<const Vec2> waypoints = road_.seen().closed_waypoints();
     if (!options_.racing_line || (lap == nullptr && waypoints.empty())) return {};
     const double planned = lap != nullptr ? lap->grip() : options_.first_grip();
-    const double grip = grip_.is_shown() ? grip_.for_plan(planned) : planned;
-    const bool is_known = lap != nullptr && !lap->is_learned();  // else its edges are assumed
+    const double shown = grip_.is_shown() ? grip_.for_plan(planned) : planned;
+    const bool is_known = lap != nullptr && !lap->is_learned();
+    const double grip = is_known ? shown : std::min(shown, 1.0);  // of a road whose edges are assumed
     const bool slides =
         options_.slide && is_known && grip_.may_slide(grip, result_.report.delay, lap->slides());
     return {.is_wanted = lap == nullptr || grip != planned || slides != lap->slides(),
