@@ -159,14 +159,11 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     shape_edges();
   }
 
-  /// Raced by a planned lap, the edges are those of the road, the axles stay inside, and slip is free up to
-  /// that lap's; otherwise the centre of mass keeps to an assumed width.
+  /// Raced by a planned lap, the axles stay inside the road's edges; else the mass, inside an assumed width.
   void shape_edges() noexcept {
     problem_.nose = road_.is_raced() ? model_.vehicle().front_axle : 0.0;
     problem_.tail = road_.is_raced() ? model_.vehicle().rear_axle : 0.0;
-    const road::RacingRoad::Slips most = road_.is_raced() ? road_.lap()->slips() : road::RacingRoad::Slips{};
-    problem_.useful_front = most.front;
-    problem_.useful_rear = most.rear;
+    slips_ = road_.is_raced() ? road_.lap()->slips() : road::RacingRoad::Slips{};
   }
 
   /// A planned lap begins to be raced by, or ends.
@@ -277,7 +274,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     turns_ = kMostTurns;
     if (can_shift) {
       const double more = std::min(elapsed / kTimePerTurn, static_cast<double>(kMostTurns));
-      const int least = problem_.useful_rear > 1.0 ? kMostTurns : options_.turns;  // slides converge late
+      const int least = slips_.rear > 1.0 ? kMostTurns : options_.turns;  // slides converge late
       turns_ = std::clamp(least - 1 + static_cast<int>(std::lround(more)), least, kMostTurns);
       shift_answer(elapsed);
     } else {
@@ -368,8 +365,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const road::Road::Room behind = room_at(s - problem_.tail, demand.offset);
     const model::VehicleParams& car = model_.vehicle();
     const double v = std::max(x[Problem::kVx], 0.0);
-    // Asking for far more than the car can do would only drown the other prices (and Gauss–Newton with them).
-    const bool is_reachable = demand.speed < v + kSpeedAhead;
+    const bool is_reachable = demand.speed < v + kSpeedAhead;  // more would drown the other prices
     const auto i = static_cast<std::size_t>(k);
     Problem::Road& road = problem_.road;
     road.s[i] = s;
@@ -377,6 +373,9 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     road.curvature_slope[i] = demand.curvature_slope;
     road.speed[i] = haste + (is_reachable ? demand.speed : v + kSpeedAhead);
     road.speed_slope[i] = is_reachable ? demand.speed_slope : 0.0;
+    const double share = model::SlidingBound::share(demand.speed);
+    road.slide_front[i] = share * (slips_.front - 1.0);
+    road.slide_rear[i] = share * (slips_.rear - 1.0);
     road.sideslip[i] = road_.is_raced() ? road_.lap()->sideslip(s_ + s) : 0.0;
     road.left[i] = room.left;
     road.right[i] = room.right;
@@ -468,6 +467,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   road::DrivenRoad road_;
   tracking::StateEstimator estimator_;
   tracking::CommandHistory sent_;
+  road::RacingRoad::Slips slips_;  ///< that a raced lap was planned with
   Problem problem_;
   Owned<tracking::TrackingSolver> solver_;
   Horizon horizon_;  ///< the last answer, then the guess, then the new answer

@@ -53,8 +53,10 @@ struct TrackingProblem {
     Data tail_right;
     Data acceleration_min;  ///< [m/s²]
     Data acceleration_max;
-    Data pushed_vy;  ///< what a disturbance adds to v_y over the stage [m/s]
-    Data pushed_r;   ///< and to the yaw rate [rad/s]
+    Data slide_front;  ///< slip of the front tyres beyond their peak, over that of the peak, without a price
+    Data slide_rear;   ///< and of the rear tyres
+    Data pushed_vy;    ///< what a disturbance adds to v_y over the stage [m/s]
+    Data pushed_r;     ///< and to the yaw rate [rad/s]
   };
 
   /// Square roots of the prices.
@@ -85,9 +87,6 @@ struct TrackingProblem {
   RootWeights weight{};
   double nose = 0.0;  ///< what has to stay inside the edges reaches so far ahead of the centre of mass [m]
   double tail = 0.0;  ///< and behind it
-  double useful_front =
-      1.0;                   ///< slip of the front tyres over that of their peak, beyond which it has a price
-  double useful_rear = 1.0;  ///< and of the rear tyres
   Road road;
   /// What the model moves in a long first stage beyond one step of its length, at the first guess. Zero for
   /// a short one.
@@ -142,8 +141,8 @@ struct TrackingProblem {
         weight.edge * positive_part(max(ahead - road.left.at(k), behind - road.tail_left.at(k))),
         weight.edge *
             positive_part(max(-1.0 * ahead - road.right.at(k), -1.0 * behind - road.tail_right.at(k))),
-        weight.slip * positive_part(use.front - useful_front),
-        weight.slip * positive_part(use.rear - useful_rear),
+        weight.slip * positive_part(use.front - (1.0 + road.slide_front.at(k))),
+        weight.slip * positive_part(use.rear - (1.0 + road.slide_rear.at(k))),
         weight.excess_steer_rate * positive_part(abs(rate) - car.steer_rate_limit),
         friction *
             (positive_part(use.along_front - kUsefulForce) + positive_part(use.along_rear - kUsefulForce)));

@@ -85,7 +85,7 @@ struct VehicleModel {
     *out++ = 0.2 * (std::min(car.drive_power_per_mass, kMostPower) / vx - force);
     *out++ = 0.1 * (force + brake_share * car.brake_throttle_limit * car.brake_acceleration);
     const T slip = slip_share * (1.0 - (is_steered_slowly ? kSlipPerSpeedSlow : kSlipPerSpeed) * vx);
-    const T share = slides ? slide_share(vx) : T(0.0);
+    const T share = slides ? model::SlidingBound::share(vx) : T(0.0);
     const T front = slip + share * (slip_share * sliding.front() - slip);
     const T rear = slip + share * (slip_share * sliding.rear(vx) - slip);
     *out++ = front * front - change.square_front;
@@ -97,14 +97,6 @@ struct VehicleModel {
     *out++ = 0.1 * (speed_limit - vx);
   }
 
-  /// How much of a slide's bounds counts at speed vx: all below kSlidesBelow, nothing above kSlidesNot.
-  template <class T>
-  [[nodiscard]] static T slide_share(const T& vx) {
-    const T t = (kSlidesNot - vx) * (1.0 / (kSlidesNot - kSlidesBelow));
-    if (value_of(t) <= 0.0) return T(0.0);
-    if (value_of(t) >= 1.0) return T(1.0);
-    return t * t * (3.0 - 2.0 * t);
-  }
   /// Not negative where the steering can still catch a car that brakes with this force over mass.
   template <class T>
   [[nodiscard]] T stable_braking(const T& force, const T& vx, const T& yaw_rate) const {
@@ -124,9 +116,6 @@ struct VehicleModel {
   static constexpr double kSlipPerSpeed = 0.005;
   /// Share for cars with slow steering: with 0.005 `vw-vanagon` and `tum-1200` spin in bends of 35 to 45 m/s.
   static constexpr double kSlipPerSpeedSlow = 0.01;
-  /// Speeds [m/s] between which a slide's bounds go over to those of a lap that does not slide: with a slide
-  /// at 52 m/s `udacity` left Monza in an S-bend, for a gain of 0.01 s.
-  static constexpr double kSlidesBelow = 35.0, kSlidesNot = 45.0;
 };
 
 }  // namespace chicane::lap_time
