@@ -373,9 +373,8 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     road.curvature_slope[i] = demand.curvature_slope;
     road.speed[i] = haste + (is_reachable ? demand.speed : v + kSpeedAhead);
     road.speed_slope[i] = is_reachable ? demand.speed_slope : 0.0;
-    const double share = model::SlidingBound::share(demand.speed);
-    road.slide_front[i] = share * (slips_.front - 1.0);
-    road.slide_rear[i] = share * (slips_.rear - 1.0);
+    road.slide_front[i] = model::SlidingBound::share(demand.speed) * (slips_.front - 1.0);
+    road.slide_rear[i] = model::SlidingBound::share(demand.speed) * (slips_.rear - 1.0);
     road.sideslip[i] = road_.is_raced() ? road_.lap()->sideslip(s_ + s) : 0.0;
     road.left[i] = room.left;
     road.right[i] = room.right;
