@@ -10,7 +10,7 @@ namespace chicane {
 /// bits, for each processor). Algorithms and coefficients after fdlibm (Sun Microsystems, 1993, freely
 /// distributable); error below 1 ulp in the stated ranges, NaN in gives NaN out. No allocation, no errno.
 [[nodiscard]] double sin(double x) noexcept;  ///< |x| < 1e6 [rad]; error grows with |x| beyond
-[[nodiscard]] double cos(double x) noexcept;  ///< as sin
+[[nodiscard]] double cos(double x) noexcept;  ///< same range as sin
 struct SineCosine {
   double sine, cosine;
 };

@@ -18,12 +18,12 @@ class LearnedGrip {
   static constexpr double kStep =
       0.03;  ///< the model, and a plan upwards, follow where the grip differs by more
   static constexpr double kStepDown = 0.015;   ///< a plan downwards
-  static constexpr double kOtherGrip = 0.055;  ///< of a car that does not slide, beside the told one
-  static constexpr double kSlidesOn = 0.01;    ///< by which a lap that slides may be answered later [s]
+  static constexpr double kOtherGrip = 0.055;  ///< difference to the told grip that rules a slide out
+  static constexpr double kSlidesOn = 0.01;    ///< more delay that a lap which slides may have [s]
 
   explicit LearnedGrip(const model::PredictionModel& told) noexcept : estimator_{told} {}
 
-  /// What the car was told to be. Takes some 0.1 ms (model::SlidingBound).
+  /// Sets the told car. Takes some 0.1 ms (model::SlidingBound).
   void tell(const model::VehicleParams& told) noexcept {
     longest_delay_ = model::SlidingBound::longest_delay(told);
   }
@@ -92,7 +92,7 @@ class LearnedGrip {
   }
 
   tracking::GripEstimator estimator_;
-  double longest_delay_ = 0.0;  ///< with which the told car may slide [s]
+  double longest_delay_ = 0.0;  ///< longest with which the told car may slide [s]
   double share_ = 1.0;
   double unsure_ = 0.0;  ///< two standard deviations of share_ when it was found
   bool is_shown_ = false;

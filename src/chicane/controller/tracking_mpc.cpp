@@ -106,7 +106,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const double planned = lap != nullptr ? lap->grip() : options_.first_grip();
     const double shown = grip_.is_shown() ? grip_.for_plan(planned) : planned;
     const bool is_known = lap != nullptr && !lap->is_learned();
-    const double grip = is_known ? shown : std::min(shown, 1.0);  // of a road whose edges are assumed
+    const double grip = is_known ? shown : std::min(shown, 1.0);  // assumed edges: no more than told
     const bool slides =
         options_.slide && is_known && grip_.may_slide(grip, result_.report.delay, lap->slides());
     return {.is_wanted = lap == nullptr || grip != planned || slides != lap->slides(),
@@ -466,7 +466,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   road::DrivenRoad road_;
   tracking::StateEstimator estimator_;
   tracking::CommandHistory sent_;
-  road::RacingRoad::Slips slips_;  ///< that a raced lap was planned with
+  road::RacingRoad::Slips slips_;  ///< slips that a raced lap was planned with
   Problem problem_;
   Owned<tracking::TrackingSolver> solver_;
   Horizon horizon_;  ///< the last answer, then the guess, then the new answer

@@ -15,7 +15,7 @@ namespace chicane::lap_time {
 
 /// What a plan to race by leaves unused.
 struct RacingPlanOptions {
-  double margin = 0.0;       ///< of each contact patch from its edge, kerb included [m], >= 0
+  double margin = 0.0;       ///< distance of each contact patch to its edge, kerb included [m], >= 0
   double grip_share = 1.0;   ///< of the friction, (0, 1]
   double slip_share = 1.0;   ///< most slip of an axle over that of its peak force, (0, 2]
   double brake_share = 1.0;  ///< of the largest useful deceleration, (0, 1]
