@@ -142,6 +142,7 @@ bool ActuatorWatch::measure(Window& window, double length, double elapsed) const
                                 .acceleration = (now.speed - from.speed) / time};
   window.angle = car.steer = model_.steer_for(car, 2.0 * change / time);
   window.slip = car.steer - (window.slide + model_.vehicle().front_axle * car.r) / car.vx;
+  window.rear_slip = (model_.vehicle().rear_axle * car.r - window.slide) / car.vx;
   const auto tires = model_.tire_use(car);
   window.slide = model_.advance(car, car.steer, car.acceleration, elapsed).vy;
   const double sideslip = std::fabs(window.slide) / car.vx;
@@ -166,7 +167,8 @@ void ActuatorWatch::judge_steering(Window& window, double length, double elapsed
   const double before = window.difference;
   window.difference = window.angle - answer_.gain * window.asked - answer_.offset;
   const double slip_share = window.use > kSpareUse ? kSlipShareUsed : kSlipShare;
-  const double band = kBand + kBandShare * std::fabs(window.asked) + slip_share * std::fabs(window.slip) +
+  const double band = kBand + kBandShare * std::fabs(window.asked) +
+                      slip_share * std::max(std::fabs(window.slip), std::fabs(window.rear_slip)) +
                       kChangeShare * window.changed + unsure_slide(window) +
                       kDeviations * std::sqrt(window.noise);
   // Wheels that turn the car less than asked for may as well lack grip.

@@ -23,7 +23,7 @@ class ActuatorWatch {
   static constexpr double kBand = 0.01;          ///< [rad] by which an angle may differ
   static constexpr double kBandShare = 0.1;      ///< and of the angle
   static constexpr double kChangeShare = 1.0;    ///< and of what it changes within a window
-  static constexpr double kSlipShare = 0.2;      ///< and of the front tyres' slip
+  static constexpr double kSlipShare = 0.2;      ///< and of the slip, of the axle that slips more
   static constexpr double kSlipShareUsed = 0.5;  ///< the same of tyres that are used, whose grip may be less
   static constexpr double kWeak = 0.75;          ///< share of the braking, below which brakes are weak
   static constexpr double kUsualFor = 1.0;       ///< [s]
@@ -83,6 +83,7 @@ class ActuatorWatch {
   struct Window {
     double asked = 0.0, angle = 0.0;  ///< [rad]
     double slip = 0.0;                ///< what of the angle is the front tyres' slip [rad]
+    double rear_slip = 0.0;           ///< whose moment is what the front tyres' force comes from [rad]
     double use = 0.0;                 ///< of the tyres' peak slip
     double slide = 0.0;               ///< lateral velocity of the car that turns as measured [m/s]
     double changed = 0.0;             ///< what the angle asked for has changed [rad]

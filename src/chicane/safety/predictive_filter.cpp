@@ -61,7 +61,8 @@ constexpr Braking kStops[] = {{kGentle, kOpenStability, kHeldByFeedback},
                               {1.0, kHeldByFeedback},
                               {1.0, 0.0}};
 constexpr int kStopCount = static_cast<int>(std::size(kStops));
-constexpr int kDriveOnCount = static_cast<int>(std::size(kDriveOn));
+constexpr int kKinds = kStopCount + static_cast<int>(std::size(kDriveOn));
+constexpr int kTriedFirst = 2;    // kinds of stop tried in a cycle before the planned lap will do
 constexpr double kFar = 10.0;     // [m] beside a line: of another road
 constexpr double kUnfit = 200.0;  // [m] worse than any candidate that fits
 
@@ -103,6 +104,11 @@ void PredictiveFilter::store(const Candidate& candidate, controller::StepReport&
   report.stop_distance = candidate.check.distance;
 }
 
+/// Whether a kind of stop is for a car like this one: at once below a use of its tyres, later along a plan.
+bool PredictiveFilter::may_be(int kind, const Goal& goal) noexcept {
+  return kind < kStopCount ? goal.may_brake_now : goal.is_planned;
+}
+
 Fit PredictiveFilter::verify(const Request& request, controller::StepReport& report) noexcept {
   const road::KnownRoad& road = request.road;
   const double cycle = request.interval > 0.0 ? request.interval : kAssumedCycle;
@@ -124,31 +130,41 @@ Fit PredictiveFilter::verify(const Request& request, controller::StepReport& rep
   const bool plans = goal.is_planned = intends(request);
   goal.drives_on = !request.is_led;
 
+  goal.may_brake_now = use < (!plans ? kLawUseUnplanned : road.is_raced() ? kRacedUse : kLawUse);
+  const bool may_stop = use < kMostUse && goal.edge_before >= goal.margin;
+  if (plans) read_plan(request, StopPlanner::kLongestDriveOn);
+
+  // Where a backup need not be held blindly, any will do. A planned lap is itself a way to drive on: near it
+  // a cycle tries few of them, and the next cycle others.
+  const bool any_does = plans && !(goal.open_time > 0.0);
   Fit fit = Fit::kNone;
-  if (use < kMostUse && goal.edge_before >= goal.margin) {
-    const bool can_stop_now = use < (!plans ? kLawUseUnplanned : road.is_raced() ? kRacedUse : kLawUse);
-    // Where a backup need not be held blindly, any that holds will do: first the kind that held a cycle ago.
-    if (plans && !(goal.open_time > 0.0) && (can_stop_now || held_ >= kStopCount)) {
-      if (held_ >= kStopCount) read_plan(request, StopPlanner::kLongestDriveOn);
-      fit = stop_by(held_, road, next, goal, fit, report);
-    }
-    if (fit == Fit::kNone && can_stop_now) fit = stop_now(road, next, goal, report);
-    if (fit == Fit::kNone && plans) {
-      read_plan(request, StopPlanner::kLongestDriveOn);
-      fit = stop_later(road, next, goal, report);
-    }
-    if (fit == Fit::kNone && plans && !road.is_raced()) fit = stop_searched(road, next, goal, report);
-  }
-  if (fit == Fit::kNone && plans && road.is_raced() && is_in_tube(road, next)) {
-    shift_to_place(road, next);
-    fit = backup_fit_;
-  }
+  if (may_stop)
+    fit =
+        any_does ? stop_in_turn(kTriedFirst, road, next, goal, report) : best_stop(road, next, goal, report);
+  if (fit == Fit::kNone && plans) fit = go_on_along_lap(road, next);
+  if (fit == Fit::kNone && may_stop && any_does)
+    fit = stop_in_turn(kKinds - kTriedFirst, road, next, goal, report);
   if (fit != Fit::kNone || !plans) return fit;
-  // Without a verified backup to drive there is nothing better than the planned lap.
-  const double wide = backup_fit_ == Fit::kNone || backup_->stop.size == 0 ? kWideLap : 1.0;
-  if (!drives_planned_lap(road, next, wide) && !returns_to_lap(road, next)) return fit;
+  if (!road.is_raced()) return may_stop ? stop_searched(road, next, goal, report) : fit;
+  return go_back_to_lap(road, next);
+}
+
+/// Where no stop was found: in the tube of the backup in store, or near the planned lap.
+Fit PredictiveFilter::go_on_along_lap(const road::KnownRoad& road, const StopStart& at) noexcept {
+  if (!road.is_raced()) return Fit::kNone;
+  if (is_in_tube(road, at)) {
+    shift_to_place(road, at);
+    return backup_fit_;
+  }
+  if (!drives_planned_lap(road, at, 1.0) && !returns_to_lap(road, at)) return Fit::kNone;
   forget();
   return Fit::kOpen;
+}
+
+/// Without a verified backup to drive there is nothing better than the planned lap.
+Fit PredictiveFilter::go_back_to_lap(const road::KnownRoad& road, const StopStart& at) noexcept {
+  const bool has_backup = backup_fit_ != Fit::kNone && backup_->stop.size > 0;
+  return !has_backup && drives_planned_lap(road, at, kWideLap) ? Fit::kOpen : Fit::kNone;
 }
 
 /// The first `longest` [s] of the published plan, in coordinates along the line.
@@ -204,25 +220,33 @@ Fit PredictiveFilter::stop_by(int kind, const road::KnownRoad& road, const StopS
   const Candidate candidate = judge(road, from, check, goal);
   if (candidate.fit <= best) return best;
   store(candidate, report);
-  held_ = kind;
+  next_kind_ = kind;
   return candidate.fit;
 }
 
-/// The first stop that fits open loop, else the first that fits.
-Fit PredictiveFilter::stop_now(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
-                               controller::StepReport& report) noexcept {
-  Fit best = Fit::kNone;
-  for (int kind = 0; kind < kStopCount && best != Fit::kOpen; ++kind)
-    best = stop_by(kind, road, from, goal, best, report);
-  return best;
+/// The first of `count` kinds of stop that fits at all, beginning with the one that held last, going on with
+/// those that were tried longest ago.
+Fit PredictiveFilter::stop_in_turn(int count, const road::KnownRoad& road, const StopStart& from,
+                                   const Goal& goal, controller::StepReport& report) noexcept {
+  for (int seen = 0; seen < kKinds && count > 0; ++seen) {
+    if (may_be(next_kind_, goal)) {
+      const Fit fit = stop_by(next_kind_, road, from, goal, Fit::kNone, report);
+      if (fit != Fit::kNone) return fit;
+      --count;
+    }
+    next_kind_ = (next_kind_ + 1) % kKinds;
+  }
+  return Fit::kNone;
 }
 
-/// The first stop that fits at all.
-Fit PredictiveFilter::stop_later(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
-                                 controller::StepReport& report) noexcept {
+/// The first stop at once that fits open loop, else the first of any kind that fits.
+Fit PredictiveFilter::best_stop(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
+                                controller::StepReport& report) noexcept {
   Fit best = Fit::kNone;
-  for (int kind = kStopCount; kind < kStopCount + kDriveOnCount && best == Fit::kNone; ++kind)
-    best = stop_by(kind, road, from, goal, best, report);
+  for (int kind = 0; kind < kKinds; ++kind) {
+    if (best == Fit::kOpen || (best != Fit::kNone && kind >= kStopCount)) break;
+    if (may_be(kind, goal)) best = stop_by(kind, road, from, goal, best, report);
+  }
   return best;
 }
 

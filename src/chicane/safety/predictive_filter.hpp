@@ -30,7 +30,8 @@ enum class Fit : std::uint8_t {
 /// is stored and driven when it may not.
 ///
 /// A backup is the controller's published plan for 0 to 3 s, then the stop law. Deterministic; no allocation
-/// after construction; one thread; at most kCandidates simulations to standstill a call.
+/// after construction; one thread; one simulation to standstill for each kind of
+/// backup at most. Near a planned lap a call tries two kinds, and the next one others.
 class PredictiveFilter {
  public:
   /// Fixed for a run.
@@ -61,7 +62,7 @@ class PredictiveFilter {
   /// Forgets the stored backup: another road or another run begins.
   void forget() noexcept {
     backup_->stop.size = 0;
-    held_ = 0;
+    next_kind_ = 0;
     search_.forget();
   }
 
@@ -92,11 +93,12 @@ class PredictiveFilter {
  private:
   /// What a backup has to keep.
   struct Goal {
-    double edge_before = 0.0;  ///< least distance to the edge until it begins [m]
-    double margin = 0.0;       ///< [m]
-    double open_time = 0.0;    ///< [s]
-    bool drives_on = false;    ///< where it ends, the car can turn back along the road
-    bool is_planned = true;    ///< by a controller that publishes its plan, which stays away from the limit
+    double edge_before = 0.0;   ///< least distance to the edge until it begins [m]
+    double margin = 0.0;        ///< [m]
+    double open_time = 0.0;     ///< [s]
+    bool drives_on = false;     ///< where it ends, the car can turn back along the road
+    bool may_brake_now = true;  ///< the tyres leave room for the stop law's model
+    bool is_planned = true;     ///< by a controller that publishes its plan, which stays away from the limit
   };
   /// One simulated candidate.
   struct Candidate {
@@ -109,10 +111,11 @@ class PredictiveFilter {
   void store(const Candidate& candidate, controller::StepReport& report) noexcept;
   [[nodiscard]] Fit stop_by(int kind, const road::KnownRoad& road, const StopStart& from, const Goal& goal,
                             Fit best, controller::StepReport& report) noexcept;
-  [[nodiscard]] Fit stop_now(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
-                             controller::StepReport& report) noexcept;
-  [[nodiscard]] Fit stop_later(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
-                               controller::StepReport& report) noexcept;
+  [[nodiscard]] static bool may_be(int kind, const Goal& goal) noexcept;
+  [[nodiscard]] Fit stop_in_turn(int count, const road::KnownRoad& road, const StopStart& from,
+                                 const Goal& goal, controller::StepReport& report) noexcept;
+  [[nodiscard]] Fit best_stop(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
+                              controller::StepReport& report) noexcept;
   [[nodiscard]] Fit stop_searched(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
                                   controller::StepReport& report) noexcept;
   void read_plan(const Request& request, double longest) noexcept;
@@ -121,6 +124,8 @@ class PredictiveFilter {
   [[nodiscard]] bool drives_planned_lap(const road::KnownRoad& road, const StopStart& at,
                                         double wide) const noexcept;
   [[nodiscard]] bool returns_to_lap(const road::KnownRoad& road, const StopStart& at) const noexcept;
+  [[nodiscard]] Fit go_on_along_lap(const road::KnownRoad& road, const StopStart& at) noexcept;
+  [[nodiscard]] Fit go_back_to_lap(const road::KnownRoad& road, const StopStart& at) noexcept;
   [[nodiscard]] bool shift_to(double time) noexcept;
   void shift_to_place(const road::KnownRoad& road, const StopStart& at) noexcept;
 
@@ -137,7 +142,7 @@ class PredictiveFilter {
   };
   std::array<Pose, StopPlan::kCapacity> poses_{};  ///< of the backup's places, between two lines
   Fit backup_fit_ = Fit::kNone;
-  int held_ = 0;             ///< the kind of backup that held last, stop_by()
+  int next_kind_ = 0;        ///< of backup that is tried first: the one that held last, stop_by()
   bool is_current_ = false;  ///< the backup was stored or shifted in this cycle
   static const StopPlan kNoStop;
 };

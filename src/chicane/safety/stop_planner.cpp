@@ -9,6 +9,8 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/base/math_pack.hpp"
+#include "chicane/base/pack.hpp"
 #include "chicane/safety/stop_player.hpp"
 
 namespace chicane::safety {
@@ -158,17 +160,16 @@ double StopPlanner::turning_room(const road::KnownRoad& road, const StopStart& a
 /// One over the static stability of a car that moves like `m` and brakes: (1 − h) v² (a k_f − b k_r) over
 /// k_f k_r L², with the slopes of the axles' forces at their slip angles. Above 1 it turns away from its path
 /// by itself; negative where it understeers, infinite where the rear axle slides.
-double StopPlanner::instability(model::BodyMotion<double> m, double deceleration) const noexcept {
+double StopPlanner::instability(const model::BodyMotion<double>& m, double deceleration) const noexcept {
+  using Both = Pack<arch::Baseline, 2>;  // slip angles more and less by kSlipShift, together
   const model::VehicleParams& car = model_.vehicle();
   const double v = std::max(m.vx, 1.0);
-  const double shift = kSlipShift * v;  // of both slip angles
-  m.acceleration = -deceleration;
-  m.vy += shift;
-  const model::PredictionModel::Change<double> less = model_.change(m);
-  m.vy -= 2.0 * shift;
-  const model::PredictionModel::Change<double> more = model_.change(m);
-  const double force = (more.vy - less.vy) / (2.0 * kSlipShift);
-  const double moment = car.yaw_inertia / car.mass * (more.r - less.r) / (2.0 * kSlipShift);
+  Both vy = m.vy + kSlipShift * v;
+  vy.set(1, m.vy - kSlipShift * v);
+  const model::PredictionModel::Change<Both> change =
+      model_.change(model::BodyMotion<Both>{m.vx, vy, m.r, m.steer, -deceleration});
+  const double force = (change.vy[1] - change.vy[0]) / (2.0 * kSlipShift);
+  const double moment = car.yaw_inertia / car.mass * (change.r[1] - change.r[0]) / (2.0 * kSlipShift);
   const double front = (car.rear_axle * force + moment) / car.wheelbase();
   const double rear = (car.front_axle * force - moment) / car.wheelbase();
   if (!(rear > 0.0)) return std::numeric_limits<double>::infinity();

@@ -135,7 +135,7 @@ class StopPlanner {
   [[nodiscard]] Curvatures curvatures_of(const road::KnownRoad& road, const StopStart& at) const noexcept;
   [[nodiscard]] double slowing(const road::KnownRoad& road, const StopStart& at, const Braking& braking,
                                const Curvatures& curvatures) const noexcept;
-  [[nodiscard]] double instability(model::BodyMotion<double> m, double deceleration) const noexcept;
+  [[nodiscard]] double instability(const model::BodyMotion<double>& m, double deceleration) const noexcept;
   [[nodiscard]] double stable_share(const model::BodyMotion<double>& m, double deceleration,
                                     double stability) const noexcept;
   [[nodiscard]] double raced_slowing(const road::KnownRoad& road, const StopStart& at) const noexcept;
