@@ -47,11 +47,11 @@ class SlidingBound {
            share * (out + share * ((3.0 * rise - 2.0 * out - in) + share * (out + in - 2.0 * rise)));
   }
   /// How much of these bounds a lap has at speed v [m/s], 0 to 1; the rest are those of a lap that does not
-  /// slide. All below 35 m/s, nothing above 45: in an S-bend at 52 m/s `udacity` was lost at Monza, for a
-  /// gain of 0.01 s.
+  /// slide. All below 40 m/s, nothing above 45: at the peak nothing is left to take back an error of place,
+  /// which grows with the speed.
   template <class T>
   [[nodiscard]] static T share(const T& v) noexcept {
-    constexpr double kAll = 35.0, kNone = 45.0;
+    constexpr double kAll = 40.0, kNone = 45.0;
     const T t = (kNone - v) * (1.0 / (kNone - kAll));
     if (value_of(t) <= 0.0) return T(0.0);
     if (value_of(t) >= 1.0) return T(1.0);
