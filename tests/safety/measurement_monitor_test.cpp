@@ -150,6 +150,7 @@ TEST(MeasurementMonitor, DisbelievesAJumpHoweverLongItLasts) {
     for (int i = 10; i < 150; ++i) {  // 112 m: a stop from any speed here
       model::Measurement jumped = at(i);
       jumped.y += side;
+      jumped.psi += 1e-4 * (i % 2);  // another one each time: the sensor is not stuck
       EXPECT_TRUE(look(monitor, jumped, expected(i)).position_jump) << i;
       const model::State there = expected(i);
       const model::Measurement& checked = monitor.check(jumped, &there);
@@ -182,10 +183,47 @@ TEST(MeasurementMonitor, KeepsWhatIsPlausibleBesideAJump) {
   for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
   model::Measurement jumped = at(10);
   jumped.y += 5.0;
+  jumped.speed += 0.01;
+  jumped.psi += 0.001;
   const model::State there = expected(10);
   const model::Measurement& checked = monitor.check(jumped, &there);
-  EXPECT_EQ(checked.speed, 20.0);
-  EXPECT_EQ(checked.psi, 0.0);
+  EXPECT_EQ(checked.speed, jumped.speed);
+  EXPECT_EQ(checked.psi, jumped.psi);
+}
+
+// A sensor that is stuck and noisy repeats in what has no noise. Its heading turned the car off the road.
+TEST(MeasurementMonitor, BelievesNothingThatRepeatsBesideADoubt) {
+  using Change = void (*)(model::Measurement&, int);
+  const Change changes[] = {[](model::Measurement& m, int i) { m.x += i % 2 == 0 ? 0.7 : -0.7; },
+                            [](model::Measurement& m, int) { m.y += 6.0; },
+                            [](model::Measurement& m, int) { m.speed = 0.0; }};
+  for (const Change& change : changes) {
+    MeasurementMonitor monitor{4.5, 2.7};
+    const auto turning = [](int cycle) {
+      model::Measurement now = at(cycle);
+      now.psi = 0.3 * now.time;
+      now.x = 20.0 / 0.3 * std::sin(now.psi);
+      now.y = 20.0 / 0.3 * (1.0 - std::cos(now.psi));
+      now.speed += 0.001 * cycle;
+      return now;
+    };
+    const auto state = [&](int cycle) {
+      const model::Measurement m = turning(cycle);
+      return model::State{.x = m.x, .y = m.y, .psi = m.psi, .vx = m.speed};
+    };
+    for (int i = 0; i < 100; ++i) EXPECT_TRUE(is_plausible(look(monitor, turning(i), state(i)))) << i;
+    for (int i = 100; i < 150; ++i) {
+      model::Measurement stuck = turning(100);
+      stuck.time = kCycle * i;
+      change(stuck, i);
+      const model::State there = state(i);
+      const model::Measurement& checked = monitor.check(stuck, &there);
+      if (i < 110) continue;
+      EXPECT_TRUE(monitor.findings().frozen) << i;
+      EXPECT_TRUE(std::isnan(checked.psi) && std::isnan(checked.speed) && std::isnan(checked.x)) << i;
+    }
+    EXPECT_FALSE(look(monitor, turning(150), state(150)).frozen);
+  }
 }
 
 TEST(MeasurementMonitor, DisbelievesASpeedThatNoBrakingExplains) {

@@ -234,8 +234,9 @@ const model::Measurement& Guard::look(const model::Measurement& measured) noexce
   model::Measurement course = measured;
   if (expected && std::fabs(angle_difference(measured.psi, expected->psi)) > MeasurementMonitor::kHeadingJump)
     course.psi = std::numeric_limits<double>::quiet_NaN();
-  // A car that drives forward, calmly, does not roll back in the next moment.
-  if (!(expected && monitor_.is_sure() && expected->vx > kRollsBackAtMost)) direction_.see(course);
+  // A car that drives forward, calmly, does not roll back in the next moment; a stuck sensor does not tell.
+  const bool goes_on = expected && monitor_.is_sure() && expected->vx > kRollsBackAtMost;
+  if (!goes_on && !monitor_.findings().frozen) direction_.see(course);
   // Nothing is expected of a car that rolls back: the estimate goes the other way.
   if (direction_.rolls_back() != rolled_back) {
     estimator_.reset();

@@ -16,8 +16,9 @@ constexpr double kLongestGap = 0.5;     // [s] between measurements that say any
 constexpr double kMismatch = 2.0;       // [m] between displacement and integrated speed
 constexpr double kMismatchShare = 0.3;  // and of the larger one
 constexpr double kBlindSpeedDrift =
-    6.0;                           // [m/s²] that the expected speed may be wrong by, without measurements
-constexpr double kJumpBack = 1.0;  // [m] otherwise than the car moved, between two measurements
+    6.0;                             // [m/s²] that the expected speed may be wrong by, without measurements
+constexpr double kLongFrozen = 0.2;  // [s] after which what was doubted before says nothing any more
+constexpr double kJumpBack = 1.0;    // [m] otherwise than the car moved, between two measurements
 
 }  // namespace
 
@@ -32,6 +33,8 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
                                                     const model::State* expected) noexcept {
   checked_ = now;
   const Findings before = own_;
+  const bool was_frozen = findings_.frozen && now.time - thawed_ > kLongFrozen;
+  if (!findings_.frozen) thawed_ = now.time;
   findings_ = {};
   const double elapsed = has_last_ ? now.time - last_.time : 0.0;
   const bool is_later = std::isfinite(now.time) && (!has_last_ || elapsed > 0.0);
@@ -64,13 +67,18 @@ const model::Measurement& MeasurementMonitor::check(const model::Measurement& no
   }
   own_ = findings_;
   if (expected != nullptr && is_whole && !findings_.frozen) {
-    const SensorDoubts& doubts = watch_.see(now, *expected);
-    if (doubts.is_old) findings_ = own_ = {};
-    findings_.late = doubts.late;
-    is_blind |= doubts.is_old;
-    findings_.position_jump |= doubts.place;
-    findings_.heading_jump |= doubts.heading;
-    findings_.speed_mismatch |= doubts.speed;
+    if (is_stuck(now, *expected)) {
+      findings_.frozen = is_blind = true;
+    } else {
+      if (was_frozen) watch_.forget_doubts();
+      const SensorDoubts& doubts = watch_.see(now, *expected);
+      if (doubts.is_old) findings_ = own_ = {};
+      findings_.late = doubts.late;
+      is_blind |= doubts.is_old;
+      findings_.position_jump |= doubts.place;
+      findings_.heading_jump |= doubts.heading;
+      findings_.speed_mismatch |= doubts.speed;
+    }
   }
   // While something is missing, what is expected drifts away from the car.
   const double driven =
@@ -107,6 +115,32 @@ bool MeasurementMonitor::is_frozen(const model::Measurement& now, double elapsed
                        now.psi == last_.psi && now.speed == last_.speed;
   if (!is_same) same_since_ = now.time;
   return now.speed * (now.time - same_since_) > kUnmoved;
+}
+
+/// Whether each signal is in doubt or repeats to the last bit, some of both, although the car moves or says
+/// so: they come from one sensor that is stuck, with noise or an offset on some of them. It is as long as
+/// those repeat.
+bool MeasurementMonitor::is_stuck(const model::Measurement& now, const model::State& expected) noexcept {
+  const Signals repeat{has_last_ && now.x == last_.x && now.y == last_.y, has_last_ && now.psi == last_.psi,
+                       has_last_ && now.speed == last_.speed};
+  if (stuck_.any()) {
+    const bool goes_on = (repeat.place || !stuck_.place) && (repeat.heading || !stuck_.heading) &&
+                         (repeat.speed || !stuck_.speed);
+    if (!goes_on) stuck_ = {};
+    return goes_on;
+  }
+  const SensorDoubts& doubts = watch_.doubts();
+  const Signals doubted{findings_.position_jump || doubts.place, findings_.heading_jump || doubts.heading,
+                        findings_.speed_mismatch || doubts.speed};
+  const bool moves = std::max(hypot(expected.vx, expected.vy), now.speed) > kMoving;
+  const bool covers_all = (doubted.place || repeat.place) && (doubted.heading || repeat.heading) &&
+                          (doubted.speed || repeat.speed);
+  const bool is_doubled =
+      repeat.place && repeat.heading && repeat.speed && now.speed > kMoving;  // is_frozen()
+  if (moves && covers_all && doubted.any() && !doubts.late && !is_doubled)
+    stuck_ = {repeat.place && !doubted.place, repeat.heading && !doubted.heading,
+              repeat.speed && !doubted.speed};
+  return stuck_.any();
 }
 
 /// Whether the measured place has moved otherwise than the car did since the last measurement.

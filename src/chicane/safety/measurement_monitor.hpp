@@ -13,7 +13,7 @@ namespace chicane::safety {
 struct Findings {
   bool late = false;            ///< it is of an earlier moment
   bool unmeasured = false;      ///< position, yaw, speed or time is not a number, or time ran backwards
-  bool frozen = false;          ///< it repeats although the car moves
+  bool frozen = false;          ///< it repeats although the car moves, or what of it is not in doubt does
   bool speed_mismatch = false;  ///< its speed contradicts its displacement, or what the car can do
   bool heading_jump = false;    ///< its yaw is not where the car can have turned to
   bool position_jump = false;   ///< its place is not where the car can have moved to
@@ -57,11 +57,17 @@ class MeasurementMonitor {
     double driven = 0.0;              ///< integral of the measured speed [m]
     double way_x = 0.0, way_y = 0.0;  ///< integral of the measured speed along the measured heading [m]
   };
+  /// Some of what a measurement holds.
+  struct Signals {
+    bool place = false, heading = false, speed = false;
+    [[nodiscard]] bool any() const noexcept { return place || heading || speed; }
+  };
   static constexpr int kSamples = 16;
   static constexpr double kSampleSpacing = 0.06;  ///< [s]
 
   [[nodiscard]] bool jumps(const model::Measurement& now, double elapsed) const noexcept;
   [[nodiscard]] bool is_frozen(const model::Measurement& now, double elapsed) noexcept;
+  [[nodiscard]] bool is_stuck(const model::Measurement& now, const model::State& expected) noexcept;
   [[nodiscard]] bool contradicts_displacement(const model::Measurement& now, double elapsed) noexcept;
 
   SensorWatch watch_;
@@ -70,6 +76,8 @@ class MeasurementMonitor {
   Findings own_;             ///< of them those of eq. 7 and 8
   model::Measurement last_;  ///< as it came
   bool has_last_ = false;
+  Signals stuck_;             ///< that repeat, of a sensor that is stuck
+  double thawed_ = 0.0;       ///< last time at which nothing was frozen [s]
   double same_since_ = 0.0;   ///< [s]
   double place_drift_ = 0.0;  ///< what the expected place may be wrong by, beyond kJump [m]
   double other_drift_ = 0.0;  ///< and the expected speed [m/s]

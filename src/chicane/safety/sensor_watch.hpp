@@ -34,6 +34,8 @@ class SensorWatch {
 
   /// The doubts in a finite measurement; `expected`: the car by the estimate at now.time.
   const SensorDoubts& see(const model::Measurement& now, const model::State& expected) noexcept;
+  /// What was doubted came from a sensor that was frozen, and is not any more. Its age is another thing.
+  void forget_doubts() noexcept { doubts_.place = doubts_.heading = doubts_.speed = false; }
   /// The last measurements agreed with each other, or one of them is in doubt: limits hold.
   [[nodiscard]] bool is_sure() const noexcept { return calm_ > kCalmTime; }
   /// Of the last see().
