@@ -116,7 +116,6 @@ Result<road::RacingLine> plan_racing_line(const road::Track& track, const model:
   for (const double step : {1.0, 0.85, 1.2}) {
     PlanSearch search(track, model,
                       {.time_step = step * options.time_step,
-                       .starts = 1,  // a second one gains 0.03 % of a lap at most, for half of the time
                        .tolerance = kTolerance,
                        .budget = options.budget - work,
                        .go_on = options.go_on,

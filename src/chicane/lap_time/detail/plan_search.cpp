@@ -126,9 +126,10 @@ Result<NodePlan> PlanSearch::find() {
     double barrier, share;
   };
   constexpr Start kStarts[] = {{0.01, 1.0}, {0.003, 1.0}, {0.03, 0.7}, {0.001, 0.7}, {0.1, 0.5}};
+  constexpr int kEnough = 2;  // solutions, of which the best goes on
   const RoadNodes coarse = lay_nodes(track_, model_.guess_car(), kCoarse * options_.time_step);
   const RoadNodes nodes = lay_nodes(track_, model_.guess_car(), options_.time_step);
-  expected_ = work_ + (options_.starts * kIterationsOfStart * static_cast<double>(coarse.s.size()) +
+  expected_ = work_ + (kEnough * kIterationsOfStart * static_cast<double>(coarse.s.size()) +
                        kIterationsOfFine * static_cast<double>(nodes.s.size())) /
                           PlanProgress::kNodesPerSecond;
   NodePlan best;
@@ -145,7 +146,7 @@ Result<NodePlan> PlanSearch::find() {
     if (is_out_of_budget_) break;
     if (!is_solved) continue;
     if (++found == 1 || plan.lap_time < best.lap_time) best = std::move(plan);
-    if (found == options_.starts) break;
+    if (found == kEnough) break;
   }
   if (found == 0)
     return fail(ErrorCode::kNotFound,
