@@ -20,7 +20,7 @@ class LearnedGrip {
       0.03;  ///< the model, and a plan upwards, follow where the grip differs by more
   static constexpr double kStepDown = 0.015;   ///< a plan downwards
   static constexpr double kOtherGrip = 0.055;  ///< difference to the told grip that rules a slide out
-  static constexpr double kOtherCar = 0.03;    ///< the same of the estimate, surely: the model is not the car
+  static constexpr double kOtherCar = 0.03;    ///< sure difference of the estimate that does so for the run
   static constexpr double kSlidesOn = 0.01;    ///< more delay that a lap which slides may have [s]
 
   explicit LearnedGrip(const model::PredictionModel& told) noexcept : estimator_{told} {}

@@ -23,7 +23,7 @@ class ActuatorWatch {
   static constexpr double kBand = 0.01;          ///< [rad] by which an angle may differ
   static constexpr double kBandShare = 0.1;      ///< and of the angle
   static constexpr double kChangeShare = 1.0;    ///< and of what it changes within a window
-  static constexpr double kSlipShare = 0.2;      ///< and of the slip, of the axle that slips more
+  static constexpr double kSlipShare = 0.2;      ///< share of the slip of the axle that slips more
   static constexpr double kSlipShareUsed = 0.5;  ///< the same of tyres that are used, whose grip may be less
   static constexpr double kWeak = 0.75;          ///< share of the braking, below which brakes are weak
   static constexpr double kUsualFor = 1.0;       ///< [s]

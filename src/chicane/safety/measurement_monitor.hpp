@@ -76,7 +76,7 @@ class MeasurementMonitor {
   Findings own_;             ///< of them those of eq. 7 and 8
   model::Measurement last_;  ///< as it came
   bool has_last_ = false;
-  Signals stuck_;             ///< that repeat, of a sensor that is stuck
+  Signals stuck_;             ///< signals that repeat, of a sensor that is stuck
   double thawed_ = 0.0;       ///< last time at which nothing was frozen [s]
   double same_since_ = 0.0;   ///< [s]
   double place_drift_ = 0.0;  ///< what the expected place may be wrong by, beyond kJump [m]

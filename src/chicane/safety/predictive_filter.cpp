@@ -134,7 +134,7 @@ Fit PredictiveFilter::verify(const Request& request, controller::StepReport& rep
   const bool may_stop = use < kMostUse && goal.edge_before >= goal.margin;
   if (plans) read_plan(request, StopPlanner::kLongestDriveOn);
 
-  // Where a backup need not be held blindly, any will do. A planned lap is itself a way to drive on: near it
+  // Any backup will do that need not be held blindly. A planned lap is itself a way to drive on: near it
   // a cycle tries few of them, and the next cycle others.
   const bool any_does = plans && !(goal.open_time > 0.0);
   Fit fit = Fit::kNone;
@@ -149,7 +149,7 @@ Fit PredictiveFilter::verify(const Request& request, controller::StepReport& rep
   return go_back_to_lap(road, next);
 }
 
-/// Where no stop was found: in the tube of the backup in store, or near the planned lap.
+/// Fit without a stop: that of the stored backup for a car in its tube, kOpen near the planned lap.
 Fit PredictiveFilter::go_on_along_lap(const road::KnownRoad& road, const StopStart& at) noexcept {
   if (!road.is_raced()) return Fit::kNone;
   if (is_in_tube(road, at)) {

@@ -96,7 +96,7 @@ class PredictiveFilter {
     double edge_before = 0.0;   ///< least distance to the edge until it begins [m]
     double margin = 0.0;        ///< [m]
     double open_time = 0.0;     ///< [s]
-    bool drives_on = false;     ///< where it ends, the car can turn back along the road
+    bool drives_on = false;     ///< the car can turn back along the road at its end
     bool may_brake_now = true;  ///< the tyres leave room for the stop law's model
     bool is_planned = true;     ///< by a controller that publishes its plan, which stays away from the limit
   };
