@@ -13,6 +13,7 @@
 #include "chicane/live/live_run.hpp"
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "chicane/run/laps_without.hpp"
 #include "chicane/run/plan_cache.hpp"
 #include "chicane/run/realtime_loop.hpp"
 #include "commands.hpp"
@@ -75,15 +76,27 @@ lap_time::LimitAnswer answer_of(const road::Track& track, const lap_time::PlantL
   return {.found = std::make_shared<const lap_time::Limit>(lap_time::bound_from_start(track, limit))};
 }
 
+/// The limit that was asked for, and the laps that explain the gap to it where these were.
+Result<lap_time::LimitAnswer> asked_limit(const Options& options, const run::ClosedLoop& loop,
+                                          const run::RunControls& controls) {
+  if (!options.wants_limit) return lap_time::LimitAnswer{.why_not = kNotAsked};
+  double wall_time = 0.0;
+  const auto found =
+      limit_of(loop.scenario(), loop.track(), {.wants_witness = false}, controls.wants_stop, wall_time);
+  if (!found) return fail(found.error());
+  lap_time::LimitAnswer limit = answer_of(loop.track(), *found);
+  if (!options.wants_causes) return limit;
+  fmt::print(stderr, "driving again without each cause of the gap\n");
+  auto laps = run::laps_without(loop.scenario(), [&] { return !controls.wants_stop.load(); });
+  if (!laps) return fail(laps.error());
+  limit.without = std::move(*laps);
+  return limit;
+}
+
 Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const run::RunControls& controls) {
-  lap_time::LimitAnswer limit{.why_not = kNotAsked};
-  if (options.wants_limit) {
-    double wall_time = 0.0;
-    const auto found =
-        limit_of(loop.scenario(), loop.track(), {.wants_witness = false}, controls.wants_stop, wall_time);
-    if (!found) return fail(found.error());
-    limit = answer_of(loop.track(), *found);
-  }
+  Result<lap_time::LimitAnswer> asked = asked_limit(options, loop, controls);
+  if (!asked) return fail(asked.error());
+  lap_time::LimitAnswer& limit = *asked;
   protocol::Run description = live::description(loop);
   description.limit = limit;
   if (!options.wants_limit) description.limit.why_not = kNotLookedFor;
@@ -109,6 +122,7 @@ Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const ru
     limit = answer_of(loop.track(), *known);
   if (limit.found) telemetry::compare_with_limit(summary, limit.found->times);
   summary.why_no_limit = limit.why_not;
+  summary.without = limit.without;
   return Outcome{std::move(summary), (*kept)->finish()};
 }
 

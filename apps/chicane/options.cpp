@@ -130,8 +130,15 @@ void add_drive(CLI::App& command, Options& options) {
   add_latency(command, options);
   CLI::Option* const fast =
       command.add_flag("--fast", options.is_fast, "Run as fast as possible, deterministic, without sockets");
-  command.add_flag("--limit", options.wants_limit, "Find the limit first, for the gap of each lap to it")
-      ->needs(fast);
+  CLI::Option* const limit =
+      command.add_flag("--limit", options.wants_limit, "Find the limit first, for the gap of each lap to it")
+          ->needs(fast);
+  command
+      .add_flag(
+          "--explain", options.wants_causes,
+          "Drive again without latency, edge margin, grip reserve, sensor errors and guard, one at a time: "
+          "what each takes of the gap, corner by corner")
+      ->needs(limit);
   add_port(command, options);
   command
       .add_option("--pace", options.pace,

@@ -45,6 +45,7 @@ struct Options {
   std::vector<std::string> allowed_origins{};  ///< pages that may connect, beside our own
 
   bool wants_limit = false;       ///< drive --fast: the gaps of its laps to the limit
+  bool wants_causes = false;      ///< drive --fast --limit: what each cause takes of these gaps
   std::string csv_file;           ///< limit: the racing line; empty: not kept
   bool is_quick = false;          ///< limit: no witness
   double limit_budget = 600.0;    ///< limit: work of the search [s]

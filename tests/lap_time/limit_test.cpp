@@ -70,6 +70,31 @@ TEST(Limit, OfARoadThatBeginsAtItsStartLineKeepsItsPoints) {
   }
 }
 
+TEST(CornerTimes, AreThoseBetweenTheEndsOfTheCorners) {
+  // A road of two half circles of 50 m and straights of 300 m, 5 m behind whose beginning is the start line.
+  std::vector<road::TrackPoint> points;
+  const double half = kTwoPi / 2.0 * 50.0, side = 300.0 + half;
+  for (int i = 0; i < 200; ++i) {
+    const double s = 2.0 * side * i / 200.0, t = std::fmod(s, side), sign = s < side ? 1.0 : -1.0;
+    const double angle = t < 300.0 ? 0.0 : (t - 300.0) / 50.0, x = t < 300.0 ? t - 150.0 : 150.0;
+    points.push_back({{sign * (x + 50.0 * std::sin(angle)), -sign * 50.0 * std::cos(angle)}, 5.0, 5.0});
+  }
+  const road::Track track = *road::Track::create("stadium", points, true, {.start_s = 5.0});
+  road::RacingLine line{.length = track.length()};
+  constexpr int kCount = 50;
+  for (int i = 0; i <= kCount; ++i) {  // twice as fast in the first half of the road
+    const double s = track.length() * i / kCount, middle = 0.5 * track.length();
+    line.points.push_back({.s = s, .time = s < middle ? s / 40.0 : middle / 40.0 + (s - middle) / 20.0});
+  }
+  const std::vector<double> times = corner_times(track, line);
+  ASSERT_EQ(times.size(), 2U);
+  // From the line to the middle of the second straight, the quarter of the road beyond which is slow.
+  const double first = side + 150.0 - 5.0, slow = 150.0;
+  EXPECT_NEAR(times[0], (first - slow) / 40.0 + slow / 20.0, 0.1);
+  EXPECT_NEAR(times[0] + times[1], line.lap_time(), 1e-9);
+  EXPECT_TRUE(corner_times(track, road::RacingLine{}).empty());
+}
+
 TEST(Limit, WithoutALineHasTimesAlone) {
   PlantLimit found;
   found.bound.lap = 20.0;

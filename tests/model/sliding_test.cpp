@@ -95,9 +95,9 @@ TEST(SlidingBound, HasContinuousSlopes) {
 
 TEST(SlidingBound, CountsForSlowBendsAlone) {
   EXPECT_EQ(SlidingBound::share(20.0), 1.0);
-  EXPECT_EQ(SlidingBound::share(40.0), 1.0);
-  EXPECT_DOUBLE_EQ(SlidingBound::share(42.5), 0.5);
-  EXPECT_EQ(SlidingBound::share(45.0), 0.0);
+  EXPECT_EQ(SlidingBound::share(42.0), 1.0);
+  EXPECT_DOUBLE_EQ(SlidingBound::share(44.5), 0.5);
+  EXPECT_EQ(SlidingBound::share(47.0), 0.0);
   EXPECT_EQ(SlidingBound::share(52.0), 0.0);
 }
 

@@ -147,10 +147,41 @@ TEST(JsonReport, TellsTheGapsToTheLimit) {
   EXPECT_THAT(to_table(run), HasSubstr("limit              not known: the road is open\n"));
   telemetry::compare_with_limit(run, {.lap = 25.0, .sectors = {8.0, 9.5, 7.5}});
   const Json report = Json::parse(to_json(run));
-  EXPECT_EQ(report["limit"], Json::parse(R"({"lap_time_s": 25.0, "sector_times_s": [8.0, 9.5, 7.5]})"));
+  EXPECT_EQ(report["limit"],
+            Json::parse(R"({"lap_time_s": 25.0, "sector_times_s": [8.0, 9.5, 7.5], "corner_times_s": []})"));
   EXPECT_NEAR(report["laps"][0]["gap_to_limit_percent"].get<double>(), 14.0, 1e-9);
   EXPECT_NEAR(report["laps"][0]["sector_gaps_to_limit_percent"][0].get<double>(), 12.5, 1e-9);
   EXPECT_THAT(to_table(run), HasSubstr("limit              25.000 s, the best lap +14.00 %"));
+}
+
+TEST(JsonReport, TellsWhatTakesTheGapInEachCorner) {
+  telemetry::RunSummary run = example();
+  run.corners = {{.turn = 1.0}, {.turn = -1.0}};
+  run.laps[0].corner_times = {10.5, 18.0};
+  telemetry::compare_with_limit(run, {.lap = 25.0, .sectors = {8.0, 9.5, 7.5}, .corners = {9.0, 16.0}});
+  run.planned_corner_times = {10.0, 17.5};
+  run.without = {{.cause = "latency", .lap_time = 27.5, .corners = {10.25, 17.25}},
+                 {.cause = "edge margin", .off_track_events = 3}};
+  const Json report = Json::parse(to_json(run));
+  EXPECT_EQ(report["limit"]["corner_times_s"], Json::parse("[9.0, 16.0]"));
+  EXPECT_EQ(report["planned_corner_times_s"], Json::parse("[10.0, 17.5]"));
+  EXPECT_EQ(report["without"], Json::parse(R"([
+    {"cause": "latency", "lap_time_s": 27.5, "corner_times_s": [10.25, 17.25], "off_track_events": 0},
+    {"cause": "edge margin", "lap_time_s": null, "corner_times_s": [], "off_track_events": 3}])"));
+  const std::string table = to_table(run);
+  EXPECT_THAT(
+      table,
+      HasSubstr("   gap [s]    limit     plan      lap      gap       latency   edge margin     rest\n"));
+  EXPECT_THAT(
+      table,
+      HasSubstr("   1 left      9.00    10.00    10.50     1.50          0.25             -     1.25\n"));
+  EXPECT_THAT(
+      table,
+      HasSubstr("   2 right    16.00    17.50    18.00     2.00          0.75             -     1.25\n"));
+  EXPECT_THAT(
+      table,
+      HasSubstr("       lap    25.00    27.50    28.50     3.50          1.00             -     2.50\n"));
+  EXPECT_THAT(table, HasSubstr("without edge margin the car left the road 3 times\n"));
 }
 
 TEST(JsonReport, WhatWasNotMeasuredIsNull) {

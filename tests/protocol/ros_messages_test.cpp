@@ -134,6 +134,37 @@ TEST(RosMessages, LimitHasItsLineInColumnsOfTheSameLength) {
   }
   EXPECT_EQ(reader.text(), "");
   EXPECT_EQ(reader.get<std::uint32_t>(), 1U);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(reader.get<std::uint32_t>(), 0U) << "no corners, no causes";
+  EXPECT_TRUE(reader.is_at_end());
+}
+
+TEST(RosMessages, ALimitHasItsCornersAndTheLapsThatExplainTheGap) {
+  protocol::Run run = samples::run();
+  lap_time::Limit limit = *run.limit.found;
+  limit.times.corners = {9.0, 16.0};
+  run.limit.found = std::make_shared<const lap_time::Limit>(limit);
+  run.limit.without = {{.cause = "latency", .lap_time = 27.5, .corners = {10.25, 17.25}}, {.cause = "guard"}};
+  const auto& topics = ros_topics();
+  const auto topic = std::find_if(topics.begin(), topics.end(),
+                                  [](const RosTopic& each) { return each.name == "/chicane/limit"; });
+  const std::string bytes = topic->encode(samples::frame(), run);
+  CdrReader reader{bytes};
+  reader.get<std::uint8_t>();
+  for (int i = 0; i < 4; ++i) reader.number();
+  for (int column = 0; column < 8; ++column)
+    for (std::uint32_t rest = reader.get<std::uint32_t>(); rest > 0; --rest) reader.number();
+  reader.text();
+  reader.get<std::uint32_t>();
+  ASSERT_EQ(reader.get<std::uint32_t>(), 2U);
+  for (const double corner : {9.0, 16.0}) EXPECT_EQ(reader.number(), corner);
+  ASSERT_EQ(reader.get<std::uint32_t>(), 2U);
+  for (const char* cause : {"latency", "guard"}) EXPECT_EQ(reader.text(), cause);
+  ASSERT_EQ(reader.get<std::uint32_t>(), 2U);
+  EXPECT_EQ(reader.number(), 27.5);
+  EXPECT_TRUE(std::isnan(reader.number()));
+  ASSERT_EQ(reader.get<std::uint32_t>(), 4U) << "corners of each lap, not-a-number where there is none";
+  for (const double corner : {10.25, 17.25}) EXPECT_EQ(reader.number(), corner);
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(std::isnan(reader.number()));
   EXPECT_TRUE(reader.is_at_end());
 }
 
@@ -168,6 +199,7 @@ TEST(RosMessages, ALimitThatIsNotKnownSaysWhyAndLapsHaveNoGap) {
       for (int i = 0; i < 8; ++i) EXPECT_EQ(reader.get<std::uint32_t>(), 0U);
       EXPECT_EQ(reader.text(), "the road is open");
       EXPECT_EQ(reader.get<std::uint32_t>(), 4U);
+      for (int i = 0; i < 4; ++i) EXPECT_EQ(reader.get<std::uint32_t>(), 0U) << "no corners, no causes";
       EXPECT_TRUE(reader.is_at_end());
     }
     if (each.name == "/chicane/lap") {

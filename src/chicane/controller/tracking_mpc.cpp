@@ -31,6 +31,7 @@ using StageState = std::array<double, Problem::kNx>;
 using StageInput = std::array<double, Problem::kNu>;
 
 constexpr int kMostTurns = TrackingMpcOptions::kMostTurns;  // from a new guess, or with more time
+constexpr int kSlidingTurns = 30;      // beyond the peak of the tyres (docs/racing_gap.md, "The solver")
 constexpr double kTimePerTurn = 0.04;  // [s] that a step must come later for one turn more
 constexpr double kFarFromLine = 15.0;  // [m] further away it returns to the road
 constexpr double kLost = 100.0;        // [m] further away it does not return by itself
@@ -50,7 +51,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
         model_{vehicle},
         road_{options.road(), vehicle},
         estimator_{model_},
-        solver_{tracking::make_tracking_solver(kMostTurns)} {
+        solver_{tracking::make_tracking_solver(kSlidingTurns)} {
     grip_.tell(told_);
     shape_raced();
   }
@@ -273,13 +274,13 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     problem_.push(disturbance_);
     turns_ = kMostTurns;
     if (can_shift) {
-      const double more = std::min(elapsed / kTimePerTurn, static_cast<double>(kMostTurns));
-      const int least = slips_.rear > 1.0 ? kMostTurns : options_.turns;  // slides converge late
-      turns_ = std::clamp(least - 1 + static_cast<int>(std::lround(more)), least, kMostTurns);
+      const int later = static_cast<int>(elapsed / kTimePerTurn + 0.5);
+      turns_ = std::clamp(options_.turns - 1 + later, options_.turns, kMostTurns);
       shift_answer(elapsed);
     } else {
       follow_line();
     }
+    if (slips_.rear > 1.0) turns_ = kSlidingTurns;
     if (road_.is_raced()) mind_helper_gap(problem_, horizon_, line(), s_);
     correct_first();
     act_time_ = act_time;
@@ -287,8 +288,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     old_step_ = step;
   }
 
-  /// The last answer `elapsed` [s] later. Its states say where to ask the road; the solver simulates the
-  /// inputs anew.
+  /// The last answer `elapsed` [s] later; its states say where to ask the road.
   void shift_answer(double elapsed) noexcept {
     old_ = horizon_;
     const double last = old_.horizon;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/lap_time/limit.hpp"
 
+#include <algorithm>
+
 #include "chicane/base/angle.hpp"
+#include "chicane/road/corners.hpp"
 
 namespace chicane::lap_time {
 namespace {
@@ -29,6 +32,27 @@ road::RacingLine beginning_at(const road::RacingLine& lap, double start) {
 
 }  // namespace
 
+std::vector<double> corner_times(const road::Track& track, const road::RacingLine& line) {
+  if (line.is_empty()) return {};
+  const road::RacingLine lap = beginning_at(line, track.centre().wrap(track.start_s()));
+  const auto distance = [&](std::size_t i) {
+    return i + 1 < lap.points.size() ? track.centre().wrap(lap.points[i].s - lap.points.front().s)
+                                     : track.length();
+  };
+  std::vector<double> times = road::corner_sectors(track, road::corners_of(track));
+  double begin = 0.0;
+  std::size_t i = 1;
+  for (double& time : times) {
+    while (i + 1 < lap.points.size() && distance(i) < time) ++i;
+    const double share = (time - distance(i - 1)) / (distance(i) - distance(i - 1));
+    const double end =
+        lap.points[i - 1].time + std::min(share, 1.0) * (lap.points[i].time - lap.points[i - 1].time);
+    time = end - begin;
+    begin = end;
+  }
+  return times;
+}
+
 Limit bound_from_start(const road::Track& track, const PlantLimit& limit) {
   Limit told{.times = limit.bound, .line = {}};
   if (limit.line.is_empty()) return told;
@@ -36,6 +60,7 @@ Limit bound_from_start(const road::Track& track, const PlantLimit& limit) {
   for (std::size_t i = 1; i < told.line.size(); ++i)  // continuous across the beginning of the centre line
     told.line[i].heading =
         told.line[i - 1].heading + angle_difference(told.line[i].heading, told.line[i - 1].heading);
+  told.times.corners = corner_times(track, limit.line);
   return told;
 }
 

@@ -47,11 +47,11 @@ class SlidingBound {
            share * (out + share * ((3.0 * rise - 2.0 * out - in) + share * (out + in - 2.0 * rise)));
   }
   /// How much of these bounds a lap has at speed v [m/s], 0 to 1; the rest are those of a lap that does not
-  /// slide. All below 40 m/s, nothing above 45. An error of place grows with the speed, and at the peak of
+  /// slide. All below 42 m/s, nothing above 47. An error of place grows with the speed, and at the peak of
   /// the tyres nothing is left to take it back.
   template <class T>
   [[nodiscard]] static T share(const T& v) noexcept {
-    constexpr double kAll = 40.0, kNone = 45.0;
+    constexpr double kAll = 42.0, kNone = 47.0;
     const T t = (kNone - v) * (1.0 / (kNone - kAll));
     if (value_of(t) <= 0.0) return T(0.0);
     if (value_of(t) >= 1.0) return T(1.0);

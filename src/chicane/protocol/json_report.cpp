@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <variant>
 
 #include "chicane/base/angle.hpp"
@@ -21,9 +22,13 @@ using telemetry::TimeSummary;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+Json numbers(const std::vector<double>& values) {
+  Json json = Json::array();
+  for (const double value : values) json.push_back(number(value));
+  return json;
+}
+
 Json to_object(const LapSummary& lap) {
-  Json corner_times = Json::array();
-  for (const double time : lap.corner_times) corner_times.push_back(number(time));
   return {{"lap_time_s", number(lap.lap_time)},
           {"mean_speed_mps", number(lap.mean_speed)},
           {"top_speed_mps", number(lap.top_speed)},
@@ -35,7 +40,7 @@ Json to_object(const LapSummary& lap) {
           {"steering_rate_rms_radps", number(lap.steering_rate_rms)},
           {"sector_times_s",
            {number(lap.sector_times[0]), number(lap.sector_times[1]), number(lap.sector_times[2])}},
-          {"corner_times_s", corner_times},
+          {"corner_times_s", numbers(lap.corner_times)},
           {"gap_to_limit_percent", lap.gap_to_limit ? number(100.0 * *lap.gap_to_limit) : Json(nullptr)},
           {"sector_gaps_to_limit_percent",
            {number(100.0 * lap.sector_gaps[0]), number(100.0 * lap.sector_gaps[1]),
@@ -69,7 +74,65 @@ Json to_object(const std::optional<lap_time::LapTimes>& limit) {
   if (!limit) return nullptr;
   return {
       {"lap_time_s", number(limit->lap)},
-      {"sector_times_s", {number(limit->sectors[0]), number(limit->sectors[1]), number(limit->sectors[2])}}};
+      {"sector_times_s", {number(limit->sectors[0]), number(limit->sectors[1]), number(limit->sectors[2])}},
+      {"corner_times_s", numbers(limit->corners)}};
+}
+
+Json to_object(const std::vector<lap_time::LapWithout>& laps) {
+  Json json = Json::array();
+  for (const lap_time::LapWithout& lap : laps) {
+    json.push_back({{"cause", lap.cause},
+                    {"lap_time_s", number(lap.lap_time)},
+                    {"corner_times_s", numbers(lap.corners)},
+                    {"off_track_events", lap.off_track_events}});
+  }
+  return json;
+}
+
+std::string cell(double value, int width) {
+  return std::isfinite(value) ? fmt::format(" {:>{}.2f}", value, width) : fmt::format(" {:>{}}", "-", width);
+}
+
+/// A line of the table of causes, for a corner or the lap; what none explains comes last.
+std::string cause_line(std::string_view name, double limit, double planned, double lap,
+                       const std::vector<double>& without) {
+  std::string text = fmt::format("{:>10}", name);
+  for (const double time : {limit, planned, lap, lap - limit}) text += cell(time, 8);
+  double rest = lap - limit;
+  for (const double time : without) {
+    text += cell(lap - time, 13);
+    if (std::isfinite(time)) rest -= lap - time;
+  }
+  return text + cell(rest, 8) + "\n";
+}
+
+/// What each cause takes of the gap of `lap`, a line for each corner; empty where nothing is known of it.
+std::string cause_table(const RunSummary& run, const LapSummary& lap) {
+  if (run.without.empty() || !run.limit || lap.corner_times.size() != run.limit->corners.size()) return "";
+  const auto at = [](const std::vector<double>& times, std::size_t corner) {
+    return corner < times.size() ? times[corner] : telemetry::kNotMeasured;
+  };
+  std::string text =
+      fmt::format("\n{:>10} {:>8} {:>8} {:>8} {:>8}", "gap [s]", "limit", "plan", "lap", "gap");
+  for (const lap_time::LapWithout& each : run.without) text += fmt::format(" {:>13}", each.cause);
+  text += fmt::format(" {:>8}\n", "rest");
+  std::vector<double> without(run.without.size());
+  for (std::size_t corner = 0; corner < lap.corner_times.size(); ++corner) {
+    for (std::size_t i = 0; i < without.size(); ++i) without[i] = at(run.without[i].corners, corner);
+    text += cause_line(fmt::format("{} {}", corner + 1, run.corners[corner].turn > 0.0 ? "left " : "right"),
+                       run.limit->corners[corner], at(run.planned_corner_times, corner),
+                       lap.corner_times[corner], without);
+  }
+  for (std::size_t i = 0; i < without.size(); ++i) without[i] = run.without[i].lap_time;
+  const auto& planned = run.planned_corner_times;
+  const double planned_lap =
+      planned.empty() ? telemetry::kNotMeasured : std::accumulate(planned.begin(), planned.end(), 0.0);
+  text += cause_line("lap", run.limit->lap, planned_lap, lap.lap_time, without);
+  for (const lap_time::LapWithout& each : run.without)
+    if (each.off_track_events > 0)
+      text += fmt::format("{:>10} without {} the car left the road {} times\n", "", each.cause,
+                          each.off_track_events);
+  return text;
 }
 
 Json to_object(const TimeSummary& time) {
@@ -258,6 +321,8 @@ std::string to_json(const RunSummary& run) {
       {"laps", laps},
       {"total", to_object(run.total)},
       {"limit", to_object(run.limit)},
+      {"planned_corner_times_s", numbers(run.planned_corner_times)},
+      {"without", to_object(run.without)},
       {"why_no_limit", run.why_no_limit.empty() ? Json(nullptr) : Json(run.why_no_limit)},
       {"step_time_is", run.guard ? "control step" : "round trip"},
       {"step_time_us", to_object(run.step_time)},
@@ -295,7 +360,8 @@ std::string to_table(const RunSummary& run) {
   if (run.limit) {
     text += fmt::format("\nlimit              {:.3f} s", run.limit->lap);
     if (best != run.laps.end())
-      text += fmt::format(", the best lap {:+.2f} %", 100.0 * lap_time::gap(best->lap_time, run.limit->lap));
+      text += fmt::format(", the best lap {:+.2f} %", 100.0 * lap_time::gap(best->lap_time, run.limit->lap)) +
+              cause_table(run, *best);
   } else if (!run.why_no_limit.empty()) {
     text += fmt::format("\nlimit              not known: {}", run.why_no_limit);
   }

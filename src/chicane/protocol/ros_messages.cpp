@@ -137,7 +137,7 @@ std::string encode_lap(const Frame& frame, const Run& run) {
 std::string encode_limit(const Frame&, const Run& run) {
   static const lap_time::Limit nothing = [] {
     lap_time::Limit limit;
-    limit.times = {kNaN, {kNaN, kNaN, kNaN}};
+    limit.times = {kNaN, {kNaN, kNaN, kNaN}, {}};
     return limit;
   }();
   const lap_time::Limit& limit = run.limit.found ? *run.limit.found : nothing;
@@ -157,8 +157,19 @@ std::string encode_limit(const Frame&, const Run& run) {
   column([](const Point& p) { return p.longitudinal_acceleration; });
   column([](const Point& p) { return p.lateral_acceleration; });
   column([](const Point& p) { return p.time; });
+  std::vector<std::string> causes;
+  std::vector<double> lap_times, corner_times;
+  for (const lap_time::LapWithout& without : run.limit.without) {
+    causes.push_back(without.cause);
+    lap_times.push_back(without.lap_time);
+    for (std::size_t i = 0; i < limit.times.corners.size(); ++i)
+      corner_times.push_back(i < without.corners.size() ? without.corners[i] : kNaN);
+  }
   return writer.text(run.limit.found ? "" : run.limit.why_not)
       .put(static_cast<std::uint32_t>(run.limit.first_lap))
+      .put(std::span<const double>(limit.times.corners))
+      .texts(causes)
+      .put(std::span<const double>(lap_times), std::span<const double>(corner_times))
       .bytes();
 }
 

@@ -29,13 +29,14 @@ class RacingRoad {
   };
   /// What a lap was planned from.
   struct Basis {
-    bool is_learned = false;   ///< see is_learned()
-    double grip = 1.0;         ///< see grip()
-    bool slides = false;       ///< see slides()
-    bool is_closed = true;     ///< the road; else the car is planned to stop at its end ...
-    double braking = 0.0;      ///< ... with this deceleration [m/s²]
-    double room_behind = 0.0;  ///< the finish, to the end [m]
-    Slips slips{};             ///< see slips()
+    bool is_learned = false;             ///< see is_learned()
+    double grip = 1.0;                   ///< see grip()
+    bool slides = false;                 ///< see slides()
+    bool is_closed = true;               ///< the road; else the car is planned to stop at its end ...
+    double braking = 0.0;                ///< ... with this deceleration [m/s²]
+    double room_behind = 0.0;            ///< the finish, to the end [m]
+    Slips slips{};                       ///< see slips()
+    std::vector<double> corner_times{};  ///< see corner_times()
   };
   RacingRoad(std::span<const road::LinePoint> lap, double kerb, const Basis& basis);
   /// On `track`, which tells the room beside the line. Where a road bends tightly, that across the line is
@@ -60,6 +61,10 @@ class RacingRoad {
   [[nodiscard]] bool slides() const noexcept { return basis_.slides; }
   /// Beyond which slip has a price for who drives it.
   [[nodiscard]] const Slips& slips() const noexcept { return basis_.slips; }
+
+  /// Planned times of the corners of its track [s], as lap_time::corner_times(); empty where it was learned
+  /// or is open.
+  [[nodiscard]] const std::vector<double>& corner_times() const noexcept { return basis_.corner_times; }
 
  private:
   /// Between two samples: the first, and the share of the second.

@@ -32,7 +32,7 @@ ClosedLoop::ClosedLoop(const scenario::Scenario& scenario, const Roads::Prepared
       faults_{scenario.faults, scenario.seed},
       receiver_{scenario.vehicle, scenario.control_period, scenario.guard.receiver},
       account_{terms_of(scenario, &track_)} {
-  cycle_.use_line(road.lap);
+  use_line(road.lap);
   restart();
 }
 
@@ -241,7 +241,12 @@ void ClosedLoop::control(double budget, const GivenStep* given, const model::Com
   next_control_ += scenario_.control_period;
 }
 
-telemetry::RunSummary ClosedLoop::summary() const { return account_.summary(world_.time()); }
+telemetry::RunSummary ClosedLoop::summary() const {
+  telemetry::RunSummary run = account_.summary(world_.time());
+  const bool is_full_size = scenario_.vehicle.scale == 1.0;  // else the plan has times of full size
+  if (lap_ && is_full_size) run.planned_corner_times = lap_->corner_times();
+  return run;
+}
 
 telemetry::RunSummary run_closed_loop(ClosedLoop& loop, const RunHooks& hooks,
                                       const std::function<bool()>& stop) {

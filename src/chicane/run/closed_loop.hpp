@@ -85,7 +85,10 @@ class ClosedLoop {
   /// The same for a change that is still text; one that read_setting() refuses changes nothing. Allocates.
   void apply(const telemetry::Change& change);
   /// A planned lap to race by from the next control step on, where controller().wants_lap().
-  void use_line(std::shared_ptr<const road::RacingRoad> lap) { cycle_.use_line(std::move(lap)); }
+  void use_line(std::shared_ptr<const road::RacingRoad> lap) {
+    lap_ = lap;
+    cycle_.use_line(std::move(lap));
+  }
   /// Run seconds that were asked for per second of the clock.
   [[nodiscard]] double pace() const noexcept { return pace_; }
   /// Switches a fault (sim/fault.hpp) on, for its own duration and with its own strength, or off. False, and
@@ -166,6 +169,7 @@ class ClosedLoop {
   Interceptor interceptor_;
   safety::StopPlayer receiver_;
   Account account_;
+  std::shared_ptr<const road::RacingRoad> lap_;  ///< that is raced by; null: none is planned
   telemetry::Frame frame_;
   std::optional<model::Measurement> seen_;  ///< by look(), of the step that is due
   double next_control_ = 0.0;

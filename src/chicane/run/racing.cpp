@@ -8,6 +8,7 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/controller/registry.hpp"
+#include "chicane/lap_time/limit.hpp"
 #include "chicane/lap_time/racing_plan.hpp"
 #include "chicane/model/grip.hpp"
 #include "chicane/model/similarity.hpp"
@@ -62,6 +63,7 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const road::Track& track
   if (planning.slides && sliding.permits())
     planned.slips = {options.slip_share * sliding.front(), options.slip_share * sliding.most_rear()};
   planned.is_closed = track.centre().is_closed();
+  if (planned.is_closed && !planned.is_learned) planned.corner_times = lap_time::corner_times(track, *lap);
   planned.room_behind = track.length() - track.start_s() - track.lap_length();
   planned.braking =
       kShareAtTheEnd * options.brake_share *

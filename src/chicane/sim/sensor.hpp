@@ -22,6 +22,8 @@ struct SensorOptions {
   double heading_quantum = 0.0;   ///< [rad]
   double speed_quantum = 0.0;     ///< [m/s]
   double latency = 0.0;           ///< age of what is measured, which the controller is not told [s]
+
+  friend bool operator==(const SensorOptions&, const SensorOptions&) = default;
 };
 /// The fields with their units and ranges, for files and messages.
 [[nodiscard]] std::span<const Option> sensor_options() noexcept;

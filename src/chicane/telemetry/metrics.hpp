@@ -70,14 +70,16 @@ struct RunSummary {
   std::string end_reason;  ///< why it ended otherwise, one sentence; empty when completed
 
   int laps_completed = 0;
-  int off_track_events = 0;                 ///< times a contact patch left the drivable surface
-  double out_of_track_time = 0.0;           ///< [s]
-  double duration = 0.0;                    ///< of the run, in its own time [s]
-  double wall_time = 0.0;                   ///< of the run, on the wall [s]; filled by the run time
-  std::vector<LapSummary> laps;             ///< completed laps
-  std::vector<road::Corner> corners;        ///< of the track, in the order of a lap
-  std::optional<lap_time::LapTimes> limit;  ///< the fastest lap the car can drive; none when not computed
+  int off_track_events = 0;                  ///< times a contact patch left the drivable surface
+  double out_of_track_time = 0.0;            ///< [s]
+  double duration = 0.0;                     ///< of the run, in its own time [s]
+  double wall_time = 0.0;                    ///< of the run, on the wall [s]; filled by the run time
+  std::vector<LapSummary> laps;              ///< completed laps
+  std::vector<road::Corner> corners;         ///< of the track, in the order of a lap
+  std::optional<lap_time::LapTimes> limit;   ///< the fastest lap the car can drive; none when not computed
+  std::vector<double> planned_corner_times;  ///< of the plan that was raced by last [s]; empty: none
   std::string why_no_limit;  ///< in one sentence; empty when there is one, or none was asked for
+  std::vector<lap_time::LapWithout> without;  ///< what explains the gap to it; empty: not driven
   LapSummary total;          ///< the whole run, unfinished lap included; lap_time is its duration
   TimeSummary step_time;     ///< of whole control steps, wall clock
   TimeSummary solve_time;    ///< of the optimisation in them, wall clock

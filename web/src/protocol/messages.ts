@@ -807,6 +807,14 @@ export interface Limit {
   why_not: string;
   /** it holds for laps from this one on: before, grip or mass were others */
   first_lap: number;
+  /** of the limit, in the order of a lap, with half of the straights beside */
+  corner_times_s: Float64Array;
+  /** laps that were driven again without these, one at a time: "latency" */
+  without: string[];
+  /** the best of each; not-a-number where there was none */
+  without_lap_times_s: Float64Array;
+  /** of these laps, one after the other; not-a-number where not known */
+  without_corner_times_s: Float64Array;
 }
 
 /** What a Limit says when nothing is known. */
@@ -824,4 +832,8 @@ export const UNKNOWN_LIMIT: Limit = {
   time_s: new Float64Array(),
   why_not: '',
   first_lap: 0,
+  corner_times_s: new Float64Array(),
+  without: [],
+  without_lap_times_s: new Float64Array(),
+  without_corner_times_s: new Float64Array(),
 };

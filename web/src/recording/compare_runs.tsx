@@ -3,6 +3,7 @@ import { ticksOf } from '../draw/axis';
 import { fixed, lapTime } from '../lib/format';
 import { store } from '../lib/store';
 import { speedUnit } from '../lib/units';
+import { GapCausesTable } from '../parts/gap_causes_table';
 import { LossesTable, seconds } from '../parts/losses_table';
 import { along, type DrivenLap, startLine } from '../state/compared';
 import { bestsOf } from '../state/lap_table';
@@ -108,13 +109,17 @@ interface RoadCurveOptions {
 function Losses({ a, b, title }: { a: Pick; b: Pick; title: ComponentChildren }) {
   const laps = lapsOf(a, b);
   if (!laps) return <p class="soft">These two laps have no common road: there is nothing to compare.</p>;
-  const { samples, corners } = a.report;
+  const { samples } = a.report;
+  const corners = cornerTimes(laps, a.report.corners, startLine(samples));
   return (
     <section class="time-won" data-testid="losses">
       <h3>
         {title} <span class="unit">{seconds(laps.total)} s</span>
       </h3>
-      <LossesTable laps={laps} corners={cornerTimes(laps, corners, startLine(samples))} isForPrint />
+      <LossesTable laps={laps} corners={corners} isForPrint />
+      {b.lap === LIMIT && b.report.limit && (
+        <GapCausesTable limit={b.report.limit} corners={corners} lost={laps.total} />
+      )}
     </section>
   );
 }

@@ -1,7 +1,9 @@
+import { GapCausesTable } from '../parts/gap_causes_table';
 import { LossesTable, seconds } from '../parts/losses_table';
 import { forgotten, LIMIT, lapName, pair, roadCorners, startLine, twoLaps } from '../state/compared';
 import { KEPT_LAPS } from '../state/lap_samples';
 import { lapSamples } from '../state/laps';
+import { limit } from '../state/limit';
 import { pastLeft } from '../state/link';
 import { cursorPlace } from '../state/plot_view';
 import { type CornerTime, cornerTimes } from '../state/time_won';
@@ -27,12 +29,14 @@ export function TimeWonView() {
       </p>
     );
   }
+  const corners = cornerTimes(laps, roadCorners(), startLine());
   return (
     <section class="block time-won" aria-label="Where the time is won" data-testid="time-won">
       <h2>
         Where {nameOf(a)} loses time to {nameOf(b)} <span class="unit">{seconds(laps.total)} s</span>
       </h2>
-      <LossesTable laps={laps} corners={cornerTimes(laps, roadCorners(), startLine())} show={showCorner} />
+      <LossesTable laps={laps} corners={corners} show={showCorner} />
+      {b === LIMIT && limit.value && <GapCausesTable limit={limit.value} corners={corners} lost={laps.total} />}
     </section>
   );
 }

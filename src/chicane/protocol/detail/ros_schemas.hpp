@@ -209,6 +209,10 @@ float64[] lateral_acceleration_mps2     # positive to the left
 float64[] time_s                        # since the start line
 string why_not                          # in one sentence, while is_known is false
 uint32 first_lap                        # it holds for laps from this one on: before, grip or mass were others
+float64[] corner_times_s                # of the limit, in the order of a lap, with half of the straights beside
+string[] without                        # laps that were driven again without these, one at a time: "latency"
+float64[] without_lap_times_s           # the best of each; not-a-number where there was none
+float64[] without_corner_times_s        # of these laps, one after the other; not-a-number where not known
 )"},
     RosDefinition{"chicane_msgs/Change",
                   R"(# A setting that changed during the run, before this control cycle.
