@@ -31,7 +31,7 @@ using StageState = std::array<double, Problem::kNx>;
 using StageInput = std::array<double, Problem::kNu>;
 
 constexpr int kMostTurns = TrackingMpcOptions::kMostTurns;  // from a new guess, or with more time
-constexpr int kSlidingTurns = 30;      // beyond the peak of the tyres (docs/racing_gap.md, "The solver")
+constexpr int kRacingTurns = 30;       // with the original curve of tyres (docs/racing_gap.md, "The solver")
 constexpr double kTimePerTurn = 0.04;  // [s] that a step must come later for one turn more
 constexpr double kFarFromLine = 15.0;  // [m] further away it returns to the road
 constexpr double kLost = 100.0;        // [m] further away it does not return by itself
@@ -51,7 +51,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
         model_{vehicle},
         road_{options.road(), vehicle},
         estimator_{model_},
-        solver_{tracking::make_tracking_solver(kSlidingTurns)} {
+        solver_{tracking::make_tracking_solver(kRacingTurns)} {
     grip_.tell(told_);
     shape_raced();
   }
@@ -280,7 +280,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     } else {
       follow_line();
     }
-    if (slips_.rear > 1.0) turns_ = kSlidingTurns;
+    if (road_.is_raced() && !(told_.friction_coupling > 0.0)) turns_ = kRacingTurns;
     if (road_.is_raced()) mind_helper_gap(problem_, horizon_, line(), s_);
     correct_first();
     act_time_ = act_time;
