@@ -17,7 +17,7 @@ constexpr std::chrono::milliseconds kTerminalPeriod{100};
 constexpr double kLinePeriod = 10.0;  // [s] of the run
 
 /// Who drives and why, where it is not the controller alone.
-std::string exception(const controller::StepReport& report) {
+std::string exception(const safety::GuardReport& report) {
   const controller::DriverWords words = controller::describe_driver(report.rung, report.reason);
   return words.severity == Severity::kOk ? "" : "  " + controller::sentence_of(words);
 }
@@ -32,7 +32,7 @@ std::string line(const telemetry::Frame& frame) {
       frame.solve_time > 0.0 ? fmt::format("  solve {:5.0f} µs", 1e6 * frame.solve_time) : "";
   const std::string beside = std::isfinite(error) ? fmt::format("error {:+6.2f} m", error) : "error unknown";
   return fmt::format("{:7.1f} s  {}{:6.1f} mph  {}{}{}{}", frame.time, place, mps_to_mph(speed), beside,
-                     solve, off, exception(frame.result.report));
+                     solve, off, exception(frame.guard));
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ bool names_a_part(GuardReason reason) {
 }
 
 void note_guard(const telemetry::Frame& frame, double since, Outcome& outcome) {
-  const controller::StepReport& report = frame.result.report;
+  const safety::GuardReport& report = frame.guard;
   if (report.rung != controller::Rung::kController && std::isnan(outcome.acted_after))
     outcome.acted_after = since;
   if (names_a_part(report.reason) && std::isnan(outcome.doubted_after)) {

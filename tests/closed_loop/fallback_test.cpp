@@ -48,12 +48,12 @@ BlindRun drive_blind(double blind_from, double sees_at, double end) {
       now.delay = 0.1;
       const bool is_blind = time >= blind_from && time < sees_at;
       if (!is_blind) sim::select_waypoints(*track, {now.x, now.y, now.psi}, 6, now);
-      const controller::StepResult& answer = mpc.step(now, Deadline::never());
+      const test::Sent& answer = mpc.step(now, Deadline::never());
       if (time < blind_from) run.speed_before = now.speed;
       run.lowest_speed = time < blind_from ? run.lowest_speed : std::min(run.lowest_speed, now.speed);
       run.speed_after = now.speed;
-      run.lowest_rung = std::max(run.lowest_rung, answer.report.rung);
-      run.last_rung = answer.report.rung;
+      run.lowest_rung = std::max(run.lowest_rung, answer.guard.rung);
+      run.last_rung = answer.guard.rung;
       run.is_bounded = run.is_bounded && std::fabs(answer.command.steer) <= scenario->vehicle.steer_limit &&
                        std::fabs(answer.command.throttle) <= 1.0;
       in_flight.push(time + 0.1, answer.command);

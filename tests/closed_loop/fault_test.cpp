@@ -53,7 +53,7 @@ Outcome drive_through(const Settings& settings, Fault fault) {
     const double speed = std::hypot(frame.truth.vx, frame.truth.vy);
     outcome.slowest = std::min(outcome.slowest, speed);
     outcome.speed_at_end = speed;
-    outcome.lowest_rung = std::max(outcome.lowest_rung, frame.result.report.rung);
+    outcome.lowest_rung = std::max(outcome.lowest_rung, frame.guard.rung);
   }
   outcome.hash = loop->summary().state_hash;
   return outcome;

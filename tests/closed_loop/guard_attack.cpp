@@ -108,7 +108,7 @@ class Table {
 };
 
 void print_trace(const telemetry::Frame& frame) {
-  const controller::StepReport& report = frame.result.report;
+  const safety::GuardReport& report = frame.guard;
   const model::Measurement& seen = frame.measurement;
   fmt::print(
       "{:7.2f} s  v {:6.2f} ({:6.2f})  edge {:6.2f}  off line {:6.2f}  place error {:6.2f}  asked {:+.3f} "

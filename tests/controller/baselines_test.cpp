@@ -39,9 +39,9 @@ model::Measurement on_a_straight(double y, double psi, double speed) {
 
 TEST(Baselines, HoldTheWheelStraightOnTheLine) {
   for (const auto& controller : all_baselines()) {
-    const StepResult& result = controller->step(on_a_straight(0.0, 0.0, 10.0), Deadline::never());
+    const test::Sent& result = controller->step(on_a_straight(0.0, 0.0, 10.0), Deadline::never());
     EXPECT_NEAR(result.command.steer, 0.0, 1e-9) << controller->name();
-    EXPECT_EQ(result.report.rung, Rung::kController);
+    EXPECT_EQ(result.guard.rung, Rung::kController);
   }
 }
 
@@ -90,7 +90,7 @@ TEST(Baselines, SlowDownForACurve) {
 
 TEST(Baselines, StandStillWithoutTurningTheWheelToItsStop) {
   for (const auto& controller : all_baselines()) {
-    const StepResult& result = controller->step(on_a_straight(0.5, 0.0, 0.0), Deadline::never());
+    const test::Sent& result = controller->step(on_a_straight(0.5, 0.0, 0.0), Deadline::never());
     EXPECT_LT(std::fabs(result.command.steer), kCar.steer_limit) << controller->name();
   }
 }
@@ -123,11 +123,11 @@ TEST(Baselines, AnswerAlsoWithoutAUsableMeasurement) {
     hostile[5].waypoint_count = 1;
     for (Vec2& point : hostile[6].waypoints) point = {1.0, 1.0};
     for (const auto& now : hostile) {
-      const StepResult& result = controller->step(now, Deadline::never());
+      const test::Sent& result = controller->step(now, Deadline::never());
       ASSERT_TRUE(std::isfinite(result.command.steer) && std::isfinite(result.command.throttle));
       ASSERT_LE(std::fabs(result.command.steer), kCar.steer_limit);
       ASSERT_LE(std::fabs(result.command.throttle), 1.0);
-      EXPECT_NE(result.report.rung, Rung::kController);
+      EXPECT_NE(result.guard.rung, Rung::kController);
     }
   }
 }
@@ -156,13 +156,13 @@ TEST(Baselines, AreNotToldOfAPlaceThatJumps) {
       now.speed += 1e-3;  // as a sensor that is not stuck
       return controller->step(now, Deadline::never());
     };
-    for (int i = 0; i < 4; ++i) EXPECT_EQ(drive(0.0).report.rung, Rung::kController) << controller->name();
+    for (int i = 0; i < 4; ++i) EXPECT_EQ(drive(0.0).guard.rung, Rung::kController) << controller->name();
     const double steer = drive(0.0).command.steer;
-    const StepResult jumped = drive(5.0);
-    EXPECT_NE(jumped.report.rung, Rung::kController) << controller->name();
+    const test::Sent jumped = drive(5.0);
+    EXPECT_NE(jumped.guard.rung, Rung::kController) << controller->name();
     EXPECT_NEAR(jumped.command.steer, steer, 0.02);
     EXPECT_LT(jumped.command.throttle, 0.0);
-    EXPECT_EQ(drive(-5.0).report.rung, Rung::kController);
+    EXPECT_EQ(drive(-5.0).guard.rung, Rung::kController);
   }
 }
 

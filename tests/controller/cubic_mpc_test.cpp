@@ -52,9 +52,9 @@ void expect_bounded(const StepResult& result) {
 TEST(CubicMpc, SolvesEveryVariantAndSteersBackToTheLine) {
   for (const auto& options : all_variants()) {
     const auto controller = make(options);
-    const StepResult& result = controller->step(on_a_left_bend(), Deadline::never());
+    const test::Sent& result = controller->step(on_a_left_bend(), Deadline::never());
     EXPECT_EQ(result.report.solve.status, solver::SolveStatus::kOptimal);
-    EXPECT_EQ(result.report.rung, Rung::kController);
+    EXPECT_EQ(result.guard.rung, Rung::kController);
     expect_bounded(result);
     EXPECT_LT(result.command.steer,
               0.06);  // 80 m ask for 0.033 rad; half a metre left of the line, less than that
@@ -113,7 +113,7 @@ TEST(CubicMpc, PutsALateInputBesideTheStateItMeets) {
   options.latency_handling = LatencyHandling::kInsideModel;
   const model::Measurement now = on_a_left_bend();
   const auto controller = make(options);
-  const StepResult& result = controller->step(now, Deadline::never());
+  const test::Sent& result = controller->step(now, Deadline::never());
   EXPECT_EQ(result.plan.size, options.horizon_steps - 1);
   EXPECT_NEAR(result.plan.points[0].time, now.time + options.step_length, 1e-12);
   EXPECT_EQ(result.plan.points[0].command.steer, result.command.steer);
@@ -162,9 +162,9 @@ TEST(CubicMpc, AnswersAlsoWithoutAUsableMeasurement) {
     hostile[7].speed = 1e300;
     for (Vec2& point : hostile[8].waypoints) point = {kNaN, kNaN};
     for (const auto& now : hostile) {
-      const StepResult& result = controller->step(now, Deadline::never());
+      const test::Sent& result = controller->step(now, Deadline::never());
       expect_bounded(result);
-      EXPECT_NE(result.report.rung, Rung::kController);
+      EXPECT_NE(result.guard.rung, Rung::kController);
       EXPECT_FALSE(usable(result.report.solve.status));
     }
   }
@@ -173,19 +173,19 @@ TEST(CubicMpc, AnswersAlsoWithoutAUsableMeasurement) {
 TEST(CubicMpc, UsesTheLastPlanOnceTheLineIsLostAndRecoversWithIt) {
   const auto controller = make(CubicMpcOptions{});
   model::Measurement now = on_a_left_bend();
-  ASSERT_EQ(controller->step(now, Deadline::never()).report.rung, Rung::kController);
+  ASSERT_EQ(controller->step(now, Deadline::never()).guard.rung, Rung::kController);
   const double second = controller->step(now, Deadline::never()).plan.points[1].command.steer;
   now.waypoint_count = 0;
   now.time += 0.1;
-  const StepResult& lost = controller->step(now, Deadline::never());
-  EXPECT_EQ(lost.report.rung, Rung::kShiftedPlan);
+  const test::Sent& lost = controller->step(now, Deadline::never());
+  EXPECT_EQ(lost.guard.rung, Rung::kShiftedPlan);
   EXPECT_DOUBLE_EQ(lost.command.steer, second);
   now.time += 0.6;
-  EXPECT_EQ(controller->step(now, Deadline::never()).report.rung, Rung::kHoldAndBrake);
+  EXPECT_EQ(controller->step(now, Deadline::never()).guard.rung, Rung::kHoldAndBrake);
   now.time += 2.0;
-  EXPECT_EQ(controller->step(now, Deadline::never()).report.rung, Rung::kBrake);
+  EXPECT_EQ(controller->step(now, Deadline::never()).guard.rung, Rung::kBrake);
   now.waypoint_count = 6;
-  EXPECT_EQ(controller->step(now, Deadline::never()).report.rung, Rung::kController);
+  EXPECT_EQ(controller->step(now, Deadline::never()).guard.rung, Rung::kController);
 }
 
 TEST(CubicMpc, TakesTheRungThatTheStatusAsksFor) {
@@ -193,24 +193,24 @@ TEST(CubicMpc, TakesTheRungThatTheStatusAsksFor) {
   const auto controller = make(CubicMpcOptions{});
   model::Measurement now = on_a_left_bend();
 
-  const StepResult& result = controller->step(now, spent);  // cold and out of time: nothing near an optimum
+  const test::Sent& result = controller->step(now, spent);  // cold and out of time: nothing near an optimum
   EXPECT_EQ(result.report.solve.status, solver::SolveStatus::kStalled);
-  EXPECT_EQ(result.report.rung, Rung::kHoldAndBrake);
+  EXPECT_EQ(result.guard.rung, Rung::kHoldAndBrake);
   expect_bounded(result);
 
   (void)controller->step(now, Deadline::never());
   EXPECT_EQ(result.report.solve.status, solver::SolveStatus::kOptimal);
-  EXPECT_EQ(result.report.rung, Rung::kController);
+  EXPECT_EQ(result.guard.rung, Rung::kController);
 
   now.speed += 1e-6;  // the optimum of almost the same problem is good enough
   (void)controller->step(now, spent);
   EXPECT_EQ(result.report.solve.status, solver::SolveStatus::kBudgetSpent);
-  EXPECT_EQ(result.report.rung, Rung::kController);
+  EXPECT_EQ(result.guard.rung, Rung::kController);
 
   now.speed = 1e300;
   (void)controller->step(now, Deadline::never());
   EXPECT_EQ(result.report.solve.status, solver::SolveStatus::kNotFinite);
-  EXPECT_EQ(result.report.rung, Rung::kShiftedPlan);
+  EXPECT_EQ(result.guard.rung, Rung::kShiftedPlan);
   expect_bounded(result);
   // kInfeasible needs a soft constraint, and this problem has none.
 }
@@ -220,9 +220,9 @@ TEST(CubicMpc, TakesTheLongestHorizon) {
   options.horizon_steps = 200;
   options.step_length = 0.02;
   const auto controller = make(options);
-  const StepResult& result = controller->step(on_a_left_bend(), Deadline::never());
+  const test::Sent& result = controller->step(on_a_left_bend(), Deadline::never());
   expect_bounded(result);
-  EXPECT_EQ(result.report.rung, Rung::kController);
+  EXPECT_EQ(result.guard.rung, Rung::kController);
   EXPECT_EQ(result.plan.size, 200);
 }
 

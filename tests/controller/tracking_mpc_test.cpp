@@ -21,9 +21,9 @@ std::unique_ptr<test::Guarded> make(const TrackingMpcOptions& options = {}) {
 }
 
 /// The command after a few cycles in which the car stands still in `now`'s world.
-StepResult after_cycles(model::Measurement now, int cycles = 5) {
+test::Sent after_cycles(model::Measurement now, int cycles = 5) {
   const auto controller = make();
-  StepResult result;
+  test::Sent result;
   for (int i = 0; i < cycles; ++i) {
     result = controller->step(now, Deadline::never());
     now.time += 0.001;
@@ -32,8 +32,8 @@ StepResult after_cycles(model::Measurement now, int cycles = 5) {
 }
 
 TEST(TrackingMpc, SteersBackToTheLineAndPlansAhead) {
-  const StepResult result = after_cycles(on_a_left_bend());
-  EXPECT_EQ(result.report.rung, Rung::kController);
+  const test::Sent result = after_cycles(on_a_left_bend());
+  EXPECT_EQ(result.guard.rung, Rung::kController);
   EXPECT_GT(result.report.sight, 40.0);
   ASSERT_EQ(result.plan.size, TrackingMpcOptions{}.horizon_steps + 1);
   EXPECT_NEAR(result.plan.points[0].time, 5.004 + 0.1, 1e-9) << "the plan begins when the command acts";
@@ -106,7 +106,7 @@ TEST(TrackingMpc, AnswersAnythingWithABoundedCommand) {
       default:
         break;
     }
-    const StepResult& result = controller->step(now, Deadline::never());
+    const test::Sent& result = controller->step(now, Deadline::never());
     ASSERT_TRUE(std::isfinite(result.command.steer) && std::isfinite(result.command.throttle)) << i;
     ASSERT_LE(std::fabs(result.command.steer), car.steer_limit) << i;
     ASSERT_LE(std::fabs(result.command.throttle), 1.0) << i;
@@ -117,7 +117,7 @@ TEST(TrackingMpc, AnswersAnythingWithABoundedCommand) {
     now.time += 0.05;
     (void)controller->step(now, Deadline::never());
   }
-  EXPECT_EQ(controller->step(now, Deadline::never()).report.rung, Rung::kController)
+  EXPECT_EQ(controller->step(now, Deadline::never()).guard.rung, Rung::kController)
       << "no poison stays behind";
 }
 
@@ -152,7 +152,7 @@ TEST(TrackingMpc, AMissedDeadlineStillGivesACommand) {
   model::Measurement now = on_a_left_bend();
   for (int i = 0; i < 20; ++i) {
     now.time += 0.04;
-    const StepResult& result = controller->step(now, Deadline::after(std::chrono::nanoseconds(0)));
+    const test::Sent& result = controller->step(now, Deadline::after(std::chrono::nanoseconds(0)));
     EXPECT_LE(std::fabs(result.command.steer), model::udacity_params().steer_limit);
     EXPECT_LE(result.report.solve.iterations, 1);
   }

@@ -97,7 +97,7 @@ TEST(LiveChange, OfPricesHorizonAndSpeedKeepsTheMapAndTheCarOnTheRoad) {
     for (int i = 0; i < 50; ++i) {
       const telemetry::Frame& frame = drive(*loop, 1);
       ASSERT_TRUE(frame.result.report.has_map);
-      ASSERT_EQ(frame.result.report.rung, controller::Rung::kController) << frame.cycle;
+      ASSERT_EQ(frame.guard.rung, controller::Rung::kController) << frame.cycle;
     }
   }
   EXPECT_EQ(loop->summary().off_track_events, 0);
@@ -120,7 +120,7 @@ TEST(LiveChange, ReachesEveryController) {
     const model::Command changed = drive(*one, 1).result.command;
     const model::Command same = drive(*other, 1).result.command;
     EXPECT_NE(std::pair(changed.steer, changed.throttle), std::pair(same.steer, same.throttle));
-    EXPECT_EQ(one->frame().result.report.rung, controller::Rung::kController);
+    EXPECT_EQ(one->frame().guard.rung, controller::Rung::kController);
   }
 }
 
@@ -277,7 +277,7 @@ TEST(ManualDriving, HandsBackToAControllerThatKnowsWhereItIs) {
   for (int i = 0; i < 100; ++i) {
     const telemetry::Frame& frame = drive(*loop, 1);
     ASSERT_FALSE(frame.is_manual);
-    ASSERT_EQ(frame.result.report.rung, controller::Rung::kController);
+    ASSERT_EQ(frame.guard.rung, controller::Rung::kController);
     // Commands in flight, the person's too, are known: plans come true.
     if (i > 5 && std::isfinite(frame.prediction_error)) {
       ASSERT_LT(frame.prediction_error, 0.5) << i;

@@ -325,22 +325,22 @@ TEST(RosMessages, DiagnosticsSayInWordsWhoIsInControl) {
     return std::pair{level, reader.text()};
   };
   EXPECT_EQ(first(), std::pair(1, std::string("the car follows the last plan")));
-  frame.result.report.rung = controller::Rung::kBrake;
+  frame.guard.rung = controller::Rung::kBrake;
   EXPECT_EQ(first(),
             std::pair(2, std::string("the car follows the last plan and brakes as hard as is useful")));
-  frame.result.report.rung = controller::Rung::kController;
+  frame.guard.rung = controller::Rung::kController;
   EXPECT_EQ(first(), std::pair(1, std::string("the command gate changed the command")));
-  frame.result.report.gated = false;
+  frame.guard.gated = false;
   EXPECT_EQ(first(), std::pair(0, std::string("the controller drives")));
 }
 
 TEST(RosMessages, DiagnosticsKnowEverySourceAndEveryReason) {
   telemetry::Frame frame = samples::frame();
-  frame.result.report.gated = false;
+  frame.guard.gated = false;
   for (const Word<controller::Rung>& rung : controller::kRungWords) {
     for (const Word<controller::GuardReason>& reason : controller::kGuardReasonWords) {
-      frame.result.report.rung = rung.value;
-      frame.result.report.reason = reason.value;
+      frame.guard.rung = rung.value;
+      frame.guard.reason = reason.value;
       const std::string bytes = encode("/diagnostics", frame);
       EXPECT_NE(bytes.find(rung.sentence), std::string::npos) << rung.name;
       const bool is_shown = bytes.find(reason.sentence) != std::string::npos;

@@ -37,14 +37,14 @@ inline telemetry::Frame frame() {
   report.solve.iterations = 7;
   report.solve.sweeps = 9;
   report.solve.cost = 123.5;
-  report.rung = controller::Rung::kShiftedPlan;
+  frame.guard.rung = controller::Rung::kShiftedPlan;
   report.lateral_error = 0.31;
   report.heading_error = -0.02;
   report.speed_reference = 33.0;
   report.delay = 0.118;
   report.sight = 140.0;
   report.has_map = true;
-  report.gated = true;
+  frame.guard.gated = true;
   report.solve.stationarity = 0.0009765625;
   report.solve.violation = 0.0625;
   report.solve.worst_stage = 17;

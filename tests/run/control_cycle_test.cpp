@@ -34,7 +34,7 @@ TEST(ControlCycle, DoesOutsideTheLoopWhatItDoesInside) {
       ASSERT_EQ(frame->begins, loop->frame().begins);
       ASSERT_EQ(frame->result.command.steer, loop->frame().result.command.steer) << preset << frame->cycle;
       ASSERT_EQ(frame->result.command.throttle, loop->frame().result.command.throttle);
-      ASSERT_EQ(frame->result.report.rung, loop->frame().result.report.rung);
+      ASSERT_EQ(frame->guard.rung, loop->frame().guard.rung);
     }
   }
 }

@@ -115,7 +115,7 @@ TEST(WayBack, FrameSaysThatTheRoadIsTooFarAwayAndHowFar) {
     while (loop->time() < 30.0) loop->advance();
     const telemetry::Frame& frame = loop->frame();
     EXPECT_LT(std::hypot(frame.truth.vx, frame.truth.vy), 0.1) << "it stands, its braking fades";
-    EXPECT_EQ(frame.result.report.reason, controller::GuardReason::kFarFromRoad) << controller_road;
+    EXPECT_EQ(frame.guard.reason, controller::GuardReason::kFarFromRoad) << controller_road;
     EXPECT_GT(std::fabs(frame.result.report.lateral_error), 250.0) << controller_road;
   }
 }

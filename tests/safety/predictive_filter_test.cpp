@@ -47,7 +47,7 @@ TEST(PredictiveFilter, StoresABackupAfterACommandThatLeavesOne) {
     const road::KnownRoad road = round_road(side);
     for (const model::VehicleParams& car : kBoth) {
       PredictiveFilter filter(car, {});
-      controller::StepReport report;
+      GuardReport report;
       const StopStart start = driving(15.0, side);
       const Fit fit = filter.verify({road, start, {side * 0.03, 0.1}, kNoPlan, 0.04}, report);
       EXPECT_EQ(fit, Fit::kOpen) << car.name;
@@ -67,7 +67,7 @@ TEST(PredictiveFilter, IsTheSameInAMirror) {
       const double side = i == 0 ? 1.0 : -1.0;
       const road::KnownRoad road = round_road(side);
       PredictiveFilter filter(car, {});
-      controller::StepReport report;
+      GuardReport report;
       StopStart start = driving(20.0, side);
       start.d = side * 0.7;
       static_cast<void>(filter.verify({road, start, {side * 0.04, 0.3}, kNoPlan, 0.04}, report));
@@ -91,7 +91,7 @@ TEST(PredictiveFilter, BringsARefusedCarToRestOnTheRoad) {
       double edge = 5.0;
       int refused = 0;
       for (int i = 0; i < 600 && at.body.vx > 0.5; ++i) {
-        controller::StepReport report;
+        GuardReport report;
         model::Command command{-side * car.steer_limit, 1.0};  // out of the bend
         if (filter.verify({road, at, command, kNoPlan, 0.04}, report) != Fit::kOpen) {
           ++refused;
@@ -111,7 +111,7 @@ TEST(PredictiveFilter, RefusesACommandThatMakesTheCarSlide) {
   model::VehicleParams car = model::road_car_params();
   car.steer_rate_limit = 100.0;
   PredictiveFilter filter(car, {.margin = 0.0, .open_time = 0.0});
-  controller::StepReport report;
+  GuardReport report;
   const StopStart start = driving(30.0, 1.0);
   EXPECT_EQ(filter.verify({road, start, {car.steer_limit, 0.0}, kNoPlan, 0.3}, report), Fit::kNone);
   EXPECT_EQ(filter.stop().size, 0);
@@ -123,7 +123,7 @@ TEST(PredictiveFilter, LeadsACarNearTheEdgeNoNearer) {
   const model::VehicleParams car = model::road_car_params();
   const double half = 0.5 * (car.track_width + car.tire_width);
   PredictiveFilter filter(car, {.margin = 0.5});
-  controller::StepReport report;
+  GuardReport report;
   StopStart start{.time = 2.0, .s = 50.0, .d = 5.0 - half - 0.2, .body = {.vx = 1.0}};
   EXPECT_EQ(filter.verify({road, start, {0.3, 0.3}, kNoPlan, 0.1, true}, report), Fit::kNone)
       << "towards the edge";
@@ -136,7 +136,7 @@ TEST(PredictiveFilter, LeadsACarNearTheEdgeNoNearer) {
 TEST(PredictiveFilter, GoesOnWithTheBackupByTimeWhereNothingIsMeasured) {
   const road::KnownRoad road = round_road(1.0);
   PredictiveFilter filter(model::road_car_params(), {});
-  controller::StepReport report;
+  GuardReport report;
   const StopStart start = driving(20.0, 1.0);
   ASSERT_EQ(filter.verify({road, start, {0.03, 0.1}, kNoPlan, 0.04}, report), Fit::kOpen);
   const StopPlan before = filter.stop();
@@ -172,7 +172,7 @@ TEST(PredictiveFilter, CountsOnAPublishedPlanThatBeginsAtTheCar) {
   car.d = 0.4;
   const auto fit_with = [&](const controller::Plan* plan) {
     PredictiveFilter filter(model::road_car_params(), {});
-    controller::StepReport report;
+    GuardReport report;
     return filter.verify({road, car, {0.03, 0.2}, plan, 0.04}, report);
   };
   const auto fit_where = [&](double StopStart::*which, double off) {
@@ -229,7 +229,7 @@ TEST(PredictiveFilter, CarriesTheBackupOverToAnotherLineOfTheRoad) {
   const road::KnownRoad road = round_road(1.0);
   const road::KnownRoad other = round_road_by_another_line();
   PredictiveFilter filter(model::road_car_params(), {.open_time = 0.0});
-  controller::StepReport report;
+  GuardReport report;
   ASSERT_NE(filter.verify({road, driving(20.0, 1.0), {0.03, 0.1}, kNoPlan, 0.04}, report), Fit::kNone);
   const StopPlan before = filter.stop();
   const double edge = report.stop_edge;
@@ -255,7 +255,7 @@ TEST(PredictiveFilter, KeepsTheRoomToTurnBackAlongTheRoad) {
   const road::KnownRoad road = round_road(1.0);
   const model::VehicleParams car = model::road_car_params();
   PredictiveFilter filter(car, {});
-  controller::StepReport report;
+  GuardReport report;
   StopStart start{.time = 2.0, .s = 50.0, .d = 2.8, .e = 0.7, .body = {.vx = 1.0}};
   EXPECT_EQ(filter.verify({road, start, {0.43, 0.0}, kNoPlan, 0.04}, report), Fit::kNone);
   EXPECT_GT(filter.planner().edge(road, start), 0.5) << "though it stands on the road";
@@ -272,7 +272,7 @@ TEST(PredictiveFilter, AllocatesNothing) {
   const test::AllocationGuard counter;
   StopStart at = driving(25.0, 1.0);
   for (int i = 0; i < 20; ++i) {
-    controller::StepReport report;
+    GuardReport report;
     static_cast<void>(filter.verify({road, at, {i % 2 == 0 ? 0.4 : -0.4, 1.0}, kNoPlan, 0.04}, report));
     static_cast<void>(filter.drive(road, at, i % 3 == 0, report));
     at.time += 0.04;

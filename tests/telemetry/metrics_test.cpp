@@ -125,9 +125,9 @@ TEST(Metrics, CountsWhatWentWrongInTheSteps) {
   f->time = 0.1;
   f->result.report.solve.iterations = 2;
   f->result.report.solve.status = solver::SolveStatus::kStalled;
-  f->result.report.rung = controller::Rung::kShiftedPlan;
-  f->result.report.reason = controller::GuardReason::kFrozen;
-  f->result.report.gated = true;
+  f->guard.rung = controller::Rung::kShiftedPlan;
+  f->guard.reason = controller::GuardReason::kFrozen;
+  f->guard.gated = true;
   f->step_time = 0.2;
   f->solve_time = 0.15;
   metrics.add(*f);

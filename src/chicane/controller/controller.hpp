@@ -44,14 +44,6 @@ struct StepReport {
   bool has_map = false;     ///< the lap is closed in memory
   Explanation explanation;  ///< why the answer is what it is; empty without an answer
   LearnedCar learned;       ///< grip: the controller's word, where it learns that; the rest: the guard's
-
-  // The guard's word, not the controller's.
-  Rung rung = Rung::kController;
-  bool gated = false;                       ///< the command gate had to change the command
-  GuardReason reason = GuardReason::kNone;  ///< with mode `observe` also where nothing was done about it
-  double stop_edge = std::numeric_limits<double>::quiet_NaN();  ///< of the stop at hand: least distance of a
-                                                                ///< tyre to the known edge [m]
-  double stop_distance = std::numeric_limits<double>::quiet_NaN();  ///< and its length [m]; NaN: none at hand
 };
 
 struct StepResult {

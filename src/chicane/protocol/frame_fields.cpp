@@ -165,18 +165,18 @@ constexpr auto kStatuses = constants(kStatusNames, solver::kSolveStatusWords);
 
 constexpr std::array kStep{
     field<std::uint8_t>(
-        "rung", "", [](const Frame& f) { return report(f).rung; }, kRungs),
+        "rung", "", [](const Frame& f) { return f.guard.rung; }, kRungs),
     field<std::int8_t>(
         "solve_status", "", [](const Frame& f) { return solve(f).status; }, kStatuses),
     field<bool>("is_gated", "the command gate had to change the command",
-                [](const Frame& f) { return report(f).gated; }),
+                [](const Frame& f) { return f.guard.gated; }),
     field<std::uint8_t>(
-        "guard_reason", "", [](const Frame& f) { return report(f).reason; }, kGuardReasons),
+        "guard_reason", "", [](const Frame& f) { return f.guard.reason; }, kGuardReasons),
     field<double>("stop_edge_m",
                   "of the stop at hand, least distance of a tyre to the known edge; NaN: no stop",
-                  [](const Frame& f) { return report(f).stop_edge; }),
+                  [](const Frame& f) { return f.guard.stop_edge; }),
     field<double>("stop_distance_m", "of the stop at hand, to standstill; NaN: no stop",
-                  [](const Frame& f) { return report(f).stop_distance; }),
+                  [](const Frame& f) { return f.guard.stop_distance; }),
     field<bool>("has_map", "the lap is closed in the controller's memory",
                 [](const Frame& f) { return report(f).has_map; }),
     field<std::uint32_t>("iterations", "of the outer (SQP) loop",

@@ -258,7 +258,7 @@ struct Diagnosis {
   std::string message;
 };
 
-Diagnosis diagnose_controller(const controller::StepReport& report) {
+Diagnosis diagnose_controller(const safety::GuardReport& report) {
   const controller::DriverWords words = controller::describe_driver(report.rung, report.reason);
   if (words.severity == Severity::kOk && report.gated) return {1, "the command gate changed the command"};
   return {static_cast<std::uint8_t>(words.severity), controller::sentence_of(words)};
@@ -278,7 +278,7 @@ std::string encode_diagnostics(const Frame& frame, const Run& run) {
     for (const auto& [key, value] : values) writer.text(key).text(value);
   };
   writer.header(frame.time, "").count(2);
-  status(diagnose_controller(report), "chicane: controller", run.controller,
+  status(diagnose_controller(frame.guard), "chicane: controller", run.controller,
          {{"solve_status", std::string(solver::to_string(report.solve.status))},
           {"iterations", fmt::format("{}", report.solve.iterations)},
           {"step_time_us", fmt::format("{:.0f}", 1e6 * frame.step_time)},

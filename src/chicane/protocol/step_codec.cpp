@@ -51,8 +51,8 @@ std::string encode_step(const telemetry::Frame& frame) {
                              seen.delay, command.steer, command.throttle, frame.step_time}) {
     real(value);
   }
-  fields.number(static_cast<std::uint8_t>(frame.result.report.rung));
-  fields.number(static_cast<std::uint8_t>(frame.result.report.gated)).number(std::uint16_t{0});
+  fields.number(static_cast<std::uint8_t>(frame.guard.rung));
+  fields.number(static_cast<std::uint8_t>(frame.guard.gated)).number(std::uint16_t{0});
   fields.number(static_cast<std::uint32_t>(2 * seen.waypoint_count));
   for (int i = 0; i < seen.waypoint_count; ++i) {
     real(seen.waypoints[static_cast<std::size_t>(i)].x());

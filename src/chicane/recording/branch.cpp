@@ -87,8 +87,8 @@ class FutureMeter {
         count_ == 0 ? frame.edge_distance : std::min(future_.min_edge_distance, frame.edge_distance);
     future_.top_speed = std::max(future_.top_speed, speed);
     future_.off_track_events = frame.off_track_events - events_;
-    const controller::StepReport& step = frame.result.report;
-    if (!frame.is_manual && (step.rung != controller::Rung::kController || step.gated)) {
+    const bool is_own = frame.guard.rung == controller::Rung::kController && !frame.guard.gated;
+    if (!frame.is_manual && !is_own) {
       ++future_.interventions;
     }
     ++count_;

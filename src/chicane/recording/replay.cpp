@@ -72,8 +72,8 @@ class Recomputation {
                 frame_);
     const controller::StepResult& result = frame_.result;
     return is_same(result.command.steer, step.command.steer) &&
-           is_same(result.command.throttle, step.command.throttle) && result.report.rung == step.rung &&
-           result.report.gated == step.gated;
+           is_same(result.command.throttle, step.command.throttle) && frame_.guard.rung == step.rung &&
+           frame_.guard.gated == step.gated;
   }
 
   scenario::Scenario scenario_;

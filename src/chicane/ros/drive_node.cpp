@@ -245,7 +245,7 @@ class DriveNode {
     turn_around_ += kHabit * (std::min(seconds(sent - received), period_) - turn_around_);
     sight_.sent(drive_.time(sent), frame.result.command);
     ++summary_.answers;
-    if (frame.result.report.gated) ++summary_.interventions;
+    if (frame.guard.gated) ++summary_.interventions;
     drive_.finish();
     publisher_->publish(drive_.frame(),
                         1e-9 * static_cast<double>(time_.stamp_now()) - drive_.time(time_.now()));

@@ -72,8 +72,6 @@ void ControlCycle::to_scale(controller::StepResult& result) const noexcept {
   report.learned.delay.deviation /= time;
   report.lateral_error /= length;
   report.sight /= length;
-  report.stop_edge /= length;
-  report.stop_distance /= length;
   report.speed_reference /= speed;
   report.explanation.speed_limit /= speed;
 }
@@ -108,6 +106,9 @@ void ControlCycle::step(const CycleInput& input, telemetry::Frame& frame) noexce
     to_scale(frame.result);
     keep_stop();
   }
+  frame.guard = guard_.report();
+  frame.guard.stop_edge /= similarity_.length();
+  frame.guard.stop_distance /= similarity_.length();
   frame.deadline_spent_at = questions.spent_at;
   frame.step_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   frame.solve_time = frame.result.report.solve_time;

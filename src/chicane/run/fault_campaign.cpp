@@ -75,7 +75,7 @@ FaultOutcome drive_on(Driven& driven, const FaultTrial& trial, double at) {
     if (loop.time() <= at) continue;
     outcome.least_edge = std::min(outcome.least_edge, loop.world().edge_distance);
     outcome.end_speed = speed;
-    if (is_new && loop.frame().result.report.rung != controller::Rung::kController) ++outcome.not_controller;
+    if (is_new && loop.frame().guard.rung != controller::Rung::kController) ++outcome.not_controller;
     if (is_lasting && loop.time() - standing_since > kStood && loop.time() > at + kTimeToGetGoing) break;
   }
   outcome.until = loop.time();

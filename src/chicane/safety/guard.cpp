@@ -138,6 +138,7 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   if (is_off && learned_) learned_->see(now, told_);
   const model::Measurement& seen = is_off ? now : look(now);
   result = controller_->step(seen, deadline);
+  report_ = {};
   if (learned_) report_learned(result.report.learned);
   if (!is_finite(result.command)) result.answer = Answer::kNone;
   choose(seen, cycle, result);
@@ -156,8 +157,8 @@ void Guard::send(const Cycle& cycle, const model::Command& asked, controller::St
   const model::Command told = answer().command_for(result.command);
   const GateResult gated = gate_.pass(cycle.manual.value_or(told), cycle.interval);
   result.command = gated.command;
-  result.report.gated = gated.reason != GateReason::kNone ||
-                        !is_same(gated.command, cycle.manual.value_or(answer().command_for(asked)));
+  report_.gated = gated.reason != GateReason::kNone ||
+                  !is_same(gated.command, cycle.manual.value_or(answer().command_for(asked)));
   const model::Command effect = answer().effect_of(gated.command);
   controller_->note_sent(effect);
   if ((options_.mode == GuardMode::kOff && !learned_) || !std::isfinite(sent_from_)) return;
@@ -272,12 +273,11 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   }
   const std::optional<StopStart> start = place_on_road(act);
   watch_course(start);
-  controller::StepReport& report = result.report;
-  report.reason = verdict.reason;
-  if (!verdict.must_stop && actuators_.has_other_steering()) report.reason = GuardReason::kOtherSteering;
-  if (!verdict.must_stop && actuators_.has_weak_brakes()) report.reason = GuardReason::kWeakBrakes;
+  report_.reason = verdict.reason;
+  if (!verdict.must_stop && actuators_.has_other_steering()) report_.reason = GuardReason::kOtherSteering;
+  if (!verdict.must_stop && actuators_.has_weak_brakes()) report_.reason = GuardReason::kWeakBrakes;
   if (!has_answer && !verdict.must_stop)
-    report.reason = is_far_ ? GuardReason::kFarFromRoad : GuardReason::kNoAnswer;
+    report_.reason = is_far_ ? GuardReason::kFarFromRoad : GuardReason::kNoAnswer;
 
   bool may_send = has_answer && !verdict.must_stop;
   if (may_send && start) may_send = filter(*start, cycle, result);
@@ -299,25 +299,25 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
 /// Whether the answer may be sent; slowed down where it leaves only a closed-loop backup.
 bool Guard::filter(const StopStart& start, const Cycle& cycle, controller::StepResult& result) noexcept {
   const controller::Plan* plan = is_of(result.plan, result.command) ? &result.plan : nullptr;
-  const Fit fit = verify(start, cycle, result.command, plan, result.report);
+  const Fit fit = verify(start, cycle, result.command, plan);
   if (fit == Fit::kOpen) return true;
-  result.report.reason = GuardReason::kTooFastForSilence;
+  report_.reason = GuardReason::kTooFastForSilence;
   if (fit == Fit::kSeen && (options_.mode == GuardMode::kObserve || slow_down(start, cycle, plan, result)))
     return true;
-  result.report.reason = GuardReason::kNoWayToStop;
+  report_.reason = GuardReason::kNoWayToStop;
   return false;
 }
 
 /// Of the command as the gate would send it.
 Fit Guard::verify(const StopStart& start, const Cycle& cycle, const model::Command& command,
-                  const controller::Plan* plan, controller::StepReport& report, bool is_led) noexcept {
+                  const controller::Plan* plan, bool is_led) noexcept {
   return filter_.verify({.road = road_,
                          .start = start,
                          .command = limited(command, cycle.interval),
                          .intended = plan,
                          .interval = cycle.interval,
                          .is_led = is_led},
-                        report);
+                        report_);
 }
 
 /// The controller steers; the pedal is limited to gentle braking. False where that leaves no backup at all.
@@ -326,8 +326,7 @@ bool Guard::slow_down(const StopStart& start, const Cycle& cycle, const controll
   model::Command slower = result.command;
   const double slowing = filter_.planner().slowing(road_, start, kHeldBack);
   slower.throttle = std::min(slower.throttle, throttle_for(model_.vehicle(), slowing, start.body.vx));
-  if (slower.throttle < result.command.throttle &&
-      verify(start, cycle, slower, plan, result.report) == Fit::kNone)
+  if (slower.throttle < result.command.throttle && verify(start, cycle, slower, plan) == Fit::kNone)
     return false;
   result.command = slower;
   return true;
@@ -354,16 +353,16 @@ model::Command Guard::limited(const model::Command& command, double interval) co
 void Guard::accept(const model::Measurement& seen, controller::StepResult& result) noexcept {
   switch (result.answer) {
     case Answer::kStopOnRoad:
-      result.report.rung = Rung::kStopOnRoad;
+      report_.rung = Rung::kStopOnRoad;
       return;
     case Answer::kReturnToRoad:
-      result.report.rung = Rung::kReturnToRoad;
+      report_.rung = Rung::kReturnToRoad;
       return;
     case Answer::kDrive:
     case Answer::kNone:
       break;
   }
-  result.report.rung = Rung::kController;
+  report_.rung = Rung::kController;
   if (result.plan.size > 0) {
     fallback_.accept(result.plan);
   } else {
@@ -375,7 +374,7 @@ void Guard::fall_back(const model::Measurement& seen, controller::StepResult& re
   const Fallback::Answer answer = fallback_.command(act_time(seen, result.report), seen);
   result.answer = Answer::kNone;
   result.command = answer.command;
-  result.report.rung = answer.rung;
+  report_.rung = answer.rung;
   result.plan.size = 0;
   result.plan.reference_size = 0;
 }
@@ -384,10 +383,10 @@ void Guard::fall_back(const model::Measurement& seen, controller::StepResult& re
 bool Guard::drive_backup(const StopStart& start, controller::StepResult& result) noexcept {
   const Findings& findings = monitor_.findings();
   const bool is_open = findings.unmeasured || findings.frozen || findings.late;
-  if (!filter_.drive(road_, start, is_open, result.report)) return false;
+  if (!filter_.drive(road_, start, is_open, report_)) return false;
   result.answer = Answer::kNone;
   result.command = filter_.stop().points[0].command;
-  result.report.rung = Rung::kGuardStop;
+  report_.rung = Rung::kGuardStop;
   show_backup(start, result.plan);
   return true;
 }

@@ -44,7 +44,7 @@ namespace chicane::safety {
 /// With each answer that is sent there is a plan to standstill on the known road at hand, stop(). An answer
 /// that would leave none is not sent, and while the supervisor wants the car stopped, the stop is driven in
 /// its place. Without a known road the Fallback takes the stop's place. What was chosen, and why, is in the
-/// report: StepReport::rung, `reason` and `gated`, and nothing else sets these.
+/// its report().
 ///
 /// A person's command (Cycle::manual) is not checked: the person drives. Whatever is measured and whatever
 /// the controller does, what is sent is finite and inside the vehicle's range and rate limits. No allocation
@@ -76,6 +76,8 @@ class Guard {
   /// returns the command as it was asked for, before the gate.
   model::Command step(const model::Measurement& measured, Deadline deadline, const Cycle& cycle,
                       controller::StepResult& result) noexcept;
+  /// Of the last step().
+  [[nodiscard]] const GuardReport& report() const noexcept { return report_; }
   /// Everything learned is forgotten, the controller's part included: a new run begins.
   void reset() noexcept;
   /// The road that was told is another one: from now on the guard learns it from waypoints. Allocates.
@@ -104,8 +106,7 @@ class Guard {
   [[nodiscard]] bool filter(const StopStart& start, const Cycle& cycle,
                             controller::StepResult& result) noexcept;
   [[nodiscard]] Fit verify(const StopStart& start, const Cycle& cycle, const model::Command& command,
-                           const controller::Plan* plan, controller::StepReport& report,
-                           bool is_led = false) noexcept;
+                           const controller::Plan* plan, bool is_led = false) noexcept;
   [[nodiscard]] bool slow_down(const StopStart& start, const Cycle& cycle, const controller::Plan* plan,
                                controller::StepResult& result) noexcept;
   [[nodiscard]] model::Command limited(const model::Command& command, double interval) const noexcept;
@@ -150,7 +151,8 @@ class Guard {
   tracking::DirectionWatch direction_;  ///< by what is measured, plausible or not
   tracking::CommandHistory told_;       ///< what the actuators were told
   tracking::CommandHistory sent_;       ///< and what it makes of wheels and pedals
-  StopPlan stop_;                       ///< the stop at hand, for actuators that answer otherwise
+  GuardReport report_;
+  StopPlan stop_;  ///< the stop at hand, for actuators that answer otherwise
   PredictiveFilter filter_;
   model::PredictionModel model_;
   double s_ = 0.0;  ///< on the known road where the command acts [m]

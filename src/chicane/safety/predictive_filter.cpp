@@ -96,7 +96,7 @@ PredictiveFilter::Candidate PredictiveFilter::judge(const road::KnownRoad& road,
 }
 
 /// The candidate that was simulated last becomes the backup.
-void PredictiveFilter::store(const Candidate& candidate, controller::StepReport& report) noexcept {
+void PredictiveFilter::store(const Candidate& candidate, GuardReport& report) noexcept {
   std::swap(backup_, tried_);
   is_current_ = true;
   backup_fit_ = candidate.fit;
@@ -109,7 +109,7 @@ bool PredictiveFilter::may_be(int kind, const Goal& goal) noexcept {
   return kind < kStopCount ? goal.may_brake_now : goal.is_planned;
 }
 
-Fit PredictiveFilter::verify(const Request& request, controller::StepReport& report) noexcept {
+Fit PredictiveFilter::verify(const Request& request, GuardReport& report) noexcept {
   const road::KnownRoad& road = request.road;
   const double cycle = request.interval > 0.0 ? request.interval : kAssumedCycle;
   const double held = std::clamp(cycle, kShortestHold, kLongestHold);
@@ -211,7 +211,7 @@ bool PredictiveFilter::returns_to_lap(const road::KnownRoad& road, const StopSta
 /// One kind of backup, stored where it fits better than `best`: kStops at once, then, numbered on, kDriveOn
 /// along the controller's plan before the stop. Returns the better fit.
 Fit PredictiveFilter::stop_by(int kind, const road::KnownRoad& road, const StopStart& from, const Goal& goal,
-                              Fit best, controller::StepReport& report) noexcept {
+                              Fit best, GuardReport& report) noexcept {
   const auto i = static_cast<std::size_t>(kind);
   const StopCheck check = kind < kStopCount
                               ? planner_.plan(road, from, kStops[i], *tried_, goal.margin)
@@ -227,7 +227,7 @@ Fit PredictiveFilter::stop_by(int kind, const road::KnownRoad& road, const StopS
 /// The first of `count` kinds of stop that fits at all, beginning with the one that held last, going on with
 /// those that were tried longest ago.
 Fit PredictiveFilter::stop_in_turn(int count, const road::KnownRoad& road, const StopStart& from,
-                                   const Goal& goal, controller::StepReport& report) noexcept {
+                                   const Goal& goal, GuardReport& report) noexcept {
   for (int seen = 0; seen < kKinds && count > 0; ++seen) {
     if (may_be(next_kind_, goal)) {
       const Fit fit = stop_by(next_kind_, road, from, goal, Fit::kNone, report);
@@ -241,7 +241,7 @@ Fit PredictiveFilter::stop_in_turn(int count, const road::KnownRoad& road, const
 
 /// The first stop at once that fits open loop, else the first of any kind that fits.
 Fit PredictiveFilter::best_stop(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
-                                controller::StepReport& report) noexcept {
+                                GuardReport& report) noexcept {
   Fit best = Fit::kNone;
   for (int kind = 0; kind < kKinds; ++kind) {
     if (best == Fit::kOpen || (best != Fit::kNone && kind >= kStopCount)) break;
@@ -251,7 +251,7 @@ Fit PredictiveFilter::best_stop(const road::KnownRoad& road, const StopStart& fr
 }
 
 Fit PredictiveFilter::stop_searched(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
-                                    controller::StepReport& report) noexcept {
+                                    GuardReport& report) noexcept {
   const StopCheck check = search_.plan(road, from, goal.margin, planner_, *tried_);
   if (tried_->stop.size == 0) return Fit::kNone;
   const Candidate candidate = judge(road, from, check, goal);
@@ -260,7 +260,7 @@ Fit PredictiveFilter::stop_searched(const road::KnownRoad& road, const StopStart
 }
 
 bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start, bool is_open,
-                             controller::StepReport& report) noexcept {
+                             GuardReport& report) noexcept {
   // Open loop the estimate's model is less accurate than the backup's: nothing is planned anew.
   if (is_open && planner_.has_wheels() && shift_to(start.time)) return true;
 

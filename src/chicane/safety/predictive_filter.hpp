@@ -12,6 +12,7 @@
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/known_road.hpp"
 #include "chicane/road/reference_line.hpp"
+#include "chicane/safety/guard_report.hpp"
 #include "chicane/safety/stop_plan.hpp"
 #include "chicane/safety/stop_planner.hpp"
 #include "chicane/safety/stop_search.hpp"
@@ -77,12 +78,12 @@ class PredictiveFilter {
   };
   /// Verifies a backup from where `request` leads and stores it. Writes stop_edge and stop_distance. The
   /// stored backup stays when none is verified; it counts as verified where the command leads into its tube.
-  [[nodiscard]] Fit verify(const Request& request, controller::StepReport& report) noexcept;
+  [[nodiscard]] Fit verify(const Request& request, GuardReport& report) noexcept;
 
   /// The command of the backup at `start`, after it was verified from there or brought up to date. `is_open`:
   /// the car is not measured, `start` comes from the model. False: no backup is stored and none was found.
   [[nodiscard]] bool drive(const road::KnownRoad& road, const StopStart& start, bool is_open,
-                           controller::StepReport& report) noexcept;
+                           GuardReport& report) noexcept;
 
   /// The backup in store, from the moment at which the next command would act. Size 0: none.
   [[nodiscard]] const StopPlan& stop() const noexcept { return is_current_ ? backup_->stop : kNoStop; }
@@ -108,16 +109,16 @@ class PredictiveFilter {
   };
   [[nodiscard]] Candidate judge(const road::KnownRoad& road, const StopStart& from, const StopCheck& check,
                                 const Goal& goal) const noexcept;
-  void store(const Candidate& candidate, controller::StepReport& report) noexcept;
+  void store(const Candidate& candidate, GuardReport& report) noexcept;
   [[nodiscard]] Fit stop_by(int kind, const road::KnownRoad& road, const StopStart& from, const Goal& goal,
-                            Fit best, controller::StepReport& report) noexcept;
+                            Fit best, GuardReport& report) noexcept;
   [[nodiscard]] static bool may_be(int kind, const Goal& goal) noexcept;
   [[nodiscard]] Fit stop_in_turn(int count, const road::KnownRoad& road, const StopStart& from,
-                                 const Goal& goal, controller::StepReport& report) noexcept;
+                                 const Goal& goal, GuardReport& report) noexcept;
   [[nodiscard]] Fit best_stop(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
-                              controller::StepReport& report) noexcept;
+                              GuardReport& report) noexcept;
   [[nodiscard]] Fit stop_searched(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
-                                  controller::StepReport& report) noexcept;
+                                  GuardReport& report) noexcept;
   void read_plan(const Request& request, double longest) noexcept;
   [[nodiscard]] bool intends(const Request& request) noexcept;
   [[nodiscard]] bool is_in_tube(const road::KnownRoad& road, const StopStart& at) const noexcept;

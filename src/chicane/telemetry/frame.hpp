@@ -8,6 +8,7 @@
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
+#include "chicane/safety/guard_report.hpp"
 
 namespace chicane::telemetry {
 
@@ -32,6 +33,7 @@ struct Frame {
   bool has_truth = false;
   model::Measurement measurement;
   controller::StepResult result;  ///< its command is the one sent: after the gate
+  safety::GuardReport guard;      ///< of the cycle; as it is at first where another program drives
   model::Command asked;           ///< the controller's own command, before the gate
   model::Command applied;         ///< what acts on the plant at `time`, after the delay
   bool is_manual = false;         ///< a person drives; the controller's command is `asked`

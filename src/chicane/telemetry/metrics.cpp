@@ -102,9 +102,9 @@ void Metrics::add(const Frame& frame) noexcept {
   if (frame.step_time > deadline_) ++deadline_misses_;
   iterations_ += static_cast<std::uint64_t>(std::max(0, report.solve.iterations));
   if (!solver::usable(report.solve.status)) ++not_usable_;
-  if (report.rung != controller::Rung::kController) ++fallbacks_;
-  ++guard_reasons_[static_cast<std::size_t>(report.reason)];
-  if (report.gated) ++gated_;
+  if (frame.guard.rung != controller::Rung::kController) ++fallbacks_;
+  ++guard_reasons_[static_cast<std::size_t>(frame.guard.reason)];
+  if (frame.guard.gated) ++gated_;
   learned_ = report.learned;
 }
 

@@ -160,7 +160,7 @@ class UdacityEndpoint::Control {
     sighting.delay = delay_.value();
     if (request.kind == Request::Kind::kTelemetry) sighting.measured = request.measurement;
     const telemetry::Frame& frame = drive_.step(sighting);
-    if (frame.result.report.gated) ++interventions_;
+    if (frame.guard.gated) ++interventions_;
     static const safety::StopPlan kNone;
     answer_(request,
             protocol::encode_steer(frame.result.command, frame.result.plan, pose_at_receipt(frame),
