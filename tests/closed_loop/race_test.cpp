@@ -133,6 +133,17 @@ TEST(Race, NeedsNoTrack) {
 }
 
 // docs/racing_unknown.md, Table 2: nobody told it how much grip there is.
+// The lap that a race begins with, before any grip has shown, is for the least that it has to be told below.
+TEST(Race, BeginsForLessGripThanItMayBeDrivenWithUntold) {
+  const auto run = drive({{"preset", "race"},
+                          {"car", "road-car"},
+                          {"track", "lakeside"},
+                          {"laps", "1"},
+                          {"plant_options.friction_scale", "0.6"}});
+  EXPECT_TRUE(run.completed) << run.end_reason;
+  EXPECT_GT(run.total.min_edge_distance, 0.0);
+}
+
 TEST(Race, LearnsTheGripWithoutLeavingTheRoad) {
   const std::pair<const char*, double> grips[] = {{"0.8", 24.4}, {"1.1", 22.0}};
   for (const auto& [grip, lap_time] : grips) {
