@@ -22,6 +22,8 @@ constexpr double kStanding = 0.3;   // [m/s] slower than that the car counts as 
 constexpr double kSlow = 3.0;       // [m/s] below which its turning is corrected
 constexpr double kBandwidth = 1.0;  // [rad/s] of the feedback to the line
 constexpr double kDamping = 0.7;
+constexpr double kLapDamping =
+    1.0;  // the same to a planned lap, which is too near to the edge to overshoot it
 constexpr double kYawBandwidth = 6.0;      // [rad/s] of the feedback to the yaw rate
 constexpr double kPreview = 0.2;           // [s] the car answers the wheel about so late
 constexpr double kGripShare = 0.85;        // of the believed tyre force of the rear axle, used sideways
@@ -244,7 +246,8 @@ StopPlanner::Curvatures StopPlanner::curvatures_of(const road::KnownRoad& road,
   const double course = at.e + at.body.vy / v;
   const double beside =
       at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + kStopMargin);
-  return {.ahead = ahead, .wanted = ahead + back_to(beside, course, v)};
+  return {.ahead = ahead,
+          .wanted = ahead + back_to(beside, course, v, road.is_raced() ? kLapDamping : kDamping)};
 }
 
 double StopPlanner::slowing(const road::KnownRoad& road, const StopStart& at, const Braking& braking,
@@ -337,10 +340,10 @@ StopStart StopPlanner::advance(const road::KnownRoad& road, const StopStart& fro
 }
 
 /// The curvature that brings a car back that is `beside` its place [m] and has another `course` [rad].
-double StopPlanner::back_to(double beside, double course, double v) const noexcept {
+double StopPlanner::back_to(double beside, double course, double v, double damping) const noexcept {
   const double grip = kGripShare * friction_ * model_.load(v);
   const double most = kFeedbackShare * grip / ((1.0 - model_.vehicle().steer_helper) * v * v);
-  return std::clamp(-kBandwidth * kBandwidth * beside / (v * v) - 2.0 * kDamping * kBandwidth * course / v,
+  return std::clamp(-kBandwidth * kBandwidth * beside / (v * v) - 2.0 * damping * kBandwidth * course / v,
                     -most, most);
 }
 
@@ -356,7 +359,8 @@ model::Command StopPlanner::along(const StopCourse& before, std::size_t& place, 
   const double v = std::max(at.body.vx, 1.0);
   const double v_then = std::max(between(from.body.vx, to.body.vx), 1.0);
   const double course_then = between(from.e, to.e) + between(from.body.vy, to.body.vy) / v_then;
-  const double curvature = back_to(at.d - between(from.d, to.d), at.e + at.body.vy / v - course_then, v);
+  const double curvature =
+      back_to(at.d - between(from.d, to.d), at.e + at.body.vy / v - course_then, v, kDamping);
   const double r = between(from.body.r, to.body.r) * v / v_then + v * curvature;
   const double distance = between(before.stop.points[place].distance, before.stop.points[place + 1].distance);
   int point = static_cast<int>(place);

@@ -149,7 +149,7 @@ class StopPlanner {
                                 StopCourse& out, double least = kToTheEnd) const noexcept;
   [[nodiscard]] model::Command along(const StopCourse& before, std::size_t& place, double lap,
                                      const StopStart& at) const noexcept;
-  [[nodiscard]] double back_to(double beside, double course, double v) const noexcept;
+  [[nodiscard]] double back_to(double beside, double course, double v, double damping) const noexcept;
   static void move(const StopCar& car, const road::KnownRoad& road, StopStart& at,
                    const model::Command& command, const StopCar::Step& step, double steer_reach) noexcept;
   [[nodiscard]] double steer_reach(double dt) const noexcept;
