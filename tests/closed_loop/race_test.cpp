@@ -133,17 +133,6 @@ TEST(Race, NeedsNoTrack) {
 }
 
 // docs/racing_unknown.md, Table 2: nobody told it how much grip there is.
-// The lap that a race begins with, before any grip has shown, is for the least that it has to be told below.
-TEST(Race, BeginsForLessGripThanItMayBeDrivenWithUntold) {
-  const auto run = drive({{"preset", "race"},
-                          {"car", "road-car"},
-                          {"track", "lakeside"},
-                          {"laps", "1"},
-                          {"plant_options.friction_scale", "0.6"}});
-  EXPECT_TRUE(run.completed) << run.end_reason;
-  EXPECT_GT(run.total.min_edge_distance, 0.0);
-}
-
 // Noise of a good satellite receiver. A stop that overshot the planned lap was refused, and the one that was
 // driven instead took seconds of a lap: 88 steps in these laps (docs/safety_derivation.md, eq. 3).
 TEST(Race, IsRarelyStoppedBecauseOfNoise) {

@@ -53,7 +53,7 @@ struct TrackingMpcOptions {
   /// That the first lap is planned with, over the one that the vehicle's parameters tell.
   [[nodiscard]] double first_grip() const noexcept { return learns() ? kUnprovenGrip : 1.0; }
   [[nodiscard]] bool learns() const noexcept { return racing_line && learn_grip; }
-  static constexpr double kUnprovenGrip = 0.55;
+  static constexpr double kUnprovenGrip = 0.6;
   /// How waypoints become the road that is driven on.
   [[nodiscard]] road::RoadOptions road() const noexcept {
     return {.half_width = assumed_half_width,
