@@ -85,7 +85,7 @@ Result<lap_time::LimitAnswer> asked_limit(const Options& options, const run::Clo
       limit_of(loop.scenario(), loop.track(), {.wants_witness = false}, controls.wants_stop, wall_time);
   if (!found) return fail(found.error());
   lap_time::LimitAnswer limit = answer_of(loop.track(), *found);
-  if (!options.wants_causes) return limit;
+  if (!options.wants_causes || !limit.found) return limit;
   fmt::print(stderr, "driving again without each cause of the gap\n");
   auto laps = run::laps_without(loop.scenario(), [&] { return !controls.wants_stop.load(); });
   if (!laps) return fail(laps.error());

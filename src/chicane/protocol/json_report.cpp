@@ -106,7 +106,7 @@ std::string cause_line(std::string_view name, double limit, double planned, doub
   return text + cell(rest, 8) + "\n";
 }
 
-/// What each cause takes of the gap of `lap`, a line for each corner; empty where nothing is known of it.
+/// Table of the gap of `lap` by cause, a line for each corner; empty where nothing is known of it.
 std::string cause_table(const RunSummary& run, const LapSummary& lap) {
   if (run.without.empty() || !run.limit || lap.corner_times.size() != run.limit->corners.size()) return "";
   const auto at = [](const std::vector<double>& times, std::size_t corner) {

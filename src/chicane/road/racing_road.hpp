@@ -62,8 +62,8 @@ class RacingRoad {
   /// Beyond which slip has a price for who drives it.
   [[nodiscard]] const Slips& slips() const noexcept { return basis_.slips; }
 
-  /// Planned times of the corners of its track [s], as lap_time::corner_times(); empty where it was learned
-  /// or is open.
+  /// Planned times of the corners of its track [s], as lap_time::corner_times(); empty on an open
+  /// road and on one that was learned.
   [[nodiscard]] const std::vector<double>& corner_times() const noexcept { return basis_.corner_times; }
 
  private:
