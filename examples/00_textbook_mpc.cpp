@@ -2,6 +2,7 @@
 // The textbook: the controller of the five public write-ups in one file, to be read from top to bottom. No
 // car library stands behind it: the solver of this repository, Eigen for the fit, Boost for the socket.
 //
+//   cmake build/release -DCHICANE_BUILD_EXAMPLES=ON && cmake --build build/release --target 00_textbook_mpc
 //   00_textbook_mpc [port 4567] [mph 40] [sleep_ms 100]   the controller
 //   chicane simulate --track original-lake --laps 2       the car, in another terminal; or the original game
 //
@@ -88,7 +89,8 @@ Cubic polyfit(const std::vector<double>& x, const std::vector<double>& y) {
 
 // ---- 5 The optimal control problem: what the write-ups give to Ipopt as FG_eval.
 struct Textbook {
-  // The six states of the write-ups, and two of ours: the inputs of the step before, whose changes cost.
+  // Six states as in the write-ups: position, heading, speed, cte = distance to the line [m], epsi = heading
+  // minus the line's [rad]. Two of ours: the inputs of the step before, because their changes cost.
   static constexpr int kNx = 8, kNu = 2;
   static constexpr int kNr = 7, kNe = 3, kNc = 0;  // costs of a step and of the end, soft constraints
   Cubic f;
@@ -97,7 +99,7 @@ struct Textbook {
   // The model. v is telemetry's number, in mph, used as if it were m/s: no write-up names a conversion, and
   // these weights need it so (exercise 5). The plan is 2.24 times too long for its times, and steers less.
   // psi' has a minus because delta is positive to the right. The other four write psi + v / Lf * delta * dt,
-  // and change the sign of the steering that they send.
+  // for which the sign of the steering that is sent has to change.
   auto dynamics(auto, const auto& state, const auto& input) const {
     const auto& [x, y, psi, v, cte, epsi, delta_before, a_before] = state;
     const auto& [delta, a] = input;
@@ -106,13 +108,13 @@ struct Textbook {
         x + v * cos(psi) * kDt,                 // x'    = x + v cos(psi) dt
         y + v * sin(psi) * kDt,                 // y'    = y + v sin(psi) dt
         psi - v / kLf * delta * kDt,            // psi'  = psi - v / Lf * delta * dt
-        v + a * kDt,                            // v'    = v + a dt
+        v + a * kDt,                            // v'    = v + a dt   (weighted prints v a dt)
         f.at(x) - y + v * sin(epsi) * kDt,      // cte'  = f(x) - y + v sin(epsi) dt
         psi - psi_des - v / kLf * delta * kDt,  // epsi' = psi - psi_des - v / Lf * delta * dt
         delta, a);
   }
 
-  // Seven costs: the sum over the plan of weight * error^2. The solver squares the residuals given here.
+  // Seven costs: the sum over the plan of weight * error^2. The solver squares the residuals and halves J.
   static constexpr double kCte = 200, kEpsi = 200, kV = 0.1, kDelta = 1, kA = 1, kDdelta = 10, kDa = 1;
   auto residual(auto k, const auto& state, const auto& input) const {
     const auto& [x, y, psi, v, cte, epsi, delta_before, a_before] = state;
@@ -185,12 +187,12 @@ int main(int argc, char** argv) {
 // most 2.3 m from the middle (`simulate --json`: max_abs_lateral_error_m), no tyre off. textbook_mpc.py
 // drives the same laps and needs no build. What we saw:
 // 1 N       kN = 7: 47.9 s. 20: 44.0 s. 5: 79 mph in the mean, off the road.
-// 2 dt      kDt = 0.2: cuts bends by 7.7 m, off. 0.05: weaves, off; with kN = 20, too.
-// 3 weights kV = 0.02: 60.9 s, 1.7 m. 1: 42.5 s, 2.5 m. At 40 mph kV = 0.01: stops in a bend for good.
+// 2 dt      kDt = 0.2: 7.7 m from the middle, off. 0.05: off; with kN = 20, too.
+// 3 weights kV = 0.02: 60.9 s, 1.7 m. 1: 42.5 s, 2.5 m. At 40 mph kV = 0.01: off, then stands for good.
 //           kEpsi = 20000: 63.6 s, 0.9 m. kDdelta = 10000: 45.9 s, 2.2 m.
-// 4 latency kLatency = 0: weaves, off. 0.05: clean. 0.2: weaves, off. Third argument 200: weaves, off; with
-//           kLatency = 0.2, too, for the car turns later than the model (docs/latency.md).
-// 5 units   car.speed and v_ref of the solver in m/s: weaves, off. With kDdelta = 30000: 53.1 s, 0.8 m.
+// 4 latency kLatency = 0: weaves, off. 0.05: clean. 0.2: weaves, off. Third argument 200: off; with
+//           kLatency = 0.2, too, because the car turns later than the model (docs/latency.md).
+// 5 units   car.speed and v_ref of the solver in m/s: off. With kDdelta = 30000, too: 53.1 s, 0.8 m.
 // 6 sign    cte' = f(x) - y - v sin(epsi) dt, the sign that fits cte = f(x) - y: 47.7 s, 1.3 m.
-// 7 states  measured-latency's recursion, cte' = cte - v sin(epsi) dt, epsi' = epsi - v / Lf * delta * dt:
-//           47.9 s, 2.5 m. With + in the first one: off at once.
+// 7 states  measured-latency's recursion with our signs, cte' = cte - v sin(epsi) dt and
+//           epsi' = epsi - v / Lf * delta * dt: 47.9 s, 2.5 m. With cte + v sin(epsi) dt: off at once.
