@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 LETTERS = {"measured-latency": "A", "fast-short-step": "B", "sixty-mph": "C", "weighted": "D", "delay-in-model": "E"}
 MPH = 0.44704
-ORDER = ("true", "works", "depends", "partly", "false", "not so")
+ORDER = ("true", "works", "depends", "partly", "not reproduced", "false", "not so")
 
 
 def laps(runs, preset):
@@ -38,8 +38,8 @@ def verdicts(letter):
     for line in (ROOT / "docs/claims.md").read_text(encoding="utf-8").splitlines():
         row = re.match(rf"\| ({letter}\d+) \| .*? \| ([^|]*) \|", line)
         if row:
-            word = row[2].strip().strip("*")
-            found.setdefault("depends" if word.startswith("depends") else word, []).append(row[1])
+            word = next(word for word in ORDER if row[2].strip().strip("*").startswith(word))
+            found.setdefault(word, []).append(row[1])
     return found
 
 

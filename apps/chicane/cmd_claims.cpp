@@ -91,7 +91,8 @@ Result<std::vector<Claim>> read_claims(const std::string& folder, const std::vec
   for (const std::string& file : files) {
     const Result<std::string> text = protocol::read_file(file);
     if (!text) return fail(text.error());
-    Result<std::vector<Claim>> read = sweep::parse_claims(*text, file);
+    const std::string quotations = protocol::read_file(sweep::quotations_file(file)).value_or("");
+    Result<std::vector<Claim>> read = sweep::parse_claims(*text, file, quotations);
     if (!read) return fail(read.error());
     for (Claim& claim : *read) {
       const bool is_wanted =
@@ -171,11 +172,12 @@ std::string cell_of(const Marks& marks) {
   return cell;
 }
 
-/// true, false, or on what it depends.
-std::string verdict_of(const std::string& lakeside, const std::string& original) {
+/// true, false, not reproduced with what is ours, or on what it depends.
+std::string verdict_of(const Claim& claim, const std::string& lakeside, const std::string& original) {
   const std::string all = lakeside + original;
   if (all.find("no") == std::string::npos) return "**true**";
-  if (all.find("yes") == std::string::npos) return "**false**";
+  if (all.find("yes") == std::string::npos)
+    return claim.ours.empty() ? "**false**" : fmt::format("**not reproduced** {}", claim.ours);
   if (lakeside == original) return "depends on the reading of speed";
   const auto is_even = [](const std::string& cell) {
     return cell.find("yes") == std::string::npos || cell.find("no") == std::string::npos;
@@ -230,6 +232,11 @@ std::string older_cell(const std::string& page, const std::string& id, int colum
   return end == std::string::npos || end < at + 3 ? "" : page.substr(at + 2, end - at - 3);
 }
 
+/// The statement, and the write-up's own words where they were found.
+std::string statement_of(const Claim& claim) {
+  return claim.quotes.empty() ? claim.says : fmt::format("{}: “{}”", claim.says, claim.quotes);
+}
+
 /// The rows of the page: id, statement, verdict, a cell for each lake, figures. The verdict is that of the
 /// lakes that ship.
 std::string rows_of(const std::vector<Claim>& claims, const Trials& trials, const std::string& older) {
@@ -245,15 +252,16 @@ std::string rows_of(const std::vector<Claim>& claims, const Trials& trials, cons
           group, all[0].name, all[1].name, all[2].name);
     }
     if (!claim.is_tried()) {
-      text += fmt::format("| {} | {} | {} | | | | {} |\n", claim.id, claim.says, claim.found, claim.see);
+      text +=
+          fmt::format("| {} | {} | {} | | | | {} |\n", claim.id, statement_of(claim), claim.found, claim.see);
       continue;
     }
     std::array<std::string, kLakes> cells;
     for (std::size_t l = 0; l < kLakes; ++l)
       cells[l] = all[l].is_there ? cell_of(marks_of(claim, trials, all[l]))
                                  : older_cell(older, claim.id, 3 + static_cast<int>(l));
-    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", claim.id, claim.says,
-                        verdict_of(cells[0], cells[1]), cells[0], cells[1], cells[2],
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", claim.id, statement_of(claim),
+                        verdict_of(claim, cells[0], cells[1]), cells[0], cells[1], cells[2],
                         figures_of(claim, trials, all[0], own_reading(claim)));
   }
   return text;
@@ -263,7 +271,7 @@ std::string rows_of(const std::vector<Claim>& claims, const Trials& trials, cons
 std::string details_of(const std::vector<Claim>& claims, const Trials& trials) {
   std::string text;
   for (const Claim& claim : claims) {
-    text += fmt::format("{}  {}\n", claim.id, claim.says);
+    text += fmt::format("{}  {}\n", claim.id, statement_of(claim));
     if (!claim.is_tried()) {
       text += fmt::format("    {}: {}\n\n", claim.found, claim.see);
       continue;
@@ -299,9 +307,8 @@ std::string line_with(const std::string& page, const std::string& start) {
   return row == std::string::npos ? "no such row" : page.substr(row + 1, page.find('\n', row + 1) - row - 1);
 }
 
-/// `count`: of the claims that were tried again.
 ExitCode compare(const std::string& file, const std::string& older, const std::string& rows,
-                 std::size_t count) {
+                 const std::vector<Claim>& claims) {
   int different = 0;
   for (std::size_t at = 0; at < rows.size();) {
     const std::size_t end = rows.find('\n', at);
@@ -313,7 +320,10 @@ ExitCode compare(const std::string& file, const std::string& older, const std::s
     }
     at = end + 1;
   }
-  if (different == 0) fmt::print("{}: {} statements as the page has them\n", file, count);
+  const auto quoted =
+      std::count_if(claims.begin(), claims.end(), [](const Claim& c) { return !c.quotes.empty(); });
+  if (different == 0)
+    fmt::print("{}: {} statements as the page has them, {} with a quotation\n", file, claims.size(), quoted);
   return different == 0 ? kSuccess : kRunFailed;
 }
 
@@ -350,7 +360,7 @@ ExitCode try_claims(const Options& options) {
   }
   const std::string older = protocol::read_file(page).value_or("");
   const std::string rows = rows_of(*claims, trials, older);
-  if (options.claims.is_check) return compare(page, older, rows, claims->size());
+  if (options.claims.is_check) return compare(page, older, rows, *claims);
   std::ofstream out(page, std::ios::trunc);
   out << page_of(older, rows);
   out.close();

@@ -59,6 +59,15 @@ class ClaimsOnAClone(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(self.row(), row)
 
+    def test_a_quotation_that_its_write_up_does_not_have_is_a_mistake(self):
+        (self.clone / "claims").unlink()
+        shutil.copytree(ROOT / "claims", self.clone / "claims")
+        file = self.clone / "claims/e-delay-in-model.yaml"
+        file.write_text(file.read_text(encoding="utf-8").replace("the \"lake\" track", "the \"sea\" track"), encoding="utf-8")
+        done = self.claims("--page", "claims.md", "--check")
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, r'claims/e-delay-in-model.yaml:\d+: quotes: got the "sea" track, expected words of a line of')
+
     def test_details_have_the_command_of_each_run(self):
         done = self.claims()
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -110,14 +110,31 @@ TEST(Claim, SaysWhatIsWrongWithAFile) {
               HasSubstr("got x, expected a column"));
 }
 
+TEST(Claim, QuotesFewWordsThatItsWriteUpHas) {
+  const auto read = [](const std::string& quotes) {
+    return parse_claims("claims:\n  - {id: A, says: b, found: works, quotes: " + quotes + "}",
+                        "claims/c.yaml", "# from a page: of ours\nkeeps the car in the lane\nat 60 mph\n");
+  };
+  ASSERT_TRUE(read("the car in the lane")) << read("the car in the lane").error().message;
+  EXPECT_EQ(read("the car in the lane")->front().quotes, "the car in the lane");
+  const auto fault = [&](const std::string& quotes) { return read(quotes).error().message; };
+  EXPECT_EQ(fault("the cars"),
+            "claims/c.yaml:2: quotes: got the cars, expected words of a line of claims/quotations/c.txt");
+  EXPECT_THAT(fault("of ours"), HasSubstr("got of ours, expected words of a line"));
+  EXPECT_EQ(fault("a b c d e f g h i j k"), "claims/c.yaml:2: quotes: got 11 words, expected 1 to 10");
+}
+
 TEST(Claim, AllStatementsAreThere) {
   std::set<std::string> ids;
-  int tried = 0;
+  int tried = 0, quoted = 0;
   for (const auto& entry : std::filesystem::directory_iterator(CHICANE_SOURCE_DIR "/claims")) {
-    const auto claims =
-        parse_claims(protocol::read_file(entry.path().string()).value(), entry.path().string());
+    const std::string file = entry.path().string();
+    if (entry.is_directory()) continue;
+    const auto claims = parse_claims(protocol::read_file(file).value(), file,
+                                     protocol::read_file(quotations_file(file)).value_or(""));
     ASSERT_TRUE(claims) << claims.error().message;
     for (const Claim& claim : *claims) {
+      if (!claim.quotes.empty()) ++quoted;
       EXPECT_TRUE(ids.insert(claim.id).second) << claim.id;
       const bool has_command = claim.see.find("`ctest --preset release -R ") != std::string::npos ||
                                claim.see.starts_with("`chicane") || claim.see.starts_with("`./run.sh");
@@ -126,8 +143,9 @@ TEST(Claim, AllStatementsAreThere) {
       if (claim.is_tried()) ++tried;
     }
   }
-  EXPECT_EQ(ids.size(), 85U);
+  EXPECT_EQ(ids.size(), 88U);
   EXPECT_GE(tried, 49);
+  EXPECT_EQ(quoted, 20) << "the others are paraphrases: the write-ups were not found";
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -84,17 +86,23 @@ std::optional<Condition> condition_in(const std::string& text, const std::vector
 
 class ClaimReader {
  public:
-  explicit ClaimReader(const std::string& file) : file_{file} {}
+  ClaimReader(const std::string& file, std::string_view quotations) : file_{file} {
+    std::istringstream lines{std::string(quotations)};
+    for (std::string line; std::getline(lines, line);)
+      if (!line.starts_with('#')) quotations_ += line + '\n';
+  }
 
   Result<std::vector<Claim>> read(const YamlNode& root) {
     if (!root.is_map()) fault(1, "file", "expected a map with settings and claims");
-    Settings shared;
-    for (const YamlEntry& entry : root.entries())
-      if (entry.key.text == "settings") shared = settings_of(entry.value, "");
+    Claim shared;
     for (const YamlEntry& entry : root.entries()) {
-      if (entry.key.text == "settings" || entry.key.text == "about") continue;
+      if (entry.key.text == "settings") shared.settings = settings_of(entry.value, "");
+      if (entry.key.text == "ours") shared.ours = entry.value.text;
+    }
+    for (const YamlEntry& entry : root.entries()) {
+      if (entry.key.text == "settings" || entry.key.text == "ours") continue;
       if (entry.key.text != "claims" || !entry.value.is_list()) {
-        fault(entry.key.line, printable(entry.key.text), "expected settings, about, or a list of claims");
+        fault(entry.key.line, printable(entry.key.text), "expected settings, ours, or a list of claims");
         continue;
       }
       for (const YamlNode* node : entry.value.children) read_claim(*node, shared);
@@ -152,18 +160,31 @@ class ClaimReader {
     return points;
   }
 
-  void read_claim(const YamlNode& node, const Settings& shared) {
+  void check_quotation(int line, const std::string& quotation) {
+    std::istringstream words(quotation);
+    const auto count = std::distance(std::istream_iterator<std::string>(words), {});
+    if (count == 0 || count > static_cast<std::ptrdiff_t>(kMostQuotedWords))
+      fault(line, "quotes", fmt::format("got {} words, expected 1 to {}", count, kMostQuotedWords));
+    else if (quotations_.find(quotation) == std::string::npos)
+      fault(line, "quotes",
+            fmt::format("got {}, expected words of a line of {}", printable(quotation),
+                        quotations_file(file_)));
+  }
+
+  void read_claim(const YamlNode& node, const Claim& shared) {
     if (!node.is_map()) return fault(node.line, "claims", "expected a map with id and says");
-    Claim claim{.settings = shared};
+    Claim claim = shared;
     std::vector<const YamlNode*> conditions;
     for (const YamlEntry& entry : node.entries()) {
       const std::string& key = entry.key.text;
       const YamlNode& value = entry.value;
-      if (key == "id" || key == "says" || key == "found" || key == "see") {
-        (key == "id"      ? claim.id
-         : key == "says"  ? claim.says
-         : key == "found" ? claim.found
-                          : claim.see) = value.text;
+      if (key == "quotes") check_quotation(value.line, value.text);
+      if (key == "id" || key == "says" || key == "quotes" || key == "found" || key == "see") {
+        (key == "id"       ? claim.id
+         : key == "says"   ? claim.says
+         : key == "quotes" ? claim.quotes
+         : key == "found"  ? claim.found
+                           : claim.see) = value.text;
       } else if (key == "settings") {
         for (auto& setting : settings_of(value, "")) claim.settings.push_back(std::move(setting));
       } else if (key == "cases" && value.is_map()) {
@@ -183,7 +204,8 @@ class ClaimReader {
         }
       } else {
         fault(entry.key.line, printable(key),
-              "expected id, says, settings, cases, grid (behind cases), true_when, shows, found or see");
+              "expected id, says, quotes, settings, cases, grid (behind cases), true_when, shows, found or "
+              "see");
       }
     }
     for (const YamlNode* each : conditions) {
@@ -202,6 +224,7 @@ class ClaimReader {
   }
 
   const std::string& file_;
+  std::string quotations_;  // without its comments
   std::vector<Claim> claims_;
   std::set<std::string> ids_;
   std::vector<std::string> faults_;
@@ -251,9 +274,15 @@ bool holds(const Claim& claim, const CaseResults& results) {
   });
 }
 
-Result<std::vector<Claim>> parse_claims(std::string_view text, const std::string& file) {
+Result<std::vector<Claim>> parse_claims(std::string_view text, const std::string& file,
+                                        std::string_view quotations) {
   const Result<protocol::YamlTree> tree = protocol::parse_yaml(text, file);
-  return tree ? ClaimReader(file).read(*tree->root) : fail(tree.error());
+  return tree ? ClaimReader(file, quotations).read(*tree->root) : fail(tree.error());
+}
+
+std::string quotations_file(const std::string& file) {
+  const std::filesystem::path path(file);
+  return (path.parent_path() / "quotations" / path.stem()).string() + ".txt";
 }
 
 }  // namespace chicane::sweep

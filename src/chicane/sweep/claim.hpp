@@ -35,9 +35,11 @@ struct Condition {
 };
 
 struct Claim {
-  std::string id{};     ///< "B7"
-  std::string says{};   ///< paraphrased
-  Settings settings{};  ///< of all cases, the preset among them
+  std::string id{};      ///< "B7"
+  std::string says{};    ///< paraphrased
+  std::string quotes{};  ///< the write-up's own words, at most kMostQuotedWords; empty: they were not found
+  std::string ours{};    ///< what the preset has of ours, for the verdict: "with our weights"
+  Settings settings{};   ///< of all cases, the preset among them
   std::vector<Case> cases{};
   std::size_t grid_size = 0;  ///< the last so many cases are points of a grid, with names made of its values
   std::vector<Condition> conditions{};  ///< true when all hold
@@ -49,6 +51,8 @@ struct Claim {
   [[nodiscard]] bool is_tried() const noexcept { return !cases.empty(); }
 };
 
+constexpr std::size_t kMostQuotedWords = 10;
+
 /// The lines of a claim's cases in one world (sweep.hpp), by their names.
 using CaseResults = std::map<std::string, std::string>;
 
@@ -58,10 +62,14 @@ using CaseResults = std::map<std::string, std::string>;
 /// true is 1, and NaN where there is none.
 [[nodiscard]] double number_of(std::string_view line, std::string_view column);
 
-/// Reads the claims of one file: `settings`, and a list `claims` of {id, says, settings, cases: {name:
-/// {settings}}, grid: {key: [values]}, true_when: [conditions], shows: [columns]} or {id, says, found, see}.
-/// The points of the grid are cases, too: a value of each key, the last key turning fastest. kParse with all
-/// faults and their lines.
-[[nodiscard]] Result<std::vector<Claim>> parse_claims(std::string_view text, const std::string& file);
+/// Reads the claims of one file: `settings`, `ours`, and a list `claims` of {id, says, quotes, settings,
+/// cases: {name: {settings}}, grid: {key: [values]}, true_when: [conditions], shows: [columns]} or {id, says,
+/// quotes, found, see}. The points of the grid are cases, too: a value of each key, the last key turning
+/// fastest. `quotations` is the text of quotations_file(file): fragments of the write-up, one a line, and
+/// comments with #. kParse with all faults and their lines.
+[[nodiscard]] Result<std::vector<Claim>> parse_claims(std::string_view text, const std::string& file,
+                                                      std::string_view quotations = "");
+/// "claims/quotations/NAME.txt" of "claims/NAME.yaml".
+[[nodiscard]] std::string quotations_file(const std::string& file);
 
 }  // namespace chicane::sweep
