@@ -94,6 +94,19 @@ TEST(Presets, MeasuredLatencyWorksToFifty) {
   EXPECT_GE(top_mph(run), 49.0);
 }
 
+/// On the lake that it was written for; on lakeside it leaves the road (docs/claims.md, A6).
+TEST(Presets, MeasuredLatencyLapsTheOriginalLakeWithBothErrorsAsWritten) {
+  for (const char* speed_mps : {"13.4112", "17.8816", "22.352"}) {  // 30, 40, 50 mph
+    SCOPED_TRACE(speed_mps);
+    expect_clean_laps(drive({{"guard.mode", "off"},
+                             {"preset", "measured-latency"},
+                             {"track", "original-lake"},
+                             {"laps", "3"},
+                             {"cubic_mpc.speed_reference_mps", speed_mps},
+                             {"cubic_mpc.lateral_error_integrated", "true"}}));
+  }
+}
+
 TEST(Presets, FastShortStepTakesItsSpeedFromTheWeightOnAcceleration) {
   const auto slow =
       drive({{"guard.mode", "off"}, {"preset", "fast-short-step"}, {"track", "lakeside"}, {"laps", "2"}});

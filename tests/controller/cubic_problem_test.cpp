@@ -91,7 +91,7 @@ TEST(CubicProblem, PaysTheDescribedSum) {
   EXPECT_NEAR(half_square(p.terminal_residual(kState)), 200.0 * square(0.7) + errors, 1e-10);
 }
 
-/// Every handling that changes the model, both signs, metres and miles, the errors of the first write-up and
+/// Every handling that changes the model, both signs, metres and miles, the errors of `measured-latency` and
 /// of the others.
 std::vector<CubicProblem> all_variants(Random& random) {
   std::vector<CubicProblem> problems;

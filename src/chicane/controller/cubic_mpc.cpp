@@ -243,19 +243,19 @@ constexpr std::array kOptions{
                                         "Model written with the simulator's steering sign."),
     option<&C::lateral_error_to_left>(
         "lateral_error_to_left",
-        "cte is y − f(x), as write-up 1 has it; in f(x) − y its step has v sin eψ with the other sign."),
+        "Write-up of `measured-latency`: cte is y − f(x), so that + v sin eψ dt has the right sign."),
     option<&C::heading_error_integrated>(
         "heading_error_integrated",
-        "Take the heading error of the beginning plus what the car turns, as write-up 1 has it."),
-    option<&C::lateral_error_integrated>("lateral_error_integrated",
-                                         "cte is that of the beginning plus the sum of v sin eψ dt, as "
-                                         "write-up 1 has it: the bend ahead is not "
-                                         "seen."),
+        "Write-up of `measured-latency`: eψ⁺ = eψ + v δ dt / L_f from step to step."),
+    option<&C::lateral_error_integrated>(
+        "lateral_error_integrated",
+        "Write-up of `measured-latency`: cte⁺ = cte + v sin eψ dt from step to "
+        "step. The plan does not see the bend ahead."),
     option<&C::line_order>("line_order", unit::kNone, 1, 3,
                            "Order of the polynomial that is fitted through the waypoints."),
     option<&C::latency_acceleration_term>(
         "latency_acceleration_term",
-        "Give the measured roll-forward the term a tan δ τ² / (2 L_f) of write-up 1."),
+        "Give the measured roll-forward the term a tan δ τ² / (2 L_f) of `measured-latency`'s write-up."),
     option<&C::speed_in_mph>("speed_in_mph", "Let the model take miles per hour for metres per second."),
     option<&C::roll_forward_in_mph>("roll_forward_in_mph",
                                     "Let the roll-forward over the latency do so, too."),

@@ -38,11 +38,11 @@ struct CubicMpcOptions {
   bool speed_in_mph = false;
   /// So does the roll-forward: the car is believed 2.24 times as far along, as if the latency were longer.
   bool roll_forward_in_mph = false;
-  /// Equation 5 with cte = y − f(x) (docs/problem.md).
+  /// Write-up of `measured-latency`: equation 5 with cte = y − f(x) (docs/problem.md).
   bool lateral_error_to_left = false;
-  /// Equation 6 as eψ⁺ = eψ + v δ dt / L_f from step to step: the bend ahead is seen by cte alone.
+  /// The same write-up: equation 6 as eψ⁺ = eψ + v δ dt / L_f. The bend ahead is seen by cte alone.
   bool heading_error_integrated = false;
-  /// Equation 5 as cte⁺ = cte + v sin eψ dt from step to step: the distance from the line's tangent at the
+  /// The same write-up: equation 5 as cte⁺ = cte + v sin eψ dt, the distance from the line's tangent at the
   /// beginning. Needs heading_error_integrated.
   bool lateral_error_integrated = false;
   int line_order = 3;  ///< of the polynomial through the waypoints, 1 to 3

@@ -95,13 +95,13 @@ struct CubicProblem {
   double turn_per_metre;  ///< ±1 / L_f: + for steering positive left, − for the simulator's own sign [1/m]
   double steer_limit;     ///< [rad]
   double speed_unit;      ///< the model's v for 1 m/s
-  double speed_reference;            ///< as the model's v
-  double error_sign;                 ///< of the last term of equation 5
-  double heading_reach;              ///< of equation 6 (DescribedModel)
-  bool is_lateral_recursive;         ///< equation 5 as cte⁺ = cte + v sin eψ dt; pre: heading_reach is 0
-  bool acts_late;                    ///< the inputs of a stage act in the next one
-  std::array<double, kNr> root;      ///< √(2 weight) of: cte, eψ, v, δ, a, Δδ, Δa, v δ
-  Cubic line;                        ///< reference, renewed in every step
+  double speed_reference;        ///< as the model's v
+  double error_sign;             ///< DescribedModel; −1 in the write-up of `measured-latency`
+  double heading_reach;          ///< DescribedModel; 0 in the write-up of `measured-latency`
+  bool is_lateral_recursive;     ///< the same write-up's cte⁺ = cte + v sin eψ dt; pre: heading_reach is 0
+  bool acts_late;                ///< the inputs of a stage act in the next one
+  std::array<double, kNr> root;  ///< √(2 weight) of: cte, eψ, v, δ, a, Δδ, Δa, v δ
+  Cubic line;                    ///< reference, renewed in every step
   double first_lateral_error = 0.0;  ///< cte where the horizon begins, renewed in every step [m]
 
   /// Renews the line, cte at its beginning, and, in the recursive form, the line's tangent there.

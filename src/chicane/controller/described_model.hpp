@@ -13,22 +13,23 @@ namespace chicane::controller {
 /// the stage before; input δ [rad], a [m/s²]. The type of the states is the solver's: numbers, jets, or packs
 /// of either. A Line has at(x) [m] and slope(x).
 ///
-/// Write-up 1 has both errors in recursive form, cte⁺ = cte + v sin eψ dt and eψ⁺ = eψ + v δ dt / L_f. Since
-/// ψ_0 = 0, eψ_k = eψ_0 + ψ_k, and by equations 1 and 2 the sum is exact: cte_k = cte_0 + cos eψ_0 y_k +
-/// sin eψ_0 x_k, the distance from the line's tangent at the beginning. So the recursion needs no state.
+/// The write-up of `measured-latency` has both errors in recursive form, cte⁺ = cte + v sin eψ dt and eψ⁺ =
+/// eψ + v δ dt / L_f. Since ψ_0 = 0, eψ_k = eψ_0 + ψ_k, and by equations 1 and 2 the sum is exact: cte_k =
+/// cte_0 + cos eψ_0 y_k + sin eψ_0 x_k, the distance from the line's tangent at the beginning. So the
+/// recursion needs no state.
 template <class Line>
 struct DescribedModel {
   const Line& line;
   double dt;               ///< [s]
   double turn_per_length;  ///< ± dt / L_f: + for steering positive left [s/m]
-  /// Of the last term of equation 5: + where cte is f(x) − y, − where it is y − f(x), but for the sign of
-  /// cte.
+  /// Sign of the last term of equation 5. −1: write-up of `measured-latency`, whose cte is y − f(x). 1: the
+  /// other four, with f(x) − y.
   double error_sign = 1.0;
-  /// Equation 6: 1 where the desired yaw is the line's beside the car; 0 where it is the line's at the
-  /// beginning, so that from eψ = ψ − arctan f′(0) on eψ⁺ = eψ ± v δ dt / L_f.
+  /// Equation 6: 1 where the desired yaw is the line's beside the car. 0, write-up of `measured-latency`: it
+  /// is the line's at the beginning, so that from eψ = ψ − arctan f′(0) on eψ⁺ = eψ ± v δ dt / L_f.
   double heading_reach = 1.0;
-  /// Equation 5: where cte is read from the line, f(x) − y, these are 1 and (0, −1). In its recursive form
-  /// (RecursiveError) it is a linear function of the position: reach 0, and the slopes by x and y.
+  /// Equation 5: where cte is read from the line, f(x) − y, these are 1 and (0, −1). In the recursive form of
+  /// `measured-latency`'s write-up it is a linear function of the position: 0, and the slopes by x and y.
   double lateral_reach = 1.0;
   double lateral_by_x = 0.0, lateral_by_y = -1.0;
 
