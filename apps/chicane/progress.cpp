@@ -52,6 +52,7 @@ Progress::~Progress() {
 }
 
 void Progress::show(const telemetry::Frame& frame) {
+  for (const std::string& notice : notices_.look_at(frame)) say(notice);
   if (is_terminal_) {
     const Clock::time_point now = Clock::now();
     if (now < next_) return;

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "chicane/telemetry/frame.hpp"
+#include "run_notices.hpp"
 
 namespace chicane::apps {
 
@@ -14,7 +15,7 @@ namespace chicane::apps {
 [[nodiscard]] std::string line_of(const telemetry::CompletedLap& lap);
 
 /// Tells on stderr how a run goes: on a terminal one line that renews itself ten times a second, otherwise a
-/// line every ten seconds of the run.
+/// line every ten seconds of the run. Notices (run_notices.hpp) are lines of their own, at once.
 class Progress {
  public:
   Progress();
@@ -33,6 +34,7 @@ class Progress {
   std::atomic<bool> has_line_{false};  ///< the cursor stands behind a line that will renew itself
   Clock::time_point next_{};
   double next_run_time_ = 10.0;
+  RunNotices notices_;
 };
 
 }  // namespace chicane::apps

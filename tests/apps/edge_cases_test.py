@@ -292,6 +292,19 @@ class Wire(unittest.TestCase):
             car.drive(simulator, lambda: car.speed > 10.0 or car.time >= 25.0)
             self.assertGreater(car.speed, 10.0, server.said())
 
+    def test_a_car_that_stands_is_told_once(self):
+        with Serving() as server, WebSocket(server.port) as simulator:
+            end = time.monotonic() + 3.0
+            while time.monotonic() < end:
+                simulator.send(telemetry(speed=0.0))
+                simulator.receive()
+                time.sleep(0.04)
+            server.wait_for("the car has stood for 2 s: ")
+            self.assertEqual(server.said().count("the car has stood"), 1)
+
+    def test_a_car_that_another_controller_lets_stand_is_told(self):
+        self.assertIn("2.0 s: the car has stood for 2 s: the controller gives no throttle", self.simulate("rest", 3)[2])
+
     def test_rounding_at_borders(self):
         with Serving() as server:
             self.assertGreater(self.answer(server.port, speed=-1e-7, thr=1.0000001)["plan"], 0)

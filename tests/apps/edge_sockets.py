@@ -141,7 +141,7 @@ class Bicycle:
 class Controller:
     """A controller's end that answers wrongly, in one of several ways."""
 
-    ANSWERS = {"degrees": "12.5", "nan": "NaN"}
+    ANSWERS = {"degrees": ("12.5", "0.1"), "nan": ("NaN", "0.1"), "rest": ("0", "0")}
 
     def __init__(self, mode, port=0):
         self.mode = mode
@@ -170,8 +170,9 @@ class Controller:
                                f"Sec-WebSocket-Accept: {accept}\r\n\r\n".encode())
             while True:
                 if stream.message().startswith('42["telemetry"'):
+                    steer, throttle = self.ANSWERS[self.mode]
                     connection.sendall(frame('42["steer",{"mpc_x":[],"mpc_y":[],"next_x":[],"next_y":[],"steering_angle":'
-                                             + self.ANSWERS[self.mode] + ',"throttle":0.1}]'))
+                                             + steer + ',"throttle":' + throttle + '}]'))
         except (EOFError, OSError):
             connection.close()
 

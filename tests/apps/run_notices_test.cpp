@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "run_notices.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "apps/program_outcome.hpp"
+
+namespace chicane::apps {
+namespace {
+
+using controller::GuardReason;
+using controller::Rung;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr double kPeriod = 0.04;  // [s]
+
+telemetry::Frame driving() {
+  telemetry::Frame frame;
+  frame.measurement.speed = 20.0;
+  frame.applied.throttle = 0.3;
+  return frame;
+}
+
+telemetry::Frame stopped_by_guard() {
+  telemetry::Frame frame = driving();
+  frame.guard.rung = Rung::kGuardStop;
+  frame.guard.reason = GuardReason::kNoWayToStop;
+  return frame;
+}
+
+telemetry::Frame standing(double throttle) {
+  telemetry::Frame frame = driving();
+  frame.measurement.speed = 0.0;
+  frame.applied.throttle = throttle;
+  return frame;
+}
+
+/// A run and what is said of it.
+struct Watched {
+  RunNotices notices;
+  double time = 0.0;  ///< [s]
+  std::vector<std::string> said;
+
+  /// Shows the same frame for so many seconds.
+  void see(telemetry::Frame frame, double seconds) {
+    for (const double end = time + seconds - 0.5 * kPeriod; time < end; time += kPeriod) {
+      frame.time = time;
+      for (std::string& line : notices.look_at(frame)) said.push_back(std::move(line));
+    }
+  }
+};
+
+TEST(RunNotices, SayWhenAnInterventionBeginsWhyAndHowLongItWas) {
+  Watched run;
+  run.see(driving(), 4.0);
+  EXPECT_THAT(run.said, IsEmpty());
+  run.see(stopped_by_guard(), kPeriod);
+  EXPECT_THAT(run.said,
+              ElementsAre("4.0 s: the guard stops the car on the known road: the controller's command "
+                          "would leave no way to stop on the road"));
+  run.see(stopped_by_guard(), 0.4 - kPeriod);
+  run.see(driving(), 2.0);
+  ASSERT_EQ(run.said.size(), 2U);
+  EXPECT_EQ(run.said[1], "4.4 s: the controller drives again, after 0.4 s and 10 replaced commands");
+}
+
+TEST(RunNotices, AreTwoLinesForAnInterventionThatComesAndGoes) {
+  Watched run;
+  for (int i = 0; i < 50; ++i) {
+    run.see(stopped_by_guard(), kPeriod);
+    run.see(driving(), 0.2);
+  }
+  run.see(driving(), 2.0);
+  ASSERT_EQ(run.said.size(), 2U);
+  EXPECT_THAT(run.said[1], HasSubstr("50 replaced commands"));
+}
+
+TEST(RunNotices, SayAnotherReasonOnceASecond) {
+  Watched run;
+  telemetry::Frame other = stopped_by_guard();
+  other.guard.reason = GuardReason::kPositionJump;
+  run.see(stopped_by_guard(), 0.5);
+  run.see(other, 0.4);
+  EXPECT_EQ(run.said.size(), 1U);
+  run.see(other, 0.4);
+  ASSERT_EQ(run.said.size(), 2U);
+  EXPECT_THAT(run.said[1], HasSubstr("the measured position changed faster than a car can move"));
+}
+
+TEST(RunNotices, SayOnceThatTheCarStandsAndThatItMovesAgain) {
+  Watched run;
+  run.see(driving(), 1.0);
+  run.see(standing(0.0), 1.9);
+  EXPECT_THAT(run.said, IsEmpty());
+  run.see(standing(0.0), 10.0);
+  EXPECT_THAT(run.said, ElementsAre("3.0 s: the car has stood for 2 s: the controller gives no throttle"));
+  run.see(driving(), 5.0);
+  ASSERT_EQ(run.said.size(), 2U);
+  EXPECT_THAT(run.said[1], HasSubstr("the car moves again, after 11.9 s"));
+}
+
+TEST(RunNotices, SayWhyTheCarStands) {
+  const auto reason = [](const telemetry::Frame& frame) {
+    Watched run;
+    run.see(frame, 3.0);
+    return run.said.empty() ? "" : run.said.back();
+  };
+  EXPECT_THAT(reason(standing(0.5)), HasSubstr("a throttle of 0.50 does not move it"));
+  EXPECT_THAT(reason(standing(-0.5)), HasSubstr("the controller brakes with 0.50"));
+  telemetry::Frame guarded = standing(-0.5);
+  guarded.guard = stopped_by_guard().guard;
+  EXPECT_THAT(reason(guarded),
+              HasSubstr("the car has stood for 2 s: the guard stops the car on the known road"));
+  telemetry::Frame off = standing(0.0);
+  off.is_off_track = true;
+  EXPECT_THAT(reason(off), HasSubstr("a tyre is off the road"));
+  telemetry::Frame manual = standing(0.0);
+  manual.is_manual = true;
+  EXPECT_EQ(reason(manual), "") << "a person lets it stand";
+  telemetry::Frame simulated = standing(0.0);
+  simulated.has_truth = true;
+  simulated.truth.vx = 5.0;
+  EXPECT_EQ(reason(simulated), "") << "a speed sensor that shows zero is no standstill";
+}
+
+TEST(RunNotices, BeginAnewWithAnotherRun) {
+  Watched run;
+  run.see(standing(0.0), 1.5);
+  run.time = 0.0;
+  run.see(standing(0.0), 1.5);
+  EXPECT_THAT(run.said, IsEmpty());
+}
+
+TEST(RunNotices, ComeWhenItHappensAndBesideTheResults) {
+  const test::Outcome lost = test::chicane_program(
+      "drive --fast --json --laps 1 --set time_limit_s=20 --set guard.blind_time_s=1 --fault link_lost@8+9");
+  EXPECT_THAT(lost.out, testing::StartsWith("{"));
+  EXPECT_THAT(lost.out, Not(HasSubstr("the guard stops")));
+  EXPECT_THAT(lost.err, HasSubstr("position, yaw or speed has not been measured for too long"));
+  EXPECT_THAT(lost.err, HasSubstr("the car has stood for 2 s: the guard stops the car"));
+  EXPECT_THAT(lost.err, HasSubstr("the controller drives again, after "));
+  EXPECT_THAT(lost.err, HasSubstr("the car moves again, after "));
+}
+
+}  // namespace
+}  // namespace chicane::apps
