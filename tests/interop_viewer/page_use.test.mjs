@@ -139,7 +139,10 @@ describe('the page', () => {
   });
 
   it('brings into sight what a step of the tour is about', async () => {
-    await page.evaluate(() => localStorage.setItem('chicane.tour.step', '4'));
+    await page.evaluate(() => {
+      localStorage.setItem('chicane.tour.name', '"dashboard"');
+      localStorage.setItem('chicane.tour.step', '4');
+    });
     await page.reload();
     await dashboard.button('Go on with the tour, step 5 of 7').click();
     const card = page.locator('[data-key="fault.steering_stuck"]');

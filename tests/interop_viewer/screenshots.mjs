@@ -45,7 +45,10 @@ const PICTURES = [
     tab: 'drive',
     size: LAPTOP,
     colorScheme: 'light',
-    prepare: (page) => page.keyboard.press('h'),
+    async prepare(page) {
+      await page.keyboard.press('h');
+      await page.getByRole('button', { name: 'What the dashboard can do' }).click();
+    },
     undo: (page) => page.getByRole('button', { name: 'Leave the tour' }).click(),
   },
   {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The tour as a newcomer takes it: every step done on a real run, left and gone on with, with keyboard and on a phone.
+// The tours as a newcomer takes them: every step done on a real run, left and gone on with, with keyboard and on a phone.
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { DashboardPage, PHONE } from './dashboard_page.mjs';
@@ -16,6 +16,9 @@ const isDone = (dashboard, count, what) =>
     (done) => done >= count,
     what,
   );
+const EFFECTS = 'What N, dt, weights and latency do';
+const DASHBOARD = 'What the dashboard can do';
+const choose = (dashboard, title) => tour(dashboard).getByRole('button', { name: title }).click();
 /** On to the next step, which has this heading. */
 async function next(dashboard, title) {
   await dashboard.button('Next').click();
@@ -29,6 +32,14 @@ describe('the tour', () => {
     let dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'plots' });
     let { page } = dashboard;
     await dashboard.button('Tour').click();
+    assert.equal(await heading(dashboard), 'Tours');
+    assert.match(
+      await tour(dashboard).getByRole('listitem').first().innerText(),
+      new RegExp(EFFECTS),
+      'before all others',
+    );
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await choose(dashboard, DASHBOARD);
     assert.equal(await heading(dashboard), '1 of 7: Drive it yourself');
     assert.equal(await page.locator('#tab-drive').getAttribute('aria-selected'), 'true', 'on the panel of the step');
     assert.ok(await dashboard.button('Next').isDisabled());
@@ -113,10 +124,13 @@ describe('the tour', () => {
     await page.getByText('Paused', { exact: true }).waitFor();
     await page.keyboard.press('h');
     const focused = () => page.evaluate(() => document.activeElement.textContent);
+    await dashboard.until(focused, (text) => text === 'Tours', 'the list');
+    for (let i = 0; i < 3; ++i) await page.keyboard.press('Tab'); // Leave, the first tour, the second
+    assert.match(await focused(), new RegExp(DASHBOARD));
+    await page.keyboard.press('Enter');
     for (const title of ['Drive', 'Let', 'Slow', 'Blind', 'Break', 'Tune', 'Compare']) {
       await dashboard.until(focused, (text) => text.match(/^\d of 7: (\w+)/)?.[1] === title, `the heading of ${title}`);
-      await page.keyboard.press('Tab'); // Leave
-      await page.keyboard.press('Tab');
+      for (let i = 0; i < 3; ++i) await page.keyboard.press('Tab'); // Tours, Leave
       assert.equal(await focused(), 'Skip');
       await page.keyboard.press('Enter');
     }
@@ -129,10 +143,55 @@ describe('the tour', () => {
     await dashboard.close();
   });
 
+  it('changes N, dt, a weight and the latency, and sees what each does', async () => {
+    const dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'plots' });
+    const { page } = dashboard;
+    await dashboard.button('Tour').click();
+    await choose(dashboard, EFFECTS);
+    assert.equal(await heading(dashboard), '1 of 6: Choose a controller to change');
+    await page.locator('.choices [data-key="preset"] select').selectOption('fast-short-step');
+    await dashboard.button('Restart').click();
+    await isDone(dashboard, 2, 'the preset drives');
+    for (let i = 0; i < 3; ++i) await page.locator('body').press(']'); // eight times as fast
+
+    const effects = [
+      ['2 of 6: N: look further ahead', 'cubic_mpc.horizon_steps', '40', '25'],
+      ['3 of 6: dt: longer steps', 'cubic_mpc.step_length_s', '0.1', '0.025'],
+      ['4 of 6: A weight: the price of the pedal', 'cubic_mpc.weight_throttle', '160', '80'],
+      ['5 of 6: Latency: more than it counts on', 'latency_ms', '300', '100'],
+    ];
+    for (const [title, key, value, start] of effects) {
+      await next(dashboard, title);
+      const box = page.locator(`[data-key="${key}"] .number-box`);
+      assert.equal(await box.inputValue(), start, 'the value that the text names');
+      await box.fill(value);
+      await box.press('Enter');
+      await isDone(dashboard, 2, `the effect of ${key}`);
+      await box.fill(start);
+      await box.press('Enter');
+      await isDone(dashboard, 3, `${key} as it was`);
+      await dashboard.button('Reset').click();
+    }
+
+    await next(dashboard, '6 of 6: Compare: without the roll-forward');
+    await page.getByLabel('Setting to change').fill('cubic_mpc.latency_handling');
+    await page.getByLabel('What if: Latency handling').selectOption('none');
+    await page.getByText('Drive both', { exact: true }).click();
+    await isDone(dashboard, 1, 'two futures');
+    await dashboard.button('Next').click();
+    assert.equal(await heading(dashboard), 'The tour is over');
+    assert.match(await tour(dashboard).innerText(), /docs\/effects\.md/);
+    assert.deepEqual(await dashboard.accessibilityFindings(), []);
+    await tour(dashboard).getByRole('button', { name: 'Tours' }).click();
+    assert.equal(await heading(dashboard), 'Tours');
+    await dashboard.close();
+  });
+
   it('shows where it is done, and fits a phone', async () => {
     const dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'plots', ...PHONE });
     const { page } = dashboard;
     await dashboard.button('Tour').click();
+    await choose(dashboard, DASHBOARD);
     await dashboard.show('laps');
     await dashboard.button('Show me where').click();
     assert.equal(await page.locator('#tab-drive').getAttribute('aria-selected'), 'true');

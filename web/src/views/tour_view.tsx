@@ -7,18 +7,20 @@ import { run } from '../state/run';
 import { entryOf, settingChanges, settings } from '../state/settings';
 import { tab } from '../state/tab';
 import {
+  chooseTour,
   done,
   goOn,
   isStepDone,
   isTourOpen,
   leaveTour,
   openTour,
-  STEPS,
-  type Step,
   skipped,
   step,
   stepNumber,
+  TOURS,
+  tour,
 } from '../state/tour';
+import type { Step, Tour } from '../state/tour_step';
 
 /** Opens the tour at its step, on the panel of that step. */
 function open(): void {
@@ -36,16 +38,17 @@ const isOffered = (): boolean => run.value !== null && run.value.mode !== 'repla
 export function TourButton() {
   if (!isOffered() || isTourOpen.value) return null;
   const at = stepNumber.value;
-  const isBegun = at > 0 && at < STEPS.length;
+  const count = tour.value?.steps.length ?? 0;
+  const isBegun = at > 0 && at < count;
   return (
     <button
       type="button"
       class="tour-button"
-      title="What there is to do, in three minutes"
-      aria-label={isBegun ? `Go on with the tour, step ${at + 1} of ${STEPS.length}` : 'Tour'}
+      title="What there is to do, in a few minutes"
+      aria-label={isBegun ? `Go on with the tour, step ${at + 1} of ${count}` : 'Tour'}
       onClick={open}
     >
-      {isBegun ? `Tour ${at + 1}/${STEPS.length}` : 'Tour'}
+      {isBegun ? `Tour ${at + 1}/${count}` : 'Tour'}
     </button>
   );
 }
@@ -141,19 +144,40 @@ function StepCard({ of }: { of: Step }) {
   );
 }
 
-function EndCard() {
-  const names = skipped.value.map((name) => STEPS.find((each) => each.name === name)?.title ?? name);
+function ListCard() {
+  return (
+    <ul class="tour-list">
+      {TOURS.map(({ name, title, steps }) => (
+        <li key={name}>
+          <button
+            type="button"
+            onClick={() => {
+              chooseTour(name);
+              showWhere();
+            }}
+          >
+            {title} <span class="unit">{steps.length} steps</span>
+          </button>
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+function EndCard({ of }: { of: Tour }) {
+  const names = skipped.value.map((name) => of.steps.find((each) => each.name === name)?.title ?? name);
   return (
     <>
       <p>
-        {names.length === 0
-          ? 'You have driven, slowed, blinded, broken, tuned and compared it.'
-          : `Left out: ${names.join(', ')}.`}{' '}
-        Explain (3) tells why it drives as it does, Laps (5) compares laps, <kbd>?</kbd> lists all keys.
+        {names.length === 0 ? of.end : `Left out: ${names.join(', ')}.`} Explain (3) tells why it drives as it does,
+        Laps (5) compares laps, <kbd>?</kbd> lists all keys.
       </p>
       <div class="buttons">
         <button type="button" onClick={putBack}>
           Put everything back
+        </button>
+        <button type="button" onClick={() => chooseTour('')}>
+          Tours
         </button>
         <button type="button" class="primary" onClick={leaveTour}>
           Close
@@ -166,11 +190,18 @@ function EndCard() {
 /** The tour, above the panel on which its steps are done. */
 export function TourView() {
   if (!isTourOpen.value || !isOffered()) return null;
+  const taken = tour.value;
   const now = step.value;
+  const heading = now && taken ? `${stepNumber.value + 1} of ${taken.steps.length}: ${now.title}` : 'The tour is over';
   return (
     <section class="tour" aria-label="Tour" data-testid="tour">
       <header class="with-button">
-        <Heading text={now ? `${stepNumber.value + 1} of ${STEPS.length}: ${now.title}` : 'The tour is over'} />
+        <Heading text={taken ? heading : 'Tours'} />
+        {now && (
+          <button type="button" class="small" title="Choose another tour" onClick={() => chooseTour('')}>
+            Tours
+          </button>
+        )}
         <button
           type="button"
           class="icon small"
@@ -181,7 +212,7 @@ export function TourView() {
           ×
         </button>
       </header>
-      {now ? <StepCard of={now} /> : <EndCard />}
+      {taken === null ? <ListCard /> : now ? <StepCard of={now} /> : <EndCard of={taken} />}
     </section>
   );
 }

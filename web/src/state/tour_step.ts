@@ -1,0 +1,35 @@
+import type { Frame } from '../protocol/topics';
+import type { Tab } from './tab';
+
+// What a tour is made of. What was done is read from the run, not from clicks.
+
+/** Says for each task of a step whether this frame shows that it is done; `seconds` since the frame before. */
+export type Watch = (frame: Frame, seconds: number) => readonly boolean[];
+
+export interface Step {
+  readonly name: string;
+  readonly title: string;
+  readonly text: string;
+  /** The panel on which it is done. */
+  readonly tab: Tab;
+  /** What the step is about, on that panel: a selector, as in tour.css, which marks it. */
+  readonly where: string;
+  /** In their order: a task counts when those before it are done. */
+  readonly tasks: readonly string[];
+  isPossible(): boolean;
+  /** Begins to watch. */
+  watch(): Watch;
+}
+
+export interface Tour {
+  readonly name: string;
+  readonly title: string;
+  readonly steps: readonly Step[];
+  /** What was done, in one sentence, and what to do next. */
+  readonly end: string;
+}
+
+const MOVING_MPS = 3;
+
+export const isDriving = (frame: Frame): boolean =>
+  !frame.is_manual && frame.rung === 0 && !frame.is_off_track && frame.speed_mps > MOVING_MPS;
