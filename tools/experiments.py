@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Tables and figures of docs/problem.md and of the pages on effects (latency, horizon, step_length, weights, friction) from the results
-of plans/effects.yaml, whose runs are named TABLE: ROW.
+"""Tables and figures of docs/problem.md, docs/effects.md and docs/friction.md from the results of plans/effects.yaml, whose runs are
+named TABLE: ROW.
 
     chicane sweep plans/effects.yaml -o runs.jsonl
     tools/experiments.py runs.jsonl TABLE          prints one table in Markdown
@@ -18,14 +18,14 @@ MPH = 0.44704
 NUMBERS = ("flying lap [s]", "mean [mph]", "top [mph]", "rms lateral error [m]", "tyre to edge, least [m]", "off the road")
 # table: what its first column is called
 EFFECTS = {
-    "own_steps": "N", "steps": "N", "steps_measured": "N",
+    "known": "latency, compensated [ms]", "own_steps": "N", "steps": "N", "steps_measured": "N",
     "own_length": "dt [s]", "length": "dt [s]", "preview": "N, dt [s]", "higher": "N, dt [s]",
     "own_lateral": "weight_lateral", "knob": "w_a", "speed": "w_v", "product": "w_vδ", "unit": "`speed_in_mph`",
     "friction_udacity": "grip of the road", "friction_road_car": "grip of the road", "grip_share": "grip_share",
 }
 # figure: its axis, whether it is logarithmic, and the name and table of each curve
 FIGURES = {
-    "horizon": ("steps of the horizon, N", True, {"default": "own_steps", "weighted, 80 mph": "steps"}),
+    "horizon": ("steps of the horizon, N", True, {"default": "own_steps", "fast-short-step, dt = 0.025 s": "steps"}),
     "step_length": ("step length [s]", True, {"default, N dt = 2 s": "own_length", "fast-short-step, N = 25": "length"}),
     "weights": ("weight", True, {"default, weight_lateral": "own_lateral", "fast-short-step, weight_throttle": "knob"}),
     "friction": ("grip of the road over that of the model", False,
