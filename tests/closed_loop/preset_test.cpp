@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <random>
 #include <string>
+#include <vector>
 
+#include "chicane/base/random.hpp"
 #include "closed_loop/drive.hpp"
 
 namespace chicane::run {
@@ -63,6 +67,36 @@ TEST(Presets, LapTheLakesideWithTheGuardOn) {
     EXPECT_GE(top_mph(run), claim.low_mph) << claim.preset;
     EXPECT_LT(run.fallbacks, 20U) << claim.preset;
   }
+}
+
+/// Latencies of 80 to 180 ms and up to 60 ms of jitter: sensors and actuators are in order, and the guard
+/// that watches them finds nothing, wherever the preset stays on the road.
+TEST(Presets, AreNeverTakenForCarsWithFaults) {
+  using enum controller::GuardReason;
+  constexpr int kDraws = kDrivesAll ? 100 : 4;
+  constexpr const char* kTracks[] = {"lakeside", "original-lake", "oval", "hairpins"};
+  const std::uint64_t seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  Random random(seed);
+  std::vector<const char*> presets{"default"};
+  for (const Claim& claim : kClaims) presets.push_back(claim.preset);
+  for (const char* preset : presets)
+    for (int i = 0; i < kDraws; ++i) {
+      const Settings settings{{"guard.mode", "observe"},
+                              {"preset", preset},
+                              {"track", kTracks[i % 4]},
+                              {"laps", "2"},
+                              {"latency_ms", std::to_string(random.uniform(80.0, 180.0))},
+                              {"latency_jitter_ms", std::to_string(random.uniform(0.0, 60.0))},
+                              {"seed", std::to_string(1 + random.bits() % 1000)}};
+      const auto run = drive(settings);
+      if (!run.completed || run.off_track_events > 0) continue;
+      for (const controller::GuardReason reason : {kNotMeasured, kFrozen, kSpeedMismatch, kHeadingJump,
+                                                   kPositionJump, kLate, kOtherSteering, kWeakBrakes})
+        EXPECT_EQ(run.guard_reasons[static_cast<std::size_t>(reason)], 0U)
+            << controller::word_of(reason).sentence << ": " << preset << ' ' << settings[2].second << ' '
+            << settings[4].second << ' ' << settings[5].second << ' ' << settings[6].second;
+    }
 }
 
 TEST(Presets, StayOnTheRoadWhenTheAnswerIsLateOrSlow) {

@@ -27,6 +27,8 @@ struct Drive {
   double cycle = kCycle;         ///< [s]
   double sign = 1.0;             ///< -1: mirrored
   double speed = 12.0;           ///< [m/s]
+  double swing = 1.3;            ///< frequency of the steering [rad/s]
+  double jitter = 0.0;           ///< by which commands act late, at most [s]
   ActuatorWatch::AxleUse use{};  ///< of the tyres, as the watch is told
 
   /// What the watch holds after `seconds`; `first`: when it differed first [s].
@@ -38,6 +40,7 @@ struct Drive {
     model::BodyMotion<double> body{.vx = speed};
     double psi = 0.0;
     Vec2 place;
+    model::Command before;
     for (int i = 0; i * cycle < seconds; ++i) {
       const double time = i * cycle;
       model::Measurement now;
@@ -49,13 +52,15 @@ struct Drive {
       watch.see(now, sent, use);
       if (first != nullptr && !(*first > 0.0) && !watch.answer().is_usual()) *first = time;
       const bool is_late = time >= kOnset && time < ends;
-      const model::Command command{sign * steer * (0.6 + std::sin(1.3 * time)),
+      const model::Command command{sign * steer * (0.6 + std::sin(swing * time)),
                                    time >= kOnset ? throttle_after : 0.05};
       sent.add(time, command);
-      const model::Command acting = is_late ? effect(command) : command;
+      const model::Command next = is_late ? effect(command) : command;
+      const double acts_after = jitter > 0.0 ? random.uniform(0.0, jitter) : 0.0;
       constexpr int kParts = 10;
       for (int k = 0; k < kParts; ++k) {
         const double dt = cycle / kParts;
+        const model::Command acting = k * dt < acts_after ? before : next;
         const double psi_before = body.r;
         body = model.advance(body, acting.steer, longitudinal_acceleration(car, acting.throttle, body.vx), dt,
                              model.lags(dt));
@@ -63,6 +68,7 @@ struct Drive {
         place += dt * Vec2{body.vx * std::cos(psi) - body.vy * std::sin(psi),
                            body.vx * std::sin(psi) + body.vy * std::cos(psi)};
       }
+      before = next;
     }
     return watch;
   }
@@ -133,6 +139,15 @@ TEST(ActuatorWatch, IsNoSurerOfTheWheelsThanOfTheSlide) {
     drive.use.sideslip = 0.06 * sign;
     EXPECT_TRUE(drive.after(12.0).answer().is_usual()) << sign;
   }
+}
+
+/// The mean angle of a window is uncertain when the wheels swing in it and commands act up to 60 ms late.
+TEST(ActuatorWatch, FindsNothingWhereWheelsSwingAndCommandsAreLate) {
+  for (const double swing : {6.0, 12.0, 26.0, 40.0})
+    for (const double speed : {12.0, 16.0, 20.0}) {
+      const Drive drive{.steer = 0.3, .cycle = 0.06, .speed = speed, .swing = swing, .jitter = 0.06};
+      EXPECT_TRUE(drive.after(40.0).answer().is_usual()) << swing << ' ' << speed;
+    }
 }
 
 TEST(ActuatorWatch, ForgetsAnAnswerThatHasEnded) {

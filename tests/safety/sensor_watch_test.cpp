@@ -194,6 +194,57 @@ TEST(SensorWatch, DoubtsASpeedThatChangesAtOnce) {
   }
 }
 
+/// How often the speed is doubted of a car that loses `lost` of its speed at once after five seconds, by no
+/// model, `share` of the way through the time between two measurements. `is_true`: the car does, and not only
+/// its sensor.
+int doubts_of_a_loss(double lost, double share, double cycle, bool is_true) {
+  SensorWatch watch{kLength, kWheelbase};
+  const double from = cycle * (std::ceil(5.0 / cycle) - 1.0 + share);
+  double estimate = kSpeed;
+  int doubted = 0;
+  for (int i = 0; i * cycle < 8.0; ++i) {
+    const double time = i * cycle;
+    const double since = std::max(time - from, 0.0);
+    const double speed = kSpeed - (since > 0.0 ? lost : 0.0);
+    model::State car = car_at(time, 0.0);
+    if (is_true) car.x -= lost * since;
+    model::State expected = car;
+    expected.vx = estimate;
+    if (is_true) expected.x += (estimate - speed) * std::min(since, cycle);
+    model::Measurement now = measured(time, car);
+    now.speed = speed;
+    const bool is_doubted = watch.see(now, expected).speed;
+    doubted += is_doubted ? 1 : 0;
+    estimate = is_doubted ? expected.vx : now.speed;
+  }
+  return doubted;
+}
+
+/// Wheels that were locked spin up again, and take 4 % of the speed of `udacity`.
+TEST(SensorWatch, BelievesASpeedThatThePlaceConfirms) {
+  Random random(7);
+  for (int i = 0; i < 300; ++i) {
+    const double lost = (i % 2 == 0 ? 1.0 : -1.0) * random.uniform(1.05, 1.6);
+    const double share = random.uniform(), cycle = random.uniform(0.02, 0.16);
+    EXPECT_LE(doubts_of_a_loss(lost, share, cycle, true), 1) << lost << ' ' << share << ' ' << cycle;
+    EXPECT_GT(doubts_of_a_loss(lost, share, cycle, false), 1.0 / cycle)
+        << lost << ' ' << share << ' ' << cycle;
+  }
+}
+
+/// A command that acts 60 ms late turns the car by more than a calm one's limit.
+TEST(SensorWatch, IsNotSureOfACarWhoseWheelsSwing) {
+  for (const double swing : {0.05, 0.3}) {
+    SensorWatch watch{kLength, kWheelbase};
+    for (int i = 0; i < 100; ++i) {
+      model::State car = car_at(kCycle * i, 0.0);
+      if (i == 99) car.steer = swing;
+      watch.see(measured(kCycle * i, car), car);
+    }
+    EXPECT_EQ(watch.is_sure(), swing < 0.1) << swing;
+  }
+}
+
 TEST(SensorWatch, TellsLateMeasurementsFromOtherPlaces) {
   for (const double age : {0.05, 0.1, 0.3, 0.8, 1.5}) {
     const auto late = [=](model::Measurement& now) {

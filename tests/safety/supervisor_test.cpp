@@ -67,6 +67,18 @@ TEST(Supervisor, StopsAtOnceForAFrozenSensor) {
   EXPECT_TRUE(supervisor.judge({.frozen = true}, 5.0, 20.0).must_stop);
 }
 
+/// At 300 ms between measurements the first one in doubt comes 300 ms after the last good one.
+TEST(Supervisor, StopsForASpeedThatTwoMeasurementsShow) {
+  for (const Condition& each : kConditions) {
+    Findings findings;
+    findings.*each.finding = true;
+    Supervisor supervisor;
+    EXPECT_FALSE(supervisor.judge({}, 5.0, 20.0).must_stop);
+    EXPECT_EQ(supervisor.judge(findings, 5.3, 20.0).must_stop, each.reason != kSpeedMismatch);
+    EXPECT_TRUE(supervisor.judge(findings, 5.6, 20.0).must_stop);
+  }
+}
+
 TEST(Supervisor, NamesTheWorstCondition) {
   Supervisor supervisor;
   double time = 0.0;

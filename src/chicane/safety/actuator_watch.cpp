@@ -38,8 +38,9 @@ constexpr double kBraked = 0.25;        // of the useful braking, from which bra
 constexpr double kWeakFor = 0.12;       // [s]
 constexpr double kBrakingTime = 0.3;    // [s] in which an estimate of the braking follows
 constexpr double kLeastShare = 0.2;
-constexpr double kStrong = 0.9;  // share of the braking from which brakes are usual again
-constexpr int kParts = 4;        // of a step, in which the command may change
+constexpr double kStrong = 0.9;        // share of the braking from which brakes are usual again
+constexpr double kLateCommand = 0.06;  // [s] by which a command may act later than configured
+constexpr int kParts = 4;              // of a step, in which the command may change
 
 model::VehicleParams without_name(model::VehicleParams vehicle) noexcept {
   vehicle.name.clear();
@@ -87,6 +88,7 @@ void ActuatorWatch::add_sample(const model::Measurement& now, const tracking::Co
     const model::VehicleParams& car = model_.vehicle();
     next.turned = last.turned + angle_difference(now.psi, last_psi_);
     next.angle = last.angle;
+    next.swung = last.swung;
     next.braking = last.braking;
     const double part = (now.time - last.time) / kParts;
     const double kept = car.steer_lag > 0.0 ? exp(-part / car.steer_lag) : 0.0;
@@ -95,6 +97,7 @@ void ActuatorWatch::add_sample(const model::Measurement& now, const tracking::Co
       const double before = angle_;
       angle_ = command.steer + (angle_ - command.steer) * kept;
       next.angle += 0.5 * part * (before + angle_);
+      next.swung += std::fabs(angle_ - before);
       next.pedal += command.throttle / kParts;
       next.braking += part * (longitudinal_acceleration(car, 0.0, next.speed) -
                               longitudinal_acceleration(car, std::min(command.throttle, 0.0), next.speed));
@@ -134,7 +137,9 @@ bool ActuatorWatch::measure(Window& window, double length, double elapsed) const
   const double time = first + second;
   const double change = (now.turned - middle.turned) / second - (middle.turned - from.turned) / first;
   window.asked = (now.angle - from.angle) / time;
-  window.changed = std::fabs((now.angle - middle.angle) / second - (middle.angle - from.angle) / first);
+  window.changed =
+      std::max(std::fabs((now.angle - middle.angle) / second - (middle.angle - from.angle) / first),
+               kLateCommand / time * (now.swung - from.swung));
   model::BodyMotion<double> car{.vx = 0.5 * (now.speed + from.speed),
                                 .vy = window.slide,
                                 .r = (now.turned - from.turned) / time,
@@ -169,8 +174,7 @@ void ActuatorWatch::judge_steering(Window& window, double length, double elapsed
   const double slip_share = window.use > kSpareUse ? kSlipShareUsed : kSlipShare;
   const double band = kBand + kBandShare * std::fabs(window.asked) +
                       slip_share * std::max(std::fabs(window.slip), std::fabs(window.rear_slip)) +
-                      kChangeShare * window.changed + unsure_slide(window) +
-                      kDeviations * std::sqrt(window.noise);
+                      window.changed + unsure_slide(window) + kDeviations * std::sqrt(window.noise);
   // Wheels that turn the car less than asked for may as well lack grip.
   const bool may_lack_grip = window.use > kSpareUse && window.difference * window.slip < 0.0;
   const bool differs =

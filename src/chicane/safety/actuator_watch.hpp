@@ -22,7 +22,6 @@ class ActuatorWatch {
  public:
   static constexpr double kBand = 0.01;          ///< [rad] by which an angle may differ
   static constexpr double kBandShare = 0.1;      ///< and of the angle
-  static constexpr double kChangeShare = 1.0;    ///< and of what it changes within a window
   static constexpr double kSlipShare = 0.2;      ///< share of the slip of the axle that slips more
   static constexpr double kSlipShareUsed = 0.5;  ///< the same of tyres that are used, whose grip may be less
   static constexpr double kWeak = 0.75;          ///< share of the braking, below which brakes are weak
@@ -67,6 +66,7 @@ class ActuatorWatch {
     double time = 0.0;
     double turned = 0.0;   ///< heading, unwrapped [rad]
     double angle = 0.0;    ///< integral of the angle asked for, behind the lag [rad s]
+    double swung = 0.0;    ///< all changes of that angle, without their signs [rad]
     double braking = 0.0;  ///< integral of the pedal's deceleration by the model [m/s]
     double speed = 0.0;    ///< [m/s]
     double pedal = 0.0;    ///< mean since the one before
@@ -86,7 +86,7 @@ class ActuatorWatch {
     double rear_slip = 0.0;           ///< whose moment is what the front tyres' force comes from [rad]
     double use = 0.0;                 ///< of the tyres' peak slip
     double slide = 0.0;               ///< lateral velocity of the car that turns as measured [m/s]
-    double changed = 0.0;             ///< what the angle asked for has changed [rad]
+    double changed = 0.0;             ///< what the angle asked for has changed, or is unsure by [rad]
     double difference = 0.0;          ///< of the angles from the expected answer [rad]
     double noise = 0.0;               ///< mean square of what of it is not there the next time [rad²]
     double learned = 0.0;             ///< time of which the noise is the mean [s]

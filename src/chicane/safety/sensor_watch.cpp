@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
@@ -33,6 +34,7 @@ constexpr double kUnrest = 0.5;            // [s] of them that one restless meas
 constexpr double kTried = 1.0;             // [m/s] at which a car answers to its pedal late or in time
 constexpr double kMostLag = 0.2;           // [s] by which it may
 constexpr double kRetry = 10.0;            // [s] after which it is tried again
+constexpr double kLateCommand = 0.06;      // [s] by which a command may act later than configured
 constexpr double kSilence = 0.2;      // [s] without a measurement, after which a car is not sure of its place
 constexpr double kMostSlip = 1.2;     // share of the estimated slip that a car may lack
 constexpr double kWalking = 6.0;      // [m/s] a slower car, in full size, may be on its way back to the road
@@ -76,6 +78,7 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
     if (!has_last_) add_sample(now, expected);
     last_ = now;
     time_ = now.time;
+    estimated_speed_ = std::fabs(now.speed);
     has_last_ = true;
     return doubts_;
   }
@@ -90,11 +93,15 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
                         .heading = std::fabs(angle_difference(now.psi, expected.psi)),
                         .speed = std::fabs(std::fabs(now.speed) - hypot(expected.vx, expected.vy))};
   const Innovation most = limits();
+  // Where a command that acts late turns the car by more than (10), its heading is not known well enough.
+  const double rate = expected.vx * tan(expected.steer) / wheelbase_;
+  if (std::fabs(rate - std::exchange(asked_rate_, rate)) * kLateCommand > most.heading) calm_ = 0.0;
   if (is_sure() || has_doubts()) {
     end_doubts(seen, most, elapsed, angle_difference(now.psi, expected.psi));
     judge_age(now, expected, seen, most, elapsed);
     const bool was_doubted = doubts_.place;
     if (!doubts_.is_old) begin_doubts(seen, most);
+    if (place_confirms_speed(elapsed, now, expected)) doubts_.speed = false;
     if (doubts_.place && !was_doubted) {
       has_jumped_ = true;
       x_ = expected.x;
@@ -119,19 +126,35 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
   add_sample(now, expected);
   last_ = now;
   time_ = now.time;
+  estimated_speed_ = doubts_.speed || doubts_.is_old ? hypot(expected.vx, expected.vy) : std::fabs(now.speed);
   return doubts_;
+}
+
+/// Equation 10a: the place, which does not depend on the speed, has moved by the measured speed and not by
+/// the expected one. Then the model is wrong, not the sensor.
+bool SensorWatch::place_confirms_speed(double elapsed, const model::Measurement& now,
+                                       const model::State& expected) const noexcept {
+  if (doubts_.place || doubts_.is_old) return false;
+  const double modelled = estimated_speed_ + hypot(expected.vx, expected.vy);
+  const double apart = 0.5 * elapsed * (std::fabs(last_.speed) + std::fabs(now.speed) - modelled);
+  const double noise = kDeviations * length_.deviation();
+  const double longer = std::copysign(longer_, longer_ * apart);
+  return std::fabs(apart) > 2.0 * noise && longer > -0.5 * std::fabs(apart) &&
+         longer < std::fabs(apart) + noise;
 }
 
 /// The way that speed and heading describe, and where the car is by it.
 void SensorWatch::count_on(double elapsed, const model::Measurement& now,
                            const model::State& expected) noexcept {
-  const double slip = atan2(expected.vy, std::max(expected.vx, kMoving * size_));
+  const double slip_now = atan2(expected.vy, std::max(expected.vx, kMoving * size_));
+  const double slip = 0.5 * (std::exchange(slip_, slip_now) + slip_now);
   const double turn = angle_difference(now.psi, last_.psi);
   const double course = last_.psi + 0.5 * turn + slip;
   const double way = 0.5 * elapsed * (std::fabs(now.speed) + std::fabs(last_.speed));
   const double dx = way * cos(course);
   const double dy = way * sin(course);
   moved_ = hypot(now.x - last_.x - dx, now.y - last_.y - dy);
+  longer_ = hypot(now.x - last_.x, now.y - last_.y) - way;
   driven_ += way;
   way_x_ += dx;
   way_y_ += dy;
@@ -169,6 +192,7 @@ void SensorWatch::learn(const Innovation& seen, const Innovation& most, double e
   place_.learn(std::min(seen.place, kPlaceStep * size_));
   heading_.learn(std::min(seen.heading, kHeadingStep));
   speed_.learn(std::min(seen.speed, kSpeedStep * std::sqrt(size_)));
+  length_.learn(std::min(std::fabs(longer_), kPlaceStep * size_));
 }
 
 /// A measurement of an earlier moment, and those that go on from it, say nothing of now. Their doubt ends

@@ -75,6 +75,8 @@ class SensorWatch {
   [[nodiscard]] Innovation limits() const noexcept;
   [[nodiscard]] const Sample& back(std::size_t count) const noexcept;
   void count_on(double elapsed, const model::Measurement& now, const model::State& expected) noexcept;
+  [[nodiscard]] bool place_confirms_speed(double elapsed, const model::Measurement& now,
+                                          const model::State& expected) const noexcept;
   void add_sample(const model::Measurement& now, const model::State& expected) noexcept;
   void learn(const Innovation& seen, const Innovation& most, double elapsed) noexcept;
   void judge_age(const model::Measurement& now, const model::State& expected, const Innovation& seen,
@@ -92,13 +94,16 @@ class SensorWatch {
   std::size_t count_ = 0;
   bool has_last_ = false;
   model::Measurement last_;
-  double time_ = 0.0;                                                      ///< of the last call [s]
-  double driven_ = 0.0;                                                    ///< [m]
-  double way_x_ = 0.0, way_y_ = 0.0;                                       ///< [m]
-  double slip_x_ = 0.0, slip_y_ = 0.0;                                     ///< [m]
-  double turned_ = 0.0, asked_ = 0.0;                                      ///< [rad]
-  double calm_ = 0.0;                                                      ///< [s]
-  double clean_from_ = -1e9;                                               ///< the last doubt [s]
+  double time_ = 0.0;                   ///< of the last call [s]
+  double driven_ = 0.0;                 ///< [m]
+  double way_x_ = 0.0, way_y_ = 0.0;    ///< [m]
+  double slip_ = 0.0;                   ///< of the estimate [rad]
+  double slip_x_ = 0.0, slip_y_ = 0.0;  ///< [m]
+  double turned_ = 0.0, asked_ = 0.0;   ///< [rad]
+  double asked_rate_ = 0.0;             ///< of turning, by the wheels [rad/s]
+  double estimated_speed_ = 0.0;        ///< after the last call [m/s]
+  double calm_ = 0.0;                   ///< [s]
+  double clean_from_ = -1e9;            ///< the last doubt [s]
   double place_agrees_ = 0.0, heading_agrees_ = 0.0, speed_agrees_ = 0.0;  ///< for how long [s]
   double late_agrees_ = 0.0;                                               ///< [s]
   bool is_tried_ = false;        ///< whether the car answers late shows as it starts
@@ -107,11 +112,12 @@ class SensorWatch {
   double retry_ = 0.0;           ///< from when on the car may start again [s]
   double agreed_heading_ = 0.0;  ///< what the heading differs by since it agrees [rad]
   double moved_ = 0.0;           ///< of the last step: place against speed and heading [m]
+  double longer_ = 0.0;          ///< of the last step: displacement less what the speed says [m]
   bool has_jumped_ = false;      ///< a place in doubt: at once, not by a drift
   double x_ = 0.0, y_ = 0.0;
   double drift_ = 0.0;   ///< of the expected place, while it is not measured [m]
   double unseen_ = 0.0;  ///< for how long something has not been measured [s]
-  Noise place_, heading_, speed_;
+  Noise place_, heading_, speed_, length_;
   std::array<Noise, 3> sums_;
 };
 

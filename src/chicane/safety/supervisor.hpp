@@ -23,17 +23,19 @@ struct Condition {
   controller::GuardReason reason;
   double tolerated;  ///< [s] for which it may last
   ConditionEnd ends;
+  int measurements = 1;  ///< that have to show it in a row, however rare they are
 };
 
 /// All of them, the worst last: of several that last too long, the last is named. A moment's doubt comes from
 /// noise or a car that slides, so 0.1 s of it, five measurements of the fastest sensor, is tolerated; without
 /// a measurement 0.12 s, three at the simulator's 25 Hz. What is frozen has repeated for 0.3 m of driving
-/// before it is found.
+/// before it is found. Whether a speed is wrong or the model is shows in the next measurement (eq. 10a).
 inline constexpr std::array<Condition, 6> kConditions{{
     {&Findings::late, controller::GuardReason::kLate, 0.12, ConditionEnd::kByItself},
     {&Findings::unmeasured, controller::GuardReason::kNotMeasured, 0.12, ConditionEnd::kByItself},
     {&Findings::frozen, controller::GuardReason::kFrozen, 0.0, ConditionEnd::kByItself},
-    {&Findings::speed_mismatch, controller::GuardReason::kSpeedMismatch, 0.1, ConditionEnd::kAfterStanding},
+    {&Findings::speed_mismatch, controller::GuardReason::kSpeedMismatch, 0.1, ConditionEnd::kAfterStanding,
+     2},
     {&Findings::heading_jump, controller::GuardReason::kHeadingJump, 0.1, ConditionEnd::kByPerson},
     {&Findings::position_jump, controller::GuardReason::kPositionJump, 0.1, ConditionEnd::kByPerson},
 }};
@@ -63,10 +65,12 @@ class Supervisor {
     Verdict verdict;
     const Condition* worst = nullptr;
     for (std::size_t i = 0; i < kConditions.size(); ++i) {
-      if (!(findings.*kConditions[i].finding))
+      const Condition& each = kConditions[i];
+      shown_[i] = findings.*each.finding ? shown_[i] + 1 : 0;
+      if (shown_[i] == 0)
         since_[i] = time;
-      else if (time - since_[i] > kConditions[i].tolerated)
-        worst = &kConditions[i];
+      else if (time - since_[i] > each.tolerated && shown_[i] >= each.measurements)
+        worst = &each;
     }
     if (worst != nullptr) verdict = {.reason = worst->reason, .must_stop = true};
     const bool is_latched = worst != nullptr && worst->ends != ConditionEnd::kByItself;
@@ -84,6 +88,7 @@ class Supervisor {
  private:
   static constexpr double kNever = -1e9;
   std::array<double, kConditions.size()> since_{};  ///< when each was last not there [s]
+  std::array<long, kConditions.size()> shown_{};    ///< measurements in a row that show it
   double stood_ = 0.0;
   double rearmed_ = kNever;
   bool has_person_ = false;  ///< has taken over since
