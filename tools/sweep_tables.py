@@ -13,6 +13,7 @@
     tools/sweep_tables.py runs.jsonl otherwise  docs/racing_unknown.md: another grip, mass, latency (plans/racing-otherwise.yaml)
     tools/sweep_tables.py runs.jsonl noise      docs/racing_unknown.md: noisy sensors (plans/racing-noise.yaml)
     tools/sweep_tables.py runs.jsonl maps       docs/import.md: a model car on maps (plans/racing-maps.yaml)
+    tools/sweep_tables.py runs.jsonl guard      docs/safety.md: presets with the guard on beside off (plans/guard-presets.yaml)
 
 tools/check_figures compares them with the pages, and writes them."""
 import argparse
@@ -97,6 +98,32 @@ def sensors(runs):
     def cell(run):
         return f"{run['rms_lateral_error_m']:.2f} ({run['min_edge_distance_m']:.2f})" if is_clean(run) else "**off**"
     return pivot(runs, lambda run: f"`{setting(run, 'preset')}`", lambda run: setting(run, "sensor.latency_ms"), cell, ("preset", "{} ms"))
+
+
+KERBS_M = {"hairpins": 0.5}  # drivable for the judge, no road for the guard
+
+
+def guard(runs):
+    """Runs that keep off kerbs and on the road without the guard; the same ones with it."""
+    keys = ("preset", "track", "latency_ms", "latency_jitter_ms")
+    off = {tuple(setting(run, key) for key in keys): run for run in runs if setting(run, "guard.mode") == "off"}
+    rows = {}
+    for run in runs:
+        alone = off.get(tuple(setting(run, key) for key in keys))
+        if setting(run, "guard.mode") != "on" or not is_clean(alone) or alone["min_edge_distance_m"] < KERBS_M.get(road(run), 0.0):
+            continue
+        row = rows.setdefault(setting(run, "preset"), {"runs": 0, "touched": 0, "steps": 0, "off": 0, "worst": 0.0, "slower": 0})
+        steps = sum(run["guard_reasons"].values()) + max(run["gate_interventions"] - alone["gate_interventions"], 0)
+        differs = max((abs(a / b - 1.0) for a, b in zip(run["lap_times_s"], alone["lap_times_s"])), default=0.0) if run["completed"] else 1.0
+        row["runs"] += 1
+        row["touched"] += steps > 0
+        row["steps"] += steps
+        row["off"] += run["off_track_events"] > 0
+        row["slower"] += differs > 0.005
+        row["worst"] = max(row["worst"], differs)
+    return markdown(("preset", "runs", "touched", "steps", "laps differ by 0.5 %", "worst lap", "off the road"),
+                    [[f"`{name}`", *(str(row[key]) for key in ("runs", "touched", "steps", "slower")), f"{100 * row['worst']:.1f} %",
+                      str(row["off"])] for name, row in rows.items()], 6)
 
 
 def road(run):

@@ -197,6 +197,13 @@ void slightly_false_plan(AttackCycle& cycle, StepResult& answer) {
   answer.command.steer += cycle.memory.side * cycle.memory.pace * kSmallOffset;
 }
 
+/// Weaves with growing amplitude, and shows the nominal plan with its own command at the beginning.
+void agreeing_plan(AttackCycle& cycle, StepResult& answer) {
+  const double weave = std::sin(cycle.since * kTwoPi / (2.0 * cycle.memory.pace));
+  answer.command.steer += std::min(kSwervingGrowth * cycle.since, cycle.lock) * weave;
+  if (answer.plan.size > 0) answer.plan.points[0].command = answer.command;
+}
+
 /// Shows a plan that stands still on the spot, and drives straight on.
 void plan_of_standing(AttackCycle& cycle, StepResult& answer) {
   answer.command = {.steer = 0.0, .throttle = 1.0};
@@ -269,6 +276,8 @@ constexpr std::array kKinds{
     AdversaryKind{"false_plan", "the nominal plan, and a command at full lock", false_plan},
     AdversaryKind{"half_false_plan", "the nominal plan, and a command a little beside it",
                   slightly_false_plan},
+    AdversaryKind{"agreeing_plan", "the nominal plan, and a weaving command that is its first",
+                  agreeing_plan},
     AdversaryKind{"standing_plan", "a plan that stands, and a command at full throttle", plan_of_standing},
     AdversaryKind{"bad_plan", "a plan of NaN, infinity and 1e308 with full lock", plan_of_bad_numbers},
     AdversaryKind{"everything", "all of them in turn",

@@ -25,6 +25,9 @@ constexpr Claim kClaims[] = {{"measured-latency", 38.0, 42.0}, {"fast-short-step
                              {"delay-in-model", 80.0, 92.0},   {"pid", 28.0, 31.0},
                              {"pure-pursuit", 28.0, 31.0},     {"stanley", 28.0, 31.0}};
 
+constexpr double kClear = 0.25;       // [m] to the edge without the guard, which wants 0.2
+constexpr std::uint64_t kRarely = 2;  // steps of a run: `default` is slowed for a silence in one of 1500
+
 void expect_clean_laps(const telemetry::RunSummary& run) {
   EXPECT_TRUE(run.completed) << run.preset << " on " << run.track << ": " << run.end_reason;
   EXPECT_EQ(run.off_track_events, 0) << run.preset << " on " << run.track;
@@ -57,46 +60,47 @@ TEST(Presets, LapTheOriginalLakeCleanlyAtTheSpeedTheyClaim) {
   }
 }
 
-/// As they are driven unless said otherwise: the guard may hold them back, and does them no harm.
-TEST(Presets, LapTheLakesideWithTheGuardOn) {
-  for (const Claim& claim : kClaims) {
-    const auto run =
-        drive({{"preset", claim.preset}, {"track", "lakeside"}, {"laps", "3"}, {"latency_ms", "100"}});
-    EXPECT_TRUE(run.completed) << claim.preset << ": " << run.end_reason;
-    EXPECT_EQ(run.off_track_events, 0) << claim.preset;
-    EXPECT_GE(top_mph(run), claim.low_mph) << claim.preset;
-    EXPECT_LT(run.fallbacks, 20U) << claim.preset;
-  }
-}
-
-/// Latencies of 80 to 180 ms and up to 60 ms of jitter: sensors and actuators are in order, and the guard
-/// that watches them finds nothing, wherever the preset stays on the road.
-TEST(Presets, AreNeverTakenForCarsWithFaults) {
-  using enum controller::GuardReason;
+/// With latencies of 80 to 180 ms and up to 60 ms of jitter: a preset that keeps off kerbs and on the road
+/// drives the same laps with the guard (docs/safety.md has the whole matrix).
+TEST(Presets, AreNeverTouchedByTheGuard) {
   constexpr int kDraws = kDrivesAll ? 100 : 4;
   constexpr const char* kTracks[] = {"lakeside", "original-lake", "oval", "hairpins"};
-  const std::uint64_t seed = std::random_device{}();
+  constexpr double kKerb = 0.5;  // [m] of hairpins: drivable, but no road
+  const std::uint64_t seed = kDrivesAll ? std::random_device{}() : 20261128;
   SCOPED_TRACE("seed " + std::to_string(seed));
   Random random(seed);
   std::vector<const char*> presets{"default"};
   for (const Claim& claim : kClaims) presets.push_back(claim.preset);
+  int count = 0;
   for (const char* preset : presets)
     for (int i = 0; i < kDraws; ++i) {
-      const Settings settings{{"guard.mode", "observe"},
-                              {"preset", preset},
-                              {"track", kTracks[i % 4]},
-                              {"laps", "2"},
-                              {"latency_ms", std::to_string(random.uniform(80.0, 180.0))},
-                              {"latency_jitter_ms", std::to_string(random.uniform(0.0, 60.0))},
-                              {"seed", std::to_string(1 + random.bits() % 1000)}};
+      const char* track = kTracks[i % 4];
+      Settings settings{{"preset", preset},
+                        {"track", track},
+                        {"laps", "2"},
+                        {"latency_ms", std::to_string(random.uniform(80.0, 180.0))},
+                        {"latency_jitter_ms", std::to_string(random.uniform(0.0, 60.0))},
+                        {"seed", std::to_string(1 + random.bits() % 1000)},
+                        {"guard.mode", "off"}};
+      const auto alone = drive(settings);
+      const double kerb = i % 4 == 3 ? kKerb : 0.0;
+      if (!alone.completed || !(alone.total.min_edge_distance > kerb + kClear)) continue;
+      settings.back().second = "on";
       const auto run = drive(settings);
-      if (!run.completed || run.off_track_events > 0) continue;
-      for (const controller::GuardReason reason : {kNotMeasured, kFrozen, kSpeedMismatch, kHeadingJump,
-                                                   kPositionJump, kLate, kOtherSteering, kWeakBrakes})
-        EXPECT_EQ(run.guard_reasons[static_cast<std::size_t>(reason)], 0U)
-            << controller::word_of(reason).sentence << ": " << preset << ' ' << settings[2].second << ' '
-            << settings[4].second << ' ' << settings[5].second << ' ' << settings[6].second;
+      const std::string name = std::string(preset) + " on " + track + ", " + settings[3].second + " ms and " +
+                               settings[4].second + " ms, seed " + settings[5].second;
+      ++count;
+      EXPECT_TRUE(run.completed && run.off_track_events == 0) << name << ": " << run.end_reason;
+      EXPECT_EQ(run.fallbacks, 0U) << name;
+      EXPECT_EQ(run.gate_interventions, alone.gate_interventions) << name;
+      std::uint64_t touched = 0;
+      for (std::size_t reason = 1; reason < run.guard_reasons.size(); ++reason)
+        touched += run.guard_reasons[reason];
+      EXPECT_LE(touched, kRarely) << name;
+      EXPECT_NEAR(run.laps.back().lap_time, alone.laps.back().lap_time, 0.005 * alone.laps.back().lap_time)
+          << name;
     }
+  EXPECT_GT(count, kDraws * 6);
 }
 
 TEST(Presets, StayOnTheRoadWhenTheAnswerIsLateOrSlow) {

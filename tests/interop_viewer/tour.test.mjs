@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The tours as a newcomer takes them: every step done on a real run, left and gone on with, with keyboard and on a phone.
+// The tours as a newcomer takes them: a step done on a real run, left and gone on with, by keyboard and on a phone.
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { DashboardPage, PHONE } from './dashboard_page.mjs';

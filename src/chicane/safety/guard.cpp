@@ -18,11 +18,8 @@ using controller::Answer;
 using controller::GuardReason;
 using controller::Rung;
 
-constexpr int kShown = 64;           // points of a backup that is drawn
-constexpr double kShownStep = 0.1;   // [s]
-constexpr double kMostDoubt = 0.5;   // [s] by which a controller's own time may differ from the measured
-constexpr double kSameSteer = 0.01;  // [rad] by which a plan's first command may differ from the answer
-constexpr double kSamePedal = 0.05;
+constexpr int kShown = 64;          // points of a backup that is drawn
+constexpr double kShownStep = 0.1;  // [s]
 // Braking of a car that is too fast for a silence: gentle, and stable without feedback.
 constexpr Braking kHeldBack{0.8, 1.6, 0.7};
 
@@ -32,20 +29,6 @@ bool is_finite(const model::Command& command) noexcept {
 
 bool is_same(const model::Command& a, const model::Command& b) noexcept {
   return a.steer == b.steer && a.throttle == b.throttle;
-}
-
-/// Whether the published plan begins with the command that is answered (Plan::points[0]).
-bool is_of(const controller::Plan& plan, const model::Command& answered) noexcept {
-  if (plan.size < 1) return false;
-  const model::Command& planned = plan.points[0].command;
-  return std::fabs(planned.steer - answered.steer) < kSameSteer &&
-         std::fabs(planned.throttle - answered.throttle) < kSamePedal;
-}
-
-/// When the command of this cycle acts [s]: what the controller says, where that is near what was measured.
-double act_time(const model::Measurement& seen, const controller::StepReport& report) noexcept {
-  const double usual = seen.time + seen.delay;
-  return std::fabs(report.act_time - usual) < kMostDoubt ? report.act_time : usual;
 }
 
 }  // namespace
@@ -245,17 +228,28 @@ const model::Measurement& Guard::look(const model::Measurement& measured) noexce
     expected.reset();
   }
   const model::Measurement& seen = monitor_.check(measured, expected ? &*expected : nullptr);
-  if (options_.road == GuardRoad::kWaypoints) filter_.leave_line(road_.line());
   road_.add(seen);
   take_up_line();
   watch_actuators(seen);
   estimator_.correct(seen, sent_);
+  if (expected) note_residual(*expected, seen.time);
   return options_.mode == GuardMode::kOn ? seen : measured;
+}
+
+/// How far the estimate moved from its prediction for this measurement: a certificate has to cover that.
+void Guard::note_residual(const model::State& expected, double time) noexcept {
+  const model::State& now = estimator_.state();
+  const auto [sine, cosine] = sine_cosine(now.psi);
+  const double v = std::max(now.vx, kRollsBackAtMost);
+  filter_.note_residual({.beside = (now.y - expected.y) * cosine - (now.x - expected.x) * sine,
+                         .course = angle_difference(now.psi, expected.psi) + (now.vy - expected.vy) / v,
+                         .yaw_rate = now.r - expected.r,
+                         .speed = now.vx - expected.vx},
+                        time);
 }
 
 void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
                    controller::StepResult& result) noexcept {
-  const double act = act_time(seen, result.report);
   sent_from_ = seen.time + seen.delay;
   filter_.begin_cycle();
   const bool has_answer = result.answer != Answer::kNone;
@@ -271,7 +265,7 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
     monitor_.reset();
     estimator_.reset();
   }
-  const std::optional<StopStart> start = place_on_road(act);
+  const std::optional<StopStart> start = place_on_road(sent_from_);
   watch_course(start);
   report_.reason = verdict.reason;
   if (!verdict.must_stop && actuators_.has_other_steering()) report_.reason = GuardReason::kOtherSteering;
@@ -289,7 +283,8 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
     return accept(seen, result);
   }
   if (verdict.must_stop && start && try_reset(*start, cycle, seen.time, result)) return;
-  if (!verdict.must_stop && should_lead_back(seen.time, has_answer) && lead_back(act, cycle, result)) return;
+  if (!verdict.must_stop && should_lead_back(seen.time, has_answer) && lead_back(sent_from_, cycle, result))
+    return;
   if (!start || !drive_backup(*start, result)) fall_back(seen, result);
   // What brakes a car that goes forward may be the reverse gear of one that rolls back.
   if (direction_.rolls_back() && result.command.throttle < 0.0)
@@ -298,11 +293,10 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
 
 /// Whether the answer may be sent; slowed down where it leaves only a closed-loop backup.
 bool Guard::filter(const StopStart& start, const Cycle& cycle, controller::StepResult& result) noexcept {
-  const controller::Plan* plan = is_of(result.plan, result.command) ? &result.plan : nullptr;
-  const Fit fit = verify(start, cycle, result.command, plan);
+  const Fit fit = verify(start, cycle, result.command);
   if (fit == Fit::kOpen) return true;
   report_.reason = GuardReason::kTooFastForSilence;
-  if (fit == Fit::kSeen && (options_.mode == GuardMode::kObserve || slow_down(start, cycle, plan, result)))
+  if (fit == Fit::kSeen && (options_.mode == GuardMode::kObserve || slow_down(start, cycle, result)))
     return true;
   report_.reason = GuardReason::kNoWayToStop;
   return false;
@@ -310,24 +304,21 @@ bool Guard::filter(const StopStart& start, const Cycle& cycle, controller::StepR
 
 /// Of the command as the gate would send it.
 Fit Guard::verify(const StopStart& start, const Cycle& cycle, const model::Command& command,
-                  const controller::Plan* plan, bool is_led) noexcept {
+                  bool is_led) noexcept {
   return filter_.verify({.road = road_,
                          .start = start,
                          .command = limited(command, cycle.interval),
-                         .intended = plan,
                          .interval = cycle.interval,
                          .is_led = is_led},
                         report_);
 }
 
 /// The controller steers; the pedal is limited to gentle braking. False where that leaves no backup at all.
-bool Guard::slow_down(const StopStart& start, const Cycle& cycle, const controller::Plan* plan,
-                      controller::StepResult& result) noexcept {
+bool Guard::slow_down(const StopStart& start, const Cycle& cycle, controller::StepResult& result) noexcept {
   model::Command slower = result.command;
   const double slowing = filter_.planner().slowing(road_, start, kHeldBack);
   slower.throttle = std::min(slower.throttle, throttle_for(model_.vehicle(), slowing, start.body.vx));
-  if (slower.throttle < result.command.throttle && verify(start, cycle, slower, plan) == Fit::kNone)
-    return false;
+  if (slower.throttle < result.command.throttle && verify(start, cycle, slower) == Fit::kNone) return false;
   result.command = slower;
   return true;
 }
@@ -366,12 +357,12 @@ void Guard::accept(const model::Measurement& seen, controller::StepResult& resul
   if (result.plan.size > 0) {
     fallback_.accept(result.plan);
   } else {
-    fallback_.accept(result.command, act_time(seen, result.report), seen.speed);
+    fallback_.accept(result.command, sent_from_, seen.speed);
   }
 }
 
 void Guard::fall_back(const model::Measurement& seen, controller::StepResult& result) noexcept {
-  const Fallback::Answer answer = fallback_.command(act_time(seen, result.report), seen);
+  const Fallback::Answer answer = fallback_.command(sent_from_, seen);
   result.answer = Answer::kNone;
   result.command = answer.command;
   report_.rung = answer.rung;
@@ -383,7 +374,8 @@ void Guard::fall_back(const model::Measurement& seen, controller::StepResult& re
 bool Guard::drive_backup(const StopStart& start, controller::StepResult& result) noexcept {
   const Findings& findings = monitor_.findings();
   const bool is_open = findings.unmeasured || findings.frozen || findings.late;
-  if (!filter_.drive(road_, start, is_open, report_)) return false;
+  const bool may_race_on = report_.reason == GuardReason::kNoWayToStop;
+  if (!filter_.drive(road_, start, is_open, may_race_on, report_)) return false;
   result.answer = Answer::kNone;
   result.command = filter_.stop().points[0].command;
   report_.rung = Rung::kGuardStop;

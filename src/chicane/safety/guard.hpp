@@ -102,12 +102,13 @@ class Guard {
       3.0;  ///< [m/s] faster a car does not roll back: its heading is wrong
 
   void take_up_line() noexcept;
+  void note_residual(const model::State& expected, double time) noexcept;
   void choose(const model::Measurement& seen, const Cycle& cycle, controller::StepResult& result) noexcept;
   [[nodiscard]] bool filter(const StopStart& start, const Cycle& cycle,
                             controller::StepResult& result) noexcept;
   [[nodiscard]] Fit verify(const StopStart& start, const Cycle& cycle, const model::Command& command,
-                           const controller::Plan* plan, bool is_led = false) noexcept;
-  [[nodiscard]] bool slow_down(const StopStart& start, const Cycle& cycle, const controller::Plan* plan,
+                           bool is_led = false) noexcept;
+  [[nodiscard]] bool slow_down(const StopStart& start, const Cycle& cycle,
                                controller::StepResult& result) noexcept;
   [[nodiscard]] model::Command limited(const model::Command& command, double interval) const noexcept;
   void accept(const model::Measurement& seen, controller::StepResult& result) noexcept;

@@ -10,7 +10,7 @@ namespace chicane::safety {
 
 /// Version of the guard, in results and recordings: raised when the guard may decide differently on the same
 /// input. Runs that name none are of version 1.
-inline constexpr int kGuardVersion = 4;
+inline constexpr int kGuardVersion = 5;
 
 /// What a guard does with what it finds.
 enum class GuardMode : std::uint8_t {

@@ -50,7 +50,6 @@ void Guard::forget_road() {
 void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
   // The road that the lap was planned for has to be the one that the guard knows.
   if (lap && lap->is_learned() == (options_.road == GuardRoad::kWaypoints)) {
-    filter_.leave_line(road_.line());
     road_.use_line(lap.get());
     take_up_line();
   }
@@ -59,12 +58,12 @@ void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
   controller_->use_line(std::move(lap));
 }
 
-/// The road's line is another one. The backup in store was verified on the same road: it stays.
+/// The road's line is another one. The stored policy is a law that holds on any line of the road: it stays.
 void Guard::take_up_line() noexcept {
   if (revision_ == road_.revision()) return;
   revision_ = road_.revision();
   has_place_ = false;
-  filter_.join_line(road_.line());
+  if (road_.line().is_empty()) filter_.forget();
 }
 
 /// Where the car will be on the known road when the command acts; none when car or road are lost.

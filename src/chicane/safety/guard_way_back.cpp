@@ -60,7 +60,7 @@ bool Guard::try_reset(const StopStart& start, const Cycle& cycle, double time,
   // A car that stopped where the known road ends has no stop ahead of it; well inside the edges and along the
   // road the way of the trial does without.
   const bool has_room = filter_.planner().edge(road_, start) >= kTrialRoom && std::fabs(start.e) < kAlong;
-  if (verify(start, cycle, command, nullptr, true) == Fit::kNone && !has_room) return false;
+  if (verify(start, cycle, command, true) == Fit::kNone && !has_room) return false;
   tried_ += std::max(speed, kTrialSpeed) * std::max(cycle.interval, 0.0);
   result.answer = Answer::kNone;
   result.command = command;
@@ -107,7 +107,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
                               : tracking::way_back(line, place, car, model_.vehicle());
   const std::optional<StopStart> start = place_on_road(act);
   if (is_astray_) filter_.forget();
-  const Fit fit = start ? verify(*start, cycle, result.command, nullptr, true) : Fit::kNone;
+  const Fit fit = start ? verify(*start, cycle, result.command, true) : Fit::kNone;
   // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there,
   // and once it stands.
   const bool is_off = start && filter_.planner().edge(road_, *start) < 0.0;

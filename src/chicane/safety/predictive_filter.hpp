@@ -1,150 +1,117 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 
 #include "chicane/base/owned.hpp"
-#include "chicane/base/vec2.hpp"
-#include "chicane/controller/controller.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/known_road.hpp"
-#include "chicane/road/reference_line.hpp"
 #include "chicane/safety/guard_report.hpp"
 #include "chicane/safety/stop_plan.hpp"
 #include "chicane/safety/stop_planner.hpp"
-#include "chicane/safety/stop_search.hpp"
 
 namespace chicane::safety {
 
-/// What a backup was verified for, weakest first.
+/// What a certificate covers, weakest first.
 enum class Fit : std::uint8_t {
-  kNone,  ///< no backup keeps the margin
-  kSeen,  ///< one does while the car is measured (closed loop)
-  kOpen,  ///< one does also when the receiver plays it without measurements (open loop)
+  kNone,  ///< nothing: no stop keeps the margin
+  kSeen,  ///< a stop in closed loop, while the car is measured
+  kOpen,  ///< also the same stop played by a receiver without measurements
 };
 
-/// The predictive safety filter (docs/safety.md, section 2): a command may be sent if, after it, a backup
-/// trajectory to standstill on the known road exists that was verified by simulation; the last verified one
-/// is stored and driven when it may not.
+/// The predictive safety filter (docs/safety.md, section 2). A command may be sent if a stop exists after it:
+/// a policy with its own feedback that brings the car to standstill on the known road, in the model and in
+/// two cars that differ from it. One function, certify(), judges every policy; who proposes it does not
+/// count. The last certified policy is stored, and driven when a command is refused.
 ///
-/// A backup is the controller's published plan for 0 to 3 s, then the stop law. Deterministic; no allocation
-/// after construction; one thread; one simulation to standstill for each kind of
-/// backup at most. Near a planned lap a call tries two kinds, and the next one others.
+/// Deterministic; no allocation after construction; one thread.
 class PredictiveFilter {
  public:
   /// Fixed for a run.
   struct Terms {
-    double margin = 0.2;      ///< of the tyres from the edge in a backup [m]
+    double margin = 0.2;      ///< of the tyres from the edge in a stop [m]
     double least_edge = 0.0;  ///< the same of a slow car that is nearer to the edge already [m]
-    double open_time = 30.0;  ///< length of a silence for which backups are verified open loop [s]; 0: none
+    double open_time = 30.0;  ///< length of a silence for which stops are certified open loop [s]; 0: none
   };
 
   PredictiveFilter(const model::VehicleParams& vehicle, const Terms& terms)
       : planner_{vehicle},
-        search_{vehicle},
         model_{vehicle},
         terms_{terms},
-        backup_{std::make_unique<StopCourse>()},
-        tried_{std::make_unique<StopCourse>()},
-        intended_{std::make_unique<StopCourse>()} {}
+        stop_{std::make_unique<StopPlan>()},
+        tried_{std::make_unique<StopPlan>()} {}
 
   void set_vehicle(const model::VehicleParams& vehicle) noexcept {
     planner_.set_vehicle(vehicle);
-    search_.set_vehicle(vehicle);
     model_.set_vehicle(vehicle);
   }
-  /// The stored backup's places in the world, along the line that they are expressed by; and back, along
-  /// another line of the same road. The backup is forgotten where it is nowhere near that one.
-  void leave_line(const road::ReferenceLine& line) noexcept;
-  void join_line(const road::ReferenceLine& line) noexcept;
-  /// Forgets the stored backup: another road or another run begins.
-  void forget() noexcept {
-    backup_->stop.size = 0;
-    next_kind_ = 0;
-    search_.forget();
-  }
+  /// Forgets the stored policy and what residuals have shown: another road or another run begins.
+  void forget() noexcept;
+  /// How far a measurement was from its prediction one cycle before, at `time` [s]: eq. 5c.
+  void note_residual(const Doubt& residual, double time) noexcept;
 
   /// A command that shall act from `start` on, held until the next one.
   struct Request {
     const road::KnownRoad& road;
     const StopStart& start;
     model::Command command;
-    const controller::Plan* intended;  ///< published by the controller for this command; null: none
-    double interval = 0.0;             ///< between two commands [s]; <= 0: not known
-    bool is_led = false;               ///< the guard's own, at walking pace
+    double interval = 0.0;  ///< between two commands [s]; <= 0: not known
+    bool is_led = false;    ///< the guard's own command, at walking pace
   };
-  /// Verifies a backup from where `request` leads and stores it. Writes stop_edge and stop_distance. The
-  /// stored backup stays when none is verified; it counts as verified where the command leads into its tube.
+  /// Whether a certified stop exists where `request` leads; the stop is stored. The stored one stays when
+  /// none exists. Writes stop_edge and stop_distance.
   [[nodiscard]] Fit verify(const Request& request, GuardReport& report) noexcept;
 
-  /// The command of the backup at `start`, after it was verified from there or brought up to date. `is_open`:
-  /// the car is not measured, `start` comes from the model. False: no backup is stored and none was found.
+  /// Stores the way to standstill from `start` on: the stored policy, or a certified one where the stored one
+  /// holds no more. `is_open`: the car is not measured, `start` comes from the model. `may_race_on`: the car
+  /// may stay on a planned lap for a while, where a certified stop follows. False: there is none.
   [[nodiscard]] bool drive(const road::KnownRoad& road, const StopStart& start, bool is_open,
-                           GuardReport& report) noexcept;
+                           bool may_race_on, GuardReport& report) noexcept;
 
-  /// The backup in store, from the moment at which the next command would act. Size 0: none.
-  [[nodiscard]] const StopPlan& stop() const noexcept { return is_current_ ? backup_->stop : kNoStop; }
-  /// A control cycle begins: the backup in store is one of the cycle before until it is verified or shifted.
+  /// The stored way to standstill, from the moment at which the next command acts. Size 0: none.
+  [[nodiscard]] const StopPlan& stop() const noexcept { return is_current_ ? *stop_ : kNoStop; }
+  /// A control cycle begins: the stored stop is of the cycle before until verify() or drive() renew it.
   void begin_cycle() noexcept { is_current_ = false; }
   [[nodiscard]] const StopPlanner& planner() const noexcept { return planner_; }
 
  private:
-  /// What a backup has to keep.
+  /// What a certificate has to keep.
   struct Goal {
-    double edge_before = 0.0;   ///< least distance to the edge until it begins [m]
-    double margin = 0.0;        ///< [m]
-    double open_time = 0.0;     ///< [s]
-    bool drives_on = false;     ///< the car can turn back along the road at its end
-    bool may_brake_now = true;  ///< the tyres leave room for the stop law's model
-    bool is_planned = true;     ///< by a controller that publishes its plan, which stays away from the limit
+    double margin = 0.0;      ///< of the car as modelled [m]
+    double open_time = 0.0;   ///< [s]
+    bool turns_back = false;  ///< at its end the car can turn back along the road
+    bool is_driven = false;   ///< simulated to its end and without doubt: the car is on it already
   };
-  /// One simulated candidate.
   struct Candidate {
-    StopCheck check;
+    StopCheck check{};
     Fit fit = Fit::kNone;
-    double worth = 0.0;  ///< to choose between candidates that do not fit [m]
+    double worth = -std::numeric_limits<double>::infinity();  ///< orders candidates of one fit [m]
   };
-  [[nodiscard]] Candidate judge(const road::KnownRoad& road, const StopStart& from, const StopCheck& check,
-                                const Goal& goal) const noexcept;
-  void store(const Candidate& candidate, GuardReport& report) noexcept;
-  [[nodiscard]] Fit stop_by(int kind, const road::KnownRoad& road, const StopStart& from, const Goal& goal,
-                            Fit best, GuardReport& report) noexcept;
-  [[nodiscard]] static bool may_be(int kind, const Goal& goal) noexcept;
-  [[nodiscard]] Fit stop_in_turn(int count, const road::KnownRoad& road, const StopStart& from,
-                                 const Goal& goal, GuardReport& report) noexcept;
-  [[nodiscard]] Fit best_stop(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
-                              GuardReport& report) noexcept;
-  [[nodiscard]] Fit stop_searched(const road::KnownRoad& road, const StopStart& from, const Goal& goal,
-                                  GuardReport& report) noexcept;
-  void read_plan(const Request& request, double longest) noexcept;
-  [[nodiscard]] bool intends(const Request& request) noexcept;
-  [[nodiscard]] bool is_in_tube(const road::KnownRoad& road, const StopStart& at) const noexcept;
-  [[nodiscard]] bool drives_planned_lap(const road::KnownRoad& road, const StopStart& at,
-                                        double wide) const noexcept;
-  [[nodiscard]] bool returns_to_lap(const road::KnownRoad& road, const StopStart& at) const noexcept;
-  [[nodiscard]] Fit go_on_along_lap(const road::KnownRoad& road, const StopStart& at) noexcept;
-  [[nodiscard]] Fit go_back_to_lap(const road::KnownRoad& road, const StopStart& at) noexcept;
+  [[nodiscard]] Candidate certify(const road::KnownRoad& road, const StopStart& from, const Policy& policy,
+                                  const Goal& goal) noexcept;
+  [[nodiscard]] bool consider(const road::KnownRoad& road, const StopStart& from, const Policy& policy,
+                              const Goal& goal, Candidate& best, GuardReport& report) noexcept;
+  [[nodiscard]] Fit verify_held(const Request& request, double held, GuardReport& report) noexcept;
+  [[nodiscard]] double margin_for(const Request& request, const StopStart& next,
+                                  double edge_now) const noexcept;
+  [[nodiscard]] double slip(const StopStart& at) const noexcept;
   [[nodiscard]] bool shift_to(double time) noexcept;
-  void shift_to_place(const road::KnownRoad& road, const StopStart& at) noexcept;
 
   StopPlanner planner_;
-  StopSearch search_;  ///< where the law does not find a stop
   model::PredictionModel model_;
   Terms terms_;
-  Owned<StopCourse> backup_;    ///< in store
-  Owned<StopCourse> tried_;     ///< the candidate being simulated, then the spare
-  Owned<StopCourse> intended_;  ///< the controller's plan along the line
-  struct Pose {
-    Vec2 position;
-    double heading = 0.0;  ///< [rad]
-  };
-  std::array<Pose, StopPlan::kCapacity> poses_{};  ///< of the backup's places, between two lines
-  Fit backup_fit_ = Fit::kNone;
-  int next_kind_ = 0;        ///< of backup that is tried first: the one that held last, stop_by()
-  bool is_current_ = false;  ///< the backup was stored or shifted in this cycle
+  Owned<StopPlan> stop_;   ///< the stored policy's course from now on
+  Owned<StopPlan> tried_;  ///< the candidate that was simulated last
+  Policy stored_;
+  bool has_stored_ = false;
+  Doubt residual_;                                                ///< root mean squares
+  double residual_at_ = 0.0;                                      ///< [s]
+  double refused_at_ = -std::numeric_limits<double>::infinity();  ///< the last drive() [s]
+  int law_ = 0;                                                   ///< that was certified last, tried first
+  bool is_current_ = false;                                       ///< stop_ is of this cycle
   static const StopPlan kNoStop;
 };
 

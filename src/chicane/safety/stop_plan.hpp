@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <memory>
 
 #include "chicane/model/state.hpp"
 
@@ -21,6 +23,14 @@ struct StopPlan {
   static constexpr int kCapacity = 128;
   int size = 0;  ///< points in use, by rising time; 0: no plan
   std::array<StopPoint, kCapacity> points{};
+
+  /// One more point; nothing where the plan is full.
+  void add(const StopPoint& point) noexcept {
+    if (size < kCapacity) points[static_cast<std::size_t>(size++)] = point;
+  }
 };
+[[nodiscard]] inline std::unique_ptr<StopPlan> copy_of(const StopPlan& plan) {
+  return std::make_unique<StopPlan>(plan);
+}
 
 }  // namespace chicane::safety

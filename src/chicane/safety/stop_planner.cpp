@@ -16,11 +16,10 @@
 namespace chicane::safety {
 namespace {
 
-constexpr double kStep = 0.05;      // [s] of the simulation
-constexpr int kStepsPerPoint = 2;   // of the simulation, in the plan
-constexpr double kStanding = 0.3;   // [m/s] slower than that the car counts as standing
-constexpr double kSlow = 3.0;       // [m/s] below which its turning is corrected
-constexpr double kBandwidth = 1.0;  // [rad/s] of the feedback to the line
+constexpr double kStep = 0.05;     // [s] of the simulation
+constexpr int kStepsPerPoint = 2;  // of the simulation, in the plan
+constexpr double kStanding = 0.3;  // [m/s] slower than that the car counts as standing
+constexpr double kSlow = 3.0;      // [m/s] below which its turning is corrected
 constexpr double kDamping = 0.7;
 constexpr double kLapDamping =
     1.0;  // the same to a planned lap, which is too near to the edge to overshoot it
@@ -29,11 +28,11 @@ constexpr double kPreview = 0.2;           // [s] the car answers the wheel abou
 constexpr double kGripShare = 0.85;        // of the believed tyre force of the rear axle, used sideways
 constexpr double kGravity = 9.81;          // [m/s²]
 constexpr double kLeastBraking = 0.15;     // of the useful one, in any curve
-constexpr double kFeedbackShare = 0.4;     // of the grip, for coming back to the middle of the road
-constexpr double kStopMargin = 0.6;        // [m] wanted to the edge by a car that stops
+constexpr double kMostPerMetre = 0.25;     // [1/m] of the feedback: ω/v of a slow car
 constexpr int kTurns = 3;                  // of the search for a stable deceleration
 constexpr double kSlipShift = 2e-3;        // [rad] to either side, for slopes of the axles' forces
 constexpr double kStiffnessDoubt = 0.015;  // of the rear axle's
+constexpr double kFrictionDoubt = 0.04;    // of the friction
 constexpr double kYawRateDoubt = 0.007;    // [rad/s]
 constexpr double kHeadingDoubt = 0.002;    // [rad]
 constexpr double kDoubtWithWheels = 0.6;   // of these, where the car is simulated with its four wheels
@@ -41,11 +40,16 @@ constexpr double kForeseenUse = 0.55;      // of the grip, in the bends ahead
 constexpr double kStride = 10.0;           // [m] between the places ahead
 constexpr double kHorizon = 200.0;         // [m]
 constexpr double kSpeedTime = 0.4;         // [s] in which a planned speed is met again
-constexpr double kPlanSpacing = 0.08;      // [s] between the places of a controller's plan
 constexpr double kMostSlide = 0.35;        // [rad] of slip: a car that slides more spins, by no model known
 constexpr double kSlideGrows = 0.1;        // [rad] by which one that slides more already may slide further
+constexpr double kLeastShrink = 0.2;       // of 1 − κ d, near the centre of a bend
 constexpr double kLeastTurning = 0.02;     // [1/m] of a car that turns back along the road
 constexpr double kMostOffset = 20.0;       // [m] beside the line the stop is given up
+
+/// Where the known road ends for a stop from `start` on [m]: a closed road after a lap.
+double end_of(const road::KnownRoad& road, const StopStart& start) noexcept {
+  return road.line().is_closed() ? start.s + road.line().length() : road.line().length();
+}
 
 /// How far the car's course is off its heading [rad], where slip angles say something.
 double slide(const model::BodyMotion<double>& body) noexcept {
@@ -60,40 +64,45 @@ void StopPlanner::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   friction_ = vehicle.cornering_friction();
   model::VehicleParams other = vehicle;
   doubt_ = car_.has_wheels() ? kDoubtWithWheels : 1.0;
+  other.friction = (1.0 - kFrictionDoubt) * vehicle.friction;
   other.cornering_rear = (1.0 - doubt_ * kStiffnessDoubt) * vehicle.cornering_rear;
   softer_.set_vehicle(other);
   other.cornering_rear = (1.0 + doubt_ * kStiffnessDoubt) * vehicle.cornering_rear;
   stiffer_.set_vehicle(other);
 }
 
-/// The least distance to the edge [m] of the two cars that are a little other than believed, in the first
-/// `time` [s] of what `command_at` says at a place, after `driven` [m] and at `speed` [m/s]. Step by step in
-/// turn: what one of them waits for, the other computes meanwhile.
+/// Two cars that begin to either side of `start`, each driven by what `command_at` returns for a car, a step,
+/// a place, the distance driven [m] and the speed [m/s]. Step by step in turn: the processor computes one
+/// while the other waits.
 template <class Law>
-BlindCheck StopPlanner::doubted_edge(const road::KnownRoad& road, const StopStart& start, double time,
-                                     const Law& command_at) const noexcept {
+DoubtCheck StopPlanner::in_doubt(const road::KnownRoad& road, const StopStart& start, const Doubt& doubt,
+                                 double time, double least, const Law& command_at) const noexcept {
   const double reach = steer_reach(kStep);
   const StopCar::Step step = car_.step(kStep);
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  BlindCheck check{.edge_for = kFar, .edge = kFar};
-  struct Doubted {
+  const double end = end_of(road, start);
+  const double most_slide = std::max(kMostSlide, slide(start.body) + kSlideGrows);
+  struct Car {
     const StopCar& car;
     StopStart at;
-    double speed, driven = 0.0;
-    bool is_on_road = true;
+    double speed = 0.0, driven = 0.0;
+    bool drives = true;
   };
-  const double speed = hypot(start.body.vx, start.body.vy);
-  std::array<Doubted, 2> cars{{{softer_, start, speed}, {stiffer_, start, speed}}};
+  DoubtCheck check;
+  std::array<Car, 2> cars{{{softer_, start}, {stiffer_, start}}};
   for (std::size_t k = 0; k < cars.size(); ++k) {
     const double inwards = std::copysign(k == 0 ? 1.0 : -1.0, start.body.r);
-    cars[k].at.body.r += inwards * doubt_ * kYawRateDoubt;
-    cars[k].at.e += inwards * doubt_ * kHeadingDoubt;
+    StopStart& at = cars[k].at;
+    at.d += inwards * doubt.beside;
+    at.e += inwards * (doubt_ * kHeadingDoubt + doubt.course);
+    at.body.r += inwards * (doubt_ * kYawRateDoubt + doubt.yaw_rate);
+    at.body.vx += doubt.speed;
+    cars[k].speed = hypot(at.body.vx, at.body.vy);
+    cars[k].drives = cars[k].speed >= kStanding;
   }
-  const auto drives = [](const Doubted& each) { return each.is_on_road && each.speed >= kStanding; };
-  for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity && (drives(cars[0]) || drives(cars[1])); ++i) {
+  for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity && (cars[0].drives || cars[1].drives); ++i) {
     for (std::size_t k = 0; k < cars.size(); ++k) {
-      Doubted& each = cars[k];
-      if (!drives(each)) continue;
+      Car& each = cars[k];
+      if (!each.drives) continue;
       const double before = each.speed;
       move(each.car, road, each.at, command_at(k, i, each.at, each.driven, before), step, reach);
       each.speed = hypot(each.at.body.vx, each.at.body.vy);
@@ -101,47 +110,48 @@ BlindCheck StopPlanner::doubted_edge(const road::KnownRoad& road, const StopStar
       const double now = edge(road, each.at);
       check.edge = std::min(check.edge, now);
       if (each.at.time < start.time + time + 0.5 * kStep) check.edge_for = std::min(check.edge_for, now);
-      each.is_on_road = now >= 0.0;
-      if (!each.is_on_road) check.speed = std::max(check.speed, each.speed);
+      if (now < least) check.speed = std::max(check.speed, each.speed);
+      check.stands &= now >= least && slide(each.at.body) <= most_slide && each.at.s < end;
+      each.drives = now >= least && each.speed >= kStanding;
     }
+    if (!check.stands && !(time > 0.0)) break;  // nothing more is asked
   }
+  check.stands &= !cars[0].drives && !cars[1].drives;
   return check;
 }
 
-BlindCheck StopPlanner::played_edge(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
-                                    double time) const noexcept {
+DoubtCheck StopPlanner::plan_in_doubt(const road::KnownRoad& road, const StopStart& start,
+                                      const Policy& policy, const Doubt& doubt, double least) const noexcept {
+  std::array<model::Command, 2> held;
+  return in_doubt(road, start, doubt, 0.0, least,
+                  [&](std::size_t k, int i, const StopStart& at, double, double) {
+                    if (i % kStepsPerPoint == 0) held[k] = command(road, at, policy);
+                    return held[k];
+                  });
+}
+
+DoubtCheck StopPlanner::played(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
+                               double time) const noexcept {
   std::array<int, 2> point{};
-  return doubted_edge(road, start, time,
-                      [&](std::size_t k, int, const StopStart&, double driven, double speed) {
-                        return played(stop, driven, speed, model_.vehicle(), point[k]);
-                      });
+  return in_doubt(road, start, {}, time, 0.0,
+                  [&](std::size_t k, int, const StopStart&, double driven, double speed) {
+                    return safety::played(stop, driven, speed, model_.vehicle(), point[k]);
+                  });
 }
 
-double StopPlanner::followed_edge(const road::KnownRoad& road, const StopStart& start,
-                                  const StopCourse& stop) const noexcept {
-  std::array<std::size_t, 2> place{};
-  std::array<model::Command, 2> command;
-  const auto last = static_cast<std::size_t>(stop.stop.size - 1);
-  constexpr double kForEver = 1e9;
-  return doubted_edge(road, start, kForEver,
-                      [&](std::size_t k, int i, const StopStart& at, double, double) {
-                        if (i % kStepsPerPoint == 0)
-                          command[k] =
-                              at.s < stop.places[last].s ? along(stop, place[k], 0.0, at) : law(road, at, {});
-                        return command[k];
-                      })
-      .edge;
-}
-
+/// Of the outermost contact patch, on a road that is an arc between the axles (eq. 1a).
 double StopPlanner::edge(const road::KnownRoad& road, const StopStart& at) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double half_track = 0.5 * (car.track_width + car.tire_width);
   const auto [sine, cosine] = sine_cosine(at.e);
   const double beside = half_track * cosine;
+  const double curvature = road.line().demand(at.s).curvature;
   double least = std::numeric_limits<double>::infinity();
   for (const double x : {car.front_axle, -car.rear_axle}) {
-    const double middle = at.d + x * sine;
-    const road::KnownRoad::Edges edges = road.edges(at.s + x);
+    const double across = at.d + x * sine;
+    const double along = x * cosine / std::max(1.0 - curvature * across, kLeastShrink);
+    const double middle = across - 0.5 * curvature * along * x * cosine;
+    const road::KnownRoad::Edges edges = road.edges(at.s + along);
     least = std::min({least, edges.left - middle - beside, edges.right + middle - beside});
   }
   return least;
@@ -224,30 +234,32 @@ double StopPlanner::braking_share(double sideways, double deceleration, double v
   return low;
 }
 
-model::Command StopPlanner::law(const road::KnownRoad& road, const StopStart& at,
-                                const Braking& braking) const noexcept {
+model::Command StopPlanner::command(const road::KnownRoad& road, const StopStart& at,
+                                    const Policy& policy) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double v = std::max(at.body.vx, 1.0);
-  const Curvatures curvatures = curvatures_of(road, at);
+  const Curvatures curvatures = curvatures_of(road, at, policy);
   // The wheel that gives the yaw rate this asks for, by the model: a braking car oversteers.
   const double yaw_acceleration = kYawBandwidth * (v * curvatures.wanted - at.body.r);
   const double steer =
       std::clamp(model_.steer_for(at.body, yaw_acceleration), -car.steer_limit, car.steer_limit);
-  return {steer, throttle_to_rest(car, slowing(road, at, braking, curvatures), at.body.vx)};
+  if (!(at.time < policy.until) || !road.is_raced())
+    return {steer, throttle_to_rest(car, slowing(road, at, policy.braking, curvatures), at.body.vx)};
+  return {steer, std::max(throttle_for(car, raced_slowing(road, at), v), lowest_throttle(car, v))};
 }
 
 /// What is wanted brings the car towards the middle of the road, where there is most room on both sides, or
 /// to the line that is raced by.
-StopPlanner::Curvatures StopPlanner::curvatures_of(const road::KnownRoad& road,
-                                                   const StopStart& at) const noexcept {
+StopPlanner::Curvatures StopPlanner::curvatures_of(const road::KnownRoad& road, const StopStart& at,
+                                                   const Policy& policy) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double v = std::max(at.body.vx, 1.0);
   const double ahead = road.line().demand(at.s + kPreview * v).curvature;
   const double course = at.e + at.body.vy / v;
   const double beside =
-      at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + kStopMargin);
-  return {.ahead = ahead,
-          .wanted = ahead + back_to(beside, course, v, road.is_raced() ? kLapDamping : kDamping)};
+      at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + policy.room);
+  const double damping = road.is_raced() ? kLapDamping : kDamping;
+  return {.ahead = ahead, .wanted = ahead + back_to(beside, course, v, policy, damping)};
 }
 
 double StopPlanner::slowing(const road::KnownRoad& road, const StopStart& at, const Braking& braking,
@@ -270,7 +282,7 @@ double StopPlanner::slowing(const road::KnownRoad& road, const StopStart& at, co
       raced);
 }
 
-/// The acceleration [m/s²] that keeps the car no faster than the planned lap: a car that drives its line more
+/// The acceleration [m/s²] that brings the car to the planned lap's speed: a car that drives its line more
 /// slowly needs less grip everywhere. Infinite where no lap is raced by.
 double StopPlanner::raced_slowing(const road::KnownRoad& road, const StopStart& at) const noexcept {
   if (!road.is_raced()) return std::numeric_limits<double>::infinity();
@@ -306,7 +318,7 @@ void StopPlanner::move(const StopCar& car, const road::KnownRoad& road, StopStar
   const double vy = rolls * 0.5 * (at.body.vy + to.vy);
   const double turned = rolls * 0.5 * dt * (at.body.r + to.r);
   const double curvature = road.line().demand(at.s).curvature;
-  const double shrink = std::max(1.0 - curvature * at.d, 0.2);
+  const double shrink = std::max(1.0 - curvature * at.d, kLeastShrink);
   const double e = at.e + 0.5 * turned - 0.5 * dt * curvature * vx / shrink;
   const auto [sine, cosine] = sine_cosine(e);
   const double along = dt * (vx * cosine - vy * sine) / shrink;
@@ -339,135 +351,36 @@ StopStart StopPlanner::advance(const road::KnownRoad& road, const StopStart& fro
   return at;
 }
 
-/// The curvature that brings a car back that is `beside` its place [m] and has another `course` [rad].
-double StopPlanner::back_to(double beside, double course, double v, double damping) const noexcept {
+/// The curvature that brings a car back that is `beside` its place [m] and has another `course` [rad]. The
+/// feedback is one of distance below kMostPerMetre: a slow car is not turned across the road.
+double StopPlanner::back_to(double beside, double course, double v, const Policy& policy,
+                            double damping) const noexcept {
   const double grip = kGripShare * friction_ * model_.load(v);
-  const double most = kFeedbackShare * grip / ((1.0 - model_.vehicle().steer_helper) * v * v);
-  return std::clamp(-kBandwidth * kBandwidth * beside / (v * v) - 2.0 * damping * kBandwidth * course / v,
-                    -most, most);
+  const double most = policy.grip_share * grip / ((1.0 - model_.vehicle().steer_helper) * v * v);
+  const double k = std::min(policy.bandwidth / v, kMostPerMetre);
+  return std::clamp(-k * k * beside - 2.0 * damping * k * course, -most, most);
 }
 
-/// The command of `before` where the car is at `at`, a point or more after `place`, with what brings it back.
-model::Command StopPlanner::along(const StopCourse& before, std::size_t& place, double lap,
-                                  const StopStart& at) const noexcept {
-  const auto last = static_cast<std::size_t>(before.stop.size - 1);
-  while (place + 1 < last && before.places[place + 1].s <= at.s - lap) ++place;
-  const StopStart& from = before.places[place];
-  const StopStart& to = before.places[place + 1];
-  const double share = std::clamp((at.s - lap - from.s) / std::max(to.s - from.s, 1e-3), 0.0, 1.0);
-  const auto between = [share](double a, double b) { return a + share * (b - a); };
-  const double v = std::max(at.body.vx, 1.0);
-  const double v_then = std::max(between(from.body.vx, to.body.vx), 1.0);
-  const double course_then = between(from.e, to.e) + between(from.body.vy, to.body.vy) / v_then;
-  const double curvature =
-      back_to(at.d - between(from.d, to.d), at.e + at.body.vy / v - course_then, v, kDamping);
-  const double r = between(from.body.r, to.body.r) * v / v_then + v * curvature;
-  const double distance = between(before.stop.points[place].distance, before.stop.points[place + 1].distance);
-  int point = static_cast<int>(place);
-  model::Command command =
-      played(before.stop, distance, hypot(at.body.vx, at.body.vy), model_.vehicle(), point);
-  if (const double drive = before.stop.points[place].command.throttle; drive > 0.0) {
-    const double lost = between(from.body.vx, to.body.vx) - at.body.vx;
-    const double wanted = longitudinal_acceleration(model_.vehicle(), drive, at.body.vx) + lost / kSpeedTime;
-    command.throttle = throttle_for(model_.vehicle(), wanted, at.body.vx);
-  }
-  // Between the wheels of both places: a stop that is followed anew in each cycle begins a new place each
-  // time, and with the wheel of the old one it would never come to the next.
-  const double steer =
-      between(before.stop.points[place].command.steer, before.stop.points[place + 1].command.steer);
-  const double limit = model_.vehicle().steer_limit;
-  command.steer = std::clamp(
-      steer + model_.steer_for(at.body, kYawBandwidth * (r - at.body.r)) - model_.steer_for(at.body, 0.0),
-      -limit, limit);
-  return command;
-}
-
-StopCheck StopPlanner::plan(const road::KnownRoad& road, const StopStart& start, const Braking& braking,
-                            StopCourse& out, double least) const noexcept {
-  return drive(
-      road, start, [&](const StopStart& at) { return law(road, at, braking); }, out, least);
-}
-
-StopCheck StopPlanner::follow(const road::KnownRoad& road, const StopStart& start, const StopCourse& before,
-                              StopCourse& out) const noexcept {
-  const double length = road.line().length();
-  const double lap =
-      road.line().is_closed() ? length * std::round((start.s - before.places[0].s) / length) : 0.0;
-  const auto last = static_cast<std::size_t>(before.stop.size - 1);
-  std::size_t place = 0;
-  const auto command_at = [&](const StopStart& at) {
-    const bool goes_on = last > 0 && at.s - lap < before.places[last].s;
-    return goes_on ? along(before, place, lap, at) : law(road, at, {});
-  };
-  return drive(road, start, command_at, out);
-}
-
-void StopPlanner::course_of(const road::KnownRoad& road, const StopStart& start,
-                            const controller::Plan& intended, double longest,
-                            StopCourse& out) const noexcept {
-  out.stop.size = 0;
-  const road::ReferenceLine& line = road.line();
-  const auto size = static_cast<std::size_t>(std::clamp(intended.size, 0, controller::Plan::kCapacity));
-  double s = start.s, driven = 0.0, next = 0.0;
-  for (std::size_t i = 0; i + 1 < size; ++i) {
-    const controller::PlanPoint& from = intended.points[i];
-    const controller::PlanPoint& to = intended.points[i + 1];
-    const double dt = to.time - from.time, dx = to.x - from.x, dy = to.y - from.y;
-    const double length = hypot(dx, dy);
-    if (!(dt > 0.0) || !(length < kStride) || !std::isfinite(from.psi + from.speed + to.psi)) return;
-    if (from.time - start.time > longest) return;
-    if (from.time >= next && length > 0.0) {
-      next = from.time + kPlanSpacing;
-      const road::ReferenceLine::Projection place = line.project({from.x, from.y}, s, kStride);
-      s = line.is_closed() ? place.s + line.length() * std::round((s - place.s) / line.length()) : place.s;
-      const double e = angle_difference(from.psi, line.at(s).heading);
-      const double slide =
-          angle_difference(atan2(dy, dx), from.psi + 0.5 * angle_difference(to.psi, from.psi));
-      StopStart at{.time = from.time, .s = s, .d = place.d, .e = e, .body = {}};
-      at.body.vx = from.speed;
-      at.body.vy = from.speed * std::clamp(slide, -0.5, 0.5);
-      at.body.r = angle_difference(to.psi, from.psi) / dt;
-      at.body.steer = from.command.steer;
-      out.add(at, driven, from.speed, from.command);
-    }
-    driven += length;
-  }
-}
-
-StopCheck StopPlanner::plan_later(const road::KnownRoad& road, const StopStart& start,
-                                  const StopCourse& intended, double time, const Braking& braking,
-                                  StopCourse& out, double least) const noexcept {
-  const auto last = static_cast<std::size_t>(intended.stop.size - 1);
-  std::size_t place = 0;
-  const auto command_at = [&](const StopStart& at) {
-    const bool drives_on = at.time < start.time + time && at.s < intended.places[last].s;
-    return drives_on ? along(intended, place, 0.0, at) : law(road, at, braking);
-  };
-  return drive(road, start, command_at, out, least);
-}
-
-/// To standstill, or nearer to the edge than `least` [m], with what `command_at` says every 100 ms.
-template <class Law>
-StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start, const Law& command_at,
-                             StopCourse& out, double least) const noexcept {
+StopCheck StopPlanner::plan(const road::KnownRoad& road, const StopStart& start, const Policy& policy,
+                            StopPlan& out, double least) const noexcept {
   const double reach = steer_reach(kStep);
   const StopCar::Step step = car_.step(kStep);
-  const double end = road.line().is_closed() ? start.s + road.line().length() : road.line().length();
+  const double end = end_of(road, start);
   const double most_slide = std::max(kMostSlide, slide(start.body) + kSlideGrows);
   StopCheck check{.least_edge = edge(road, start)};
   StopStart at = start;
   double driven = 0.0;
   double speed = hypot(at.body.vx, at.body.vy);
-  out.stop.size = 0;
-  model::Command command;
+  out.size = 0;
+  model::Command held;
   for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity; ++i) {
-    if (i % kStepsPerPoint == 0) command = command_at(at);
+    if (i % kStepsPerPoint == 0) held = command(road, at, policy);
     const bool has_ended =
         speed < kStanding || !(std::fabs(at.d) < kMostOffset) || !(at.s < end) || check.least_edge < least;
-    if (i % kStepsPerPoint == 0 || has_ended) out.add(at, driven, speed, command);
+    if (i % kStepsPerPoint == 0 || has_ended) out.add({at.time, driven, speed, held});
     if (has_ended) break;
     const double before = speed;
-    move(car_, road, at, command, step, reach);
+    move(car_, road, at, held, step, reach);
     speed = hypot(at.body.vx, at.body.vy);
     driven += 0.5 * kStep * (before + speed);
     check.least_edge = std::min(check.least_edge, edge(road, at));
@@ -475,6 +388,7 @@ StopCheck StopPlanner::drive(const road::KnownRoad& road, const StopStart& start
   }
   check.stands = speed < kStanding && at.s < end && !(check.least_edge < least) && !(check.spins_at > 0.0);
   check.distance = driven;
+  check.end = at;
   return check;
 }
 

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <memory>
+#include <limits>
 
-#include "chicane/controller/controller.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
@@ -25,31 +22,14 @@ struct StopStart {
   double load_along = 0.0, load_across = 0.0;  ///< as in StopMotion [m/s²]
 };
 
-/// How a stop comes out.
+/// The result of a simulated stop.
 struct StopCheck {
   double least_edge = 0.0;  ///< of the outermost contact patch to the believed edge [m]; < 0: off the road
   double distance = 0.0;    ///< to standstill [m]
   bool stands = false;      ///< it ends at standstill before the end of the known road, without a spin
   double spins_at = 0.0;    ///< speed at which the car begins to spin [m/s]; 0: it does not
+  StopStart end{};          ///< where the simulation ended
 };
-
-/// A stop, and where the car is at each of its points.
-struct StopCourse {
-  StopPlan stop;
-  std::array<StopStart, StopPlan::kCapacity> places{};
-
-  /// One more point, of a car that is at `place` after `distance` [m]; nothing where it is full.
-  void add(const StopStart& place, double distance, double speed, const model::Command& command) noexcept {
-    if (stop.size == StopPlan::kCapacity) return;
-    const auto i = static_cast<std::size_t>(stop.size++);
-    stop.points[i] = {place.time, distance, speed, command};
-    places[i] = place;
-  }
-};
-
-[[nodiscard]] inline std::unique_ptr<StopCourse> copy_of(const StopCourse& course) {
-  return std::make_unique<StopCourse>(course);
-}
 
 /// How hard a stop may brake.
 struct Braking {
@@ -58,17 +38,36 @@ struct Braking {
   double foreseen = 1e9;   ///< the same where the bends ahead ask for harder braking
 };
 
-/// How a stop comes out that is played blindly by a car that is a little other than believed.
-struct BlindCheck {
-  double edge_for = 0.0;  ///< least distance to the edge in the time asked for [m]
-  double edge = 0.0;      ///< until it stands, or leaves the road later [m]
-  double speed = 0.0;     ///< at which it left the road later; 0: it did not [m/s]
+/// A way to standstill with the feedback that holds it: along the planned lap until `until`, then braking by
+/// the law, equation (3) with these constants.
+struct Policy {
+  double until = -std::numeric_limits<double>::infinity();  ///< [s], clock of the run
+  Braking braking{};
+  double bandwidth = 1.0;   ///< of the feedback to the line [rad/s]
+  double grip_share = 0.4;  ///< of the grip that the feedback may use
+  double room = 0.6;        ///< wanted to the edge along a planned lap [m]
 };
 
-/// Plans the stop along a line: path-following steering and as much braking as the curve leaves, simulated
-/// with the car the controller believes in until it stands (docs/safety_derivation.md, eq. 1–5). The plan and
-/// the check come from the same simulation. Bounded time, tens of µs for a stop from 45 m/s; no allocation;
-/// one thread.
+/// By how much the state at which a stop begins may differ from the predicted one.
+struct Doubt {
+  double beside = 0.0;    ///< [m]
+  double course = 0.0;    ///< [rad]
+  double yaw_rate = 0.0;  ///< [rad/s]
+  double speed = 0.0;     ///< [m/s]
+};
+
+/// The worse of two cars that differ a little from the model.
+struct DoubtCheck {
+  double edge_for =
+      std::numeric_limits<double>::infinity();            ///< least distance to the edge in a given time [m]
+  double edge = std::numeric_limits<double>::infinity();  ///< and until both have ended [m]
+  double speed = 0.0;  ///< at which one came nearer to the edge than allowed; 0: none did [m/s]
+  bool stands = true;  ///< both end at standstill on the known road, without a spin
+};
+
+/// Simulates stops along a line: path-following steering and as much braking as the curve leaves, in the
+/// model of the car, until it stands (docs/safety_derivation.md, eq. 1–5). Bounded time, tens of µs for a
+/// stop from 45 m/s; no allocation; one thread.
 class StopPlanner {
  public:
   explicit StopPlanner(const model::VehicleParams& vehicle) noexcept
@@ -80,45 +79,32 @@ class StopPlanner {
   [[nodiscard]] bool has_wheels() const noexcept { return car_.has_wheels(); }
 
   static constexpr double kToTheEnd = -1e9;  ///< [m] a least edge below which no car comes
-  /// The stop from `start` on, no harder than `braking`; given up, and so without standstill, where it comes
-  /// nearer to the edge than `least` [m]. Pre: the road is not empty, `start` is finite.
-  [[nodiscard]] StopCheck plan(const road::KnownRoad& road, const StopStart& start, const Braking& braking,
-                               StopCourse& out, double least = kToTheEnd) const noexcept;
-  /// From `start` on along another stop: its commands by place, corrected where the car is not as planned
-  /// there, and the law where it ends. Pre: as plan(), before.stop.size > 0.
-  [[nodiscard]] StopCheck follow(const road::KnownRoad& road, const StopStart& start,
-                                 const StopCourse& before, StopCourse& out) const noexcept;
-  /// The first `longest` [s] of the motion that a controller publishes, in coordinates along the line: a
-  /// course to drive on along. Pre: as plan().
-  void course_of(const road::KnownRoad& road, const StopStart& start, const controller::Plan& intended,
-                 double longest, StopCourse& out) const noexcept;
-  /// Drives on along `intended` for `time` [s], then brakes by the law. Pre: as plan(); intended.stop.size
-  /// > 1.
-  [[nodiscard]] StopCheck plan_later(const road::KnownRoad& road, const StopStart& start,
-                                     const StopCourse& intended, double time, const Braking& braking,
-                                     StopCourse& out, double least = kToTheEnd) const noexcept;
-  static constexpr double kLongestDriveOn = 3.0;  ///< [s]
-  /// How near to the edge [m] a receiver comes in the first `time` [s] that plays `stop` blindly, the car
-  /// being a little other than believed: its rear axle softer while it turns in more than estimated, and
-  /// stiffer while it turns in less.
-  [[nodiscard]] BlindCheck played_edge(const road::KnownRoad& road, const StopStart& start,
-                                       const StopPlan& stop, double time) const noexcept;
-  /// The same of a car that is seen all the time: until it stands, with what brings it back to the stop.
-  /// Pre: `stop` begins at `start`.
-  [[nodiscard]] double followed_edge(const road::KnownRoad& road, const StopStart& start,
-                                     const StopCourse& stop) const noexcept;
+  /// The stop from `start` on by `policy`; given up, and so without standstill, where it comes nearer to the
+  /// edge than `least` [m]. Pre: the road is not empty, `start` is finite.
+  [[nodiscard]] StopCheck plan(const road::KnownRoad& road, const StopStart& start, const Policy& policy,
+                               StopPlan& out, double least = kToTheEnd) const noexcept;
+  /// The same policy, with its feedback, in two cars that differ from the model: less friction, the rear axle
+  /// softer and stiffer, and `doubt` to either side (eq. 5b). Given up where one comes nearer than `least`
+  /// [m].
+  [[nodiscard]] DoubtCheck plan_in_doubt(const road::KnownRoad& road, const StopStart& start,
+                                         const Policy& policy, const Doubt& doubt,
+                                         double least) const noexcept;
+  /// The same two cars, driven by a receiver that plays `stop` without measurements; edge_for: in the first
+  /// `time` [s].
+  [[nodiscard]] DoubtCheck played(const road::KnownRoad& road, const StopStart& start, const StopPlan& stop,
+                                  double time) const noexcept;
   /// `command` for `time` [s] from `from` on: where the car is then, and how near to the edge it came.
   [[nodiscard]] StopStart advance(const road::KnownRoad& road, const StopStart& from,
                                   const model::Command& command, double time,
                                   double& least_edge) const noexcept;
-  /// The law: the command of a stop at `at`.
-  [[nodiscard]] model::Command law(const road::KnownRoad& road, const StopStart& at,
-                                   const Braking& braking) const noexcept;
-  /// And its acceleration [m/s²], negative: what the bend, and a car that shall stay stable, leave of the
-  /// braking. A car of much drag may need its drive for that.
+  /// The command of `policy` at `at`.
+  [[nodiscard]] model::Command command(const road::KnownRoad& road, const StopStart& at,
+                                       const Policy& policy) const noexcept;
+  /// The acceleration [m/s²], negative, of a stop by `braking`: what the bend, and a car that shall stay
+  /// stable, leave of the braking. A car of much drag may need its drive for that.
   [[nodiscard]] double slowing(const road::KnownRoad& road, const StopStart& at,
                                const Braking& braking) const noexcept {
-    return slowing(road, at, braking, curvatures_of(road, at));
+    return slowing(road, at, braking, curvatures_of(road, at, {}));
   }
   /// How much nearer to the edge [m] a car comes that stands at `at` and turns back along the road at full
   /// lock: equation 6a. 0: no nearer.
@@ -132,7 +118,8 @@ class StopPlanner {
     double ahead = 0.0;   ///< of the line, a moment later
     double wanted = 0.0;  ///< the same, and what brings the car back to the line
   };
-  [[nodiscard]] Curvatures curvatures_of(const road::KnownRoad& road, const StopStart& at) const noexcept;
+  [[nodiscard]] Curvatures curvatures_of(const road::KnownRoad& road, const StopStart& at,
+                                         const Policy& policy) const noexcept;
   [[nodiscard]] double slowing(const road::KnownRoad& road, const StopStart& at, const Braking& braking,
                                const Curvatures& curvatures) const noexcept;
   [[nodiscard]] double instability(const model::BodyMotion<double>& m, double deceleration) const noexcept;
@@ -142,22 +129,18 @@ class StopPlanner {
   [[nodiscard]] double foreseen(const road::KnownRoad& road, const StopStart& at, double most) const noexcept;
   [[nodiscard]] double braking_share(double sideways, double deceleration, double v) const noexcept;
   template <class Law>
-  [[nodiscard]] BlindCheck doubted_edge(const road::KnownRoad& road, const StopStart& start, double time,
-                                        const Law& command_at) const noexcept;
-  template <class Law>
-  [[nodiscard]] StopCheck drive(const road::KnownRoad& road, const StopStart& start, const Law& command_at,
-                                StopCourse& out, double least = kToTheEnd) const noexcept;
-  [[nodiscard]] model::Command along(const StopCourse& before, std::size_t& place, double lap,
-                                     const StopStart& at) const noexcept;
-  [[nodiscard]] double back_to(double beside, double course, double v, double damping) const noexcept;
+  [[nodiscard]] DoubtCheck in_doubt(const road::KnownRoad& road, const StopStart& start, const Doubt& doubt,
+                                    double time, double least, const Law& command_at) const noexcept;
+  [[nodiscard]] double back_to(double beside, double course, double v, const Policy& policy,
+                               double damping) const noexcept;
   static void move(const StopCar& car, const road::KnownRoad& road, StopStart& at,
                    const model::Command& command, const StopCar::Step& step, double steer_reach) noexcept;
   [[nodiscard]] double steer_reach(double dt) const noexcept;
 
   model::PredictionModel model_;
   StopCar car_;               ///< that is stopped
-  StopCar softer_, stiffer_;  ///< and as it may be, too
-  double doubt_ = 1.0;        ///< how much other
+  StopCar softer_, stiffer_;  ///< cars that differ from the model: by their rear axle
+  double doubt_ = 1.0;        ///< share of the differences that counts
   double friction_ = 0.0;     ///< sideways, of the whole car
 };
 

@@ -46,7 +46,8 @@ const EFFECTS: readonly Effect[] = [
     name: 'horizon',
     title: 'N: look further ahead',
     text:
-      'The plan looks N steps ahead: 25 of 0.025 s, the short line before the car. The longer it is, the more a higher ' +
+      'The plan looks N steps ahead: 25 of 0.025 s, the short line before the car. The longer it is, the more a ' +
+      'higher ' +
       'speed saves: N = 40 is faster. Much longer plans cut the bends. Use number box or slider; ↺ takes it back.',
     tab: 'tune',
     where: '[data-key="cubic_mpc.horizon_steps"]',
@@ -72,7 +73,8 @@ const EFFECTS: readonly Effect[] = [
     name: 'weight',
     title: 'A weight: the price of the pedal',
     text:
-      'The reference of 180 mph is never reached: the price of the speed error pulls against the price of the throttle. ' +
+      'The reference of 180 mph is never reached: the price of the speed error pulls against the price of the ' +
+      'throttle. ' +
       'The write-up has 80 for 50 mph, and 48 for its fast lap. With 160 the same controller drives 29 mph.',
     tab: 'tune',
     where: '[data-key="cubic_mpc.weight_throttle"]',
@@ -85,7 +87,8 @@ const EFFECTS: readonly Effect[] = [
     name: 'latency',
     title: 'Latency: more than it counts on',
     text:
-      'Commands act 100 ms late, and the controller rolls its state forward by 100 ms before it plans. With 300 ms it ' +
+      'Commands act 100 ms late, and the controller rolls its state forward by 100 ms before it plans. With 300 ms ' +
+      'it ' +
       'still compensates 100: it corrects errors that are being corrected already, and weaves.',
     tab: 'drive',
     where: '[data-key="latency_ms"]',
