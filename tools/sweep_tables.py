@@ -194,7 +194,7 @@ def noise(runs):
 
 
 TABLES = {"numbers": numbers, "pid": pid, "cars": cars, "sensors": sensors, "race": race,
-          "waypoints": waypoints, "otherwise": otherwise, "noise": noise, "maps": maps,
+          "waypoints": waypoints, "otherwise": otherwise, "noise": noise, "maps": maps, "guard": guard,
           "race_cars": race_cars}
 
 
