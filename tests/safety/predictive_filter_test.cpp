@@ -205,6 +205,31 @@ TEST(PredictiveFilter, KeepsTheRoomToTurnBackAlongTheRoad) {
   EXPECT_NE(filter.verify({road, start, {-0.43, 0.0}, 0.04}, report), Fit::kNone) << "along it";
 }
 
+/// A new run may begin at an earlier time than a refusal of the last one: nobody waits for that time.
+TEST(PredictiveFilter, ForgetsWhenItRefused) {
+  const road::KnownRoad road = round_road(1.0);
+  PredictiveFilter filter(model::udacity_params(), {});
+  GuardReport report;
+  const StopStart fast = driving(25.0, 1.0);
+  const auto answer = [&](double time) {
+    StopStart start = fast;
+    start.time = time;
+    start.d = -2.0;
+    start.e = -0.2;  // stopped by the laws with more feedback only
+    return filter.verify({road, start, {0.03, 0.1}, 0.04}, report);
+  };
+  const Fit first = answer(1.0);
+  ASSERT_NE(first, Fit::kNone);
+  StopStart refused = fast;
+  refused.time = 900.0;
+  ASSERT_TRUE(filter.drive(road, refused, false, false, report));
+  EXPECT_EQ(answer(900.1), Fit::kNone) << "right after a refusal only a calm car is given back";
+  EXPECT_EQ(answer(900.7), first);
+  ASSERT_TRUE(filter.drive(road, refused, false, false, report));
+  filter.forget();
+  EXPECT_EQ(answer(1.0), first);
+}
+
 TEST(PredictiveFilter, AllocatesNothing) {
   const road::KnownRoad road = round_road(1.0);
   PredictiveFilter filter(model::road_car_params(), {});

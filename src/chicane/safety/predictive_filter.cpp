@@ -24,7 +24,7 @@ constexpr double kWalkingPace = 3.0;    // [m/s] below it slip angles say little
 constexpr double kNearer = 0.02;        // [m] that a driven stop may come nearer to an edge that it is beyond
 constexpr double kMemory = 3.0;         // [s] of residuals
 constexpr double kDeviations = 2.0;     // of residuals that a certificate covers
-constexpr double kMostSlip = 1.2;       // over that of the peak: beyond it the car spins
+constexpr double kMostSlip = 1.2;       // over the slip at the peak: beyond it the car spins
 constexpr double kMostSlipOfSlides = 1.6;  // the same on a lap that slides
 constexpr double kDwell = 0.5;     // [s] after a stop was driven, in which only a calm car is given back
 constexpr double kCalmSlip = 0.5;  // of a calm car
@@ -78,7 +78,7 @@ constexpr int kLawCount = static_cast<int>(std::size(kLaws));
 constexpr int kOffLap = 13;     // of them on a road without a planned lap
 constexpr int kSlowWheels = 5;  // of them for a car whose wheels turn slowly: more feedback makes it weave
 constexpr int kCalm = 2;        // of them for a car that is given back
-constexpr int kDriven = 5;      // of them in the place of a driven stop that holds no more
+constexpr int kDriven = 5;      // of them to replace a driven stop that holds no more
 // Laws by which the guard itself stays on a planned lap.
 constexpr Law kRaceOn[] = {{kHard, 1.0, 0.4, 0.6, 2.0},
                            {kHard, 3.0, 0.8, 0.6, 2.0},
@@ -110,6 +110,8 @@ void PredictiveFilter::forget() noexcept {
   stop_->size = 0;
   has_stored_ = false;
   residual_ = {};
+  residual_at_ = 0.0;
+  refused_at_ = -std::numeric_limits<double>::infinity();
   law_ = 0;
 }
 
@@ -181,8 +183,9 @@ double PredictiveFilter::margin_for(const Request& request, const StopStart& nex
   return std::min(terms_.margin, std::max({turned, least, terms_.least_edge}));
 }
 
-/// Slip over that of its peak: of the axle that slips more; of the rear one where tyres share nothing between
-/// the directions, whose front axle brakes as well when it slides. A stop does not ask for drive.
+/// Slip divided by the slip at the peak force, the larger of both axles. Of cars whose tyres share nothing
+/// between the directions, the rear axle alone: their front axle brakes as well when it slides. Drive does
+/// not count, because a stop asks for none.
 double PredictiveFilter::slip(const StopStart& at) const noexcept {
   if (!(at.body.vx > kWalkingPace)) return 0.0;
   model::BodyMotion<double> undriven = at.body;
@@ -204,7 +207,7 @@ Fit PredictiveFilter::verify(const Request& request, GuardReport& report) noexce
   return edge >= terms_.margin && drives_lap(request.road, next) ? Fit::kOpen : Fit::kNone;
 }
 
-/// Of a command that acts for `held` [s].
+/// The check of a command that acts for `held` [s].
 Fit PredictiveFilter::verify_held(const Request& request, double held, GuardReport& report) noexcept {
   const road::KnownRoad& road = request.road;
   const double edge_now = planner_.edge(road, request.start);
