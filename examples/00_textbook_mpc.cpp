@@ -6,7 +6,7 @@
 //   00_textbook_mpc [port 4567] [mph 40] [sleep_ms 100]   the controller
 //   chicane simulate --track original-lake --laps 2       the car, in another terminal; or the original game
 //
-// Numbers and equations are those of the preset `weighted`, whose write-up gives all its weights. Comments
+// Numbers and equations come from the preset `weighted`, whose write-up gives all its weights. Comments
 // name the other four presets where they differ (docs/the_five_systems.md). Exercises stand at the end.
 #include <array>
 #include <chrono>
@@ -43,7 +43,7 @@ struct Telemetry {
   std::vector<double> ptsx, ptsy;  // waypoints on the middle of the road: one behind the car, five ahead
   double x, y, psi;
   double speed;           // [mph]
-  double steering_angle;  // of the wheels now [rad], positive to the RIGHT
+  double steering_angle;  // wheels now [rad], positive to the RIGHT
   double throttle;        // pedal now, [0, 1]
 };
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Telemetry, ptsx, ptsy, x, y, psi, speed, steering_angle, throttle)
@@ -98,8 +98,8 @@ struct Textbook {
 
   // The model. v is telemetry's number, in mph, used as if it were m/s: no write-up names a conversion, and
   // these weights need it so (exercise 5). The plan is 2.24 times too long for its times, and steers less.
-  // psi' has a minus because delta is positive to the right. The other four write psi + v / Lf * delta * dt,
-  // for which the sign of the steering that is sent has to change.
+  // psi' has a minus because delta is positive to the right. The other four write psi + v / Lf * delta * dt:
+  // then the sign of the steering that is sent has to change.
   auto dynamics(auto, const auto& state, const auto& input) const {
     const auto& [x, y, psi, v, cte, epsi, delta_before, a_before] = state;
     const auto& [delta, a] = input;
@@ -158,8 +158,8 @@ json answer(Telemetry car, double v_ref) {
   return steer;
 }
 
-// ---- 7 The socket: 42["steer",{...}] for each 42["telemetry",{...}]. The simulator is the client, and waits
-// for the answer before it sends again. The sleep stands for the slow actuators of a real car.
+// ---- 7 The socket: 42["steer",{...}] for each 42["telemetry",{...}]. The simulator is the client.
+// It waits for each answer before it sends again. The sleep stands for the slow actuators of a real car.
 void talk(tcp::socket client, double v_ref, std::chrono::milliseconds sleep) {
   boost::beast::websocket::stream<tcp::socket> socket{std::move(client)};
   boost::system::error_code gone;

@@ -8,7 +8,7 @@
     tools/wire_runs.py -o runs.jsonl --table                              # the table of a file
 
 Beside the runs --load processes for each core compute without end, at the same priority. Interventions are control steps whose command
-is not the controller's; stops are those of the car's side, which got no command in time. A run begins at rest.
+is not the controller's; stops are braking by the car's side, which got no command in time. A run begins at rest.
 """
 import argparse
 import concurrent.futures

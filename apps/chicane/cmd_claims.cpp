@@ -172,7 +172,7 @@ std::string cell_of(const Marks& marks) {
   return cell;
 }
 
-/// true, false, not reproduced with what is ours, or on what it depends.
+/// true, false, not reproduced with our values, or on what it depends.
 std::string verdict_of(const Claim& claim, const std::string& lakeside, const std::string& original) {
   const std::string all = lakeside + original;
   if (all.find("no") == std::string::npos) return "**true**";

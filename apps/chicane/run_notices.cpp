@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNoPedal = 0.005;  // smaller pedals neither drive nor brake
 
-/// Of the plant where it is ours; else as measured, not a number without a measurement [m/s].
+/// Speed of the plant, or the measured one where another program simulates; NaN without a measurement [m/s].
 double speed_of(const telemetry::Frame& frame) {
   return std::fabs(frame.has_truth ? frame.truth.vx : frame.measurement.speed);
 }

@@ -15,7 +15,7 @@ namespace chicane::apps {
 class RunNotices {
  public:
   static constexpr double kPause = 1.0;          ///< without intervention: it has ended [s]
-  static constexpr double kStoodTime = 2.0;      ///< of standing before it is reported [s]
+  static constexpr double kStoodTime = 2.0;      ///< standstill before it is reported [s]
   static constexpr double kStandingSpeed = 0.1;  ///< slower: the car stands [m/s]
   static constexpr double kMovingSpeed = 0.5;    ///< faster: it moves again [m/s]
 
@@ -29,12 +29,12 @@ class RunNotices {
 
   double last_time_ = 0.0;
   // The intervention that goes on, or ended less than kPause ago.
-  std::string intervention_;  ///< its sentence as printed last; empty: none
-  std::uint64_t steps_ = 0;   ///< with a replaced command
+  std::string intervention_;  ///< sentence printed last; empty: none
+  std::uint64_t steps_ = 0;   ///< count of replaced commands
   double began_ = 0.0;        ///< [s]
-  double ended_ = 0.0;        ///< first step of the controller behind the last replaced command [s]
+  double ended_ = 0.0;        ///< first step of the controller after the last replaced command [s]
   double said_ = 0.0;         ///< when the sentence was printed [s]
-  bool is_replaced_ = false;  ///< in the last step
+  bool is_replaced_ = false;  ///< command of the last step
   // Standstill.
   bool stands_ = false;
   bool is_reported_ = false;
