@@ -33,6 +33,7 @@ constexpr double kLapOffset = 0.5;   // [m]
 constexpr double kLapAcross = 2.5;   // [m/s]
 constexpr double kLapFaster = 1.0;   // [m/s]
 constexpr double kSlidingLap = 2.0;  // times as much on a lap that slides
+constexpr double kWideLap = 4.0;     // times as much where no law is stored
 constexpr double kUnfit = 200.0;     // [m] worse than any candidate that fits
 
 // Braking of a stop: gentle, hard, hard with less and less static stability left (eq. 5).
@@ -77,6 +78,7 @@ constexpr Law kLaws[] = {{kGentle},
 constexpr int kLawCount = static_cast<int>(std::size(kLaws));
 constexpr int kOffLap = 13;     // of them on a road without a planned lap
 constexpr int kSlowWheels = 5;  // of them for a car whose wheels turn slowly: more feedback makes it weave
+constexpr int kInTurn = 3;      // of them in a cycle near a planned lap
 constexpr int kCalm = 2;        // of them for a car that is given back
 constexpr int kDriven = 5;      // of them to replace a driven stop that holds no more
 // Laws by which the guard itself stays on a planned lap.
@@ -93,10 +95,12 @@ Policy policy_of(const Law& law, double time) noexcept {
   return policy;
 }
 
+/// Size of the region around a planned lap in which it may be driven on.
+double width_of(const road::KnownRoad& road) noexcept { return road.slides() ? kSlidingLap : 1.0; }
+
 /// Whether a car is near a planned lap, along it, and no faster than planned: where no law stops it, as in
 /// fast changes of direction, the lap itself is the way to drive on.
-bool drives_lap(const road::KnownRoad& road, const StopStart& at) noexcept {
-  const double wide = road.slides() ? kSlidingLap : 1.0;
+bool drives_lap(const road::KnownRoad& road, const StopStart& at, double wide) noexcept {
   const double course = at.e + at.body.vy / std::max(at.body.vx, 1.0);
   return std::fabs(at.d) < wide * kLapOffset && std::fabs(course) * at.body.vx < wide * kLapAcross &&
          at.body.vx < road.line().demand(at.s).speed + wide * kLapFaster;
@@ -200,11 +204,13 @@ Fit PredictiveFilter::verify(const Request& request, GuardReport& report) noexce
   const double held = std::clamp(cycle, kShortestHold, kLongestHold);
   const Fit fit = verify_held(request, std::min(cycle + kLateness, kLongestHold), report);
   if (fit != Fit::kNone) return fit;
-  const Fit at_once = verify_held(request, held, report);
-  if (at_once != Fit::kNone || !request.road.is_raced()) return at_once;
+  if (!request.road.is_raced()) return verify_held(request, held, report);
   double edge = planner_.edge(request.road, request.start);
   const StopStart next = planner_.advance(request.road, request.start, request.command, held, edge);
-  return edge >= terms_.margin && drives_lap(request.road, next) ? Fit::kOpen : Fit::kNone;
+  // Without a stored law there is nothing better than the way back to the lap.
+  const double wide = has_stored_ ? width_of(request.road) : kWideLap;
+  const bool goes_on = edge >= terms_.margin && drives_lap(request.road, next, wide);
+  return goes_on ? Fit::kOpen : Fit::kNone;
 }
 
 /// The check of a command that acts for `held` [s].
@@ -233,6 +239,17 @@ Fit PredictiveFilter::verify_held(const Request& request, double held, GuardRepo
   }
   const Policy before = stored_;
   const bool has_before = has_stored_;
+  // The lap itself is a way to drive on: a cycle tries few laws, and the next one others.
+  if (!(goal.open_time > 0.0) && road.is_raced() && drives_lap(road, next, width_of(road))) {
+    for (int n = 0; n < kInTurn && best.fit == Fit::kNone; ++n) {
+      const int law = law_;
+      try_law(law);
+      if (best.fit == Fit::kNone) law_ = (law + 1) % kLawCount;
+    }
+    has_stored_ =
+        has_before && best.fit == Fit::kNone ? consider(road, next, before, goal, best, report) : has_stored_;
+    return Fit::kOpen;
+  }
   const int first = goal.open_time > 0.0 ? -1 : law_;  // whichever holds will do
   if (first >= 0) try_law(first);
   const int open = planner_.has_wheels() ? kSlowWheels : kOffLap;
@@ -259,7 +276,7 @@ bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start
       if (consider(road, start, policy_of(law, start.time), goal, best, report)) return true;
   }
   // What was certified with a margin is driven to its end; a fresh policy replaces it where it holds no more.
-  const Goal goal{.margin = std::min(0.0, std::max(planner_.edge(road, start) - kNearer, -0.5)),
+  const Goal goal{.margin = std::min(terms_.margin, std::max(planner_.edge(road, start) - kNearer, -0.5)),
                   .open_time = std::min(kDrivenOpen, terms_.open_time),
                   .is_driven = true};
   if (has_stored_) static_cast<void>(consider(road, start, Policy{stored_}, goal, best, report));
