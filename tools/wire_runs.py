@@ -8,7 +8,7 @@
     tools/wire_runs.py -o runs.jsonl --table                              # the table of a file
 
 Beside the runs --load processes for each core compute without end, at the same priority. Interventions are control steps whose command
-is not the controller's; stops are braking by the car's side, which got no command in time. A run begins at rest.
+is not the controller's, those with less drive apart; stops are braking by the car's side, which got no command in time. A run begins at rest.
 """
 import argparse
 import concurrent.futures
@@ -85,7 +85,8 @@ def settings(options, preset):
 
 def drive(options, preset, track, run):
     """One run: what both ends report of it."""
-    server = Server(options.program, settings(options, preset))
+    known = ["--track", track] if options.known_road else []
+    server = Server(options.program, settings(options, preset) + known)
     duration = ["--laps", str(options.laps)] if options.laps else ["--laps", "1", "--set", f"time_limit_s={options.for_s:g}"]
     try:
         client = subprocess.run([options.program, "simulate", "--connect", f"ws://127.0.0.1:{server.port}", "--track", track, "--json",
@@ -150,14 +151,15 @@ def drive_all(options):
 
 def table(runs):
     """A row for each preset and track."""
-    lines = ["| preset | track | runs | laps | lap [s] | answers after [ms] | interventions | stops | tyre off the road | tyre to edge, least [m] |",
-             "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|"]
+    lines = ["| preset | track | runs | laps | lap [s] | answers after [ms] | interventions | less drive | stops | tyre off the road | tyre to edge, least [m] |",
+             "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|"]
     for preset, track in dict.fromkeys((run["preset"], run["track"]) for run in sorted(runs, key=lambda run: (PRESETS + [run["preset"]]).index(run["preset"]))):
         these = [run for run in runs if (run["preset"], run["track"]) == (preset, track)]
         laps = [lap for run in these for lap in run["laps"]]
         answers = [run["answer_ms"] for run in these]
         lines.append(f"| `{preset}` | {track} | {len(these)} | {len(laps)} | {f'{min(laps):.2f} to {max(laps):.2f}' if laps else 'none'} | "
                      f"{min(a[0] for a in answers)} to {max(a[1] for a in answers)} | {sum(run['interventions'] for run in these)} | "
+                     f"{sum(run['guard_reasons'].get('too_fast_for_silence', 0) for run in these)} | "
                      f"{sum(run['stops'] for run in these)} | {sum(run['off_track_events'] for run in these)} | {min(run['min_edge_distance_m'] for run in these):.2f} |")
     return "\n".join(lines)
 
@@ -172,6 +174,7 @@ def main():
     parser.add_argument("--for-s", type=float, default=25.0, help="length of a run without --laps")
     parser.add_argument("--at-once", type=int, default=12, help="runs at the same time")
     parser.add_argument("--load", type=float, default=2.0, help="busy processes for each core")
+    parser.add_argument("--known-road", action="store_true", help="the server has the track; else it sees waypoints only")
     parser.add_argument("--set", action="append", default=[], help="KEY=VALUE of the server")
     parser.add_argument("-o", "--output", type=Path, help="results, a line each; a file that is there is completed")
     parser.add_argument("--table", action="store_true", help="prints Markdown")

@@ -60,6 +60,21 @@ TEST(Presets, LapTheOriginalLakeCleanlyAtTheSpeedTheyClaim) {
   }
 }
 
+/// A guard that knows waypoints alone takes drive from a car that is too fast for what it has seen, and
+/// leaves the steering to the controller.
+TEST(Presets, AreNotStoppedByAGuardThatKnowsWaypointsAlone) {
+  for (const Claim& claim : kClaims)
+    for (const char* track : {"lakeside", "original-lake"}) {
+      const auto run = drive({{"guard.road", "waypoints"},
+                              {"preset", claim.preset},
+                              {"track", track},
+                              {"laps", "1"},
+                              {"latency_ms", "100"}});
+      EXPECT_TRUE(run.completed && run.off_track_events == 0) << claim.preset << " on " << track;
+      EXPECT_LE(run.fallbacks, 1U) << claim.preset << " on " << track;
+    }
+}
+
 /// With latencies of 80 to 180 ms and up to 60 ms of jitter: a preset that keeps off kerbs and on the road
 /// drives the same laps with the guard (docs/safety.md has the whole matrix).
 TEST(Presets, AreNeverTouchedByTheGuard) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "road/sample_loop.hpp"
@@ -52,6 +53,19 @@ TEST(KnownRoad, KeepsAnOpenTracksOwnLine) {
   EXPECT_FALSE(road.line().is_closed());
   EXPECT_NEAR(road.edges(51.0).left, 3.51, 1e-9);
   EXPECT_NEAR(road.edges(500.0).left, 4.0, 1e-9) << "beyond the end as at the end";
+  EXPECT_EQ(road.end(), road.line().length());
+}
+
+TEST(KnownRoad, GoesOnToWhereTheNextWaypointWouldBe) {
+  for (const double apart : {8.0, 20.0, 60.0}) {
+    KnownRoad road(3.5, model::udacity_params());
+    model::Measurement now;
+    now.waypoint_count = 6;
+    for (std::size_t i = 0; i < 6; ++i) now.waypoints[i] = {apart * static_cast<double>(i), 0.0};
+    road.add(now);
+    ASSERT_FALSE(road.line().is_empty());
+    EXPECT_NEAR(road.end() - road.line().length(), std::min(apart, 25.0) + 3.5, 1e-9) << apart;
+  }
 }
 
 TEST(KnownRoad, LearnsFromWaypointsWhatItIsNotTold) {

@@ -13,6 +13,7 @@ namespace {
 
 /// The speed plan of a supervisor's line is not used.
 constexpr double kWaypointSpacing = 10.0;  // [m]
+constexpr double kMostToNext = 25.0;       // [m] from the last waypoint to the next
 constexpr RoadOptions kSeen{
     .half_width = 0.0, .smoothing_width = 1.0, .remember_waypoints = true, .speed = {}};
 
@@ -90,12 +91,17 @@ void KnownRoad::use_line(const RacingRoad* lap) {
 void KnownRoad::reset() noexcept {
   if (!seen_) return;
   seen_->reset();
+  next_waypoint_ = 0.0;
   if (is_raced_) ++lines_;
   is_raced_ = false;
 }
 
 void KnownRoad::add(const model::Measurement& now) noexcept {
-  if (is_learning()) seen_->add(now);
+  if (!is_learning()) return;
+  seen_->add(now);
+  const std::size_t count = now.waypoint_count;
+  if (count < 2) return;
+  next_waypoint_ = std::min((now.waypoints[count - 1] - now.waypoints[count - 2]).norm(), kMostToNext);
 }
 
 KnownRoad::Edges KnownRoad::edges(double s) const noexcept {

@@ -43,6 +43,11 @@ class KnownRoad {
     double right = 0.0;
   };
   [[nodiscard]] Edges edges(double s) const noexcept;
+  /// Where an open road ends [m]. From waypoints it is assumed to go on, straight, to where the next one
+  /// would be, as far as the last two are apart and 25 m at most, and beyond it as far as to its sides.
+  [[nodiscard]] double end() const noexcept {
+    return line().length() + (is_learning() ? next_waypoint_ + half_width_ : 0.0);
+  }
   /// Where a car that has to stop should be: that far to the left of the line, between `edges` [m]. In
   /// the middle of the road, or where a line is raced by on it, but at least `room` from the edges.
   [[nodiscard]] double target(const Edges& edges, double room) const noexcept {
@@ -69,6 +74,7 @@ class KnownRoad {
   std::vector<Edges> edges_;  ///< at the samples of line_
   std::optional<Road> seen_;
   double half_width_ = 0.0;
+  double next_waypoint_ = 0.0;  ///< behind the last one [m]
   unsigned lines_ = 0;
   bool is_raced_ = false;
   bool slides_ = false;  ///< the line that was used last

@@ -48,7 +48,7 @@ constexpr double kMostOffset = 20.0;       // [m] beside the line the stop is gi
 
 /// Where the known road ends for a stop from `start` on [m]: a closed road after a lap.
 double end_of(const road::KnownRoad& road, const StopStart& start) noexcept {
-  return road.line().is_closed() ? start.s + road.line().length() : road.line().length();
+  return road.line().is_closed() ? start.s + road.line().length() : road.end();
 }
 
 /// How far the car's course is off its heading [rad], where slip angles say something.
@@ -80,6 +80,8 @@ DoubtCheck StopPlanner::in_doubt(const road::KnownRoad& road, const StopStart& s
   const double reach = steer_reach(kStep);
   const StopCar::Step step = car_.step(kStep);
   const double end = end_of(road, start);
+  const double seen =
+      time > 0.0 && !road.line().is_closed() ? road.line().length() : end;  // nobody corrects it later
   const double most_slide = std::max(kMostSlide, slide(start.body) + kSlideGrows);
   struct Car {
     const StopCar& car;
@@ -107,7 +109,7 @@ DoubtCheck StopPlanner::in_doubt(const road::KnownRoad& road, const StopStart& s
       move(each.car, road, each.at, command_at(k, i, each.at, each.driven, before), step, reach);
       each.speed = hypot(each.at.body.vx, each.at.body.vy);
       each.driven += 0.5 * kStep * (before + each.speed);
-      const double now = edge(road, each.at);
+      const double now = std::min(edge(road, each.at), seen - each.at.s);
       check.edge = std::min(check.edge, now);
       if (each.at.time < start.time + time + 0.5 * kStep) check.edge_for = std::min(check.edge_for, now);
       if (now < least) check.speed = std::max(check.speed, each.speed);

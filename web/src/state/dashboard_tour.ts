@@ -1,10 +1,8 @@
 import { hasBit } from '../lib/bits';
 import type { Frame } from '../protocol/topics';
-import { services } from './link';
 import { run } from './run';
 import { schema, settingChanges, settings } from './settings';
-import { isDriving, type Step, type Tour } from './tour_step';
-import { answer } from './what_if';
+import { compareStep, isDriving, type Step, type Tour } from './tour_step';
 
 const BY_HAND_M = 30;
 const ALONE_S = 5;
@@ -127,21 +125,12 @@ const STEPS: readonly Step[] = [
       };
     },
   },
-  {
-    name: 'compare',
-    title: 'Compare',
-    text:
-      'Was that better? “As at the start” undoes your change, or choose a setting and another value for it; then ' +
+  compareStep(
+    'compare',
+    'Compare',
+    'Was that better? “As at the start” undoes your change, or choose a setting and another value for it; then ' +
       '“Drive both”: the program drives both futures from the same moment, and sets them side by side.',
-    tab: 'whatif',
-    where: '.what-if-search',
-    tasks: ['Get an answer'],
-    isPossible: () => services.value.has('/what_if'),
-    watch() {
-      const before = answer.value;
-      return () => [answer.value !== null && answer.value !== before];
-    },
-  },
+  ),
 ];
 
 export const DASHBOARD_TOUR: Tour = {

@@ -1,9 +1,7 @@
 import type { Frame } from '../protocol/topics';
-import { services } from './link';
 import { run } from './run';
 import { entryOf, settings, startSettings } from './settings';
-import { isDriving, type Step, type Tour } from './tour_step';
-import { answer } from './what_if';
+import { compareStep, isDriving, type Step, type Tour } from './tour_step';
 
 // What N, dt, a weight and the latency do to a controller as the write-ups have it: each changed, seen, and taken back.
 // docs/effects.md has the same changes with their laps.
@@ -47,8 +45,8 @@ const EFFECTS: readonly Effect[] = [
     title: 'N: look further ahead',
     text:
       'The plan looks N steps ahead: 25 of 0.025 s, the short line before the car. The longer it is, the more a ' +
-      'higher ' +
-      'speed saves: N = 40 is faster. Much longer plans cut the bends. Use number box or slider; ↺ takes it back.',
+      'higher speed saves: N = 40 is faster. Much longer plans cut the bends. Use number box or slider; ↺ takes it ' +
+      'back.',
     tab: 'tune',
     where: '[data-key="cubic_mpc.horizon_steps"]',
     key: 'cubic_mpc.horizon_steps',
@@ -74,8 +72,7 @@ const EFFECTS: readonly Effect[] = [
     title: 'A weight: the price of the pedal',
     text:
       'The reference of 180 mph is never reached: the price of the speed error pulls against the price of the ' +
-      'throttle. ' +
-      'The write-up has 80 for 50 mph, and 48 for its fast lap. With 160 the same controller drives 29 mph.',
+      'throttle. The write-up has 80 for 50 mph, and 48 for its fast lap. With 160 the same controller drives 29 mph.',
     tab: 'tune',
     where: '[data-key="cubic_mpc.weight_throttle"]',
     key: 'cubic_mpc.weight_throttle',
@@ -88,8 +85,7 @@ const EFFECTS: readonly Effect[] = [
     title: 'Latency: more than it counts on',
     text:
       'Commands act 100 ms late, and the controller rolls its state forward by 100 ms before it plans. With 300 ms ' +
-      'it ' +
-      'still compensates 100: it corrects errors that are being corrected already, and weaves.',
+      'it still compensates 100: it corrects errors that are being corrected already, and weaves.',
     tab: 'drive',
     where: '[data-key="latency_ms"]',
     key: 'latency_ms',
@@ -119,21 +115,12 @@ const CHOOSE: Step = {
   },
 };
 
-const COMPARE: Step = {
-  name: 'without',
-  title: 'Compare: without the roll-forward',
-  text:
-    'What is the roll-forward worth at 100 ms? Choose “Latency handling” and the value none, then “Drive both”: two ' +
+const COMPARE = compareStep(
+  'without',
+  'Compare: without the roll-forward',
+  'What is the roll-forward worth at 100 ms? Choose “Latency handling” and the value none, then “Drive both”: two ' +
     'futures from the same moment, side by side. Compare the errors.',
-  tab: 'whatif',
-  where: '.what-if-search',
-  tasks: ['Get an answer'],
-  isPossible: () => services.value.has('/what_if'),
-  watch() {
-    const before = answer.value;
-    return () => [answer.value !== null && answer.value !== before];
-  },
-};
+);
 
 export const EFFECTS_TOUR: Tour = {
   name: 'effects',

@@ -1,5 +1,7 @@
 import type { Frame } from '../protocol/topics';
+import { services } from './link';
 import type { Tab } from './tab';
+import { answer } from './what_if';
 
 // What a tour is made of. What was done is read from the run, not from clicks.
 
@@ -33,3 +35,18 @@ const MOVING_MPS = 3;
 
 export const isDriving = (frame: Frame): boolean =>
   !frame.is_manual && frame.rung === 0 && !frame.is_off_track && frame.speed_mps > MOVING_MPS;
+
+/** A question to What if: done when an answer came. */
+export const compareStep = (name: string, title: string, text: string): Step => ({
+  name,
+  title,
+  text,
+  tab: 'whatif',
+  where: '.what-if-search',
+  tasks: ['Get an answer'],
+  isPossible: () => services.value.has('/what_if'),
+  watch() {
+    const before = answer.value;
+    return () => [answer.value !== null && answer.value !== before];
+  },
+});
