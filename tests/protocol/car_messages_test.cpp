@@ -13,6 +13,7 @@
 namespace chicane::protocol {
 namespace {
 
+const std::vector<Vec2> kLine{{1.0, 2.0}, {3.0, 4.0}};
 constexpr std::int64_t kStamp = 1'700'000'001'250'000'007;
 
 OdometryMessage odometry() {
@@ -48,7 +49,7 @@ TEST(CarMessages, OdometryHasTheLayoutOfItsDefinition) {
 }
 
 TEST(CarMessages, AreReadAsTheyWereWritten) {
-  const auto seen = decode_odometry(encode(odometry()));
+  const auto seen = decode<OdometryMessage>(encode(odometry()));
   ASSERT_TRUE(seen);
   EXPECT_EQ(seen->stamp, kStamp);
   EXPECT_EQ(seen->child_frame, "ego_racecar/base_link");
@@ -58,34 +59,36 @@ TEST(CarMessages, AreReadAsTheyWereWritten) {
 
   const DriveMessage drive{
       .stamp = kStamp, .frame = "car", .steer = 0.25, .speed = 4.5, .acceleration = -1.5};
-  const auto read = decode_drive(encode(drive));
+  const auto read = decode<DriveMessage>(encode(drive));
   ASSERT_TRUE(read);
   EXPECT_EQ(read->stamp, kStamp);
   EXPECT_EQ(read->steer, 0.25);
   EXPECT_EQ(read->speed, 4.5);
   EXPECT_EQ(read->acceleration, -1.5);
 
-  const auto imu = decode_imu(encode(ImuMessage{.stamp = kStamp, .yaw_rate = 0.5, .ax = 1.0, .ay = 2.0}));
+  const auto imu =
+      decode<ImuMessage>(encode(ImuMessage{.stamp = kStamp, .yaw_rate = 0.5, .ax = 1.0, .ay = 2.0}));
   ASSERT_TRUE(imu);
   EXPECT_EQ(imu->yaw_rate, 0.5);
   EXPECT_EQ(imu->ay, 2.0);
 
-  const auto path = decode_path(encode(PathMessage{.frame = "map", .points = {{1.0, 2.0}, {3.0, 4.0}}}));
+  const auto path = decode<PathMessage>(encode(path_along(0, "map", kLine)));
   ASSERT_TRUE(path);
-  ASSERT_EQ(path->points.size(), 2U);
-  EXPECT_EQ(path->points[1].y(), 4.0);
+  ASSERT_EQ(path->poses.size(), 2U);
+  EXPECT_EQ(path->poses[1].pose.y, 4.0);
 
-  const auto pose = decode_pose(encode(PoseMessage{.frame = "map", .pose = {.x = 1, .y = 2, .psi = -3}}));
+  const auto pose =
+      decode<PoseMessage>(encode(PoseMessage{.frame = "map", .pose = {.x = 1, .y = 2, .psi = -3}}));
   ASSERT_TRUE(pose);
   EXPECT_NEAR(pose->pose.psi, -3.0, 1e-15);
 
-  EXPECT_EQ(decode_bool(encode_bool(true)), true);
-  EXPECT_EQ(decode_bool(encode_bool(false)), false);
+  EXPECT_EQ(decode<BoolMessage>(encode(BoolMessage{true}))->data, true);
+  EXPECT_EQ(decode<BoolMessage>(encode(BoolMessage{false}))->data, false);
 }
 
 TEST(CarMessages, DriveOfAutowareHasStampsAnglesAndSpeeds) {
   const std::string bytes =
-      encode_autoware({.stamp = kStamp, .steer = 0.25, .speed = 4.5, .acceleration = -1.5});
+      encode(AutowareMessage{{.stamp = kStamp, .steer = 0.25, .speed = 4.5, .acceleration = -1.5}});
   test::CdrReader reader(bytes);
   const double stamp = reader.seconds();
   EXPECT_EQ(reader.seconds(), stamp);
@@ -120,20 +123,21 @@ TEST(CarMessages, AScanHasItsAnglesAndRanges) {
 }
 
 TEST(CarMessages, TransformsAndTimesAreReadAsTheyWereWritten) {
-  const std::string bytes = encode(TransformMessage{
-      .stamp = kStamp, .frame = "map", .child_frame = "odom", .pose = {.x = 1.0, .y = -2.0, .psi = 0.5}});
-  const auto transforms = decode_transforms(bytes);
-  ASSERT_TRUE(transforms);
-  ASSERT_EQ(transforms->size(), 1U);
-  EXPECT_EQ((*transforms)[0].stamp, kStamp);
-  EXPECT_EQ((*transforms)[0].frame, "map");
-  EXPECT_EQ((*transforms)[0].child_frame, "odom");
-  EXPECT_EQ((*transforms)[0].pose.y, -2.0);
-  EXPECT_NEAR((*transforms)[0].pose.psi, 0.5, 1e-12);  // by way of a quaternion
+  const std::string bytes =
+      encode(TransformsMessage{{{kStamp, "map", "odom", {.x = 1.0, .y = -2.0, .psi = 0.5}}}});
+  const auto message = decode<TransformsMessage>(bytes);
+  ASSERT_TRUE(message);
+  const std::vector<TransformMessage>& transforms = message->transforms;
+  ASSERT_EQ(transforms.size(), 1U);
+  EXPECT_EQ(transforms[0].stamp, kStamp);
+  EXPECT_EQ(transforms[0].frame, "map");
+  EXPECT_EQ(transforms[0].child_frame, "odom");
+  EXPECT_EQ(transforms[0].pose.y, -2.0);
+  EXPECT_NEAR(transforms[0].pose.psi, 0.5, 1e-12);  // by way of a quaternion
   for (std::size_t size = 0; size < bytes.size(); ++size)
-    EXPECT_FALSE(decode_transforms(std::string_view(bytes).substr(0, size))) << size;
-  EXPECT_EQ(decode_clock(encode_clock(kStamp)), kStamp);
-  EXPECT_FALSE(decode_clock(encode_clock(kStamp).substr(0, 11)));
+    EXPECT_FALSE(decode<TransformsMessage>(std::string_view(bytes).substr(0, size))) << size;
+  EXPECT_EQ(decode<ClockMessage>(encode(ClockMessage{kStamp}))->time, kStamp);
+  EXPECT_FALSE(decode<ClockMessage>(encode(ClockMessage{kStamp}).substr(0, 11)));
 }
 
 TEST(CarMessages, AStopIsReadAsItWasWrittenAndRefusedWhenItIsUnsound) {
@@ -143,7 +147,7 @@ TEST(CarMessages, AStopIsReadAsItWasWrittenAndRefusedWhenItIsUnsound) {
     message.stop.points[static_cast<std::size_t>(i)] = {
         .time = 0.1 * i, .distance = 1.0 * i, .speed = 2.0 - i, .command = {.steer = 0.1, .throttle = -0.5}};
   }
-  const auto read = decode_stop(encode(message));
+  const auto read = decode<StopMessage>(encode(message));
   ASSERT_TRUE(read);
   EXPECT_EQ(read->stop.size, 3);
   EXPECT_EQ(read->stop.points[2].distance, 2.0);
@@ -151,34 +155,36 @@ TEST(CarMessages, AStopIsReadAsItWasWrittenAndRefusedWhenItIsUnsound) {
 
   StopMessage backwards = message;
   backwards.stop.points[2].time = -1.0;
-  EXPECT_FALSE(decode_stop(encode(backwards)));
+  EXPECT_FALSE(decode<StopMessage>(encode(backwards)));
   StopMessage unknown = message;
   unknown.stop.points[1].speed = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(decode_stop(encode(unknown)));
+  EXPECT_FALSE(decode<StopMessage>(encode(unknown)));
 }
 
-TEST(CarMessages, OfTheOtherByteOrderAreRead) { EXPECT_EQ(decode_bool(big_endian_bool_and_header()), true); }
+TEST(CarMessages, OfTheOtherByteOrderAreRead) {
+  EXPECT_TRUE(decode<BoolMessage>(big_endian_bool_and_header())->data);
+}
 
 TEST(CarMessages, CutAnywhereAreRefused) {
   const std::string bytes = encode(odometry());
   for (std::size_t size = 0; size < bytes.size(); ++size)
-    EXPECT_FALSE(decode_odometry(std::string_view(bytes).substr(0, size))) << size;
-  const std::string path = encode(PathMessage{.points = {{1.0, 2.0}, {3.0, 4.0}}});
+    EXPECT_FALSE(decode<OdometryMessage>(std::string_view(bytes).substr(0, size))) << size;
+  const std::string path = encode(path_along(0, "", kLine));
   for (std::size_t size = 0; size < path.size(); ++size)
-    EXPECT_FALSE(decode_path(std::string_view(path).substr(0, size))) << size;
+    EXPECT_FALSE(decode<PathMessage>(std::string_view(path).substr(0, size))) << size;
 }
 
 TEST(CarMessages, APathOfMorePointsThanItHasBytesIsRefused) {
   std::string bytes = encode(PathMessage{.frame = "m"});
   std::fill(bytes.end() - 4, bytes.end(), '\x7f');
-  EXPECT_FALSE(decode_path(bytes));
+  EXPECT_FALSE(decode<PathMessage>(bytes));
 }
 
 TEST(CarMessages, HaveDefinitions) {
   for (const std::string_view type :
-       {OdometryMessage::kType, DriveMessage::kType, DriveMessage::kAutowareType, ImuMessage::kType,
-        PathMessage::kType, PoseMessage::kType, ScanMessage::kType, TransformMessage::kType,
-        StopMessage::kType, kBoolType})
+       {OdometryMessage::kType, DriveMessage::kType, AutowareMessage::kType, ImuMessage::kType,
+        PathMessage::kType, PoseMessage::kType, ScanMessage::kType, TransformsMessage::kType,
+        StopMessage::kType, BoolMessage::kType})
     EXPECT_NE(ros_schema(type), "") << type;
 }
 

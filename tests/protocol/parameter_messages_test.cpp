@@ -13,16 +13,15 @@ constexpr ServiceCall kCall{.client = 0x1122334455667788, .sequence = 7};
 
 TEST(ParameterMessages, RequestsAreReadAsTheyWereWritten) {
   const auto names =
-      decode_names_request(encode_names_request({.call = kCall, .names = {"latency_ms", "laps"}}));
+      decode<NamesRequest>(encode(NamesRequest{.call = kCall, .names = {"latency_ms", "laps"}}));
   ASSERT_TRUE(names);
   EXPECT_EQ(names->call.client, kCall.client);
   EXPECT_EQ(names->call.sequence, 7);
   EXPECT_THAT(names->names, testing::ElementsAre("latency_ms", "laps"));
 
-  const auto set = decode_set_request(encode_set_request(
-      {.call = kCall,
-       .parameters = {
-           {"latency_ms", 50.0}, {"laps", 3.0}, {"controller", std::string("pid")}, {"x", true}}}));
+  const auto set = decode<SetRequest>(encode(SetRequest{
+      .call = kCall,
+      .parameters = {{"latency_ms", 50.0}, {"laps", 3.0}, {"controller", std::string("pid")}, {"x", true}}}));
   ASSERT_TRUE(set);
   ASSERT_EQ(set->parameters.size(), 4U);
   EXPECT_EQ(std::get<double>(set->parameters[0].value), 50.0);
@@ -32,20 +31,21 @@ TEST(ParameterMessages, RequestsAreReadAsTheyWereWritten) {
 }
 
 TEST(ParameterMessages, RepliesAreReadAsTheyWereWritten) {
-  EXPECT_THAT(decode_list_reply(encode_list_reply(kCall, {"a", "b"})),
-              testing::Optional(testing::ElementsAre("a", "b")));
-  const auto outcomes = decode_set_reply(encode_set_reply(kCall, {{true, ""}, {false, "out of range"}}));
-  ASSERT_TRUE(outcomes);
-  EXPECT_TRUE((*outcomes)[0].is_successful);
-  EXPECT_EQ((*outcomes)[1].reason, "out of range");
-  const auto values = decode_get_reply(encode_get_reply(kCall, {{"latency_ms", 20.0}, {"unknown", {}}}));
-  ASSERT_TRUE(values);
-  EXPECT_EQ(std::get<double>((*values)[0]), 20.0);
-  EXPECT_TRUE(std::holds_alternative<std::monostate>((*values)[1]));
+  const auto list = decode<ListReply>(encode(ListReply{kCall, {"a", "b"}}));
+  ASSERT_TRUE(list);
+  EXPECT_THAT(list->names, testing::ElementsAre("a", "b"));
+  const auto set = decode<SetReply>(encode(SetReply{kCall, {{true, ""}, {false, "out of range"}}}));
+  ASSERT_TRUE(set);
+  EXPECT_TRUE(set->outcomes[0].is_successful);
+  EXPECT_EQ(set->outcomes[1].reason, "out of range");
+  const auto get = decode<GetReply>(encode(GetReply{kCall, {{"latency_ms", 20.0}, {"unknown", {}}}}));
+  ASSERT_TRUE(get);
+  EXPECT_EQ(std::get<double>(get->values[0].value), 20.0);
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(get->values[1].value));
 }
 
 TEST(ParameterMessages, DescribeWithMeaningAndRange) {
-  const std::string bytes = encode_describe_reply(kCall, {{"latency_ms", 20.0}});
+  const std::string bytes = encode(DescribeReply{kCall, {{"latency_ms", 20.0}}});
   test::CdrReader reader(bytes);
   EXPECT_EQ(reader.get<std::uint64_t>(), kCall.client);
   EXPECT_EQ(reader.get<std::int64_t>(), 7);
@@ -62,9 +62,9 @@ TEST(ParameterMessages, DescribeWithMeaningAndRange) {
 }
 
 TEST(ParameterMessages, CutAnywhereAreRefused) {
-  const std::string bytes = encode_set_request({.call = kCall, .parameters = {{"latency_ms", 50.0}}});
+  const std::string bytes = encode(SetRequest{.call = kCall, .parameters = {{"latency_ms", 50.0}}});
   for (std::size_t size = 0; size < bytes.size(); ++size)
-    EXPECT_FALSE(decode_set_request(std::string_view(bytes).substr(0, size))) << size;
+    EXPECT_FALSE(decode<SetRequest>(std::string_view(bytes).substr(0, size))) << size;
 }
 
 }  // namespace

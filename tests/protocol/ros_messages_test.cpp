@@ -451,9 +451,9 @@ TEST(RosMessages, ReadTheTextOfAQuestionAndNothingElse) {
   EXPECT_EQ(decode_ask("\0\1\0\0\3\0\0\0hi\0"s), "hi");
   EXPECT_EQ(decode_ask("\0\0\0\0\0\0\0\3hi\0"s), "hi") << "big endian";
   EXPECT_EQ(decode_ask("\0\1\0\0\1\0\0\0\0"s), "");
-  for (const std::string& bytes :
-       {""s, "\0\1\0\0"s, "\0\1\0\0\0\0\0\0"s, "\0\1\0\0\0\0\0\0x"s, "\0\1\0\0\4\0\0\0hi\0"s,
-        "\0\1\0\0\2\0\0\0hi\0"s, "\0\1\0\0\377\377\377\377hi\0"s, "\0\2\0\0\3\0\0\0hi\0"s}) {
+  EXPECT_EQ(decode_ask("\0\1\0\0\0\0\0\0"s), "") << "some writers send no zero for an empty text";
+  for (const std::string& bytes : {""s, "\0\1\0\0"s, "\0\1\0\0\4\0\0\0hi\0"s, "\0\1\0\0\2\0\0\0hi\0"s,
+                                   "\0\1\0\0\377\377\377\377hi\0"s, "\0\2\0\0\3\0\0\0hi\0"s}) {
     EXPECT_FALSE(decode_ask(bytes)) << bytes.size();
   }
 }

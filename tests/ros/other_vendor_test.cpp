@@ -69,7 +69,7 @@ TEST(OtherVendor, WritesCommandsAsWeDo) {
   Other control;
   control.stamp().stamp().stamp().stamp().put(0.1F, 0.0F, false);
   control.stamp().stamp().put(4.0F, -2.0F, 0.0F, true, false);
-  EXPECT_EQ(encode_autoware(message), control.bytes());
+  EXPECT_EQ(encode(AutowareMessage{message}), control.bytes());
 }
 
 TEST(OtherVendor, WritesSensorsAsWeDo) {
@@ -97,18 +97,16 @@ TEST(OtherVendor, WritesPosesAsWeDo) {
   path.stamp().put(std::string("map"), std::uint32_t{2});
   path.stamp().put(std::string("map")).pose(1.0, 2.0, std::atan2(2.0, 2.0));
   path.stamp().put(std::string("map")).pose(3.0, 4.0, std::atan2(2.0, 2.0));
-  EXPECT_EQ(encode(PathMessage{.stamp = kStamp, .frame = "map", .points = {{1.0, 2.0}, {3.0, 4.0}}}),
-            path.bytes());
+  EXPECT_EQ(encode(path_along(kStamp, "map", std::vector<Vec2>{{1.0, 2.0}, {3.0, 4.0}})), path.bytes());
   EXPECT_EQ(encode(PoseMessage{.stamp = kStamp, .frame = "map", .pose = {.x = 1.0, .y = 2.0, .psi = 0.0}}),
             Other().stamp().put(std::string("map")).pose(1.0, 2.0, 0.0).zeros<36>().bytes());
-  EXPECT_EQ(
-      encode(TransformMessage{.stamp = kStamp, .frame = "map", .child_frame = "base", .pose = {.x = 1.0}}),
-      Other()
-          .put(std::uint32_t{1})
-          .stamp()
-          .put(std::string("map"), std::string("base"))
-          .pose(1.0, 0.0, 0.0)
-          .bytes());
+  EXPECT_EQ(encode(TransformsMessage{{{kStamp, "map", "base", {.x = 1.0}}}}),
+            Other()
+                .put(std::uint32_t{1})
+                .stamp()
+                .put(std::string("map"), std::string("base"))
+                .pose(1.0, 0.0, 0.0)
+                .bytes());
 }
 
 TEST(OtherVendor, WritesStopsFlagsAndParametersAsWeDo) {
@@ -120,9 +118,9 @@ TEST(OtherVendor, WritesStopsFlagsAndParametersAsWeDo) {
   other.stamp();
   for (const double value : {0.1, 1.0, 2.0, 0.3, -0.4}) other.put(std::vector<double>{value});
   EXPECT_EQ(encode(stop), other.bytes());
-  EXPECT_EQ(encode_bool(true), Other().put(true).bytes());
-  EXPECT_EQ(encode_clock(kStamp), Other().stamp().bytes());
-  EXPECT_EQ(encode_names_request({.call = {7, 8}, .names = {"a"}}),
+  EXPECT_EQ(encode(BoolMessage{true}), Other().put(true).bytes());
+  EXPECT_EQ(encode(ClockMessage{kStamp}), Other().stamp().bytes());
+  EXPECT_EQ(encode(NamesRequest{.call = {7, 8}, .names = {"a"}}),
             Other()
                 .put(std::uint64_t{7}, std::int64_t{8}, std::vector<std::string>{"a"}, std::uint64_t{0})
                 .bytes());

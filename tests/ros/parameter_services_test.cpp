@@ -68,24 +68,25 @@ class ParameterServicesTest : public testing::Test {
 };
 
 TEST_F(ParameterServicesTest, ListsByPrefix) {
-  EXPECT_THAT(protocol::decode_list_reply(ask("list_parameters", "ListParameters",
-                                              protocol::encode_names_request({.names = {"pid"}}))),
-              testing::Optional(testing::ElementsAre("pid.gain")));
+  const auto reply = protocol::decode<protocol::ListReply>(
+      ask("list_parameters", "ListParameters", encode(protocol::NamesRequest{.names = {"pid"}})));
+  ASSERT_TRUE(reply);
+  EXPECT_THAT(reply->names, testing::ElementsAre("pid.gain"));
 }
 
 TEST_F(ParameterServicesTest, SetsAndGets) {
-  const auto outcomes = protocol::decode_set_reply(
+  const auto set = protocol::decode<protocol::SetReply>(
       ask("set_parameters", "SetParameters",
-          protocol::encode_set_request({.parameters = {{"latency_ms", 30.0}, {"latency", 30.0}}})));
-  ASSERT_TRUE(outcomes);
-  ASSERT_EQ(outcomes->size(), 2U);
-  EXPECT_TRUE((*outcomes)[0].is_successful);
-  EXPECT_EQ((*outcomes)[1].reason, "unknown key");
-  const auto values = protocol::decode_get_reply(ask(
-      "get_parameters", "GetParameters", protocol::encode_names_request({.names = {"latency_ms", "none"}})));
-  ASSERT_TRUE(values);
-  EXPECT_EQ(std::get<double>((*values)[0]), 30.0);
-  EXPECT_TRUE(std::holds_alternative<std::monostate>((*values)[1]));
+          encode(protocol::SetRequest{.parameters = {{"latency_ms", 30.0}, {"latency", 30.0}}})));
+  ASSERT_TRUE(set);
+  ASSERT_EQ(set->outcomes.size(), 2U);
+  EXPECT_TRUE(set->outcomes[0].is_successful);
+  EXPECT_EQ(set->outcomes[1].reason, "unknown key");
+  const auto get = protocol::decode<protocol::GetReply>(ask(
+      "get_parameters", "GetParameters", encode(protocol::NamesRequest{.names = {"latency_ms", "none"}})));
+  ASSERT_TRUE(get);
+  EXPECT_EQ(std::get<double>(get->values[0].value), 30.0);
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(get->values[1].value));
 }
 
 }  // namespace

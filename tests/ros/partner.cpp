@@ -59,11 +59,11 @@ void send(Writer& writer, const std::string& fault, int count) {
 }
 
 int tell_stop(Participant& node, bool wanted) {
-  auto writer = node.writer("/chicane/stop", std::string(chicane::protocol::kBoolType), {});
+  auto writer = node.writer("/chicane/stop", std::string(chicane::protocol::BoolMessage::kType), {});
   if (!writer) return 3;
   for (int i = 0; i < 100 && (*writer)->matched() == 0; ++i) std::this_thread::sleep_for(milliseconds{20});
   std::this_thread::sleep_for(milliseconds{100});
-  (*writer)->write(chicane::protocol::encode_bool(wanted));
+  (*writer)->write(encode(chicane::protocol::BoolMessage{wanted}));
   std::this_thread::sleep_for(milliseconds{100});
   return 0;
 }
@@ -80,9 +80,10 @@ int measure(Participant& node, std::chrono::steady_clock::time_point end) {
     node.wait(milliseconds{20});
     const auto now = std::chrono::steady_clock::now();
     for (const auto& sample : (*odometry)->take())
-      if (const auto message = chicane::protocol::decode_odometry(sample.bytes)) asked[message->stamp] = now;
+      if (const auto message = chicane::protocol::decode<chicane::protocol::OdometryMessage>(sample.bytes))
+        asked[message->stamp] = now;
     for (const auto& sample : (*drive)->take()) {
-      const auto message = chicane::protocol::decode_drive(sample.bytes);
+      const auto message = chicane::protocol::decode<chicane::protocol::DriveMessage>(sample.bytes);
       const auto since = message ? asked.find(message->stamp) : asked.end();
       if (since != asked.end())
         answers.push_back(std::chrono::duration<double, std::milli>(now - since->second).count());
@@ -109,12 +110,12 @@ int set_weight(Participant& node, std::chrono::steady_clock::time_point end) {
   while (std::chrono::steady_clock::now() < end && ((*writer)->matched() == 0 || (*reader)->matched() == 0))
     std::this_thread::sleep_for(milliseconds{20});
   (*writer)->write(
-      chicane::protocol::encode_set_request({.parameters = {{"tracking_mpc.weight_lateral", 2.0}}}));
+      encode(chicane::protocol::SetRequest{.parameters = {{"tracking_mpc.weight_lateral", 2.0}}}));
   while (std::chrono::steady_clock::now() < end) {
     node.wait(milliseconds{50});
     for (const auto& sample : (*reader)->take()) {
-      const auto outcomes = chicane::protocol::decode_set_reply(sample.bytes);
-      return outcomes && outcomes->size() == 1 && (*outcomes)[0].is_successful ? 0 : 1;
+      const auto reply = chicane::protocol::decode<chicane::protocol::SetReply>(sample.bytes);
+      return reply && reply->outcomes.size() == 1 && reply->outcomes[0].is_successful ? 0 : 1;
     }
   }
   return 1;
@@ -143,14 +144,14 @@ int main(int count, char** words) {
   std::unique_ptr<Writer> transforms;
   if (fault == "odom-frame") {
     auto made =
-        (*node)->writer("/tf", std::string(chicane::protocol::TransformMessage::kType), {.depth = 100});
+        (*node)->writer("/tf", std::string(chicane::protocol::TransformsMessage::kType), {.depth = 100});
     if (!made) return 3;
     transforms = std::move(*made);
   }
   for (int i = 1; std::chrono::steady_clock::now() < end; ++i) {
     if (transforms) {
-      transforms->write(encode(chicane::protocol::TransformMessage{
-          .stamp = standing().stamp, .frame = "map", .child_frame = "odom", .pose = {.x = 1.0}}));
+      transforms->write(
+          encode(chicane::protocol::TransformsMessage{{{standing().stamp, "map", "odom", {.x = 1.0}}}}));
     }
     send(**writer, fault, i);
     std::this_thread::sleep_for(milliseconds{20});

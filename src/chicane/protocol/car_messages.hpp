@@ -1,19 +1,29 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "chicane/base/vec2.hpp"
 #include "chicane/model/state.hpp"
+#include "chicane/protocol/detail/cdr_archive.hpp"
 #include "chicane/safety/stop_plan.hpp"
 
-/// Messages that a controller and a car exchange as ROS 2 programs, beside the topics of ros_messages.hpp.
-/// CDR as there; bytes that are no such message are read as none. Stamps are nanoseconds since 1970.
+/// Messages that a controller and a car exchange as ROS 2 programs, and that the topics of ros_messages.hpp
+/// consist of. CDR as there. Each message names its fields once, for both directions. Stamps are nanoseconds
+/// since 1970.
 namespace chicane::protocol {
+
+/// std_msgs/msg/Header.
+void header_fields(auto& archive, auto& message) {
+  archive.time(message.stamp);
+  archive(message.frame);
+}
 
 /// nav_msgs/msg/Odometry.
 struct OdometryMessage {
@@ -25,23 +35,51 @@ struct OdometryMessage {
   double vx = 0.0;            ///< along the child frame [m/s]
   double vy = 0.0;            ///< across it, left positive [m/s]
   double yaw_rate = 0.0;      ///< [rad/s]
+  static void fields(auto& archive, auto& message) {
+    header_fields(archive, message);
+    archive(message.child_frame, message.pose);
+    archive.zeros(36);
+    archive(message.vx, message.vy);
+    archive.zeros(3);
+    archive(message.yaw_rate);
+    archive.zeros(36);
+  }
 };
-[[nodiscard]] std::string encode(const OdometryMessage& message);
-[[nodiscard]] std::optional<OdometryMessage> decode_odometry(std::string_view bytes);
 
-/// ackermann_msgs/msg/AckermannDriveStamped, and autoware_control_msgs/msg/Control with the same content.
+/// ackermann_msgs/msg/AckermannDriveStamped.
 struct DriveMessage {
   static constexpr std::string_view kType = "ackermann_msgs/msg/AckermannDriveStamped";
-  static constexpr std::string_view kAutowareType = "autoware_control_msgs/msg/Control";
   std::int64_t stamp = 0;
   std::string frame{};
   double steer = 0.0;         ///< road-wheel angle, left positive [rad]
   double speed = 0.0;         ///< wanted [m/s]
   double acceleration = 0.0;  ///< wanted [m/s²]
+  static void fields(auto& archive, auto& message) {
+    header_fields(archive, message);
+    archive.template as<float>(message.steer);
+    archive.constant(0.0F);
+    archive.template as<float>(message.speed, message.acceleration);
+    archive.constant(0.0F);
+  }
 };
-[[nodiscard]] std::string encode(const DriveMessage& message);
-[[nodiscard]] std::string encode_autoware(const DriveMessage& message);
-[[nodiscard]] std::optional<DriveMessage> decode_drive(std::string_view bytes);
+
+/// autoware_control_msgs/msg/Control, of the content of a DriveMessage.
+struct AutowareMessage {
+  static constexpr std::string_view kType = "autoware_control_msgs/msg/Control";
+  DriveMessage drive{};
+  static void fields(auto& archive, auto& message) {
+    const auto times = [&] {
+      for (int i = 0; i < 2; ++i) archive.time(message.drive.stamp);
+    };
+    times();
+    times();
+    archive.template as<float>(message.drive.steer);
+    archive.constant(0.0F, false);
+    times();
+    archive.template as<float>(message.drive.speed, message.drive.acceleration);
+    archive.constant(0.0F, true, false);
+  }
+};
 
 /// sensor_msgs/msg/Imu, the part that a planar car has.
 struct ImuMessage {
@@ -51,20 +89,50 @@ struct ImuMessage {
   double yaw_rate = 0.0;  ///< [rad/s]
   double ax = 0.0;        ///< [m/s²]
   double ay = 0.0;        ///< left positive [m/s²]
+  static void fields(auto& archive, auto& message) {
+    header_fields(archive, message);
+    archive.constant(0.0, 0.0, 0.0, 1.0, -1.0);  // the first covariance is -1: there is no orientation
+    archive.zeros(8 + 2);
+    archive(message.yaw_rate);
+    archive.zeros(9);
+    archive(message.ax, message.ay);
+    archive.zeros(1 + 9);
+  }
 };
-[[nodiscard]] std::string encode(const ImuMessage& message);
-[[nodiscard]] std::optional<ImuMessage> decode_imu(std::string_view bytes);
 
-/// nav_msgs/msg/Path, positions only.
-struct PathMessage {
-  static constexpr std::string_view kType = "nav_msgs/msg/Path";
-  static constexpr std::size_t kCapacity = 100'000;  ///< points; longer paths are refused
+/// geometry_msgs/msg/PoseStamped.
+struct StampedPose {
+  static constexpr std::size_t kSmallest = 64;  ///< [byte]
   std::int64_t stamp = 0;
   std::string frame{};
-  std::vector<Vec2> points{};
+  model::Pose pose{};
+  static void fields(auto& archive, auto& message) {
+    header_fields(archive, message);
+    archive(message.pose);
+  }
 };
-[[nodiscard]] std::string encode(const PathMessage& message);
-[[nodiscard]] std::optional<PathMessage> decode_path(std::string_view bytes);
+
+/// nav_msgs/msg/Path.
+struct PathMessage {
+  static constexpr std::string_view kType = "nav_msgs/msg/Path";
+  static constexpr std::size_t kCapacity = 100'000;  ///< poses; longer paths are refused
+  std::int64_t stamp = 0;
+  std::string frame{};
+  std::vector<StampedPose> poses{};
+  static void fields(auto& archive, auto& message) {
+    header_fields(archive, message);
+    archive.list(message.poses, StampedPose::kSmallest, kCapacity,
+                 [&](auto& each) { StampedPose::fields(archive, each); });
+  }
+  [[nodiscard]] bool is_sound() const {
+    for (const StampedPose& each : poses)
+      if (!std::isfinite(each.pose.x) || !std::isfinite(each.pose.y)) return false;
+    return true;
+  }
+};
+/// Poses along a polyline, each looking at the next point.
+[[nodiscard]] PathMessage path_along(std::int64_t stamp, const std::string& frame,
+                                     std::span<const Vec2> line);
 
 /// geometry_msgs/msg/PoseWithCovarianceStamped.
 struct PoseMessage {
@@ -72,13 +140,19 @@ struct PoseMessage {
   std::int64_t stamp = 0;
   std::string frame{};
   model::Pose pose{};
+  static void fields(auto& archive, auto& message) {
+    StampedPose::fields(archive, message);
+    archive.zeros(36);
+  }
+  [[nodiscard]] bool is_sound() const {
+    return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.psi);
+  }
 };
-[[nodiscard]] std::string encode(const PoseMessage& message);
-[[nodiscard]] std::optional<PoseMessage> decode_pose(std::string_view bytes);
 
 /// sensor_msgs/msg/LaserScan.
 struct ScanMessage {
   static constexpr std::string_view kType = "sensor_msgs/msg/LaserScan";
+  static constexpr std::size_t kCapacity = 100'000;
   std::int64_t stamp = 0;
   std::string frame{};
   double angle_min = 0.0;        ///< of the first beam from the frame's x axis, left positive [rad]
@@ -87,20 +161,56 @@ struct ScanMessage {
   double range_min = 0.0;        ///< [m]
   double range_max = 0.0;        ///< [m]
   std::vector<float> ranges{};   ///< [m]
+  static void fields(auto& archive, auto& message) {
+    header_fields(archive, message);
+    archive.template as<float>(message.angle_min);
+    const double beams = static_cast<double>(message.ranges.size()) - 1.0;
+    archive.constant(static_cast<float>(message.angle_min + beams * message.angle_increment));
+    archive.template as<float>(message.angle_increment);
+    archive.constant(0.0F);
+    archive.template as<float>(message.scan_time, message.range_min, message.range_max);
+    archive.list(message.ranges, sizeof(float), kCapacity, [&](auto& range) { archive(range); });
+    archive.constant(std::uint32_t{0});  // no intensities
+  }
 };
-[[nodiscard]] std::string encode(const ScanMessage& message);
 
-/// tf2_msgs/msg/TFMessage with one transform in the plane.
+/// geometry_msgs/msg/TransformStamped, in the plane.
 struct TransformMessage {
-  static constexpr std::string_view kType = "tf2_msgs/msg/TFMessage";
+  static constexpr std::size_t kSmallest = 72;
   std::int64_t stamp = 0;
   std::string frame{};
   std::string child_frame{};
   model::Pose pose{};  ///< of the child frame
+  static void fields(auto& archive, auto& message) {
+    header_fields(archive, message);
+    archive(message.child_frame, message.pose);
+  }
 };
-[[nodiscard]] std::string encode(const TransformMessage& message);
-/// All transforms of a message.
-[[nodiscard]] std::optional<std::vector<TransformMessage>> decode_transforms(std::string_view bytes);
+
+/// tf2_msgs/msg/TFMessage.
+struct TransformsMessage {
+  static constexpr std::string_view kType = "tf2_msgs/msg/TFMessage";
+  static constexpr std::size_t kCapacity = 100'000;
+  std::vector<TransformMessage> transforms{};
+  static void fields(auto& archive, auto& message) {
+    archive.list(message.transforms, TransformMessage::kSmallest, kCapacity,
+                 [&](auto& each) { TransformMessage::fields(archive, each); });
+  }
+};
+
+/// rosgraph_msgs/msg/Clock.
+struct ClockMessage {
+  static constexpr std::string_view kType = "rosgraph_msgs/msg/Clock";
+  std::int64_t time = 0;
+  static void fields(auto& archive, auto& message) { archive.time(message.time); }
+};
+
+/// std_msgs/msg/Bool.
+struct BoolMessage {
+  static constexpr std::string_view kType = "std_msgs/msg/Bool";
+  bool data = false;
+  static void fields(auto& archive, auto& message) { archive(message.data); }
+};
 
 /// chicane_msgs/msg/StopPlan: times of the plan are [s] after the stamp.
 struct StopMessage {
@@ -108,16 +218,10 @@ struct StopMessage {
   std::int64_t stamp = 0;  ///< of the odometry that the command answers
   safety::StopPlan stop{};
 };
+template <>
 [[nodiscard]] std::string encode(const StopMessage& message);
 /// None also for a plan with numbers that are not finite, or with times that decrease.
-[[nodiscard]] std::optional<StopMessage> decode_stop(std::string_view bytes);
-
-inline constexpr std::string_view kClockType = "rosgraph_msgs/msg/Clock";
-[[nodiscard]] std::string encode_clock(std::int64_t time);
-[[nodiscard]] std::optional<std::int64_t> decode_clock(std::string_view bytes);
-
-inline constexpr std::string_view kBoolType = "std_msgs/msg/Bool";
-[[nodiscard]] std::string encode_bool(bool value);
-[[nodiscard]] std::optional<bool> decode_bool(std::string_view bytes);
+template <>
+[[nodiscard]] std::optional<StopMessage> decode(std::string_view bytes);
 
 }  // namespace chicane::protocol

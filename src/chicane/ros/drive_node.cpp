@@ -113,9 +113,9 @@ class DriveNode {
   void read_clock() {
     if (!topics_.clock) return;
     for (const Sample& sample : topics_.clock->take()) {
-      const auto time = protocol::decode_clock(sample.bytes);
-      if (!time) continue;
-      const std::string news = time_.tick(*time);
+      const auto clock = protocol::decode<protocol::ClockMessage>(sample.bytes);
+      if (!clock) continue;
+      const std::string news = time_.tick(clock->time);
       if (news.empty()) continue;
       log_.say(news);
       clock_.forget();
@@ -127,8 +127,8 @@ class DriveNode {
   void read_transforms() {
     for (Reader* reader : {topics_.fixed_transforms.get(), topics_.transforms.get()}) {
       for (const Sample& sample : reader->take())
-        if (const auto transforms = protocol::decode_transforms(sample.bytes))
-          for (const protocol::TransformMessage& transform : *transforms) frames_.put(transform);
+        if (const auto transforms = protocol::decode<protocol::TransformsMessage>(sample.bytes))
+          for (const protocol::TransformMessage& transform : transforms->transforms) frames_.put(transform);
     }
   }
 
@@ -153,7 +153,7 @@ class DriveNode {
   void read_odometry() {
     for (const Sample& sample : topics_.odom->take()) {
       const Clock::time_point now = time_.now();
-      const auto message = protocol::decode_odometry(sample.bytes);
+      const auto message = protocol::decode<protocol::OdometryMessage>(sample.bytes);
       if (!message) {
         ++summary_.unusable;
         log_.complain(
@@ -266,7 +266,8 @@ class DriveNode {
     message.frame = node_.frames.base;
     const bool is_sent = !topics_.drive || topics_.drive->write(protocol::encode(message));
     if (!is_sent) log_.complain(fmt::format("{}: DDS did not take a command in time", node_.topics.drive));
-    if (topics_.autoware) static_cast<void>(topics_.autoware->write(protocol::encode_autoware(message)));
+    if (topics_.autoware)
+      static_cast<void>(topics_.autoware->write(protocol::encode(protocol::AutowareMessage{message})));
   }
 
   // ---- Requests ----
@@ -274,11 +275,12 @@ class DriveNode {
   void read_requests() {
     if (topics_.stop) {
       for (const Sample& sample : topics_.stop->take())
-        if (const auto wanted = protocol::decode_bool(sample.bytes)) request_stop(*wanted);
+        if (const auto wanted = protocol::decode<protocol::BoolMessage>(sample.bytes))
+          request_stop(wanted->data);
     }
     if (topics_.initial_pose) {
       for (const Sample& sample : topics_.initial_pose->take()) {
-        if (!protocol::decode_pose(sample.bytes)) continue;
+        if (!protocol::decode<protocol::PoseMessage>(sample.bytes)) continue;
         log_.say(
             fmt::format("{}: the car was put elsewhere, nothing learned is kept", node_.topics.initial_pose));
         drive_.begin();
@@ -327,17 +329,18 @@ class DriveNode {
 
   void read_paths(Reader& reader) {
     for (const Sample& sample : reader.take()) {
-      const auto path = protocol::decode_path(sample.bytes);
+      const auto path = protocol::decode<protocol::PathMessage>(sample.bytes);
       if (!path) {
         log_.complain(
             fmt::format("{}: got bytes that are no {}", node_.topics.path, protocol::PathMessage::kType));
         continue;
       }
-      std::vector<Vec2> points = path->points;
+      std::vector<Vec2> points;
       const model::Pose place = path->frame == node_.frames.map ? model::Pose{} : place_of(path->frame);
-      for (Vec2& point : points) {
-        const model::Pose moved = composed(place, {.x = point.x(), .y = point.y()});
-        point = {moved.x, moved.y};
+      points.reserve(path->poses.size());
+      for (const protocol::StampedPose& each : path->poses) {
+        const model::Pose moved = composed(place, {.x = each.pose.x, .y = each.pose.y});
+        points.emplace_back(moved.x, moved.y);
       }
       if (const Result<void> used = sight_.use_path(points); !used)
         log_.complain(fmt::format("{}: {}", node_.topics.path, used.error().message));
@@ -350,7 +353,7 @@ class DriveNode {
     constexpr double kDifference = 0.3, kShare = 0.3;  // [rad/s], and of the yaw rate
     constexpr int kOften = 25;
     for (const Sample& sample : topics_.imu->take()) {
-      const auto imu = protocol::decode_imu(sample.bytes);
+      const auto imu = protocol::decode<protocol::ImuMessage>(sample.bytes);
       if (!imu || !is_driving_) continue;
       const double difference = std::fabs(imu->yaw_rate - odometry_.yaw_rate);
       const bool is_odd = difference > kDifference + kShare * std::fabs(odometry_.yaw_rate);

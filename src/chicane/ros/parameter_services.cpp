@@ -26,41 +26,41 @@ std::vector<Parameter> values_of(ParameterStore& store, const std::vector<std::s
 }
 
 std::string list(ParameterStore& store, std::string_view bytes) {
-  const auto request = protocol::decode_names_request(bytes);
+  const auto request = protocol::decode<protocol::NamesRequest>(bytes);
   if (!request) return {};
-  std::vector<std::string> names;
+  protocol::ListReply reply{request->call};
   for (const Parameter& each : store.list()) {
     const bool is_asked =
         request->names.empty() ||
         std::any_of(request->names.begin(), request->names.end(), [&](const std::string& prefix) {
           return each.name == prefix || each.name.starts_with(prefix + ".");
         });
-    if (is_asked) names.push_back(each.name);
+    if (is_asked) reply.names.push_back(each.name);
   }
-  return protocol::encode_list_reply(request->call, names);
+  return encode(reply);
 }
 
 std::string get(ParameterStore& store, std::string_view bytes) {
-  const auto request = protocol::decode_names_request(bytes);
-  return request ? protocol::encode_get_reply(request->call, values_of(store, request->names))
+  const auto request = protocol::decode<protocol::NamesRequest>(bytes);
+  return request ? encode(protocol::GetReply{request->call, values_of(store, request->names)})
                  : std::string();
 }
 
 std::string describe(ParameterStore& store, std::string_view bytes) {
-  const auto request = protocol::decode_names_request(bytes);
-  return request ? protocol::encode_describe_reply(request->call, values_of(store, request->names))
+  const auto request = protocol::decode<protocol::NamesRequest>(bytes);
+  return request ? encode(protocol::DescribeReply{request->call, values_of(store, request->names)})
                  : std::string();
 }
 
 std::string set(ParameterStore& store, std::string_view bytes) {
-  const auto request = protocol::decode_set_request(bytes);
+  const auto request = protocol::decode<protocol::SetRequest>(bytes);
   if (!request) return {};
-  std::vector<protocol::SetOutcome> outcomes;
+  protocol::SetReply reply{request->call};
   for (const Parameter& each : request->parameters) {
     const Result<void> done = store.set(each);
-    outcomes.push_back({done.has_value(), done ? std::string() : done.error().message});
+    reply.outcomes.push_back({done.has_value(), done ? std::string() : done.error().message});
   }
-  return protocol::encode_set_reply(request->call, outcomes);
+  return encode(reply);
 }
 
 struct Offer {

@@ -84,11 +84,11 @@ struct SimTopics {
     endpoints.read(topics.stop_plan, node.topics.stop_plan, protocol::StopMessage::kType, any);
     endpoints.read(topics.initial_pose, node.topics.initial_pose, protocol::PoseMessage::kType, any);
     endpoints.send(topics.odom, node.topics.odom, protocol::OdometryMessage::kType, {});
-    endpoints.send(topics.transform, "/tf", protocol::TransformMessage::kType, {.depth = 100});
-    endpoints.send(topics.fixed_transform, "/tf_static", protocol::TransformMessage::kType,
+    endpoints.send(topics.transform, "/tf", protocol::TransformsMessage::kType, {.depth = 100});
+    endpoints.send(topics.fixed_transform, "/tf_static", protocol::TransformsMessage::kType,
                    {.is_transient_local = true, .depth = 1});
     endpoints.send(topics.imu, node.topics.imu, protocol::ImuMessage::kType, {});
-    if (node.pace > 0.0) endpoints.send(topics.clock, "/clock", protocol::kClockType, {});
+    if (node.pace > 0.0) endpoints.send(topics.clock, "/clock", protocol::ClockMessage::kType, {});
     endpoints.send(topics.scan, node.topics.scan, protocol::ScanMessage::kType, {});
     if (!endpoints.made()) return fail(endpoints.made().error());
     return topics;
@@ -210,11 +210,12 @@ class SimNode {
     std::vector<Sample> drives = topics_.drive ? topics_.drive->take() : std::vector<Sample>{};
     if (topics_.stop_plan) {  // after the commands: each was sent behind its stop
       for (const Sample& sample : topics_.stop_plan->take()) {
-        if (auto stop = protocol::decode_stop(sample.bytes)) stops_[stop_count_++ % stops_.size()] = *stop;
+        if (auto stop = protocol::decode<protocol::StopMessage>(sample.bytes))
+          stops_[stop_count_++ % stops_.size()] = *stop;
       }
     }
     for (const Sample& sample : drives) {
-      const auto message = protocol::decode_drive(sample.bytes);
+      const auto message = protocol::decode<protocol::DriveMessage>(sample.bytes);
       const bool is_finite = message && std::isfinite(message->steer) && std::isfinite(message->speed) &&
                              std::isfinite(message->acceleration);
       if (!is_finite) {
@@ -265,7 +266,7 @@ class SimNode {
   void read_initial_pose() {
     if (!topics_.initial_pose) return;
     for (const Sample& sample : topics_.initial_pose->take()) {
-      const auto message = protocol::decode_pose(sample.bytes);
+      const auto message = protocol::decode<protocol::PoseMessage>(sample.bytes);
       if (!message) continue;
       const double b = node_.is_base_at_rear_axle ? scenario_.vehicle.rear_axle : 0.0;
       const model::Pose& base = message->pose;
@@ -328,7 +329,7 @@ class SimNode {
     const double time = report_.connections > 0 ? world_.time() : elapsed(now);
     if (topics_.clock && time + 1e-9 >= next_tick_) {
       next_tick_ = std::max(next_tick_ + kTickPeriod, time);
-      static_cast<void>(topics_.clock->write(protocol::encode_clock(stamp(time))));
+      static_cast<void>(topics_.clock->write(protocol::encode(protocol::ClockMessage{stamp(time)})));
     }
     if (time + 1e-9 >= next_odometry_) {
       next_odometry_ = std::max(next_odometry_ + scenario_.control_period, time);
@@ -355,8 +356,8 @@ class SimNode {
                                                      .vy = state.vy - b * state.r,
                                                      .yaw_rate = state.r})));
     }
-    static_cast<void>(topics_.transform->write(protocol::encode(protocol::TransformMessage{
-        .stamp = stamp(time), .frame = node_.frames.map, .child_frame = node_.frames.base, .pose = base})));
+    static_cast<void>(topics_.transform->write(protocol::encode(
+        protocol::TransformsMessage{{{stamp(time), node_.frames.map, node_.frames.base, base}}})));
     if (topics_.imu && topics_.imu->matched() > 0) {
       static_cast<void>(topics_.imu->write(protocol::encode(protocol::ImuMessage{.stamp = stamp(time),
                                                                                  .frame = node_.frames.base,
@@ -384,11 +385,8 @@ class SimNode {
   }
 
   void send_scanner_place() {
-    static_cast<void>(topics_.fixed_transform->write(
-        protocol::encode(protocol::TransformMessage{.stamp = stamp(0.0),
-                                                    .frame = node_.frames.base,
-                                                    .child_frame = scanner_frame(),
-                                                    .pose = {.x = scanner_ahead_}})));
+    static_cast<void>(topics_.fixed_transform->write(protocol::encode(protocol::TransformsMessage{
+        {{stamp(0.0), node_.frames.base, scanner_frame(), {.x = scanner_ahead_}}}})));
   }
 
   /// "ego_racecar/base_link" → "ego_racecar/laser"

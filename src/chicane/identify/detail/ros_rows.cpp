@@ -38,11 +38,11 @@ double RosRows::seconds(std::int64_t stamp, std::uint64_t log_time) {
 void RosRows::add(const std::string& topic, std::string_view type, std::string_view bytes,
                   std::uint64_t log_time) {
   if (type == kOdometry) {
-    if (const auto odom = protocol::decode_odometry(bytes))
+    if (const auto odom = protocol::decode<protocol::OdometryMessage>(bytes))
       samples_[topic].push_back({seconds(odom->stamp, log_time), odom->pose.x, odom->pose.y, odom->pose.psi,
                                  hypot(odom->vx, odom->vy), odom->yaw_rate});
   } else if (type == kDrive) {
-    if (const auto command = protocol::decode_drive(bytes))
+    if (const auto command = protocol::decode<protocol::DriveMessage>(bytes))
       told_[topic].push_back({.time = seconds(command->stamp, log_time), .steer = command->steer});
   }
 }

@@ -18,6 +18,11 @@
 
 namespace chicane::protocol {
 
+/// A time of a message [ns].
+struct StampNs {
+  std::int64_t nanoseconds = 0;
+};
+
 /// One message under construction: XCDR1 with its header, each primitive aligned to its size counted from the
 /// end of the header (OMG DDSI-RTPS 2.3, chapter 10). Padding is zero, so equal messages have equal bytes.
 class CdrWriter {
@@ -47,7 +52,6 @@ class CdrWriter {
     const std::int64_t ns = nanoseconds < 0 ? 0 : nanoseconds;
     return put(static_cast<std::int32_t>(ns / 1'000'000'000), static_cast<std::uint32_t>(ns % 1'000'000'000));
   }
-  CdrWriter& header(double seconds, std::string_view frame_id) { return stamp(seconds).text(frame_id); }
   CdrWriter& orientation(double yaw) {
     return put(0.0, 0.0, chicane::sin(0.5 * yaw), chicane::cos(0.5 * yaw));
   }
@@ -71,6 +75,7 @@ class CdrWriter {
     append(static_cast<std::int32_t>(ns / 1'000'000'000U));
     append(static_cast<std::uint32_t>(ns % 1'000'000'000U));
   }
+  void append(StampNs stamp) { stamp_ns(stamp.nanoseconds); }
   void append(std::span<const double> values) {
     count(values.size());
     for (const double value : values) append(value);

@@ -15,8 +15,7 @@ struct RosDefinition {
 /// Fields of the standard types as in ROS 2 Jazzy (common_interfaces 5.3, rcl_interfaces 2.0, geometry2 0.36,
 /// ackermann_msgs 2.0, autoware_msgs 1.2), comments shortened; web/src/protocol/schemas.test.ts compares them
 /// with
-/// @foxglove/rosmsg-msgs-common. Those of chicane_msgs are ours; chicane_msgs/Frame is not among them,
-/// because it follows from its table (frame_fields.hpp).
+/// @foxglove/rosmsg-msgs-common. Those of chicane_msgs follow from their rows (own_messages.hpp).
 inline constexpr std::array kRosDefinitions{
     RosDefinition{"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
     RosDefinition{"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
@@ -116,121 +115,6 @@ inline constexpr std::array kRosDefinitions{
                   "foxglove_msgs/ModelPrimitive[] models\n"},
     RosDefinition{"foxglove_msgs/SceneUpdate",
                   "foxglove_msgs/SceneEntityDeletion[] deletions\nfoxglove_msgs/SceneEntity[] entities\n"},
-    RosDefinition{"chicane_msgs/Plan",
-                  R"(# What the controller intends: predicted motion of the centre of mass with
-# its commands, all arrays of the same length; element 0 is where the first command acts.
-builtin_interfaces/Time stamp
-float64[] time_s
-float64[] x_m
-float64[] y_m
-float64[] yaw_rad
-float64[] speed_mps
-float64[] steer_rad
-float64[] throttle
-)"},
-    RosDefinition{"chicane_msgs/Run", R"(# What is running: constant until something is chosen anew.
-string track
-float64 track_length_m                  # 0 = unknown
-bool is_closed
-string controller
-string preset
-float64 latency_s                       # artificial, from command to actuation
-float64 control_period_s
-bool is_paused
-
-# The car, as the controller models it
-string car
-float64 front_axle_m                    # centre of mass to front axle
-float64 rear_axle_m                     # centre of mass to rear axle
-float64 track_width_m                   # between the wheels of an axle
-float64 tire_width_m
-float64 body_length_m
-float64 body_width_m
-float64 steer_limit_rad
-
-string mode                             # "drive": our simulator; "serve": an external one
-string[] cost_term_names                # of Frame.cost_terms
-string[] constraint_names               # of the bits of Frame.active_now and active_ahead, from the lowest
-string[] fault_names                    # of the bits of Frame.active_faults
-float64 kerb_width_m                    # drivable, outside each edge
-string building                         # another run that is being built: "track = oval"; empty: none
-string end                              # "finished", "stopped", "failed": the run is over; empty: it goes on
-string end_reason                       # why, in one sentence; empty when it finished
-string guard_mode                       # "on", "observe", "off"; empty: not known
-string guard_road                       # where the guard knows the road from: "track", "waypoints"
-uint32 guard_version                    # 0: not known
-float64 brake_throttle_limit            # the throttle that brakes fully is minus this
-string[] notices                        # what was assumed, and what has no effect: a sentence each
-
-# Where car and road come from, as their files say it
-string[] car_notes
-string[] identified_keys                # parameters found by a log, in the unit of their key
-float64[] identified_values
-float64[] identified_low                # 95 % interval; not-a-number: assumed, the log did not excite it
-float64[] identified_high
-string track_kind                       # "occupancy map", "table of points"; empty: not known
-string[] track_notes                    # remarks of the file, and what its reader assumed
-float64 track_scale                     # the road's size over that of its file
-uint32 track_points                     # in the file; 0: not known
-float64 track_fit_rms_m                 # of the points from the smooth line
-float64 track_fit_max_m
-)"},
-    RosDefinition{"chicane_msgs/Lap", R"(# One completed lap, sent when it is.
-uint32 lap                              # its number, from 1
-float64 lap_time_s
-float64[3] sector_times_s               # thirds of the lap
-bool is_clean                           # no tyre left the road
-float64 mean_speed_mps
-float64 top_speed_mps
-float64 min_edge_distance_m             # of the outermost tyre, negative = off the road
-float64 rms_lateral_error_m
-float64 gap_to_limit_percent            # lap time over the limit's, minus 100 %; not-a-number while unknown
-float64[3] sector_gaps_to_limit_percent # the same for the thirds
-string[] setting_names                  # changed since the run began, as at the end of the lap
-string[] setting_values                 # as --set takes them
-bool is_mixed                           # one of them changed while the lap was driven
-float64 by_hand_share                   # of its time, driven by a person
-string[] faults                         # that acted in it
-)"},
-    RosDefinition{"chicane_msgs/Limit",
-                  R"(# The physical limit of this road for this car: the fastest lap of the model
-# in docs/limit.md and its line, arrays of the same length by rising time from the start
-# line, the last point the first one again.
-bool is_known                           # false: see why_not; the rest is empty
-float64 lap_time_s
-float64[3] sector_times_s               # thirds of the lap, from the start line
-float64[] s_m                           # along the centre line from its beginning
-float64[] x_m                           # of the centre of mass
-float64[] y_m
-float64[] n_m                           # to the left of the centre line
-float64[] speed_mps
-float64[] longitudinal_acceleration_mps2
-float64[] lateral_acceleration_mps2     # positive to the left
-float64[] time_s                        # since the start line
-string why_not                          # in one sentence, while is_known is false
-uint32 first_lap                        # it holds for laps from this one on: before, grip or mass were others
-float64[] corner_times_s                # of the limit, in the order of a lap, with half of the straights beside
-string[] without                        # laps that were driven again without these, one at a time: "latency"
-float64[] without_lap_times_s           # the best of each; not-a-number where there was none
-float64[] without_corner_times_s        # of these laps, one after the other; not-a-number where not known
-)"},
-    RosDefinition{"chicane_msgs/Change",
-                  R"(# A setting that changed during the run, before this control cycle.
-builtin_interfaces/Time stamp
-uint64 cycle
-string name                             # key as in YAML and --set: "latency_ms"
-string value                            # as --set takes it
-)"},
-    RosDefinition{"chicane_msgs/StopPlan",
-                  R"(# How the car comes to rest when no further command arrives. Sent before the
-# command that it belongs to; columns have the same length.
-builtin_interfaces/Time stamp           # of the odometry that the command answers
-float64[] time_s                        # after the stamp, from which the command acts
-float64[] distance_m                    # driven since the stop began
-float64[] speed_mps                     # planned then
-float64[] steer_rad                     # left positive
-float64[] throttle                      # [-1, 1], negative brakes
-)"},
 };
 
 }  // namespace chicane::protocol

@@ -23,7 +23,7 @@ std::vector<WantedPartner> wanted_partners(const NodeOptions& node) {
                                      .topic_option = "--drive-topic"}};
   if (node.is_time_simulated) {
     wanted.push_back({.topic = "/clock",
-                      .type = std::string(protocol::kClockType),
+                      .type = std::string(protocol::ClockMessage::kType),
                       .qos = {.is_reliable = false},
                       .qos_option = "",
                       .topic_option = ""});
@@ -49,16 +49,15 @@ Result<CarTopics> CarTopics::create(Participant& at, const NodeOptions& node) {
   // others.
   endpoints.read(topics.kept_path, node.topics.path, protocol::PathMessage::kType,
                  {.is_transient_local = true, .depth = 1});
-  endpoints.read(topics.transforms, "/tf", protocol::TransformMessage::kType,
+  endpoints.read(topics.transforms, "/tf", protocol::TransformsMessage::kType,
                  {.is_reliable = false, .depth = 100});
-  endpoints.read(topics.fixed_transforms, "/tf_static", protocol::TransformMessage::kType,
+  endpoints.read(topics.fixed_transforms, "/tf_static", protocol::TransformsMessage::kType,
                  {.is_transient_local = true, .depth = 100});
-  if (node.is_time_simulated) endpoints.read(topics.clock, "/clock", protocol::kClockType, any);
+  if (node.is_time_simulated) endpoints.read(topics.clock, "/clock", protocol::ClockMessage::kType, any);
   endpoints.read(topics.initial_pose, node.topics.initial_pose, protocol::PoseMessage::kType, {});
-  endpoints.read(topics.stop, node.topics.stop, protocol::kBoolType, {});
+  endpoints.read(topics.stop, node.topics.stop, protocol::BoolMessage::kType, {});
   endpoints.send(topics.drive, node.topics.drive, protocol::DriveMessage::kType, node.drive_qos);
-  endpoints.send(topics.autoware, node.topics.autoware, protocol::DriveMessage::kAutowareType,
-                 node.drive_qos);
+  endpoints.send(topics.autoware, node.topics.autoware, protocol::AutowareMessage::kType, node.drive_qos);
   endpoints.send(topics.stop_plan, node.topics.stop_plan, protocol::StopMessage::kType, node.drive_qos);
   if (!endpoints.made()) return fail(endpoints.made().error());
   return topics;
