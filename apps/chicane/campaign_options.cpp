@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <string>
 #include <vector>
 
@@ -17,12 +16,8 @@ namespace {
 
 /// "2", or "inf" for a fault that lasts.
 double fault_duration(const std::string& text) {
-  double seconds = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
   if (text == "inf") return run::kLasting;
-  if (error == std::errc{} && end == text.data() + text.size() && seconds >= 0.001 &&
-      seconds <= run::kLasting)
-    return seconds;
+  if (const auto seconds = number_in("--for-s", text, 0.001, run::kLasting)) return *seconds;
   throw CLI::ValidationError(
       "--for-s", fmt::format("got {}, expected a number in [0.001, 1000000] or inf", printable(text)));
 }

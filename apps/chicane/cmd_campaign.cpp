@@ -186,9 +186,7 @@ Result<std::vector<std::string>> chosen_faults(const Options::Campaign& campaign
   if (names.empty())
     for (const sim::FaultKind& kind : sim::fault_kinds()) names.emplace_back(kind.name);
   for (const std::string& name : names) {
-    if (!sim::fault_named(name))
-      return fail(ErrorCode::kInvalidArgument, fmt::format("--faults: got {}, expected {}", printable(name),
-                                                           protocol::expected_fault(name)));
+    if (!sim::fault_named(name)) return fail(refusal("--faults", name, protocol::expected_fault(name)));
   }
   return names;
 }

@@ -34,8 +34,7 @@ Result<identify::LogOptions> log_options(const Options::Identify& options) {
   for (const std::string& column : options.columns) {
     const std::size_t equals = column.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == column.size())
-      return fail(ErrorCode::kInvalidArgument,
-                  fmt::format("--columns: got {}, expected MEANING=NAME such as steer=delta_rad", column));
+      return fail(refusal("--columns", column, "MEANING=NAME such as steer=delta_rad"));
     log.columns[column.substr(0, equals)] = column.substr(equals + 1);
   }
   return log;

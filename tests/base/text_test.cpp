@@ -59,5 +59,24 @@ TEST(Text, JoinsWordsWithCommas) {
   EXPECT_EQ(joined(std::array<std::string_view, 2>{"a", "b"}), "a, b");
 }
 
+TEST(Text, NumbersAreWholeTextsAndFinite) {
+  EXPECT_EQ(number_in("-1.5e1"), -15.0);
+  for (const char* bad : {"", " 1", "1 ", "+1", "1,5", "0x1", "nan", "inf", "1e999"})
+    EXPECT_FALSE(number_in(bad)) << bad;
+  EXPECT_EQ(count_in("17"), 17U);
+  for (const char* bad : {"", "-1", "+1", "1.0", "99999999999999999999"}) EXPECT_FALSE(count_in(bad)) << bad;
+}
+
+TEST(Text, ANumberOutOfItsRangeIsRefusedInOneForm) {
+  EXPECT_EQ(number_in("k", "2.5", 0.0, 3.0), 2.5);
+  EXPECT_EQ(number_in("k", "3.000001", 0.0, 3.0), 3.0) << "rounding of single precision";
+  EXPECT_FALSE(number_in("k", "-1", 0.0, 1e6)) << "rounding of its own border, not of the other";
+  for (const char* bad : {"3.1", "three", "nan"}) {
+    EXPECT_EQ(number_in("k", bad, 0.0, 3.0).error().message,
+              std::string("k: got ") + bad + ", expected a number in [0, 3]");
+  }
+  EXPECT_EQ(refusal("k", "", "a word").message, "k: got nothing, expected a word");
+}
+
 }  // namespace
 }  // namespace chicane

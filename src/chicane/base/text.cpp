@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 namespace chicane {
 namespace {
@@ -15,7 +16,35 @@ std::string written(double value, auto... format) {
   return {buffer.data(), end};
 }
 
+template <class Number>
+std::optional<Number> whole(std::string_view text) noexcept {
+  Number value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
 }  // namespace
+
+std::optional<double> number_in(std::string_view text) noexcept {
+  const std::optional<double> value = whole<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<std::uint64_t> count_in(std::string_view text) noexcept { return whole<std::uint64_t>(text); }
+
+Result<double> number_in(std::string_view key, std::string_view text, double low, double high) {
+  const std::optional<double> value = number_in(text);
+  const auto rounding = [](double border) { return 1e-6 * std::max(1.0, std::fabs(border)); };
+  if (value && *value >= low - rounding(low) && *value <= high + rounding(high))
+    return std::clamp(*value, low, high);
+  return fail(refusal(key, text, "a number in [" + number_text(low) + ", " + number_text(high) + "]"));
+}
+
+Error refusal(std::string_view key, std::string_view text, std::string_view expected, ErrorCode code) {
+  std::string message(key);
+  message.append(": got ").append(printable(text)).append(", expected ").append(expected);
+  return {code, std::move(message)};
+}
 
 std::string number_text(double value) {
   const double size = std::fabs(value);

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "chicane/base/result.hpp"
 
 namespace chicane {
 
@@ -12,6 +16,17 @@ namespace chicane {
 [[nodiscard]] std::string number_text(double value);
 /// Rounded to `digits` significant ones: "0.05", "66.7". A point in every locale.
 [[nodiscard]] std::string number_text(double value, int digits);
+
+/// The finite number that a whole text is: digits with a point in every locale, no blank, no plus sign.
+[[nodiscard]] std::optional<double> number_in(std::string_view text) noexcept;
+/// The same for a whole number of digits alone.
+[[nodiscard]] std::optional<std::uint64_t> count_in(std::string_view text) noexcept;
+/// Clamped to [low, high] where it rounds to a border; else refusal(key, text, "a number in [low, high]").
+[[nodiscard]] Result<double> number_in(std::string_view key, std::string_view text, double low, double high);
+
+/// "KEY: got TEXT, expected EXPECTED", the text as printable() shows it.
+[[nodiscard]] Error refusal(std::string_view key, std::string_view text, std::string_view expected,
+                            ErrorCode code = ErrorCode::kInvalidArgument);
 
 /// For messages: the first 60 bytes of foreign text without control characters; "nothing" when empty.
 [[nodiscard]] std::string printable(std::string_view text);

@@ -12,13 +12,14 @@
 #include <array>
 #include <boost/uuid/detail/sha1.hpp>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <random>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "chicane/base/text.hpp"
 
 namespace chicane::net {
 namespace {
@@ -334,9 +335,9 @@ Result<Url> parse_url(const std::string& text) {
   if (bracket != std::string::npos) url.host = authority.substr(1, bracket - 1);
   if (url.host.empty()) return refuse("a host");
   if (colon != std::string::npos) {
-    const char* end = authority.data() + authority.size();
-    const auto [stop, ec] = std::from_chars(authority.data() + colon + 1, end, url.port);
-    if (ec != std::errc{} || stop != end || url.port == 0) return refuse("a port in [1, 65535]");
+    const std::uint64_t port = count_in(std::string_view(authority).substr(colon + 1)).value_or(0);
+    if (port == 0 || port > 65535) return refuse("a port in [1, 65535]");
+    url.port = static_cast<std::uint16_t>(port);
   }
   return url;
 }

@@ -4,12 +4,12 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 
 #include <fmt/format.h>
 
 #include "chicane/base/fnv.hpp"
+#include "chicane/base/text.hpp"
 #include "chicane/net/detail/gunzip.hpp"
 
 namespace chicane::net {
@@ -33,14 +33,6 @@ std::string sockets_of(std::string_view host) {
   return fmt::format(" ws://{0} wss://{0}", host);
 }
 
-/// Digits and nothing else.
-std::optional<std::uint64_t> number(std::string_view digits) {
-  std::uint64_t value = 0;
-  const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (fault != std::errc{} || end != digits.data() + digits.size()) return std::nullopt;
-  return value;
-}
-
 }  // namespace
 
 std::optional<ByteRange> parse_range(std::string_view header, std::uint64_t size) {
@@ -50,7 +42,7 @@ std::optional<ByteRange> parse_range(std::string_view header, std::uint64_t size
   const std::size_t dash = range.find('-');
   if (dash == std::string_view::npos) return std::nullopt;
   const std::string_view first_text = range.substr(0, dash), last_text = range.substr(dash + 1);
-  const auto first = number(first_text), last = number(last_text);
+  const auto first = count_in(first_text), last = count_in(last_text);
   if (first_text.empty() && last) return ByteRange{size - std::min(*last, size), std::min(*last, size)};
   if (!first || (!last && !last_text.empty()) || (last && *last < *first)) return std::nullopt;
   if (*first >= size) return ByteRange{size, 0};

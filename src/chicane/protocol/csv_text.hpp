@@ -2,12 +2,12 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "chicane/base/text.hpp"
 
 /// Lines of text files as fields: tables of roads, of cones and of logs.
 namespace chicane::protocol {
@@ -43,11 +43,7 @@ inline std::vector<std::string_view> split(std::string_view line, char separator
 /// A finite number or nothing.
 inline std::optional<double> number(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0.0;
-  const std::from_chars_result end = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end.ec != std::errc{} || end.ptr != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
+  return number_in(text);
 }
 
 /// A finite number with a decimal point, or with a decimal comma where commas separate nothing.

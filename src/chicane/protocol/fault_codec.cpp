@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <optional>
 
 #include "chicane/base/text.hpp"
@@ -15,22 +13,9 @@ namespace {
 
 constexpr double kLongest = 1e6;  // [s]
 
-std::optional<double> number(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-/// Reads `text` into `value` when there is one; the sentence of what is wrong otherwise.
-std::string read(std::string_view key, std::string_view text, double low, double high, double& value) {
-  if (text.empty()) return {};
-  const std::optional<double> read = number(text);
-  if (read && *read >= low && *read <= high) {
-    value = *read;
-    return {};
-  }
-  return fmt::format("{}: got {}, expected a number in [{}, {}]", key, printable(text), low, high);
+/// The number in [low, high] that `text` is; `otherwise` where it is empty.
+Result<double> read(std::string_view key, std::string_view text, double low, double high, double otherwise) {
+  return text.empty() ? otherwise : number_in(key, text, low, high);
 }
 
 }  // namespace
@@ -46,22 +31,23 @@ std::string expected_fault(std::string_view word) {
 Result<sim::FaultEvent> read_fault(const FaultText& text) {
   const std::optional<sim::Fault> fault = sim::fault_named(text.name);
   if (!fault) {
-    return fail(ErrorCode::kInvalidArgument, fmt::format("faults.name: got {}, expected {}",
-                                                         printable(text.name), expected_fault(text.name)));
+    return fail(refusal("faults.name", text.name, expected_fault(text.name)));
   }
   const sim::FaultKind& kind = sim::kind_of(*fault);
   sim::FaultEvent event = sim::default_event(*fault, 0.0);
-  std::string wrong;
-  if (text.at.empty()) wrong = "faults.at_s: got nothing, expected when it begins [s]";
-  if (wrong.empty()) wrong = read("faults.at_s", text.at, 0.0, kLongest, event.at);
-  if (wrong.empty()) wrong = read("faults.for_s", text.duration, 0.001, kLongest, event.duration);
-  if (wrong.empty() && kind.strength_meaning.empty() && !text.strength.empty()) {
-    wrong = fmt::format("faults.strength: got {}, expected none: {} has no strength",
-                        printable(text.strength), kind.name);
-  }
-  if (wrong.empty())
-    wrong = read("faults.strength", text.strength, kind.weakest, kind.strongest, event.strength);
-  if (!wrong.empty()) return fail(ErrorCode::kInvalidArgument, wrong);
+  if (text.at.empty()) return fail(refusal("faults.at_s", "", "when it begins [s]"));
+  const auto at = read("faults.at_s", text.at, 0.0, kLongest, event.at);
+  if (!at) return fail(at.error());
+  const auto duration = read("faults.for_s", text.duration, 0.001, kLongest, event.duration);
+  if (!duration) return fail(duration.error());
+  if (kind.strength_meaning.empty() && !text.strength.empty())
+    return fail(
+        refusal("faults.strength", text.strength, fmt::format("none: {} has no strength", kind.name)));
+  const auto strength = read("faults.strength", text.strength, kind.weakest, kind.strongest, event.strength);
+  if (!strength) return fail(strength.error());
+  event.at = *at;
+  event.duration = *duration;
+  event.strength = *strength;
   return event;
 }
 
@@ -91,11 +77,8 @@ Result<sim::FaultEvent> read_switch(std::string_view name, std::string_view valu
   if (value.starts_with('+') || value.starts_with('*')) {
     if (const auto event = parse_fault(fmt::format("{}@0{}", name, value))) return event;
   }
-  return fail(
-      ErrorCode::kInvalidArgument,
-      fmt::format("fault.{}: got {}, expected true, false or +SECONDS*STRENGTH in the range of `chicane list "
-                  "faults`",
-                  printable(name), printable(value)));
+  return fail(refusal(fmt::format("fault.{}", printable(name)), value,
+                      "true, false or +SECONDS*STRENGTH in the range of `chicane list faults`"));
 }
 
 std::string write_fault(const sim::FaultEvent& event) {

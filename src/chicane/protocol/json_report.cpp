@@ -213,13 +213,13 @@ std::string learned_line(const controller::LearnedCar& learned) {
   return text + "\n";
 }
 
-double number_in(const Json& object, const char* key) {
+double number_member(const Json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_number() ? found->get<double>() : std::nan("");
 }
 template <class Integer>
-Integer count_in(const Json& object, const char* key) {
-  const double value = number_in(object, key);
+Integer count_member(const Json& object, const char* key) {
+  const double value = number_member(object, key);
   return value >= 0.0 && value < 1e9 ? static_cast<Integer>(value) : Integer{0};
 }
 std::string text_in(const Json& object, const char* key) {
@@ -230,14 +230,14 @@ std::string text_in(const Json& object, const char* key) {
 LapSummary lap_of(const Json& json) {
   LapSummary lap;
   if (!json.is_object()) return lap;
-  lap.lap_time = number_in(json, "lap_time_s");
-  lap.mean_speed = number_in(json, "mean_speed_mps");
-  lap.top_speed = number_in(json, "top_speed_mps");
-  lap.rms_lateral_error = number_in(json, "rms_lateral_error_m");
-  lap.max_abs_lateral_error = number_in(json, "max_abs_lateral_error_m");
-  lap.min_edge_distance = number_in(json, "min_edge_distance_m");
-  lap.max_lateral_acceleration = number_in(json, "max_lateral_acceleration_mps2");
-  lap.steering_rate_rms = number_in(json, "steering_rate_rms_radps");
+  lap.lap_time = number_member(json, "lap_time_s");
+  lap.mean_speed = number_member(json, "mean_speed_mps");
+  lap.top_speed = number_member(json, "top_speed_mps");
+  lap.rms_lateral_error = number_member(json, "rms_lateral_error_m");
+  lap.max_abs_lateral_error = number_member(json, "max_abs_lateral_error_m");
+  lap.min_edge_distance = number_member(json, "min_edge_distance_m");
+  lap.max_lateral_acceleration = number_member(json, "max_lateral_acceleration_mps2");
+  lap.steering_rate_rms = number_member(json, "steering_rate_rms_radps");
   const auto sectors_of = json.find("sector_times_s");
   if (sectors_of != json.end() && sectors_of->is_array() && sectors_of->size() == lap.sector_times.size())
     for (std::size_t i = 0; i < lap.sector_times.size(); ++i)
@@ -247,10 +247,10 @@ LapSummary lap_of(const Json& json) {
 
 TimeSummary times_of(const Json& json) {
   if (!json.is_object()) return {};
-  return {.p50 = 1e-6 * number_in(json, "p50"),
-          .p99 = 1e-6 * number_in(json, "p99"),
-          .p999 = 1e-6 * number_in(json, "p999"),
-          .max = 1e-6 * number_in(json, "max")};
+  return {.p50 = 1e-6 * number_member(json, "p50"),
+          .p99 = 1e-6 * number_member(json, "p99"),
+          .p999 = 1e-6 * number_member(json, "p999"),
+          .max = 1e-6 * number_member(json, "max")};
 }
 
 /// How long it took, and how it ended.
@@ -281,21 +281,21 @@ Result<RunSummary> read_run(std::string_view text) {
   run.controller = text_in(json, "controller");
   run.preset = text_in(json, "preset");
   run.end_reason = text_in(json, "end_reason");
-  run.seed = count_in<std::uint64_t>(json, "seed");
-  run.latency = 1e-3 * number_in(json, "latency_ms");
+  run.seed = count_member<std::uint64_t>(json, "seed");
+  run.latency = 1e-3 * number_member(json, "latency_ms");
   run.completed = json["completed"].get<bool>();
-  run.laps_completed = count_in<int>(json, "laps_completed");
-  run.off_track_events = count_in<int>(json, "off_track_events");
-  run.out_of_track_time = number_in(json, "out_of_track_time_s");
-  run.duration = number_in(json, "duration_s");
-  run.wall_time = number_in(json, "wall_time_s");
+  run.laps_completed = count_member<int>(json, "laps_completed");
+  run.off_track_events = count_member<int>(json, "off_track_events");
+  run.out_of_track_time = number_member(json, "out_of_track_time_s");
+  run.duration = number_member(json, "duration_s");
+  run.wall_time = number_member(json, "wall_time_s");
   for (const Json& lap : json["laps"]) run.laps.push_back(lap_of(lap));
   run.total = lap_of(json["total"]);
   run.step_time = times_of(json.value("step_time_us", Json()));
   run.solve_time = times_of(json.value("solve_time_us", Json()));
-  run.cycles = count_in<std::uint64_t>(json, "cycles");
-  run.fallbacks = count_in<std::uint64_t>(json, "fallbacks");
-  run.deadline_misses = count_in<std::uint64_t>(json, "deadline_misses");
+  run.cycles = count_member<std::uint64_t>(json, "cycles");
+  run.fallbacks = count_member<std::uint64_t>(json, "fallbacks");
+  run.deadline_misses = count_member<std::uint64_t>(json, "deadline_misses");
   run.laps_wanted = std::max(run.laps_completed, 1);
   return run;
 }

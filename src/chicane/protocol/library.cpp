@@ -379,9 +379,7 @@ namespace {
 Result<void> set_speed(scenario::Scenario& scenario, const std::string& text) {
   const auto* driver = controller::Registry::find(scenario.controller);
   if (driver->speed_option.empty()) {
-    return fail(ErrorCode::kInvalidArgument,
-                fmt::format("--speed-mps: got {}, expected none: {} has no speed to set", printable(text),
-                            driver->name));
+    return fail(refusal("--speed-mps", text, fmt::format("none: {} has no speed to set", driver->name)));
   }
   return set_text(scenario, find_option(driver->name, driver->speed_option)->key, text);
 }

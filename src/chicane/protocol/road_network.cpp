@@ -28,8 +28,7 @@ constexpr double kLeastWidth = 0.5;    // of a cross-section [m]
 
 tl::unexpected<Error> fault(const std::string& file, const XmlNode& node, std::string_view key,
                             std::string_view got, std::string_view expected) {
-  return fail(ErrorCode::kParse,
-              fmt::format("{}:{}: {}: got {}, expected {}", file, node.line, key, printable(got), expected));
+  return fail(refusal(fmt::format("{}:{}: {}", file, node.line, key), got, expected, ErrorCode::kParse));
 }
 
 // OpenDRIVE: a reference line of lines, arcs, spirals and polynomials, with lanes beside it.

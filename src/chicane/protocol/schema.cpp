@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -24,11 +23,8 @@ void* owner_of(const Scenario& scenario, const Parameter& parameter) {
 Result<double> parse_number(const Parameter& parameter, std::string_view text) {
   if (parameter.option.may_be_infinite && (text == "inf" || text == ".inf"))
     return std::numeric_limits<double>::infinity();
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size())
-    return fail(refusal(parameter.key, printable(text), parameter.option));
-  return value;
+  if (const std::optional<double> value = number_in(text)) return *value;
+  return fail(refusal(parameter.key, printable(text), parameter.option));
 }
 
 int edit_distance(std::string_view a, std::string_view b) {
@@ -159,8 +155,7 @@ std::string get_text(const Scenario& scenario, const Parameter& parameter) {
   const Option& option = parameter.option;
   // What people wrote has few digits: prefer them when they give the same bits inside.
   const std::string rounded = fmt::format("{:.15g}", number);
-  double read = 0.0;
-  std::from_chars(rounded.data(), rounded.data() + rounded.size(), read);
+  const double read = number_in(rounded).value_or(0.0);
   const Value inside = option.read(owner_of(scenario, parameter));
   const bool is_same = option.kind == Kind::kNumber && option.unit.to_si(read) == std::get<double>(inside);
   return is_same ? rounded : number_text(number);

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/setting.hpp"
 
-#include <charconv>
 #include <string>
 #include <string_view>
 #include <type_traits>
 
-#include "chicane/base/range.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/run/lap_planner.hpp"
@@ -15,20 +13,6 @@ namespace chicane::run {
 namespace {
 
 using protocol::Parameter;
-
-tl::unexpected<Error> refuse_setting(std::string_view key, std::string_view got,
-                                     const std::string& expected) {
-  return fail(ErrorCode::kInvalidArgument,
-              std::string(key) + ": got " + printable(got) + ", expected " + expected);
-}
-
-Result<double> number_in(std::string_view key, std::string_view text, double low, double high) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_number = error == std::errc{} && end == text.data() + text.size();
-  if (const auto inside = within(value, low, high); is_number && inside) return *inside;
-  return refuse_setting(key, text, "a number in [" + number_text(low) + ", " + number_text(high) + "]");
-}
 
 Result<Action> read_fault_switch(std::string_view key, std::string_view value) {
   const std::string_view name = key.substr(key.find('.') + 1);
@@ -45,10 +29,10 @@ Result<Action> read_manual(std::string_view key, std::string_view value) {
   if (key == "manual.is_on") {
     if (value == "true" || value == "false")
       return ManualSetting{.what = What::kIsOn, .value = value == "true" ? 1.0 : 0.0};
-    return refuse_setting(key, value, "true or false");
+    return fail(refusal(key, value, "true or false"));
   }
   if (key != "manual.steer" && key != "manual.throttle")
-    return refuse_setting(key, value, "manual.is_on, manual.steer or manual.throttle");
+    return fail(refusal(key, value, "manual.is_on, manual.steer or manual.throttle"));
   const Result<double> share = number_in(key, value, -1.0, 1.0);
   if (!share) return fail(share.error());
   return ManualSetting{.what = key == "manual.steer" ? What::kSteer : What::kThrottle, .value = *share};

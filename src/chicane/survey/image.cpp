@@ -5,7 +5,6 @@
 #include <png.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -13,14 +12,6 @@
 
 namespace chicane::survey {
 namespace {
-
-std::optional<double> number_of(std::string_view text) {
-  double value = 0.0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
-}
 
 Result<void> check_size(double width, double height, const std::string& file) {
   const bool is_sound =
@@ -47,11 +38,11 @@ std::string_view next_word(std::string_view& rest) {
 Result<GreyImage> read_pgm(std::string_view bytes, const std::string& file) {
   const bool is_text = bytes.starts_with("P2");
   std::string_view rest = bytes.substr(2);
-  const double width = number_of(next_word(rest)).value_or(0.0);
-  const double height = number_of(next_word(rest)).value_or(0.0);
+  const double width = number_in(next_word(rest)).value_or(0.0);
+  const double height = number_in(next_word(rest)).value_or(0.0);
   if (const Result<void> sound = check_size(width, height, file); !sound) return fail(sound.error());
   const std::string_view most_text = next_word(rest);
-  const double most = number_of(most_text).value_or(0.0);
+  const double most = number_in(most_text).value_or(0.0);
   if (!(most >= 1.0 && most <= 255.0))
     return fail(ErrorCode::kParse,
                 fmt::format("{}: largest grey value: got {}, expected 1 to 255", file, printable(most_text)));
@@ -60,7 +51,7 @@ Result<GreyImage> read_pgm(std::string_view bytes, const std::string& file) {
   if (!is_text && !rest.empty()) rest.remove_prefix(1);  // the one space behind the header
   image.values.reserve(std::min(cells, rest.size()));
   for (std::size_t i = 0; i < cells; ++i) {
-    const std::optional<double> value = is_text ? number_of(next_word(rest))
+    const std::optional<double> value = is_text ? number_in(next_word(rest))
                                         : i < rest.size()
                                             ? std::optional<double>(static_cast<unsigned char>(rest[i]))
                                             : std::nullopt;

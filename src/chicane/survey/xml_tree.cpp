@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <memory>
 #include <type_traits>
+
+#include "chicane/base/text.hpp"
 
 namespace chicane::survey {
 namespace {
@@ -101,11 +101,7 @@ std::optional<double> number_in(std::string_view text) noexcept {
   if (begin == std::string_view::npos) return std::nullopt;
   text = text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
   if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0.0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (read.ec != std::errc{} || read.ptr != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
+  return chicane::number_in(text);
 }
 
 Result<XmlTree> parse_xml(std::string_view text, const std::string& file) {

@@ -61,7 +61,7 @@ Result<std::vector<sim::Fault>> parts_of(const std::string& names) {
 /// Duration of the axis for_s [s]; "own": the longest that one of the faults has.
 double duration_of(const CampaignGroup& group, const std::vector<sim::Fault>& parts) {
   if (group.lasts == kLasts) return run::kLasting;
-  if (group.lasts != kOwn) return detail::number_in(group.lasts).value_or(0.0);
+  if (group.lasts != kOwn) return number_in(group.lasts).value_or(0.0);
   double longest = 0.0;
   for (const sim::Fault fault : parts) longest = std::max(longest, sim::kind_of(fault).duration);
   return longest;
@@ -215,7 +215,7 @@ CampaignTrial trial_in(const Json& json) {
   const std::string lasts = json.at("for_s");
   return {.at = json.at("at_s"),
           .until = json.at("until_s"),
-          .duration = lasts == kLasts ? run::kLasting : detail::number_in(lasts).value_or(0.0),
+          .duration = lasts == kLasts ? run::kLasting : number_in(lasts).value_or(0.0),
           .least_edge = json.at("least_edge_m"),
           .is_off_anyway = json.at("off_anyway"),
           .stands = json.at("stands"),

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -26,13 +25,6 @@ namespace {
 using protocol::YamlEntry;
 using protocol::YamlNode;
 
-std::optional<double> real_in(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 /// "lap_times_s[-1]" into name and place.
 struct ColumnPlace {
   std::string name;
@@ -41,7 +33,7 @@ struct ColumnPlace {
 ColumnPlace place_in(std::string_view text) {
   const std::size_t open = text.find('[');
   if (open == std::string_view::npos || !text.ends_with(']')) return {std::string(text), std::nullopt};
-  const auto place = real_in(text.substr(open + 1, text.size() - open - 2));
+  const auto place = number_in(text.substr(open + 1, text.size() - open - 2));
   return {std::string(text.substr(0, open)), place ? std::optional(static_cast<int>(*place)) : std::nullopt};
 }
 
@@ -53,7 +45,7 @@ bool is_column(std::string_view text) {
 constexpr std::string_view kEach = "each";
 
 std::optional<Condition::Value> value_in(const std::string& text, const std::vector<Case>& cases) {
-  if (const auto number = real_in(text)) return Condition::Value{.constant = *number};
+  if (const auto number = number_in(text)) return Condition::Value{.constant = *number};
   const std::size_t dot = text.find('.');
   if (dot == std::string::npos) return std::nullopt;
   Condition::Value value{.name = text.substr(0, dot), .column = text.substr(dot + 1)};
@@ -78,7 +70,7 @@ std::optional<Condition> condition_in(const std::string& text, const std::vector
   condition.comparison = comparison[0];
   if (std::string_view("<>=").find(condition.comparison) == std::string_view::npos) return std::nullopt;
   if (sign.empty()) return condition;
-  const auto number = real_in(amount);
+  const auto number = number_in(amount);
   if (!number || (sign != "*" && sign != "+")) return std::nullopt;
   (sign == "*" ? condition.factor : condition.term) = *number;
   return condition;

@@ -100,9 +100,8 @@ Result<void> add_results(const std::string& file, const std::string& key, Compar
   const auto header = parse_header(contents->header, file);
   if (!header) return fail(header.error());
   if (std::find(header->keys.begin(), header->keys.end(), key) == header->keys.end())
-    return fail(ErrorCode::kInvalidArgument,
-                fmt::format("--compare: got {}, expected an axis of the sweep: {}", printable(key),
-                            fmt::join(header->keys, ", ")));
+    return fail(
+        refusal("--compare", key, fmt::format("an axis of the sweep: {}", fmt::join(header->keys, ", "))));
   return {};
 }
 

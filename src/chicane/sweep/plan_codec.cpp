@@ -24,7 +24,6 @@ namespace {
 using protocol::YamlEntry;
 using protocol::YamlNode;
 
-using detail::number_in;
 using detail::shown;
 
 constexpr std::size_t kMostAxes = 20;

@@ -33,12 +33,10 @@ tl::unexpected<Error> io_failure(const std::string& path, std::string_view what)
 std::optional<std::uint64_t> run_of(const std::string& line) {
   constexpr std::string_view kBegin = "{\"run\":";
   if (!line.starts_with(kBegin) || !line.ends_with('}')) return std::nullopt;
-  std::uint64_t run = 0;
-  std::size_t i = kBegin.size();
-  for (; i < line.size() && line[i] >= '0' && line[i] <= '9' && run < Plan::kMostRuns; ++i)
-    run = 10 * run + static_cast<std::uint64_t>(line[i] - '0');
-  if (i == kBegin.size() || i >= line.size() || line[i] != ',') return std::nullopt;
-  return run;
+  const std::size_t comma = line.find(',');
+  if (comma == std::string::npos) return std::nullopt;
+  const auto run = count_in(std::string_view(line).substr(kBegin.size(), comma - kBegin.size()));
+  return run && *run < Plan::kMostRuns ? run : std::nullopt;
 }
 
 Json json_of(const Settings& settings) {
@@ -109,8 +107,7 @@ Result<Header> parse_header(std::string_view line, const std::string& file) {
   } catch (const Json::exception&) {
     // said below
   }
-  return fail(ErrorCode::kParse, fmt::format("{}:1: got {}, expected the first line of a sweep's results",
-                                             file, printable(line)));
+  return fail(refusal(file + ":1", line, "the first line of a sweep's results", ErrorCode::kParse));
 }
 
 std::string difference_text(const Header& got, const Header& expected) {
@@ -136,8 +133,8 @@ Result<FileContents> read_lines(
   for (std::uint64_t number = 1; std::getline(stream, line) && !stream.eof(); ++number) {
     const LinePlace place{run_of(line).value_or(Plan::kMostRuns), contents.whole, line.size()};
     if (line.size() > kLongestLine || (number > 1 && place.run == Plan::kMostRuns)) {
-      return fail(ErrorCode::kParse,
-                  fmt::format("{}:{}: got {}, expected the results of a run", file, number, printable(line)));
+      return fail(
+          refusal(fmt::format("{}:{}", file, number), line, "the results of a run", ErrorCode::kParse));
     }
     contents.whole += line.size() + 1;
     if (number == 1) {

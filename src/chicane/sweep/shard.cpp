@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <filesystem>
 #include <optional>
 
@@ -14,14 +13,6 @@ namespace chicane::sweep {
 namespace {
 
 constexpr std::uint64_t kMostShards = 1'000'000;
-
-std::optional<std::uint64_t> count_in(std::string_view text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size() || value > 1'000'000'000)
-    return std::nullopt;
-  return value;
-}
 
 using Variable = std::function<const char*(const char*)>;
 
@@ -34,7 +25,7 @@ Result<std::optional<std::array<std::uint64_t, N>>> numbers_of(const Variable& v
   for (std::size_t i = 0; i < N; ++i) {
     const char* const text = variable(names[i]);
     const std::optional<std::uint64_t> number = count_in(text == nullptr ? "" : text);
-    if (!number) {
+    if (!number || *number > 1'000'000'000) {
       return fail(ErrorCode::kInvalidArgument,
                   fmt::format("{}: got {}, expected a number beside {}; --shard I/N says it", names[i],
                               printable(text == nullptr ? "" : text), names[0]));
@@ -100,8 +91,7 @@ Result<Shard> parse_shard(std::string_view text) {
   const auto count = count_in(slash == std::string_view::npos ? "" : text.substr(slash + 1));
   if (index && count && *index >= 1 && *index <= *count && *count <= kMostShards)
     return Shard{*index - 1, *count, "--shard"};
-  return fail(ErrorCode::kInvalidArgument,
-              fmt::format("--shard: got {}, expected I/N with 1 <= I <= N, like 3/7", printable(text)));
+  return fail(refusal("--shard", text, "I/N with 1 <= I <= N, like 3/7"));
 }
 
 Result<Shard> environment_shard(const Variable& variable) {

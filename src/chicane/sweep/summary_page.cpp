@@ -122,7 +122,7 @@ class Page {
     page += fmt::format(". {} are clean{}.\n\n```text\n", clean_runs(),
                         failed > 0 ? fmt::format(", {} cannot be driven", failed) : "");
     for (const detail::HeatMap& map : maps()) {
-      const bool is_of_numbers = ByNumber::number(map.rows.back()) && ByNumber::number(map.columns.back());
+      const bool is_of_numbers = number_in(map.rows.back()) && number_in(map.columns.back());
       if (is_of_numbers) page += detail::map_text(map) + "\n";
     }
     return page + "```\n";
@@ -202,7 +202,7 @@ class Page {
       bool are_numbers = true;
       for (const Run& run : runs_) {
         if (values.size() <= kMostValues) ++values[run.values[axis]];
-        const auto number = ByNumber::number(run.values[axis]);
+        const auto number = number_in(run.values[axis]);
         are_numbers = are_numbers && number;
         if (number) low = std::min(low, *number), high = std::max(high, *number);
       }
@@ -211,7 +211,7 @@ class Page {
         std::string value = runs_[i].values[axis];
         if (is_binned) {
           const double width = (high - low) / bins;
-          const int bin = std::min(bins - 1, static_cast<int>((*ByNumber::number(value) - low) / width));
+          const int bin = std::min(bins - 1, static_cast<int>((*number_in(value) - low) / width));
           value = number_text(low + (bin + 0.5) * width, 3);
         }
         binned_[i].push_back(std::move(value));

@@ -137,7 +137,7 @@ class Searcher {
 
   Trial is_clean(double wanted, bool is_last) {
     const std::string text = number_text(wanted, kSearchDigits);
-    const double value = detail::number_in(text).value_or(wanted);
+    const double value = number_in(text).value_or(wanted);
     Settings tried = settings_;
     tried.emplace_back(search_.key, text);
     auto driven = drive_while(tried, roads_, stop_, !is_last);

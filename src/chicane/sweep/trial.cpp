@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <optional>
 
 #include "chicane/base/angle.hpp"
@@ -27,12 +26,9 @@ std::string* part_of(protocol::FaultText& fault, std::string_view key) {
   return nullptr;
 }
 
-std::optional<double> number_of(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !(value > 0.0 && value < 1e6))
-    return std::nullopt;
-  return value;
+std::optional<double> speed_in(const std::string& text) {
+  const std::optional<double> value = number_in(text);
+  return value && *value > 0.0 && *value < 1e6 ? value : std::nullopt;
 }
 
 bool is_speed(std::string_view key) { return key == "speed_mph" || key == "speed_mps"; }
@@ -102,9 +98,8 @@ Result<void> check_setting(std::string_view key, const std::string& text) {
     return text.empty() ? fail(ErrorCode::kInvalidArgument, "scenario: got nothing, expected a name or file")
                         : Result<void>{};
   if (is_speed(key)) {
-    if (number_of(text)) return {};
-    return fail(ErrorCode::kInvalidArgument,
-                fmt::format("{}: got {}, expected a positive number", key, printable(text)));
+    if (speed_in(text)) return {};
+    return fail(refusal(key, text, "a positive number"));
   }
   if (key == "fault") {
     const Result<sim::FaultEvent> event = protocol::parse_fault(text);
@@ -124,7 +119,7 @@ Result<protocol::Request> request_of(const Settings& settings) {
     } else if (key == "speed_mps") {
       request.speed_mps = text;
     } else if (key == "speed_mph") {
-      const std::optional<double> mph = number_of(text);
+      const std::optional<double> mph = speed_in(text);
       if (!mph) return fail(ErrorCode::kInvalidArgument, fmt::format("speed_mph: got {}", printable(text)));
       request.speed_mps = fmt::format("{}", mph_to_mps(*mph));
     } else if (key == "fault") {

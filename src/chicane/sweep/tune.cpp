@@ -48,8 +48,7 @@ Result<Knob> knob_of(const scenario::Scenario& scenario, const std::string& key)
                                             row->option.kind == protocol::Kind::kInteger);
   const double value = is_number ? std::get<double>(protocol::get(scenario, *row)) : 0.0;
   if (!is_number || !(value > 0.0) || !std::isfinite(value)) {
-    return fail(ErrorCode::kInvalidArgument,
-                fmt::format("--over: got {}, expected a number above zero of this preset", printable(key)));
+    return fail(refusal("--over", key, "a number above zero of this preset"));
   }
   const double factor = key.find("weight") != std::string::npos ? 10.0 : 2.0;
   Knob knob{key, std::max(value / factor, row->option.minimum), std::min(value * factor, row->option.maximum),

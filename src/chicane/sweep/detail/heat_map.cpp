@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <set>
 
+#include "chicane/base/text.hpp"
 #include "chicane/sweep/page_text.hpp"
 
 namespace chicane::sweep::detail {
@@ -23,11 +23,11 @@ std::size_t place_in(const std::vector<std::string>& values, const std::string& 
 
 /// The nearest of `values` where all are numbers; the same text otherwise. values.size(): none.
 std::size_t nearest_place(const std::vector<std::string>& values, const std::string& wanted) {
-  const std::optional<double> number = ByNumber::number(wanted);
+  const std::optional<double> number = number_in(wanted);
   std::size_t best = values.size();
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::optional<double> value = ByNumber::number(values[i]);
+    const std::optional<double> value = number_in(values[i]);
     if (!number || !value) continue;
     const double distance = std::fabs(*value - *number);
     if (distance < least) {
@@ -69,7 +69,7 @@ class MapMaker {
  private:
   [[nodiscard]] bool is_text(std::size_t axis) const {
     return std::any_of(values_[axis].begin(), values_[axis].end(),
-                       [](const std::string& value) { return !ByNumber::number(value); });
+                       [](const std::string& value) { return !number_in(value); });
   }
 
   /// The combinations of these axes' values, as they come.
@@ -138,15 +138,8 @@ std::string to_the_right(const std::string& text, std::size_t width) {
 
 }  // namespace
 
-std::optional<double> ByNumber::number(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 bool ByNumber::operator()(const std::string& a, const std::string& b) const {
-  const auto x = number(a), y = number(b);
+  const auto x = number_in(a), y = number_in(b);
   if (x && y) return *x < *y;
   return x.has_value() != y.has_value() ? x.has_value() : a < b;
 }

@@ -12,7 +12,6 @@ namespace chicane::sweep::detail {
 
 /// Orders numbers as numbers, and texts behind them.
 struct ByNumber {
-  [[nodiscard]] static std::optional<double> number(const std::string& text);
   [[nodiscard]] bool operator()(const std::string& a, const std::string& b) const;
 };
 

@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
-
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/sweep/trial.hpp"
@@ -18,14 +15,6 @@ constexpr double kLeastFactor = 1.01;
 constexpr double kLeastWithin = 1e-4;
 
 }  // namespace
-
-std::optional<double> number_in(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
-}
 
 std::string shown(const protocol::YamlNode& node) {
   if (node.is_map()) return "a map";

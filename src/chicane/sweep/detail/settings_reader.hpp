@@ -13,8 +13,6 @@
 
 namespace chicane::sweep::detail {
 
-/// A whole text that is a finite number.
-[[nodiscard]] std::optional<double> number_in(const std::string& text);
 /// For messages: "a map", "a list", or the text.
 [[nodiscard]] std::string shown(const protocol::YamlNode& node);
 

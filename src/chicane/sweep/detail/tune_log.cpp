@@ -78,8 +78,7 @@ Result<TuneLog> TuneLog::open(const std::string& path, const std::string& head) 
     try {
       log.verdicts_.insert(read_line(line));
     } catch (const Json::exception&) {
-      return fail(ErrorCode::kParse,
-                  fmt::format("{}:{}: got {}, expected an evaluation", path, number, printable(line)));
+      return fail(refusal(fmt::format("{}:{}", path, number), line, "an evaluation", ErrorCode::kParse));
     }
   }
   stream.close();
