@@ -31,6 +31,9 @@ namespace chicane {
 /// For messages: the first 60 bytes of foreign text without control characters; "nothing" when empty.
 [[nodiscard]] std::string printable(std::string_view text);
 
+/// RFC 4648, with padding.
+[[nodiscard]] std::string base64(std::string_view bytes);
+
 /// "udacity, road-car".
 [[nodiscard]] std::string joined(std::span<const std::string_view> words);
 

@@ -36,18 +36,6 @@ enum Opcode : unsigned char { kContinuation = 0, kText = 1, kBinary = 2, kClose 
 
 tl::unexpected<Error> io_error(std::string message) { return fail(ErrorCode::kIo, std::move(message)); }
 
-std::string base64(const unsigned char* bytes, std::size_t size) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < size; i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, size - i);
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = (group << 8U) | (k < count ? bytes[i + k] : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[(group >> (18 - 6 * k)) & 63U] : '=';
-  }
-  return text;
-}
-
 /// What the server must answer to `key` (RFC 6455 §4.2.2).
 std::string accept_of(const std::string& key) {
   boost::uuids::detail::sha1 hash;
@@ -55,11 +43,10 @@ std::string accept_of(const std::string& key) {
   hash.process_bytes(kKeyGuid.data(), kKeyGuid.size());
   unsigned int words[5];
   hash.get_digest(words);
-  std::array<unsigned char, 20> bytes{};
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    bytes[i] = static_cast<unsigned char>(words[i / 4] >> (24 - 8 * (i % 4)));
-  }
-  return base64(bytes.data(), bytes.size());
+  std::string bytes(20, '\0');
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    bytes[i] = static_cast<char>(words[i / 4] >> (24 - 8 * (i % 4)));
+  return base64(bytes);
 }
 
 std::string lower(std::string_view text) {
@@ -179,9 +166,9 @@ class WebSocketClient final : public Client {
   }
 
   Result<void> shake_hands(const Url& url, Clock::time_point end) {
-    std::array<unsigned char, 16> nonce{};
-    for (unsigned char& byte : nonce) byte = static_cast<unsigned char>(random_());
-    const std::string key = base64(nonce.data(), nonce.size());
+    std::string nonce(16, '\0');
+    for (char& byte : nonce) byte = static_cast<char>(random_());
+    const std::string key = base64(nonce);
     const bool is_v6 = url.host.find(':') != std::string::npos;
     const std::string request = fmt::format(
         "GET {} HTTP/1.1\r\nUser-Agent: websocket-sharp/1.0\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"

@@ -119,23 +119,6 @@ Result<void> write_all(const std::string& file, std::initializer_list<std::strin
 
 }  // namespace
 
-std::string base64(std::string_view bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto byte = [&](std::size_t at) -> std::uint32_t {
-      return at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0U;
-    };
-    const std::uint32_t three = byte(i) << 16U | byte(i + 1) << 8U | byte(i + 2);
-    for (unsigned digit = 0; digit < 4; ++digit) {
-      const bool is_padding = i + digit > bytes.size();
-      text.push_back(is_padding ? '=' : kDigits[three >> (18U - 6U * digit) & 63U]);
-    }
-  }
-  return text;
-}
-
 Result<ReportSummary> write_report(const ReportOptions& options) {
   if (options.bundle.script.empty()) {
     return fail(

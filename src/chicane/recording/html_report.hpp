@@ -42,7 +42,4 @@ struct ReportSummary {
 /// dashboard; otherwise as excerpt() fails.
 [[nodiscard]] Result<ReportSummary> write_report(const ReportOptions& options);
 
-/// RFC 4648, with padding.
-[[nodiscard]] std::string base64(std::string_view bytes);
-
 }  // namespace chicane::recording
