@@ -13,8 +13,8 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
-#include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/protocol/yaml_tree.hpp"
+#include "chicane/sweep/detail/settings_reader.hpp"
 #include "chicane/sweep/outcome.hpp"
 #include "chicane/sweep/trial.hpp"
 #include "chicane/telemetry/metrics.hpp"
@@ -76,9 +76,9 @@ std::optional<Condition> condition_in(const std::string& text, const std::vector
   return condition;
 }
 
-class ClaimReader {
+class ClaimReader : private detail::SettingsReader {
  public:
-  ClaimReader(const std::string& file, std::string_view quotations) : file_{file} {
+  ClaimReader(const std::string& file, std::string_view quotations) : SettingsReader{file}, file_{file} {
     std::istringstream lines{std::string(quotations)};
     for (std::string line; std::getline(lines, line);)
       if (!line.starts_with('#')) quotations_ += line + '\n';
@@ -88,7 +88,7 @@ class ClaimReader {
     if (!root.is_map()) fault(1, "file", "expected a map with settings and claims");
     Claim shared;
     for (const YamlEntry& entry : root.entries()) {
-      if (entry.key.text == "settings") shared.settings = settings_of(entry.value, "");
+      if (entry.key.text == "settings") shared.settings = settings_of(entry.value);
       if (entry.key.text == "ours") shared.ours = entry.value.text;
     }
     for (const YamlEntry& entry : root.entries()) {
@@ -99,32 +99,13 @@ class ClaimReader {
       }
       for (const YamlNode* node : entry.value.children) read_claim(*node, shared);
     }
-    if (faults_.empty()) return std::move(claims_);
-    return fail(ErrorCode::kParse, fmt::format("{}", fmt::join(faults_, "\n")));
+    return is_faultless() ? Result<std::vector<Claim>>(std::move(claims_)) : fail(error());
   }
 
  private:
-  void fault(int line, std::string_view key, std::string_view what) {
-    if (faults_.size() < 50)
-      faults_.push_back(fmt::format("{}{}: {}", protocol::place(file_, line), key, what));
-  }
-
-  Settings settings_of(const YamlNode& map, const std::string& prefix) {
+  Settings settings_of(const YamlNode& map) {
     Settings settings;
-    if (!map.is_map()) {
-      fault(map.line, "settings", "expected a map of settings");
-      return settings;
-    }
-    for (const YamlEntry& entry : map.entries()) {
-      const std::string key = prefix.empty() ? entry.key.text : fmt::format("{}.{}", prefix, entry.key.text);
-      if (entry.value.is_map()) {
-        for (auto& setting : settings_of(entry.value, key)) settings.push_back(std::move(setting));
-        continue;
-      }
-      const Result<void> checked = check_setting(key, entry.value.text);
-      if (!checked) faults_.push_back(protocol::place(file_, entry.key.line) + checked.error().message);
-      settings.emplace_back(key, entry.value.text);
-    }
+    read_settings(map, settings);
     return settings;
   }
 
@@ -139,8 +120,7 @@ class ClaimReader {
       std::vector<Case> finer;
       for (const Case& point : points) {
         for (const YamlNode* value : entry.value.children) {
-          const Result<void> checked = check_setting(entry.key.text, value->text);
-          if (!checked) faults_.push_back(protocol::place(file_, value->line) + checked.error().message);
+          static_cast<void>(takes(entry.key.text, *value));
           Case next = point;
           next.name += (next.name.empty() ? "" : "/") + value->text;
           next.settings.emplace_back(entry.key.text, value->text);
@@ -178,10 +158,10 @@ class ClaimReader {
          : key == "found"  ? claim.found
                            : claim.see) = value.text;
       } else if (key == "settings") {
-        for (auto& setting : settings_of(value, "")) claim.settings.push_back(std::move(setting));
+        for (auto& setting : settings_of(value)) claim.settings.push_back(std::move(setting));
       } else if (key == "cases" && value.is_map()) {
         for (const YamlEntry& each : value.entries())
-          claim.cases.push_back({each.key.text, settings_of(each.value, "")});
+          claim.cases.push_back({each.key.text, settings_of(each.value)});
       } else if (key == "grid" && value.is_map()) {
         const std::vector<Case> points = grid_of(value);
         claim.grid_size = points.size();
@@ -219,7 +199,6 @@ class ClaimReader {
   std::string quotations_;  // without its comments
   std::vector<Claim> claims_;
   std::set<std::string> ids_;
-  std::vector<std::string> faults_;
 };
 
 bool is_clean(std::string_view line) { return number_of(line, "clean") > 0.0; }
