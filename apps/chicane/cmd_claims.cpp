@@ -6,10 +6,10 @@
 #include <atomic>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <optional>
 
+#include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
@@ -295,12 +295,6 @@ std::string details_of(const std::vector<Claim>& claims, const Trials& trials) {
 
 constexpr std::string_view kBegin = "<!-- claims: chicane claims -->\n";
 
-std::string page_of(const std::string& older, const std::string& rows) {
-  const std::size_t begin = older.find(kBegin);
-  return begin == std::string::npos ? fmt::format("{}{}", kBegin, rows)
-                                    : older.substr(0, begin + kBegin.size()) + rows;
-}
-
 /// The line of a page that begins with `start`.
 std::string line_with(const std::string& page, const std::string& start) {
   const std::size_t row = page.find("\n" + start);
@@ -361,10 +355,7 @@ ExitCode try_claims(const Options& options) {
   const std::string older = protocol::read_file(page).value_or("");
   const std::string rows = rows_of(*claims, trials, older);
   if (options.claims.is_check) return compare(page, older, rows, *claims);
-  std::ofstream out(page, std::ios::trunc);
-  out << page_of(older, rows);
-  out.close();
-  if (!out) return report(Error{ErrorCode::kIo, page + ": cannot be written"});
+  if (const Result<void> written = write_below(page, kBegin, rows); !written) return report(written.error());
   fmt::print(stderr, "{}: {} claims\n", page, claims->size());
   return kSuccess;
 }

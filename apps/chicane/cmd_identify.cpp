@@ -11,6 +11,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/identify/identification.hpp"
 #include "chicane/model/similarity.hpp"

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/csv_track.hpp"
 #include "chicane/protocol/foreign_tracks.hpp"

@@ -6,10 +6,10 @@
 
 #include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
 #include <optional>
 
+#include "chicane/base/file.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/parallel.hpp"
 #include "chicane/sweep/league_page.hpp"
@@ -175,33 +175,20 @@ class LeagueRun {
   std::string beside_;
 };
 
-Result<void> write(const std::string& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.close();
-  return out ? Result<void>{} : fail(ErrorCode::kIo, file + ": cannot be written");
-}
-
 constexpr std::string_view kLeagueMarker = "<!-- league: chicane league -->\n";
 
 Result<void> write_pages(const Options& options, const League& league, const sweep::LeagueResults& results) {
   if (!options.output_file.empty()) {
-    if (Result<void> done = write(options.output_file, sweep::league_html(league, results)); !done)
+    if (Result<void> done = write_file(options.output_file, sweep::league_html(league, results)); !done)
       return done;
     fmt::print(stderr, "{}: open it in a browser\n", options.output_file);
   }
   if (!options.csv_file.empty()) {
-    if (Result<void> done = write(options.csv_file, sweep::league_csv(results)); !done) return done;
+    if (Result<void> done = write_file(options.csv_file, sweep::league_csv(results)); !done) return done;
   }
   if (!options.league.page.empty()) {
-    const std::string older = protocol::read_file(options.league.page).value_or("");
-    const std::size_t begin = older.find(kLeagueMarker);
-    const std::string above = begin == std::string::npos ? std::string(kLeagueMarker)
-                                                         : older.substr(0, begin + kLeagueMarker.size());
-    if (Result<void> done =
-            write(options.league.page, above + "\n" + sweep::league_markdown(league, results));
-        !done)
-      return done;
+    const std::string tables = "\n" + sweep::league_markdown(league, results);
+    if (Result<void> done = write_below(options.league.page, kLeagueMarker, tables); !done) return done;
   }
   if (options.is_json) fmt::print("{}", sweep::league_json(results));
   return {};

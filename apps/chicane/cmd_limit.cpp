@@ -4,6 +4,7 @@
 
 #include <atomic>
 
+#include "chicane/base/file.hpp"
 #include "chicane/run/make.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"

@@ -3,8 +3,8 @@
 
 #include <atomic>
 #include <cmath>
-#include <fstream>
 
+#include "chicane/base/file.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/run/parallel.hpp"
@@ -71,10 +71,8 @@ Result<void> keep(const Options& options, const sweep::TuneTask& task, const swe
   settings.insert(settings.end(), tuning.values.begin(), tuning.values.end());
   const auto found = protocol::compose(*sweep::request_of(settings));
   if (!base || !found) return fail(!base ? base.error() : found.error());
-  std::ofstream out(options.output_file, std::ios::trunc);
-  out << protocol::write_preset(*found, *base, description_of(options, task, tuning));
-  out.close();
-  return out ? Result<void>{} : fail(ErrorCode::kIo, options.output_file + ": cannot be written");
+  return write_file(options.output_file,
+                    protocol::write_preset(*found, *base, description_of(options, task, tuning)));
 }
 
 }  // namespace

@@ -7,12 +7,13 @@
 #endif
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <string>
+
+#include "chicane/base/file.hpp"
+#include "chicane/base/text.hpp"
+#include "chicane/protocol/library.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -32,33 +33,20 @@ void keep_memory() {
 #endif
 }
 
-Result<void> write_file(const std::string& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (stream) return {};
-  return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
-}
-
-Result<void> check_writable(const std::string& file) {
-  if (file.empty()) return {};
-  const bool is_new = !std::filesystem::exists(file);
-  const bool is_writable = std::ofstream(file, std::ios::app).is_open();
-  const int reason = errno;
-  std::error_code error;  // of a file that is gone already: no reason to stop
-  if (is_new && is_writable) std::filesystem::remove(file, error);
-  if (is_writable) return {};
-  return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, std::strerror(reason)));
-}
-
 Result<void> check_page_name(std::string_view option, const std::string& file) {
   const std::filesystem::path extension = std::filesystem::path(file).extension();
   std::error_code error;
   const bool is_device =
       std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error);
   if (file.empty() || extension == ".html" || extension == ".htm" || is_device) return {};
-  return fail(ErrorCode::kInvalidArgument,
-              fmt::format("{}: got {}, expected a name that ends in .html", option, file));
+  return fail(refusal(option, file, "a name that ends in .html"));
+}
+
+Result<void> write_below(const std::string& page, std::string_view marker, const std::string& text) {
+  const std::string older = protocol::read_file(page).value_or("");
+  const std::size_t end = older.find(marker);
+  const std::string above = end == std::string::npos ? "" : older.substr(0, end);
+  return write_file(page, above + std::string(marker) + text);
 }
 
 RunCounter::RunCounter(const char* what) : what_{what}, is_terminal_{isatty(STDERR_FILENO) == 1} {

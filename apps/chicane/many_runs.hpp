@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "chicane/base/result.hpp"
 
@@ -12,16 +13,13 @@ namespace chicane::apps {
 /// Each run takes some megabytes and gives them back: the process keeps them for the next one.
 void keep_memory();
 
-/// Before what takes long: that its result can be kept in this file, which stays as it is. kIo; an empty name
-/// is no file.
-[[nodiscard]] Result<void> check_writable(const std::string& file);
-
-/// Replaces the file's content. kIo with the system's reason.
-[[nodiscard]] Result<void> write_file(const std::string& file, const std::string& text);
-
 /// Checks that the name of an HTML page is one that browsers open: `option`: got x.txt, expected a name that
 /// ends in .html. An empty name is no file; devices may have any.
 [[nodiscard]] Result<void> check_page_name(std::string_view option, const std::string& file);
+
+/// Replaces what a page has behind `marker`; a page without one is replaced. kIo.
+[[nodiscard]] Result<void> write_below(const std::string& page, std::string_view marker,
+                                       const std::string& text);
 
 /// Tells on stderr how many of many runs are done, how fast, and how long the rest will take: on a terminal
 /// one line that renews itself, otherwise a line every ten seconds. One thread at a time.

@@ -2,6 +2,7 @@
 #include "program.hpp"
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -42,6 +43,7 @@ ExitCode parse_and_run(int count, const char* const* words, ExitCode (*run)(cons
 }  // namespace
 
 int program(int count, const char* const* words, ExitCode (*run)(const Options&)) noexcept {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too long is a failed write
   try {
     return parse_and_run(count, words, run);
   } catch (const std::exception& e) {

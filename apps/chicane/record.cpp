@@ -2,14 +2,13 @@
 #include "record.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <string_view>
 #include <utility>
 
+#include "chicane/base/file.hpp"
+#include "chicane/base/text.hpp"
 #include "chicane/live/assets.hpp"
 #include "chicane/recording/bag_metadata.hpp"
 #include "chicane/recording/html_report.hpp"
@@ -26,9 +25,7 @@ Result<void> can_be_reported(const std::string& file) {
         ErrorCode::kNotFound,
         "--report: this program was built without its dashboard: install Node.js and npm, and build again");
   }
-  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-  if (::access(folder.empty() ? "." : folder.c_str(), W_OK) == 0) return {};
-  return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
+  return check_writable(file);
 }
 
 }  // namespace
@@ -39,8 +36,7 @@ Result<std::unique_ptr<KeptRun>> KeptRun::start(const Options& options, protocol
   if (options.record_file.empty() && options.report_file.empty()) return kept;
   if (std::filesystem::weakly_canonical(options.record_file) ==
       std::filesystem::weakly_canonical(options.report_file)) {
-    return fail(ErrorCode::kInvalidArgument,
-                fmt::format("--report: got {}, expected another file than --record", options.report_file));
+    return fail(refusal("--report", options.report_file, "another file than --record"));
   }
   if (const Result<void> named = check_page_name("--report", options.report_file); !named)
     return fail(named.error());

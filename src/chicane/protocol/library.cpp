@@ -2,7 +2,6 @@
 #include "chicane/protocol/library.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -343,13 +342,6 @@ Result<std::string> locate(Shelf shelf, std::string_view name_or_file) {
     }
   }
   return fail(unknown_name(shelf, name_or_file, entries(shelf), "a file or "));
-}
-
-std::string unfinished_name(const std::string& path) {
-  std::error_code error;
-  const fs::file_status there = fs::status(path, error);
-  if (fs::exists(there) && !fs::is_regular_file(there)) return path;
-  return fmt::format("{}.{}.part", path, ::getpid());
 }
 
 Result<std::string> read_file(const std::string& path) {

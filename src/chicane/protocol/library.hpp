@@ -43,10 +43,6 @@ struct Entry {
 /// cannot be read.
 [[nodiscard]] Result<std::string> read_file(const std::string& path);
 
-/// Where to write what shall take the place of `path` as a whole, by a rename: a file beside it, a name of
-/// this process alone. `path` itself where that is there and no file, but a device or a pipe.
-[[nodiscard]] std::string unfinished_name(const std::string& path);
-
 /// What a user asks for: a scenario file (empty: none) and settings by schema key, in the order given.
 struct Request {
   std::string scenario_file;

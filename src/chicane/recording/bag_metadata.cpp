@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
-#include <sstream>
 #include <utility>
 
+#include "chicane/base/file.hpp"
+#include "chicane/protocol/library.hpp"
 #include "chicane/telemetry/mcap_reader.hpp"
 
 namespace chicane::recording {
@@ -77,11 +77,8 @@ std::string bag_metadata_path(const std::string& recording) {
 
 Result<void> can_be_bag(const std::string& recording) {
   const std::string path = bag_metadata_path(recording);
-  std::ifstream before(path);
-  if (!before) return {};
-  std::stringstream text;
-  text << before.rdbuf();
-  if (text.str().find("\"" + name_of(recording) + "\"") != std::string::npos) return {};
+  const Result<std::string> before = protocol::read_file(path);
+  if (!before || before->find("\"" + name_of(recording) + "\"") != std::string::npos) return {};
   return fail(
       ErrorCode::kInvalidArgument,
       fmt::format("--bag: got a folder with the bag of another recording ({}), expected one of its own",
@@ -91,12 +88,7 @@ Result<void> can_be_bag(const std::string& recording) {
 Result<void> write_bag_metadata(const std::string& recording) {
   const Result<Contents> contents = contents_of(recording);
   if (!contents) return fail(contents.error());
-  const std::string path = bag_metadata_path(recording);
-  std::ofstream out(path, std::ios::trunc);
-  out << as_yaml(*contents, name_of(recording));
-  out.close();
-  if (!out) return fail(ErrorCode::kIo, fmt::format("{}: cannot be written", path));
-  return {};
+  return write_file(bag_metadata_path(recording), as_yaml(*contents, name_of(recording)));
 }
 
 }  // namespace chicane::recording

@@ -6,14 +6,14 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
+#include "chicane/base/file.hpp"
+#include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
-#include "chicane/protocol/library.hpp"
 #include "chicane/recording/excerpt.hpp"
 #include "chicane/recording/reader.hpp"
 #include "chicane/recording/temporary_file.hpp"
@@ -22,6 +22,7 @@ namespace chicane::recording {
 namespace {
 
 using protocol::Json;
+using namespace std::string_view_literals;
 
 // What the dashboard draws of a log. The standard messages beside them say the same to other viewers.
 const std::vector<std::string> kTopics{"/chicane/frame", "/chicane/plan",   "/chicane/run",
@@ -102,21 +103,6 @@ Result<std::string> logs_json(const ReportOptions& options, double rate) {
   return text;
 }
 
-Result<void> write_all(const std::string& file, std::initializer_list<std::string_view> parts) {
-  const std::string unfinished = protocol::unfinished_name(file);
-  std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
-  for (const std::string_view part : parts) {
-    stream.write(part.data(), static_cast<std::streamsize>(part.size()));
-  }
-  stream.close();
-  std::error_code error;
-  if (stream && unfinished != file) std::filesystem::rename(unfinished, file, error);
-  if (stream && !error) return {};
-  const std::string why = error ? error.message() : std::strerror(errno);
-  if (unfinished != file) std::filesystem::remove(unfinished, error);
-  return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", file, why));
-}
-
 }  // namespace
 
 Result<ReportSummary> write_report(const ReportOptions& options) {
@@ -133,12 +119,14 @@ Result<ReportSummary> write_report(const ReportOptions& options) {
     if (!logs) return fail(logs.error());
     if (logs->empty()) continue;
     const std::string program = base64(options.bundle.script), style = base64(options.bundle.style);
-    const Result<void> written =
-        write_all(options.output, {kHead, "<script type=\"application/json\" id=\"chicane-report\">", *logs,
-                                   "</script>\n<script type=\"text/plain\" id=\"chicane-style\">", style,
-                                   "</script>\n<script type=\"text/plain\" id=\"chicane-program\">", program,
-                                   "</script>\n", kStart});
-    if (!written) return fail(written.error());
+    FileWriter page(options.output);
+    for (const std::string_view part :
+         {kHead, "<script type=\"application/json\" id=\"chicane-report\">"sv, std::string_view(*logs),
+          "</script>\n<script type=\"text/plain\" id=\"chicane-style\">"sv, std::string_view(style),
+          "</script>\n<script type=\"text/plain\" id=\"chicane-program\">"sv, std::string_view(program),
+          "</script>\n"sv, kStart})
+      page.write(part);
+    if (const Result<void> written = page.finish(); !written) return fail(written.error());
     return ReportSummary{.bytes = kHead.size() + logs->size() + program.size() + style.size() + kStart.size(),
                          .rate = rate};
   }

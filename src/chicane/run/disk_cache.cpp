@@ -3,11 +3,9 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cstdlib>
@@ -17,6 +15,7 @@
 #include <iterator>
 #include <vector>
 
+#include "chicane/base/file.hpp"
 #include "chicane/base/fnv.hpp"
 
 namespace chicane::run {
@@ -26,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kMagic = "chicane cache 1\n";  // the number: of this layout
 constexpr std::string_view kExtension = ".cache";
-constexpr std::string_view kUnfinished = ".part";
+constexpr std::string_view kUnfinished = ".part";  // of base/file.hpp
 constexpr std::size_t kHeader = kMagic.size() + 2 * sizeof(std::uint64_t);
 constexpr auto kAbandoned = std::chrono::hours(1);  // a file that a killed process left
 
@@ -55,18 +54,6 @@ bool is_whole(std::string_view file) {
   return file.size() >= kHeader && file.starts_with(kMagic) &&
          number_at(file, kMagic.size()) == file.size() - kHeader &&
          number_at(file, kMagic.size() + sizeof(std::uint64_t)) == checksum(file.substr(kHeader));
-}
-
-bool write_all(const std::string& path, std::string_view bytes) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (file < 0) return false;
-  bool is_written = true;
-  while (is_written && !bytes.empty()) {
-    const ssize_t count = ::write(file, bytes.data(), bytes.size());
-    is_written = count > 0;
-    if (is_written) bytes.remove_prefix(static_cast<std::size_t>(count));
-  }
-  return ::close(file) == 0 && is_written;
 }
 
 }  // namespace
@@ -106,18 +93,11 @@ void DiskCache::keep(std::string_view name, std::string_view bytes) const {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) return;
-  static std::atomic<unsigned> number{0};
-  const std::string part = path_of(name) + "." + std::to_string(::getpid()) + "-" + std::to_string(number++) +
-                           std::string(kUnfinished);
   std::string file(kMagic);
   append(file, bytes.size());
   append(file, checksum(bytes));
   file += bytes;
-  if (!write_all(part, file) || std::rename(part.c_str(), path_of(name).c_str()) != 0) {
-    fs::remove(part, error);
-    return;
-  }
-  make_room();
+  if (write_file(path_of(name), file, 0600)) make_room();
 }
 
 void DiskCache::make_room() const {

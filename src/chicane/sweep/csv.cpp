@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sweep/csv.hpp"
 
-#include <fmt/format.h>
-
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 
+#include "chicane/base/file.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/sweep/page_text.hpp"
 #include "chicane/sweep/result_file.hpp"
@@ -27,27 +24,23 @@ Result<void> write_csv(const std::string& results, const std::string& csv) {
   std::getline(first, line);
   const Result<Header> header = parse_header(line, results);
   if (!header) return fail(header.error());
-  std::ofstream out(csv, std::ios::binary | std::ios::trunc);
-  if (!out) return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", csv, std::strerror(errno)));
-  out << "run";
-  for (const std::string& key : header->keys) out << ',' << cell_of(key);
-  for (const std::string& column : header->columns) out << ',' << cell_of(column);
-  out << ",error\r\n";
+  FileWriter out(csv);
+  std::string row = "run";
+  for (const std::string& key : header->keys) row += ',' + cell_of(key);
+  for (const std::string& column : header->columns) row += ',' + cell_of(column);
+  out.write(row + ",error\r\n");
   const auto read = read_lines(results, [&](const LinePlace& place, const std::string& text) -> Result<void> {
     const protocol::Json run = protocol::parse_json(text);
     if (!run.is_object()) return fail(ErrorCode::kParse, "got no JSON object");
     const protocol::Json settings = run.value("settings", protocol::Json::object());
-    out << place.run;
-    for (const std::string& key : header->keys) out << ',' << cell_of(settings.value(key, protocol::Json()));
+    row = std::to_string(place.run);
+    for (const std::string& key : header->keys) row += ',' + cell_of(settings.value(key, protocol::Json()));
     for (const std::string& column : header->columns)
-      out << ',' << cell_of(run.value(column, protocol::Json()));
-    out << ',' << cell_of(run.value("error", protocol::Json())) << "\r\n";
-    return {};
+      row += ',' + cell_of(run.value(column, protocol::Json()));
+    out.write(row + ',' + cell_of(run.value("error", protocol::Json())) + "\r\n");
+    return out.check();
   });
-  if (!read) return fail(read.error());
-  out.close();
-  if (!out) return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: the disk is full or gone", csv));
-  return {};
+  return read ? out.finish() : fail(read.error());
 }
 
 }  // namespace chicane::sweep

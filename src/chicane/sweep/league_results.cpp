@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/sweep/outcome.hpp"
@@ -98,10 +99,7 @@ bool BesideFile::has_trial(const ExternalTrial& trial) const {
 
 Result<void> BesideFile::append(const std::string& line) {
   const std::lock_guard lock(mutex_);
-  std::ofstream out(path_, std::ios::binary | std::ios::app);
-  out << line + "\n";
-  out.close();
-  return out ? Result<void>{} : fail(ErrorCode::kIo, path_ + ": cannot be written");
+  return append_to_file(path_, line + '\n');
 }
 
 Result<void> BesideFile::add_bound(const std::string& track, const std::string& car,

@@ -3,12 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
 #include <fstream>
 
-#include "chicane/protocol/library.hpp"
+#include "chicane/base/file.hpp"
 #include "chicane/sweep/result_file.hpp"
 
 namespace chicane::sweep {
@@ -38,19 +35,10 @@ class Merger {
   }
 
   Result<MergeSummary> write(const std::string& output) {
-    const std::string unfinished = protocol::unfinished_name(output);
-    std::ofstream out(unfinished, std::ios::binary | std::ios::trunc);
-    out << header_ << '\n';
-    for (const Found& each : found_) out << line(each) << '\n';
-    out.close();
-    std::error_code error;
-    if (!out) {
-      const std::string why = std::strerror(errno);
-      if (unfinished != output) std::filesystem::remove(unfinished, error);
-      return fail(ErrorCode::kIo, fmt::format("{}: {}", output, why));
-    }
-    if (unfinished != output) std::filesystem::rename(unfinished, output, error);
-    if (error) return fail(ErrorCode::kIo, fmt::format("{}: {}", output, error.message()));
+    FileWriter out(output);
+    out.write(header_ + '\n');
+    for (const Found& each : found_) out.write(line(each) + '\n');
+    if (const Result<void> written = out.finish(); !written) return fail(written.error());
     return MergeSummary{.runs = found_.size(), .repeated = repeated_};
   }
 

@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "chicane/base/file.hpp"
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
@@ -25,8 +26,8 @@ using protocol::Json;
 
 constexpr std::size_t kLongestLine = 1U << 20U;
 
-tl::unexpected<Error> io_failure(const std::string& path, std::string_view what) {
-  return fail(ErrorCode::kIo, fmt::format("{}: {}: {}", path, what, std::strerror(errno)));
+tl::unexpected<Error> io_failure(const std::string& path) {
+  return fail(ErrorCode::kIo, fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
 }
 
 /// `17` of `{"run":17,…}`; none for anything else.
@@ -49,16 +50,6 @@ Settings settings_in(const Json& json) {
   Settings settings;
   for (const auto& [key, text] : json.items()) settings.emplace_back(key, text);
   return settings;
-}
-
-bool write_all(int descriptor, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return true;
 }
 
 }  // namespace
@@ -166,7 +157,7 @@ ResultFile::~ResultFile() {
 
 Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, const Shard& shard) {
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (descriptor < 0) return io_failure(path, "cannot be written");
+  if (descriptor < 0) return io_failure(path);
   ResultFile file(path, descriptor, shard, plan.size());
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0)
     return fail(ErrorCode::kIo, fmt::format("{}: another process writes it", path));
@@ -188,8 +179,7 @@ Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, c
                             difference_text(*got, parse_header(header, path).value())));
   }
   file.size_ = contents->whole;
-  if (::ftruncate(descriptor, static_cast<off_t>(file.size_)) != 0)
-    return io_failure(path, "cannot be written");
+  if (::ftruncate(descriptor, static_cast<off_t>(file.size_)) != 0) return io_failure(path);
   if (contents->header.empty()) {
     if (const Result<void> written = file.append(header); !written) return fail(written.error());
   }
@@ -207,7 +197,7 @@ Result<void> ResultFile::append(std::string_view line) {
   const int reason = errno;
   static_cast<void>(!::ftruncate(descriptor_, static_cast<off_t>(size_)));  // no half line is left behind
   errno = reason;
-  return io_failure(path_, "the results cannot be written");
+  return io_failure(path_);
 }
 
 }  // namespace chicane::sweep

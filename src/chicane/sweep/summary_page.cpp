@@ -5,15 +5,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <map>
 
+#include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
+#include "chicane/protocol/library.hpp"
 #include "chicane/sweep/detail/heat_map.hpp"
 #include "chicane/sweep/page_text.hpp"
 #include "chicane/sweep/result_file.hpp"
@@ -319,13 +319,6 @@ class Page {
       binned_;  ///< the values of the runs, in intervals where they are many
 };
 
-Result<void> write_file(const std::string& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.close();
-  return out ? Result<void>{} : fail(ErrorCode::kIo, fmt::format("{}: {}", file, std::strerror(errno)));
-}
-
 }  // namespace
 
 Result<PageSummary> write_page(const std::vector<std::string>& results, const std::string& page) {
@@ -339,8 +332,7 @@ Result<PageSummary> write_page(const std::vector<std::string>& results, const st
 Result<PageSummary> write_maps(const std::vector<std::string>& results, const std::string& page) {
   Page content;
   if (const Result<void> read = content.read(results); !read) return fail(read.error());
-  std::ifstream stream(page, std::ios::binary);
-  std::string older{std::istreambuf_iterator<char>(stream), {}};
+  std::string older = protocol::read_file(page).value_or("");
   const std::string begin = fmt::format("<!-- sweep: {} -->\n", content.name());
   const std::string_view end = "<!-- end of sweep -->\n";
   if (older.find(begin) == std::string::npos) older += begin + std::string(end);

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 
+#include "chicane/base/file.hpp"
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
@@ -100,12 +101,7 @@ Result<void> TuneLog::add(const Settings& values, const Verdict& verdict) {
   return path_.empty() ? Result<void>{} : append(line_of(values, verdict));
 }
 
-Result<void> TuneLog::append(const std::string& line) const {
-  std::ofstream stream(path_, std::ios::binary | std::ios::app);
-  stream << line << '\n';
-  stream.close();
-  return stream ? Result<void>{} : fail(ErrorCode::kIo, fmt::format("{}: cannot be written", path_));
-}
+Result<void> TuneLog::append(const std::string& line) const { return append_to_file(path_, line + '\n'); }
 
 std::string tune_head(const TuneTask& task, const scenario::Scenario& scenario,
                       const std::vector<std::string>& keys) {
