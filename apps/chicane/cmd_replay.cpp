@@ -39,7 +39,7 @@ class Shown {
   explicit Shown(const Options& options) : options_{options} {}
 
   Result<void> add(std::string file, std::string name) {
-    if (may_be_foreign_log(file)) {
+    if (is_foreign_log(file)) {
       copies_.emplace_back(".mcap");
       if (Result<void> made = convert_foreign_log(file, options_, copies_.back().path()); !made) return made;
       file = copies_.back().path();

@@ -78,7 +78,7 @@ ExitCode report_logs(const Options& options) {
                                       options.output_file)});
     }
     std::string read = file;
-    if (named && may_be_foreign_log(file)) {
+    if (named && is_foreign_log(file)) {
       copies.emplace_back(".mcap");
       read = copies.back().path();
       if (const Result<void> made = convert_foreign_log(file, options, read); !made)

@@ -12,11 +12,13 @@
 #include "chicane/base/math.hpp"
 #include "chicane/identify/drive_log.hpp"
 #include "chicane/live/description.hpp"
+#include "chicane/protocol/car_messages.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/reader.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/roadside.hpp"
+#include "chicane/telemetry/mcap_reader.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -41,13 +43,20 @@ std::string in_words(const identify::DriveLog& log, const road::Track* track, in
 
 }  // namespace
 
-bool may_be_foreign_log(const std::string& file) {
+bool is_foreign_log(const std::string& file) {
   std::error_code trouble;
   if (std::filesystem::is_directory(file, trouble)) return true;  // a bag, as rosbag2 writes it
   if (file.ends_with(".db3") || file.ends_with(".csv")) return true;
-  const auto ours = recording::check_recording(file);
-  return file.ends_with(".mcap") && !ours && ours.error().code == ErrorCode::kParse &&
-         ours.error().message.find("got no control step") != std::string::npos;
+  if (!file.ends_with(".mcap")) return false;
+  bool is_ours = false, has_odometry = false;
+  telemetry::McapVisitor visitor;
+  visitor.on_message = [&](const telemetry::McapMessage& message) {
+    is_ours |= message.channel.topic == recording::kFrameTopic;
+    has_odometry = has_odometry || (message.channel.type == protocol::OdometryMessage::kType &&
+                                    message.channel.message_encoding == "cdr" &&
+                                    protocol::decode_odometry(message.bytes).has_value());
+  };
+  return telemetry::read_mcap(file, visitor) && has_odometry && !is_ours;
 }
 
 Result<void> convert_foreign_log(const std::string& file, const Options& options, const std::string& output) {
@@ -55,14 +64,7 @@ Result<void> convert_foreign_log(const std::string& file, const Options& options
                                                    .odom_topic = options.identify.odom_topic,
                                                    .drive_topic = options.identify.drive_topic,
                                                    .needs_commands = false});
-  if (!log) {
-    const bool has_none =
-        log.error().message.find("got the topics none of nav_msgs/msg/Odometry") != std::string::npos;
-    if (!has_none) return fail(log.error());
-    return fail(ErrorCode::kParse, file +
-                                       ": got no control step, expected a recording of ours, or a bag with "
-                                       "nav_msgs/msg/Odometry in CDR");
-  }
+  if (!log) return fail(log.error());
   const Result<scenario::Scenario> scenario =
       protocol::compose({.scenario_file = {}, .settings = options.settings});
   if (!scenario) return fail(scenario.error());

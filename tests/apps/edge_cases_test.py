@@ -217,11 +217,12 @@ class Files(unittest.TestCase):
         begun = Path(self.folder.name) / "begun.mcap"
         begun.write_bytes((DATA / "24_foreign.mcap").read_bytes()[:300])
         page = Path(self.folder.name) / "page.html"
-        for bag in (inertial, begun):
+        for bag, why in ((inertial, "got the topics none of nav_msgs/msg/Odometry, expected one"),
+                         (begun, "got no control step, expected a recording of ours, or a bag with nav_msgs/msg/Odometry")):
             for words in (("report", bag, "-o", page), ("replay", "--port", "0", bag)):
                 code, _, err = run(*words)
                 self.assertEqual(code, 2, err)
-                self.assertIn(f"{bag.name}: got no control step, expected a recording of ours, or a bag with nav_msgs/msg/Odometry", err)
+                self.assertIn(f"{bag.name}: {why}", err)
         self.assertFalse(page.exists())
 
     def test_a_recording_cut_in_its_first_chunk(self):

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "chicane/base/instruction_set.hpp"
+#include "chicane/base/text.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/recording/recorder.hpp"
 
@@ -132,11 +133,13 @@ Result<telemetry::McapReport> check_recording(const std::string& path) {
   std::uint64_t steps = 0;
   telemetry::McapVisitor visitor;
   visitor.on_message = [&](const telemetry::McapMessage& message) {
-    steps += message.channel.topic == "/chicane/frame" ? 1U : 0U;
+    steps += message.channel.topic == kFrameTopic ? 1U : 0U;
   };
   const Result<telemetry::McapReport> read = telemetry::read_mcap(path, visitor);
   if (read && steps == 0)
-    return fail(ErrorCode::kParse, path + ": got no control step, expected a recording of ours");
+    return fail(refusal(path, "no control step",
+                        "a recording of ours, or a bag with nav_msgs/msg/Odometry in CDR",
+                        ErrorCode::kParse));
   return read;
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <variant>
 
 #include "chicane/base/result.hpp"
@@ -13,6 +14,9 @@
 #include "chicane/telemetry/mcap_reader.hpp"
 
 namespace chicane::recording {
+
+/// Of the messages that are shown, one for each control step.
+inline constexpr std::string_view kFrameTopic = "/chicane/frame";
 
 /// A control step and where it lies on the recording's time line.
 struct RecordedStep {
@@ -47,7 +51,8 @@ struct RecordingHead {
 [[nodiscard]] Result<scenario::Scenario> recorded_scenario(const std::string& path);
 
 /// Whether a file can be shown: how much of it there is. Also kParse "x.mcap: got no control step, expected a
-/// recording of ours" for bags of other programs, and for a recording cut before its first step is whole.
+/// recording of ours, or …" for bags of other programs, and for a recording cut before its first step is
+/// whole.
 [[nodiscard]] Result<telemetry::McapReport> check_recording(const std::string& path);
 
 }  // namespace chicane::recording
