@@ -32,15 +32,15 @@ class LeagueCommand : public ::testing::Test {
     return text.str();
   }
   /// Its exit code; what it says is in the files out and err.
-  int league(const std::string& entries, const std::string& options) {
+  int league(const std::string& entries, const std::string& options, const std::string& before = "") {
     std::ofstream(folder_ / "l.yaml") << "settings: {laps: 0, time_limit_s: 1.5}\n"
                                          "search: {speed_mps: {from: 9, to: 10}}\n"
                                          "tracks: [oval]\ncars: [udacity]\nentries:\n"
                                       << entries;
     const std::string here = folder_.string();
-    const int status = std::system(("cd '" CHICANE_SOURCE_DIR "' && '" CHICANE_PROGRAM "' league '" + here +
-                                    "/l.yaml' --results '" + here + "/r.jsonl' " + options + " > '" + here +
-                                    "/out' 2> '" + here + "/err'")
+    const int status = std::system((before + "cd '" CHICANE_SOURCE_DIR "' && '" CHICANE_PROGRAM "' league '" +
+                                    here + "/l.yaml' --results '" + here + "/r.jsonl' " + options + " > '" +
+                                    here + "/out' 2> '" + here + "/err'")
                                        .c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
   }
@@ -93,6 +93,24 @@ TEST_F(LeagueCommand, SaysInWordsWhyAProgramDoesNotDrive) {
 TEST_F(LeagueCommand, RefusesALeagueWithFaultsAndOneThatIsNotThere) {
   EXPECT_EQ(league("  ours: {preset: 1, nonsense: 2}\n", ""), 2);
   EXPECT_THAT(read("err"), HasSubstr("l.yaml:6: nonsense"));
+}
+
+TEST_F(LeagueCommand, LeavesAPageThatItCannotReplace) {
+  const std::string entries = "  ours: {preset: pid}\n", page = (folder_ / "old.html").string();
+  ASSERT_EQ(league(entries, ""), 0) << read("err");
+  std::ofstream(page) << "old\n";
+  EXPECT_EQ(league(entries, "-o '" + page + "'", "ulimit -f 2; "), 3);
+  EXPECT_THAT(read("err"), HasSubstr(page + ": cannot be written: File too large"));
+  EXPECT_EQ(read("old.html"), "old\n");
+}
+
+TEST_F(LeagueCommand, RefusesTheResultsOfAnotherLeagueAndLeavesThem) {
+  ASSERT_EQ(league("  ours: {preset: pid}\n", ""), 0) << read("err");
+  const std::string beside = read("r.beside.jsonl");
+  ASSERT_EQ(league("  ours: {preset: stanley}\n", ""), 2) << read("err");
+  EXPECT_THAT(read("err"), HasSubstr("r.beside.jsonl: got the limits and trials of l (plan "));
+  EXPECT_THAT(read("err"), HasSubstr("; choose another file"));
+  EXPECT_EQ(read("r.beside.jsonl"), beside);
 }
 
 TEST_F(LeagueCommand, SaysAtOnceThatAPageCannotBeWritten) {

@@ -126,7 +126,7 @@ TEST_F(LeagueFiles, TablesForOtherProgramsHaveARowForEachRun) {
   EXPECT_TRUE(json[3]["lap_time_s"].is_null());
 }
 
-TEST_F(LeagueFiles, TheFileBesideKnowsWhatIsDoneAndForgetsAnotherLeague) {
+TEST_F(LeagueFiles, TheFileBesideKnowsWhatIsDone) {
   static_cast<void>(driven(clean_run()));
   const auto trials = league_.external_trials();
   const auto again = BesideFile::open(path("b.jsonl"), league_);
@@ -135,10 +135,41 @@ TEST_F(LeagueFiles, TheFileBesideKnowsWhatIsDoneAndForgetsAnotherLeague) {
   EXPECT_FALSE(again->has_bound("oval", "road-car"));
   EXPECT_TRUE(again->has_trial(trials[0]));
   EXPECT_FALSE(again->has_trial(trials[1]));
+}
+
+TEST_F(LeagueFiles, TrialsStayWhenAnotherProgramsCommandChanges) {
+  league_.externals.push_back(league_.externals[0]);
+  league_.externals[1].name = "others";
+  league_.externals[1].command = "./other {port}";
+  static_cast<void>(driven(clean_run()));
+  {
+    auto file = BesideFile::open(path("b.jsonl"), league_);
+    ASSERT_TRUE(file && file->add_trial(league_.external_trials()[2], clean_run()));
+  }
+  const std::string before = league_.externals[0].command;
   league_.externals[0].command = "./another {port}";
+  const auto changed = BesideFile::open(path("b.jsonl"), league_);
+  ASSERT_TRUE(changed);
+  EXPECT_FALSE(changed->has_trial(league_.external_trials()[0]));
+  EXPECT_TRUE(changed->has_trial(league_.external_trials()[2]));
+  EXPECT_TRUE(changed->has_bound("oval", "udacity"));
+  const auto results = read_results(league_, path("r.jsonl"), path("b.jsonl"));
+  ASSERT_TRUE(results);
+  EXPECT_EQ(results->cells[2].why, "not driven yet") << "the trial was of another command";
+  EXPECT_TRUE(results->cells[4].is_clean);
+  league_.externals[0].command = before;
+  EXPECT_TRUE(BesideFile::open(path("b.jsonl"), league_)->has_trial(league_.external_trials()[0]));
+}
+
+TEST_F(LeagueFiles, RefusesTheFileOfAnotherLeagueAndLeavesIt) {
+  static_cast<void>(driven(clean_run()));
+  const auto size = fs::file_size(path("b.jsonl"));
+  league_.name = "another";
   const auto other = BesideFile::open(path("b.jsonl"), league_);
-  ASSERT_TRUE(other);
-  EXPECT_FALSE(other->has_trial(trials[0]));
+  ASSERT_FALSE(other);
+  EXPECT_EQ(other.error().code, ErrorCode::kInvalidArgument);
+  EXPECT_THAT(other.error().message, HasSubstr("b.jsonl: got the limits and trials of small & <plain>"));
+  EXPECT_EQ(fs::file_size(path("b.jsonl")), size);
 }
 
 TEST_F(LeagueFiles, MissingRunsAreCounted) {

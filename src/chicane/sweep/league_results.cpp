@@ -22,21 +22,28 @@ using protocol::Json;
 std::string bound_key(const std::string& track, const std::string& car) {
   return protocol::json_text(Json{{"track", track}, {"car", car}});
 }
-std::string trial_key(const std::string& entry, const std::string& track, const std::string& car,
-                      const std::string& disturbance) {
-  return protocol::json_text(
-      Json{{"entry", entry}, {"track", track}, {"car", car}, {kDisturbanceKey, disturbance}});
-}
 std::string trial_key(const ExternalTrial& trial) {
-  return trial_key(trial.entry, trial.track, trial.car, trial.disturbance);
+  return protocol::json_text(Json{{"command", trial.command},
+                                  {"track", trial.track},
+                                  {"car", trial.car},
+                                  {kDisturbanceKey, trial.disturbance}});
 }
 
-/// Of the plan and the commands: what else is in the file belongs to another league.
-std::string first_line(const League& league) {
-  Json programs = Json::object();
-  for (const ExternalEntry& entry : league.externals) programs[entry.name] = entry.command;
-  return protocol::json_text(Json{
-      {"league", league.name}, {"plan", fmt::format("{:016x}", league.plan.hash())}, {"programs", programs}});
+/// Of the plan alone: each trial says of which command it is.
+Json first_line(const League& league) {
+  return {{"league", league.name}, {"plan", fmt::format("{:016x}", league.plan.hash())}};
+}
+
+Error refusal_of(const std::string& path, const std::string& line, const Json& wanted) {
+  const Json got = protocol::parse_json(line);
+  if (!got.is_object() || !got.contains("league"))
+    return refusal(path, line, "the limits and trials of a league");
+  const auto words = [](const Json& first) {
+    return fmt::format("{} (plan {})", first.value("league", ""), first.value("plan", ""));
+  };
+  return {ErrorCode::kInvalidArgument,
+          fmt::format("{}: got the limits and trials of {}, expected those of {}; choose another file", path,
+                      words(got), words(wanted))};
 }
 
 Json times_of(const telemetry::TimeSummary& times) {
@@ -69,21 +76,20 @@ double LeagueCell::number(std::string_view column) const {
 
 Result<BesideFile> BesideFile::open(const std::string& path, const League& league) {
   BesideFile file(path);
-  const std::string wanted = first_line(league);
+  const Json wanted = first_line(league);
   std::ifstream stream(path, std::ios::binary);
   std::string line;
-  std::getline(stream, line);
-  const bool is_ours = line == wanted;
-  while (is_ours && std::getline(stream, line)) {
+  if (!std::getline(stream, line)) {
+    if (const auto made = file.append(protocol::json_text(wanted)); !made) return fail(made.error());
+    return file;
+  }
+  if (line != protocol::json_text(wanted)) return fail(refusal_of(path, line, wanted));
+  while (std::getline(stream, line)) {
     const Json json = protocol::parse_json(line);
     if (!json.is_object()) continue;
     for (const char* kind : {"limit", "external"})
       if (json.contains(kind)) file.keys_.push_back(protocol::json_text(json[kind]));
   }
-  stream.close();
-  if (is_ours) return file;
-  std::ofstream(path, std::ios::binary | std::ios::trunc).close();
-  if (const Result<void> written = file.append(wanted); !written) return fail(written.error());
   return file;
 }
 
@@ -164,7 +170,8 @@ std::string simulate_command(const ExternalTrial& trial) {
                      trial.track, trial.car, rest);
 }
 
-void read_beside(const Json& json, LeagueResults& results) {
+/// `trials`: of the last cells.
+void read_beside(const Json& json, const std::vector<ExternalTrial>& trials, LeagueResults& results) {
   if (json.contains("limit") && json.contains("lap_time_s"))
     results.bounds[{json["limit"].value("track", ""), json["limit"].value("car", "")}] = json["lap_time_s"];
   if (json.contains("run")) {
@@ -172,10 +179,10 @@ void read_beside(const Json& json, LeagueResults& results) {
     if (run < results.cells.size() && !results.cells[run].is_external) read_numbers(json, results.cells[run]);
   }
   if (!json.contains("external")) return;
-  for (LeagueCell& cell : results.cells) {
-    if (!cell.is_external || protocol::json_text(json["external"]) !=
-                                 trial_key(cell.entry, cell.track, cell.car, cell.disturbance))
-      continue;
+  const std::string key = protocol::json_text(json["external"]);
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    if (key != trial_key(trials[i])) continue;
+    LeagueCell& cell = results.cells[results.cells.size() - trials.size() + i];
     read_numbers(json, cell);
     cell.is_clean = cell.number("clean") == 1.0;
     cell.why = cell.is_clean ? "" : reason_in(json, cell);
@@ -196,7 +203,8 @@ Result<LeagueResults> read_results(const League& league, const std::string& resu
                              .why = "not driven yet"});
   }
   if (const Result<void> read = read_own(league, results_file, results); !read) return fail(read.error());
-  for (const ExternalTrial& trial : league.external_trials())
+  const std::vector<ExternalTrial> trials = league.external_trials();
+  for (const ExternalTrial& trial : trials)
     results.cells.push_back({.entry = trial.entry,
                              .track = trial.track,
                              .car = trial.car,
@@ -207,7 +215,7 @@ Result<LeagueResults> read_results(const League& league, const std::string& resu
   std::ifstream stream(beside, std::ios::binary);
   for (std::string line; std::getline(stream, line);) {
     const Json json = protocol::parse_json(line);
-    if (json.is_object()) read_beside(json, results);
+    if (json.is_object()) read_beside(json, trials, results);
   }
   return results;
 }

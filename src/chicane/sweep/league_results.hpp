@@ -35,10 +35,10 @@ struct LeagueResults {
   std::uint64_t missing = 0;                                       ///< runs that were not driven yet
 };
 
-/// The file beside the results: one JSON object in each line. Lines of another league are thrown away.
+/// The file beside the results: one JSON object in each line, a trial under its program's command.
 class BesideFile {
  public:
-  /// kIo.
+  /// kInvalidArgument for the file of another league or plan, which stays as it is; kIo.
   [[nodiscard]] static Result<BesideFile> open(const std::string& path, const League& league);
   BesideFile(BesideFile&& other) noexcept;
   BesideFile& operator=(BesideFile&&) = delete;
