@@ -161,22 +161,23 @@ TEST(ForeignTracks, RefusesInWordsWhatIsNoRoad) {
 TEST(ForeignTracks, NamesElementAndLineOfAFault) {
   const auto message = [](std::string_view text) { return parse_track(text, "f.xml").error().message; };
   EXPECT_THAT(message("<?xml version='1.0'?>\n<gpx>\n<trkpt lat='x' lon='1'/></gpx>"),
-              HasSubstr("f.xml:3: trkpt: got x, expected latitude and longitude in degrees"));
+              HasSubstr("f.xml:3: latitude: got x, expected a finite number"));
   EXPECT_THAT(
       message("<svg>\n</svg>"),
-      HasSubstr("f.xml:1: got the element svg, expected gpx, kml, osm, OpenDRIVE, commonRoad or sdf"));
+      HasSubstr("f.xml:1: root: got the element svg, expected gpx, kml, osm, OpenDRIVE, commonRoad or sdf"));
   EXPECT_THAT(message("<osm>\n<way id='1'><nd ref='1'/><nd ref='2'/></way></osm>"),
               HasSubstr("f.xml: way: got a node "));
   EXPECT_THAT(message("<OpenDRIVE>\n<road id='1'>\n</road></OpenDRIVE>"),
               HasSubstr("f.xml:2: road: got no planView and lanes, expected both"));
   EXPECT_THAT(message("<commonRoad><lanelet "
                       "id='1'>\n<leftBound><point><x>0</x></point></leftBound></lanelet></commonRoad>"),
-              HasSubstr("f.xml:2: point: got something else, expected x and y"));
-  EXPECT_THAT(message("{\"type\": \"Feature\",\n oops"), HasSubstr("f.xml:2: got text that is no JSON"));
+              HasSubstr("f.xml:2: y: got nothing, expected a finite number"));
+  EXPECT_THAT(message("{\"type\": \"Feature\",\n oops"),
+              HasSubstr("f.xml:2: file: got text that is no JSON"));
   EXPECT_THAT(message("{\"centerline_waypoints\": {\"wpnts\": [{\"x_m\": 1}]}}"),
-              HasSubstr("centerline_waypoints.wpnts[0]: x_m, y_m: got"));
+              HasSubstr("centerline_waypoints.wpnts[0]: y_m: got nothing"));
   EXPECT_THAT(message("tag,x,y\nblue,0,1\nblue,0,zero\n"),
-              HasSubstr("f.xml:3: y: got zero, expected a coordinate"));
+              HasSubstr("f.xml:3: y: got zero, expected a finite number"));
 }
 
 /// Names, lengths and widths of tests/data/maps/expected.csv.

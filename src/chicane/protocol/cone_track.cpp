@@ -2,49 +2,57 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <vector>
 
 #include "chicane/protocol/csv_text.hpp"
-#include "chicane/protocol/detail/cones.hpp"
-#include "chicane/protocol/detail/track_order.hpp"
+#include "chicane/protocol/detail/foreign_roads.hpp"
 #include "chicane/protocol/foreign_tracks.hpp"
 #include "chicane/protocol/yaml_tree.hpp"
+#include "chicane/survey/cone_line.hpp"
 
 namespace chicane::protocol {
 namespace {
 
+using survey::XmlNode;
+
 constexpr std::size_t kMostNamed = 5;  // gaps in warnings
 
-bool is_finite_place(double x, double y) {
-  return std::fabs(x) <= road::Path::kMaxCoordinate && std::fabs(y) <= road::Path::kMaxCoordinate;
+RoadRows cone_rows(const std::string& file, const TrackReadOptions& options) {
+  return {file, options, {{"x", Column::kX}, {"y", Column::kY}, {"tag", Column::kTag}}};
 }
 
-}  // namespace
+/// Cones by what files call them: "blue", "cone_yellow", "big_orange", "left".
+struct ConeMap {
+  survey::Cones cones;
+  std::optional<Vec2> start{};
+  int unknown = 0;  ///< of no colour that says a side
 
-bool ConeMap::add(std::string_view tag, const Vec2& place) {
-  const std::string name = lower(tag);
-  const auto has = [&](std::string_view word) { return name.find(word) != std::string::npos; };
-  if (has("orange")) {
-    cones.either.push_back(place);
-  } else if (has("blue") || name == "left" || name == "b") {
-    cones.left.push_back(place);
-  } else if (has("yellow") || name == "right" || name == "y") {
-    cones.right.push_back(place);
-  } else if (has("car_start") || has("start")) {
-    start = place;
-  } else {
-    return false;
+  void add(std::string_view tag, const Vec2& place) {
+    const auto has = [&](std::string_view word) { return tag.find(word) != std::string_view::npos; };
+    if (has("orange")) {
+      cones.either.push_back(place);
+    } else if (has("blue") || tag == "left" || tag == "b") {
+      cones.left.push_back(place);
+    } else if (has("yellow") || tag == "right" || tag == "y") {
+      cones.right.push_back(place);
+    } else if (has("start")) {
+      start = place;
+    } else {
+      ++unknown;
+    }
   }
-  return true;
-}
+};
 
-Result<TrackFile> track_of_cones(const ConeMap& map, const std::string& file,
-                                 const TrackReadOptions& options) {
+/// The road between cones; gaps are named.
+Result<TrackFile> track_of_cones(const RoadRows& rows) {
+  if (rows.error) return fail(*rows.error);
+  ConeMap map;
+  for (std::size_t i = 0; i < rows.tags.size(); ++i) map.add(rows.tags[i], rows.content.points[i].position);
+  const std::string& file = rows.content.file;
   Result<survey::ConeRoad> road = survey::line_between(map.cones);
   if (!road) return fail(road.error().code, file + ": " + road.error().message);
-  TrackFile content = empty_track(file, options);
+  TrackFile content = RoadRows{file, rows.options}.content;
   content.points = std::move(road->points);
   content.is_closed = road->is_closed;
   content.is_own_size = true;
@@ -63,79 +71,68 @@ Result<TrackFile> track_of_cones(const ConeMap& map, const std::string& file,
   if (!content.is_closed) warn(content, "cones: no loop, read as an open road");
   if (map.start) {
     begin_near(content, *map.start);
-  } else if (!options.start) {
+  } else if (!rows.options.start) {
     warn(content, fmt::format("start: not in the file, ({:.2f}, {:.2f}) taken (import --start sets it)",
                               content.points.front().position.x(), content.points.front().position.y()));
   }
   return content;
 }
 
+/// Each cone is an `include` or a `model` whose URI or name has its colour.
+void find_cones(const XmlNode& node, RoadRows& rows) {
+  for (const XmlNode* child : node.children) {
+    const bool is_model = child->name == "include" || child->name == "model";
+    const XmlNode* const pose = child->child("pose");
+    const XmlNode* const uri = child->child("uri");
+    const XmlNode* const name = child->child("name");
+    std::string tag = uri != nullptr ? uri->text : "";
+    if (name != nullptr && lower(tag).find("cone") == std::string::npos) tag += name->text;
+    if (tag.empty()) tag = child->attribute("name");
+    if (!is_model || pose == nullptr || lower(tag).find("cone") == std::string::npos) {
+      find_cones(*child, rows);
+      continue;
+    }
+    std::vector<std::string_view> cells = split(trim(pose->text), ' ');
+    cells.resize(2);
+    cells.push_back(tag);
+    rows.add(child->line, cells);
+  }
+}
+
+}  // namespace
+
 Result<TrackFile> parse_csv_cones(std::string_view text, const std::string& file,
                                   const TrackReadOptions& options) {
-  ConeMap map;
-  std::size_t x_at = 1, y_at = 2, tag_at = 0;
-  bool is_first = true;
-  CsvLines lines(text);
-  for (std::optional<std::string_view> line = lines.next(); line; line = lines.next()) {
-    if (line->empty() || line->front() == '#' || line->front() == '%') continue;
-    const std::vector<std::string_view> values = split(*line, separator_of(*line));
-    const auto fault = [&](std::string_view column, const std::string& got, std::string_view expected) {
-      return fail(ErrorCode::kParse,
-                  fmt::format("{}:{}: {}: got {}, expected {}", file, lines.number(), column, got, expected));
-    };
-    if (std::exchange(is_first, false)) {
-      std::optional<std::size_t> x, y, tag;
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::string name = lower(values[i]);
-        if (name == "x" || name == "x_m") x = i;
-        if (name == "y" || name == "y_m") y = i;
-        if (name == "tag" || name == "color" || name == "colour" || name == "type" || name == "class" ||
-            name == "side")
-          tag = i;
-      }
-      if (x && y) {
-        if (!tag) return fault("header", shown(*line), "a column tag, colour or type beside x and y");
-        x_at = *x;
-        y_at = *y;
-        tag_at = *tag;
-        continue;
-      }
-    }
-    if (values.size() <= std::max({x_at, y_at, tag_at}))
-      return fault("row", fmt::format("{} columns", values.size()), "a colour, x and y");
-    const std::optional<double> x = number(values[x_at]), y = number(values[y_at]);
-    if (!x || !is_finite_place(*x, 0.0)) return fault("x", shown(values[x_at]), "a coordinate within 1e7 m");
-    if (!y || !is_finite_place(0.0, *y)) return fault("y", shown(values[y_at]), "a coordinate within 1e7 m");
-    if (!map.add(values[tag_at], {*x, *y})) ++map.unknown;
-  }
-  return track_of_cones(map, file, options);
+  return track_of_cones(read_table(text, file, options, true));
 }
 
 Result<TrackFile> parse_yaml_cones(std::string_view text, const std::string& file,
                                    const TrackReadOptions& options) {
   const Result<YamlTree> tree = parse_yaml(text, file);
   if (!tree) return fail(tree.error());
-  ConeMap map;
+  RoadRows rows = cone_rows(file, options);
   for (const YamlEntry& entry : tree->root->entries()) {
     const std::string& key = entry.key.text;
     const bool is_start = key == "starting_pose_front_wing";
     if (!key.starts_with("cones_") && !is_start) continue;
-    const std::string side = key.starts_with("cones_") ? key.substr(6) : key;
     std::vector<const YamlNode*> places = entry.value.children;
     if (is_start) places = {&entry.value};
     for (const YamlNode* place : places) {
-      std::vector<double> numbers;
-      for (const YamlNode* each : place->children)
-        if (const std::optional<double> value = each->is_scalar() ? number(each->text) : std::nullopt)
-          numbers.push_back(*value);
-      if (!place->is_list() || numbers.size() < 2 || !is_finite_place(numbers[0], numbers[1]))
-        return fail(ErrorCode::kParse,
-                    fmt::format("{}:{}: {}: got something else, expected [x, y] within 1e7 m", file,
-                                place->line, key));
-      if (!map.add(is_start ? "start" : side, {numbers[0], numbers[1]})) ++map.unknown;
+      std::vector<std::string_view> cells;
+      for (const YamlNode* each : place->children) cells.push_back(each->text);
+      cells.resize(2);
+      cells.push_back(is_start ? std::string_view("start") : std::string_view(key).substr(6));
+      rows.add(place->line, cells);
     }
   }
-  return track_of_cones(map, file, options);
+  return track_of_cones(rows);
+}
+
+Result<TrackFile> track_of_sdf(const XmlNode& root, const std::string& file,
+                               const TrackReadOptions& options) {
+  RoadRows rows = cone_rows(file, options);
+  find_cones(root, rows);
+  return track_of_cones(rows);
 }
 
 }  // namespace chicane::protocol

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/foreign_tracks.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <string>
 
+#include "chicane/base/text.hpp"
 #include "chicane/protocol/csv_text.hpp"
+#include "chicane/protocol/detail/foreign_roads.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -83,6 +87,19 @@ constexpr std::array kForeign{
     TrackFormat{"", &parse_csv_cones, &is_csv_cones},
 };
 
+struct Dialect {
+  std::string_view tag, kind;
+  Result<TrackFile> (*read)(const survey::XmlNode&, const std::string&, const TrackReadOptions&);
+};
+constexpr std::array kDialects{
+    Dialect{"<gpx", "GPX", &track_of_gpx},
+    Dialect{"<kml", "KML", &track_of_kml},
+    Dialect{"<osm", "OpenStreetMap", &track_of_osm},
+    Dialect{"<OpenDRIVE", "OpenDRIVE", &track_of_opendrive},
+    Dialect{"<commonRoad", "CommonRoad", &track_of_commonroad},
+    Dialect{"<sdf", "cones (SDF)", &track_of_sdf},
+};
+
 }  // namespace
 
 std::span<const TrackFormat> foreign_tracks() noexcept { return kForeign; }
@@ -92,18 +109,20 @@ std::string_view road_kind(std::string_view text) noexcept {
   if (is_yaml_cones(text) || is_csv_cones(text)) return "cones";
   if (is_json(text)) return text.find("wpnts") != std::string_view::npos ? "ForzaETH way points" : "GeoJSON";
   if (!is_xml(text)) return "table of points";
-  struct Root {
-    std::string_view element, name;
-  };
-  constexpr std::array kRoots{Root{"<gpx", "GPX"},
-                              Root{"<kml", "KML"},
-                              Root{"<osm", "OpenStreetMap"},
-                              Root{"<OpenDRIVE", "OpenDRIVE"},
-                              Root{"<commonRoad", "CommonRoad"},
-                              Root{"<sdf", "cones (SDF)"}};
-  for (const Root& root : kRoots)
-    if (text.substr(0, kHead).find(root.element) != std::string_view::npos) return root.name;
+  for (const Dialect& dialect : kDialects)
+    if (text.substr(0, kHead).find(dialect.tag) != std::string_view::npos) return dialect.kind;
   return "XML";
+}
+
+Result<TrackFile> parse_xml_track(std::string_view text, const std::string& file,
+                                  const TrackReadOptions& options) {
+  const Result<survey::XmlTree> tree = survey::parse_xml(text, file);
+  if (!tree) return fail(tree.error());
+  const survey::XmlNode& root = tree->root();
+  for (const Dialect& dialect : kDialects)
+    if (root.name == dialect.tag.substr(1)) return dialect.read(root, file, options);
+  return fail(fault_of(file, root.line, "root", fmt::format("the element {}", printable(root.name)),
+                       "gpx, kml, osm, OpenDRIVE, commonRoad or sdf"));
 }
 
 }  // namespace chicane::protocol

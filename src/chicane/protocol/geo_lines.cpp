@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/protocol/detail/geo_lines.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <deque>
@@ -14,7 +13,9 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/csv_text.hpp"
-#include "chicane/protocol/detail/track_order.hpp"
+#include "chicane/protocol/detail/foreign_roads.hpp"
+#include "chicane/survey/geodesy.hpp"
+#include "chicane/survey/sampled_line.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -27,18 +28,6 @@ constexpr double kLeastLap = 150.0;   // [m]
 constexpr double kMeets = 25.0;       // a lap is over where it comes this near to its beginning [m]
 constexpr double kMostExtent = 50e3;  // [m]
 
-std::string at(const std::string& file, const XmlNode& node) { return fmt::format("{}:{}", file, node.line); }
-
-bool is_place(const Geographic& place) {
-  return std::fabs(place.latitude) < 85.0 && std::fabs(place.longitude) <= 360.0;
-}
-
-Error bad_place(const std::string& file, const XmlNode& node, std::string_view got) {
-  return {ErrorCode::kParse,
-          fmt::format("{}: {}: got {}, expected latitude and longitude in degrees, below 85", at(file, node),
-                      printable(node.name), got)};
-}
-
 /// All elements of a name, in the order of the document.
 void find_all(const XmlNode& node, std::string_view name, std::vector<const XmlNode*>& found) {
   if (node.name == name) found.push_back(&node);
@@ -47,8 +36,8 @@ void find_all(const XmlNode& node, std::string_view name, std::vector<const XmlN
 
 /// Points up to where the line meets its beginning in the same direction; how many laps the line has.
 double cut_first_lap(std::vector<Vec2>& points) {
-  double passed = 0.0, total = 0.0;
-  for (std::size_t i = 1; i < points.size(); ++i) total += (points[i] - points[i - 1]).norm();
+  double passed = 0.0;
+  const double total = survey::length_of(points, false);
   const Vec2 ahead = points[std::min<std::size_t>(3, points.size() - 1)] - points[0];
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     passed += (points[i] - points[i - 1]).norm();
@@ -65,59 +54,57 @@ double cut_first_lap(std::vector<Vec2>& points) {
 
 }  // namespace
 
-Result<TrackFile> track_of_line(const GeoLine& line, const std::string& file,
-                                const TrackReadOptions& options) {
-  if (line.places.size() < 4)
-    return fail(ErrorCode::kParse,
-                fmt::format("{}: line: got {} places, expected at least 4", file, line.places.size()));
-  if (line.places.size() > kMaxTrackPoints)
-    return fail(ErrorCode::kParse,
-                fmt::format("{}: line: got {} places, expected at most 1000000", file, line.places.size()));
+Result<TrackFile> track_of_line(GeoLine line) {
+  RoadRows& rows = line.rows;
+  TrackFile& content = rows.content;
+  rows.list.clear();
+  rows.expect_points(4);
+  if (rows.error) return fail(*rows.error);
+  std::vector<Geographic> places;
+  for (const road::TrackPoint& point : content.points)
+    places.push_back({point.position.y(), point.position.x()});
   std::vector<Vec2> points;
   double most = 0.0;
-  for (const Vec2& each : survey::to_plane(line.places)) {
+  for (const Vec2& each : survey::to_plane(places)) {
     most = std::max(most, each.norm());
     if (points.empty() || (each - points.back()).norm() >= kLeastStep) points.push_back(each);
   }
   if (most > kMostExtent)
-    return fail(
-        ErrorCode::kParse,
-        fmt::format("{}: line: got one that is {:.0f} km wide, expected at most 100 km", file, 2e-3 * most));
-  TrackFile content = empty_track(file, options);
+    rows.fault(0, "line", fmt::format("one that is {:.0f} km wide", 2e-3 * most), "at most 100 km");
   const double laps = line.is_driven && points.size() > 8 ? cut_first_lap(points) : 1.0;
-  for (const Vec2& point : points) content.points.push_back({point, 0.0, 0.0});
-  if (content.points.empty()) return fail(ErrorCode::kParse, file + ": line: got one place, expected a line");
-  settle_ends(content, options.is_closed, line.is_driven ? kMeets : 0.0);
-  const Geographic middle = survey::middle_of(line.places);
-  warn(content, fmt::format("places: metres east and north of {:.6f}, {:.6f}; heights left out",
-                            middle.latitude, middle.longitude));
-  if (laps > 1.2) warn(content, fmt::format("laps: the first of {:.1f} taken", laps));
-  content.options.smoothing_sigma = line.noise * options.scale;
-  if (!options.smoothing_sigma)
-    warn(content, fmt::format("smoothing: noise of {} m assumed (import --smoothing-m sets it)",
-                              content.options.smoothing_sigma));
-  if (line.width > 0.0 && line.width <= kMaxTrackWidth) {
-    for (road::TrackPoint& point : content.points) point.left = point.right = 0.5 * line.width;
-  } else {
-    assume_width(content, options);
-  }
-  return content;
+  // A width is the same all along the line.
+  const bool has_width = line.width > 0.0 && line.width <= kMaxTrackWidth;
+  road::TrackPoint point = content.points.front();
+  if (has_width) point.left = point.right = 0.5 * line.width;
+  content.points.clear();
+  content.lines.clear();
+  for (const Vec2& each : points) content.points.push_back({each, point.left, point.right});
+  rows.meets = line.is_driven ? kMeets : 0.0;
+  Result<TrackFile> built = rows.build();
+  if (!built) return built;
+  const Geographic middle = survey::middle_of(places);
+  warn(*built, fmt::format("places: metres east and north of {:.6f}, {:.6f}; heights left out",
+                           middle.latitude, middle.longitude));
+  if (laps > 1.2) warn(*built, fmt::format("laps: the first of {:.1f} taken", laps));
+  built->options.smoothing_sigma = line.noise * rows.options.scale;
+  if (!rows.options.smoothing_sigma)
+    warn(*built, fmt::format("smoothing: noise of {} m assumed (import --smoothing-m sets it)",
+                             built->options.smoothing_sigma));
+  if (!has_width) warn_of_width(*built, rows.options);
+  return built;
 }
 
 Result<TrackFile> track_of_gpx(const XmlNode& root, const std::string& file,
                                const TrackReadOptions& options) {
-  GeoLine line{.noise = 1.0, .is_driven = true};
+  GeoLine line{file, options};
+  line.noise = 1.0;
+  line.is_driven = true;
   std::vector<const XmlNode*> found;
-  for (const char* name : {"trkpt", "rtept", "wpt"}) {
+  for (const char* name : {"trkpt", "rtept", "wpt"})
     if (found.empty()) find_all(root, name, found);
-  }
-  for (const XmlNode* node : found) {
-    const std::optional<double> latitude = node->number("lat"), longitude = node->number("lon");
-    const Geographic place{latitude.value_or(1e9), longitude.value_or(1e9)};
-    if (!is_place(place)) return fail(bad_place(file, *node, printable(node->attribute("lat"))));
-    line.places.push_back(place);
-  }
-  return track_of_line(line, file, options);
+  for (const XmlNode* node : found)
+    line.rows.add(node->line, {trim(node->attribute("lat")), trim(node->attribute("lon"))});
+  return track_of_line(std::move(line));
 }
 
 Result<TrackFile> track_of_kml(const XmlNode& root, const std::string& file,
@@ -125,33 +112,28 @@ Result<TrackFile> track_of_kml(const XmlNode& root, const std::string& file,
   std::vector<const XmlNode*> lines, driven;
   find_all(root, "coordinates", lines);
   find_all(root, "coord", driven);
-  GeoLine best;
-  // "lon,lat,height lon,lat,height": the element with most places is the road, others are marks.
+  const auto add = [](GeoLine& line, const XmlNode& node, std::string_view place, char separator) {
+    std::vector<std::string_view> cells = split(trim(place), separator);
+    cells.resize(2);  // "lon,lat,height"
+    line.rows.add(node.line, {cells[1], cells[0]});
+  };
+  const auto is_longer = [](const GeoLine& a, const GeoLine& b) {
+    return a.rows.error || a.rows.content.points.size() > b.rows.content.points.size();
+  };
+  GeoLine best{file, options};
+  // The element with most places is the road, others are marks.
   for (const XmlNode* node : lines) {
-    GeoLine line;
-    for (const std::string_view place : split(node->text, '\n'))
-      for (const std::string_view each : split(place, ' ')) {
-        const std::vector<std::string_view> values = split(each, ',');
-        const std::optional<double> longitude = number(values[0]);
-        const std::optional<double> latitude = values.size() > 1 ? number(values[1]) : std::nullopt;
-        const Geographic found{latitude.value_or(1e9), longitude.value_or(1e9)};
-        if (!is_place(found)) return fail(bad_place(file, *node, shown(each)));
-        line.places.push_back(found);
-      }
-    if (line.places.size() > best.places.size()) best = std::move(line);
+    GeoLine line{file, options};
+    for (const std::string_view row : split(node->text, '\n'))
+      for (const std::string_view place : split(row, ' ')) add(line, *node, place, ',');
+    if (is_longer(line, best)) best = std::move(line);
+    if (best.rows.error) break;
   }
-  if (driven.size() > best.places.size()) {
-    best = {.noise = 1.0, .is_driven = true};
-    for (const XmlNode* node : driven) {
-      const std::vector<std::string_view> values = split(trim(node->text), ' ');
-      const std::optional<double> longitude = values.empty() ? std::nullopt : number(values[0]);
-      const std::optional<double> latitude = values.size() > 1 ? number(values[1]) : std::nullopt;
-      const Geographic found{latitude.value_or(1e9), longitude.value_or(1e9)};
-      if (!is_place(found)) return fail(bad_place(file, *node, shown(node->text)));
-      best.places.push_back(found);
-    }
-  }
-  return track_of_line(best, file, options);
+  GeoLine log{file, options};
+  log.noise = 1.0;
+  log.is_driven = true;
+  for (const XmlNode* node : driven) add(log, *node, node->text, ' ');
+  return track_of_line(is_longer(log, best) && !best.rows.error ? std::move(log) : std::move(best));
 }
 
 namespace {
@@ -205,27 +187,23 @@ void join(OsmWay& way, std::vector<OsmWay>& others) {
 Result<TrackFile> track_of_osm(const XmlNode& root, const std::string& file,
                                const TrackReadOptions& options) {
   constexpr std::size_t kMostWays = 2000;
-  std::map<std::string, Geographic, std::less<>> nodes;
+  std::map<std::string, const XmlNode*, std::less<>> nodes;
   std::vector<OsmWay> ways;
   for (const XmlNode* child : root.children) {
     if (child->name == "node") {
-      const Geographic place{child->number("lat").value_or(1e9), child->number("lon").value_or(1e9)};
-      if (child->attribute("action") == "delete") continue;
-      if (!is_place(place)) return fail(bad_place(file, *child, printable(child->attribute("lat"))));
-      nodes[std::string(child->attribute("id"))] = place;
+      if (child->attribute("action") != "delete") nodes[std::string(child->attribute("id"))] = child;
     } else if (child->name == "way") {
       if (OsmWay way = way_of(*child); way.nodes.size() > 1) ways.push_back(std::move(way));
       if (ways.size() > kMostWays)
-        return fail(ErrorCode::kParse,
-                    fmt::format("{}: way: got more than {}, expected an extract of one course",
-                                at(file, *child), kMostWays));
+        return fail(fault_of(file, child->line, "way", fmt::format("more than {}", kMostWays),
+                             "an extract of one course"));
     }
   }
   const std::size_t count = ways.size();
   const bool has_raceway =
       std::any_of(ways.begin(), ways.end(), [](const OsmWay& way) { return way.is_raceway; });
   if (has_raceway) std::erase_if(ways, [](const OsmWay& way) { return !way.is_raceway; });
-  if (ways.empty()) return fail(ErrorCode::kParse, file + ": way: got none, expected at least one");
+  if (ways.empty()) return fail(fault_of(file, 0, "way", "none", "at least one"));
   // The closed course of most nodes, else the longest.
   OsmWay best;
   std::size_t joined = 0;
@@ -241,16 +219,17 @@ Result<TrackFile> track_of_osm(const XmlNode& root, const std::string& file,
       joined = before - ways.size();
     }
   }
-  GeoLine line{.width = best.width};
+  GeoLine line{file, options};
+  line.width = best.width;
   for (const std::string& id : best.nodes) {
     const auto node = nodes.find(id);
     if (node == nodes.end())
-      return fail(ErrorCode::kParse,
-                  fmt::format("{}: way: got a node {} that is not in the file, expected all nodes of the way",
-                              file, printable(id)));
-    line.places.push_back(node->second);
+      return fail(fault_of(file, 0, "way", fmt::format("a node {} that is not in the file", printable(id)),
+                           "all nodes of the way"));
+    line.rows.add(node->second->line,
+                  {trim(node->second->attribute("lat")), trim(node->second->attribute("lon"))});
   }
-  Result<TrackFile> content = track_of_line(line, file, options);
+  Result<TrackFile> content = track_of_line(std::move(line));
   if (content && joined < count)
     warn(*content, fmt::format("way: {} of {} ways taken, {}", joined, count,
                                has_raceway ? "those of highway=raceway that hang together"

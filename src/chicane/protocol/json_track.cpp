@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
+#include <type_traits>
+#include <vector>
 
-#include "chicane/protocol/detail/geo_lines.hpp"
-#include "chicane/protocol/detail/track_order.hpp"
+#include "chicane/protocol/detail/foreign_roads.hpp"
 #include "chicane/protocol/foreign_tracks.hpp"
 #include "chicane/protocol/json.hpp"
 
@@ -15,119 +15,91 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{16} << 20U;
 
-std::optional<double> number_at(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  if (found == object.end() || !found->is_number()) return std::nullopt;
-  const double value = found->get<double>();
-  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+/// A member of an object or an element of a list; null where there is none.
+template <typename Key>
+const Json& at(const Json& json, const Key& key) {
+  static const Json kNone;
+  if constexpr (std::is_integral_v<Key>) {
+    return json.is_array() && key < json.size() ? json[key] : kNone;
+  } else {
+    const auto found = json.is_object() ? json.find(key) : json.end();
+    return found != json.end() ? *found : kNone;
+  }
 }
 
-/// The list of way points behind a key, as ROS's message is written: {"wpnts": [...]}.
-const Json* way_points(const Json& root, const char* key) {
-  const auto found = root.find(key);
-  if (found == root.end() || !found->is_object()) return nullptr;
-  const auto list = found->find("wpnts");
-  return list != found->end() && list->is_array() && !list->empty() ? &*list : nullptr;
+/// Rows of the elements of a list: of each the values behind `keys`, which name the columns.
+template <typename Key>
+void add_rows(const Json& list, const std::vector<Key>& keys, RoadRows& rows) {
+  for (const Json& each : list) {
+    std::vector<std::string> texts;
+    for (const Key& key : keys) {
+      const Json& value = at(each, key);
+      texts.push_back(value.is_number() ? json_text(value) : value.is_null() ? "" : "something else");
+    }
+    rows.add(0, std::vector<std::string_view>(texts.begin(), texts.end()));
+  }
 }
 
+/// ROS's messages of way points: {"centerline_waypoints": {"wpnts": [{"x_m": 1.0, …}, …]}, …}.
 Result<TrackFile> track_of_way_points(const Json& root, const std::string& file,
                                       const TrackReadOptions& options) {
-  const char* key = "";
-  const Json* list = nullptr;
-  for (const char* each : {"centerline_waypoints", "global_traj_wpnts_iqp", "global_traj_wpnts_sp"}) {
-    if (list != nullptr) break;
-    list = way_points(root, each);
-    key = each;
+  RoadRows rows{
+      file,
+      options,
+      {{"x_m", Column::kX}, {"y_m", Column::kY}, {"d_left", Column::kLeft}, {"d_right", Column::kRight}}};
+  for (const char* key : {"centerline_waypoints", "global_traj_wpnts_iqp", "global_traj_wpnts_sp"}) {
+    const Json& list = at(at(root, key), "wpnts");
+    if (!list.is_array() || list.empty()) continue;
+    rows.list = fmt::format("{}.wpnts", key);
+    add_rows(list, std::vector<const char*>{"x_m", "y_m", "d_left", "d_right"}, rows);
+    Result<TrackFile> content = rows.build();
+    if (!content) return content;
+    content->is_own_size = true;
+    double width = 0.0;
+    for (const road::TrackPoint& point : content->points)
+      width += (point.left + point.right) / static_cast<double>(content->points.size());
+    content->options.spacing = std::clamp(0.1 * width, 0.05, 2.0);
+    content->options.smoothing_sigma = std::min(0.02, 0.01 * width);
+    warn(*content, fmt::format("{}: taken of the file's lines", key));
+    return content;
   }
-  if (list == nullptr)
-    return fail(ErrorCode::kParse, file +
-                                       ": centerline_waypoints: got no wpnts, expected a list of them there "
-                                       "or in global_traj_wpnts_iqp");
-  TrackFile content = empty_track(file, options);
-  if (list->size() > kMaxTrackPoints)
-    return fail(ErrorCode::kParse,
-                fmt::format("{}: {}: got {} points, expected at most 1000000", file, key, list->size()));
-  std::size_t index = 0;
-  for (const Json& each : *list) {
-    const std::string place = fmt::format("{}: {}.wpnts[{}]", file, key, index++);
-    if (!each.is_object())
-      return fail(ErrorCode::kParse, place + ": got something else, expected a way point");
-    const auto x = number_at(each, "x_m"), y = number_at(each, "y_m"), left = number_at(each, "d_left"),
-               right = number_at(each, "d_right");
-    if (!x || !y || std::fabs(*x) > road::Path::kMaxCoordinate || std::fabs(*y) > road::Path::kMaxCoordinate)
-      return fail(ErrorCode::kParse,
-                  place + ": x_m, y_m: got something else, expected coordinates within 1e7 m");
-    const bool has_width =
-        left && right && *left > 0.0 && *right > 0.0 && *left <= kMaxTrackWidth && *right <= kMaxTrackWidth;
-    if (!has_width)
-      return fail(ErrorCode::kParse,
-                  place + ": d_left, d_right: got something else, expected widths > 0 and <= 1000 m");
-    content.points.push_back({{*x, *y}, *left, *right});
-  }
-  settle_ends(content, options.is_closed);
-  content.is_own_size = true;
-  double width = 0.0;
-  for (const road::TrackPoint& point : content.points)
-    width += (point.left + point.right) / static_cast<double>(content.points.size());
-  content.options.spacing = std::clamp(0.1 * width, 0.05, 2.0);
-  content.options.smoothing_sigma = std::min(0.02, 0.01 * width);
-  warn(content, fmt::format("{}: taken of the file's lines", key));
-  return content;
-}
-
-/// Longitude and latitude of GeoJSON.
-Result<void> add_places(const Json& list, const std::string& file, GeoLine& line) {
-  for (const Json& each : list) {
-    const bool is_pair = each.is_array() && each.size() >= 2 && each[0].is_number() && each[1].is_number();
-    const survey::Geographic place{is_pair ? each[1].get<double>() : 1e9,
-                                   is_pair ? each[0].get<double>() : 1e9};
-    if (!(std::fabs(place.latitude) < 85.0 && std::fabs(place.longitude) <= 360.0))
-      return fail(
-          ErrorCode::kParse,
-          fmt::format(
-              "{}: coordinates[{}]: got something else, expected [longitude, latitude] in degrees, below 85",
-              file, line.places.size()));
-    line.places.push_back(place);
-  }
-  return {};
+  return fail(fault_of(file, 0, "centerline_waypoints", "no wpnts",
+                       "a list of them there or in global_traj_wpnts_iqp"));
 }
 
 /// The lines of a geometry; others are marks.
 void find_lines(const Json& geometry, std::vector<const Json*>& lines) {
-  const auto type = geometry.find("type");
-  const auto list = geometry.find("coordinates");
-  if (type == geometry.end() || list == geometry.end() || !list->is_array()) return;
-  if (*type == "LineString") lines.push_back(&*list);
-  if ((*type == "Polygon" || *type == "MultiLineString") && !list->empty())
-    for (const Json& each : *list)
+  const Json& type = at(geometry, "type");
+  const Json& list = at(geometry, "coordinates");
+  if (!list.is_array()) return;
+  if (type == "LineString") lines.push_back(&list);
+  if (type == "Polygon" || type == "MultiLineString")
+    for (const Json& each : list)
       if (each.is_array()) lines.push_back(&each);
 }
 
 Result<TrackFile> track_of_geojson(const Json& root, const std::string& file,
                                    const TrackReadOptions& options) {
   std::vector<const Json*> lines;
-  GeoLine line;
+  GeoLine line{file, options};
   const auto add_feature = [&](const Json& feature) {
-    const auto geometry = feature.find("geometry");
-    if (geometry != feature.end() && geometry->is_object()) find_lines(*geometry, lines);
-    const auto properties = feature.find("properties");
-    if (properties != feature.end() && properties->is_object() && line.width == 0.0)
-      line.width = number_at(*properties, "width").value_or(0.0);
+    find_lines(at(feature, "geometry"), lines);
+    const Json& width = at(at(feature, "properties"), "width");
+    if (line.width == 0.0 && width.is_number()) line.width = width.get<double>();
   };
-  if (const auto features = root.find("features"); features != root.end() && features->is_array()) {
-    for (const Json& feature : *features)
-      if (feature.is_object()) add_feature(feature);
+  if (const Json& features = at(root, "features"); features.is_array()) {
+    for (const Json& feature : features) add_feature(feature);
   } else if (root.contains("geometry")) {
     add_feature(root);
   } else {
     find_lines(root, lines);
   }
-  if (lines.empty())
-    return fail(ErrorCode::kParse, file + ": geometry: got no line, expected a LineString or Polygon");
+  if (lines.empty()) return fail(fault_of(file, 0, "geometry", "no line", "a LineString or Polygon"));
   const auto longest = std::max_element(lines.begin(), lines.end(),
                                         [](const Json* a, const Json* b) { return a->size() < b->size(); });
-  if (const Result<void> added = add_places(**longest, file, line); !added) return fail(added.error());
-  Result<TrackFile> content = track_of_line(line, file, options);
+  line.rows.list = "coordinates";
+  add_rows(**longest, std::vector<std::size_t>{1, 0}, line.rows);  // latitude comes second
+  Result<TrackFile> content = track_of_line(std::move(line));
   if (content && lines.size() > 1)
     warn(*content, fmt::format("geometry: the longest of {} lines taken", lines.size()));
   return content;
@@ -138,19 +110,15 @@ Result<TrackFile> track_of_geojson(const Json& root, const std::string& file,
 Result<TrackFile> parse_json_track(std::string_view text, const std::string& file,
                                    const TrackReadOptions& options) {
   if (text.size() > kMostBytes)
-    return fail(ErrorCode::kParse,
-                fmt::format("{}: file: got {} bytes of JSON, expected at most 16 MiB", file, text.size()));
+    return fail(fault_of(file, 0, "file", fmt::format("{} bytes of JSON", text.size()), "at most 16 MiB"));
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   const auto root = read_json(text);
   if (!root) {
-    const std::size_t byte = std::min(root.error().byte.value_or(0), text.size());
-    return fail(
-        ErrorCode::kParse,
-        fmt::format("{}:{}: got text that is no JSON", file,
-                    1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(byte), '\n')));
+    const std::string_view read = text.substr(0, root.error().byte.value_or(0));
+    return fail(fault_of(file, static_cast<int>(1 + std::count(read.begin(), read.end(), '\n')), "file",
+                         "text that is no JSON", "way points or GeoJSON"));
   }
-  if (!root->is_object())
-    return fail(ErrorCode::kParse, file + ":1: got no object, expected way points or GeoJSON");
+  if (!root->is_object()) return fail(fault_of(file, 1, "file", "no object", "way points or GeoJSON"));
   return root->contains("type") && !root->contains("centerline_waypoints")
              ? track_of_geojson(*root, file, options)
              : track_of_way_points(*root, file, options);

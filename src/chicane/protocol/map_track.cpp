@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chicane/protocol/detail/track_order.hpp"
+#include "chicane/protocol/detail/road_rows.hpp"
 #include "chicane/protocol/foreign_tracks.hpp"
 #include "chicane/protocol/occupancy_map.hpp"
 
@@ -37,28 +37,24 @@ void begin_at_origin(TrackFile& content, const TrackReadOptions& options, double
 
 Result<TrackFile> parse_map_track(std::string_view text, const std::string& file,
                                   const TrackReadOptions& options) {
-  if (!text.starts_with("\x89PNG") && !text.starts_with("P5") && !text.starts_with("P2")) {
-    const Result<OccupancyMap> map = parse_map(text, file);
-    if (!map) return fail(map.error());
-    const survey::FreeSpace space = free_space_of(*map);
-    Result<survey::FreeLoop> loop =
-        survey::find_loop(space, {.least_width = options.least_width, .start = options.start});
-    if (!loop) return fail(loop.error().code, file + ": " + loop.error().message);
-    TrackFile content = empty_track(file, options);
-    content.points = std::move(loop->points);
-    content.is_closed = true;
-    content.is_own_size = true;
-    // Walls are where cells end: a line between them scatters by less than a cell.
-    content.options.smoothing_sigma = std::min(map->resolution, 0.1);
-    content.options.spacing = std::clamp(0.1 * loop->median_width, 0.05, 2.0);
-    if (loop->spots > 0)
-      warn(content, fmt::format("free space: {} spots below 0.25 m taken for noise of the map", loop->spots));
-    begin_at_origin(content, options, loop->median_width);
-    return content;
-  }
-  return fail(
-      ErrorCode::kParse,
-      fmt::format("{}: file: got an image, expected the YAML file beside it that says its resolution", file));
+  if (text.starts_with("\x89PNG") || text.starts_with("P5") || text.starts_with("P2"))
+    return fail(fault_of(file, 0, "file", "an image", "the YAML file beside it that says its resolution"));
+  const Result<OccupancyMap> map = parse_map(text, file);
+  if (!map) return fail(map.error());
+  Result<survey::FreeLoop> loop =
+      survey::find_loop(free_space_of(*map), {.least_width = options.least_width, .start = options.start});
+  if (!loop) return fail(loop.error().code, file + ": " + loop.error().message);
+  TrackFile content = RoadRows{file, options}.content;
+  content.points = std::move(loop->points);
+  content.is_closed = true;
+  content.is_own_size = true;
+  // Walls are where cells end: a line between them scatters by less than a cell.
+  content.options.smoothing_sigma = std::min(map->resolution, 0.1);
+  content.options.spacing = std::clamp(0.1 * loop->median_width, 0.05, 2.0);
+  if (loop->spots > 0)
+    warn(content, fmt::format("free space: {} spots below 0.25 m taken for noise of the map", loop->spots));
+  begin_at_origin(content, options, loop->median_width);
+  return content;
 }
 
 }  // namespace chicane::protocol

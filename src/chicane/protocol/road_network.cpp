@@ -14,8 +14,8 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
-#include "chicane/protocol/detail/geo_lines.hpp"
-#include "chicane/protocol/detail/track_order.hpp"
+#include "chicane/protocol/csv_text.hpp"
+#include "chicane/protocol/detail/foreign_roads.hpp"
 #include "chicane/survey/sampled_line.hpp"
 
 namespace chicane::protocol {
@@ -25,11 +25,6 @@ using survey::XmlNode;
 
 constexpr double kMostLength = 100e3;  // [m]
 constexpr double kLeastWidth = 0.5;    // of a cross-section [m]
-
-tl::unexpected<Error> fault(const std::string& file, const XmlNode& node, std::string_view key,
-                            std::string_view got, std::string_view expected) {
-  return fail(refusal(fmt::format("{}:{}: {}", file, node.line, key), got, expected, ErrorCode::kParse));
-}
 
 // OpenDRIVE: a reference line of lines, arcs, spirals and polynomials, with lanes beside it.
 
@@ -73,7 +68,6 @@ struct OpenDriveRoad {
   std::string next = {}, previous = {};  ///< roads; empty: none
   bool next_begins = true, previous_ends = true;
   bool meets_junction = false;
-  std::vector<road::TrackPoint> points = {};  ///< middle of the lanes that are driven
 };
 
 /// Heading and place along one geometry element.
@@ -198,25 +192,26 @@ std::optional<std::pair<double, double>> driven_at(const std::vector<LaneSection
                                                                    : std::nullopt;
 }
 
-/// Points in the middle of a road's lanes.
-Result<void> lay_out(OpenDriveRoad& road, const std::string& file) {
-  const XmlNode* const plan = road.node->child("planView");
-  const XmlNode* const lanes = road.node->child("lanes");
+/// Points in the middle of a road's lanes, in its direction or against it.
+void lay_out(const XmlNode& road, bool is_forward, RoadRows& rows) {
+  const XmlNode* const plan = road.child("planView");
+  const XmlNode* const lanes = road.child("lanes");
   if (plan == nullptr || lanes == nullptr)
-    return fault(file, *road.node, "road", "no planView and lanes", "both");
+    return rows.fault(road.line, "road", "no planView and lanes", "both");
   std::vector<Cubic> offsets;
   for (const XmlNode* node : lanes->children)
     if (node->name == "laneOffset") offsets.push_back(cubic_of(*node, "s", 0.0));
   const std::vector<LaneSection> sections = sections_of(*lanes);
+  std::vector<road::TrackPoint> points;
   double passed = 0.0;
   for (const XmlNode* node : plan->children) {
     if (node->name != "geometry") continue;
     const Geometry geometry(*node);
     if (!geometry.is_sound())
-      return fault(file, *node, "geometry", "numbers out of range",
-                   "x, y, hdg, length and curvature of a road");
+      return rows.fault(node->line, "geometry", "numbers out of range",
+                        "x, y, hdg, length and curvature of a road");
     if (geometry.length() < 1e-6) continue;
-    if (passed > kMostLength) return fault(file, *node, "geometry", "more than 100 km", "a course");
+    if (passed > kMostLength) return rows.fault(node->line, "geometry", "more than 100 km", "a course");
     const int count = std::max(1, static_cast<int>(std::ceil(geometry.length() / 2.0)));
     const std::vector<std::pair<Vec2, double>> samples = geometry.sampled(count);
     for (int i = 0; i < count; ++i) {
@@ -224,18 +219,17 @@ Result<void> lay_out(OpenDriveRoad& road, const std::string& file) {
       const double s = passed + geometry.length() * i / count;
       const auto driven = driven_at(sections, offsets, s);
       if (!driven)
-        return fault(file, *node, "lane", "none to drive on, or too narrow",
-                     "lanes of type driving, 0.5 to 1000 m in all");
+        return rows.fault(node->line, "lane", "none to drive on, or too narrow",
+                          "lanes of type driving, 0.5 to 1000 m in all");
       const auto [low, high] = *driven;
       const double middle = 0.5 * (low + high);
-      road.points.push_back(
+      points.push_back(
           {place + middle * Vec2{-sin(heading), cos(heading)}, 0.5 * (high - low), 0.5 * (high - low)});
-      if (road.points.size() > kMaxTrackPoints)
-        return fault(file, *node, "road", "more than 1000000 points", "a course");
     }
     passed += geometry.length();
   }
-  return {};
+  if (!is_forward) std::reverse(points.begin(), points.end());
+  for (const road::TrackPoint& point : points) rows.add(point);
 }
 
 OpenDriveRoad road_of(const XmlNode& node) {
@@ -271,37 +265,30 @@ Result<TrackFile> track_of_opendrive(const XmlNode& root, const std::string& fil
     const std::string_view junction = node->attribute("junction");
     if (at.empty() && (junction.empty() || junction == "-1")) at = id;
   }
-  if (at.empty())
-    return fail(ErrorCode::kParse, file + ": road: got none outside of junctions, expected one");
-  TrackFile content = empty_track(file, options);
+  if (at.empty()) return fail(fault_of(file, 0, "road", "none outside of junctions", "one"));
+  RoadRows rows{file, options};
   const std::string first = at;
   std::set<std::string> driven;
   bool is_forward = true, is_closed = false, ends_at_junction = false;
-  while (!at.empty() && roads.contains(at) && driven.insert(at).second) {
-    OpenDriveRoad& road = roads.at(at);
-    if (const Result<void> laid = lay_out(road, file); !laid) return fail(laid.error());
-    if (!is_forward) std::reverse(road.points.begin(), road.points.end());
-    content.points.insert(content.points.end(), road.points.begin(), road.points.end());
-    if (content.points.size() > kMaxTrackPoints)
-      return fault(file, *road.node, "road", "more than 1000000 points", "a course");
+  while (!at.empty() && roads.contains(at) && !rows.error && driven.insert(at).second) {
+    const OpenDriveRoad& road = roads.at(at);
+    lay_out(*road.node, is_forward, rows);
     ends_at_junction = is_forward && road.meets_junction;
     at = is_forward ? road.next : road.previous;
     is_forward = is_forward ? road.next_begins : !road.previous_ends;
     is_closed = at == first && is_forward;
   }
-  if (content.points.size() < 4)
-    return fail(ErrorCode::kParse,
-                fmt::format("{}: road: got {} points, expected at least 4", file, content.points.size()));
-  settle_ends(content, options.is_closed ? options.is_closed
-                       : is_closed       ? std::optional(true)
-                                         : std::nullopt);
-  warn(content, fmt::format("lanes: those of type driving, of both directions, taken as one road; heights "
-                            "and banking left out"));
+  rows.expect_points(4);
+  if (is_closed && !rows.closed) rows.closed = true;
+  Result<TrackFile> content = rows.build();
+  if (!content) return content;
+  warn(*content,
+       "lanes: those of type driving, of both directions, taken as one road; heights and banking left out");
   if (driven.size() < count)
-    warn(content, fmt::format("road: {} of {} roads taken, from {} along its successors", driven.size(),
-                              count, printable(first)));
-  if (ends_at_junction) warn(content, "road: ends at a junction, which is not followed");
-  content.options.smoothing_sigma = 0.02 * options.scale;
+    warn(*content, fmt::format("road: {} of {} roads taken, from {} along its successors", driven.size(),
+                               count, printable(first)));
+  if (ends_at_junction) warn(*content, "road: ends at a junction, which is not followed");
+  content->options.smoothing_sigma = 0.02 * options.scale;
   return content;
 }
 
@@ -314,26 +301,47 @@ struct Lanelet {
   std::vector<std::string> next, previous;
 };
 
-Result<std::vector<Vec2>> bound_of(const XmlNode& lanelet, const char* name, const std::string& file) {
-  const XmlNode* const bound = lanelet.child(name);
+/// A side of a lanelet; empty after a fault.
+std::vector<Vec2> bound_of(const XmlNode& lanelet, const char* name, RoadRows& rows) {
+  RoadRows bound{rows.content.file, {}, {{"x", Column::kX}, {"y", Column::kY}}};
+  std::vector<const XmlNode*> points;
+  if (const XmlNode* const node = lanelet.child(name)) points = node->children;
+  for (const XmlNode* point : points) {
+    if (point->name != "point") continue;
+    const XmlNode* const x = point->child("x");
+    const XmlNode* const y = point->child("y");
+    bound.add(point->line, {x != nullptr ? trim(x->text) : "", y != nullptr ? trim(y->text) : ""});
+  }
   std::vector<Vec2> line;
-  if (bound != nullptr)
-    for (const XmlNode* point : bound->children) {
-      if (point->name != "point") continue;
-      const XmlNode* const x = point->child("x");
-      const XmlNode* const y = point->child("y");
-      const auto number = [](const XmlNode* node) {
-        return node != nullptr ? survey::number_in(node->text) : std::nullopt;
-      };
-      const std::optional<double> px = number(x), py = number(y);
-      if (!px || !py || std::fabs(*px) > road::Path::kMaxCoordinate ||
-          std::fabs(*py) > road::Path::kMaxCoordinate)
-        return fault(file, *point, "point", "something else", "x and y within 1e7 m");
-      line.push_back({*px, *py});
-    }
+  for (const road::TrackPoint& point : bound.content.points) line.push_back(point.position);
   if (line.size() < 2 || survey::length_of(line, false) < 1e-3)
-    return fault(file, lanelet, name, "fewer than two points", "a line");
+    bound.fault(lanelet.line, name, "fewer than two points", "a line");
+  if (!rows.error) rows.error = bound.error;
   return line;
+}
+
+/// Points between the sides of a lanelet.
+void lay_out(const XmlNode& lanelet, RoadRows& rows) {
+  std::vector<Vec2> left = bound_of(lanelet, "leftBound", rows),
+                    right = bound_of(lanelet, "rightBound", rows);
+  if (rows.error) return;
+  const double left_length = survey::length_of(left, false), right_length = survey::length_of(right, false);
+  if (left.size() != right.size()) {
+    const double spacing =
+        std::max(left_length, right_length) / static_cast<double>(std::max(left.size(), right.size()));
+    const double count = std::max(2.0, std::round(left_length / spacing));
+    left = survey::sampled(left, false, left_length / count);
+    right = survey::sampled(right, false, right_length / count);
+  }
+  for (std::size_t i = 0; i < std::min(left.size(), right.size()); ++i) {
+    const double half = 0.5 * (left[i] - right[i]).norm();
+    if (!(2.0 * half >= kLeastWidth && half <= kMaxTrackWidth))
+      return rows.fault(lanelet.line, "lanelet", fmt::format("{:.2f} m of width", 2.0 * half),
+                        "0.5 to 1000 m");
+    const Vec2 middle = 0.5 * (left[i] + right[i]);
+    const std::vector<road::TrackPoint>& points = rows.content.points;
+    if (points.empty() || (points.back().position - middle).norm() >= 1e-3) rows.add({middle, half, half});
+  }
 }
 
 std::vector<std::string> references(const XmlNode& node, std::string_view name) {
@@ -355,7 +363,7 @@ Result<TrackFile> track_of_commonroad(const XmlNode& root, const std::string& fi
     lanelets.emplace(id, Lanelet{node, references(*node, "successor"), references(*node, "predecessor")});
     if (first.empty()) first = id;
   }
-  if (first.empty()) return fail(ErrorCode::kParse, file + ": lanelet: got none, expected at least one");
+  if (first.empty()) return fail(fault_of(file, 0, "lanelet", "none", "at least one"));
   // Back to where the chain begins.
   std::set<std::string> seen{first};
   std::string begin = first;
@@ -369,49 +377,26 @@ Result<TrackFile> track_of_commonroad(const XmlNode& root, const std::string& fi
     begin = before;
   }
   first = begin;
-  TrackFile content = empty_track(file, options);
+  RoadRows rows{file, options};
   std::set<std::string> driven;
   std::size_t forks = 0;
   std::string at = first;
-  while (lanelets.contains(at) && driven.insert(at).second) {
+  while (lanelets.contains(at) && !rows.error && driven.insert(at).second) {
     const Lanelet& lanelet = lanelets.at(at);
-    Result<std::vector<Vec2>> left = bound_of(*lanelet.node, "leftBound", file);
-    if (!left) return fail(left.error());
-    Result<std::vector<Vec2>> right = bound_of(*lanelet.node, "rightBound", file);
-    if (!right) return fail(right.error());
-    if (left->size() != right->size()) {
-      const double spacing = std::max(survey::length_of(*left, false), survey::length_of(*right, false)) /
-                             static_cast<double>(std::max(left->size(), right->size()));
-      const double count = std::max(2.0, std::round(survey::length_of(*left, false) / spacing));
-      *left = survey::sampled(*left, false, survey::length_of(*left, false) / count);
-      *right = survey::sampled(*right, false, survey::length_of(*right, false) / count);
-    }
-    for (std::size_t i = 0; i < std::min(left->size(), right->size()); ++i) {
-      const double half = 0.5 * ((*left)[i] - (*right)[i]).norm();
-      if (!(2.0 * half >= kLeastWidth && half <= kMaxTrackWidth))
-        return fault(file, *lanelet.node, "lanelet", fmt::format("{:.2f} m of width", 2.0 * half),
-                     "0.5 to 1000 m");
-      const Vec2 middle = 0.5 * ((*left)[i] + (*right)[i]);
-      if (!content.points.empty() && (content.points.back().position - middle).norm() < 1e-3) continue;
-      content.points.push_back({middle, half, half});
-    }
-    if (content.points.size() > kMaxTrackPoints)
-      return fault(file, *lanelet.node, "lanelet", "more than 1000000 points", "a course");
+    lay_out(*lanelet.node, rows);
     forks += lanelet.next.size() > 1 ? 1U : 0U;
     at = lanelet.next.empty() ? "" : lanelet.next.front();
   }
-  if (content.points.size() < 4)
-    return fail(ErrorCode::kParse,
-                fmt::format("{}: lanelet: got {} points, expected at least 4", file, content.points.size()));
-  settle_ends(content, options.is_closed ? options.is_closed
-                       : at == first     ? std::optional(true)
-                                         : std::nullopt);
+  rows.expect_points(4);
+  if (at == first && !rows.closed) rows.closed = true;
+  Result<TrackFile> content = rows.build();
+  if (!content) return content;
   if (driven.size() < lanelets.size())
-    warn(content,
+    warn(*content,
          fmt::format("lanelet: {} of {} taken, from {} along successors; lanes beside them are no road",
                      driven.size(), lanelets.size(), printable(first)));
-  if (forks > 0) warn(content, fmt::format("lanelet: the first successor taken at {} forks", forks));
-  content.options.smoothing_sigma = 0.05 * options.scale;
+  if (forks > 0) warn(*content, fmt::format("lanelet: the first successor taken at {} forks", forks));
+  content->options.smoothing_sigma = 0.05 * options.scale;
   return content;
 }
 

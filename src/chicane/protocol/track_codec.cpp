@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "chicane/protocol/csv_track.hpp"
-#include "chicane/protocol/detail/track_order.hpp"
+#include "chicane/protocol/detail/road_rows.hpp"
 #include "chicane/protocol/foreign_tracks.hpp"
 #include "chicane/protocol/library.hpp"
 

@@ -2,17 +2,19 @@
 #pragma once
 
 #include <string>
-#include <vector>
+#include <string_view>
 
-#include "chicane/protocol/track_codec.hpp"
-#include "chicane/survey/geodesy.hpp"
+#include "chicane/protocol/detail/road_rows.hpp"
 #include "chicane/survey/xml_tree.hpp"
 
 namespace chicane::protocol {
 
 /// A line on the earth, as a file has it.
 struct GeoLine {
-  std::vector<survey::Geographic> places = {};
+  GeoLine(const std::string& file, const TrackReadOptions& options)
+      : rows{file, options, {{"latitude", Column::kLatitude}, {"longitude", Column::kLongitude}}} {}
+
+  RoadRows rows;
   double width = 0.0;      ///< [m]; 0: not in the file
   double noise = 0.5;      ///< of the places [m]
   bool is_driven = false;  ///< a log of driving, which may have several laps
@@ -20,21 +22,21 @@ struct GeoLine {
 
 /// The road in metres east and north of its middle: what stands still is left out, of a log the first lap
 /// taken.
-[[nodiscard]] Result<TrackFile> track_of_line(const GeoLine& line, const std::string& file,
-                                              const TrackReadOptions& options);
+[[nodiscard]] Result<TrackFile> track_of_line(GeoLine line);
 
-/// Documents whose root element is gpx, kml or osm.
+/// Documents by their root element.
 [[nodiscard]] Result<TrackFile> track_of_gpx(const survey::XmlNode& root, const std::string& file,
                                              const TrackReadOptions& options);
 [[nodiscard]] Result<TrackFile> track_of_kml(const survey::XmlNode& root, const std::string& file,
                                              const TrackReadOptions& options);
 [[nodiscard]] Result<TrackFile> track_of_osm(const survey::XmlNode& root, const std::string& file,
                                              const TrackReadOptions& options);
-
-/// Documents whose root element is OpenDRIVE or commonRoad.
 [[nodiscard]] Result<TrackFile> track_of_opendrive(const survey::XmlNode& root, const std::string& file,
                                                    const TrackReadOptions& options);
 [[nodiscard]] Result<TrackFile> track_of_commonroad(const survey::XmlNode& root, const std::string& file,
                                                     const TrackReadOptions& options);
+/// Cones of a world of Gazebo.
+[[nodiscard]] Result<TrackFile> track_of_sdf(const survey::XmlNode& root, const std::string& file,
+                                             const TrackReadOptions& options);
 
 }  // namespace chicane::protocol
