@@ -78,7 +78,7 @@ def check_library_file(root, source):
             is_standard = "." not in name and "/" not in name
             if path == "base/detail/instructions.hpp" and name in ("immintrin.h", "emmintrin.h", "arm_neon.h"):
                 continue  # the processor's own
-            if path == "protocol/json.hpp" and name == "nlohmann/json.hpp":
+            if (path, name) in {("protocol/json.hpp", "nlohmann/json.hpp"), ("protocol/detail/xml_document.hpp", "pugixml.hpp")}:
                 continue  # of our own sources only: not installed
             if not is_standard and not name.startswith("chicane/") and not PUBLIC_THIRD_PARTY.fullmatch(name):
                 yield f"src/chicane/{path}:{number}: got <{name}>: headers show tl/expected.hpp only"

@@ -5,7 +5,7 @@
 run_packages=(
   g++ cmake ninja-build ccache pkg-config
   libexpected-dev libboost-dev nlohmann-json3-dev libyaml-cpp-dev libcli11-dev libeigen3-dev libfmt-dev libzstd-dev
-  libpng-dev libexpat1-dev libsqlite3-dev
+  libpng-dev libpugixml-dev libsqlite3-dev
 )
 # To compare with Ipopt in `chicane bench`, on top of those.
 bench_packages=(coinor-libipopt-dev liblapack-dev libblas-dev)

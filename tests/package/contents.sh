@@ -53,10 +53,10 @@ needs() {
   local word
   for word in "${@:2}"; do [[ $(depends "$1") == *"$word"* ]] || fail "$1 does not depend on $word: $(depends "$1")"; done
 }
-needs chicane libc6 libfmt9 libyaml-cpp libpng16 libexpat1 libsqlite3-0
+needs chicane libc6 libfmt9 libyaml-cpp libpng16 libpugixml1v5 libsqlite3-0
 [[ $(depends chicane) != *ddsc* ]] || fail "chicane depends on DDS, which only chicane-ros needs: $(depends chicane)"
 version=$(dpkg-deb -f "$packages"/chicane_*.deb Version)
-needs libchicane-dev "chicane (= $version)" libexpected-dev libyaml-cpp-dev libpng-dev libexpat1-dev libsqlite3-dev
+needs libchicane-dev "chicane (= $version)" libexpected-dev libyaml-cpp-dev libpng-dev libpugixml-dev libsqlite3-dev
 if has chicane-ros; then needs chicane-ros "chicane (= $version)" libddsc0debian libc6; fi
 if has python3-chicane; then needs python3-chicane "chicane (= $version)" "python3 (>= 3" "python3 (<< 3" python3-numpy libc6; fi
 

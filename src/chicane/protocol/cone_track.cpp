@@ -14,8 +14,6 @@
 namespace chicane::protocol {
 namespace {
 
-using survey::XmlNode;
-
 constexpr std::size_t kMostNamed = 5;  // gaps in warnings
 
 RoadRows cone_rows(const std::string& file, const TrackReadOptions& options) {
@@ -78,27 +76,6 @@ Result<TrackFile> track_of_cones(const RoadRows& rows) {
   return content;
 }
 
-/// Each cone is an `include` or a `model` whose URI or name has its colour.
-void find_cones(const XmlNode& node, RoadRows& rows) {
-  for (const XmlNode* child : node.children) {
-    const bool is_model = child->name == "include" || child->name == "model";
-    const XmlNode* const pose = child->child("pose");
-    const XmlNode* const uri = child->child("uri");
-    const XmlNode* const name = child->child("name");
-    std::string tag = uri != nullptr ? uri->text : "";
-    if (name != nullptr && lower(tag).find("cone") == std::string::npos) tag += name->text;
-    if (tag.empty()) tag = child->attribute("name");
-    if (!is_model || pose == nullptr || lower(tag).find("cone") == std::string::npos) {
-      find_cones(*child, rows);
-      continue;
-    }
-    std::vector<std::string_view> cells = split(trim(pose->text), ' ');
-    cells.resize(2);
-    cells.push_back(tag);
-    rows.add(child->line, cells);
-  }
-}
-
 }  // namespace
 
 Result<TrackFile> parse_csv_cones(std::string_view text, const std::string& file,
@@ -128,10 +105,21 @@ Result<TrackFile> parse_yaml_cones(std::string_view text, const std::string& fil
   return track_of_cones(rows);
 }
 
-Result<TrackFile> track_of_sdf(const XmlNode& root, const std::string& file,
-                               const TrackReadOptions& options) {
-  RoadRows rows = cone_rows(file, options);
-  find_cones(root, rows);
+/// Each cone is an `include` or a `model` whose URI or name has its colour.
+Result<TrackFile> track_of_sdf(const XmlDocument& xml, const TrackReadOptions& options) {
+  RoadRows rows = cone_rows(xml.file, options);
+  for (const pugi::xml_node pose : xml.find_all("pose")) {
+    const pugi::xml_node model = pose.parent();
+    const std::string_view kind = model.name();
+    std::string tag = model.child_value("uri");
+    if (lower(tag).find("cone") == std::string::npos) tag += model.child_value("name");
+    if (tag.empty()) tag = model.attribute("name").value();
+    if ((kind != "include" && kind != "model") || lower(tag).find("cone") == std::string::npos) continue;
+    std::vector<std::string_view> cells = split(trim(pose.child_value()), ' ');
+    cells.resize(2);
+    cells.push_back(tag);
+    rows.add(xml.line_of(pose), cells);
+  }
   return track_of_cones(rows);
 }
 

@@ -89,7 +89,7 @@ constexpr std::array kForeign{
 
 struct Dialect {
   std::string_view tag, kind;
-  Result<TrackFile> (*read)(const survey::XmlNode&, const std::string&, const TrackReadOptions&);
+  Result<TrackFile> (*read)(const XmlDocument&, const TrackReadOptions&);
 };
 constexpr std::array kDialects{
     Dialect{"<gpx", "GPX", &track_of_gpx},
@@ -116,12 +116,13 @@ std::string_view road_kind(std::string_view text) noexcept {
 
 Result<TrackFile> parse_xml_track(std::string_view text, const std::string& file,
                                   const TrackReadOptions& options) {
-  const Result<survey::XmlTree> tree = survey::parse_xml(text, file);
-  if (!tree) return fail(tree.error());
-  const survey::XmlNode& root = tree->root();
+  const Result<XmlDocument> xml = parse_xml(text, file);
+  if (!xml) return fail(xml.error());
+  const std::string_view root = xml->root().name();
   for (const Dialect& dialect : kDialects)
-    if (root.name == dialect.tag.substr(1)) return dialect.read(root, file, options);
-  return fail(fault_of(file, root.line, "root", fmt::format("the element {}", printable(root.name)),
+    if (root == dialect.tag.substr(1)) return dialect.read(*xml, options);
+  return fail(fault_of(file, xml->line_of(xml->root()), "root",
+                       fmt::format("the element {}", printable(root)),
                        "gpx, kml, osm, OpenDRIVE, commonRoad or sdf"));
 }
 

@@ -21,18 +21,11 @@ namespace chicane::protocol {
 namespace {
 
 using survey::Geographic;
-using survey::XmlNode;
 
 constexpr double kLeastStep = 1.0;    // nearer places are where a receiver stands still [m]
 constexpr double kLeastLap = 150.0;   // [m]
 constexpr double kMeets = 25.0;       // a lap is over where it comes this near to its beginning [m]
 constexpr double kMostExtent = 50e3;  // [m]
-
-/// All elements of a name, in the order of the document.
-void find_all(const XmlNode& node, std::string_view name, std::vector<const XmlNode*>& found) {
-  if (node.name == name) found.push_back(&node);
-  for (const XmlNode* child : node.children) find_all(*child, name, found);
-}
 
 /// Points up to where the line meets its beginning in the same direction; how many laps the line has.
 double cut_first_lap(std::vector<Vec2>& points) {
@@ -50,6 +43,11 @@ double cut_first_lap(std::vector<Vec2>& points) {
     return total / passed;
   }
   return 1.0;
+}
+
+void add_node(const XmlDocument& xml, pugi::xml_node node, GeoLine& line) {
+  line.rows.add(xml.line_of(node),
+                {trim(node.attribute("lat").value()), trim(node.attribute("lon").value())});
 }
 
 }  // namespace
@@ -94,46 +92,40 @@ Result<TrackFile> track_of_line(GeoLine line) {
   return built;
 }
 
-Result<TrackFile> track_of_gpx(const XmlNode& root, const std::string& file,
-                               const TrackReadOptions& options) {
-  GeoLine line{file, options};
+Result<TrackFile> track_of_gpx(const XmlDocument& xml, const TrackReadOptions& options) {
+  GeoLine line{xml.file, options};
   line.noise = 1.0;
   line.is_driven = true;
-  std::vector<const XmlNode*> found;
+  std::vector<pugi::xml_node> found;
   for (const char* name : {"trkpt", "rtept", "wpt"})
-    if (found.empty()) find_all(root, name, found);
-  for (const XmlNode* node : found)
-    line.rows.add(node->line, {trim(node->attribute("lat")), trim(node->attribute("lon"))});
+    if (found.empty()) found = xml.find_all(name);
+  for (const pugi::xml_node node : found) add_node(xml, node, line);
   return track_of_line(std::move(line));
 }
 
-Result<TrackFile> track_of_kml(const XmlNode& root, const std::string& file,
-                               const TrackReadOptions& options) {
-  std::vector<const XmlNode*> lines, driven;
-  find_all(root, "coordinates", lines);
-  find_all(root, "coord", driven);
-  const auto add = [](GeoLine& line, const XmlNode& node, std::string_view place, char separator) {
+Result<TrackFile> track_of_kml(const XmlDocument& xml, const TrackReadOptions& options) {
+  const auto add = [&](GeoLine& line, pugi::xml_node node, std::string_view place, char separator) {
     std::vector<std::string_view> cells = split(trim(place), separator);
     cells.resize(2);  // "lon,lat,height"
-    line.rows.add(node.line, {cells[1], cells[0]});
+    line.rows.add(xml.line_of(node), {cells[1], cells[0]});
   };
   const auto is_longer = [](const GeoLine& a, const GeoLine& b) {
-    return a.rows.error || a.rows.content.points.size() > b.rows.content.points.size();
+    return !b.rows.error && (a.rows.error || a.rows.content.points.size() > b.rows.content.points.size());
   };
-  GeoLine best{file, options};
   // The element with most places is the road, others are marks.
-  for (const XmlNode* node : lines) {
-    GeoLine line{file, options};
-    for (const std::string_view row : split(node->text, '\n'))
-      for (const std::string_view place : split(row, ' ')) add(line, *node, place, ',');
+  GeoLine best{xml.file, options};
+  for (const pugi::xml_node node : xml.find_all("coordinates")) {
+    GeoLine line{xml.file, options};
+    for (const pugi::xml_node part : node.children())
+      for (const std::string_view row : split(part.value(), '\n'))
+        for (const std::string_view place : split(row, ' ')) add(line, node, place, ',');
     if (is_longer(line, best)) best = std::move(line);
-    if (best.rows.error) break;
   }
-  GeoLine log{file, options};
+  GeoLine log{xml.file, options};
   log.noise = 1.0;
   log.is_driven = true;
-  for (const XmlNode* node : driven) add(log, *node, node->text, ' ');
-  return track_of_line(is_longer(log, best) && !best.rows.error ? std::move(log) : std::move(best));
+  for (const pugi::xml_node node : xml.find_all("coord")) add(log, node, node.child_value(), ' ');
+  return track_of_line(is_longer(log, best) ? std::move(log) : std::move(best));
 }
 
 namespace {
@@ -144,13 +136,13 @@ struct OsmWay {
   bool is_raceway = false, is_one_way = false;
 };
 
-OsmWay way_of(const XmlNode& node) {
+OsmWay way_of(pugi::xml_node node) {
   OsmWay way;
-  for (const XmlNode* child : node.children) {
-    if (child->name == "nd") way.nodes.emplace_back(child->attribute("ref"));
-    if (child->name != "tag") continue;
-    const std::string_view key = child->attribute("k"), value = child->attribute("v");
-    if (key == "width") way.width = survey::number_in(value.substr(0, value.find(' '))).value_or(0.0);
+  for (const pugi::xml_node child : node.children("nd"))
+    way.nodes.emplace_back(child.attribute("ref").value());
+  for (const pugi::xml_node child : node.children("tag")) {
+    const std::string_view key = child.attribute("k").value(), value = child.attribute("v").value();
+    if (key == "width") way.width = number(trim(value.substr(0, value.find(' ')))).value_or(0.0);
     if (key == "highway" && value == "raceway") way.is_raceway = true;
     if (key == "oneway" && value == "yes") way.is_one_way = true;
   }
@@ -184,26 +176,24 @@ void join(OsmWay& way, std::vector<OsmWay>& others) {
 
 }  // namespace
 
-Result<TrackFile> track_of_osm(const XmlNode& root, const std::string& file,
-                               const TrackReadOptions& options) {
+Result<TrackFile> track_of_osm(const XmlDocument& xml, const TrackReadOptions& options) {
   constexpr std::size_t kMostWays = 2000;
-  std::map<std::string, const XmlNode*, std::less<>> nodes;
+  std::map<std::string, pugi::xml_node, std::less<>> nodes;
+  for (const pugi::xml_node node : xml.root().children("node"))
+    if (node.attribute("action").value() != std::string_view("delete"))
+      nodes[node.attribute("id").value()] = node;
   std::vector<OsmWay> ways;
-  for (const XmlNode* child : root.children) {
-    if (child->name == "node") {
-      if (child->attribute("action") != "delete") nodes[std::string(child->attribute("id"))] = child;
-    } else if (child->name == "way") {
-      if (OsmWay way = way_of(*child); way.nodes.size() > 1) ways.push_back(std::move(way));
-      if (ways.size() > kMostWays)
-        return fail(fault_of(file, child->line, "way", fmt::format("more than {}", kMostWays),
-                             "an extract of one course"));
-    }
+  for (const pugi::xml_node node : xml.root().children("way")) {
+    if (OsmWay way = way_of(node); way.nodes.size() > 1) ways.push_back(std::move(way));
+    if (ways.size() > kMostWays)
+      return fail(fault_of(xml.file, xml.line_of(node), "way", fmt::format("more than {}", kMostWays),
+                           "an extract of one course"));
   }
   const std::size_t count = ways.size();
   const bool has_raceway =
       std::any_of(ways.begin(), ways.end(), [](const OsmWay& way) { return way.is_raceway; });
   if (has_raceway) std::erase_if(ways, [](const OsmWay& way) { return !way.is_raceway; });
-  if (ways.empty()) return fail(fault_of(file, 0, "way", "none", "at least one"));
+  if (ways.empty()) return fail(fault_of(xml.file, 0, "way", "none", "at least one"));
   // The closed course of most nodes, else the longest.
   OsmWay best;
   std::size_t joined = 0;
@@ -219,15 +209,15 @@ Result<TrackFile> track_of_osm(const XmlNode& root, const std::string& file,
       joined = before - ways.size();
     }
   }
-  GeoLine line{file, options};
+  GeoLine line{xml.file, options};
   line.width = best.width;
   for (const std::string& id : best.nodes) {
     const auto node = nodes.find(id);
     if (node == nodes.end())
-      return fail(fault_of(file, 0, "way", fmt::format("a node {} that is not in the file", printable(id)),
+      return fail(fault_of(xml.file, 0, "way",
+                           fmt::format("a node {} that is not in the file", printable(id)),
                            "all nodes of the way"));
-    line.rows.add(node->second->line,
-                  {trim(node->second->attribute("lat")), trim(node->second->attribute("lon"))});
+    add_node(xml, node->second, line);
   }
   Result<TrackFile> content = track_of_line(std::move(line));
   if (content && joined < count)

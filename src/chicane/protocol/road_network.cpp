@@ -21,7 +21,7 @@
 namespace chicane::protocol {
 namespace {
 
-using survey::XmlNode;
+using pugi::xml_node;
 
 constexpr double kMostLength = 100e3;  // [m]
 constexpr double kLeastWidth = 0.5;    // of a cross-section [m]
@@ -36,12 +36,15 @@ struct Cubic {
     const double u = s - from;
     return factors[0] + u * (factors[1] + u * (factors[2] + u * factors[3]));
   }
+  [[nodiscard]] double slope_at(double s) const {
+    const double u = s - from;
+    return factors[1] + u * (2.0 * factors[2] + u * 3.0 * factors[3]);
+  }
 };
 
-Cubic cubic_of(const XmlNode& node, const char* from_key, double from) {
-  Cubic cubic{from + node.number(from_key).value_or(0.0), {}};
-  constexpr std::array kNames{"a", "b", "c", "d"};
-  for (std::size_t i = 0; i < kNames.size(); ++i) cubic.factors[i] = node.number(kNames[i]).value_or(0.0);
+Cubic cubic_of(xml_node node, double from, std::array<const char*, 4> names = {"a", "b", "c", "d"}) {
+  Cubic cubic{from, {}};
+  for (std::size_t i = 0; i < names.size(); ++i) cubic.factors[i] = number_at(node, names[i]);
   return cubic;
 }
 
@@ -64,7 +67,7 @@ struct LaneSection {
 };
 
 struct OpenDriveRoad {
-  const XmlNode* node = nullptr;
+  xml_node node = {};
   std::string next = {}, previous = {};  ///< roads; empty: none
   bool next_begins = true, previous_ends = true;
   bool meets_junction = false;
@@ -73,21 +76,21 @@ struct OpenDriveRoad {
 /// Heading and place along one geometry element.
 class Geometry {
  public:
-  explicit Geometry(const XmlNode& node) {
-    place_ = {node.number("x").value_or(NAN), node.number("y").value_or(NAN)};
-    heading_ = node.number("hdg").value_or(NAN);
-    length_ = node.number("length").value_or(NAN);
-    if (const XmlNode* const arc = node.child("arc")) {
-      begin_ = end_ = arc->number("curvature").value_or(NAN);
-    } else if (const XmlNode* const spiral = node.child("spiral")) {
-      begin_ = spiral->number("curvStart").value_or(NAN);
-      end_ = spiral->number("curvEnd").value_or(NAN);
-    } else if (const XmlNode* const poly = node.child("paramPoly3")) {
-      poly_ = poly;
-      is_normalised_ = poly->attribute("pRange") != "arcLength";
-    } else if (const XmlNode* const poly3 = node.child("poly3")) {
-      poly_ = poly3;
-      is_explicit_ = true;
+  explicit Geometry(xml_node node)
+      : place_{number_at(node, "x", NAN), number_at(node, "y", NAN)},
+        heading_{number_at(node, "hdg", NAN)},
+        length_{number_at(node, "length", NAN)} {
+    if (const xml_node arc = node.child("arc")) {
+      begin_ = end_ = number_at(arc, "curvature", NAN);
+    } else if (const xml_node spiral = node.child("spiral")) {
+      begin_ = number_at(spiral, "curvStart", NAN);
+      end_ = number_at(spiral, "curvEnd", NAN);
+    } else if (const xml_node poly = node.child("paramPoly3")) {
+      across_ = cubic_of(poly, 0.0, {"aV", "bV", "cV", "dV"});
+      along_ = cubic_of(poly, 0.0, {"aU", "bU", "cU", "dU"});
+      is_normalised_ = poly.attribute("pRange").value() != std::string_view("arcLength");
+    } else if (const xml_node poly3 = node.child("poly3")) {
+      across_ = cubic_of(poly3, 0.0);
     }
   }
   [[nodiscard]] bool is_sound() const {
@@ -104,7 +107,7 @@ class Geometry {
     const double step = length_ / count;
     for (int i = 0; i <= count; ++i) {
       const double s = step * i;
-      if (poly_ != nullptr) {
+      if (across_) {
         samples.push_back(polynomial_at(s));
         continue;
       }
@@ -125,42 +128,32 @@ class Geometry {
   }
   [[nodiscard]] std::pair<Vec2, double> polynomial_at(double s) const {
     const double p = is_normalised_ && length_ > 0.0 ? s / length_ : s;
-    const auto value = [&](const char* a, const char* b, const char* c, const char* d) {
-      const double fa = poly_->number(a).value_or(0.0), fb = poly_->number(b).value_or(0.0),
-                   fc = poly_->number(c).value_or(0.0), fd = poly_->number(d).value_or(0.0);
-      return std::pair(fa + p * (fb + p * (fc + p * fd)), fb + p * (2.0 * fc + p * 3.0 * fd));
-    };
-    const auto [u, du] = is_explicit_ ? std::pair(s, 1.0) : value("aU", "bU", "cU", "dU");
-    const auto [v, dv] = is_explicit_ ? value("a", "b", "c", "d") : value("aV", "bV", "cV", "dV");
     const double c = cos(heading_), si = sin(heading_);
-    return {place_ + Vec2{c * u - si * v, si * u + c * v}, heading_ + atan2(dv, du)};
+    const double u = along_ ? along_->at(p) : p, v = across_->at(p);
+    const double du = along_ ? along_->slope_at(p) : 1.0;
+    return {place_ + Vec2{c * u - si * v, si * u + c * v}, heading_ + atan2(across_->slope_at(p), du)};
   }
 
   Vec2 place_{};
   double heading_ = 0.0, length_ = 0.0, begin_ = 0.0, end_ = 0.0;
-  const XmlNode* poly_ = nullptr;
-  bool is_normalised_ = false, is_explicit_ = false;
+  std::optional<Cubic> across_, along_;  ///< of a polynomial; along it s itself where there is only one
+  bool is_normalised_ = false;
 };
 
-std::vector<LaneSection> sections_of(const XmlNode& lanes) {
+std::vector<LaneSection> sections_of(xml_node lanes) {
   std::vector<LaneSection> sections;
-  for (const XmlNode* node : lanes.children) {
-    if (node->name != "laneSection") continue;
-    LaneSection section{node->number("s").value_or(0.0), {}};
-    for (const char* side : {"left", "right"}) {
-      const XmlNode* const group = node->child(side);
-      if (group == nullptr) continue;
-      for (const XmlNode* each : group->children) {
-        if (each->name != "lane") continue;
-        const std::string_view type = each->attribute("type");
-        Lane lane{static_cast<int>(std::clamp(each->number("id").value_or(0.0), -1000.0, 1000.0)),
+  for (const xml_node node : lanes.children("laneSection")) {
+    LaneSection section{number_at(node, "s"), {}};
+    for (const char* side : {"left", "right"})
+      for (const xml_node each : node.child(side).children("lane")) {
+        const std::string_view type = each.attribute("type").value();
+        Lane lane{static_cast<int>(std::clamp(number_at(each, "id"), -1000.0, 1000.0)),
                   type == "driving" || type == "bidirectional",
                   {}};
-        for (const XmlNode* width : each->children)
-          if (width->name == "width") lane.width.push_back(cubic_of(*width, "sOffset", section.from));
+        for (const xml_node width : each.children("width"))
+          lane.width.push_back(cubic_of(width, section.from + number_at(width, "sOffset")));
         section.lanes.push_back(std::move(lane));
       }
-    }
     std::sort(section.lanes.begin(), section.lanes.end(),
               [](const Lane& a, const Lane& b) { return std::abs(a.id) < std::abs(b.id); });
     sections.push_back(std::move(section));
@@ -193,25 +186,23 @@ std::optional<std::pair<double, double>> driven_at(const std::vector<LaneSection
 }
 
 /// Points in the middle of a road's lanes, in its direction or against it.
-void lay_out(const XmlNode& road, bool is_forward, RoadRows& rows) {
-  const XmlNode* const plan = road.child("planView");
-  const XmlNode* const lanes = road.child("lanes");
-  if (plan == nullptr || lanes == nullptr)
-    return rows.fault(road.line, "road", "no planView and lanes", "both");
+void lay_out(const XmlDocument& xml, xml_node road, bool is_forward, RoadRows& rows) {
+  const xml_node plan = road.child("planView"), lanes = road.child("lanes");
+  if (!plan || !lanes) return rows.fault(xml.line_of(road), "road", "no planView and lanes", "both");
   std::vector<Cubic> offsets;
-  for (const XmlNode* node : lanes->children)
-    if (node->name == "laneOffset") offsets.push_back(cubic_of(*node, "s", 0.0));
-  const std::vector<LaneSection> sections = sections_of(*lanes);
+  for (const xml_node node : lanes.children("laneOffset"))
+    offsets.push_back(cubic_of(node, number_at(node, "s")));
+  const std::vector<LaneSection> sections = sections_of(lanes);
   std::vector<road::TrackPoint> points;
   double passed = 0.0;
-  for (const XmlNode* node : plan->children) {
-    if (node->name != "geometry") continue;
-    const Geometry geometry(*node);
+  for (const xml_node node : plan.children("geometry")) {
+    const Geometry geometry(node);
     if (!geometry.is_sound())
-      return rows.fault(node->line, "geometry", "numbers out of range",
+      return rows.fault(xml.line_of(node), "geometry", "numbers out of range",
                         "x, y, hdg, length and curvature of a road");
     if (geometry.length() < 1e-6) continue;
-    if (passed > kMostLength) return rows.fault(node->line, "geometry", "more than 100 km", "a course");
+    if (passed > kMostLength)
+      return rows.fault(xml.line_of(node), "geometry", "more than 100 km", "a course");
     const int count = std::max(1, static_cast<int>(std::ceil(geometry.length() / 2.0)));
     const std::vector<std::pair<Vec2, double>> samples = geometry.sampled(count);
     for (int i = 0; i < count; ++i) {
@@ -219,7 +210,7 @@ void lay_out(const XmlNode& road, bool is_forward, RoadRows& rows) {
       const double s = passed + geometry.length() * i / count;
       const auto driven = driven_at(sections, offsets, s);
       if (!driven)
-        return rows.fault(node->line, "lane", "none to drive on, or too narrow",
+        return rows.fault(xml.line_of(node), "lane", "none to drive on, or too narrow",
                           "lanes of type driving, 0.5 to 1000 m in all");
       const auto [low, high] = *driven;
       const double middle = 0.5 * (low + high);
@@ -232,47 +223,42 @@ void lay_out(const XmlNode& road, bool is_forward, RoadRows& rows) {
   for (const road::TrackPoint& point : points) rows.add(point);
 }
 
-OpenDriveRoad road_of(const XmlNode& node) {
-  OpenDriveRoad road{.node = &node};
-  const XmlNode* const link = node.child("link");
-  if (link == nullptr) return road;
-  for (const XmlNode* each : link->children) {
-    const bool is_road = each->attribute("elementType") == "road";
-    if (each->name == "successor") {
-      if (is_road) road.next = each->attribute("elementId");
-      road.next_begins = each->attribute("contactPoint") != "end";
-      road.meets_junction = !is_road;
-    } else if (each->name == "predecessor" && is_road) {
-      road.previous = each->attribute("elementId");
-      road.previous_ends = each->attribute("contactPoint") != "start";
-    }
-  }
+OpenDriveRoad road_of(xml_node node) {
+  OpenDriveRoad road{.node = node};
+  const xml_node next = node.child("link").child("successor"),
+                 previous = node.child("link").child("predecessor");
+  const auto is_road = [](xml_node link) {
+    return link.attribute("elementType").value() == std::string_view("road");
+  };
+  if (is_road(next)) road.next = next.attribute("elementId").value();
+  if (is_road(previous)) road.previous = previous.attribute("elementId").value();
+  road.next_begins = next.attribute("contactPoint").value() != std::string_view("end");
+  road.previous_ends = previous.attribute("contactPoint").value() != std::string_view("start");
+  road.meets_junction = next && !is_road(next);
   return road;
 }
 
 }  // namespace
 
-Result<TrackFile> track_of_opendrive(const XmlNode& root, const std::string& file,
-                                     const TrackReadOptions& options) {
+Result<TrackFile> track_of_opendrive(const XmlDocument& xml, const TrackReadOptions& options) {
   std::map<std::string, OpenDriveRoad> roads;
   std::string at;
   std::size_t count = 0;
-  for (const XmlNode* node : root.children) {
-    if (node->name != "road") continue;
+  for (const xml_node node : xml.root().children("road")) {
     ++count;
-    const std::string id{node->attribute("id")};
-    roads.emplace(id, road_of(*node));
-    const std::string_view junction = node->attribute("junction");
+    const std::string id = node.attribute("id").value();
+    roads.emplace(id, road_of(node));
+    const std::string_view junction = node.attribute("junction").value();
     if (at.empty() && (junction.empty() || junction == "-1")) at = id;
   }
-  if (at.empty()) return fail(fault_of(file, 0, "road", "none outside of junctions", "one"));
-  RoadRows rows{file, options};
+  if (at.empty()) return fail(fault_of(xml.file, 0, "road", "none outside of junctions", "one"));
+  RoadRows rows{xml.file, options};
   const std::string first = at;
   std::set<std::string> driven;
   bool is_forward = true, is_closed = false, ends_at_junction = false;
   while (!at.empty() && roads.contains(at) && !rows.error && driven.insert(at).second) {
     const OpenDriveRoad& road = roads.at(at);
-    lay_out(*road.node, is_forward, rows);
+    lay_out(xml, road.node, is_forward, rows);
     ends_at_junction = is_forward && road.meets_junction;
     at = is_forward ? road.next : road.previous;
     is_forward = is_forward ? road.next_begins : !road.previous_ends;
@@ -297,33 +283,27 @@ namespace {
 // CommonRoad: lanelets, each with a left and a right bound.
 
 struct Lanelet {
-  const XmlNode* node = nullptr;
+  xml_node node = {};
   std::vector<std::string> next, previous;
 };
 
 /// A side of a lanelet; empty after a fault.
-std::vector<Vec2> bound_of(const XmlNode& lanelet, const char* name, RoadRows& rows) {
-  RoadRows bound{rows.content.file, {}, {{"x", Column::kX}, {"y", Column::kY}}};
-  std::vector<const XmlNode*> points;
-  if (const XmlNode* const node = lanelet.child(name)) points = node->children;
-  for (const XmlNode* point : points) {
-    if (point->name != "point") continue;
-    const XmlNode* const x = point->child("x");
-    const XmlNode* const y = point->child("y");
-    bound.add(point->line, {x != nullptr ? trim(x->text) : "", y != nullptr ? trim(y->text) : ""});
-  }
+std::vector<Vec2> bound_of(const XmlDocument& xml, xml_node lanelet, const char* name, RoadRows& rows) {
+  RoadRows bound{xml.file, {}, {{"x", Column::kX}, {"y", Column::kY}}};
+  for (const xml_node point : lanelet.child(name).children("point"))
+    bound.add(xml.line_of(point), {trim(point.child_value("x")), trim(point.child_value("y"))});
   std::vector<Vec2> line;
   for (const road::TrackPoint& point : bound.content.points) line.push_back(point.position);
   if (line.size() < 2 || survey::length_of(line, false) < 1e-3)
-    bound.fault(lanelet.line, name, "fewer than two points", "a line");
+    bound.fault(xml.line_of(lanelet), name, "fewer than two points", "a line");
   if (!rows.error) rows.error = bound.error;
   return line;
 }
 
 /// Points between the sides of a lanelet.
-void lay_out(const XmlNode& lanelet, RoadRows& rows) {
-  std::vector<Vec2> left = bound_of(lanelet, "leftBound", rows),
-                    right = bound_of(lanelet, "rightBound", rows);
+void lay_out(const XmlDocument& xml, xml_node lanelet, RoadRows& rows) {
+  std::vector<Vec2> left = bound_of(xml, lanelet, "leftBound", rows),
+                    right = bound_of(xml, lanelet, "rightBound", rows);
   if (rows.error) return;
   const double left_length = survey::length_of(left, false), right_length = survey::length_of(right, false);
   if (left.size() != right.size()) {
@@ -336,7 +316,7 @@ void lay_out(const XmlNode& lanelet, RoadRows& rows) {
   for (std::size_t i = 0; i < std::min(left.size(), right.size()); ++i) {
     const double half = 0.5 * (left[i] - right[i]).norm();
     if (!(2.0 * half >= kLeastWidth && half <= kMaxTrackWidth))
-      return rows.fault(lanelet.line, "lanelet", fmt::format("{:.2f} m of width", 2.0 * half),
+      return rows.fault(xml.line_of(lanelet), "lanelet", fmt::format("{:.2f} m of width", 2.0 * half),
                         "0.5 to 1000 m");
     const Vec2 middle = 0.5 * (left[i] + right[i]);
     const std::vector<road::TrackPoint>& points = rows.content.points;
@@ -344,26 +324,23 @@ void lay_out(const XmlNode& lanelet, RoadRows& rows) {
   }
 }
 
-std::vector<std::string> references(const XmlNode& node, std::string_view name) {
+std::vector<std::string> references(xml_node node, const char* name) {
   std::vector<std::string> found;
-  for (const XmlNode* child : node.children)
-    if (child->name == name) found.emplace_back(child->attribute("ref"));
+  for (const xml_node child : node.children(name)) found.emplace_back(child.attribute("ref").value());
   return found;
 }
 
 }  // namespace
 
-Result<TrackFile> track_of_commonroad(const XmlNode& root, const std::string& file,
-                                      const TrackReadOptions& options) {
+Result<TrackFile> track_of_commonroad(const XmlDocument& xml, const TrackReadOptions& options) {
   std::map<std::string, Lanelet> lanelets;
   std::string first;
-  for (const XmlNode* node : root.children) {
-    if (node->name != "lanelet") continue;
-    const std::string id{node->attribute("id")};
-    lanelets.emplace(id, Lanelet{node, references(*node, "successor"), references(*node, "predecessor")});
+  for (const xml_node node : xml.root().children("lanelet")) {
+    const std::string id = node.attribute("id").value();
+    lanelets.emplace(id, Lanelet{node, references(node, "successor"), references(node, "predecessor")});
     if (first.empty()) first = id;
   }
-  if (first.empty()) return fail(fault_of(file, 0, "lanelet", "none", "at least one"));
+  if (first.empty()) return fail(fault_of(xml.file, 0, "lanelet", "none", "at least one"));
   // Back to where the chain begins.
   std::set<std::string> seen{first};
   std::string begin = first;
@@ -377,13 +354,13 @@ Result<TrackFile> track_of_commonroad(const XmlNode& root, const std::string& fi
     begin = before;
   }
   first = begin;
-  RoadRows rows{file, options};
+  RoadRows rows{xml.file, options};
   std::set<std::string> driven;
   std::size_t forks = 0;
   std::string at = first;
   while (lanelets.contains(at) && !rows.error && driven.insert(at).second) {
     const Lanelet& lanelet = lanelets.at(at);
-    lay_out(*lanelet.node, rows);
+    lay_out(xml, lanelet.node, rows);
     forks += lanelet.next.size() > 1 ? 1U : 0U;
     at = lanelet.next.empty() ? "" : lanelet.next.front();
   }

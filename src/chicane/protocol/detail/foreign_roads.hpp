@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "chicane/protocol/detail/road_rows.hpp"
-#include "chicane/survey/xml_tree.hpp"
+#include "chicane/protocol/detail/xml_document.hpp"
 
 namespace chicane::protocol {
 
@@ -25,18 +25,12 @@ struct GeoLine {
 [[nodiscard]] Result<TrackFile> track_of_line(GeoLine line);
 
 /// Documents by their root element.
-[[nodiscard]] Result<TrackFile> track_of_gpx(const survey::XmlNode& root, const std::string& file,
-                                             const TrackReadOptions& options);
-[[nodiscard]] Result<TrackFile> track_of_kml(const survey::XmlNode& root, const std::string& file,
-                                             const TrackReadOptions& options);
-[[nodiscard]] Result<TrackFile> track_of_osm(const survey::XmlNode& root, const std::string& file,
-                                             const TrackReadOptions& options);
-[[nodiscard]] Result<TrackFile> track_of_opendrive(const survey::XmlNode& root, const std::string& file,
-                                                   const TrackReadOptions& options);
-[[nodiscard]] Result<TrackFile> track_of_commonroad(const survey::XmlNode& root, const std::string& file,
-                                                    const TrackReadOptions& options);
+[[nodiscard]] Result<TrackFile> track_of_gpx(const XmlDocument& xml, const TrackReadOptions& options);
+[[nodiscard]] Result<TrackFile> track_of_kml(const XmlDocument& xml, const TrackReadOptions& options);
+[[nodiscard]] Result<TrackFile> track_of_osm(const XmlDocument& xml, const TrackReadOptions& options);
+[[nodiscard]] Result<TrackFile> track_of_opendrive(const XmlDocument& xml, const TrackReadOptions& options);
+[[nodiscard]] Result<TrackFile> track_of_commonroad(const XmlDocument& xml, const TrackReadOptions& options);
 /// Cones of a world of Gazebo.
-[[nodiscard]] Result<TrackFile> track_of_sdf(const survey::XmlNode& root, const std::string& file,
-                                             const TrackReadOptions& options);
+[[nodiscard]] Result<TrackFile> track_of_sdf(const XmlDocument& xml, const TrackReadOptions& options);
 
 }  // namespace chicane::protocol
