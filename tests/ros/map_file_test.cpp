@@ -68,8 +68,9 @@ TEST_F(MapFile, SaysWhatIsWrongWithALine) {
             "map.yaml:4: mode: got raw, expected trinary or scale");
   EXPECT_EQ(fault_of("resolution: 0.05\norigin: [0, 0, 0]\n"),
             "map.yaml:1: image: got none, expected the name of a PGM or PNG file");
-  EXPECT_EQ(fault_of("- 1\n"),
-            "map.yaml:1: got a list, expected a map with image, resolution and origin, as map_server has it");
+  EXPECT_EQ(
+      fault_of("- 1\n"),
+      "map.yaml:1: file: got a list, expected a map with image, resolution and origin, as map_server has it");
 }
 
 }  // namespace

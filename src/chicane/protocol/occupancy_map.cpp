@@ -10,6 +10,7 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/csv_text.hpp"
+#include "chicane/protocol/detail/road_rows.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/yaml_tree.hpp"
 
@@ -23,96 +24,74 @@ std::string shown_value(const YamlNode& node) {
                           : "nothing";
 }
 
-class MapReader {
- public:
-  explicit MapReader(std::string file) : file_{std::move(file)} {}
+/// The keys of a file, and all that is wrong with them.
+struct MapKeys {
+  OccupancyMap map = {};
+  std::string file, image = {}, faults = {};
+  bool has_origin = false;
 
-  Result<OccupancyMap> read(std::string_view text) {
-    const Result<YamlTree> tree = parse_yaml(text, file_);
-    if (!tree) return fail(tree.error());
-    const YamlNode& root = *tree->root;
-    if (!root.is_map())
-      return fail(ErrorCode::kParse, fmt::format("{}:1: got {}, expected a map with image, resolution and "
-                                                 "origin, as map_server has it",
-                                                 file_, shown_value(root)));
-    for (const YamlEntry& entry : root.entries()) read_key(entry);
-    if (image_.empty()) fault(1, "image", "got none, expected the name of a PGM or PNG file");
-    if (map_.resolution <= 0.0) fault(1, "resolution", "got none, expected the side of a cell > 0 m");
-    if (!has_origin_) fault(1, "origin", "got none, expected [x, y, yaw]");
-    if (!faults_.empty()) return fail(ErrorCode::kParse, faults_);
-    return read_cells();
-  }
-
- private:
-  void fault(int line, std::string_view key, const std::string& what) {
-    if (!faults_.empty()) faults_ += '\n';
-    faults_ += fmt::format("{}:{}: {}: {}", file_, line, key, what);
-  }
-
-  void read_key(const YamlEntry& entry) {
-    const std::string& key = entry.key.text;
-    const YamlNode& value = entry.value;
-    if (key == "image") {
-      image_ = value.text;
-    } else if (key == "resolution") {
-      read_number(entry, 1e-4, 100.0, map_.resolution);
-    } else if (key == "occupied_thresh") {
-      read_number(entry, 0.0, 1.0, map_.occupied);
-    } else if (key == "free_thresh") {
-      read_number(entry, 0.0, 1.0, map_.free);
-    } else if (key == "negate") {
-      double negate = 0.0;
-      if (value.text == "true" || value.text == "false")
-        negate = value.text == "true" ? 1.0 : 0.0;
-      else
-        read_number(entry, 0.0, 1.0, negate);
-      map_.is_negated = negate != 0.0;
-    } else if (key == "origin") {
-      read_origin(entry);
-    } else if (key == "mode" && value.text != "trinary" && value.text != "scale") {
-      fault(entry.value.line, key, fmt::format("got {}, expected trinary or scale", shown_value(value)));
-    }  // others are map_server's own
+  void fault(int line, std::string_view key, std::string_view got, std::string_view expected) {
+    faults += (faults.empty() ? "" : "\n") + fault_of(file, line, key, got, expected).message;
   }
 
   void read_number(const YamlEntry& entry, double least, double most, double& to) {
     const auto value = entry.value.is_scalar() ? number(entry.value.text) : std::nullopt;
     if (value && *value >= least && *value <= most) return void(to = *value);
-    fault(entry.value.line, entry.key.text,
-          fmt::format("got {}, expected a number in [{}, {}]", shown_value(entry.value), least, most));
+    fault(entry.value.line, entry.key.text, shown_value(entry.value),
+          fmt::format("a number in [{}, {}]", least, most));
     to = least;  // said once
   }
 
-  void read_origin(const YamlEntry& entry) {
-    has_origin_ = true;
+  void read_origin(const YamlNode& list) {
+    has_origin = true;
     std::vector<double> numbers;
-    for (const YamlNode* node : entry.value.children)
+    for (const YamlNode* node : list.children)
       if (const auto read = node->is_scalar() ? number(node->text) : std::nullopt) numbers.push_back(*read);
-    const bool is_sound = entry.value.is_list() && numbers.size() == entry.value.children.size() &&
-                          (numbers.size() == 2 || numbers.size() == 3);
-    if (!is_sound) return fault(entry.value.line, "origin", "got something else, expected [x, y, yaw]");
-    map_.origin = {numbers[0], numbers[1]};
-    map_.yaw = numbers.size() > 2 ? numbers[2] : 0.0;
+    if (!list.is_list() || numbers.size() != list.children.size() || numbers.size() < 2 || numbers.size() > 3)
+      return fault(list.line, "origin", "something else", "[x, y, yaw]");
+    map.origin = {numbers[0], numbers[1]};
+    map.yaw = numbers.size() > 2 ? numbers[2] : 0.0;
   }
 
-  Result<OccupancyMap> read_cells() {
-    const std::string path = (std::filesystem::path(file_).parent_path() / image_).string();
-    const Result<std::string> bytes = read_file(path);
-    if (!bytes) return fail(bytes.error());
-    Result<survey::GreyImage> image = survey::read_image(*bytes, path);
-    if (!image) return fail(image.error());
-    map_.image = std::move(*image);
-    return std::move(map_);
+  void read(const YamlEntry& entry) {
+    const std::string& key = entry.key.text;
+    const std::string& text = entry.value.text;
+    if (key == "image") image = text;
+    if (key == "resolution") read_number(entry, 1e-4, 100.0, map.resolution);
+    if (key == "occupied_thresh") read_number(entry, 0.0, 1.0, map.occupied);
+    if (key == "free_thresh") read_number(entry, 0.0, 1.0, map.free);
+    if (key == "origin") read_origin(entry.value);
+    if (key == "mode" && text != "trinary" && text != "scale")
+      fault(entry.value.line, key, shown_value(entry.value), "trinary or scale");
+    if (key == "negate") {
+      double negate = text == "true" ? 1.0 : 0.0;
+      if (text != "true" && text != "false") read_number(entry, 0.0, 1.0, negate);
+      map.is_negated = negate != 0.0;
+    }
   }
-
-  std::string file_, image_{}, faults_{};
-  OccupancyMap map_;
-  bool has_origin_ = false;
 };
 
 }  // namespace
 
 Result<OccupancyMap> parse_map(std::string_view text, const std::string& file) {
-  return MapReader(file).read(text);
+  const Result<YamlTree> tree = parse_yaml(text, file);
+  if (!tree) return fail(tree.error());
+  if (!tree->root->is_map())
+    return fail(fault_of(file, 1, "file", shown_value(*tree->root),
+                         "a map with image, resolution and origin, as map_server has it"));
+  MapKeys keys{.file = file};
+  for (const YamlEntry& entry : tree->root->entries()) keys.read(entry);
+  if (keys.image.empty()) keys.fault(1, "image", "none", "the name of a PGM or PNG file");
+  if (keys.map.resolution <= 0.0) keys.fault(1, "resolution", "none", "the side of a cell > 0 m");
+  if (!keys.has_origin) keys.fault(1, "origin", "none", "[x, y, yaw]");
+  if (!keys.faults.empty()) return fail(ErrorCode::kParse, keys.faults);
+  const std::string path = (std::filesystem::path(file).parent_path() / keys.image).string();
+  const Result<std::string> bytes = read_file(path);
+  if (!bytes) return fail(bytes.error());
+  Result<survey::GreyImage> image = survey::read_image(*bytes, path);
+  if (!image) return fail(image.error());
+  keys.map.image = std::move(*image);
+  return std::move(keys.map);
 }
 
 Result<OccupancyMap> read_map(const std::string& file) {
