@@ -35,10 +35,10 @@ TEST(CsvText, GivesLinesOfAnyEndWithTheirNumbers) {
   EXPECT_FALSE(lines.next());
 }
 
-TEST(CsvText, ShowsForeignTextShortAndPrintable) {
-  EXPECT_EQ(shown("a\x01z"), "a?z");
-  EXPECT_EQ(shown(""), "nothing");
-  EXPECT_EQ(shown(std::string(50, 'x')).size(), 35U);
+TEST(CsvText, FindsAWordAmongOthers) {
+  EXPECT_TRUE(is_among("y_m", " x y_m "));
+  EXPECT_FALSE(is_among("y", " x y_m "));
+  EXPECT_FALSE(is_among("", " x y_m "));
 }
 
 }  // namespace

@@ -71,17 +71,6 @@ inline bool is_name(std::string_view text) {
   return !text.empty() && is_letter(text.front()) && std::all_of(text.begin(), text.end(), may_follow);
 }
 
-/// Foreign text as messages show it: short, printable.
-inline std::string shown(std::string_view text) {
-  if (text.empty()) return "nothing";
-  constexpr std::size_t kMost = 32;
-  std::string result{text.substr(0, kMost)};
-  for (char& c : result) {
-    if (c < ' ' || c > '~') c = '?';
-  }
-  return text.size() > kMost ? result.append("...") : result;
-}
-
 /// The lines of a text, trimmed, without a byte-order mark; ended by LF, CRLF or CR.
 class CsvLines {
  public:
@@ -111,6 +100,11 @@ inline std::string lower(std::string_view text) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
   return result;
+}
+
+/// Whether a word is one of those between blanks: " x y_m ".
+inline bool is_among(std::string_view word, std::string_view words) {
+  return words.find(' ' + std::string{word} + ' ') != std::string_view::npos;
 }
 
 }  // namespace chicane::protocol

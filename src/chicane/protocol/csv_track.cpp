@@ -12,6 +12,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/base/text.hpp"
 #include "chicane/protocol/csv_text.hpp"
 #include "chicane/protocol/detail/road_rows.hpp"
 #include "chicane/protocol/origin.hpp"
@@ -40,10 +41,6 @@ constexpr double kSameAngle = 0.3;     // headings from points scatter by this [
 constexpr std::size_t kMostNamed = 8;  // unknown columns in one warning
 constexpr double kLeastRoad = 0.5;     // a full-size road within so small a square is in degrees [m]
 constexpr std::string_view kPlane = "columns x and y (or x_m and y_m) in metres";
-
-bool is_among(std::string_view name, std::string_view names) {
-  return names.find(fmt::format(" {} ", name)) != std::string_view::npos;
-}
 
 Column column_of(std::string_view name) {
   const auto found = std::find_if(kMeanings.begin(), kMeanings.end(),
@@ -139,30 +136,19 @@ class TableReader {
 
   void read_setting(std::string_view key, std::string_view value) {
     if (key == "closed") {
-      if (value != "true" && value != "false") return fault(key, shown(value), "true or false");
+      if (value != "true" && value != "false") return fault(key, printable(value), "true or false");
       if (!rows_.options.is_closed) rows_.closed = value == "true";
     }
     if (key == "track_scale") {
-      if (value != "1") return fault(key, shown(value), "1, for a road in the size in which it is driven");
+      if (value != "1")
+        return fault(key, printable(value), "1, for a road in the size in which it is driven");
       rows_.content.is_own_size = true;
     }
-    struct Setting {
-      std::string_view key;
-      double road::TrackOptions::*field;
-    };
-    static constexpr std::array kSettings{
-        Setting{"start_s_m", &road::TrackOptions::start_s},
-        Setting{"finish_s_m", &road::TrackOptions::finish_s},
-        Setting{"start_d_m", &road::TrackOptions::start_d},
-        Setting{"spacing_m", &road::TrackOptions::spacing},
-        Setting{"smoothing_sigma_m", &road::TrackOptions::smoothing_sigma},
-        Setting{"kerb_width_m", &road::TrackOptions::kerb_width},
-    };
-    for (const Setting& setting : kSettings) {
+    for (const TrackSetting& setting : kTrackSettings) {
       if (key != setting.key) continue;
       const std::optional<double> parsed = number(value);
-      if (!parsed) return fault(key, shown(value), "a number");
-      rows_.content.options.*setting.field = *parsed;
+      if (!parsed) return fault(key, printable(value), "a number");
+      rows_.content.options.*setting.length = *parsed;
     }
   }
 
@@ -178,13 +164,13 @@ class TableReader {
     for (const std::string_view name : names) {
       const Column column = has_tags_ && is_among(name, kTagNames) ? Column::kTag : column_of(name);
       if (column != Column::kUnknown && column != Column::kSkipped && rows_.has(column))
-        return fault(shown(name), "a second such column", "one");
-      if (column == Column::kUnknown) unknown.push_back(shown(name));
+        return fault(printable(name), "a second such column", "one");
+      if (column == Column::kUnknown) unknown.push_back(printable(name));
       rows_.columns.push_back({std::string{name}, column});
     }
-    if (!rows_.has(Column::kX) || !rows_.has(Column::kY)) return fault("header", shown(header), kPlane);
+    if (!rows_.has(Column::kX) || !rows_.has(Column::kY)) return fault("header", printable(header), kPlane);
     if (has_tags_ && !rows_.has(Column::kTag))
-      return fault("header", shown(header), "a column tag, colour or type beside x and y");
+      return fault("header", printable(header), "a column tag, colour or type beside x and y");
     warn_of_unknown(unknown);
     check_widths();
   }
@@ -219,7 +205,7 @@ class TableReader {
     if (!rows_.options.columns.empty()) return read_header(rows_.options.columns);
     if (other_names_.count == count) {
       line_ = other_names_.line;
-      return fault("header", shown(other_names_.text), kPlane);
+      return fault("header", printable(other_names_.text), kPlane);
     }
     if (count != 2)
       return fault(

@@ -60,21 +60,19 @@ bool is_yaml_cones(std::string_view text) noexcept {
 
 /// A table whose first row of numbers names a colour.
 bool is_csv_cones(std::string_view text) noexcept {
-  std::string_view head = head_of(text);
-  for (int row = 0; row < 4 && !head.empty(); ++row) {
-    const std::size_t end = std::min(head.find_first_of("\r\n"), head.size());
-    const std::string_view line = head.substr(0, end);
-    head.remove_prefix(end);
-    head.remove_prefix(std::min(head.find_first_not_of("\r\n"), head.size()));
-    if (line.empty() || line.front() == '#' || line.front() == '%') continue;
-    std::size_t numbers = 0;
+  constexpr std::string_view kColours = " blue yellow blue_cone yellow_cone cone_blue cone_yellow ";
+  constexpr int kMostRows = 4;
+  CsvLines lines(head_of(text));
+  int rows = 0;
+  for (auto line = lines.next(); line && rows < kMostRows; line = lines.next()) {
+    rows += line->empty() ? 0 : 1;
+    if (line->empty() || line->front() == '#' || line->front() == '%') continue;
+    int numbers = 0;
     bool has_colour = false;
-    for (const std::string_view field : split(line, separator_of(line))) {
-      numbers += number(field) ? 1U : 0U;
+    for (const std::string_view field : split(*line, separator_of(*line))) {
       const std::string word = lower(field);
-      has_colour = has_colour || word == "blue" || word == "yellow" ||
-                   word.find("orange") != std::string::npos || word == "blue_cone" || word == "yellow_cone" ||
-                   word == "cone_blue" || word == "cone_yellow";
+      numbers += number(field) ? 1 : 0;
+      has_colour |= word.find("orange") != std::string::npos || is_among(word, kColours);
     }
     if (numbers >= 2) return has_colour;
   }

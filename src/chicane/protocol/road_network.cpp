@@ -48,12 +48,17 @@ Cubic cubic_of(xml_node node, double from, std::array<const char*, 4> names = {"
   return cubic;
 }
 
-/// The last one that begins at or before s; 0 where there is none.
-double value_at(const std::vector<Cubic>& pieces, double s) {
-  const Cubic* found = nullptr;
-  for (const Cubic& piece : pieces)
+/// The last piece that begins at or before s, else the last one; null where there is none.
+template <typename Piece>
+const Piece* last_at(const std::vector<Piece>& pieces, double s) {
+  const Piece* found = nullptr;
+  for (const Piece& piece : pieces)
     if (piece.from <= s + 1e-9 || found == nullptr) found = &piece;
-  return found != nullptr ? found->at(s) : 0.0;
+  return found;
+}
+double value_at(const std::vector<Cubic>& pieces, double s) {
+  const Cubic* const piece = last_at(pieces, s);
+  return piece != nullptr ? piece->at(s) : 0.0;
 }
 
 struct Lane {
@@ -64,13 +69,6 @@ struct Lane {
 struct LaneSection {
   double from = 0.0;
   std::vector<Lane> lanes;  ///< the inner ones first, left ones before right ones
-};
-
-struct OpenDriveRoad {
-  xml_node node = {};
-  std::string next = {}, previous = {};  ///< roads; empty: none
-  bool next_begins = true, previous_ends = true;
-  bool meets_junction = false;
 };
 
 /// Heading and place along one geometry element.
@@ -164,9 +162,7 @@ std::vector<LaneSection> sections_of(xml_node lanes) {
 /// From the outer edge of the rightmost lane that is driven to that of the leftmost one, left positive [m].
 std::optional<std::pair<double, double>> driven_at(const std::vector<LaneSection>& sections,
                                                    const std::vector<Cubic>& offsets, double s) {
-  const LaneSection* section = nullptr;
-  for (const LaneSection& each : sections)
-    if (each.from <= s + 1e-9 || section == nullptr) section = &each;
+  const LaneSection* const section = last_at(sections, s);
   if (section == nullptr) return std::nullopt;
   const double offset = value_at(offsets, s);
   double left = offset, right = offset;
@@ -223,31 +219,16 @@ void lay_out(const XmlDocument& xml, xml_node road, bool is_forward, RoadRows& r
   for (const road::TrackPoint& point : points) rows.add(point);
 }
 
-OpenDriveRoad road_of(xml_node node) {
-  OpenDriveRoad road{.node = node};
-  const xml_node next = node.child("link").child("successor"),
-                 previous = node.child("link").child("predecessor");
-  const auto is_road = [](xml_node link) {
-    return link.attribute("elementType").value() == std::string_view("road");
-  };
-  if (is_road(next)) road.next = next.attribute("elementId").value();
-  if (is_road(previous)) road.previous = previous.attribute("elementId").value();
-  road.next_begins = next.attribute("contactPoint").value() != std::string_view("end");
-  road.previous_ends = previous.attribute("contactPoint").value() != std::string_view("start");
-  road.meets_junction = next && !is_road(next);
-  return road;
-}
-
 }  // namespace
 
 Result<TrackFile> track_of_opendrive(const XmlDocument& xml, const TrackReadOptions& options) {
-  std::map<std::string, OpenDriveRoad> roads;
+  std::map<std::string, xml_node> roads;
   std::string at;
   std::size_t count = 0;
   for (const xml_node node : xml.root().children("road")) {
     ++count;
     const std::string id = node.attribute("id").value();
-    roads.emplace(id, road_of(node));
+    roads.emplace(id, node);
     const std::string_view junction = node.attribute("junction").value();
     if (at.empty() && (junction.empty() || junction == "-1")) at = id;
   }
@@ -257,11 +238,13 @@ Result<TrackFile> track_of_opendrive(const XmlDocument& xml, const TrackReadOpti
   std::set<std::string> driven;
   bool is_forward = true, is_closed = false, ends_at_junction = false;
   while (!at.empty() && roads.contains(at) && !rows.error && driven.insert(at).second) {
-    const OpenDriveRoad& road = roads.at(at);
-    lay_out(xml, road.node, is_forward, rows);
-    ends_at_junction = is_forward && road.meets_junction;
-    at = is_forward ? road.next : road.previous;
-    is_forward = is_forward ? road.next_begins : !road.previous_ends;
+    lay_out(xml, roads.at(at), is_forward, rows);
+    const xml_node next = roads.at(at).child("link").child(is_forward ? "successor" : "predecessor");
+    const bool is_road = next.attribute("elementType").value() == std::string_view("road");
+    const std::string_view contact = next.attribute("contactPoint").value();
+    ends_at_junction = is_forward && next && !is_road;
+    at = is_road ? next.attribute("elementId").value() : "";
+    is_forward = is_forward ? contact != "end" : contact == "start";
     is_closed = at == first && is_forward;
   }
   rows.expect_points(4);
@@ -281,11 +264,6 @@ Result<TrackFile> track_of_opendrive(const XmlDocument& xml, const TrackReadOpti
 namespace {
 
 // CommonRoad: lanelets, each with a left and a right bound.
-
-struct Lanelet {
-  xml_node node = {};
-  std::vector<std::string> next, previous;
-};
 
 /// A side of a lanelet; empty after a fault.
 std::vector<Vec2> bound_of(const XmlDocument& xml, xml_node lanelet, const char* name, RoadRows& rows) {
@@ -324,34 +302,26 @@ void lay_out(const XmlDocument& xml, xml_node lanelet, RoadRows& rows) {
   }
 }
 
-std::vector<std::string> references(xml_node node, const char* name) {
-  std::vector<std::string> found;
-  for (const xml_node child : node.children(name)) found.emplace_back(child.attribute("ref").value());
-  return found;
-}
+std::string reference(xml_node lanelet, const char* to) { return lanelet.child(to).attribute("ref").value(); }
 
 }  // namespace
 
 Result<TrackFile> track_of_commonroad(const XmlDocument& xml, const TrackReadOptions& options) {
-  std::map<std::string, Lanelet> lanelets;
+  std::map<std::string, xml_node> lanelets;
   std::string first;
   for (const xml_node node : xml.root().children("lanelet")) {
     const std::string id = node.attribute("id").value();
-    lanelets.emplace(id, Lanelet{node, references(node, "successor"), references(node, "predecessor")});
+    lanelets.emplace(id, node);
     if (first.empty()) first = id;
   }
   if (first.empty()) return fail(fault_of(xml.file, 0, "lanelet", "none", "at least one"));
-  // Back to where the chain begins.
-  std::set<std::string> seen{first};
+  // Back to where the chain begins; round a loop to where it was entered.
+  std::set<std::string> seen;
   std::string begin = first;
-  while (!lanelets.at(begin).previous.empty()) {
-    const std::string& before = lanelets.at(begin).previous.front();
+  while (seen.insert(begin).second) {
+    const std::string before = reference(lanelets.at(begin), "predecessor");
     if (!lanelets.contains(before)) break;
-    if (!seen.insert(before).second) {  // round to where it began
-      begin = first;
-      break;
-    }
-    begin = before;
+    begin = seen.contains(before) ? first : before;
   }
   first = begin;
   RoadRows rows{xml.file, options};
@@ -359,10 +329,10 @@ Result<TrackFile> track_of_commonroad(const XmlDocument& xml, const TrackReadOpt
   std::size_t forks = 0;
   std::string at = first;
   while (lanelets.contains(at) && !rows.error && driven.insert(at).second) {
-    const Lanelet& lanelet = lanelets.at(at);
-    lay_out(xml, lanelet.node, rows);
-    forks += lanelet.next.size() > 1 ? 1U : 0U;
-    at = lanelet.next.empty() ? "" : lanelet.next.front();
+    const xml_node lanelet = lanelets.at(at);
+    lay_out(xml, lanelet, rows);
+    forks += lanelet.child("successor").next_sibling("successor") ? 1U : 0U;
+    at = reference(lanelet, "successor");
   }
   rows.expect_points(4);
   if (at == first && !rows.closed) rows.closed = true;

@@ -50,9 +50,7 @@ std::vector<road::TrackPoint> full_size_points(const TrackFile& content) {
 
 road::TrackOptions full_size_options(const TrackFile& content) {
   road::TrackOptions options = content.options;
-  for (double* length : {&options.spacing, &options.smoothing_sigma, &options.kerb_width, &options.start_s,
-                         &options.start_d, &options.finish_s})
-    *length /= content.scale;
+  for (const TrackSetting& setting : kTrackSettings) options.*setting.length /= content.scale;
   return options;
 }
 
@@ -88,10 +86,8 @@ Result<TrackFile> parse_track(std::string_view text, const std::string& file,
     return fail(ErrorCode::kInvalidArgument,
                 fmt::format("scale: got {}, expected a number > 0 and <= {}", options.scale, kMaxTrackScale));
   }
-  if (text.size() > kMaxTrackBytes) {
-    return fail(ErrorCode::kParse,
-                fmt::format("{}: file: got {} bytes, expected at most 64 MiB", file, text.size()));
-  }
+  if (text.size() > kMaxTrackBytes)
+    return fail(fault_of(file, 0, "file", fmt::format("{} bytes", text.size()), "at most 64 MiB"));
   const TrackFormat* format = foreign_format_of(text);
   if (format == nullptr) format = track_format_of(file);
   Result<TrackFile> content = (format != nullptr ? *format : kFormats.front()).parse(text, file, options);

@@ -50,9 +50,7 @@ struct Column {
 
 /// A name without its unit, and the factor of the unit.
 std::pair<std::string, double> parted(std::string_view name) {
-  std::string lower(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const std::string lower = protocol::lower(name);
   for (const Suffix& suffix : kSuffixes) {
     if (lower.size() > suffix.end.size() && lower.ends_with(suffix.end))
       return {lower.substr(0, lower.size() - suffix.end.size()), suffix.factor};

@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "chicane/base/text.hpp"
 #include "chicane/protocol/csv_text.hpp"
 #include "chicane/survey/sampled_line.hpp"
 
@@ -157,9 +158,10 @@ void RoadRows::add(int line, std::span<const std::string_view> cells, char separ
       continue;
     }
     const Range range = range_of(column);
-    if (!value) return fault(line, columns[i].name, shown(cells[i]), "a finite number with a decimal point");
+    if (!value)
+      return fault(line, columns[i].name, printable(cells[i]), "a finite number with a decimal point");
     if (!(*value >= range.least && *value <= range.most))
-      return fault(line, columns[i].name, shown(cells[i]), range.expected);
+      return fault(line, columns[i].name, printable(cells[i]), range.expected);
     if (column == Column::kX || column == Column::kLongitude) point.position.x() = *value;
     if (column == Column::kY || column == Column::kLatitude) point.position.y() = *value;
     if (column == Column::kLeft) point.left = *value;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,6 +28,20 @@ void reverse(TrackFile& content);
 void begin_near(TrackFile& content, const Vec2& place);
 /// What the options say of direction, start and smoothing. A start given in the file stays at its place.
 void arrange(TrackFile& content, const TrackReadOptions& options);
+
+/// Lengths that a table says in comments: "# start_s_m=12.5".
+struct TrackSetting {
+  std::string_view key;
+  double road::TrackOptions::*length;
+};
+inline constexpr std::array kTrackSettings{
+    TrackSetting{"start_s_m", &road::TrackOptions::start_s},
+    TrackSetting{"finish_s_m", &road::TrackOptions::finish_s},
+    TrackSetting{"start_d_m", &road::TrackOptions::start_d},
+    TrackSetting{"spacing_m", &road::TrackOptions::spacing},
+    TrackSetting{"smoothing_sigma_m", &road::TrackOptions::smoothing_sigma},
+    TrackSetting{"kerb_width_m", &road::TrackOptions::kerb_width},
+};
 
 /// What a column of a road's file holds.
 enum class Column : std::uint8_t {
