@@ -93,9 +93,7 @@ Result<TrackFile> track_of_line(GeoLine line) {
 }
 
 Result<TrackFile> track_of_gpx(const XmlDocument& xml, const TrackReadOptions& options) {
-  GeoLine line{xml.file, options};
-  line.noise = 1.0;
-  line.is_driven = true;
+  GeoLine line{xml.file, options, true};
   std::vector<pugi::xml_node> found;
   for (const char* name : {"trkpt", "rtept", "wpt"})
     if (found.empty()) found = xml.find_all(name);
@@ -121,9 +119,7 @@ Result<TrackFile> track_of_kml(const XmlDocument& xml, const TrackReadOptions& o
         for (const std::string_view place : split(row, ' ')) add(line, node, place, ',');
     if (is_longer(line, best)) best = std::move(line);
   }
-  GeoLine log{xml.file, options};
-  log.noise = 1.0;
-  log.is_driven = true;
+  GeoLine log{xml.file, options, true};
   for (const pugi::xml_node node : xml.find_all("coord")) add(log, node, node.child_value(), ' ');
   return track_of_line(is_longer(log, best) ? std::move(log) : std::move(best));
 }

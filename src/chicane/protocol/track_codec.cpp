@@ -40,20 +40,6 @@ std::string with_line(const std::string& message, const TrackFile& content) {
   return fmt::format("{}: {}", content.file, message);
 }
 
-std::vector<road::TrackPoint> full_size_points(const TrackFile& content) {
-  const double scale = content.scale;
-  std::vector<road::TrackPoint> points = content.points;
-  for (road::TrackPoint& point : points)
-    point = {(1.0 / scale) * point.position, point.left / scale, point.right / scale};
-  return points;
-}
-
-road::TrackOptions full_size_options(const TrackFile& content) {
-  road::TrackOptions options = content.options;
-  for (const TrackSetting& setting : kTrackSettings) options.*setting.length /= content.scale;
-  return options;
-}
-
 const TrackFormat* foreign_format_of(std::string_view text) noexcept {
   for (const TrackFormat& format : foreign_tracks())
     if (format.recognises(text)) return &format;
@@ -97,17 +83,19 @@ Result<TrackFile> parse_track(std::string_view text, const std::string& file,
 
 Result<road::Track> make_track(const TrackFile& content) {
   const std::string name = std::filesystem::path{content.file}.stem().string();
-  const bool is_model = content.scale != 1.0;
-  Result<road::Track> track =
-      is_model ? road::Track::create(name, full_size_points(content), content.is_closed,
-                                     full_size_options(content))
-               : road::Track::create(name, content.points, content.is_closed, content.options);
+  const double scale = content.scale;
+  std::vector<road::TrackPoint> points = content.points;
+  for (road::TrackPoint& point : points)
+    point = {(1.0 / scale) * point.position, point.left / scale, point.right / scale};
+  road::TrackOptions options = content.options;
+  for (const TrackSetting& setting : kTrackSettings) options.*setting.length /= scale;
+  Result<road::Track> track = road::Track::create(name, points, content.is_closed, options);
+  const bool is_model = scale != 1.0;
   if (!track) {
-    const std::string size =
-        is_model ? fmt::format(" (in full size: metres of the file / {})", content.scale) : "";
+    const std::string size = is_model ? fmt::format(" (in full size: metres of the file / {})", scale) : "";
     return fail(ErrorCode::kParse, with_line(track.error().message, content) + size);
   }
-  return is_model ? track->scaled(content.scale) : std::move(track);
+  return is_model ? track->scaled(scale) : std::move(track);
 }
 
 Result<road::Track> read_track(const std::string& file, const TrackReadOptions& options) {

@@ -198,11 +198,6 @@ std::vector<Vec2> in_order(const std::vector<Vec2>& side, const std::vector<Vec2
   return ordered;
 }
 
-/// Points along the fence that joins cones, near enough to each other for the raster.
-std::vector<Vec2> fence(const std::vector<Vec2>& cones, bool is_closed, double spacing) {
-  return sampled(cones, is_closed, spacing);
-}
-
 void name_gaps(const std::vector<Vec2>& cones, bool is_closed, bool is_left, std::vector<ConeGap>& gaps) {
   std::vector<double> steps;
   const std::size_t count = is_closed ? cones.size() : cones.size() - 1;
@@ -250,8 +245,9 @@ Result<ConeRoad> line_between(const Cones& given) {
   name_gaps(left, road.is_closed, true, road.gaps);
   name_gaps(right, road.is_closed, false, road.gaps);
 
-  to_left = raster.distances(fence(left, road.is_closed, 0.5 * raster.cell));
-  to_right = raster.distances(fence(right, road.is_closed, 0.5 * raster.cell));
+  // Points along the fences that join the cones, near enough to each other for the raster.
+  to_left = raster.distances(sampled(left, road.is_closed, 0.5 * raster.cell));
+  to_right = raster.distances(sampled(right, road.is_closed, 0.5 * raster.cell));
   const auto middle = line_of(raster, to_left, to_right);
   if (!middle || middle->second != road.is_closed)
     return fail(ErrorCode::kParse, "cones: got sides that cross each other, expected a course between them");

@@ -11,13 +11,15 @@ namespace chicane::protocol {
 
 /// A line on the earth, as a file has it.
 struct GeoLine {
-  GeoLine(const std::string& file, const TrackReadOptions& options)
-      : rows{file, options, {{"latitude", Column::kLatitude}, {"longitude", Column::kLongitude}}} {}
+  GeoLine(const std::string& file, const TrackReadOptions& options, bool driven = false)
+      : rows{file, options, {{"latitude", Column::kLatitude}, {"longitude", Column::kLongitude}}},
+        noise{driven ? 1.0 : 0.5},
+        is_driven{driven} {}
 
   RoadRows rows;
-  double width = 0.0;      ///< [m]; 0: not in the file
-  double noise = 0.5;      ///< of the places [m]
-  bool is_driven = false;  ///< a log of driving, which may have several laps
+  double width = 0.0;  ///< [m]; 0: not in the file
+  double noise;        ///< of the places [m]
+  bool is_driven;      ///< a log of driving, which may have several laps
 };
 
 /// The road in metres east and north of its middle: what stands still is left out, of a log the first lap
