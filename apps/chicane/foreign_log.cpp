@@ -54,7 +54,7 @@ bool is_foreign_log(const std::string& file) {
     is_ours |= message.channel.topic == recording::kFrameTopic;
     has_odometry = has_odometry || (message.channel.type == protocol::OdometryMessage::kType &&
                                     message.channel.message_encoding == "cdr" &&
-                                    protocol::decode_odometry(message.bytes).has_value());
+                                    protocol::decode<protocol::OdometryMessage>(message.bytes).has_value());
   };
   return telemetry::read_mcap(file, visitor) && has_odometry && !is_ours;
 }
