@@ -11,7 +11,7 @@
 #include <variant>
 
 #include "chicane/protocol/car_messages.hpp"
-#include "chicane/protocol/detail/cdr_source.hpp"
+#include "chicane/protocol/detail/cdr_archive.hpp"
 #include "chicane/protocol/detail/cdr_writer.hpp"
 #include "chicane/protocol/detail/own_messages.hpp"
 #include "chicane/protocol/frame_fields.hpp"
@@ -28,44 +28,26 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Rows as bytes.
 class WrittenRows {
  public:
-  explicit WrittenRows(std::size_t expected_size = 512) : to_{expected_size} {}
   void title(std::string_view /*text*/) {}
-  template <class Value>
-  void operator()(std::string_view /*name*/, std::string_view /*meaning*/, const Value& value) {
-    put(value);
-  }
+  void operator()(std::string_view /*name*/, std::string_view /*meaning*/, const auto& value) { to_(value); }
   [[nodiscard]] std::string bytes() { return to_.bytes(); }
 
  private:
-  void put(const std::string& text) { to_.text(text); }
-  void put(std::string_view text) { to_.text(text); }
-  void put(const Texts& texts) { to_.texts(texts); }
-  void put(const Numbers& numbers) { to_.put(std::span<const double>(numbers)); }
-  void put(const std::array<double, 3>& numbers) {
-    for (const double number : numbers) to_.put(number);
-  }
-  template <class Value>
-  void put(const Value& value) {
-    to_.put(value);
-  }
-  CdrWriter to_;
+  WritingArchive to_;
 };
 
 /// Rows of a stranger's message.
 class ReadRows {
  public:
   explicit ReadRows(std::string_view bytes) : from_{bytes} {}
-  void operator()(std::string_view /*name*/, std::string_view /*meaning*/, std::int64_t& nanoseconds) {
-    nanoseconds = from_.stamp();
-  }
-  void operator()(std::string_view /*name*/, std::string_view /*meaning*/, Numbers& numbers) {
-    numbers.resize(from_.count(sizeof(double)));
-    for (double& number : numbers) number = from_.number();
+  void operator()(std::string_view /*name*/, std::string_view /*meaning*/, auto& value) { from_(value); }
+  void operator()(std::string_view /*name*/, std::string_view /*meaning*/, StampNs& stamp) {
+    from_.time(stamp.nanoseconds);
   }
   [[nodiscard]] bool ok() const { return from_.ok(); }
 
  private:
-  CdrSource from_;
+  ReadingArchive from_;
 };
 
 /// Rows as the definition of the message: meanings in one column.
@@ -335,7 +317,9 @@ std::optional<StopMessage> decode(std::string_view bytes) {
   ReadRows rows(bytes);
   StopMessage message;
   StopColumns columns;
-  stop_rows(rows, message.stamp, columns);
+  StampNs stamp;
+  stop_rows(rows, stamp, columns);
+  message.stamp = stamp.nanoseconds;
   const std::size_t size = columns[0].size();
   if (!rows.ok() || size > safety::StopPlan::kCapacity) return std::nullopt;
   message.stop.size = static_cast<int>(size);

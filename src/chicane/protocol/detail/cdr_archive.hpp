@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -43,7 +45,13 @@ class WritingArchive {
 
  private:
   void put(const std::string& text) { to_.text(text); }
+  void put(std::string_view text) { to_.text(text); }
   void put(const std::vector<std::string>& texts) { to_.texts(texts); }
+  void put(const std::vector<double>& numbers) { to_.put(std::span<const double>(numbers)); }
+  template <std::size_t kSize>
+  void put(const std::array<double, kSize>& numbers) {
+    for (const double number : numbers) to_.put(number);
+  }
   void put(const model::Pose& pose) { to_.put(pose.x, pose.y, 0.0).orientation(pose.psi); }
   template <class Number>
   void put(const Number& value) {
@@ -87,6 +95,9 @@ class ReadingArchive {
 
  private:
   void get(std::string& text) { text = from_.text(); }
+  void get(std::vector<double>& numbers) {
+    list(numbers, sizeof(double), kMostTexts, [&](double& number) { get(number); });
+  }
   void get(std::vector<std::string>& texts) {
     list(texts, 4, kMostTexts, [&](std::string& text) { get(text); });
   }
