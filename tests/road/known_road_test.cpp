@@ -64,7 +64,12 @@ TEST(KnownRoad, GoesOnToWhereTheNextWaypointWouldBe) {
     for (std::size_t i = 0; i < 6; ++i) now.waypoints[i] = {apart * static_cast<double>(i), 0.0};
     road.add(now);
     ASSERT_FALSE(road.line().is_empty());
-    EXPECT_NEAR(road.end() - road.line().length(), std::min(apart, 25.0) + 3.5, 1e-9) << apart;
+    const double beyond = road.end() - road.line().length();
+    EXPECT_NEAR(beyond, std::min(apart, 25.0) + 3.5, 1e-9) << apart;
+    now.time = 0.3;
+    now.waypoints[5] = {std::nan(""), 0.0};
+    road.add(now);
+    EXPECT_NEAR(road.end() - road.line().length(), beyond, 1e-9) << "a waypoint that is no number";
   }
 }
 

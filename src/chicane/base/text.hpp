@@ -19,7 +19,7 @@ namespace chicane {
 
 /// The finite number that a whole text is: digits with a point in every locale, no blank, no plus sign.
 [[nodiscard]] std::optional<double> number_in(std::string_view text) noexcept;
-/// The same for a whole number of digits alone.
+/// A whole number of digits alone.
 [[nodiscard]] std::optional<std::uint64_t> count_in(std::string_view text) noexcept;
 /// Clamped to [low, high] where it rounds to a border; else refusal(key, text, "a number in [low, high]").
 [[nodiscard]] Result<double> number_in(std::string_view key, std::string_view text, double low, double high);

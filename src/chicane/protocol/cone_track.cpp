@@ -24,7 +24,7 @@ RoadRows cone_rows(const std::string& file, const TrackReadOptions& options) {
 struct ConeMap {
   survey::Cones cones;
   std::optional<Vec2> start{};
-  int unknown = 0;  ///< of no colour that says a side
+  int unknown = 0;  ///< cones whose colour names no side
 
   void add(std::string_view tag, const Vec2& place) {
     const auto has = [&](std::string_view word) { return tag.find(word) != std::string_view::npos; };

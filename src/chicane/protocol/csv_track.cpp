@@ -154,7 +154,7 @@ class TableReader {
 
   void read_header(std::string_view header) {
     rows_.columns.clear();
-    rows_.content.warnings.clear();  // of the line of names that this one takes the place of
+    rows_.content.warnings.clear();  // a second line of names replaces the first
     const std::string text = lower(header);
     const std::vector<std::string_view> names = split_names(text);
     if (names.size() > kMostColumns)

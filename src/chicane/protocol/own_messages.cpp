@@ -36,7 +36,7 @@ class WrittenRows {
   WritingArchive to_;
 };
 
-/// Rows of a stranger's message.
+/// Rows that another program wrote.
 class ReadRows {
  public:
   explicit ReadRows(std::string_view bytes) : from_{bytes} {}
@@ -279,7 +279,7 @@ OwnMessage defined(std::string_view name, std::string_view about, auto rows_of) 
 }
 
 template <auto kRows>
-OwnMessage told(std::string_view name, std::string_view about) {
+OwnMessage message_of_frame(std::string_view name, std::string_view about) {
   OwnMessage message = defined(name, about, [](auto& row) { kRows(row, Frame{}, Run{}); });
   message.encode = [](const Frame& frame, const Run& run) {
     return written([&](auto& row) { kRows(row, frame, run); });
@@ -338,13 +338,13 @@ std::optional<StopMessage> decode(std::string_view bytes) {
 const std::vector<OwnMessage>& own_messages() {
   static const std::vector<OwnMessage> messages{
       {"chicane_msgs/Frame", frame_definition(), encode_frame},
-      told<kPlan>(
+      message_of_frame<kPlan>(
           "chicane_msgs/Plan",
           "What the controller intends: predicted motion of the centre of mass with\n"
           "# its commands, all arrays of the same length; element 0 is where the first command acts."),
-      told<kRun>("chicane_msgs/Run", "What is running: constant until something is chosen anew."),
-      told<kLap>("chicane_msgs/Lap", "One completed lap, sent when it is."),
-      told<kLimit>(
+      message_of_frame<kRun>("chicane_msgs/Run", "What is running: constant until something is chosen anew."),
+      message_of_frame<kLap>("chicane_msgs/Lap", "One completed lap, sent when it is."),
+      message_of_frame<kLimit>(
           "chicane_msgs/Limit",
           "The physical limit of this road for this car: the fastest lap of the model\n"
           "# in docs/limit.md and its line, arrays of the same length by rising time from the start\n"

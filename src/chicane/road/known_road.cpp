@@ -101,7 +101,8 @@ void KnownRoad::add(const model::Measurement& now) noexcept {
   seen_->add(now);
   const std::size_t count = now.waypoint_count;
   if (count < 2) return;
-  next_waypoint_ = std::min((now.waypoints[count - 1] - now.waypoints[count - 2]).norm(), kMostToNext);
+  const double apart = (now.waypoints[count - 1] - now.waypoints[count - 2]).norm();
+  if (std::isfinite(apart)) next_waypoint_ = std::min(apart, kMostToNext);
 }
 
 KnownRoad::Edges KnownRoad::edges(double s) const noexcept {

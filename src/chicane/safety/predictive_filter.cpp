@@ -246,8 +246,7 @@ Fit PredictiveFilter::verify_held(const Request& request, double held, GuardRepo
       try_law(law);
       if (best.fit == Fit::kNone) law_ = (law + 1) % kLawCount;
     }
-    has_stored_ =
-        has_before && best.fit == Fit::kNone ? consider(road, next, before, goal, best, report) : has_stored_;
+    if (has_before && best.fit == Fit::kNone) has_stored_ = consider(road, next, before, goal, best, report);
     return Fit::kOpen;
   }
   const int first = goal.open_time > 0.0 ? -1 : law_;  // whichever holds will do

@@ -32,7 +32,7 @@ class WritingArchive {
   void time(std::int64_t nanoseconds) { to_.stamp_ns(nanoseconds); }
   /// Values that nobody here reads.
   void constant(auto... values) { to_.put(values...); }
-  /// The same at the end of a message, where some have them.
+  /// Values at the end of a message that are left unread.
   void trailing(auto... values) { to_.put(values...); }
   void zeros(int number) { to_.zeros(number); }
   /// A sequence, of elements with at least `smallest` bytes.
@@ -61,7 +61,7 @@ class WritingArchive {
   CdrWriter to_;
 };
 
-/// Of a stranger's bytes.
+/// Reads bytes of other programs.
 class ReadingArchive {
  public:
   explicit ReadingArchive(std::string_view bytes) : from_{bytes} {}

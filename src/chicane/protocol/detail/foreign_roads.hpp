@@ -18,7 +18,7 @@ struct GeoLine {
 
   RoadRows rows;
   double width = 0.0;  ///< [m]; 0: not in the file
-  double noise;        ///< of the places [m]
+  double noise;        ///< standard deviation of the places [m]
   bool is_driven;      ///< a log of driving, which may have several laps
 };
 

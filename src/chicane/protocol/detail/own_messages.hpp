@@ -13,7 +13,7 @@ namespace chicane::protocol {
 /// definition are made.
 struct OwnMessage {
   std::string_view name;   ///< "chicane_msgs/Run"
-  std::string definition;  ///< in ROS 2's .msg language
+  std::string definition;  ///< text in ROS 2's .msg language
   std::string (*encode)(const telemetry::Frame& frame, const Run& run) = nullptr;  ///< null: not of a frame
 };
 

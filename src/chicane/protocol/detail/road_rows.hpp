@@ -26,7 +26,7 @@ void warn_of_width(TrackFile& content, const TrackReadOptions& options, int line
 void reverse(TrackFile& content);
 /// A closed road whose points begin with the one nearest to `place`.
 void begin_near(TrackFile& content, const Vec2& place);
-/// What the options say of direction, start and smoothing. A start given in the file stays at its place.
+/// Direction, start and smoothing as the options want them. A start given in the file stays at its place.
 void arrange(TrackFile& content, const TrackReadOptions& options);
 
 /// Lengths that a table says in comments: "# start_s_m=12.5".
@@ -54,7 +54,7 @@ enum class Column : std::uint8_t {
   kWidth,
   kHeading,
   kTag,      ///< colour or side of a cone
-  kSkipped,  ///< known, and made anew from the points
+  kSkipped,  ///< known, and computed from the points
   kUnknown
 };
 
@@ -69,7 +69,7 @@ struct RoadRows {
   RoadRows(const std::string& file, const TrackReadOptions& read_options, std::vector<Named> named = {});
 
   [[nodiscard]] bool has(Column column) const;
-  /// A row of a cell for each column; more are left out. Of widths that are in no column, those of the
+  /// A row with a cell for each column; more are left out. Widths that are in no column come from the
   /// options.
   void add(int line, std::span<const std::string_view> cells, char separator = ',');
   void add(int line, std::initializer_list<std::string_view> cells) {
