@@ -348,7 +348,8 @@ class Wire(unittest.TestCase):
         for address in addresses:
             with Serving("--no-token", address=address) as server:
                 link = re.search(r"dashboard at (\S+)", server.said())[1]
-                with urllib.request.urlopen(link, timeout=10) as page:
+                asked = urllib.request.Request(link, headers={"Accept-Encoding": "gzip"})
+                with urllib.request.urlopen(asked, timeout=10) as page:
                     self.assertEqual(page.status, 200)
 
     def simulate(self, mode, seconds=2):

@@ -10,7 +10,6 @@
 
 #include "chicane/base/fnv.hpp"
 #include "chicane/base/text.hpp"
-#include "chicane/net/detail/gunzip.hpp"
 
 namespace chicane::net {
 namespace {
@@ -156,23 +155,15 @@ HttpResponse HttpResponse::of(Content content, const HttpRequest& request) {
 
 HttpResponse HttpResponse::of_asset(std::string_view bytes, std::string_view content_type, bool is_gzip,
                                     std::string_view tag, const HttpRequest& request) {
-  const bool is_plain = is_gzip && !request.accepts_gzip;
-  const std::string own_tag =
-      is_plain ? fmt::format("{}-plain\"", tag.substr(0, tag.size() - 1)) : std::string(tag);
-  const bool is_known = request.if_none_match == own_tag;
+  if (is_gzip && !request.accepts_gzip)
+    return in_words("406 Not Acceptable", "this file is sent with gzip only: curl --compressed asks for it");
+
+  const bool is_known = request.if_none_match == tag;
   HttpResponse response(is_known ? kNotModified : "200 OK");
   response.add("Content-Type", content_type);
-  if (is_gzip) response.add("Vary", "Accept-Encoding");
-  if (is_gzip && !is_plain) response.add("Content-Encoding", "gzip");
-  response.add("ETag", own_tag);
-  if (is_known) return response;
-  if (!is_plain) {
-    response.body_ = Body::of_view(bytes);
-    return response;
-  }
-  std::optional<std::string> plain = gunzip(bytes);
-  if (!plain) return in_words("406 Not Acceptable", "this file is sent with gzip only");
-  response.body_ = Body(std::move(*plain));
+  if (is_gzip) response.add("Content-Encoding", "gzip");
+  response.add("ETag", tag);
+  if (!is_known) response.body_ = Body::of_view(bytes);
   return response;
 }
 

@@ -87,8 +87,8 @@ class HttpResponse {
   [[nodiscard]] static HttpResponse see_other(std::string_view location, std::string_view cookie);
   /// A content, whole, by range (206, 416), or not again (304); 404 when its file cannot be read.
   [[nodiscard]] static HttpResponse of(Content content, const HttpRequest& request);
-  /// Bytes that live as long as the program, with the ETag that tag_of() gave them. What is compressed is
-  /// expanded for who did not ask for gzip, with a tag of its own.
+  /// Bytes that live as long as the program, with the ETag that tag_of() gave them; 406 when they are
+  /// compressed and the request does not accept gzip.
   [[nodiscard]] static HttpResponse of_asset(std::string_view bytes, std::string_view content_type,
                                              bool is_gzip, std::string_view tag, const HttpRequest& request);
 

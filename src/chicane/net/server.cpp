@@ -25,13 +25,10 @@
 #include <fmt/format.h>
 
 #include "chicane/net/detail/admission.hpp"
-#include "chicane/net/detail/crowd.hpp"
-#include "chicane/net/detail/gunzip.hpp"
 #include "chicane/net/detail/port_holder.hpp"
 #include "chicane/net/detail/send_queue.hpp"
 #include "chicane/net/detail/server_limits.hpp"
 #include "chicane/net/detail/site.hpp"
-#include "chicane/net/detail/watched_stream.hpp"
 #include "chicane/net/http_response.hpp"
 
 namespace chicane::net {
@@ -45,14 +42,14 @@ using Tcp = asio::ip::tcp;
 using ErrorCodeBoost = boost::system::error_code;
 std::string_view view(boost::string_view text) { return {text.data(), text.size()}; }
 boost::string_view view(std::string_view text) { return {text.data(), text.size()}; }
-struct Parts {
-  static void each(const auto& buffers, const auto& take) {
-    for (const auto part : beast::buffers_range_ref(buffers))
-      take(std::string_view(static_cast<const char*>(part.data()), part.size()));
-  }
-};
 class WebSocket;
 class HttpConnection;
+
+/// Whether a request names gzip among the encodings that it accepts (RFC 9110, section 12.5.3).
+bool accepts_gzip(const http::request<http::empty_body>& request) {
+  const auto accepted = request[http::field::accept_encoding];
+  return http::ext_list{accepted}.exists("gzip") || http::ext_list{accepted}.exists("*");
+}
 
 /// What connections need of their server. Everything runs on its one thread; `ticket` counts open sockets.
 struct Core {
@@ -63,7 +60,6 @@ struct Core {
   Doorkeeper door{};
   WaitingBytes waiting{};
   std::list<HttpConnection*> visitors{};  // without an upgrade, the longest silent first
-  Crowd crowd{};
   std::unordered_map<ConnectionId, std::shared_ptr<WebSocket>> connections;
   ConnectionId next_id = 1;
   bool is_stopping = false;
@@ -82,11 +78,7 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
  public:
   WebSocket(Core& core, Tcp::socket socket, int endpoint, ConnectionId id)
       : core_{core}, ticket_{core.ticket}, stream_{std::move(socket)}, endpoint_{endpoint}, id_{id} {}
-  ~WebSocket() {
-    queue_.drop_waiting(false);
-    ticket_.reset();
-    core_.crowd.note(core_.open());
-  }
+  ~WebSocket() { queue_.drop_waiting(false); }
 
   void start(const http::request<http::empty_body>& request, const std::string& subprotocol) {
     stream_.set_option(
@@ -101,12 +93,6 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
     stream_.control_callback([this](websocket::frame_type kind, boost::string_view) {
       has_peer_closed_ |= kind == websocket::frame_type::close;
     });
-    stream_.next_layer().on_wrong_close = [this](std::uint16_t code) {  // Beast answers nothing any more then
-      if (is_closing_) return;
-      queue_.drop_waiting(is_writing_);
-      close(code, "the close frame breaks RFC 6455");
-      finish_closing();
-    };
     stream_.async_accept(request, [self = shared_from_this()](ErrorCodeBoost ec) {
       if (!ec) self->open();
     });
@@ -169,7 +155,6 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
   }
 
   void finish_closing() {
-    if (std::exchange(is_close_sent_, true)) return;
     stream_.async_close(close_reason_, [self = shared_from_this()](ErrorCodeBoost) {});
   }
 
@@ -202,14 +187,13 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
 
   Core& core_;
   std::shared_ptr<int> ticket_;
-  websocket::stream<WatchedStream<beast::tcp_stream, Parts>, false> stream_;
+  websocket::stream<beast::tcp_stream, false> stream_;
   beast::flat_buffer buffer_;
   int endpoint_;
   ConnectionId id_;
   SendQueue queue_{core_.waiting};
   bool is_writing_ = false;
   bool is_closing_ = false;
-  bool is_close_sent_ = false;
   bool has_peer_closed_ = false;
   websocket::close_reason close_reason_;
   std::string why_;
@@ -221,15 +205,9 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   HttpConnection(Core& core, Tcp::socket socket)
       : core_{core}, ticket_{core.ticket}, stream_{std::move(socket)} {}
 
-  ~HttpConnection() {
-    core_.visitors.erase(place_);
-    ticket_.reset();
-    piece_ = {};
-    core_.crowd.note(core_.open());
-  }
+  ~HttpConnection() { core_.visitors.erase(place_); }
 
   void start() {
-    core_.crowd.note(core_.open());
     if (core_.open() > core_.options.max_connections) {
       if (core_.visitors.size() < 2) return refuse(http::status::service_unavailable, "too many connections");
       core_.visitors.front()->give_way();
@@ -311,7 +289,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   void serve(const http::request<http::empty_body>& request) {
     const HttpRequest asked{.is_head = request.method() == http::verb::head,
                             .keep_alive = request.keep_alive(),
-                            .accepts_gzip = accepts_gzip(view(request[http::field::accept_encoding])),
+                            .accepts_gzip = accepts_gzip(request),
                             .range = view(request[http::field::range]),
                             .if_range = view(request[http::field::if_range]),
                             .if_none_match = view(request[http::field::if_none_match])};
