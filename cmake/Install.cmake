@@ -143,11 +143,11 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/chicaneConfig.cmake ${CMAKE_CURRENT_BI
 # What the program can be told by name, and views for others' viewers. Programs in the build tree find the files by links that lie where
 # an installed program looks or one folder further up (protocol/data_folders.hpp): no binary knows the source tree.
 if(TARGET chicane_protocol)
-  install(DIRECTORY presets cars tracks scenarios plans leagues claims layouts DESTINATION ${data_dir} COMPONENT program)
-  install(DIRECTORY jobs DESTINATION ${data_dir} USE_SOURCE_PERMISSIONS COMPONENT program)
+  install(DIRECTORY data/ studies/plans studies/leagues studies/claims DESTINATION ${data_dir} COMPONENT program)
+  install(DIRECTORY studies/jobs DESTINATION ${data_dir} USE_SOURCE_PERMISSIONS COMPONENT program)
   file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/share/chicane)
   foreach(folder presets cars tracks scenarios)
-    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${CMAKE_BINARY_DIR}/share/chicane/${folder} SYMBOLIC)
+    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/data/${folder} ${CMAKE_BINARY_DIR}/share/chicane/${folder} SYMBOLIC)
   endforeach()
 endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT plain)

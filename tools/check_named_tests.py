@@ -27,7 +27,7 @@ def main():
     tests = names(sys.argv[1])
     if unbuilt := [test for test in tests if test.endswith("_NOT_BUILT")]:
         sys.exit(f"{len(unbuilt)} test programs are not built, so that their tests are not known: build all first")
-    pages = sorted([*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("claims/*.yaml")])
+    pages = sorted([*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("studies/claims/*.yaml")])
     unknown, commands = 0, 0
     for page in pages:
         for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Tables and figures of docs/problem.md, docs/effects.md and docs/friction.md from the results of plans/effects.yaml, whose runs are
+"""Tables and figures of docs/problem.md, docs/effects.md and docs/friction.md from the results of studies/plans/effects.yaml, whose runs are
 named TABLE: ROW.
 
-    chicane sweep plans/effects.yaml -o runs.jsonl
+    chicane sweep studies/plans/effects.yaml -o runs.jsonl
     tools/experiments.py runs.jsonl TABLE          prints one table in Markdown
     tools/experiments.py runs.jsonl --draw FOLDER  draws the figures (matplotlib)
 
@@ -175,7 +175,7 @@ def table_named(tables, name):
 def main():
     names = ["presets", "latency", "fast", "cure", *EFFECTS]
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("runs", type=Path, help="results of plans/effects.yaml")
+    parser.add_argument("runs", type=Path, help="results of studies/plans/effects.yaml")
     parser.add_argument("table", nargs="?", choices=names, metavar="TABLE", help=", ".join(names))
     parser.add_argument("--draw", type=Path, metavar="FOLDER", help="draw the figures into this folder")
     arguments = parser.parse_args()

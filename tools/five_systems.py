@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: MIT
 """Prints what docs/the_five_systems.md says of one preset in numbers: its flying laps, and the verdicts on its write-up's statements.
 
-    chicane sweep plans/effects.yaml -o runs.jsonl
+    chicane sweep studies/plans/effects.yaml -o runs.jsonl
     tools/five_systems.py runs.jsonl measured-latency
 
-The laps are those of plans/effects.yaml, the verdicts those of docs/claims.md, which `chicane claims --check` compares."""
+The laps are those of studies/plans/effects.yaml, the verdicts those of docs/claims.md, which `chicane claims --check` compares."""
 import argparse
 import json
 import re
@@ -45,7 +45,7 @@ def verdicts(letter):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("runs", type=Path, help="results of plans/effects.yaml")
+    parser.add_argument("runs", type=Path, help="results of studies/plans/effects.yaml")
     parser.add_argument("preset", choices=LETTERS)
     arguments = parser.parse_args()
     letter = LETTERS[arguments.preset]

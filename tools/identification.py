@@ -33,10 +33,10 @@ def run(*words):
 def car_file(car, folder):
     """A file of the car whose model is derived from its plant: what is fitted in the shipped one is not exactly true."""
     if car != "road-car":
-        return ROOT / f"cars/{car}.yaml"
+        return ROOT / f"data/cars/{car}.yaml"
     file = folder / "road-car.yaml"
     if not file.exists():
-        lines = [line for line in (ROOT / "cars/road-car.yaml").read_text().splitlines()
+        lines = [line for line in (ROOT / "data/cars/road-car.yaml").read_text().splitlines()
                  if not re.search(r"\[fit\]|cornering_|plant: road-car", line) or "friction_coupling" in line]
         file.write_text("plant: double-track\n" + "\n".join(lines) + "\n")
     return file

@@ -4,7 +4,7 @@
 
     tools/limit_tables.py --compute > limits.jsonl          drives `chicane limit` for each (two minutes)
     tools/limit_tables.py limits.jsonl                      table 1
-    tools/limit_tables.py limits.jsonl runs.jsonl           table 2; runs: results of plans/racing.yaml
+    tools/limit_tables.py limits.jsonl runs.jsonl           table 2; runs: results of studies/plans/racing.yaml
 
 tools/check_figures compares them with the page, and writes them. The program is `chicane` on the path."""
 import argparse
@@ -53,7 +53,7 @@ def gaps(limits, runs):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("limits", nargs="?", help="what --compute has printed")
-    parser.add_argument("runs", nargs="?", help="results of plans/racing.yaml")
+    parser.add_argument("runs", nargs="?", help="results of studies/plans/racing.yaml")
     parser.add_argument("--compute", action="store_true")
     options = parser.parse_args()
     if options.compute == bool(options.limits):

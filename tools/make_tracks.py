@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Makes the shipped tracks, tracks/*.csv, from curvature profiles: straights, arcs and clothoids between them.
+"""Makes the shipped tracks, data/tracks/*.csv, from curvature profiles: straights, arcs and clothoids between them.
 
     tools/make_tracks.py            writes the files
     tools/make_tracks.py --check    fails when a file differs from what this program makes
@@ -17,7 +17,7 @@ import pathlib
 import random
 import sys
 
-TRACKS = pathlib.Path(__file__).resolve().parent.parent / "tracks"
+TRACKS = pathlib.Path(__file__).resolve().parent.parent / "data/tracks"
 STEP = 0.1  # of the integration along the line [m]
 
 

@@ -138,7 +138,7 @@ def outcome(program, name, commands, files):
         places = ((folder, "HERE"), (program, "PROGRAM"), (ROOT, "ROOT"))
         for file, text in files.items():
             Path(folder, file).write_text(text, encoding="utf-8")
-        where = {"cwd": folder, "env": os.environ | {"XDG_CACHE_HOME": cache, "CHICANE_DATA_DIR": str(ROOT), "PYTHONPATH": str(python)}}
+        where = {"cwd": folder, "env": os.environ | {"XDG_CACHE_HOME": cache, "CHICANE_DATA_DIR": str(ROOT / "data"), "PYTHONPATH": str(python)}}
         for line in commands:
             words = line.lstrip("&~")
             to_run = process(program, python, words)

@@ -319,7 +319,7 @@ void add_check(CLI::App& command, Options& options) {
   add_latency(command, options);
   add_faults(command, options);
   add_set(command, options);
-  command.footer("Example: chicane check presets/weighted.yaml tracks/lakeside.csv --car road-car");
+  command.footer("Example: chicane check data/presets/weighted.yaml data/tracks/lakeside.csv --car road-car");
 }
 
 void add_list(CLI::App& command, Options& options) {

@@ -125,7 +125,7 @@ struct Options {
 
   struct Claims {
     std::vector<std::string> ids{};  ///< empty: all
-    std::string folder = "claims";
+    std::string folder = "studies/claims";
     std::string page{};     ///< to write; empty: details on stdout
     bool is_check = false;  ///< compare only
     std::string results{};  ///< as Recover::results

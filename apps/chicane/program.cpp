@@ -6,10 +6,12 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/run/plan_cache.hpp"
@@ -26,8 +28,31 @@ void use_cache(const Options& options) {
   }));
 }
 
-ExitCode parse_and_run(int count, const char* const* words, ExitCode (*run)(const Options&)) {
-  const std::variant<Options, Done> parsed = parse_command_line(count, words);
+/// The file that a path of version 0.2 names: shipped files lay in the root of a clone, and lie in data and
+/// studies.
+std::string present_path(const std::string& word) {
+  namespace fs = std::filesystem;
+  const fs::path old = word.substr(0, word.find('/'));
+  std::error_code ignored;
+  if (old.empty() || old == word || fs::exists(old, ignored)) return word;
+
+  for (const char* folder : {"data", "studies"}) {
+    if (!fs::exists(folder / old, ignored)) continue;
+    std::fprintf(stderr, "chicane: %s lies in %s/ now: reading %s/%s\n", word.c_str(), folder, folder,
+                 word.c_str());
+    return std::string(folder) + "/" + word;
+  }
+  return word;
+}
+
+ExitCode parse_and_run(int count, const char* const* given, ExitCode (*run)(const Options&)) {
+  std::vector<std::string> present(given, given + count);
+  std::vector<const char*> words;
+  for (int i = 0; i < count; ++i) {
+    if (i > 1) present[i] = present_path(present[i]);
+    words.push_back(present[i].c_str());
+  }
+  const std::variant<Options, Done> parsed = parse_command_line(count, words.data());
   if (const Done* done = std::get_if<Done>(&parsed)) return done->code;
   if (const auto set = environment_instruction_set(); !set) {
     std::fprintf(stderr, "chicane: %s\n", set.error().message.c_str());

@@ -46,7 +46,7 @@ void add_sweep(CLI::App& command, Options& options) {
                   "Drive nothing: print the command that drives this run, counted from 0")
       ->type_name("RUN")
       ->check(CLI::Range(0.0, 1e9));
-  command.footer("Example: chicane sweep plans/speed-and-latency.yaml --jobs 4");
+  command.footer("Example: chicane sweep studies/plans/speed-and-latency.yaml --jobs 4");
 }
 
 void add_search(CLI::App& command, Options& options) {
@@ -114,7 +114,7 @@ void add_league(CLI::App& command, Options& options) {
   command.add_option("--page", league.page, "Write the tables into this page, below its marker")
       ->type_name("FILE.md");
   add_jobs(command, options.jobs);
-  command.footer("Example: chicane league leagues/shipped.yaml -o league.html");
+  command.footer("Example: chicane league studies/leagues/shipped.yaml -o league.html");
 }
 
 void add_claims(CLI::App& command, Options& options) {

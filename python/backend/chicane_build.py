@@ -82,7 +82,7 @@ def files_of(package: Path) -> dict[str, bytes]:
     files = {f"chicane/{file.name}": file.read_bytes() for file in sorted(package.iterdir())
              if file.suffix in (".py", ".pyi", ".so", ".typed") or file.name == "py.typed"}
     for folder in FOLDERS:
-        for file in sorted((ROOT / folder).iterdir()):
+        for file in sorted((ROOT / "data" / folder).iterdir()):
             if file.is_file():
                 files[f"chicane/share/chicane/{folder}/{file.name}"] = file.read_bytes()
     source = ROOT / "src"                                     # what Problem.compile() needs

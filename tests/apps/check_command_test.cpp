@@ -103,7 +103,8 @@ TEST_F(CheckCommand, JudgesFilesAsDriveWouldTakeThem) {
 }
 
 TEST_F(CheckCommand, PassesWhatShips) {
-  const Answer checked = chicane("check presets/*.yaml scenarios/*.yaml cars/*.yaml tracks/*.csv");
+  const Answer checked =
+      chicane("check data/presets/*.yaml data/scenarios/*.yaml data/cars/*.yaml data/tracks/*.csv");
   EXPECT_EQ(checked.exit_code, 0) << checked.text;
   EXPECT_THAT(chicane("check --preset race --car road-car --track oval").text,
               EndsWith("ok, race (tracking-mpc) drives road-car on oval\n"));

@@ -358,21 +358,29 @@ TEST(Cli, ACampaignRefusesWhatIsNoFault) {
 }
 
 TEST(Cli, CheckAcceptsWhatShips) {
-  const Outcome outcome = chicane_program("check presets/*.yaml cars/*.yaml scenarios/*.yaml tracks/*.csv");
+  const Outcome outcome =
+      chicane_program("check data/presets/*.yaml data/cars/*.yaml data/scenarios/*.yaml data/tracks/*.csv");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("cars/road-car.yaml: ok, car"));
-  EXPECT_THAT(outcome.out, HasSubstr("tracks/lakeside.csv: ok, closed track"));
+  EXPECT_THAT(outcome.out, HasSubstr("data/cars/road-car.yaml: ok, car"));
+  EXPECT_THAT(outcome.out, HasSubstr("data/tracks/lakeside.csv: ok, closed track"));
+}
+
+TEST(Cli, FindsAFileByItsPathOfTheLastVersion) {
+  const Outcome outcome = chicane_program("check presets/weighted.yaml");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("presets/weighted.yaml lies in data/ now: reading data/presets/"));
+  EXPECT_EQ(chicane_program("check presets/none.yaml").code, 2);
 }
 
 TEST(Cli, CheckExplainsEveryFaultWithFileAndLine) {
   const Outcome outcome =
-      chicane_program("check tests/protocol/fixtures/broken/several_faults.yaml presets/pid.yaml");
+      chicane_program("check tests/protocol/fixtures/broken/several_faults.yaml data/presets/pid.yaml");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(
       outcome.err,
       HasSubstr("broken/several_faults.yaml:1: latency_ms: got 900, expected a number in [0, 500] ms"));
   EXPECT_THAT(outcome.err, HasSubstr("broken/several_faults.yaml:5: vehicle.colour: got an unknown key"));
-  EXPECT_THAT(outcome.out, HasSubstr("presets/pid.yaml: ok"));
+  EXPECT_THAT(outcome.out, HasSubstr("data/presets/pid.yaml: ok"));
 }
 
 TEST(Cli, ListKnowsWhatShips) {

@@ -26,7 +26,7 @@ MODEL = ["--car", "f1tenth", "--set", "track_scale=1"]
 
 
 def environment():
-    return {**os.environ, "CHICANE_DATA_DIR": str(HERE.parent.parent)}
+    return {**os.environ, "CHICANE_DATA_DIR": str(HERE.parent.parent / "data")}
 
 
 def run(*words, cwd=DATA):

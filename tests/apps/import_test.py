@@ -18,7 +18,7 @@ FILES = {"tum_centre_line.csv": 0.02, "decimal_commas.csv": 0.005, "utm.csv": 0.
 
 
 def run(*words):
-    environment = {**os.environ, "CHICANE_DATA_DIR": str(ROOT)}
+    environment = {**os.environ, "CHICANE_DATA_DIR": str(ROOT / "data")}
     done = subprocess.run([PROGRAM, *map(str, words)], env=environment, capture_output=True, text=True, timeout=120)
     return done.returncode, done.stdout, done.stderr
 

@@ -114,7 +114,7 @@ class Mistakes(unittest.TestCase):
     def said(self, command):
         words = [word.strip("{}") if word.startswith("{") else word for word in shlex.split(command)]
         done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True, timeout=60,
-                              env={**os.environ, "CHICANE_DATA_DIR": str(ROOT)})
+                              env={**os.environ, "CHICANE_DATA_DIR": str(ROOT / "data")})
         return done.returncode, done.stderr
 
     def test_each_is_named_with_its_remedy(self):

@@ -29,7 +29,7 @@ FULL = {"car": "team-coupe", "start": "road-car", "cell": 0.25, "width": 9.0, "l
 
 
 def program(*words, folder):
-    environment = {**os.environ, "CHICANE_DATA_DIR": str(ROOT)}
+    environment = {**os.environ, "CHICANE_DATA_DIR": str(ROOT / "data")}
     done = subprocess.run([PROGRAM, *map(str, words)], cwd=folder, env=environment, capture_output=True, text=True, timeout=300)
     return done.returncode, done.stdout, done.stderr
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What every file in cars/ promises: a car of the shelf is a plant and a model of it that agree, and drives.
+// What every file in data/cars/ promises: a car of the shelf is a plant and a model of it that agree, and
+// drives.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -25,7 +25,7 @@ struct Start {
 /// `lakeside` with the car `offset` to the left of its line, for `seconds`.
 Start drive_from(const std::string& preset, double offset, const std::string& seconds = "8") {
   std::ostringstream text;
-  text << std::ifstream(CHICANE_SOURCE_DIR "/tracks/lakeside.csv").rdbuf();
+  text << std::ifstream(CHICANE_SOURCE_DIR "/data/tracks/lakeside.csv").rdbuf();
   std::string track = text.str();
   const std::string shipped = "start_d_m=-0.76";
   const std::size_t at = track.find(shipped);

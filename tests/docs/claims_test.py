@@ -21,7 +21,8 @@ class ClaimsOnAClone(unittest.TestCase):
         self.folder = tempfile.TemporaryDirectory()
         self.clone = Path(self.folder.name) / "outer/clone"
         self.clone.mkdir(parents=True)
-        for name in ("claims", "presets", "cars", "tracks", "scenarios"):
+        (self.clone / "studies").mkdir()
+        for name in ("data", "studies/claims"):
             (self.clone / name).symlink_to(ROOT / name)
         self.page = self.clone / "claims.md"
         shutil.copy(ROOT / "docs/claims.md", self.page)
@@ -30,7 +31,7 @@ class ClaimsOnAClone(unittest.TestCase):
         self.folder.cleanup()
 
     def claims(self, *options):
-        environment = dict(os.environ, CHICANE_DATA_DIR=str(ROOT))
+        environment = dict(os.environ, CHICANE_DATA_DIR=str(ROOT / "data"))
         return subprocess.run([PROGRAM, "claims", ID, "--jobs", "1", *options], cwd=self.clone, env=environment, capture_output=True,
                               text=True, check=False)
 
@@ -60,13 +61,13 @@ class ClaimsOnAClone(unittest.TestCase):
         self.assertEqual(self.row(), row)
 
     def test_a_quotation_that_its_write_up_does_not_have_is_a_mistake(self):
-        (self.clone / "claims").unlink()
-        shutil.copytree(ROOT / "claims", self.clone / "claims")
-        file = self.clone / "claims/e-delay-in-model.yaml"
+        (self.clone / "studies/claims").unlink()
+        shutil.copytree(ROOT / "studies/claims", self.clone / "studies/claims")
+        file = self.clone / "studies/claims/e-delay-in-model.yaml"
         file.write_text(file.read_text(encoding="utf-8").replace("the \"lake\" track", "the \"sea\" track"), encoding="utf-8")
         done = self.claims("--page", "claims.md", "--check")
         self.assertEqual(done.returncode, 2)
-        self.assertRegex(done.stderr, r'claims/e-delay-in-model.yaml:\d+: quotes: got the "sea" track, expected words of a line of')
+        self.assertRegex(done.stderr, r'studies/claims/e-delay-in-model.yaml:\d+: quotes: got the "sea" track, expected words of a line of')
 
     def test_details_have_the_command_of_each_run(self):
         done = self.claims()

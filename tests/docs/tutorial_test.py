@@ -69,7 +69,7 @@ class Walk:
         self.write(folder / "run.sh", RUN)
         (folder / "bin").mkdir()
         self.write(folder / "bin/cmake", CMAKE)
-        self.environment = dict(os.environ, PROGRAM=str(program), BUILD=str(build), CHICANE_DATA_DIR=str(ROOT),
+        self.environment = dict(os.environ, PROGRAM=str(program), BUILD=str(build), CHICANE_DATA_DIR=str(ROOT / "data"),
                                 PATH=f"{folder / 'bin'}:{os.environ['PATH']}")
 
     @staticmethod

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that layouts/plotjuggler.xml plots what is sent: fields of topics that exist, each panel shown with its share.
+"""Checks that data/layouts/plotjuggler.xml plots what is sent: fields of topics that exist, each panel shown with its share.
 
     tests/layouts/plotjuggler_test.py ROOT
 """
@@ -22,7 +22,7 @@ def fields(root):
 
 
 def faults(root):
-    layout = ElementTree.parse(root / "layouts/plotjuggler.xml").getroot()
+    layout = ElementTree.parse(root / "data/layouts/plotjuggler.xml").getroot()
     known = set(fields(root))
     curves = list(layout.iter("curve"))
     if layout.tag != "root" or not list(layout.iter("Tab")) or len(curves) < 20:
@@ -40,7 +40,7 @@ def faults(root):
 
 def main():
     found = list(faults(Path(sys.argv[1]).resolve()))
-    print("\n".join(found) or "layouts/plotjuggler.xml plots what is sent")
+    print("\n".join(found) or "data/layouts/plotjuggler.xml plots what is sent")
     return 1 if found else 0
 
 

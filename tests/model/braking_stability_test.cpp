@@ -12,7 +12,7 @@
 namespace chicane::model {
 namespace {
 
-/// A tall car whose brakes and centre of mass ask much of the rear axle: as cars/vw-vanagon.yaml.
+/// A tall car whose brakes and centre of mass ask much of the rear axle: as data/cars/vw-vanagon.yaml.
 VehicleParams van() {
   VehicleParams car = road_car_params();
   car.mass = 1479.0;

@@ -268,7 +268,7 @@ TEST(YamlCodec, WritesAPresetThatBuildsOnAnother) {
 
 TEST(YamlCodec, AnyBytesGetAnAnswer) {
   Random random(17);
-  const std::string seed = read(fs::path(CHICANE_SOURCE_DIR) / "presets/weighted.yaml");
+  const std::string seed = read(fs::path(CHICANE_SOURCE_DIR) / "data/presets/weighted.yaml");
   ASSERT_FALSE(seed.empty());
   for (int i = 0; i < 3000; ++i) {
     std::string text = seed;

@@ -113,7 +113,9 @@ INSTANTIATE_TEST_SUITE_P(Shared, PublicTrack,
 
 class ShippedTrack : public ::testing::TestWithParam<Known> {};
 
-TEST_P(ShippedTrack, IsWhatItsPageSays) { expect_road(kSource + "/tracks/" + GetParam().file, GetParam()); }
+TEST_P(ShippedTrack, IsWhatItsPageSays) {
+  expect_road(kSource + "/data/tracks/" + GetParam().file, GetParam());
+}
 
 INSTANTIATE_TEST_SUITE_P(Tracks, ShippedTrack,
                          ::testing::Values(Known{"lakeside.csv", 1138.0, 8.05, 9.6, 18.7},
@@ -130,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(Tracks, ShippedTrack,
                          });
 
 TEST(ShippedTrack, LakesideHasTheSightOfTheOriginal) {
-  const Track track = protocol::read_track(kSource + "/tracks/lakeside.csv").value();
+  const Track track = protocol::read_track(kSource + "/data/tracks/lakeside.csv").value();
   const std::vector<TrackPoint>& points = track.raw_points();
   ASSERT_EQ(points.size(), 80U);
   double shortest = 1e9;
@@ -167,7 +169,7 @@ TEST(ShippedTrack, LakesideHasTheSightOfTheOriginal) {
 
 /// One row of the table in docs/tracks.md.
 std::string table_row(const std::string& name) {
-  const Track track = protocol::read_track(kSource + "/tracks/" + name + ".csv").value();
+  const Track track = protocol::read_track(kSource + "/data/tracks/" + name + ".csv").value();
   const std::vector<TrackPoint>& points = track.raw_points();
   const std::size_t n = points.size();
   std::vector<double> gaps;

@@ -16,7 +16,7 @@ namespace chicane::sim {
 namespace {
 
 road::Track track_of(const std::string& name, double scale) {
-  auto track = protocol::read_track(std::string(CHICANE_SOURCE_DIR) + "/tracks/" + name + ".csv");
+  auto track = protocol::read_track(std::string(CHICANE_SOURCE_DIR) + "/data/tracks/" + name + ".csv");
   EXPECT_TRUE(track);
   return scale == 1.0 ? std::move(*track) : track->scaled(scale);
 }

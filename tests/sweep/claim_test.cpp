@@ -127,7 +127,7 @@ TEST(Claim, QuotesFewWordsThatItsWriteUpHas) {
 TEST(Claim, AllStatementsAreThere) {
   std::set<std::string> ids;
   int tried = 0, quoted = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(CHICANE_SOURCE_DIR "/claims")) {
+  for (const auto& entry : std::filesystem::directory_iterator(CHICANE_SOURCE_DIR "/studies/claims")) {
     const std::string file = entry.path().string();
     if (entry.is_directory()) continue;
     const auto claims = parse_claims(protocol::read_file(file).value(), file,

@@ -57,7 +57,7 @@ case $engine in
     needs mpirun
     kill_a_part 3
     [ "$(id -u)" -ne 0 ] || export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-    jobs/sweep.mpi.sh --oversubscribe -n 3 "$plan" "$folder/part.jsonl"
+    studies/jobs/sweep.mpi.sh --oversubscribe -n 3 "$plan" "$folder/part.jsonl"
     ;;
   slurm)
     needs sbatch; needs slurmctld; needs slurmd; needs munged
@@ -69,7 +69,7 @@ case $engine in
       sinfo -h -o %T 2>/dev/null | grep -q idle && break
       sleep 0.2
     done
-    sbatch --wait --array=1-5 --output="$folder/slurm/%a.log" jobs/sweep.sbatch "$plan" "$folder/part.jsonl" || { cat "$folder"/slurm/*.log; exit 1; }
+    sbatch --wait --array=1-5 --output="$folder/slurm/%a.log" studies/jobs/sweep.sbatch "$plan" "$folder/part.jsonl" || { cat "$folder"/slurm/*.log; exit 1; }
     # And the tasks of a step.
     srun --overcommit --ntasks=3 "$program" sweep "$plan" -o "$folder/step.jsonl" --jobs 1 2>/dev/null
     "$program" merge "$folder"/step.*-of-3.jsonl -o "$folder/step.jsonl"

@@ -101,7 +101,7 @@ teams: 1
 }
 
 TEST(League, TheShippedOneIsReadAndHasAProgram) {
-  const auto league = read_league(CHICANE_SOURCE_DIR "/leagues/shipped.yaml");
+  const auto league = read_league(CHICANE_SOURCE_DIR "/studies/leagues/shipped.yaml");
   ASSERT_TRUE(league) << league.error().message;
   EXPECT_EQ(league->tracks.size(), 6U);
   EXPECT_EQ(league->cars.size(), 2U);

@@ -26,7 +26,7 @@ std::string fault_of(const std::string& text) {
 }
 
 TEST(Plan, TakesTheTracksOfAFolder) {
-  const std::string folder = CHICANE_SOURCE_DIR "/tracks";
+  const std::string folder = CHICANE_SOURCE_DIR "/data/tracks";
   const auto plan = parse_plan("axes: [{track: [oval, " + folder + "/*.csv]}]", "p");
   ASSERT_TRUE(plan) << plan.error().message;
   EXPECT_GE(plan->size(), 7U);
@@ -142,7 +142,7 @@ more: 1
 
 TEST(PlanCodec, ShippedPlansAreRight) {
   int plans = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(CHICANE_SOURCE_DIR "/plans")) {
+  for (const auto& entry : std::filesystem::directory_iterator(CHICANE_SOURCE_DIR "/studies/plans")) {
     const Result<Plan> plan = read_plan(entry.path().string());
     ASSERT_TRUE(plan) << plan.error().message;
     EXPECT_GT(plan->size(), 1U);

@@ -11,8 +11,8 @@
 namespace chicane::model {
 
 /// A controller's model of a car: geometry, a single track with saturating tyres, and a longitudinal
-/// law. The simulator's plants are richer (sim/plant.hpp). Values of shipped cars: cars/*.yaml, each with its
-/// origin.
+/// law. The simulator's plants are richer (sim/plant.hpp). Values of shipped cars: data/cars/*.yaml, each
+/// with its origin.
 struct VehicleParams {
   std::string name = "udacity";
 

@@ -17,7 +17,7 @@ namespace chicane::sim {
 
 /// A car with four wheels on a plane, as data. The defaults are those of the plant `road-car`, an ordinary
 /// car of 1300 kg and 200 kW on summer tyres; origin of each number: docs/plants.md, table 4. Other cars:
-/// cars/*.yaml.
+/// data/cars/*.yaml.
 struct DoubleTrackParams {
   double mass = 1300.0;            ///< [kg]
   double yaw_inertia = 2000.0;     ///< [kg m²]

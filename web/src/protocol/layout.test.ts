@@ -5,7 +5,7 @@ import { describe, expect, it } from 'vitest';
 const read = (path: string): unknown => JSON.parse(readFileSync(new URL(`../../../${path}`, import.meta.url), 'utf8'));
 
 const topics = read('tests/protocol/fixtures/ros/topics.json') as { topic: string; schema: string }[];
-const layout = read('layouts/foxglove.json') as {
+const layout = read('data/layouts/foxglove.json') as {
   configById: Record<string, { paths?: { value: string }[]; topics?: Record<string, unknown>; topicToRender?: string }>;
   layout: unknown;
 };

@@ -101,7 +101,7 @@ interface Track {
   speedAt(s: number): number; // [m/s]
 }
 
-const FOLDER = new URL('../../../tracks/', import.meta.url);
+const FOLDER = new URL('../../../data/tracks/', import.meta.url);
 
 /** A speed that the bends allow at 12 m/s², between 8 and 60 m/s: abrupt changes are what it has to stand. */
 function trackOf(file: string): Track {

@@ -66,7 +66,7 @@ describe('corners', () => {
   });
 
   it('are found on every closed track that is shipped', () => {
-    const folder = new URL('../../../tracks/', import.meta.url);
+    const folder = new URL('../../../data/tracks/', import.meta.url);
     const counts: Record<string, number> = {};
     for (const name of readdirSync(folder).filter((each) => each.endsWith('.csv'))) {
       const rows = readFileSync(new URL(name, folder), 'utf8').split('\n');
