@@ -10,4 +10,4 @@ clang-format --version 2>/dev/null | grep -q 'version 14\.' || { echo "clang-for
 
 mode=(--dry-run -Werror)
 if [ "${1:-}" = --fix ]; then mode=(-i); fi
-find src apps python tests examples bench \( -name '*.hpp' -o -name '*.cpp' \) -print0 | xargs -0 -r clang-format "${mode[@]}"
+find src apps python tests examples bench studies \( -name '*.hpp' -o -name '*.cpp' \) -print0 | xargs -0 -r clang-format "${mode[@]}"

@@ -14,7 +14,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*"(?P<path>[^"]+)"')
 CALL = re.compile(r"(?P<command>\w+)\s*\((?P<arguments>[^()]*(?:\([^()]*\)[^()]*)*)\)")
 KEYWORDS = {"HEADERS", "SOURCES", "DEPENDS", "PRIVATE"}
 # Folders above the library, and where their quoted includes start.
-ABOVE = {"apps": "apps/chicane", "python": "python/src", "bench": "bench", "tests": "tests", "tools": "tools", "examples": "examples"}
+ABOVE = {"apps": "apps/chicane", "python": "python/src", "bench": "bench", "tests": "tests", "studies": "studies", "examples": "examples"}
 USERS = {"apps", "examples"}  # written as a user of the library would
 DEFINES = {"add_library", "add_executable"}
 # Commands through which one target gets code of another.

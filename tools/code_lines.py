@@ -56,12 +56,12 @@ def part_of(path):
     module = {"src": "/".join(("src", *path.parts[2:3])), "apps": "/".join(path.parts[:2]), "bench": "bench"}
     if top in module:
         return module[top] if kind in CPP else None
-    return {"tools": "tools", "run.sh": "tools", "test.sh": "tools", ".ci": "tools", "web": "web", "python": "python"}.get(top)
+    return {"tools": "tools", "studies": "studies", "run.sh": "tools", "test.sh": "tools", ".ci": "tools", "web": "web", "python": "python"}.get(top)
 
 
 def counts(root):
     """What there is of each part; modules first."""
-    modules, parts = {}, dict.fromkeys(("src+apps", "files", "tests", "bench", "tools", "web", "python", "cmake", "docs"), 0)
+    modules, parts = {}, dict.fromkeys(("src+apps", "files", "tests", "bench", "tools", "studies", "web", "python", "cmake", "docs"), 0)
     for folder, folders, names in os.walk(root):
         folders[:] = sorted(set(folders) - NOT_OURS)
         for path in (Path(folder, name).relative_to(root) for name in sorted(names)):

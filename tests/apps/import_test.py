@@ -11,7 +11,7 @@ from pathlib import Path
 PROGRAM = sys.argv.pop(1)
 ROOT = Path(__file__).resolve().parent.parent.parent
 TRACKS, MAPS = ROOT / "tests/data/tracks", ROOT / "tests/data/maps"
-LENGTH = 245.664  # of the stadium that tools/make_foreign_tracks.py writes [m]
+LENGTH = 245.664  # of the stadium that tests/data/make_foreign_tracks.py writes [m]
 FILES = {"tum_centre_line.csv": 0.02, "decimal_commas.csv": 0.005, "utm.csv": 0.005, "cones.csv": 0.01, "fssim.yaml": 0.01, "cones.sdf": 0.01,
          "three_laps.gpx": 0.015, "course.kml": 0.005, "course.osm": 0.005, "course.geojson": 0.005, "course.xodr": 0.005,
          "course.commonroad.xml": 0.005}

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Every program in tools/ says what it is for when asked by --help, at once and without doing anything."""
+"""Every program in tools/ and studies/tables/ says what it is for when asked by --help, at once and without doing anything."""
 import os
 import shutil
 import subprocess
@@ -10,7 +10,8 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-PROGRAMS = sorted(path for path in (ROOT / "tools").iterdir()
+FOLDERS = ("tools", "studies/tables")
+PROGRAMS = sorted(path.relative_to(ROOT) for folder in FOLDERS for path in (ROOT / folder).iterdir()
                   if path.is_file() and (path.suffix == ".mjs" or path.read_bytes().startswith(b"#!")))
 
 
@@ -24,9 +25,10 @@ class ToolsHelp(unittest.TestCase):
         node = shutil.which("node")
         with tempfile.TemporaryDirectory() as folder:
             root = Path(folder)
-            shutil.copytree(ROOT / "tools", root / "tools", ignore=shutil.ignore_patterns("node_modules", "__pycache__"))
+            for each in FOLDERS:
+                shutil.copytree(ROOT / each, root / each, ignore=shutil.ignore_patterns("node_modules", "__pycache__"))
             before = files_of(root)
-            for program in (root / "tools" / path.name for path in PROGRAMS):
+            for program in (root / path for path in PROGRAMS):
                 with self.subTest(program=program.name):
                     interpreter = {".py": [sys.executable], ".mjs": [node], ".sh": ["bash"]}.get(program.suffix, [sys.executable])
                     if interpreter == [None]:

@@ -10,7 +10,7 @@
 #include "chicane/sim/plant.hpp"
 
 /// Test drives: what one would measure on a proving ground, for the tests of the plants and for
-/// tools/plant_report.cpp.
+/// studies/tables/plant_report.cpp.
 namespace chicane::sim::experiment {
 
 struct Sample {

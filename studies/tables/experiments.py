@@ -4,8 +4,8 @@
 named TABLE: ROW.
 
     chicane sweep studies/plans/effects.yaml -o runs.jsonl
-    tools/experiments.py runs.jsonl TABLE          prints one table in Markdown
-    tools/experiments.py runs.jsonl --draw FOLDER  draws the figures (matplotlib)
+    studies/tables/experiments.py runs.jsonl TABLE          prints one table in Markdown
+    studies/tables/experiments.py runs.jsonl --draw FOLDER  draws the figures (matplotlib)
 
 tools/check_figures compares all of it with the pages, and writes it. All runs are in virtual time: the same on every machine with the same
 arithmetic."""

@@ -2,20 +2,19 @@
 # SPDX-License-Identifier: MIT
 """Prints what GCC needs for a program with one problem of the solver: processor time and largest memory.
 
-    tools/compile_costs.py                        the examples, and four problems of bench/families
-    tools/compile_costs.py FILE.cpp ...           these files
-    tools/compile_costs.py bench/families/X.hpp:Type    a problem, by header and type
+    studies/tables/compile_costs.py                        the examples, and four problems of bench/families
+    studies/tables/compile_costs.py FILE.cpp ...           these files
+    studies/tables/compile_costs.py bench/families/X.hpp:Type    a problem, by header and type
 
 Flags: -O2 -std=c++20 -DNDEBUG, one instruction set (baseline). Measure on an idle machine. Exit code 1 if a file does not compile."""
+import argparse
 import os
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-import usage
-
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 FLAGS = ["-O2", "-std=c++20", "-DNDEBUG", f"-I{ROOT}/src", f"-I{ROOT}/bench", "-c", "-o", "/dev/null"]
 FAMILIES = ("quadrotor.hpp:Quadrotor", "reactor.hpp:Reactor", "hard_limits.hpp:Tube", "long_chain.hpp:LongChain")
 SOLVE = """#include "{header}"
@@ -47,9 +46,11 @@ def cost(name, folder):
 
 
 def main():
-    usage.print_if_asked(__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="FILE.cpp | HEADER:TYPE")
+    options = parser.parse_args()
     examples = sorted((ROOT / "examples" / "solver").glob("*.cpp"))
-    names = sys.argv[1:] or [str(file.relative_to(ROOT)) for file in examples] + [f"bench/families/{name}" for name in FAMILIES]
+    names = options.names or [str(file.relative_to(ROOT)) for file in examples] + [f"bench/families/{name}" for name in FAMILIES]
     version = subprocess.run(["g++", "-dumpfullversion"], capture_output=True, text=True, check=True).stdout.strip()
     print(f"| problem (GCC {version}) | time | memory |\n|---|--:|--:|")
     failed = False

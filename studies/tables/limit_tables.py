@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Prints the tables of docs/limit.md in Markdown: bound and witness of two cars on four tracks, and the laps of `race` and `default`.
 
-    tools/limit_tables.py --compute > limits.jsonl          drives `chicane limit` for each (two minutes)
-    tools/limit_tables.py limits.jsonl                      table 1
-    tools/limit_tables.py limits.jsonl runs.jsonl           table 2; runs: results of studies/plans/racing.yaml
+    studies/tables/limit_tables.py --compute > limits.jsonl          drives `chicane limit` for each (two minutes)
+    studies/tables/limit_tables.py limits.jsonl                      table 1
+    studies/tables/limit_tables.py limits.jsonl runs.jsonl           table 2; runs: results of studies/plans/racing.yaml
 
 tools/check_figures compares them with the page, and writes them. The program is `chicane` on the path."""
 import argparse

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Identifies cars from logs of driving them, and races with what was found: the tables of docs/identification.md.
 
-    tools/identification.py CHICANE [--keep FOLDER] [--seeds N] [--cars A,B] [--tracks A,B] [--no-race]
+    studies/tables/identification.py CHICANE [--keep FOLDER] [--seeds N] [--cars A,B] [--tracks A,B] [--no-race]
 
 Each car drives laps with sensor noise (0.05 m, 0.3 deg, 0.1 m/s of a car in full size) and another delay of 20 to 250 ms for each log:
 with odd seeds by the preset `default`, with even ones nearer to the limit (tracking_mpc.grip_share=1). The search begins with a car that is
@@ -23,7 +23,7 @@ OFF = {"cornering_front": 0.75, "cornering_rear": 0.75, "friction": 0.92, "yaw_i
        "brake_acceleration_mps2": 0.85, "steer_lag_ms": 1.5, "front_axle_m": 1.06, "rear_axle_m": 1.06, "drive_lag_ms": 1.4,
        "drag_constant_mps2": 0.8, "drag_quadratic": 0.8}
 ALL_CARS = "road-car,bmw-320i,vw-vanagon,formula-student,indy,tum-1200,f1tenth,orca-1-43,udacity"
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def run(*words):

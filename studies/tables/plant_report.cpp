@@ -2,7 +2,7 @@
 // Measures the plants as a proving ground would.
 //
 //   chicane_plant_report                 the tables of docs/plants*.md
-//   chicane_plant_report csv DIRECTORY   the curves of its figures (tools/plot_plants.py draws them)
+//   chicane_plant_report csv DIRECTORY   the curves of its figures (studies/tables/plot_plants.py draws them)
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -15,7 +15,7 @@ try:
 except ImportError:  # --help does without
     np = None
 
-HERE = pathlib.Path(__file__).resolve().parent.parent / "tests/data/maps"
+HERE = pathlib.Path(__file__).resolve().parent / "maps"
 FREE, WALL, UNKNOWN = 254, 0, 205
 
 # Name, corners of a closed line [m], width [m], cell [m], and how the map is kept. Lines begin at the origin, towards +x.
@@ -128,7 +128,7 @@ def main():
     check = parser.parse_args().check
     if np is None:
         parser.error("numpy: got none, expected Debian's python3-numpy and /usr/bin/python3")
-    table = "# made by tools/make_maps.py\nname,length_m,width_m\n"
+    table = "# made by tests/data/make_maps.py\nname,length_m,width_m\n"
     files = {}
     for name, corners, width, cell, how in MAPS:
         file, image, text, length = draw(name, corners, width, cell, how)
@@ -141,7 +141,7 @@ def main():
             HERE.mkdir(parents=True, exist_ok=True)
             (HERE / name).write_bytes(content)
         elif (HERE / name).read_bytes() != content:
-            sys.exit(f"{HERE / name} is not what tools/make_maps.py makes")
+            sys.exit(f"{HERE / name} is not what tests/data/make_maps.py makes")
 
 
 if __name__ == "__main__":

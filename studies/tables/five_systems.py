@@ -3,7 +3,7 @@
 """Prints what docs/the_five_systems.md says of one preset in numbers: its flying laps, and the verdicts on its write-up's statements.
 
     chicane sweep studies/plans/effects.yaml -o runs.jsonl
-    tools/five_systems.py runs.jsonl measured-latency
+    studies/tables/five_systems.py runs.jsonl measured-latency
 
 The laps are those of studies/plans/effects.yaml, the verdicts those of docs/claims.md, which `chicane claims --check` compares."""
 import argparse
@@ -12,7 +12,7 @@ import re
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 LETTERS = {"measured-latency": "A", "fast-short-step": "B", "sixty-mph": "C", "weighted": "D", "delay-in-model": "E"}
 MPH = 0.44704
 ORDER = ("true", "works", "depends", "partly", "not reproduced", "false", "not so")

@@ -1,17 +1,15 @@
 #!/usr/bin/env python3
 """Draws the motions of examples/solver as SVG files, from what the programs write.
 
-    tools/draw_examples.py [BUILD] [FOLDER]     default build/release, docs/figures
+    studies/tables/draw_examples.py [BUILD] [FOLDER]     default build/release, docs/figures
 """
+import argparse
 import math
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
-import usage
-
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 DARK, BLUE, RED, GREY, SOFT = "#24292f", "#0969da", "#cf222e", "#8c959f", "#d8dee4"
 
 
@@ -127,9 +125,11 @@ EXAMPLES = {
 
 
 def main():
-    usage.print_if_asked(__doc__)
-    build = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release")
-    folder = Path(sys.argv[2] if len(sys.argv) > 2 else ROOT / "docs/figures")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", nargs="?", type=Path, default=ROOT / "build/release")
+    parser.add_argument("folder", nargs="?", type=Path, default=ROOT / "docs/figures")
+    options = parser.parse_args()
+    build, folder = options.build, options.folder
     for name, (draw, title) in EXAMPLES.items():
         with tempfile.TemporaryDirectory() as work:
             file = Path(work) / "motion.txt"

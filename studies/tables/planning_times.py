@@ -12,7 +12,7 @@ import resource
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 CARS = ["udacity", "road-car", "bmw-320i", "vw-vanagon", "tum-1200", "formula-student", "indy", "f1tenth", "orca-1-43"]
 MODEL_CARS = ["f1tenth", "orca-1-43"]  # bring tracks to their scale by themselves
 TRACKS = ["lakeside", "original-lake", "oval", "hairpins", "speedway", "crossover", "stage"]

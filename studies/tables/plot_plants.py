@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: MIT
 """Draws the figures of docs/plants*.md from the CSV files of chicane_plant_report.
 
-    build/release/tests/sim/chicane_plant_report csv /tmp && /usr/bin/python3 tools/plot_plants.py /tmp docs/figures
+    build/release/studies/tables/chicane_plant_report csv /tmp && /usr/bin/python3 studies/tables/plot_plants.py /tmp docs/figures
 """
+import argparse
 import csv
-import sys
 from collections import defaultdict
 
-import usage
-
-usage.print_if_asked(__doc__)  # before an import that may fail
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("source", help="folder of the CSV files")
+parser.add_argument("target", help="folder of the figures")
+options = parser.parse_args()  # before an import that may fail
 
 import matplotlib
 
@@ -108,9 +109,8 @@ def envelope(source, target):
 
 
 def main():
-    source, target = sys.argv[1:]
     for draw in (longitudinal, yaw_steps, modes, tires, envelope):
-        draw(source, target)
+        draw(options.source, options.target)
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Prints the table of docs/racing_gap.md in Markdown: what takes how much of the gap between `race` and the limit, for each corner.
 
-    tools/gap_table.py --compute hairpins berlin.csv > gaps.jsonl    drives each track with udacity (10 to 60 s)
-    tools/gap_table.py gaps.jsonl                                    the table
+    studies/tables/gap_table.py --compute hairpins berlin.csv > gaps.jsonl    drives each track with udacity (10 to 60 s)
+    studies/tables/gap_table.py gaps.jsonl                                    the table
 
 tools/check_figures compares it with the page, and writes it. The program is `chicane` on the path."""
 import argparse

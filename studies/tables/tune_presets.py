@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Tunes each of the five presets by two optimisers, and writes the table of docs/sweep.md: by hand, and what was found.
 
-    tools/tune_presets.py LOGS [--evaluations N] [--presets NAME,...] [--program PROGRAM]
+    studies/tables/tune_presets.py LOGS [--evaluations N] [--presets NAME,...] [--program PROGRAM]
 
 LOGS is a folder for the searches' logs: a campaign that was ended goes on, and one that is over only writes the table. Deterministic. PROGRAM is
 build/release/apps/chicane/chicane when left out.
@@ -11,8 +11,8 @@ import json
 import subprocess
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-BEGIN, END = "<!-- tuning: tools/tune_presets.py -->\n", "<!-- /tuning -->\n"
+ROOT = Path(__file__).resolve().parents[2]
+BEGIN, END = "<!-- tuning: studies/tables/tune_presets.py -->\n", "<!-- /tuning -->\n"
 PRESETS = ("measured-latency", "fast-short-step", "sixty-mph", "weighted", "delay-in-model")
 OPTIMIZERS = ("sbplx", "crs")
 

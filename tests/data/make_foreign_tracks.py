@@ -12,7 +12,7 @@ import pathlib
 import random
 import sys
 
-HERE = pathlib.Path(__file__).resolve().parent.parent / "tests/data/tracks"
+HERE = pathlib.Path(__file__).resolve().parent / "tracks"
 STRAIGHT, RADIUS, HALF = 60.0, 20.0, 3.0
 LENGTH = 2 * STRAIGHT + 2 * math.pi * RADIUS
 
@@ -197,7 +197,7 @@ def main():
             HERE.mkdir(parents=True, exist_ok=True)
             (HERE / name).write_bytes(text.encode())
         elif (HERE / name).read_bytes() != text.encode():
-            sys.exit(f"{HERE / name} is not what tools/make_foreign_tracks.py makes")
+            sys.exit(f"{HERE / name} is not what tests/data/make_foreign_tracks.py makes")
 
 
 if __name__ == "__main__":
