@@ -21,12 +21,16 @@ build_release "$root" all "CHICANE_SIMD=$simd" CHICANE_BUILD_TESTS=ON CHICANE_BU
 processor_seconds built
 say "chicane: ctest ${selection[*]} $*"
 log=$root/build/release/test.log
+export CHICANE_TEST_TIMES=$root/build/release/test_times.txt
+rm -f "$CHICANE_TEST_TIMES"
 result=0
 ctest --test-dir "$root/build/release" -j "$(nproc)" --output-on-failure --no-tests=error --no-label-summary \
   --output-log "$log" "${selection[@]}" "$@" || result=$?
 grep -E '^[0-9]+% tests passed' "$log" || true  # again, below the list of what was skipped
 processor_seconds all
 "$root/tools/build_times.py" --count 5 || true
+echo 'processor seconds of the dearest tests (all: build/release/test_times.txt):'
+awk '{ used = $1 + $2; $1 = $2 = ""; printf "%8.1f %s\n", used, $0 }' "$CHICANE_TEST_TIMES" | sort -n | tail -40 || true
 awk "BEGIN { printf \"processor time: %.0f s to configure and build, %.0f s for the tests\n\", $built, $all - $built }"
 printf 'size: program %s, page %s compressed\n' "$(kilobytes <"$root/build/release/apps/chicane/chicane")" \
   "$(cat "$root"/build/release/web/dist/assets/* 2>/dev/null | gzip -9 | kilobytes)"
