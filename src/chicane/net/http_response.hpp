@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -103,6 +104,29 @@ class HttpResponse {
   std::string status_;
   std::vector<std::pair<std::string, std::string>> fields_{};
   Body body_{};
+};
+
+/// A file of the dashboard, embedded in the program; no file system at run time.
+struct Asset {
+  std::string_view path{};  ///< "/index.html"; "/" serves "/index.html"
+  std::string_view content_type{};
+  std::string_view content{};  ///< gzip-compressed when `gzip`
+  bool gzip = false;
+};
+
+/// What GET is answered with: contents that the program makes, then assets.
+class Site {
+ public:
+  using OnGet = std::function<std::optional<Content>(std::string_view path)>;
+  Site() = default;
+  Site(std::vector<Asset> assets, OnGet on_get);
+  /// `target` is path and query; 404 in words where there is nothing.
+  [[nodiscard]] HttpResponse answer(std::string_view target, const HttpRequest& asked) const;
+
+ private:
+  std::vector<Asset> assets_;
+  std::vector<std::string> tags_;  ///< one ETag for each asset
+  OnGet on_get_;
 };
 
 }  // namespace chicane::net

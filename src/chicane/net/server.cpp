@@ -27,8 +27,6 @@
 #include "chicane/net/detail/admission.hpp"
 #include "chicane/net/detail/port_holder.hpp"
 #include "chicane/net/detail/send_queue.hpp"
-#include "chicane/net/detail/server_limits.hpp"
-#include "chicane/net/detail/site.hpp"
 #include "chicane/net/http_response.hpp"
 
 namespace chicane::net {
@@ -42,6 +40,13 @@ using Tcp = asio::ip::tcp;
 using ErrorCodeBoost = boost::system::error_code;
 std::string_view view(boost::string_view text) { return {text.data(), text.size()}; }
 boost::string_view view(std::string_view text) { return {text.data(), text.size()}; }
+constexpr int kSendBuffer = 32 * 1024;  // a reader that stalls holds this much kernel memory, not megabytes
+constexpr std::chrono::seconds kAnswerTimeout{30};      // for one piece of an answer on a slow line
+constexpr std::chrono::seconds kLingerTimeout{1};       // so that a refusal is read before the socket goes
+constexpr std::chrono::milliseconds kAcceptPause{100};  // when descriptors are used up, for example
+constexpr std::size_t kKeptBuffer = 4096;               // between two messages [byte]
+constexpr std::size_t kMostReserved = 8;                // connections that viewers leave to others
+
 class WebSocket;
 class HttpConnection;
 

@@ -45,14 +45,6 @@ struct UpgradeAnswer {
   int endpoint = 0;           ///< caller's own tag, handed back with every event
 };
 
-/// A file of the dashboard, embedded in the program; no file system at run time.
-struct Asset {
-  std::string_view path{};  ///< "/index.html"; "/" serves "/index.html"
-  std::string_view content_type{};
-  std::string_view content{};  ///< gzip-compressed when `gzip`
-  bool gzip = false;
-};
-
 /// Limits and rules. Against web pages that talk to local programs: the Host header must be `localhost`, a
 /// loopback address, the bound address, any IP address when bound to more than loopback, or in
 /// `allowed_hosts`; an Origin header, where present (browsers always send it), must name the same host and
