@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/controller/tunable.hpp"
+#include "chicane/controller/controller.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include "chicane/road/waypoint_map.hpp"
 
 #include <gtest/gtest.h>
-
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -93,6 +93,91 @@ TEST(WaypointMap, IsNotClosedByAnotherPassageOfACrossing) {
     EXPECT_TRUE(map.is_closed()) << start;
     EXPECT_EQ(map.points().size(), points.size()) << start;
   }
+}
+
+constexpr double kRadius = 100.0;
+constexpr int kCount = 52;  // waypoints, 12.1 m apart
+
+std::vector<Vec2> circle() {
+  std::vector<Vec2> points;
+  for (int i = 0; i < kCount; ++i) {
+    const double angle = kTwoPi * i / kCount;
+    points.emplace_back(kRadius * cos(angle), kRadius * sin(angle));
+  }
+  return points;
+}
+
+/// A car that has seen `seen` waypoints of the circle.
+WaypointMap map_of(int seen) {
+  WaypointMap map;
+  for (int i = 0; i + 6 <= seen; ++i) (void)map.add(seeing(circle(), i));
+  return map;
+}
+
+TEST(WaypointLine, GoesThroughTheWaypointsAtTheirArcLength) {
+  const WaypointMap map = map_of(20);
+  WaypointLine line;
+  line.clear();
+  ASSERT_TRUE(line.extend(map, 19));
+  EXPECT_EQ(line.newest(), 19);
+  for (int i = 0; i < 20; ++i) {
+    // Cubics between knots 3 m apart: 3⁴ / (384 R³) = 2e-7 m, more where the spline's ends lose their
+    // curvature.
+    EXPECT_LT((line.at(line.along(i)).position - map.points()[static_cast<std::size_t>(i)]).norm(), 0.01)
+        << i;
+  }
+  for (int i = 5; i < 15; ++i) {
+    EXPECT_NEAR(line.along(i + 1) - line.along(i), kTwoPi * kRadius / kCount, 0.01) << i;
+    EXPECT_NEAR(line.at(line.along(i)).curvature, 1.0 / kRadius, 2e-4) << i;
+  }
+}
+
+TEST(WaypointLine, RefusesASingleWaypointAndKeepsWhatItHas) {
+  const WaypointMap map = map_of(12);
+  WaypointLine line;
+  line.clear();
+  EXPECT_FALSE(line.extend(map, 0));
+  EXPECT_EQ(line.newest(), -1);
+  ASSERT_TRUE(line.extend(map, 11));
+  EXPECT_FALSE(line.extend(map, WaypointLine::kMostWaypoints));
+  EXPECT_EQ(line.newest(), 11);
+}
+
+TEST(WaypointLine, NeverMovesWhatIsSettled) {
+  WaypointLine line;
+  line.clear();
+  ASSERT_TRUE(line.extend(map_of(12), 11));
+  const double settled = line.along(line.settled());
+  EXPECT_EQ(line.settled(), 11 - WaypointLine::kSettled);
+  std::vector<Vec2> before;
+  for (double s = 0.0; s < settled - WaypointLine::kSpacing; s += 1.0) before.push_back(line.at(s).position);
+  for (int newest = 12; newest < 30; ++newest) ASSERT_TRUE(line.extend(map_of(30), newest));
+  for (std::size_t i = 0; i < before.size(); ++i)
+    EXPECT_EQ(line.at(static_cast<double>(i)).position, before[i]) << i;
+}
+
+TEST(WaypointLine, GoesStraightOnBehindItsLastWaypoint) {
+  WaypointLine line;
+  line.clear();
+  ASSERT_TRUE(line.extend(map_of(12), 11));
+  const double end = line.along(11);
+  const CurvePoint last = line.at(end);
+  const CurvePoint beyond = line.at(end + WaypointLine::kTail - 1.0);
+  // The curvature fades out between knots: centimetres.
+  EXPECT_LT((beyond.position - last.position - (WaypointLine::kTail - 1.0) * last.tangent).norm(), 0.1);
+}
+
+TEST(WaypointLine, CountsWaypointsOnInTheSecondLap) {
+  const WaypointMap map = map_of(kCount + 6);
+  ASSERT_TRUE(map.is_closed());
+  ASSERT_EQ(map.points().size(), static_cast<std::size_t>(kCount));
+  WaypointLine line;
+  line.clear();
+  for (int newest = 11; newest < kCount + 10; ++newest) ASSERT_TRUE(line.extend(map, newest));
+  EXPECT_LT((line.at(line.along(kCount + 3)).position - map.points()[3]).norm(), 0.01);
+  EXPECT_NEAR(line.along(kCount + 4) - line.along(4), kTwoPi * kRadius, 0.1);
+  EXPECT_NEAR(line.at(line.along(kCount + 4)).heading - line.at(line.along(4)).heading, kTwoPi, 0.01);
+  EXPECT_FALSE(line.is_full());
 }
 
 }  // namespace

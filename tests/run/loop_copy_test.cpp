@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "chicane/controller/copyable.hpp"
+#include "chicane/controller/controller.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <span>
@@ -8,19 +10,97 @@
 
 #include "chicane/base/deadline.hpp"
 #include "chicane/base/vec2.hpp"
-#include "chicane/controller/explanation.hpp"
 #include "chicane/controller/guard_words.hpp"
-#include "chicane/controller/learned_car.hpp"
-#include "chicane/controller/plan.hpp"
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/road/reference_line.hpp"
 #include "chicane/solver/solution.hpp"
 
 namespace chicane::road {
 class RacingRoad;
 }
-
 namespace chicane::controller {
+
+/// A quantity that is estimated while the car drives.
+struct Estimate {
+  double value = std::numeric_limits<double>::quiet_NaN();      ///< NaN: not estimated
+  double deviation = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation
+};
+
+/// Estimates of the car that a run has made by the last measurement, beyond what was told. The car is driven
+/// with them in steps (docs/identification.md).
+struct LearnedCar {
+  Estimate delay;   ///< time by which commands act later than told [s]
+  Estimate gain;    ///< steering gain: wheels turn to gain · command + offset
+  Estimate offset;  ///< [rad]
+  Estimate grip;    ///< grip of the tyres, share of the told one
+};
+
+/// One predicted moment.
+struct PlanPoint {
+  double time = 0.0;       ///< [s], clock of the run
+  double x = 0.0;          ///< in W [m]
+  double y = 0.0;          ///< in W [m]
+  double psi = 0.0;        ///< [rad]
+  double speed = 0.0;      ///< [m/s]
+  model::Command command;  ///< held from this moment to the next point's
+};
+
+/// What a controller intends: predicted motion with its commands, and the line it tries to follow. Data only.
+struct Plan {
+  static constexpr int kCapacity = 256;
+  int size = 0;                               ///< points in use; 0 = no plan
+  std::array<PlanPoint, kCapacity> points{};  ///< points[0] is where the first command acts
+  int reference_size = 0;
+  std::array<Vec2, kCapacity> reference{};  ///< reference line in W [m]
+};
+
+using road::SpeedLimiter;
+
+/// Why the answer is what it is. Plain data, filled once per step; what a controller cannot say stays at its
+/// default.
+struct Explanation {
+  static constexpr int kMaxCostTerms = 12;
+
+  /// Price of the plan by what it is paid for, summed over the stages: the first `cost_term_count` have the
+  /// names of Controller::cost_terms(). Together they are SolveReport::cost.
+  std::array<double, kMaxCostTerms> cost_terms{};
+  int cost_term_count = 0;
+
+  SpeedLimiter speed_limiter = SpeedLimiter::kNone;
+  double speed_limit =
+      std::numeric_limits<double>::quiet_NaN();  ///< what is allowed where the command acts [m/s]
+
+  /// One bit each, in the order of Controller::constraints(): active in the first stage of the plan, and in
+  /// any.
+  std::uint32_t active_now = 0;
+  std::uint32_t active_ahead = 0;
+};
+
+/// Constraints by their bit in Explanation::active_now. Controllers without tyres and edges in their problem
+/// know the first three only.
+enum class Constraint : std::uint8_t {
+  kSteerLimit,
+  kThrottleMax,
+  kBrakeMax,
+  kSteerRate,
+  kLeftEdge,
+  kRightEdge,
+  kFrontTire,
+  kRearTire,
+  kFrictionEllipse,
+};
+[[nodiscard]] constexpr std::uint32_t bit(Constraint constraint) noexcept {
+  return 1U << static_cast<unsigned>(constraint);
+}
+
+/// Names in the order of the bits.
+inline constexpr std::array<std::string_view, 9> kConstraintNames{
+    "steer_limit", "throttle_max", "brake_max", "steer_rate",      "left_edge",
+    "right_edge",  "front_tire",   "rear_tire", "friction_ellipse"};
+/// Those of controllers that bound their inputs only.
+inline constexpr std::span<const std::string_view> kInputConstraintNames{kConstraintNames.data(), 3};
 
 /// What a controller's step came to.
 enum class Answer : signed char {
@@ -89,6 +169,49 @@ class Controller {
   /// Names of Explanation's cost terms and of the bits of its active constraints; empty for none.
   [[nodiscard]] virtual std::span<const std::string_view> cost_terms() const noexcept { return {}; }
   [[nodiscard]] virtual std::span<const std::string_view> constraints() const noexcept { return {}; }
+};
+
+/// A controller that can be copied with all it knows: the other face of what make_controller() returns. Both
+/// answer the same to the same measurements from then on, bit for bit. One that is not Copyable drives like
+/// any other; a run with it cannot be copied (run::ClosedLoop::copy()).
+class Copyable {
+ public:
+  [[nodiscard]] virtual std::unique_ptr<Controller> copy() const = 0;
+
+ protected:
+  Copyable() = default;
+  Copyable(const Copyable&) = default;
+  Copyable& operator=(const Copyable&) = default;
+  ~Copyable() = default;
+};
+
+/// A controller that is Copyable by the copy constructor of `Derived`.
+template <class Derived>
+class CopyableController : public Controller, public Copyable {
+ public:
+  [[nodiscard]] std::unique_ptr<Controller> copy() const final {
+    return std::make_unique<Derived>(static_cast<const Derived&>(*this));
+  }
+};
+
+/// Null for a controller that is not Copyable.
+[[nodiscard]] inline std::unique_ptr<Controller> copy_of(const Controller& controller) {
+  const auto* copyable = dynamic_cast<const Copyable*>(&controller);
+  return copyable == nullptr ? nullptr : copyable->copy();
+}
+
+/// A controller whose settings may change while it drives: the other face of what make_…(options, vehicle)
+/// returns.
+template <class Options>
+class Tunable {
+ public:
+  /// The next step() follows these settings. What was learned stays where it still means something: the map,
+  /// the commands in flight, the last answer as a start. Pre: what make_… accepts, with the vehicle's name
+  /// unchanged. Allocates nothing; no slower than a step that learns a new waypoint.
+  virtual void configure(const Options& options, const model::VehicleParams& vehicle) noexcept = 0;
+
+ protected:
+  ~Tunable() = default;
 };
 
 }  // namespace chicane::controller

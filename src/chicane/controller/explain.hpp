@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "chicane/controller/cubic_problem.hpp"
-#include "chicane/controller/explanation.hpp"
+#include "chicane/controller/controller.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/reference_line.hpp"
 #include "chicane/solver/problem.hpp"

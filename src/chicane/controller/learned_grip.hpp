@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "chicane/controller/learned_car.hpp"
+#include "chicane/controller/controller.hpp"
 #include "chicane/model/sliding.hpp"
 #include "chicane/tracking/grip_estimator.hpp"
 

@@ -7,7 +7,6 @@
 
 #include "chicane/lap_time/lap_times.hpp"
 #include "chicane/lap_time/plant_limit.hpp"
-#include "chicane/road/road_data.hpp"
 #include "chicane/road/track.hpp"
 
 namespace chicane::lap_time {

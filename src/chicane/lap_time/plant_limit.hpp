@@ -10,7 +10,7 @@
 #include "chicane/base/result.hpp"
 #include "chicane/lap_time/lap_times.hpp"
 #include "chicane/lap_time/plan_progress.hpp"
-#include "chicane/road/racing_line.hpp"
+#include "chicane/road/road_data.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/sim/double_track.hpp"
 #include "chicane/sim/plant.hpp"

@@ -8,7 +8,7 @@
 #include "chicane/lap_time/plan_progress.hpp"
 #include "chicane/model/sliding.hpp"
 #include "chicane/model/vehicle.hpp"
-#include "chicane/road/racing_line.hpp"
+#include "chicane/road/road_data.hpp"
 #include "chicane/road/track.hpp"
 
 namespace chicane::lap_time {

@@ -16,7 +16,7 @@
 #include "chicane/road/point_fit.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/telemetry/frame.hpp"
-#include "chicane/telemetry/lap_ledger.hpp"
+#include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::protocol {
 

@@ -16,7 +16,7 @@
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
-#include "chicane/telemetry/lap_ledger.hpp"
+#include "chicane/telemetry/metrics.hpp"
 #include "chicane/telemetry/mcap_writer.hpp"
 
 namespace chicane::recording {

@@ -10,7 +10,7 @@
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/reference_line.hpp"
 #include "chicane/road/road.hpp"
-#include "chicane/road/road_data.hpp"
+#include "chicane/road/track.hpp"
 
 namespace chicane::road {
 

@@ -8,7 +8,7 @@
 #include "chicane/road/line_smoother.hpp"
 #include "chicane/road/reference_line.hpp"
 #include "chicane/road/speed_plan.hpp"
-#include "chicane/road/waypoint_line.hpp"
+#include "chicane/road/waypoint_map.hpp"
 
 namespace chicane::road {
 

@@ -8,7 +8,6 @@
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/line_planner.hpp"
 #include "chicane/road/reference_line.hpp"
-#include "chicane/road/waypoint_line.hpp"
 #include "chicane/road/waypoint_map.hpp"
 
 namespace chicane::road {

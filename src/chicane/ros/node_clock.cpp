@@ -1,9 +1,63 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/node_clock.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include <fmt/format.h>
 
 namespace chicane::ros {
+namespace {
+
+constexpr double kNanosecond = 1e-9;
+constexpr double kHour = 3600.0;
+
+double seconds(std::int64_t nanoseconds) { return kNanosecond * static_cast<double>(nanoseconds); }
+
+}  // namespace
+
+bool ClockWatch::accept(std::int64_t stamp, std::int64_t received, std::int64_t system) {
+  if (!last_) {
+    last_ = {stamp, received};
+    offset_ = received - stamp;
+    const double age = seconds(system - stamp);
+    const bool was = std::exchange(is_simulated_, std::fabs(age) > kHour);
+    if (is_simulated_ && !was) {
+      say(fmt::format(
+          "the stamps of {} are {:.0f} h from this machine's time: simulated time (/clock), or another "
+          "machine's clock; the moment of arrival counts",
+          topic_, std::fabs(age) / kHour));
+    }
+    return true;
+  }
+  const double by_stamp = seconds(stamp - last_->stamp);
+  const double by_arrival = seconds(received - last_->received);
+  if (std::fabs(by_stamp - by_arrival) > kJump) {
+    say(fmt::format("the clock of {} jumped by {:+.1f} s", topic_, by_stamp - by_arrival));
+    offset_ = received - stamp;
+  } else if (by_stamp <= 0.0) {
+    ++dropped_;
+    if (!std::exchange(has_said_dropped_, true))
+      say(fmt::format("a message of {} came {}: such messages are left out", topic_,
+                      by_stamp == 0.0 ? "twice" : "after a newer one"));
+    return false;
+  }
+  follow(received - stamp, by_arrival);
+  last_ = {stamp, received};
+  return true;
+}
+
+/// Clocks drift apart; stamps of simulated time may go slower than the clock does.
+void ClockWatch::follow(std::int64_t lag, double since) {
+  constexpr double kDrift = 1e-3;  // by which the quickest message is forgotten [s/s]
+  offset_ = std::min(offset_ + static_cast<std::int64_t>(kDrift * since / kNanosecond), lag);
+  if (seconds(lag - offset_) > kLatest) offset_ = lag;
+}
+
+void ClockWatch::say(std::string line) { news_ = std::move(line); }
+
+std::string ClockWatch::news() { return std::exchange(news_, {}); }
 
 std::string NodeClock::tick(std::int64_t time) {
   if (!is_simulated_) return {};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/sim_node.hpp"
-#include "chicane/ros/detail/endpoints.hpp"
+#include "chicane/ros/dds.hpp"
 
 #include <fmt/format.h>
 

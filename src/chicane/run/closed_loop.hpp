@@ -121,7 +121,7 @@ class ClosedLoop {
   void follow(double time, const model::State& car, double delay, const model::Command& sent) noexcept;
 
   /// The same run once more, as far as it has come: both do the same from then on, bit for bit. Null where
-  /// controller or plant cannot be copied (controller/copyable.hpp). Allocates some 8 MB.
+  /// controller or plant cannot be copied (controller/controller.hpp). Allocates some 8 MB.
   [[nodiscard]] std::unique_ptr<ClosedLoop> copy() const;
 
   [[nodiscard]] double time() const noexcept { return world_.time(); }

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <utility>
 
-#include "chicane/road/road_data.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/run/make.hpp"
 
 namespace chicane::run {

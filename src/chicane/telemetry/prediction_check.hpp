@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "chicane/base/vec2.hpp"
-#include "chicane/controller/plan.hpp"
+#include "chicane/controller/controller.hpp"
 
 namespace chicane::telemetry {
 

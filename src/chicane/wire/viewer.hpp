@@ -17,7 +17,7 @@
 #include "chicane/protocol/foxglove_codec.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/telemetry/frame.hpp"
-#include "chicane/telemetry/lap_ledger.hpp"
+#include "chicane/telemetry/metrics.hpp"
 #include "chicane/wire/endpoint.hpp"
 #include "chicane/wire/link_pace.hpp"
 #include "chicane/wire/run_memory.hpp"

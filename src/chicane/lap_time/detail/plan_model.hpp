@@ -5,7 +5,7 @@
 #include "chicane/lap_time/detail/plant_model.hpp"
 #include "chicane/lap_time/detail/road_nodes.hpp"
 #include "chicane/lap_time/detail/tightest_bend.hpp"
-#include "chicane/road/racing_line.hpp"
+#include "chicane/road/road_data.hpp"
 
 namespace chicane::lap_time {
 

@@ -9,7 +9,7 @@
 #include "chicane/base/result.hpp"
 #include "chicane/lap_time/detail/plan_model.hpp"
 #include "chicane/lap_time/plan_progress.hpp"
-#include "chicane/road/racing_line.hpp"
+#include "chicane/road/road_data.hpp"
 #include "chicane/road/track.hpp"
 
 namespace chicane::lap_time {

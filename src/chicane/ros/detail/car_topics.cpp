@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/detail/car_topics.hpp"
 
-#include "chicane/ros/detail/endpoints.hpp"
+#include "chicane/ros/dds.hpp"
 
 #include <string>
 

@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "chicane/controller/controller_list.hpp"
-#include "chicane/controller/tunable.hpp"
+#include "chicane/controller/registry.hpp"
+#include "chicane/controller/controller.hpp"
 
 namespace chicane::controller {
 namespace {

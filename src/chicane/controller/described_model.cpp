@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/controller/roll_forward.hpp"
+#include "chicane/controller/described_model.hpp"
 
 #include <algorithm>
 #include <cmath>

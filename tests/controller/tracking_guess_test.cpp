@@ -1,15 +1,90 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/controller/other_line.hpp"
+#include "chicane/controller/tracking_guess.hpp"
 
 #include <gtest/gtest.h>
-
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <vector>
 
 #include "chicane/base/math.hpp"
 
 namespace chicane::controller {
 namespace {
+
+using Problem = tracking::TrackingProblem;
+
+TEST(PathLaw, SteersAlongTheLineAndBackToIt) {
+  const model::PredictionModel model{model::udacity_params()};
+  Problem problem;
+  problem.model = &model;
+  problem.road.curvature[3] = 0.02;
+  problem.road.speed[3] = 25.0;
+  Problem::State x{};
+  x[Problem::kVx] = 20.0;
+  EXPECT_NEAR(path_law(problem, 3, x)[0], 0.02 * model.vehicle().wheelbase(), 1e-12);
+  EXPECT_NEAR(path_law(problem, 3, x)[1], 5.0, 1e-12);
+  x[Problem::kD] = 1.0;
+  EXPECT_LT(path_law(problem, 3, x)[0], 0.02 * model.vehicle().wheelbase());
+}
+
+TEST(PathLaw, PullsAGuessBackToTheRoad) {
+  Problem::State x{};
+  x[Problem::kD] = 12.0;
+  x[Problem::kE] = -2.0;
+  x[Problem::kVx] = -1.0;
+  keep_sane(x);
+  EXPECT_EQ(x[Problem::kD], 5.0);
+  EXPECT_EQ(x[Problem::kE], -0.6);
+  EXPECT_EQ(x[Problem::kVx], 0.0);
+}
+
+using Problem = tracking::TrackingProblem;
+
+/// A line along +x: what turns is the car.
+road::ReferenceLine straight() {
+  road::ReferenceLine line{101};
+  EXPECT_TRUE(line.shape(100.0, 100, false));
+  for (std::size_t i = 0; i < line.samples().size(); ++i)
+    line.samples()[i].curve = {.position = {static_cast<double>(i), 0.0}, .tangent = {1.0, 0.0}};
+  return line;
+}
+
+/// `side`: 1 turns left, -1 right.
+double pushed(const model::PredictionModel& model, double heading, double& moment, double side = 1.0) {
+  Problem problem;
+  problem.model = &model;
+  problem.horizon = 20;
+  tracking::TrackingTrajectory along;
+  along.horizon = 20;
+  for (std::size_t i = 0; i <= 20; ++i) {
+    along.x[i][Problem::kE] = heading + side * 0.06 * static_cast<double>(i);
+    along.x[i][Problem::kVx] = 20.0;
+    along.x[i][Problem::kR] = side * 2.0;
+  }
+  mind_helper_gap(problem, along, straight(), 10.0);
+  double sum = 0.0;
+  moment = 0.0;
+  for (std::size_t i = 0; i < 20; ++i) {
+    sum += problem.road.pushed_vy[i];
+    moment += problem.road.pushed_vy[i] * static_cast<double>(i + 1);
+  }
+  return sum;
+}
+
+TEST(MindedGap, PushesOnceWhereTheHeadingPassesIt) {
+  const model::PredictionModel model{model::udacity_params()};
+  const double expected = -model::helper_gap_turn(model.vehicle(), 2.0) * 20.0;
+  double moment = 0.0;
+  EXPECT_NEAR(pushed(model, 0.5 * kPi - 0.33, moment), expected, 1e-12);
+  EXPECT_NEAR(moment, 5.5 * expected, 1e-9) << "half-way through the sixth stage";
+  EXPECT_NEAR(pushed(model, 0.5 * kPi - 0.01, moment), expected, 1e-12) << "in the first stage";
+  EXPECT_EQ(pushed(model, 1.8, moment), 0.0);
+  EXPECT_NEAR(pushed(model, 0.5 * kPi + 0.33, moment, -1.0), -expected, 1e-12) << "to the right";
+  EXPECT_NEAR(moment, -5.5 * expected, 1e-9);
+  const model::PredictionModel real{model::road_car_params()};
+  EXPECT_EQ(pushed(real, 0.5 * kPi - 0.33, moment), 0.0);
+}
 
 using Problem = tracking::TrackingProblem;
 
@@ -109,6 +184,26 @@ TEST(BesideLap, IsHowFarThePlanWillHaveToBeCorrected) {
       << "of the first lap the car's own place counts";
   answer.plan.size = 0;
   EXPECT_EQ(beside_lap(lap(52.4, 0.8), &now, answer.plan, 2.0, 15.0), 0.0) << "nothing is planned";
+}
+
+TEST(Absence, IsLongAfterWhatIsBorneOfWhatWasThere) {
+  Absence absence{0.3};
+  absence.note(false, 10.0);
+  EXPECT_FALSE(absence.is_long) << "it was never there";
+  absence.note(true, 10.0);
+  absence.note(false, 10.29);
+  EXPECT_FALSE(absence.is_long);
+  absence.note(false, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(absence.is_long);
+  absence.note(false, 10.31);
+  EXPECT_TRUE(absence.is_long);
+  absence.note(true, 10.4);
+  EXPECT_FALSE(absence.is_long);
+  absence.note(false, 11.0);
+  absence.reset();
+  absence.note(false, 12.0);
+  EXPECT_FALSE(absence.is_long);
+  EXPECT_EQ(absence.longest, 0.3);
 }
 
 }  // namespace
