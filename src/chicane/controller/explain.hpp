@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
-#include "chicane/controller/cubic_problem.hpp"
 #include "chicane/controller/controller.hpp"
+#include "chicane/controller/cubic_problem.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/reference_line.hpp"
 #include "chicane/solver/problem.hpp"

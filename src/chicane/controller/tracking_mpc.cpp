@@ -7,11 +7,11 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/owned.hpp"
-#include "chicane/controller/tracking_guess.hpp"
-#include "chicane/controller/registry.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/learned_grip.hpp"
+#include "chicane/controller/registry.hpp"
+#include "chicane/controller/tracking_guess.hpp"
 #include "chicane/model/grip.hpp"
 #include "chicane/road/driven_road.hpp"
 #include "chicane/tracking/state_estimator.hpp"

@@ -16,8 +16,8 @@
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
-#include "chicane/telemetry/metrics.hpp"
 #include "chicane/telemetry/mcap_writer.hpp"
+#include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::recording {
 

@@ -14,10 +14,10 @@
 
 #include "chicane/protocol/car_messages.hpp"
 #include "chicane/ros/car_sight.hpp"
-#include "chicane/ros/node_clock.hpp"
 #include "chicane/ros/detail/car_topics.hpp"
 #include "chicane/ros/drive_command.hpp"
 #include "chicane/ros/frame_tree.hpp"
+#include "chicane/ros/node_clock.hpp"
 #include "chicane/ros/parameter_services.hpp"
 #include "chicane/ros/partner_watch.hpp"
 #include "chicane/ros/run_publisher.hpp"

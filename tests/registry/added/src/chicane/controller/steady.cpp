@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "chicane/controller/registry.hpp"
 #include "chicane/controller/controller.hpp"
+#include "chicane/controller/registry.hpp"
 
 namespace chicane::controller {
 namespace {
