@@ -25,7 +25,7 @@ fi
 if [ "${1:-}" = package ] && { [ $# -eq 1 ] || { [ $# -eq 2 ] && [ "$2" = --page ]; }; }; then
   mapfile -t node < <(node_packages)
   install_packages "${run_packages[@]}" "${package_packages[@]}" "${node[@]}"
-  options=(CHICANE_SIMD=all CHICANE_PYTHON=ON)
+  options=(CHICANE_SIMD=all CHICANE_PYTHON=ON CHICANE_PYTHON_TWO_SIZES=OFF)
   is_configured "$root" || options+=(CHICANE_BUILD_TESTS=OFF CHICANE_BUILD_EXAMPLES=OFF)
   build_release "$root" chicane_installed "${options[@]}"
   (cd "$root/build/release" && rm -rf packages && cpack >cpack.log 2>&1) || { cat "$root/build/release/cpack.log" >&2; exit 3; }

@@ -9,15 +9,15 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 source "$root/tools/install_packages.sh"
 source "$root/tools/build.sh"
 
-selection=(-LE slow) simd=runnable slow=OFF slow_packages=()
+selection=(-LE slow) simd=native slow=OFF two_sizes=ON slow_packages=()
 if [ "${1:-}" = --all ]; then
-  selection=() simd=all slow=ON slow_packages=("${slow_test_packages[@]}")
+  selection=() simd=all slow=ON two_sizes=OFF slow_packages=("${slow_test_packages[@]}")
   shift
 fi
 
 mapfile -t others < <(node_packages; browser_packages)
 install_packages "${run_packages[@]}" "${test_packages[@]}" "${slow_packages[@]}" "${others[@]}"
-build_release "$root" all "CHICANE_SIMD=$simd" CHICANE_BUILD_TESTS=ON CHICANE_BUILD_EXAMPLES=ON CHICANE_PYTHON=ON "CHICANE_SLOW_TESTS=$slow"
+build_release "$root" all "CHICANE_SIMD=$simd" CHICANE_BUILD_TESTS=ON CHICANE_BUILD_EXAMPLES=ON CHICANE_PYTHON=ON "CHICANE_SLOW_TESTS=$slow" "CHICANE_PYTHON_TWO_SIZES=$two_sizes"
 processor_seconds built
 say "chicane: ctest ${selection[*]} $*"
 log=$root/build/release/test.log

@@ -34,9 +34,6 @@ function(chicane_simd_options target set)
     $<$<CXX_COMPILER_ID:GNU>:-fno-gcse-after-reload>  # a sixth of the compile time of large solvers, for nothing measurable
     -Wno-psabi                # packs are never passed between objects
     $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized -Wno-maybe-uninitialized>)  # GCC bug 105593, in its own intrinsics
-  if(set IN_LIST CHICANE_QUICKLY_BUILT_SETS)
-    target_compile_definitions(${target} PRIVATE CHICANE_NO_FORCED_INLINE)
-  endif()
 endfunction()
 
 function(chicane_simd_sources name)

@@ -61,7 +61,7 @@ template <class Arch, std::size_t... Class>
 std::unique_ptr<TracedSolver> make_one(std::size_t kind, const TracedProblem& problem,
                                        const Workspace& workspace, std::index_sequence<Class...>) {
   using Make = std::unique_ptr<TracedSolver> (*)(const TracedProblem&, const Workspace&);
-  static constexpr Make kMakers[]{make_sized_solver<Arch, Class>...};
+  static constexpr Make kMakers[]{make_sized_solver<Arch, kSizeClasses[Class]>...};
   return kMakers[kind](problem, workspace);
 }
 template <class Arch>

@@ -43,12 +43,12 @@ std::uint64_t hash_of(const Golden& golden, InstructionSet set) {
 }
 
 TEST_P(GoldenRun, HasTheBitsItHad) {
-  const std::uint64_t plain = hash_of(GetParam(), InstructionSet::kBaseline);
-  EXPECT_EQ(plain, GetParam().plain) << fmt::format("now 0x{:016x}", plain);
-  for (const InstructionSet set : {InstructionSet::kAvx2, InstructionSet::kAvx512, InstructionSet::kNeon}) {
+  for (const InstructionSet set :
+       {InstructionSet::kBaseline, InstructionSet::kAvx2, InstructionSet::kAvx512, InstructionSet::kNeon}) {
     if (!is_available(set)) continue;
-    const std::uint64_t fused = hash_of(GetParam(), set);
-    EXPECT_EQ(fused, GetParam().fused) << to_string(set) << fmt::format(" now 0x{:016x}", fused);
+    const std::uint64_t now = hash_of(GetParam(), set);
+    EXPECT_EQ(now, arithmetic(set) == "plain" ? GetParam().plain : GetParam().fused)
+        << to_string(set) << fmt::format(" now 0x{:016x}", now);
   }
 }
 

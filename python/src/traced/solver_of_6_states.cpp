@@ -3,7 +3,7 @@
 
 namespace chicane::python {
 
-template std::unique_ptr<TracedSolver> make_sized_solver<arch::Native, 2>(const TracedProblem&,
-                                                                          const Workspace&);
+template std::unique_ptr<TracedSolver> make_sized_solver<arch::Native, kOf6States>(const TracedProblem&,
+                                                                                   const Workspace&);
 
 }  // namespace chicane::python

@@ -128,9 +128,9 @@ class SolverOfSize final : public TracedSolver {
   solver::Trajectory<Sizes.nx, Sizes.nu, kMostStages> trajectory_;
 };
 
-template <class Arch, std::size_t Class>
+template <class Arch, SizeClass Sizes>
 std::unique_ptr<TracedSolver> make_sized_solver(const TracedProblem& problem, const Workspace& workspace) {
-  return std::make_unique<SolverOfSize<Arch, kSizeClasses[Class]>>(problem, workspace);
+  return std::make_unique<SolverOfSize<Arch, Sizes>>(problem, workspace);
 }
 
 }  // namespace chicane::python

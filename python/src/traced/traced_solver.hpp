@@ -77,18 +77,29 @@ class TracedSolver {
   virtual bool feedback(const double* x0, TracedAnswer& answer) noexcept = 0;
 };
 
-/// Sizes for which code exists; a problem takes the first that it fits in. A quadratic program of six states
-/// costs a third of one of eight with two inputs more: hence the small steps below.
 struct SizeClass {
   int nx, nu, nr, ne, nc, nh, neh, nec;
 };
-inline constexpr std::array kSizeClasses{
-    SizeClass{2, 2, 8, 8, 6, 2, 2, 4},       SizeClass{4, 2, 16, 12, 8, 2, 4, 4},
-    SizeClass{6, 2, 16, 12, 8, 2, 6, 6},     SizeClass{8, 4, 24, 16, 12, 4, 8, 8},
-    SizeClass{24, 8, 48, 48, 48, 8, 24, 48}, SizeClass{52, 8, 64, 64, 112, 8, 52, 104}};
+inline constexpr SizeClass kOf2States{2, 2, 8, 8, 6, 2, 2, 4};
+inline constexpr SizeClass kOf4States{4, 2, 16, 12, 8, 2, 4, 4};
+inline constexpr SizeClass kOf6States{6, 2, 16, 12, 8, 2, 6, 6};
+inline constexpr SizeClass kOf8States{8, 4, 24, 16, 12, 4, 8, 8};
+inline constexpr SizeClass kOf24States{24, 8, 48, 48, 48, 8, 24, 48};
+inline constexpr SizeClass kOf52States{52, 8, 64, 64, 112, 8, 52, 104};
 
-/// A solver of kSizeClasses[Class] for the instruction set `Arch`. `problem` and `workspace` must outlive it.
-template <class Arch, std::size_t Class>
+/// Sizes for which code exists; a problem takes the first that it fits in. A quadratic program of six states
+/// costs a third of one of eight with two inputs more: hence the small steps. Tests that are not slow do with
+/// two (CMake: CHICANE_PYTHON_TWO_SIZES).
+#ifdef CHICANE_TWO_SIZES
+inline constexpr std::array kSizeClasses{kOf8States, kOf52States};
+#else
+inline constexpr std::array kSizeClasses{kOf2States, kOf4States,  kOf6States,
+                                         kOf8States, kOf24States, kOf52States};
+#endif
+
+/// A solver of the size class `Sizes` for the instruction set `Arch`. `problem` and `workspace` must outlive
+/// it.
+template <class Arch, SizeClass Sizes>
 std::unique_ptr<TracedSolver> make_sized_solver(const TracedProblem& problem, const Workspace& workspace);
 
 }  // namespace chicane::python
