@@ -2,7 +2,7 @@
 #include "chicane/run/lane_change.hpp"
 
 #include <gtest/gtest.h>
-
+#include <cmath>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -75,6 +75,51 @@ TEST(LaneChange, IsNoneForModelCars) {
   const auto change = LaneChange::create(scenario_of("f1tenth", "race").vehicle);
   ASSERT_FALSE(change.has_value());
   EXPECT_EQ(change.error().message, "lane change: got a model car, expected one in full size");
+}
+
+// Lengths and widths of a car of 1.8 m: 12, 13.5, 11, 12.5 and 12 m; 1.1 b + 0.25, b + 1 and 3 m.
+TEST(LaneChangeCourse, HasTheSectionsOfTheStandard) {
+  const auto lanes = LaneChangeCourse(1.8).lanes();
+  EXPECT_EQ(lanes[0].begin, 0.0);
+  EXPECT_EQ(lanes[0].end, 12.0);
+  EXPECT_EQ(lanes[1].begin, 25.5);
+  EXPECT_EQ(lanes[1].end, 36.5);
+  EXPECT_EQ(lanes[2].begin, 49.0);
+  EXPECT_EQ(lanes[2].end, 61.0);
+  EXPECT_NEAR(lanes[0].left - lanes[0].right, 2.23, 1e-12);
+  EXPECT_NEAR(lanes[1].left - lanes[1].right, 2.8, 1e-12);
+  EXPECT_NEAR(lanes[2].left - lanes[2].right, 3.0, 1e-12);
+  EXPECT_NEAR(lanes[1].right - lanes[0].left, 1.0, 1e-12);
+  const auto wide = LaneChangeCourse(2.43).lanes();
+  EXPECT_NEAR(wide[2].left - wide[2].right, 1.3 * 2.43 + 0.25, 1e-12);
+}
+
+TEST(LaneChangeCourse, HasAWayThatABodyGoesThroughAndConesBesideIt) {
+  for (const double width : {1.6, 1.8, 2.43}) {
+    const LaneChangeCourse course(width);
+    for (double x = -5.0; x <= 66.0; x += 0.1) {
+      const double slope = (course.way(x + 1e-4) - course.way(x - 1e-4)) / 2e-4;
+      const model::Pose on_it{x, course.way(x), std::atan(slope)};
+      EXPECT_GT(course.room(on_it, 4.3, width), 0.0) << width << " at " << x;
+    }
+    const auto entry = course.lanes()[0];
+    EXPECT_NEAR(course.room({6.0, 0.3, 0.0}, 4.0, width), entry.left - 0.3 - 0.5 * width, 1e-9);
+    EXPECT_LT(course.room({6.0, entry.left, 0.0}, 4.0, width), 0.0);
+    EXPECT_LT(course.room({6.0, 0.0, 0.4}, 4.0, width), 0.0) << "a corner of the body beyond the cones";
+    EXPECT_TRUE(std::isinf(course.room({19.0, 2.0, 0.1}, 4.0, width))) << "between the lanes";
+  }
+}
+
+TEST(LaneChangeCourse, IsARoadWhoseEdgesAreTheCones) {
+  const LaneChangeCourse course(1.8);
+  const road::Track road = course.road().value();
+  for (const LaneChangeCourse::Lane& lane : course.lanes()) {
+    for (double x = lane.begin; x <= lane.end; x += 0.5) {
+      const double y = 0.5 * (lane.left + lane.right);
+      const road::Projection foot = road.centre().project({x, y});
+      EXPECT_NEAR(road.edge_distance(foot), 0.5 * (lane.left - lane.right), 0.05) << x;
+    }
+  }
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/controller.hpp"
+#include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/explain.hpp"
-#include "chicane/controller/registry.hpp"
 #include "chicane/road/path.hpp"
 
 namespace chicane::controller {

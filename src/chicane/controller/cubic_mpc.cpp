@@ -12,12 +12,12 @@
 #include "chicane/base/owned.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/controller/controller.hpp"
+#include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/cubic_problem.hpp"
 #include "chicane/controller/cubic_solver.hpp"
 #include "chicane/controller/described_model.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/local_fit.hpp"
-#include "chicane/controller/registry.hpp"
 #include "chicane/solver/warm_start.hpp"
 
 namespace chicane::controller {

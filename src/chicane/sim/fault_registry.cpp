@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <array>
 
-#include "chicane/sim/detail/car_faults.hpp"
-#include "chicane/sim/detail/command_faults.hpp"
-#include "chicane/sim/detail/measurement_faults.hpp"
+#include "chicane/sim/detail/faults.hpp"
 #include "chicane/sim/fault.hpp"
 
 namespace chicane::sim {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "chicane/controller/controller.hpp"
-#include "chicane/controller/registry.hpp"
+#include "chicane/controller/controller_list.hpp"
 
 namespace chicane::controller {
 namespace {

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "chicane/base/option.hpp"
+#include "chicane/base/result.hpp"
+#include "chicane/base/text.hpp"
+#include "chicane/controller/controller.hpp"
+#include "chicane/model/vehicle.hpp"
+
+namespace chicane::controller {
+
+namespace detail {
+template <class Entry>
+inline constexpr auto kGroupText = [] {
+  std::array<char, Entry::kName.size()> text{};
+  std::replace_copy(Entry::kName.begin(), Entry::kName.end(), text.begin(), '-', '_');
+  return text;
+}();
+}  // namespace detail
+
+/// Where a controller's options stand in files and keys: "pure_pursuit" for "pure-pursuit".
+template <class Entry>
+inline constexpr std::string_view kOptionGroup{detail::kGroupText<Entry>.data(),
+                                               detail::kGroupText<Entry>.size()};
+
+/// Whether the entry's make function accepts these: kInvalidArgument names the first value out of range.
+template <class Entry>
+[[nodiscard]] Result<void> check(const typename Entry::Options& options,
+                                 const model::VehicleParams& vehicle) {
+  if (Result<void> valid = model::validate(vehicle); !valid) return valid;
+  return check_options(kOptionGroup<Entry>, Entry::options(), &options);
+}
+
+/// Controllers to choose from by name. What a run, its files, the command line and viewers know of them
+/// follows from their entries. An entry is a struct beside its controller:
+///
+///   struct PidEntry {
+///     using Options = PidOptions;                        // a struct of its own
+///     static constexpr std::string_view kName = "pid";   // small letters and dashes
+///     static constexpr std::string_view kMeaning = "…";  // a line for `chicane list controllers`
+///     static std::span<const Option> options() noexcept; // a row for each field of Options
+///     static constexpr auto kMake = &make_pid;           // from options and model::VehicleParams
+///     // Both optional: the option that --speed-mps sets, and options that exclude each other.
+///     static constexpr std::string_view kSpeedOption = "speed_reference";
+///     static std::vector<OptionContradiction> contradictions(const Options&);
+///   };
+template <class... Entries>
+class ControllerList {
+ public:
+  /// The options of all of them: std::get<PidOptions>(options).
+  using Options = std::tuple<typename Entries::Options...>;
+
+  /// What can be said of an entry without its types.
+  struct Kind {
+    std::string_view name;
+    std::string_view group;
+    std::string_view meaning;
+    std::string_view speed_option;  ///< empty where it has none
+    Result<std::unique_ptr<Controller>> (*make)(const Options&, const model::VehicleParams&);
+    std::vector<OptionContradiction> (*contradictions)(const Options&);
+  };
+
+  static constexpr std::array<std::string_view, sizeof...(Entries)> kNames{Entries::kName...};
+
+  [[nodiscard]] static std::span<const Kind> kinds() noexcept {
+    static constexpr std::array<Kind, sizeof...(Entries)> kKinds{kind<Entries>()...};
+    return kKinds;
+  }
+  /// Null when there is none.
+  [[nodiscard]] static const Kind* find(std::string_view name) noexcept {
+    for (const Kind& kind : kinds()) {
+      if (kind.name == name) return &kind;
+    }
+    return nullptr;
+  }
+
+  /// Calls visit.template operator()<Entry>() for each, in order.
+  template <class Visitor>
+  static void for_each(Visitor visit) {
+    (visit.template operator()<Entries>(), ...);
+  }
+
+  /// kInvalidArgument "controller: got mpc, expected one of pid, ..." and what the entry's own function says.
+  [[nodiscard]] static Result<std::unique_ptr<Controller>> make(std::string_view name, const Options& options,
+                                                                const model::VehicleParams& vehicle) {
+    if (const Kind* kind = find(name)) return kind->make(options, vehicle);
+    return fail(ErrorCode::kInvalidArgument,
+                "controller: got " + printable(name) + ", expected one of " + joined(kNames));
+  }
+
+  /// Gives a controller of this list its options while it drives (controller/controller.hpp); others do not
+  /// care.
+  static void configure(Controller& controller, const Options& options,
+                        const model::VehicleParams& vehicle) noexcept {
+    (configure_as<Entries>(controller, options, vehicle), ...);
+  }
+
+ private:
+  template <class Entry>
+  static constexpr Kind kind() {
+    return {Entry::kName,          kOptionGroup<Entry>, Entry::kMeaning,
+            speed_option<Entry>(), make_as<Entry>,      contradictions_of<Entry>};
+  }
+  template <class Entry>
+  static constexpr std::string_view speed_option() {
+    if constexpr (requires { Entry::kSpeedOption; })
+      return Entry::kSpeedOption;
+    else
+      return {};
+  }
+  template <class Entry>
+  static Result<std::unique_ptr<Controller>> make_as(const Options& options,
+                                                     const model::VehicleParams& vehicle) {
+    return Entry::kMake(std::get<typename Entry::Options>(options), vehicle);
+  }
+  template <class Entry>
+  static std::vector<OptionContradiction> contradictions_of(const Options& options) {
+    if constexpr (requires { &Entry::contradictions; })
+      return Entry::contradictions(std::get<typename Entry::Options>(options));
+    else
+      return {};
+  }
+  template <class Entry>
+  static void configure_as(Controller& controller, const Options& options,
+                           const model::VehicleParams& vehicle) noexcept {
+    if (auto* tunable = dynamic_cast<Tunable<typename Entry::Options>*>(&controller))
+      tunable->configure(std::get<typename Entry::Options>(options), vehicle);
+  }
+};
+
+}  // namespace chicane::controller

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <limits>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
+#include "chicane/sim/fault.hpp"
+
+/// The faults that ship: of the car and its road, of the computer and the way from it to the actuators, and
+/// of the sensors.
+namespace chicane::sim {
+
+inline constexpr FaultKind kHalfGrip{
+    .name = "half_grip",
+    .meaning = "Tyre forces are reduced.",
+    .duration = 5.0,
+    .strength = 0.5,
+    .weakest = 0.05,
+    .strongest = 1.0,
+    .strength_meaning = "share of the force that is left",
+    .grip = [](double strength) noexcept { return strength; },
+};
+
+inline constexpr FaultKind kIcePatch{
+    .name = "ice_patch",
+    .meaning = "A short stretch of ice.",
+    .duration = 0.3,
+    .strength = 0.1,
+    .weakest = 0.05,
+    .strongest = 1.0,
+    .strength_meaning = "share of the force that is left",
+    .grip = [](double strength) noexcept { return strength; },
+};
+
+inline constexpr FaultKind kSideWind{
+    .name = "side_wind",
+    .meaning = "A gust from the right.",
+    .duration = 2.0,
+    .strength = 2.0,
+    .weakest = -10.0,
+    .strongest = 10.0,
+    .strength_meaning = "push to the left [m/s²]",
+    .side_acceleration = [](double strength) noexcept { return strength; },
+};
+
+inline constexpr FaultKind kWeakBrakes{
+    .name = "weak_brakes",
+    .meaning = "The brakes give less than asked for.",
+    .duration = 5.0,
+    .strength = 0.3,
+    .weakest = 0.0,
+    .strongest = 1.0,
+    .strength_meaning = "share that is left",
+    .actuate =
+        [](FaultMemory& memory, const model::Command&, model::Command& done) noexcept {
+          if (done.throttle < 0.0) done.throttle *= memory.strength;
+        },
+};
+
+inline constexpr FaultKind kSteeringStuck{
+    .name = "steering_stuck",
+    .meaning = "The wheel stays where it is.",
+    .duration = 0.5,
+    .place = FaultPlace::kSource,
+    .actuate =
+        [](FaultMemory& memory, const model::Command& asked, model::Command& done) noexcept {
+          if (!memory.value) memory.value = asked.steer;
+          done.steer = *memory.value;
+        },
+};
+
+inline constexpr FaultKind kSteeringOffset{
+    .name = "steering_offset",
+    .meaning = "The wheel stands off what is asked for.",
+    .duration = 5.0,
+    .strength = 2.0,
+    .weakest = -20.0,
+    .strongest = 20.0,
+    .strength_meaning = "angle to the left [deg]",
+    .actuate = [](FaultMemory& memory, const model::Command&,
+                  model::Command& done) noexcept { done.steer += degrees_to_radians(memory.strength); },
+};
+
+inline constexpr FaultKind kThrottleStuck{
+    .name = "throttle_stuck",
+    .meaning = "The pedal stays where it is.",
+    .duration = 2.0,
+    .place = FaultPlace::kSource,
+    .actuate =
+        [](FaultMemory& memory, const model::Command& asked, model::Command& done) noexcept {
+          if (!memory.value) memory.value = asked.throttle;
+          done.throttle = *memory.value;
+        },
+};
+
+inline constexpr FaultKind kSlowSolver{
+    .name = "slow_solver",
+    .meaning = "The deadline of each step is spent almost at once.",
+    .duration = 5.0,
+    .strength = 1.0,
+    .weakest = 1.0,
+    .strongest = 100.0,
+    .strength_meaning = "questions to the clock until then",
+    .deadline_questions = [](double strength) noexcept { return static_cast<std::uint32_t>(strength); },
+};
+
+inline constexpr FaultKind kDeadController{
+    .name = "dead_controller",
+    .meaning = "No command arrives.",
+    .loses_command = [](FaultMemory&) noexcept { return true; },
+};
+
+inline constexpr FaultKind kDelayDoubled{
+    .name = "delay_doubled",
+    .meaning = "Commands take longer than the controller knows.",
+    .duration = 5.0,
+    .strength = 2.0,
+    .weakest = 1.0,
+    .strongest = 5.0,
+    .strength_meaning = "times the latency",
+    .extra_delay = [](double strength, double latency) noexcept { return (strength - 1.0) * latency; },
+};
+
+inline constexpr FaultKind kCommandDropped{
+    .name = "command_dropped",
+    .meaning = "Some commands never arrive.",
+    .duration = 5.0,
+    .strength = 0.5,
+    .weakest = 0.0,
+    .strongest = 1.0,
+    .strength_meaning = "share that is lost",
+    .stream = "loss",
+    .loses_command = [](FaultMemory& memory) noexcept { return memory.random.uniform() < memory.strength; },
+};
+
+inline constexpr FaultKind kLinkLost{
+    .name = "link_lost",
+    .meaning = "No measurement arrives.",
+    .duration = 2.0,
+    .place = FaultPlace::kLink,
+    .measure =
+        [](FaultMemory&, const model::Measurement&, model::Measurement& told) noexcept {
+          told.waypoint_count = 0;
+          told.x = told.y = told.psi = told.speed = std::numeric_limits<double>::quiet_NaN();
+          told.steer = told.throttle = std::numeric_limits<double>::quiet_NaN();
+        },
+};
+
+inline constexpr FaultKind kFrozenSensor{
+    .name = "frozen_sensor",
+    .meaning = "The sensors repeat their last measurement with a new time.",
+    .place = FaultPlace::kSource,
+    .measure =
+        [](FaultMemory& memory, const model::Measurement& now, model::Measurement& told) noexcept {
+          if (!memory.measurement) memory.measurement = now;
+          told = *memory.measurement;
+          told.time = now.time;
+          told.delay = now.delay;
+        },
+};
+
+inline constexpr FaultKind kNanMeasurement{
+    .name = "nan_measurement",
+    .meaning = "Position, yaw and speed are not numbers.",
+    .duration = 2.0,
+    .place = FaultPlace::kLink,
+    .measure =
+        [](FaultMemory&, const model::Measurement&, model::Measurement& told) noexcept {
+          told.x = told.y = told.psi = told.speed = std::numeric_limits<double>::quiet_NaN();
+        },
+};
+
+inline constexpr FaultKind kPositionJump{
+    .name = "position_jump",
+    .meaning = "The measured position lies to the left of the car.",
+    .strength = 5.0,
+    .weakest = -100.0,
+    .strongest = 100.0,
+    .strength_meaning = "distance, right negative [m]",
+    .measure =
+        [](FaultMemory& memory, const model::Measurement& now, model::Measurement& told) noexcept {
+          told.x -= memory.strength * sin(now.psi);
+          told.y += memory.strength * cos(now.psi);
+        },
+};
+
+inline constexpr FaultKind kGpsNoise{
+    .name = "gps_noise",
+    .meaning = "The measured position is noisy.",
+    .duration = 3.0,
+    .strength = 0.5,
+    .weakest = 0.0,
+    .strongest = 100.0,
+    .strength_meaning = "standard deviation [m]",
+    .stream = "noise",
+    .place = FaultPlace::kSource,
+    .measure =
+        [](FaultMemory& memory, const model::Measurement&, model::Measurement& told) noexcept {
+          told.x += memory.strength * memory.random.normal();
+          told.y += memory.strength * memory.random.normal();
+        },
+};
+
+inline constexpr FaultKind kSpeedSensorZero{
+    .name = "speed_sensor_zero",
+    .meaning = "The measured speed is zero.",
+    .measure = [](FaultMemory&, const model::Measurement&,
+                  model::Measurement& told) noexcept { told.speed = 0.0; },
+};
+
+inline constexpr FaultKind kWaypointsMissing{
+    .name = "waypoints_missing",
+    .meaning = "Telemetry shows no waypoints.",
+    .duration = 2.0,
+    .place = FaultPlace::kLink,
+    .measure = [](FaultMemory&, const model::Measurement&,
+                  model::Measurement& told) noexcept { told.waypoint_count = 0; },
+};
+
+}  // namespace chicane::sim
