@@ -37,7 +37,7 @@ add_custom_command(
   COMMAND ${PROJECT_SOURCE_DIR}/tools/note_time.sh -o web/web_assets.cpp
           ${CMAKE_COMMAND} -DSOURCE=${web_source} -DBUILD=${web_build} "-DMISSING=${web_missing}" -DNODE=${CHICANE_NODE}
           -DNPM=${CHICANE_NPM} -P ${CMAKE_CURRENT_LIST_DIR}/EmbedWebFiles.cmake
-  DEPENDS ${CMAKE_CURRENT_LIST_DIR}/EmbedWebFiles.cmake ${CMAKE_CURRENT_LIST_DIR}/NpmCi.cmake ${web_files} ${web_source}/index.html ${web_source}/style.css
+  DEPENDS ${CMAKE_CURRENT_LIST_DIR}/EmbedWebFiles.cmake ${CMAKE_CURRENT_LIST_DIR}/NpmCi.cmake ${web_files} ${web_source}/index.html ${web_source}/document.html ${web_source}/style.css
           ${web_source}/build.mjs ${web_source}/package.json ${web_source}/package-lock.json ${web_source}/vite.config.ts
           ${web_source}/tsconfig.json
   WORKING_DIRECTORY ${CMAKE_BINARY_DIR}

@@ -2,18 +2,22 @@
 
 include(${CMAKE_CURRENT_LIST_DIR}/NpmCi.cmake)
 
-# The dashboard, and the same in one script and one style for `chicane report`.
+# The dashboard, and in one script and one style each the pages of `chicane report`: of recordings and of results.
+set(bundles report document)
 function(build_pages)
-  execute_process(COMMAND ${NODE} build.mjs ${BUILD}/dist ${BUILD}/report WORKING_DIRECTORY ${SOURCE} RESULT_VARIABLE failed)
-  file(GLOB scripts ${BUILD}/report/assets/*.js)
-  file(GLOB styles ${BUILD}/report/assets/*.css)
-  list(LENGTH scripts script_count)
-  list(LENGTH styles style_count)
-  if(failed OR NOT script_count EQUAL 1 OR NOT style_count EQUAL 1)
-    message(FATAL_ERROR "Vite could not build the pages in ${SOURCE}: expected one script and one style of the report")
-  endif()
-  set(report_script ${scripts} PARENT_SCOPE)
-  set(report_style ${styles} PARENT_SCOPE)
+  execute_process(COMMAND ${NODE} build.mjs ${BUILD}/dist ${BUILD}/report ${BUILD}/document WORKING_DIRECTORY ${SOURCE}
+                  RESULT_VARIABLE failed)
+  foreach(bundle ${bundles})
+    file(GLOB scripts ${BUILD}/${bundle}/assets/*.js)
+    file(GLOB styles ${BUILD}/${bundle}/assets/*.css)
+    list(LENGTH scripts script_count)
+    list(LENGTH styles style_count)
+    if(failed OR NOT script_count EQUAL 1 OR NOT style_count EQUAL 1)
+      message(FATAL_ERROR "Vite could not build the pages in ${SOURCE}: expected one script and one style of the ${bundle}")
+    endif()
+    set(${bundle}_script ${scripts} PARENT_SCOPE)
+    set(${bundle}_style ${styles} PARENT_SCOPE)
+  endforeach()
 endfunction()
 
 # C++ that defines constexpr array `name` with the compressed bytes of a file.
@@ -72,13 +76,17 @@ function(write_source)
     string(APPEND table "      {\"/${file}\", \"${type}\", view(kFile${index}), true},\n")
     math(EXPR index "${index} + 1")
   endforeach()
-  set(bundle "")
-  if(report_script)
-    compressed_array(kReportScript ${report_script} script)
-    compressed_array(kReportStyle ${report_style} style)
-    string(APPEND arrays "${script}${style}")
-    set(bundle "view(kReportScript), view(kReportStyle)")
-  endif()
+  set(functions "")
+  foreach(bundle ${bundles})
+    set(views "")
+    if(${bundle}_script)
+      compressed_array(k_${bundle}_script ${${bundle}_script} script)
+      compressed_array(k_${bundle}_style ${${bundle}_style} style)
+      string(APPEND arrays "${script}${style}")
+      set(views "view(k_${bundle}_script), view(k_${bundle}_style)")
+    endif()
+    string(APPEND functions "recording::ReportBundle ${bundle}_bundle() { return {${views}}; }\n\n")
+  endforeach()
   file(WRITE ${BUILD}/web_assets.cpp "// Generated from web/ by cmake/EmbedWebFiles.cmake: do not edit.
 #include \"chicane/live/assets.hpp\"
 
@@ -98,9 +106,7 @@ std::vector<net::Asset> embedded_assets() {
 ${table}  };
 }
 
-recording::ReportBundle report_bundle() { return {${bundle}}; }
-
-}  // namespace chicane::live
+${functions}}  // namespace chicane::live
 ")
 endfunction()
 

@@ -14,10 +14,12 @@
 #include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/identify/identification.hpp"
+#include "chicane/live/assets.hpp"
 #include "chicane/model/similarity.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/origin.hpp"
 #include "chicane/protocol/schema.hpp"
+#include "chicane/recording/html_report.hpp"
 #include "chicane/sim/double_track.hpp"
 #include "commands.hpp"
 #include "identify_page.hpp"
@@ -324,9 +326,11 @@ Result<void> identify_and_tell(const Options& options) {
                                   : fmt::format("chicane drive --car {}{}", options.output_file,
                                                 found->knows_tires() ? " --preset race" : "");
   if (!options.report_file.empty()) {
-    const std::string page =
-        identify_page(*found, {.logs = names, .advice = advice(*found), .command = command});
-    if (Result<void> kept = write_file(options.report_file, page); !kept) return kept;
+    const auto kept = recording::write_document(
+        options.report_file,
+        identify_document(*found, {.logs = names, .advice = advice(*found), .command = command}),
+        live::document_bundle());
+    if (!kept) return fail(kept.error());
   }
   fmt::print("{}", options.is_json ? json_of(*found) : table_of(*found, names));
   if (!command.empty() && !options.is_json) fmt::print("\n{}: {}\n", options.output_file, command);

@@ -8,10 +8,12 @@
 
 #include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
+#include "chicane/live/assets.hpp"
 #include "chicane/protocol/csv_track.hpp"
 #include "chicane/protocol/foreign_tracks.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/origin.hpp"
+#include "chicane/recording/html_report.hpp"
 #include "chicane/road/point_fit.hpp"
 #include "commands.hpp"
 #include "import_preview.hpp"
@@ -160,6 +162,7 @@ std::string description_of(const Imported& road, const std::string& file) {
 
 Result<void> import_and_tell(const Options& options) {
   const Options::Import& import = options.import_;
+  if (Result<void> named = check_page_name("--preview", import.preview); !named) return named;
   for (const std::string& file : {options.output_file, import.preview})
     if (Result<void> writable = check_writable(file); !writable) return writable;
   if (!options.output_file.empty() && !options.output_file.ends_with(".csv"))
@@ -177,9 +180,11 @@ Result<void> import_and_tell(const Options& options) {
   if (const Result<road::Track> made = protocol::make_track(*again); !made) return fail(made.error());
   if (!options.output_file.empty())
     if (Result<void> kept = write_file(options.output_file, csv); !kept) return kept;
-  if (!import.preview.empty())
-    if (Result<void> kept = write_file(import.preview, preview_of(road->track, road->content)); !kept)
-      return kept;
+  if (!import.preview.empty()) {
+    const auto kept = recording::write_document(
+        import.preview, preview_of(road->track, road->content, in_words(*road)), live::document_bundle());
+    if (!kept) return fail(kept.error());
+  }
   if (options.is_json) {
     fmt::print("{}", in_json(*road));
     return {};

@@ -10,7 +10,9 @@
 #include <optional>
 
 #include "chicane/base/file.hpp"
+#include "chicane/live/assets.hpp"
 #include "chicane/protocol/library.hpp"
+#include "chicane/recording/html_report.hpp"
 #include "chicane/run/parallel.hpp"
 #include "chicane/sweep/league_page.hpp"
 #include "chicane/sweep/league_results.hpp"
@@ -179,8 +181,9 @@ constexpr std::string_view kLeagueMarker = "<!-- league: chicane league -->\n";
 
 Result<void> write_pages(const Options& options, const League& league, const sweep::LeagueResults& results) {
   if (!options.output_file.empty()) {
-    if (Result<void> done = write_file(options.output_file, sweep::league_html(league, results)); !done)
-      return done;
+    const auto done = recording::write_document(options.output_file, sweep::league_document(league, results),
+                                                live::document_bundle());
+    if (!done) return fail(done.error());
     fmt::print(stderr, "{}: open it in a browser\n", options.output_file);
   }
   if (!options.csv_file.empty()) {

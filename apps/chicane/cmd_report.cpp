@@ -46,13 +46,15 @@ ExitCode report_sweep(const Options& options) {
   if (!options.maps_page.empty()) {
     const auto maps = sweep::write_maps(options.log_files, options.maps_page);
     if (!maps) return report(maps.error());
-    fmt::print(stderr, "{}: maps of {} runs\n", options.maps_page, maps->runs);
+    fmt::print(stderr, "{}: maps of {} runs\n", options.maps_page, *maps);
     if (options.output_file.empty()) return kSuccess;
   }
-  const auto written = sweep::write_page(options.log_files, options.output_file);
-  if (!written) return report(written.error());
-  fmt::print("{}: {} runs, {:.1f} MB; open it in a browser\n", options.output_file, written->runs,
-             1e-6 * static_cast<double>(written->bytes));
+  const auto summary = sweep::summary_document(options.log_files);
+  if (!summary) return report(summary.error());
+  const auto bytes = recording::write_document(options.output_file, summary->text, live::document_bundle());
+  if (!bytes) return report(bytes.error());
+  fmt::print("{}: {} runs, {:.1f} MB; open it in a browser\n", options.output_file, summary->runs,
+             1e-6 * static_cast<double>(*bytes));
   return kSuccess;
 }
 

@@ -14,9 +14,9 @@ struct IdentifyPageWords {
   std::string command;  ///< command line that drives the found car
 };
 
-/// One HTML page without other files: the numbers with their intervals, measured against predicted motion on
-/// the held-out ends, residuals, correlations of the estimates, and the slip that the log covers.
-[[nodiscard]] std::string identify_page(const identify::Identification& found,
-                                        const IdentifyPageWords& words);
+/// A document (protocol/report_document.hpp): the numbers with their intervals, measured against predicted
+/// motion on the held-out ends, residuals, correlations of the estimates, and the slip that the log covers.
+[[nodiscard]] std::string identify_document(const identify::Identification& found,
+                                            const IdentifyPageWords& words);
 
 }  // namespace chicane::apps

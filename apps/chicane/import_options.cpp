@@ -16,8 +16,8 @@ void add_import(CLI::App& command, Options& options) {
       ->type_name("NAME.csv");
   command
       .add_option("--preview", import.preview,
-                  "Draw what was recognised into this file; an older one is replaced")
-      ->type_name("FILE.png");
+                  "Draw what was recognised into this page; an older one is replaced")
+      ->type_name("FILE.html");
   command.add_option("--width-m", import.width, "Width of the road where the file has none [m], default 9")
       ->type_name("X")
       ->check(CLI::Range(0.1, 100.0));
@@ -49,7 +49,7 @@ void add_import(CLI::App& command, Options& options) {
   CLI::Option* const closed = command.add_flag("--closed", import.is_closed, "Take the road for a loop");
   command.add_flag("--open", import.is_open, "Take the road for an open one")->excludes(closed);
   command.add_flag("--json", options.is_json, "Print one JSON object on stdout, all else on stderr");
-  command.footer("Example: chicane import map.yaml -o hall.csv --preview hall.png");
+  command.footer("Example: chicane import map.yaml -o hall.csv --preview hall.html");
 }
 
 }  // namespace chicane::apps

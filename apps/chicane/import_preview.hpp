@@ -8,8 +8,9 @@
 
 namespace chicane::apps {
 
-/// The bytes of a PNG picture of what was recognised: the map or the points of the file in grey, edges black,
-/// the line red, the start and its direction green.
-[[nodiscard]] std::string preview_of(const road::Track& track, const protocol::TrackFile& content);
+/// A document (protocol/report_document.hpp) with `words` and a map of what was recognised: the map or the
+/// points of the file, edges, line, start and its direction.
+[[nodiscard]] std::string preview_of(const road::Track& track, const protocol::TrackFile& content,
+                                     const std::string& words);
 
 }  // namespace chicane::apps

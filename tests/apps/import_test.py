@@ -2,6 +2,7 @@
 """`chicane import` as users start it: `import_test.py PROGRAM`."""
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -39,11 +40,13 @@ class Import(unittest.TestCase):
                 self.assertAlmostEqual(json.loads(out)["length_m"] / LENGTH, 1.0, delta=tolerance)
 
     def test_a_map_becomes_a_picture_and_a_road_that_is_driven(self):
-        road, picture = self.out / "bean.csv", self.out / "bean.png"
-        code, _, err = run("import", MAPS / "bean.yaml", "-o", road, "--preview", picture)
+        road, page = self.out / "bean.csv", self.out / "bean.html"
+        code, _, err = run("import", MAPS / "bean.yaml", "-o", road, "--preview", page)
         self.assertEqual(code, 0, err)
-        self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
-        self.assertEqual(picture.read_bytes()[-8:-4], b"IEND")
+        document = json.loads(re.search(r'id="chicane-report">(.*?)</script>', page.read_text())[1])
+        self.assertIn("closed road", document["sections"][0]["parts"][0]["text"])
+        names = [series["name"] for series in document["sections"][0]["parts"][-1]["series"] if series["values"]]
+        self.assertEqual([name for name in names if name], ["free", "wall", "points of the file", "edge", "line", "start"])
         self.assertEqual(run("check", road, "--car", "f1tenth")[0], 0)
         for track in (road, MAPS / "bean.yaml"):
             code, out, err = run("drive", "--fast", "--laps", "1", "--car", "f1tenth", "--track", track)

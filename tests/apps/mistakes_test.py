@@ -76,6 +76,7 @@ replay | logs | got nothing | expected LOG | {USAGE}
 replay {{text.mcap}} | text.mcap: file | got other content | expected an MCAP file |
 report {{text.mcap}} | report | got none of --output, --page and --compare | expected one |
 report {{text.mcap}} -o page.pdf | --output | got page.pdf | expected a name that ends in .html |
+import road.csv --preview road.png | --preview | got road.png | expected a name that ends in .html |
 limit --quick --spacing-m 9 | --spacing-m | got 9 | expected a number in [0.5, 5] | {USAGE}
 list track | what | got track | expected one of presets, tracks | {USAGE}
 completion ksh | shell | got ksh | expected one of bash, zsh, fish | {USAGE}

@@ -137,6 +137,16 @@ TEST_F(ReportTest, NamesCannotBreakOutOfTheScript) {
   EXPECT_EQ(page().find("alert(1)</script>"), std::string::npos);
 }
 
+TEST_F(ReportTest, DocumentsAreInThePageAsTheyAre) {
+  const std::string text = R"({"title":"a & </script><script>alert(1)</script><!--"})";
+  const auto bytes = write_document(page_, text, {.script = "script", .style = "style"});
+  ASSERT_TRUE(bytes) << bytes.error().message;
+  EXPECT_EQ(*bytes, page().size());
+  EXPECT_EQ(data(), json::parse(text));
+  EXPECT_EQ(page().find("alert(1)</script>"), std::string::npos);
+  EXPECT_EQ(write_document(page_, text, {}).error().code, ErrorCode::kNotFound);
+}
+
 TEST_F(ReportTest, KeepsLessWhereThereIsMuchAndRefusesTooMuch) {
   write_log(log_.path(), true, 1000);
   const auto less = write("run.mcap", 60'000);

@@ -44,15 +44,5 @@ TEST(Image, RefusesImagesThatAreCutOffTooLargeOrOfAnotherKind) {
   EXPECT_EQ(fault("\x89PNG and nothing").substr(0, 6), "m.pgm:");
 }
 
-TEST(Image, APictureComesBackFromItsPng) {
-  Picture picture(4, 3, {255, 255, 255});
-  picture.draw_line(0.0, 1.5, 10.0, 1.5, {0, 0, 0});
-  picture.set(-1, 0, {0, 0, 0});
-  const auto image = read_image(picture.png(), "p.png");
-  ASSERT_TRUE(image) << image.error().message;
-  EXPECT_EQ(image->width, 4);
-  EXPECT_EQ(image->values, std::string(4, '\xff') + std::string(4, '\0') + std::string(4, '\xff'));
-}
-
 }  // namespace
 }  // namespace chicane::survey

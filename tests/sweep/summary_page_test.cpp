@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "chicane/sweep/plan_codec.hpp"
 #include "chicane/sweep/result_file.hpp"
@@ -59,17 +60,26 @@ keep: [completed, off_track_events]
 };
 
 TEST_F(SummaryPage, HasAMapOfNumbersForEachText) {
-  ASSERT_TRUE(write_page({path("r.jsonl")}, path("page.html")));
-  const std::string page = read("page.html");
-  EXPECT_THAT(page, HasSubstr("<h3>pid</h3>"));
-  EXPECT_THAT(page, HasSubstr("<h3>stanley</h3>"));
-  EXPECT_THAT(page, HasSubstr("framed: what is marked"));
-  const std::string of_stanley = page.substr(page.find("<h3>stanley</h3>"));
-  const std::size_t mark = of_stanley.find("class=mark");
-  EXPECT_LT(mark, of_stanley.find("</table>"));
-  const std::string of_pid =
-      page.substr(page.find("<h3>pid</h3>"), page.find("<h3>stanley</h3>") - page.find("<h3>pid</h3>"));
-  EXPECT_THAT(of_pid, Not(HasSubstr("class=mark")));
+  const auto summary = summary_document({path("r.jsonl")});
+  ASSERT_TRUE(summary) << summary.error().message;
+  const auto sections = nlohmann::json::parse(summary->text)["sections"];
+  EXPECT_EQ(sections[1]["title"], "Along each axis");
+  const auto by_latency = sections[1]["parts"][1];
+  EXPECT_EQ(by_latency["columns"], (nlohmann::json{"latency_ms", "runs", "clean", "times off the road"}));
+  EXPECT_EQ(by_latency["rows"][1][2], (nlohmann::json{{"text", "67 %"}, {"share", 4.0 / 6.0}}));
+  EXPECT_EQ(by_latency["rows"][1][3], (nlohmann::json{{"text", "0.6667"}, {"hint", "0 to 2"}}));
+  EXPECT_EQ(sections[2]["title"], "Clean runs over pairs of axes [%]; framed: what is marked");
+  const auto pid = sections[2]["parts"][0], stanley = sections[2]["parts"][1];
+  EXPECT_EQ(pid["title"], "pid");
+  EXPECT_EQ(pid["columns"], (nlohmann::json{"latency_ms \\ speed_mph", "20", "40", "60"}));
+  EXPECT_EQ(pid["rows"][1][2]["share"], 1.0);
+  EXPECT_EQ(pid["rows"][1][2]["is_marked"], false);
+  EXPECT_EQ(stanley["title"], "stanley");
+  EXPECT_EQ(stanley["rows"][1][2]["is_marked"], true) << "the nearest value is marked";
+  EXPECT_EQ(stanley["rows"][1][2]["hint"], "1 runs, marked");
+  EXPECT_EQ(sections[3]["title"], "Distributions");
+  EXPECT_EQ(sections[3]["parts"][0]["series"][0]["values"].size(), 4U * 24U);
+  EXPECT_EQ(sections[4]["parts"][1]["rows"].size(), 18U) << "the runs";
 }
 
 TEST_F(SummaryPage, MapsInLettersStandBetweenTheirLines) {

@@ -44,7 +44,7 @@ constexpr std::string_view kHead = R"(<!doctype html>
 </head>
 <body>
 <div id="app"></div>
-<noscript>This report draws recorded runs with JavaScript.</noscript>
+<noscript>This report is drawn with JavaScript.</noscript>
 )";
 constexpr std::string_view kStart = R"(<script>
 (async () => {
@@ -80,7 +80,7 @@ Result<std::string> read_all(const std::string& file) {
   return std::move(bytes).str();
 }
 
-/// {"logs":[{"name":…,"mcap_base64":…}]}, safe inside a script element.
+/// {"logs":[{"name":…,"mcap_base64":…}]}; empty where they are too large.
 Result<std::string> logs_json(const ReportOptions& options, double rate) {
   Json logs = Json::array();
   std::size_t bytes = 0;
@@ -94,41 +94,46 @@ Result<std::string> logs_json(const ReportOptions& options, double rate) {
     if (bytes > options.most_bytes) return std::string{};
     logs.push_back({{"name", log.name}, {"mcap_base64", base64(*content)}});
   }
-  const Json object{{"logs", std::move(logs)}};
-  std::string text = protocol::json_text(object);
-  // The one way out of a script element, or into a comment that hides its end, begins with this character.
-  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += 6) {
-    text.replace(at, 1, "\\u003c");
-  }
-  return text;
+  return protocol::json_text(Json{{"logs", std::move(logs)}});
 }
 
 }  // namespace
 
-Result<ReportSummary> write_report(const ReportOptions& options) {
-  if (options.bundle.script.empty()) {
+Result<std::size_t> write_document(const std::string& file, std::string document,
+                                   const ReportBundle& bundle) {
+  if (bundle.script.empty())
     return fail(
         ErrorCode::kNotFound,
         "report: this program was built without its dashboard: install Node.js and npm, and build again");
+  // The one way out of a script element, or into a comment that hides its end, begins with this character.
+  for (std::size_t at = 0; (at = document.find('<', at)) != std::string::npos; at += 6)
+    document.replace(at, 1, "\\u003c");
+  const std::string program = base64(bundle.script), style = base64(bundle.style);
+  std::size_t bytes = 0;
+  FileWriter page(file);
+  for (const std::string_view part :
+       {kHead, "<script type=\"application/json\" id=\"chicane-report\">"sv, std::string_view(document),
+        "</script>\n<script type=\"text/plain\" id=\"chicane-style\">"sv, std::string_view(style),
+        "</script>\n<script type=\"text/plain\" id=\"chicane-program\">"sv, std::string_view(program),
+        "</script>\n"sv, kStart}) {
+    page.write(part);
+    bytes += part.size();
   }
+  if (const Result<void> written = page.finish(); !written) return fail(written.error());
+  return bytes;
+}
+
+Result<ReportSummary> write_report(const ReportOptions& options) {
   for (const ReportedLog& log : options.logs) {
     if (const auto read = check_recording(log.file); !read) return fail(read.error());
   }
   for (const double rate : kRates) {
-    const Result<std::string> logs = logs_json(options, rate);
+    Result<std::string> logs = logs_json(options, rate);
     if (!logs) return fail(logs.error());
     if (logs->empty()) continue;
-    const std::string program = base64(options.bundle.script), style = base64(options.bundle.style);
-    FileWriter page(options.output);
-    for (const std::string_view part :
-         {kHead, "<script type=\"application/json\" id=\"chicane-report\">"sv, std::string_view(*logs),
-          "</script>\n<script type=\"text/plain\" id=\"chicane-style\">"sv, std::string_view(style),
-          "</script>\n<script type=\"text/plain\" id=\"chicane-program\">"sv, std::string_view(program),
-          "</script>\n"sv, kStart})
-      page.write(part);
-    if (const Result<void> written = page.finish(); !written) return fail(written.error());
-    return ReportSummary{.bytes = kHead.size() + logs->size() + program.size() + style.size() + kStart.size(),
-                         .rate = rate};
+    const Result<std::size_t> bytes = write_document(options.output, std::move(*logs), options.bundle);
+    if (!bytes) return fail(bytes.error());
+    return ReportSummary{.bytes = *bytes, .rate = rate};
   }
   return fail(ErrorCode::kInvalidArgument,
               fmt::format("report: got more than {} MiB of logs at one message a second, expected shorter or "

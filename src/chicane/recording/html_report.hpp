@@ -16,7 +16,7 @@ struct ReportedLog {
   std::string file;
 };
 
-/// The dashboard in two files for one page, gzip-compressed. Empty in a program that was built without Node.
+/// A page in two files, gzip-compressed. Empty in a program that was built without Node.
 struct ReportBundle {
   std::string_view script;
   std::string_view style;
@@ -34,6 +34,12 @@ struct ReportSummary {
   std::size_t bytes = 0;  ///< of the file
   double rate = 0.0;      ///< messages of one topic per second that were kept [Hz]
 };
+
+/// Writes a document (protocol/report_document.hpp) as one HTML file that needs no network and no program.
+/// `bundle`: live::document_bundle(). Bytes of the file; kNotFound when this program was built without its
+/// dashboard, kIo.
+[[nodiscard]] Result<std::size_t> write_document(const std::string& file, std::string document,
+                                                 const ReportBundle& bundle);
 
 /// Writes the dashboard with its recordings as one HTML file that needs no network and no program. Recordings
 /// are thinned to 10 messages a second and topic, or fewer, down to 1, so that they fit.

@@ -91,43 +91,4 @@ Result<GreyImage> read_image(std::string_view bytes, const std::string& file) {
               fmt::format("{}: got other bytes, expected a PGM (P2, P5) or PNG image", file));
 }
 
-Picture::Picture(int width, int height, Colour ground)
-    : width_{width}, height_{height}, bytes_(3U * static_cast<std::size_t>(width * height)) {
-  for (std::size_t i = 0; i < bytes_.size(); ++i) bytes_[i] = ground[i % 3];
-}
-
-void Picture::set(int x, int y, Colour colour) noexcept {
-  if (x < 0 || y < 0 || x >= width_ || y >= height_) return;
-  const auto at =
-      3U * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
-  std::copy(colour.begin(), colour.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(at));
-}
-
-void Picture::draw_line(double x0, double y0, double x1, double y1, Colour colour, int thickness) noexcept {
-  const double length = std::max(std::fabs(x1 - x0), std::fabs(y1 - y0));
-  constexpr double kMost = 20000.0;  // [px]; longer ones leave the picture on both sides
-  if (!(length < kMost)) return;
-  const int steps = std::max(1, static_cast<int>(std::ceil(length)));
-  for (int i = 0; i <= steps; ++i) {
-    const double share = static_cast<double>(i) / steps;
-    const int x = static_cast<int>(std::floor(x0 + share * (x1 - x0))) - (thickness - 1) / 2;
-    const int y = static_cast<int>(std::floor(y0 + share * (y1 - y0))) - (thickness - 1) / 2;
-    for (int dy = 0; dy < thickness; ++dy)
-      for (int dx = 0; dx < thickness; ++dx) set(x + dx, y + dy, colour);
-  }
-}
-
-std::string Picture::png() const {
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  png.width = static_cast<png_uint_32>(width_);
-  png.height = static_cast<png_uint_32>(height_);
-  png.format = PNG_FORMAT_RGB;
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
-  std::string bytes(size, '\0');
-  if (png_image_write_to_memory(&png, bytes.data(), &size, 0, bytes_.data(), 0, nullptr) == 0) return {};
-  bytes.resize(size);
-  return bytes;
-}
-
 }  // namespace chicane::survey

@@ -5,7 +5,6 @@
 
 #include "chicane/base/file.hpp"
 #include "chicane/protocol/json.hpp"
-#include "chicane/sweep/page_text.hpp"
 #include "chicane/sweep/result_file.hpp"
 
 namespace chicane::sweep {
@@ -17,6 +16,13 @@ std::string cell_of(const protocol::Json& value) {
 }
 
 }  // namespace
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
 
 Result<void> write_csv(const std::string& results, const std::string& csv) {
   std::ifstream first(results, std::ios::binary);

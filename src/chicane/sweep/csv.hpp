@@ -7,6 +7,9 @@
 
 namespace chicane::sweep {
 
+/// A value of RFC 4180, in quotes where it has to be.
+[[nodiscard]] std::string csv_cell(const std::string& text);
+
 /// Writes a file of results as comma separated values (RFC 4180): `run`, the keys of the axes, the columns.
 /// Lists stand in quotes, as JSON; what was not measured is empty. Memory does not grow with the file.
 /// kParse, kIo.

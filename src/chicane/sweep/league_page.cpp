@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "chicane/base/text.hpp"
-#include "chicane/protocol/json.hpp"
+#include "chicane/protocol/report_document.hpp"
+#include "chicane/sweep/csv.hpp"
 #include "chicane/sweep/outcome.hpp"
-#include "chicane/sweep/page_text.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -236,31 +236,29 @@ constexpr std::array kCsvColumns{"search_value",
 
 }  // namespace
 
-std::string league_html(const League& league, const LeagueResults& results) {
-  std::string page = page_head(league.name) + fmt::format("<p>{}</p>", escaped(in_words(league, results)));
-  for (const LeagueTable& table : LeagueTables(league, results).all()) {
-    page += fmt::format("<h2>{}</h2><p>{}</p><div class=scroll><table><tr>", escaped(table.title),
-                        escaped(table.note));
-    for (const std::string& head : table.head) page += "<th>" + escaped(head);
-    page += "</tr>";
-    for (const auto& row : table.rows) {
-      page += "<tr>";
-      for (const std::string& cell : row) page += "<td>" + escaped(cell);
-    }
-    page += "</table></div>";
-  }
-  page +=
-      "<h2>Runs</h2><p>Each with the command that drives it; without <code>--fast</code> it is driven in the "
-      "dashboard, at <code>http://localhost:4567/</code>.</p><div class=scroll><table><tr><th>entry<th>track"
-      "<th>car<th>disturbance<th>lap [s]<th>gap [%]<th>command</tr>";
+std::string league_document(const League& league, const LeagueResults& results) {
+  using protocol::Json;
+  protocol::ReportDocument document("league", league.name);
+  document.add_text(in_words(league, results));
   const LeagueTables tables(league, results);
+  for (const LeagueTable& table : tables.all()) {
+    document.begin_section(table.title);
+    document.add_text(table.note);
+    document.add_table(table.head, table.rows);
+  }
+  document.begin_section("Runs");
+  document.add_text(
+      "Each with the command that drives it; without `--fast` it is driven in the dashboard, at "
+      "`http://localhost:4567/`.");
+  Json rows = Json::array();
   for (const LeagueCell& cell : results.cells)
-    page += fmt::format(
-        "<tr><td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td style='text-align:left'><code>{}</code>{}",
-        escaped(cell.entry), escaped(cell.track), escaped(cell.car), escaped(cell.disturbance),
-        cell.is_clean ? cell_text(cell.number("lap_time_s"), 2) : "–", cell_text(tables.gap(cell), 1),
-        escaped(cell.command), cell.is_clean ? "" : "<br>" + escaped(cell.why));
-  return page + "</table></div></html>\n";
+    rows.push_back(
+        {cell.entry, cell.track, cell.car, cell.disturbance,
+         cell.is_clean ? cell_text(cell.number("lap_time_s"), 2) : "–", cell_text(tables.gap(cell), 1),
+         Json{{"text", cell.command}, {"is_code", true}, {"remark", cell.is_clean ? "" : cell.why}}});
+  document.add_table({"entry", "track", "car", "disturbance", "lap [s]", "gap [%]", "command"},
+                     std::move(rows));
+  return document.text();
 }
 
 std::string league_markdown(const League& league, const LeagueResults& results) {

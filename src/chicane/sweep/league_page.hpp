@@ -8,9 +8,9 @@
 
 namespace chicane::sweep {
 
-/// One HTML page that needs neither network nor program: the standings, a table for each track and car, times
-/// that were measured, and the command of each run.
-[[nodiscard]] std::string league_html(const League& league, const LeagueResults& results);
+/// A document (protocol/report_document.hpp): the standings, a table for each track and car, times that were
+/// measured, and the command of each run.
+[[nodiscard]] std::string league_document(const League& league, const LeagueResults& results);
 /// The same tables for a page of docs/, without the commands.
 [[nodiscard]] std::string league_markdown(const League& league, const LeagueResults& results);
 /// A row for each run (RFC 4180).

@@ -14,8 +14,8 @@
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
+#include "chicane/protocol/report_document.hpp"
 #include "chicane/sweep/detail/heat_map.hpp"
-#include "chicane/sweep/page_text.hpp"
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/trial.hpp"
 
@@ -23,7 +23,7 @@ namespace chicane::sweep {
 namespace {
 
 using detail::ByNumber;
-using detail::colour;
+using protocol::ReportDocument;
 using json = protocol::Json;
 
 constexpr std::size_t kMostValues = 60;  // of an axis in a table or a map; more are put into intervals
@@ -128,29 +128,22 @@ class Page {
     return page + "```\n";
   }
 
-  [[nodiscard]] std::string text() {
-    std::string page = page_head(header_.name);
-    page += fmt::format(
-        "<p>{} of {} runs, {} clean (all laps driven, no tyre off the road). Plan {}, {}, {} arithmetic.</p>",
-        runs_.size(), header_.runs, clean_runs(), header_.plan, escaped(header_.program),
-        escaped(header_.arithmetic));
-    if (!header_.fixed.empty()) {
-      page += "<p>All runs: ";
-      for (const auto& [key, value] : header_.fixed)
-        page += fmt::format("<code>{}={}</code> ", escaped(key), escaped(value));
-      page += "</p>";
-    }
+  [[nodiscard]] std::string document() {
+    ReportDocument document("sweep", header_.name);
+    document.add_text(fmt::format(
+        "{} of {} runs, {} clean (all laps driven, no tyre off the road). Plan {}, {}, {} arithmetic.",
+        runs_.size(), header_.runs, clean_runs(), header_.plan, header_.program, header_.arithmetic));
+    std::string shared;
+    for (const auto& [key, value] : header_.fixed) shared += fmt::format(" `{}={}`", key, value);
+    if (!shared.empty()) document.add_text("All runs:" + shared);
     bin_values();
-    page += "<h2>Along each axis</h2>";
-    for (std::size_t axis = 0; axis < header_.keys.size(); ++axis) page += table(axis);
-    const std::vector<detail::HeatMap> all = maps();
-    if (!all.empty())
-      page += header_.marks.empty() ? "<h2>Clean runs over pairs of axes [%]</h2>"
-                                    : "<h2>Clean runs over pairs of axes [%]; framed: what is marked</h2>";
-    for (const detail::HeatMap& map : all) page += detail::map_html(map);
-    page += "<h2>Distributions</h2>";
-    for (std::size_t i = 0; i < kShown.size(); ++i) page += histogram(i);
-    return page + listing() + "</html>\n";
+    document.begin_section("Along each axis");
+    for (std::size_t axis = 0; axis < header_.keys.size(); ++axis) add_table(document, axis);
+    add_maps(document);
+    document.begin_section("Distributions");
+    for (std::size_t i = 0; i < kShown.size(); ++i) add_histogram(document, i);
+    add_listing(document);
+    return document.text();
   }
 
  private:
@@ -224,27 +217,57 @@ class Page {
            header_.columns.end();
   }
 
-  [[nodiscard]] std::string table(std::size_t axis) const {
+  /// `first` and the names of the columns that are kept.
+  [[nodiscard]] std::vector<std::string> with_columns(std::vector<std::string> first) const {
+    for (std::size_t i = 0; i < kShown.size(); ++i)
+      if (is_kept(i)) first.emplace_back(kShown[i].title);
+    return first;
+  }
+
+  void add_table(ReportDocument& document, std::size_t axis) const {
     std::map<std::string, Group, ByNumber> groups;
     for (std::size_t i = 0; i < runs_.size() && groups.size() <= kMostValues; ++i)
       groups[binned_[i][axis]].add(runs_[i]);
-    std::string text =
-        fmt::format("<div class=scroll><table><tr><th>{}<th>runs<th>clean", escaped(header_.keys[axis]));
-    for (std::size_t i = 0; i < kShown.size(); ++i)
-      if (is_kept(i)) text += fmt::format("<th>{}", kShown[i].title);
-    text += "</tr>";
+    json rows = json::array();
     for (const auto& [value, group] : groups) {
-      text += fmt::format("<tr><td>{}<td>{}<td style='background:{}'>{:.0f} %", escaped(value), group.runs,
-                          colour(group.clean_share()), 100.0 * group.clean_share());
+      json row{value, std::to_string(group.runs),
+               json{{"text", fmt::format("{:.0f} %", 100.0 * group.clean_share())},
+                    {"share", group.clean_share()}}};
       for (std::size_t i = 0; i < kShown.size(); ++i) {
         if (!is_kept(i)) continue;
         const double mean =
             group.counts[i] > 0 ? group.sums[i] / static_cast<double>(group.counts[i]) : std::nan("");
-        text += fmt::format("<td title='{} to {}'>{}", figure(group.least[i]), figure(group.most[i]),
-                            figure(kShown[i].is_low_good ? mean : group.least[i]));
+        row.push_back({{"text", figure(kShown[i].is_low_good ? mean : group.least[i])},
+                       {"hint", fmt::format("{} to {}", figure(group.least[i]), figure(group.most[i]))}});
       }
+      rows.push_back(std::move(row));
     }
-    return text + "</table></div>";
+    document.add_table(with_columns({header_.keys[axis], "runs", "clean"}), std::move(rows));
+  }
+
+  void add_maps(ReportDocument& document) const {
+    const std::vector<detail::HeatMap> all = maps();
+    if (all.empty()) return;
+    document.begin_section(header_.marks.empty()
+                               ? "Clean runs over pairs of axes [%]"
+                               : "Clean runs over pairs of axes [%]; framed: what is marked");
+    for (const detail::HeatMap& map : all) {
+      std::vector<std::string> columns{fmt::format("{} \\ {}", map.row_key, map.column_key)};
+      columns.insert(columns.end(), map.columns.begin(), map.columns.end());
+      json rows = json::array();
+      for (std::size_t r = 0; r < map.rows.size(); ++r) {
+        json row{map.rows[r]};
+        for (const detail::HeatMap::Cell& cell : map.cells[r])
+          row.push_back(cell.runs == 0 ? json("")
+                                       : json{{"text", fmt::format("{:.0f}", 100.0 * cell.share())},
+                                              {"share", cell.share()},
+                                              {"is_marked", cell.is_marked},
+                                              {"hint", fmt::format("{} runs{}", cell.runs,
+                                                                   cell.is_marked ? ", marked" : "")}});
+        rows.push_back(std::move(row));
+      }
+      document.add_grid(map.title, columns, std::move(rows));
+    }
   }
 
   /// The share of clean runs over pairs of axes.
@@ -257,60 +280,61 @@ class Page {
     return maps;
   }
 
-  [[nodiscard]] std::string histogram(std::size_t column) const {
+  void add_histogram(ReportDocument& document, std::size_t column) const {
     std::vector<double> values;
     for (const Run& run : runs_)
       if (std::isfinite(run.numbers[column])) values.push_back(run.numbers[column]);
-    if (values.size() < 2) return "";
+    if (values.size() < 2) return;
     std::sort(values.begin(), values.end());
     const double low = values.front(), high = values.back();
-    if (high <= low) return "";
+    if (high <= low) return;
     constexpr int kBars = 24;
-    std::array<int, kBars> bars{};
+    const double width = (high - low) / kBars;
+    std::vector<double> bars;
+    for (int i = 0; i < kBars; ++i)
+      for (const double number : {low + i * width, 0.0, width, 0.0}) bars.push_back(number);
     for (const double value : values)
-      ++bars[static_cast<std::size_t>(
-          std::min(kBars - 1, static_cast<int>((value - low) / (high - low) * kBars)))];
-    const int most = *std::max_element(bars.begin(), bars.end());
-    std::string text =
-        fmt::format("<figure><svg width=264 height=90 role=img aria-label='{}'>", kShown[column].title);
-    for (int i = 0; i < kBars; ++i) {
-      const double height = 80.0 * bars[static_cast<std::size_t>(i)] / most;
-      text += fmt::format("<rect x={} y={:.1f} width=10 height={:.1f} fill='#3b6ea5'/>", 11 * i,
-                          85.0 - height, height);
-    }
-    const double median = values[values.size() / 2];
-    return text + fmt::format("</svg><figcaption>{}: {} to {}, median {}</figcaption></figure> ",
-                              kShown[column].title, figure(low), figure(high), figure(median));
+      ++bars[4 * static_cast<std::size_t>(std::min(kBars - 1, static_cast<int>((value - low) / width))) + 3];
+    document.begin_chart(fmt::format("runs by {}: {} to {}, median {}", kShown[column].title, figure(low),
+                                     figure(high), figure(values[values.size() / 2])),
+                         kShown[column].title);
+    document.add_series("cells", "soft", "", bars);
   }
 
-  [[nodiscard]] std::string listing() const {
-    std::string text = fmt::format(
-        "<h2>Runs</h2><p>{}Each with the command that drives it, and a link that opens it in the dashboard "
-        "while "
-        "<code>chicane drive</code> runs on this machine.</p><div class=scroll>"
-        "<table><tr><th>run<th>clean",
-        runs_.size() > kMostListed ? fmt::format("The first {} of {}. ", kMostListed, runs_.size()) : "");
-    for (std::size_t i = 0; i < kShown.size(); ++i)
-      if (is_kept(i)) text += fmt::format("<th>{}", kShown[i].title);
-    text += "<th>command</tr>";
+  /// What drives a run.
+  [[nodiscard]] Settings settings_of(const Run& run) const {
+    Settings varied;
+    for (std::size_t axis = 0; axis < header_.keys.size(); ++axis)
+      varied.emplace_back(header_.keys[axis], run.values[axis]);
+    Settings settings = header_.fixed;
+    for (auto& setting : expanded(varied, header_.cases)) settings.push_back(std::move(setting));
+    if (!header_.search_key.empty() && std::isfinite(run.numbers[0]))
+      settings.emplace_back(header_.search_key, number_text(run.numbers[0]));
+    return settings;
+  }
+
+  void add_listing(ReportDocument& document) const {
+    document.begin_section("Runs");
+    document.add_text(fmt::format(
+        "{}Each with the command that drives it, and a link that opens it in the dashboard while "
+        "`chicane drive` runs on this machine.",
+        runs_.size() > kMostListed ? fmt::format("The first {} of {}. ", kMostListed, runs_.size()) : ""));
+    json rows = json::array();
     for (std::size_t n = 0; n < std::min(runs_.size(), kMostListed); ++n) {
       const Run& run = runs_[n];
-      text += fmt::format("<tr><td>{}<td>{}", run.number, run.is_clean ? "yes" : "no");
+      json row{std::to_string(run.number), run.is_clean ? "yes" : "no"};
       for (std::size_t i = 0; i < kShown.size(); ++i)
-        if (is_kept(i)) text += "<td>" + figure(run.numbers[i]);
-      Settings varied;
-      for (std::size_t axis = 0; axis < header_.keys.size(); ++axis)
-        varied.emplace_back(header_.keys[axis], run.values[axis]);
-      Settings settings = header_.fixed;
-      for (auto& setting : expanded(varied, header_.cases)) settings.push_back(std::move(setting));
-      if (!header_.search_key.empty() && std::isfinite(run.numbers[0]))
-        settings.emplace_back(header_.search_key, number_text(run.numbers[0]));
-      const std::string link = link_of(settings);
-      text += fmt::format("<td style='text-align:left'><code>{}</code>{}{}", escaped(command_of(settings)),
-                          link.empty() ? "" : fmt::format(" <a href='{}'>open</a>", escaped(link)),
-                          run.error.empty() ? "" : "<br>" + escaped(run.error));
+        if (is_kept(i)) row.push_back(figure(run.numbers[i]));
+      const Settings settings = settings_of(run);
+      row.push_back({{"text", command_of(settings)},
+                     {"is_code", true},
+                     {"link", link_of(settings)},
+                     {"remark", run.error}});
+      rows.push_back(std::move(row));
     }
-    return text + "</table></div>";
+    std::vector<std::string> columns = with_columns({"run", "clean"});
+    columns.emplace_back("command");
+    document.add_table(columns, std::move(rows));
   }
 
   Header header_;
@@ -321,15 +345,13 @@ class Page {
 
 }  // namespace
 
-Result<PageSummary> write_page(const std::vector<std::string>& results, const std::string& page) {
+Result<SummaryDocument> summary_document(const std::vector<std::string>& results) {
   Page content;
   if (const Result<void> read = content.read(results); !read) return fail(read.error());
-  const std::string text = content.text();
-  if (const Result<void> written = write_file(page, text); !written) return fail(written.error());
-  return PageSummary{content.runs(), text.size()};
+  return SummaryDocument{content.runs(), content.document()};
 }
 
-Result<PageSummary> write_maps(const std::vector<std::string>& results, const std::string& page) {
+Result<std::uint64_t> write_maps(const std::vector<std::string>& results, const std::string& page) {
   Page content;
   if (const Result<void> read = content.read(results); !read) return fail(read.error());
   std::string older = protocol::read_file(page).value_or("");
@@ -343,7 +365,7 @@ Result<PageSummary> write_maps(const std::vector<std::string>& results, const st
                 fmt::format("{}: got no \"<!-- end of sweep -->\" after that of {}", page, content.name()));
   const std::string text = older.substr(0, from) + content.markdown() + older.substr(to);
   if (const Result<void> written = write_file(page, text); !written) return fail(written.error());
-  return PageSummary{content.runs(), text.size()};
+  return content.runs();
 }
 
 }  // namespace chicane::sweep

@@ -1,10 +1,10 @@
 import type { ComponentChildren } from 'preact';
-import { ticksOf } from '../draw/axis';
 import { fixed, lapTime } from '../lib/format';
 import { store } from '../lib/store';
 import { speedUnit } from '../lib/units';
 import { GapCausesTable } from '../parts/gap_causes_table';
 import { LossesTable, seconds } from '../parts/losses_table';
+import { PlotView } from '../parts/plot_view';
 import { along, type DrivenLap, startLine } from '../state/compared';
 import { bestsOf } from '../state/lap_table';
 import { limitChannel } from '../state/limit';
@@ -49,62 +49,9 @@ function rivalOf(report: RunReport): Pick | null {
   return next > 0 ? { report, lap: next } : null;
 }
 
-const WIDTH = 900;
-const TALL = 120;
-
-interface Line {
-  readonly values: Float64Array;
-  readonly colour: string;
-}
-
-/** Curves along the road, with axes. */
-function RoadCurve({ title, s, lines, children }: RoadCurveOptions) {
-  const known = lines.flatMap(({ values }) => Array.from(values).filter(Number.isFinite));
-  const [low, high] = known.reduce(([a, b], value) => [Math.min(a, value), Math.max(b, value)], [0, 0]);
-  const last = s.at(-1) || 1;
-  const x = (place: number): number => (WIDTH * place) / last;
-  const y = (value: number): number => TALL - (TALL * (value - low)) / (high - low || 1);
-  return (
-    <figure class="summary-curve">
-      <figcaption>{children}</figcaption>
-      <svg viewBox={`-50 -8 ${WIDTH + 60} ${TALL + 30}`} role="img" aria-label={`${title} along the road`}>
-        {ticksOf(low, high, 5).map((value) => (
-          <g key={`y ${value}`} class="summary-tick">
-            <line x1={0} x2={WIDTH} y1={y(value)} y2={y(value)} />
-            <text x={-6} y={y(value) + 4} text-anchor="end">
-              {String(Number(value.toPrecision(6))).replace('-', '−')}
-            </text>
-          </g>
-        ))}
-        {ticksOf(0, last, 10).map((place) => (
-          <g key={`x ${place}`} class="summary-tick">
-            <line x1={x(place)} x2={x(place)} y1={TALL} y2={TALL + 4} />
-            <text x={x(place)} y={TALL + 17} text-anchor="middle">
-              {place} m
-            </text>
-          </g>
-        ))}
-        {lines.map(({ values, colour }) => (
-          <polyline
-            key={colour}
-            style={{ stroke: `var(--${colour})` }}
-            points={Array.from(values)
-              .map((value, i) => (Number.isFinite(value) ? `${x(s[i] ?? 0)},${y(value)}` : ''))
-              .filter((point) => point !== '')
-              .join(' ')}
-          />
-        ))}
-      </svg>
-    </figure>
-  );
-}
-
-interface RoadCurveOptions {
-  readonly title: string;
-  readonly s: Float64Array;
-  readonly lines: readonly Line[];
-  readonly children: ComponentChildren;
-}
+/** Values along the road. */
+const alongRoad = (s: Float64Array, values: Float64Array): number[] =>
+  Array.from(values).flatMap((value, i) => [s[i] ?? NaN, value]);
 
 function Losses({ a, b, title }: { a: Pick; b: Pick; title: ComponentChildren }) {
   const laps = lapsOf(a, b);
@@ -172,7 +119,7 @@ export function LapsOfRuns({ reports }: { reports: readonly RunReport[] }) {
   if (same.length < 2 || !lapA || !lapB) return null;
   const laps = lapsOf(lapA, lapB);
   const { name, perMps } = speedUnit();
-  const speeds = laps?.speed.map((values) => values.map((value) => value * perMps)) ?? [];
+  const gaps = laps?.time[0].map((time, i) => time - (laps.time[1][i] ?? NaN)) ?? new Float64Array();
   return (
     <section class="summary-laps" aria-label="Laps of two runs" data-testid="laps-of-runs">
       <h2>Where the time is lost between runs</h2>
@@ -187,21 +134,30 @@ export function LapsOfRuns({ reports }: { reports: readonly RunReport[] }) {
       )}
       {laps && a !== b && (
         <>
-          <RoadCurve
-            title="Speed of both laps"
-            s={laps.s}
-            lines={speeds.map((values, i) => ({ values, colour: `series-${i + 1}` }))}
-          >
-            Speed <span class="unit">{name}</span> <span class="key-a">lap A</span> <span class="key-b">lap B</span>
-          </RoadCurve>
-          <RoadCurve
-            title="Time gap"
-            s={laps.s}
-            lines={[{ values: laps.time[0].map((time, i) => time - (laps.time[1][i] ?? NaN)), colour: 'series-4' }]}
-          >
-            Time gap <span class="unit">s, + lap A behind</span>{' '}
-            <span class="soft">{fixed(laps.total, 3)} at the end</span>
-          </RoadCurve>
+          <PlotView
+            plot={{
+              part: 'chart',
+              title: `Speed of both laps along the road [${name}]`,
+              x: 'along the road [m]',
+              series: laps.speed.map((values, i) => ({
+                draw: 'line',
+                tone: i === 0 ? 'ink' : 'other',
+                name: `lap ${'AB'[i]}`,
+                values: alongRoad(
+                  laps.s,
+                  values.map((value) => value * perMps),
+                ),
+              })),
+            }}
+          />
+          <PlotView
+            plot={{
+              part: 'chart',
+              title: `Time gap along the road [s, + lap A behind], ${fixed(laps.total, 3)} at the end`,
+              x: 'along the road [m]',
+              series: [{ draw: 'line', tone: 'ink', name: '', values: alongRoad(laps.s, gaps) }],
+            }}
+          />
         </>
       )}
     </section>

@@ -1,10 +1,12 @@
 import { store } from '../lib/store';
 import './summary.css';
 import { useEffect } from 'preact/hooks';
-import { ticksOf } from '../draw/axis';
 import { speedColour, topOfScale } from '../draw/speed_colour';
 import { fixed, lapTime, UNKNOWN } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
+import { PlotView } from '../parts/plot_view';
+import type { Table } from '../parts/table';
+import { TableView } from '../parts/table_view';
 import { setupInWords } from '../state/lap_setup';
 import { bestsOf } from '../state/lap_table';
 import { gapsToLimit } from '../state/limit';
@@ -15,7 +17,6 @@ import { type RunReport, type Trace, verdictOf } from './summary';
 export const reports = store.signal<readonly RunReport[]>('page', []);
 export const isSummaryShown = store.signal('page', false);
 
-const WIDTH = 900; // of a picture's own units
 const MOST_POINTS = 700;
 /** The settings at the start are told as text: whatever was changed is told. */
 const NO_START = new Map<string, never>();
@@ -26,61 +27,30 @@ function spread(count: number): number[] {
   return Array.from({ length: Math.ceil(count / step) }, (_, i) => Math.min(count - 1, Math.floor(i * step)));
 }
 
-function Curve({
-  title,
-  unit,
-  trace,
-  values,
-  factor = 1,
-  report,
-}: {
-  title: string;
-  unit: string;
-  trace: Trace;
-  values: readonly number[];
-  factor?: number;
-  report: RunReport;
-}) {
-  const known = values.filter(Number.isFinite).map((value) => value * factor);
-  if (known.length < 2) return null;
-  const [low, high] = known.reduce(([a, b], value) => [Math.min(a, value), Math.max(b, value)], [0, 0]);
-  const span = high - low || 1;
-  const [tall, from] = [120, trace.time[0] ?? 0];
-  const x = (time: number): number => (WIDTH * (time - from)) / ((trace.time.at(-1) ?? 1) - from || 1);
-  const y = (value: number): number => tall - (tall * (value * factor - low)) / span;
-  const points = spread(values.length).filter((i) => Number.isFinite(values[i]));
+interface CurveOptions {
+  readonly title: string;
+  readonly trace: Trace;
+  readonly values: readonly number[];
+  readonly faults: RunReport['faults'];
+}
+
+/** Values over the whole run, with the times of faults. */
+function Curve({ title, trace, values, faults }: CurveOptions) {
+  const points = spread(values.length).flatMap((i) => [trace.time[i] ?? NaN, values[i] ?? NaN]);
+  const marks = faults.map(({ time }) => time);
+  if (!points.some((value, i) => i % 2 === 1 && Number.isFinite(value))) return null;
   return (
-    <figure class="summary-curve">
-      <figcaption>
-        {title} <span class="unit">{unit}</span>{' '}
-        <span class="soft">
-          {fixed(low, 1)} to {fixed(high, 1)}
-        </span>
-      </figcaption>
-      <svg viewBox={`-50 -8 ${WIDTH + 60} ${tall + 30}`} role="img" aria-label={`${title} over the whole run`}>
-        {ticksOf(low, high, 5).map((value) => (
-          <g key={`y ${value}`} class="summary-tick">
-            <line x1={0} x2={WIDTH} y1={y(value / factor)} y2={y(value / factor)} />
-            <text x={-6} y={y(value / factor) + 4} text-anchor="end">
-              {String(value).replace('-', '−')}
-            </text>
-          </g>
-        ))}
-        {ticksOf(from, trace.time.at(-1) ?? from, 10).map((time) => (
-          <g key={`x ${time}`} class="summary-tick">
-            <line x1={x(time)} x2={x(time)} y1={tall} y2={tall + 4} />
-            <text x={x(time)} y={tall + 17} text-anchor="middle">
-              {time} s
-            </text>
-          </g>
-        ))}
-        {report.faults.map(({ time, name }) => (
-          <line key={`${name}${time}`} x1={x(time)} x2={x(time)} y1={0} y2={tall} class="summary-fault" />
-        ))}
-        <line x1={0} x2={WIDTH} y1={y(0)} y2={y(0)} class="summary-zero" />
-        <polyline points={points.map((i) => `${x(trace.time[i] ?? 0)},${y(values[i] ?? 0)}`).join(' ')} />
-      </svg>
-    </figure>
+    <PlotView
+      plot={{
+        part: 'chart',
+        title,
+        x: 'time [s]',
+        series: [
+          { draw: 'line', tone: 'ink', name: '', values: points },
+          { draw: 'mark', tone: 'bad', name: marks.length > 0 ? 'fault' : '', values: marks },
+        ],
+      }}
+    />
   );
 }
 
@@ -183,8 +153,13 @@ function RunSection({ report }: { report: RunReport }) {
       <SpeedMap report={report} />
       <LapTable report={report} />
       <BestLapLosses report={report} />
-      <Curve title="Speed" unit={unit.name} trace={trace} values={trace.speed} factor={unit.perMps} report={report} />
-      <Curve title="Lateral error" unit="m, + left" trace={trace} values={trace.error} report={report} />
+      <Curve
+        title={`Speed [${unit.name}] over the whole run`}
+        trace={trace}
+        values={trace.speed.map((value) => value * unit.perMps)}
+        faults={faults}
+      />
+      <Curve title="Lateral error [m, + left] over the whole run" trace={trace} values={trace.error} faults={faults} />
       {faults.length > 0 && (
         <p>
           <b>Faults:</b> {faults.map(({ name, time }) => `${name} at ${fixed(time, 1)} s`).join(', ')}
@@ -238,30 +213,15 @@ function Comparison() {
     ['Commands changed', ({ gated }) => String(gated)],
     ['Duration', ({ duration }) => `${fixed(duration, 1)} s`],
   ];
+  const table: Table = {
+    part: 'table',
+    title: '',
+    columns: ['Run', ...all.map(({ name }) => name)],
+    rows: rows.map(([title, value]) => [title, ...all.map(value)]),
+  };
   return (
-    <div class="table-scroll" tabIndex={0} role="region" aria-label="Runs side by side">
-      <table data-testid="comparison">
-        <thead>
-          <tr>
-            <th scope="col">Run</th>
-            {all.map(({ name }) => (
-              <th key={name} scope="col">
-                {name}
-              </th>
-            ))}
-          </tr>
-        </thead>
-        <tbody>
-          {rows.map(([title, value]) => (
-            <tr key={title}>
-              <th scope="row">{title}</th>
-              {all.map((report) => (
-                <td key={report.name}>{value(report)}</td>
-              ))}
-            </tr>
-          ))}
-        </tbody>
-      </table>
+    <div data-testid="comparison">
+      <TableView table={table} label="Runs side by side" />
     </div>
   );
 }

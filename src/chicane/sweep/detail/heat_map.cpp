@@ -10,7 +10,6 @@
 #include <set>
 
 #include "chicane/base/text.hpp"
-#include "chicane/sweep/page_text.hpp"
 
 namespace chicane::sweep::detail {
 namespace {
@@ -144,35 +143,9 @@ bool ByNumber::operator()(const std::string& a, const std::string& b) const {
   return x.has_value() != y.has_value() ? x.has_value() : a < b;
 }
 
-std::string colour(double share) {
-  const double hue = 10.0 + 125.0 * std::clamp(share, 0.0, 1.0);
-  return fmt::format("hsl({:.0f} 55% 78%)", hue);
-}
-
 std::vector<HeatMap> heat_maps(const std::vector<std::string>& keys, const std::vector<MapRun>& runs,
                                const std::vector<Settings>& marks, std::size_t most) {
   return MapMaker(keys, runs, marks).all(most);
-}
-
-std::string map_html(const HeatMap& map) {
-  std::string text = map.title.empty() ? std::string() : fmt::format("<h3>{}</h3>", escaped(map.title));
-  text += fmt::format("<div class=scroll><table class=map><tr><th>{} \\ {}", escaped(map.row_key),
-                      escaped(map.column_key));
-  for (const std::string& column : map.columns) text += fmt::format("<th>{}", escaped(column));
-  text += "</tr>";
-  for (std::size_t r = 0; r < map.rows.size(); ++r) {
-    text += fmt::format("<tr><th>{}", escaped(map.rows[r]));
-    for (const HeatMap::Cell& cell : map.cells[r]) {
-      if (cell.runs == 0) {
-        text += "<td>";
-        continue;
-      }
-      text += fmt::format("<td{} style='background:{}' title='{} runs{}'>{:.0f}",
-                          cell.is_marked ? " class=mark" : "", colour(cell.share()), cell.runs,
-                          cell.is_marked ? ", marked" : "", 100.0 * cell.share());
-    }
-  }
-  return text + "</table></div>";
 }
 
 std::string map_text(const HeatMap& map) {

@@ -15,9 +15,6 @@ struct ByNumber {
   [[nodiscard]] bool operator()(const std::string& a, const std::string& b) const;
 };
 
-/// Green where all runs are clean, red where none is; readable on both.
-[[nodiscard]] std::string colour(double share);
-
 /// A run as a map sees it.
 struct MapRun {
   std::vector<std::string> values{};  ///< of the axes, in intervals where they are many
@@ -45,8 +42,6 @@ struct HeatMap {
                                              const std::vector<MapRun>& runs,
                                              const std::vector<Settings>& marks, std::size_t most);
 
-/// For a page of HTML.
-[[nodiscard]] std::string map_html(const HeatMap& map);
 /// In letters of equal width: `·` where no run is clean, `[ ]` around what is marked.
 [[nodiscard]] std::string map_text(const HeatMap& map);
 
