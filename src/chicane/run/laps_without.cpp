@@ -2,7 +2,6 @@
 #include "chicane/run/laps_without.hpp"
 
 #include <algorithm>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -82,33 +81,32 @@ Result<std::vector<lap_time::LapWithout>> laps_without(const Scenario& scenario,
   struct Variant {
     const char* cause;
     Scenario scenario;
-    std::optional<lap_time::LapWithout> driven{};
+    std::optional<Result<lap_time::LapWithout>> driven{};
   };
   std::vector<Variant> variants;
   for (const Cause& cause : kCauses) {
     Scenario changed = scenario;
     if (cause.drop(changed)) variants.push_back({cause.name, std::move(changed)});
   }
-  std::optional<Error> failed;
-  std::mutex mutex;
   for_each_run(variants.size(), threads_for(0), [&](std::uint64_t i, Roads& roads) {
     Variant& variant = variants[i];
     const auto stop = [&] { return go_on && !go_on(); };
     if (stop()) return false;
     const auto loop = ClosedLoop::create(variant.scenario, roads);
     if (!loop) {
-      const std::scoped_lock lock(mutex);
-      failed = loop.error();
+      variant.driven = fail(loop.error());
       return false;
     }
     const telemetry::RunSummary run = run_closed_loop(**loop, {}, stop);
     if (!stop()) variant.driven = best_of(variant.cause, run);
     return true;
   });
-  if (failed) return fail(*failed);
   std::vector<lap_time::LapWithout> laps;
-  for (Variant& variant : variants)
-    if (variant.driven) laps.push_back(std::move(*variant.driven));
+  for (Variant& variant : variants) {
+    if (!variant.driven) continue;
+    if (!*variant.driven) return fail(variant.driven->error());
+    laps.push_back(std::move(**variant.driven));
+  }
   return laps;
 }
 

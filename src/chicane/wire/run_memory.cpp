@@ -9,21 +9,19 @@ namespace {
 
 constexpr double kRounding = 1e-6;  // of times that are sums of periods [s]
 
-/// By bisection: numbers rise.
+/// Messages with a lower number. By bisection: numbers rise.
 template <class Messages>
-const KeptMessage* first_from(const Messages& messages, std::uint64_t number) {
-  const auto found =
-      std::lower_bound(messages.begin(), messages.end(), number,
-                       [](const KeptMessage& each, std::uint64_t wanted) { return each.number < wanted; });
-  return found == messages.end() ? nullptr : &*found;
-}
-
-/// Messages with a lower number. By bisection.
-std::size_t count_before(const std::deque<KeptMessage>& messages, std::uint64_t number) {
+std::size_t count_before(const Messages& messages, std::uint64_t number) {
   const auto found =
       std::lower_bound(messages.begin(), messages.end(), number,
                        [](const KeptMessage& each, std::uint64_t wanted) { return each.number < wanted; });
   return static_cast<std::size_t>(found - messages.begin());
+}
+
+template <class Messages>
+const KeptMessage* first_from(const Messages& messages, std::uint64_t number) {
+  const std::size_t older = count_before(messages, number);
+  return older < messages.size() ? &messages[older] : nullptr;
 }
 
 }  // namespace
