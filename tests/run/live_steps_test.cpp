@@ -28,7 +28,7 @@ class SteppedRun : public testing::Test {
   }
 
   RunControls controls;
-  RealtimeHooks hooks;
+  RunHooks hooks;
   std::unique_ptr<ClosedLoop> loop;
   std::unique_ptr<LiveSteps> steps;
   std::vector<std::uint64_t> cycles;

@@ -129,7 +129,7 @@ telemetry::RunSummary LiveRun::run(recording::Recorder* recorder, const LiveHook
 }
 
 telemetry::RunSummary LiveRun::drive() {
-  const run::RealtimeHooks hooks{.on_frame =
+  const run::RunHooks hooks{.on_frame =
                                      [&](const telemetry::Frame& frame) {
                                        limit_.follow(loop_->scenario(), frame);
                                        publisher_->frame(frame);

@@ -63,7 +63,7 @@ class WorkerRun {
   wire::ViewerEndpoint viewer_;
   wire::Router router_;
   RunPublisher publisher_;
-  run::RealtimeHooks hooks_;
+  run::RunHooks hooks_;
   std::optional<run::LiveSteps> steps_;
   std::optional<telemetry::RunSummary> ended_;  ///< the run as it was when it was over
   /// Where the run was at a moment of the clock, and how fast it goes on from there.

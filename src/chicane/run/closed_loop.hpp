@@ -180,10 +180,11 @@ class ClosedLoop {
 
 /// What is told of a run on the thread that runs it; must not block. Empty functions are not called.
 struct RunHooks {
-  std::function<void(const telemetry::Frame&)> on_frame{};  ///< after each control cycle
-  std::function<void(const telemetry::CompletedLap&)>
-      on_lap{};                                               ///< when a lap was completed, the last one too
-  std::function<void(const telemetry::Change&)> on_change{};  ///< a learned lap is raced by (LapPlanner)
+  std::function<void(const telemetry::Frame&)> on_frame{};       ///< after each control cycle
+  std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< after each lap, the last one too
+  std::function<void(const telemetry::Change&)> on_change{};     ///< was applied, before the next cycle
+  /// The run is over and is driven on (RealtimeOptions::stay_at_end); again and again.
+  std::function<void()> on_over{};
 };
 
 /// Runs to the end as fast as the machine can. `stop` is asked once per cycle and ends the run with what

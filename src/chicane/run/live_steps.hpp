@@ -14,7 +14,7 @@ class LiveSteps {
  public:
   /// `budget` [s] bounds each control step; 0: no bound. `clock`: whether laps are planned beside the run.
   /// All outlive this.
-  LiveSteps(ClosedLoop& loop, double budget, RunControls& controls, const RealtimeHooks& hooks,
+  LiveSteps(ClosedLoop& loop, double budget, RunControls& controls, const RunHooks& hooks,
             LapPlanner::Clock clock = LapPlanner::Clock::kReal)
       : loop_{loop}, budget_{budget}, controls_{controls}, hooks_{hooks}, planner_{clock} {}
 
@@ -42,7 +42,7 @@ class LiveSteps {
   ClosedLoop& loop_;
   double budget_;
   RunControls& controls_;
-  const RealtimeHooks& hooks_;
+  const RunHooks& hooks_;
   LapPlanner planner_;
   bool is_to_start_anew_ = false;
   bool is_unseen_ = true;

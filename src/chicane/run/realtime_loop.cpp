@@ -46,7 +46,7 @@ class Pacer {
 /// What one call of run_realtime() drives, and how.
 class Session {
  public:
-  Session(ClosedLoop& loop, const RealtimeOptions& options, RunControls& controls, const RealtimeHooks& hooks)
+  Session(ClosedLoop& loop, const RealtimeOptions& options, RunControls& controls, const RunHooks& hooks)
       : loop_{loop},
         controls_{controls},
         hooks_{hooks},
@@ -90,7 +90,7 @@ class Session {
 
   ClosedLoop& loop_;
   RunControls& controls_;
-  const RealtimeHooks& hooks_;
+  const RunHooks& hooks_;
   LiveSteps steps_;
   Pacer pacer_;
 };
@@ -98,7 +98,7 @@ class Session {
 }  // namespace
 
 telemetry::RunSummary run_realtime(ClosedLoop& loop, const RealtimeOptions& options, RunControls& controls,
-                                   const RealtimeHooks& hooks) {
+                                   const RunHooks& hooks) {
   const auto start = Clock::now();
   Session(loop, options, controls, hooks).run(options.stay_at_end);
   telemetry::RunSummary run = loop.summary();

@@ -2,13 +2,10 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
 #include <optional>
 
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/setting.hpp"
-#include "chicane/telemetry/change.hpp"
-#include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::run {
@@ -29,15 +26,6 @@ struct RealtimeOptions {
   bool stay_at_end = false;                          ///< drive on after the last lap until asked to stop
 };
 
-/// What is told of a run in real time, on the thread that runs it; must not block.
-struct RealtimeHooks {
-  std::function<void(const telemetry::Frame&)> on_frame{};  ///< after each control cycle
-  std::function<void(const telemetry::CompletedLap&)>
-      on_lap{};                                               ///< when a lap was completed, the last one too
-  std::function<void(const telemetry::Change&)> on_change{};  ///< after it was applied, before the next cycle
-  std::function<void()> on_over{};  ///< the run is over and is driven on (stay_at_end); again and again
-};
-
 /// Runs an experiment at ClosedLoop::pace() by the clock. A loop that falls behind more than 100 ms does not
 /// catch up: it goes on from where it is (missed time is skipped, as a plant that is not simulated would have
 /// skipped it for the controller).
@@ -45,6 +33,6 @@ struct RealtimeHooks {
 /// Changes that wait are applied between two cycles, also while paused. Comes back, beside at the end, when
 /// the next one `starts_anew`; it is left in the queue.
 [[nodiscard]] telemetry::RunSummary run_realtime(ClosedLoop& loop, const RealtimeOptions& options,
-                                                 RunControls& controls, const RealtimeHooks& hooks = {});
+                                                 RunControls& controls, const RunHooks& hooks = {});
 
 }  // namespace chicane::run
