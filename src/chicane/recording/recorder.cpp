@@ -40,56 +40,32 @@ Result<std::unique_ptr<Recorder>> Recorder::create(RecorderOptions options) {
 }
 
 Recorder::Recorder(RecorderOptions options, std::unique_ptr<telemetry::McapWriter> writer)
-    : options_{std::move(options)}, writer_{std::move(writer)}, ring_(kCapacity + kReserve) {}
+    : options_{std::move(options)}, writer_{std::move(writer)} {}
 
 Recorder::~Recorder() { static_cast<void>(finish()); }
 
-Recorder::Entry* Recorder::next_entry(std::uint64_t capacity) noexcept {
-  const std::uint64_t number = put_.load(std::memory_order_relaxed);
-  while (number - taken_.load(std::memory_order_acquire) >= capacity) {
-    if (!options_.may_wait) return nullptr;
+/// Leaves `reserve` places free.
+template <class Note>
+void Recorder::record(Note&& note, std::uint64_t reserve) noexcept {
+  while (!ring_.push(std::forward<Note>(note), reserve)) {
+    if (!options_.may_wait) {
+      ++left_out_;
+      return;
+    }
     std::this_thread::sleep_for(kWait);
   }
-  return &slot(number);
 }
 
-void Recorder::record(const telemetry::Frame& frame) noexcept {
-  Entry* const entry = next_entry(kCapacity);
-  if (entry == nullptr) {
-    ++left_out_;
-    return;
-  }
-  entry->frame = frame;
-  entry->has_frame = true;
-  commit();
-}
+void Recorder::record(const telemetry::Frame& frame) noexcept { record(frame, kReserve); }
 
-/// What is too important to be left out, as long as there is any room.
-template <class Put>
-void Recorder::record_event(const Put& put) noexcept {
-  Entry* const entry = next_entry(kCapacity + kReserve);
-  if (entry == nullptr) {
-    ++left_out_;
-    return;
-  }
-  put(*entry);
-  commit();
-}
+void Recorder::record(const telemetry::Change& change) noexcept { record(change, 0); }
 
-void Recorder::record(const telemetry::Change& change) noexcept {
-  record_event([&](Entry& entry) { entry.change = change; });
-}
+void Recorder::record(const telemetry::CompletedLap& lap) noexcept { record(lap, 0); }
 
-void Recorder::record(const telemetry::CompletedLap& lap) noexcept {
-  record_event([&](Entry& entry) { entry.lap = lap; });
-}
-
-void Recorder::record(std::unique_ptr<const RecordedRun> run) noexcept {
-  record_event([&](Entry& entry) { entry.run = std::move(run); });
-}
+void Recorder::record(std::unique_ptr<const RecordedRun> run) noexcept { record(std::move(run), 0); }
 
 void Recorder::record(std::shared_ptr<const lap_time::LimitAnswer> limit) noexcept {
-  record_event([&](Entry& entry) { entry.limit = std::move(limit); });
+  record(std::move(limit), 0);
 }
 
 Result<RecorderReport> Recorder::finish() {
@@ -104,17 +80,16 @@ void Recorder::work() {
   Clock::time_point flushed = Clock::now();
   while (true) {
     const bool is_last = wants_end_.load(std::memory_order_acquire);  // asked before the ring is
-    const std::uint64_t number = taken_.load(std::memory_order_relaxed);
-    const bool has_entry = number != put_.load(std::memory_order_acquire);
-    if (has_entry) {
-      write(slot(number));
-      taken_.store(number + 1, std::memory_order_release);
+    Entry* const entry = ring_.front();
+    if (entry != nullptr) {
+      std::visit([this](auto& note) { write(note); }, *entry);
+      ring_.pop();
     }
     if (Clock::now() - flushed >= (is_failing_ ? kTryAgainEvery : kFlushEvery)) {
       note(flush());
       flushed = Clock::now();
     }
-    if (has_entry) continue;
+    if (entry != nullptr) continue;
     if (is_last) break;
     std::this_thread::sleep_for(kNap);
   }
@@ -149,7 +124,8 @@ void Recorder::note(const Result<void>& flushed) {
 /// Before anything else is done: a run that is killed in its first moments still has its scenario.
 void Recorder::begin() {
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
-    static_cast<void>(writer_->add_channel(topic.name, topic.type, topic.schema));
+    const std::uint16_t channel = writer_->add_channel(topic.name, topic.type, topic.schema);
+    if (topic.name == protocol::kChangeTopic) change_channel_ = channel;
   }
   step_channel_ = writer_->add_channel(protocol::kStepTopic, protocol::kStepType, protocol::step_schema());
   state_ = describe();
@@ -192,44 +168,36 @@ void Recorder::put(std::uint16_t channel, std::uint64_t log_time, std::uint64_t 
   if (const Result<void> done = writer_->write(channel, log_time, time, bytes); !done) note(done);
 }
 
-/// The topics of what stays the same from frame to frame; `frame` holds the lap for those of laps.
-void Recorder::write(protocol::Cadence cadence, const telemetry::Frame& frame) {
+/// All topics of a cadence; `frame` holds the lap for those of laps.
+void Recorder::write(protocol::Cadence cadence, const telemetry::Frame& frame, std::uint64_t time) {
   std::uint16_t channel = 0;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
-    if (topic.cadence == cadence) put(channel, last_log_time_, 0, topic.encode(frame, options_.run));
+    if (topic.cadence == cadence) put(channel, last_log_time_, time, topic.encode(frame, options_.run));
     ++channel;
   }
 }
 
-void Recorder::write(Entry& entry) {
-  if (std::exchange(entry.has_frame, false)) write(entry.frame);
-  if (entry.change) write(*std::exchange(entry.change, std::nullopt));
-  if (entry.lap) write(*std::exchange(entry.lap, std::nullopt));
-  if (const auto limit = std::move(entry.limit)) {
-    options_.run.limit = *limit;
-    write(protocol::Cadence::kLimit);
-  }
-  if (const auto run = std::move(entry.run)) {
-    options_.run = run->run;
-    options_.scenario = run->scenario;
-    ledger_.begin();
-    is_undescribed_ = true;
-    note(flush());  // so that all is in the file in its order
-  }
+void Recorder::write(std::shared_ptr<const lap_time::LimitAnswer>& limit) {
+  options_.run.limit = *limit;
+  limit.reset();
+  write(protocol::Cadence::kLimit);
+}
+
+void Recorder::write(std::unique_ptr<const RecordedRun>& run) {
+  options_.run = run->run;
+  options_.scenario = run->scenario;
+  run.reset();
+  ledger_.begin();
+  is_undescribed_ = true;
+  note(flush());  // so that all is in the file in its order
 }
 
 void Recorder::write(const telemetry::Change& change) {
   ledger_.add(change);
   const std::uint64_t time = protocol::to_nanoseconds(change.time);
   const std::uint64_t log_time = std::max(last_log_time_, time + earlier_runs_);
-  std::uint16_t channel = 0;
-  for (const protocol::RosTopic& topic : protocol::ros_topics()) {
-    if (topic.name == protocol::kChangeTopic) {
-      put(channel, log_time, time,
-          protocol::encode_change(change.time, change.cycle, change.name.view(), change.value.view()));
-    }
-    ++channel;
-  }
+  put(change_channel_, log_time, time,
+      protocol::encode_change(change.time, change.cycle, change.name.view(), change.value.view()));
 }
 
 void Recorder::write(const telemetry::CompletedLap& lap) {
@@ -251,12 +219,7 @@ void Recorder::write(const telemetry::Frame& frame) {
     earlier_runs_ = last_log_time_ + protocol::to_nanoseconds(options_.scenario.control_period) - time;
   }
   last_log_time_ = time + earlier_runs_;
-  std::uint16_t channel = 0;
-  for (const protocol::RosTopic& topic : protocol::ros_topics()) {
-    if (topic.cadence == protocol::Cadence::kFrame)
-      put(channel, last_log_time_, time, topic.encode(frame, options_.run));
-    ++channel;
-  }
+  write(protocol::Cadence::kFrame, frame, time);
   put(step_channel_, last_log_time_, time, protocol::encode_step(frame));
   ++frames_;
 }

@@ -9,10 +9,11 @@
 #include <string>
 #include <string_view>
 #include <thread>
-#include <vector>
+#include <variant>
 
 #include "chicane/base/result.hpp"
 #include "chicane/protocol/ros_messages.hpp"
+#include "chicane/run/thread_queue.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -84,47 +85,35 @@ class Recorder {
   [[nodiscard]] Result<RecorderReport> finish();
 
  private:
-  static constexpr std::uint64_t kCapacity = 64;
   static constexpr std::uint64_t kReserve = 64;  ///< for what is too important to be left out: no frames
-
-  /// One of the five.
-  struct Entry {
-    bool has_frame = false;
-    telemetry::Frame frame;
-    std::optional<telemetry::Change> change;
-    std::optional<telemetry::CompletedLap> lap;
-    std::unique_ptr<const RecordedRun> run;
-    std::shared_ptr<const lap_time::LimitAnswer> limit;
-  };
+  using Entry =
+      std::variant<telemetry::Frame, telemetry::Change, telemetry::CompletedLap,
+                   std::unique_ptr<const RecordedRun>, std::shared_ptr<const lap_time::LimitAnswer>>;
 
   Recorder(RecorderOptions options, std::unique_ptr<telemetry::McapWriter> writer);
-  template <class Put>
-  void record_event(const Put& put) noexcept;
-  [[nodiscard]] Entry* next_entry(std::uint64_t capacity) noexcept;
-  void commit() noexcept { put_.store(put_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
+  template <class Note>
+  void record(Note&& note, std::uint64_t reserve) noexcept;
   void work();
   void begin();
   [[nodiscard]] Result<void> describe();
   [[nodiscard]] Result<void> flush();
-  void write(Entry& entry);
+  void write(const telemetry::Frame& frame);
   void write(const telemetry::Change& change);
   void write(const telemetry::CompletedLap& lap);
+  void write(std::unique_ptr<const RecordedRun>& run);
+  void write(std::shared_ptr<const lap_time::LimitAnswer>& limit);
   void put(std::uint16_t channel, std::uint64_t log_time, std::uint64_t time, std::string_view bytes);
   void note(const Result<void>& flushed);
-  void write(const telemetry::Frame& frame);
-  void write(protocol::Cadence cadence, const telemetry::Frame& frame = {});
-  [[nodiscard]] Entry& slot(std::uint64_t number) { return ring_[number % (kCapacity + kReserve)]; }
+  void write(protocol::Cadence cadence, const telemetry::Frame& frame = {}, std::uint64_t time = 0);
 
   RecorderOptions options_;
   std::unique_ptr<telemetry::McapWriter> writer_;
-  std::vector<Entry> ring_;
-  std::atomic<std::uint64_t> put_{0};    ///< entries put in so far; the control thread's
-  std::atomic<std::uint64_t> taken_{0};  ///< and taken out; the writing thread's
+  run::ThreadQueue<Entry, 2 * kReserve> ring_;
   std::atomic<bool> wants_end_{false};
   std::uint64_t left_out_ = 0;  ///< the control thread's
 
   // The writing thread's, until it has ended.
-  std::uint16_t step_channel_ = 0;
+  std::uint16_t step_channel_ = 0, change_channel_ = 0;
   std::uint64_t frames_ = 0;
   std::uint64_t last_log_time_ = 0;  ///< [ns]
   double last_time_ = 0.0;           ///< of the run, of the last frame [s]
