@@ -82,6 +82,9 @@ TEST(LiveSettings, RefuseWhatSetWouldRefuseInOneSentence) {
   EXPECT_EQ(live.refusal({"manual.steer", std::numeric_limits<double>::quiet_NaN()}),
             "manual.steer: got nan, expected a number in [-1, 1]");
   EXPECT_EQ(live.refusal({"manual.is_on", 1.0}), "manual.is_on: got 1, expected true or false");
+  EXPECT_EQ(live.refusal({"manual.steer", std::string("0.5")}),
+            "manual.steer: got 0.5, expected a number in [-1, 1]");
+  EXPECT_EQ(live.refusal({"track", std::string(300, 'x')}), "track: got 300 bytes, expected at most 256");
   EXPECT_EQ(live.value("latency_ms"), ParameterValue(100.0));
 }
 
@@ -340,8 +343,8 @@ TEST(LiveSettings, OfferTheControllerOnlyForAnExternalSimulatorAndShowWhatIsFixe
 TEST(LiveSettings, TellWhatTheRunHasTakenUpAndFaultsThatEndByThemselves) {
   run::SettingQueue requests;
   LiveSettings settings({.scenario = scenario_of({}),
-                         .faults = {{"fault.link_lost", protocol::Kind::kBool, "", 0.0, 0.0, false,
-                                     "Silence.", &sim::kind_of(*sim::fault_named("link_lost"))}}},
+                         .faults = {{"fault.link_lost", protocol::switch_of("Silence."), false,
+                                     &sim::kind_of(*sim::fault_named("link_lost"))}}},
                         requests);
   ASSERT_TRUE(settings.set({"fault.link_lost", true}));
   EXPECT_EQ(settings.get("fault.link_lost")->value, ParameterValue(true));

@@ -103,7 +103,7 @@ TEST(FaultControls, AreOneSwitchForEach) {
   const auto controls = fault_controls();
   ASSERT_EQ(controls.size(), sim::fault_kinds().size());
   EXPECT_EQ(controls[0].key, "fault.link_lost");
-  EXPECT_EQ(controls[0].kind, Kind::kBool);
+  EXPECT_EQ(controls[0].option.kind, Kind::kBool);
   EXPECT_EQ(controls[0].fault, &sim::fault_kinds()[0]);
 }
 

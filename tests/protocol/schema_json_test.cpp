@@ -38,13 +38,7 @@ TEST(SchemaJson, DescribesATunableWithUnitRangeDefaultAndMeaning) {
 }
 
 TEST(SchemaJson, OffersWhatIsAskedForAndTheControlsBehind) {
-  const Control hands{.key = "manual.steer",
-                      .kind = Kind::kNumber,
-                      .unit = "share of the lock",
-                      .minimum = -1.0,
-                      .maximum = 1.0,
-                      .initial = 0.0,
-                      .meaning = "A person's hands."};
+  const Control hands{"manual.steer", number_of(-1.0, 1.0, "A person's hands."), 0.0};
   const nlohmann::json all = rows({}, "laps", {&hands, 1});
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[0]["key"], "laps");

@@ -60,6 +60,23 @@ TEST(Setting, WritesItsFieldAndNoOther) {
   }
 }
 
+TEST(Setting, OfAFieldIsMadeFromItsValueAndReadsBackTheSame) {
+  scenario::Scenario scenario;
+  const auto setting = set_field(scenario, *protocol::find("latency_ms"), 33.3);
+  ASSERT_TRUE(setting);
+  EXPECT_EQ(setting->change.name.view(), "latency_ms");
+  EXPECT_EQ(setting->change.value.view(), "33.3");
+  EXPECT_EQ(std::get<double>(std::get<FieldValue>(setting->action).value), scenario.latency);
+  EXPECT_EQ(std::get<double>(action<FieldValue>("latency_ms", "33.3").value), scenario.latency);
+  const auto text = set_field(scenario, *protocol::find("track"), std::string("oval"));
+  ASSERT_TRUE(text);
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(text->action));
+  EXPECT_EQ(scenario.track, "oval");
+  EXPECT_EQ(set_field(scenario, *protocol::find("latency_ms"), 900.0).error().message,
+            "latency_ms: got 900, expected a number in [0, 500] ms");
+  EXPECT_EQ(scenario.latency, 33.3 / 1000.0);
+}
+
 TEST(Setting, OfPaceHandsAndFaultsIsReadOnce) {
   EXPECT_EQ(action<Pace>("run.pace", "0.25").value, 0.25);
   EXPECT_EQ(action<ManualSetting>("manual.is_on", "true").value, 1.0);

@@ -26,15 +26,6 @@ using protocol::Value;
 constexpr std::array<std::string_view, 7> kOfTheWorld{
     "laps", "seed", "latency_ms", "latency_jitter_ms", "time_limit_s", "turn_around_ms", "waypoints_sent"};
 
-/// Settings whose text may name a file.
-std::optional<protocol::Shelf> shelf_of(std::string_view key) {
-  using enum protocol::Shelf;
-  if (key == "preset") return kPreset;
-  if (key == "car") return kCar;
-  if (key == "track") return kTrack;
-  return std::nullopt;
-}
-
 bool is_of_the_world(const protocol::Parameter& row) {
   return row.group == "plant_options" || row.group == "sensor" ||
          std::find(kOfTheWorld.begin(), kOfTheWorld.end(), row.key) != kOfTheWorld.end();
@@ -56,13 +47,16 @@ Result<scenario::Scenario> composed(const scenario::Scenario& of) {
 
 std::vector<Control> run_controls(bool has_world, const std::vector<Control>& faults) {
   if (!has_world) return {};
+  using protocol::number_of;
   std::vector<Control> controls{
-      {"run.pace", Kind::kNumber, "", run::kSlowestPace, run::kFastestPace, 1.0,
-       "Seconds of the run in a second of the clock."},
-      {"manual.is_on", Kind::kBool, "", 0.0, 0.0, false, "A person drives instead of the controller."},
-      {"manual.steer", Kind::kNumber, "", -1.0, 1.0, 0.0, "Share of the steering lock, left positive."},
-      {"manual.throttle", Kind::kNumber, "", -1.0, 1.0, 0.0,
-       "1 is full throttle, -1 all the useful braking; near standstill the reverse gear."}};
+      {"run.pace",
+       number_of(run::kSlowestPace, run::kFastestPace, "Seconds of the run in a second of the clock."), 1.0},
+      {"manual.is_on", protocol::switch_of("A person drives instead of the controller.")},
+      {"manual.steer", number_of(-1.0, 1.0, "Share of the steering lock, left positive."), 0.0},
+      {"manual.throttle",
+       number_of(-1.0, 1.0,
+                 "1 is full throttle, -1 all the useful braking; near standstill the reverse gear."),
+       0.0}};
   controls.insert(controls.end(), faults.begin(), faults.end());
   return controls;
 }
@@ -76,24 +70,13 @@ foxglove::ParameterValue outside(const Value& value) {
   return std::string("inf");
 }
 
-tl::unexpected<Error> refuse(std::string_view name, const foxglove::ParameterValue& got,
-                             std::string_view expected) {
-  struct Words {
-    std::string operator()(std::monostate) const { return "nothing"; }
-    std::string operator()(bool flag) const { return flag ? "true" : "false"; }
-    std::string operator()(double number) const { return fmt::format("{}", number); }
-    std::string operator()(const std::string& text) const { return printable(text); }
-    std::string operator()(const std::vector<double>&) const { return "a list"; }
-  };
-  return fail(ErrorCode::kInvalidArgument,
-              fmt::format("{}: got {}, expected {}", name, std::visit(Words{}, got), expected));
-}
-
-Result<Value> inside(const protocol::Parameter& row, const foxglove::ParameterValue& value) {
+/// What a viewer sent, as a setting has it.
+Result<Value> inside(std::string_view key, const Option& option, const foxglove::ParameterValue& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return Value(*flag);
   if (const auto* number = std::get_if<double>(&value)) return Value(*number);
-  if (const auto* text = std::get_if<std::string>(&value)) return protocol::parse(row, *text);
-  return refuse(row.key, value, expectation(row.option));
+  if (const auto* text = std::get_if<std::string>(&value)) return Value(*text);
+  const bool is_nothing = std::holds_alternative<std::monostate>(value);
+  return fail(refusal(key, is_nothing ? "nothing" : "a list", option));
 }
 
 Result<void> validated(const scenario::Scenario& scenario) {
@@ -150,11 +133,23 @@ std::optional<foxglove::Parameter> LiveSettings::get(std::string_view name) cons
 }
 
 Result<void> LiveSettings::set(const foxglove::Parameter& parameter) {
+  const auto* text = std::get_if<std::string>(&parameter.value);
+  if (text != nullptr && !decltype(telemetry::Change::value)::fits(*text)) {
+    return fail(ErrorCode::kInvalidArgument, fmt::format("{}: got {} bytes, expected at most 256",
+                                                         printable(parameter.name), text->size()));
+  }
   const auto control = std::find_if(controls_.begin(), controls_.end(),
                                     [&](const Control& each) { return each.key == parameter.name; });
-  if (control != controls_.end()) return set_control(*control, parameter.value);
+  if (control != controls_.end()) {
+    const Result<Value> value = inside(control->key, control->option, parameter.value);
+    return value ? set_control(*control, *value) : fail(value.error());
+  }
   const protocol::Parameter* row = protocol::find(parameter.name);
-  if (row != nullptr && is_offered(*row)) return set_row(*row, parameter.value);
+  if (row != nullptr && is_offered(*row)) {
+    const Result<Value> value = text != nullptr ? protocol::parse(*row, *text)  // "inf"
+                                                : inside(row->key, row->option, parameter.value);
+    return value ? set_row(*row, *value) : fail(value.error());
+  }
   const std::string shown = printable(parameter.name);
   if (row != nullptr) {
     return fail(ErrorCode::kInvalidArgument, fmt::format("{}: cannot be set while this run goes on", shown));
@@ -167,79 +162,56 @@ Result<void> LiveSettings::set(const foxglove::Parameter& parameter) {
                            : fmt::format("{}: got an unknown key (did you mean {}?)", shown, best));
 }
 
-Result<void> LiveSettings::set_control(const Control& control, const foxglove::ParameterValue& value) {
-  std::string text;
-  const auto* words = std::get_if<std::string>(&value);
-  if (control.fault != nullptr && words != nullptr) {
-    if (!telemetry::ShortText<256>::fits(*words)) return refuse(control.key, value, "a fault's switch");
-    text = *words;
-  } else if (control.kind == Kind::kBool) {
-    const bool* flag = std::get_if<bool>(&value);
-    if (flag == nullptr) return refuse(control.key, value, "true or false");
-    text = *flag ? "true" : "false";
-  } else {
-    const double* number = std::get_if<double>(&value);
-    if (number == nullptr) {
-      return refuse(control.key, value,
-                    fmt::format("a number in [{}, {}]", control.minimum, control.maximum));
-    }
-    text = fmt::format("{}", *number);
-  }
+Result<void> LiveSettings::set_control(const Control& control, const Value& value) {
+  const std::string text = protocol::text_of(value);
+  if (control.fault == nullptr && std::holds_alternative<std::string>(value))
+    return fail(refusal(control.key, printable(text), control.option));
   const Result<run::Setting> setting = run::read_setting({.name = control.key, .value = text});
   if (!setting) return fail(setting.error());
   if (Result<void> sent = send(*setting); !sent) return sent;
-  Value accepted = control.kind == Kind::kBool ? Value(text != "false") : Value(std::get<double>(value));
-  control_values_.find(control.key)->second = std::move(accepted);
+  control_values_.find(control.key)->second =
+      control.option.kind == Kind::kBool ? Value(text != "false") : value;
   has_news_ = true;
   return {};
 }
 
-Result<void> LiveSettings::set_row(const protocol::Parameter& row, const foxglove::ParameterValue& value) {
-  const Result<Value> wanted = inside(row, value);
-  if (!wanted) return fail(wanted.error());
+Result<void> LiveSettings::set_row(const protocol::Parameter& row, const Value& value) {
   scenario::Scenario changed = shown_scenario();
-  if (Result<void> done = protocol::set(changed, row, *wanted); !done) return done;
-  const std::string text = protocol::get_text(changed, row);
-  if (text == protocol::get_text(shown_scenario(), row)) return {};
+  const Result<run::Setting> setting = run::set_field(changed, row, value);
+  if (!setting) return fail(setting.error());
+  if (protocol::get(changed, row) == protocol::get(shown_scenario(), row)) return {};
   if (protocol::is_fixed(row)) {
     return fail(ErrorCode::kInvalidArgument,
                 fmt::format("{0} is fixed when the run starts; set it on the command line: --set {0}={1}",
-                            row.key, text));
+                            row.key, setting->change.value.view()));
   }
-  if (!protocol::is_live(row)) return start_anew(row.key, text, std::move(changed));
-  // The value is that of the text, to the last bit: recordings keep the text.
-  const Result<run::Setting> setting = run::read_setting({.name = row.key, .value = text});
-  if (!setting) return fail(setting.error());
-  run::write(changed, std::get<run::FieldValue>(setting->action));
+  if (!protocol::is_live(row)) return start_anew(setting->change, std::move(changed));
   if (Result<void> valid = validated(changed); !valid) return valid;
-  if (Result<void> sent = change_live(*setting); !sent) return sent;
+  return change_live(*setting, std::move(changed));
+}
+
+/// Of the run that goes on, and of the one that is being built, which is `changed`. What only that one can
+/// take waits for it.
+Result<void> LiveSettings::change_live(const run::Setting& setting, scenario::Scenario changed) {
+  const auto& field = std::get<run::FieldValue>(setting.action);
+  scenario::Scenario now = scenario_;
+  run::write(now, field);
+  const bool is_other = protocol::get(now, *field.row) != protocol::get(scenario_, *field.row);
+  if (is_other && (!building_ || validated(now))) {
+    if (Result<void> sent = send(setting); !sent) return sent;
+    scenario_ = std::move(now);
+  }
   if (building_) {
     building_->run.scenario = std::move(changed);
-    building_->later.insert_or_assign(std::string(row.key), *setting);
+    building_->later.insert_or_assign(std::string(field.row->key), setting);
   }
   has_news_ = true;
   if (options_.on_accepted) options_.on_accepted(scenario_);
   return {};
 }
 
-/// Of the run that goes on. What only the one that is being built can take waits for it.
-Result<void> LiveSettings::change_live(const run::Setting& setting) {
-  const auto& field = std::get<run::FieldValue>(setting.action);
-  scenario::Scenario changed = scenario_;
-  run::write(changed, field);
-  if (protocol::get(changed, *field.row) == protocol::get(scenario_, *field.row)) return {};
-  if (Result<void> valid = validated(changed); !valid) return building_ ? Result<void>{} : valid;
-  if (Result<void> sent = send(setting); !sent) return sent;
-  scenario_ = std::move(changed);
-  return {};
-}
-
-Result<void> LiveSettings::start_anew(std::string_view key, const std::string& value,
-                                      scenario::Scenario changed) {
-  if (!telemetry::ShortText<256>::fits(value)) {
-    return fail(ErrorCode::kInvalidArgument,
-                fmt::format("{}: got {} bytes, expected at most 256", key, value.size()));
-  }
+Result<void> LiveSettings::start_anew(telemetry::Change choice, scenario::Scenario changed) {
+  const std::string key(choice.name.view()), value(choice.value.view());
   if (Result<void> chosen = check_choice(key, value); !chosen) return chosen;
   // A queue with room for the change and for the controls that are set now.
   if (requests_.room() < 1 + controls_.size())
@@ -270,7 +242,8 @@ Result<void> LiveSettings::start_anew(std::string_view key, const std::string& v
   ChosenRun run{.scenario = std::move(changed)};
   if (building_) run.choices = std::move(building_->run.choices);
   std::erase_if(run.choices, [&](const telemetry::Change& each) { return each.name.view() == key; });
-  run.choices.push_back({.name = key, .value = value, .starts_anew = true});
+  choice.starts_anew = true;
+  run.choices.push_back(choice);
   options_.build(run);
   if (options_.on_building) options_.on_building(words(run.choices));
   building_ = Building{.run = std::move(run), .base = *base, .later = {}};
@@ -280,7 +253,7 @@ Result<void> LiveSettings::start_anew(std::string_view key, const std::string& v
 
 /// A name of the library, or what the run was started with, which may be a file.
 Result<void> LiveSettings::check_choice(std::string_view key, const std::string& value) const {
-  const std::optional<protocol::Shelf> shelf = shelf_of(key);
+  const std::optional<protocol::Shelf> shelf = protocol::shelf_of(key);
   if (!shelf || value == protocol::get_text(options_.scenario, *protocol::find(key))) return {};
   return protocol::check_name(*shelf, value);
 }
@@ -338,9 +311,7 @@ void LiveSettings::hand_over_controls() {
     Value& value = control_values_.find(control.key)->second;
     if (control.key.starts_with("fault.")) value = false;
     if (value == control.initial) continue;
-    const auto* number = std::get_if<double>(&value);
-    const auto setting = run::read_setting(
-        {.name = control.key, .value = number != nullptr ? fmt::format("{}", *number) : "true"});
+    const auto setting = run::read_setting({.name = control.key, .value = protocol::text_of(value)});
     if (setting) static_cast<void>(send(*setting));
   }
 }

@@ -98,13 +98,10 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
     return building_ ? building_->run.scenario : scenario_;
   }
   [[nodiscard]] bool is_offered(const protocol::Parameter& row) const;
-  [[nodiscard]] Result<void> set_control(const protocol::Control& control,
-                                         const protocol::foxglove::ParameterValue& value);
-  [[nodiscard]] Result<void> set_row(const protocol::Parameter& row,
-                                     const protocol::foxglove::ParameterValue& value);
-  [[nodiscard]] Result<void> change_live(const run::Setting& setting);
-  [[nodiscard]] Result<void> start_anew(std::string_view key, const std::string& value,
-                                        scenario::Scenario changed);
+  [[nodiscard]] Result<void> set_control(const protocol::Control& control, const protocol::Value& value);
+  [[nodiscard]] Result<void> set_row(const protocol::Parameter& row, const protocol::Value& value);
+  [[nodiscard]] Result<void> change_live(const run::Setting& setting, scenario::Scenario changed);
+  [[nodiscard]] Result<void> start_anew(telemetry::Change choice, scenario::Scenario changed);
   [[nodiscard]] Result<void> check_choice(std::string_view key, const std::string& value) const;
   [[nodiscard]] tl::unexpected<Error> hide(std::string_view what, const Error& error) const;
   void hand_over(Building building);

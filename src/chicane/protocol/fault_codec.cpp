@@ -102,8 +102,7 @@ std::vector<Control> fault_controls() {
   }();
   std::vector<Control> controls;
   for (std::size_t i = 0; i < keys.size(); ++i)
-    controls.push_back(
-        {keys[i], Kind::kBool, "", 0.0, 0.0, false, sim::fault_kinds()[i].meaning, &sim::fault_kinds()[i]});
+    controls.push_back({keys[i], switch_of(sim::fault_kinds()[i].meaning), false, &sim::fault_kinds()[i]});
   return controls;
 }
 

@@ -147,17 +147,22 @@ Result<Value> parse(const Parameter& parameter, std::string_view text) {
   return value;
 }
 
-std::string get_text(const Scenario& scenario, const Parameter& parameter) {
-  const Value value = get(scenario, parameter);
+std::string text_of(const Value& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  const double number = std::get<double>(value);
+  return number_text(std::get<double>(value));
+}
+
+std::string get_text(const Scenario& scenario, const Parameter& parameter) {
+  const Value value = get(scenario, parameter);
   const Option& option = parameter.option;
+  if (option.kind != Kind::kNumber) return text_of(value);
+  const double number = std::get<double>(value);
   // What people wrote has few digits: prefer them when they give the same bits inside.
   const std::string rounded = fmt::format("{:.15g}", number);
   const double read = number_in(rounded).value_or(0.0);
   const Value inside = option.read(owner_of(scenario, parameter));
-  const bool is_same = option.kind == Kind::kNumber && option.unit.to_si(read) == std::get<double>(inside);
+  const bool is_same = option.unit.to_si(read) == std::get<double>(inside);
   return is_same ? rounded : number_text(number);
 }
 

@@ -53,6 +53,8 @@ struct Parameter {
 /// Text in the C locale whatever the environment says, "20", "0.025", "inf", "true", "pid"; same errors as
 /// set().
 [[nodiscard]] Result<Value> parse(const Parameter& parameter, std::string_view text);
+/// What parse() turns back into the same value.
+[[nodiscard]] std::string text_of(const Value& value);
 /// The shortest text that set_text() turns back into the same value.
 [[nodiscard]] std::string get_text(const scenario::Scenario& scenario, const Parameter& parameter);
 /// What --set does: key and text as a user wrote them. kNotFound with a suggestion for an unknown key.

@@ -42,14 +42,18 @@ Json to_json(const Value& value) {
 }
 
 /// Kinds without a range have none in JSON either.
-Json entry(std::string_view key, Kind kind, std::string_view unit, double minimum, double maximum) {
-  const bool has_range = kind == Kind::kNumber || kind == Kind::kInteger;
+Json entry(std::string_view key, const Option& option, const Value& initial) {
+  const bool has_range = option.kind == Kind::kNumber || option.kind == Kind::kInteger;
   return {{"key", key},
           {"group", group_of(key)},
-          {"kind", name_of(kind)},
-          {"unit", unit},
-          {"minimum", has_range ? Json(minimum) : Json(nullptr)},
-          {"maximum", has_range ? Json(maximum) : Json(nullptr)}};
+          {"kind", name_of(option.kind)},
+          {"unit", option.unit.name},
+          {"minimum", has_range ? Json(option.minimum) : Json(nullptr)},
+          {"maximum", has_range ? Json(option.maximum) : Json(nullptr)},
+          {"may_be_infinite", option.may_be_infinite},
+          {"choices", option.choices},
+          {"default", to_json(initial)},
+          {"meaning", option.meaning}};
 }
 
 /// Where a fault sits, by what it changes.
@@ -70,13 +74,6 @@ Json described(const sim::FaultKind& kind) {
   return json;
 }
 
-std::optional<Shelf> shelf_of(std::string_view key) {
-  if (key == "preset") return Shelf::kPreset;
-  if (key == "car") return Shelf::kCar;
-  if (key == "track") return Shelf::kTrack;
-  return std::nullopt;
-}
-
 /// What ships, and what is chosen now.
 Json names_on(Shelf shelf, const std::string& chosen) {
   Json names = Json::array();
@@ -87,34 +84,32 @@ Json names_on(Shelf shelf, const std::string& chosen) {
 
 }  // namespace
 
+std::optional<Shelf> shelf_of(std::string_view key) {
+  if (key == "preset") return Shelf::kPreset;
+  if (key == "car") return Shelf::kCar;
+  if (key == "track") return Shelf::kTrack;
+  return std::nullopt;
+}
+
 std::string schema_json(const scenario::Scenario& defaults, const scenario::Scenario& start,
                         const std::function<bool(const Parameter&)>& is_offered,
                         std::span<const Control> controls) {
   Json list = Json::array();
   for (const Parameter& row : protocol::list()) {
     if (!is_offered(row)) continue;
-    const Option& option = row.option;
-    Json json = entry(row.key, option.kind, option.unit.name, option.minimum, option.maximum);
+    Json json = entry(row.key, row.option, get(defaults, row));
     json["controller"] = row.controller;
-    json["may_be_infinite"] = option.may_be_infinite;
-    json["choices"] = option.choices;
     if (const std::optional<Shelf> shelf = shelf_of(row.key)) {
       json["kind"] = name_of(Kind::kChoice);
       json["choices"] = names_on(*shelf, std::get<std::string>(get(defaults, row)));
     }
-    json["default"] = to_json(get(defaults, row));
     json["start"] = to_json(get(start, row));
-    json["meaning"] = option.meaning;
     json["is_live"] = is_live(row);
     json["is_fixed"] = is_fixed(row);
     list.push_back(std::move(json));
   }
   for (const Control& control : controls) {
-    Json json = entry(control.key, control.kind, control.unit, control.minimum, control.maximum);
-    json["may_be_infinite"] = false;
-    json["choices"] = Json::array();
-    json["default"] = to_json(control.initial);
-    json["meaning"] = control.meaning;
+    Json json = entry(control.key, control.option, control.initial);
     json["is_live"] = true;
     if (control.fault != nullptr) json["fault"] = described(*control.fault);
     list.push_back(std::move(json));

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/fault.hpp"
@@ -16,14 +18,21 @@ namespace chicane::protocol {
 /// hands, a fault.
 struct Control {
   std::string_view key;  ///< "manual.steer"
-  Kind kind = Kind::kBool;
-  std::string_view unit;  ///< for people
-  double minimum = 0.0;   ///< numbers only
-  double maximum = 0.0;
+  Option option;         ///< its kind, range and meaning; has no field
   Value initial = false;
-  std::string_view meaning;               ///< one sentence
   const sim::FaultKind* fault = nullptr;  ///< of a switch for a fault; else null
 };
+
+/// Options of controls: on or off, and a number without a unit.
+[[nodiscard]] constexpr Option switch_of(std::string_view meaning) {
+  return {"", Kind::kBool, {}, 0.0, 0.0, meaning};
+}
+[[nodiscard]] constexpr Option number_of(double minimum, double maximum, std::string_view meaning) {
+  return {"", Kind::kNumber, {}, minimum, maximum, meaning};
+}
+
+/// The shelf of a setting whose text may name a file: "preset", "car", "track".
+[[nodiscard]] std::optional<Shelf> shelf_of(std::string_view key);
 
 /// What a page needs to draw sliders, as JSON: an array of {"key", "group", "kind": "number" | "integer" |
 /// "bool" | "choice" | "text", "unit", "minimum", "maximum", "may_be_infinite", "choices", "default",

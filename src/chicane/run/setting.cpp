@@ -38,13 +38,15 @@ Result<Action> read_manual(std::string_view key, std::string_view value) {
   return ManualSetting{.what = key == "manual.steer" ? What::kSteer : What::kThrottle, .value = *share};
 }
 
-Result<Action> read_field(std::string_view key, std::string_view value) {
+Result<Action> read_field(std::string_view key, std::string_view text) {
   const Parameter* row = protocol::find(key);
+  if (row == nullptr) return fail(ErrorCode::kNotFound, printable(key) + ": " + protocol::unknown_key(key));
+  const Result<protocol::Value> value = protocol::parse(*row, text);
+  if (!value) return fail(value.error());
   scenario::Scenario scratch;
-  if (Result<void> set = protocol::set_text(scratch, key, value); !set) return fail(set.error());
-  const OptionValue field = row->option.read(row->owner(scratch));
-  if (const auto* number = std::get_if<double>(&field)) return FieldValue{.row = row, .value = *number};
-  if (const auto* flag = std::get_if<bool>(&field)) return FieldValue{.row = row, .value = *flag};
+  const Result<Setting> setting = set_field(scratch, *row, *value);
+  if (!setting) return fail(setting.error());
+  if (!std::holds_alternative<std::monostate>(setting->action)) return setting->action;
   return fail(ErrorCode::kInvalidArgument, std::string(key) + ": is fixed when a run starts");
 }
 
@@ -67,6 +69,15 @@ Result<Action> read_action(std::string_view key, std::string_view value) {
 }  // namespace
 
 static_assert(std::is_trivially_copyable_v<Setting>);
+
+Result<Setting> set_field(scenario::Scenario& scenario, const Parameter& row, const protocol::Value& value) {
+  if (const Result<void> set = protocol::set(scenario, row, value); !set) return fail(set.error());
+  Setting setting{.change = {.name = row.key, .value = protocol::text_of(value)}, .action = {}};
+  const OptionValue field = row.option.read(row.owner(scenario));
+  if (const auto* number = std::get_if<double>(&field)) setting.action = FieldValue{&row, *number};
+  if (const auto* flag = std::get_if<bool>(&field)) setting.action = FieldValue{&row, *flag};
+  return setting;
+}
 
 Result<Setting> read_setting(const telemetry::Change& change) {
   Result<Action> action = read_action(change.name.view(), change.value.view());

@@ -41,8 +41,8 @@ struct LearnedLap {
 /// because the run begins anew.
 using Action = std::variant<std::monostate, FieldValue, Pace, ManualSetting, FaultSwitch, LearnedLap>;
 
-/// One change of a setting, read and checked: data that is handed from thread to thread and applied without
-/// reading a text again. Plain; no allocation.
+/// One change of a setting, made and checked once: data that is handed from thread to thread and applied.
+/// Plain; no allocation.
 struct Setting {
   telemetry::Change change;  ///< what recordings and viewers are told
   Action action;
@@ -50,9 +50,13 @@ struct Setting {
 using SettingQueue = ThreadQueue<Setting>;
 using ChangeQueue = ThreadQueue<telemetry::Change>;
 
-/// Reads a change: a key of the schema whose value is no text, "run.pace", "manual.…" or "fault.…"; of a
-/// recording "run.racing_line", too. Fails as
-/// --set does, with the key, what was got and what was expected. Allocates.
+/// Sets a field of `scenario` to `value` in the key's unit, and gives the change; its action is none where
+/// the field is a text. Fails as protocol::set() does; the scenario is not changed then. Allocates.
+[[nodiscard]] Result<Setting> set_field(scenario::Scenario& scenario, const protocol::Parameter& row,
+                                        const protocol::Value& value);
+/// Reads a change that is text: a key of the schema whose value is no text, "run.pace", "manual.…" or
+/// "fault.…"; of a recording "run.racing_line", too. Fails as --set does, with the key, what was got and what
+/// was expected. Allocates.
 [[nodiscard]] Result<Setting> read_setting(const telemetry::Change& change);
 
 /// Sets the field. No allocation.
