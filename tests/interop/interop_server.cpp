@@ -18,9 +18,9 @@ int main() {
     return 2;
   }
   wire::ServeOptions options;
-  options.vehicle = scenario.vehicle;
-  wire::UdacityEndpoint endpoint(options, std::move(*controller),
-                                 {.log = [](std::string_view line) { std::cerr << line << std::endl; }});
+  wire::ServeHooks hooks;
+  hooks.log = [](std::string_view line) { std::cerr << line << std::endl; };
+  wire::UdacityEndpoint endpoint(options, std::move(*controller), std::move(hooks));
   wire::Router router(&endpoint, nullptr);
   options.server.port = 0;
   auto server = net::Server::create(options.server, router.handlers(), {});

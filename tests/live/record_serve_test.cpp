@@ -70,15 +70,14 @@ recording::ReplayReport record_and_verify(const std::string& name, std::chrono::
   options.server.port = 0;
   options.latency = std::chrono::nanoseconds{0};
   options.quiet_after = std::chrono::milliseconds{10};
-  options.vehicle = scenario.vehicle;
   options.step_budget = step_budget;
   options.scenario = scenario;
   run::SettingQueue settings;
-  UdacityEndpoint endpoint(
-      options, std::move(*controller),
-      {.settings = &settings,
-       .on_change = [&](const telemetry::Change& change) { (*recorder)->record(change); },
-       .on_frame = [&](const telemetry::Frame& frame) { (*recorder)->record(frame); }});
+  wire::ServeHooks hooks;
+  hooks.settings = &settings;
+  hooks.on_change = [&](const telemetry::Change& change) { (*recorder)->record(change); };
+  hooks.on_frame = [&](const telemetry::Frame& frame) { (*recorder)->record(frame); };
+  UdacityEndpoint endpoint(options, std::move(*controller), std::move(hooks));
   Router router(&endpoint, nullptr);
   auto server = net::Server::create(options.server, router.handlers(), {});
   EXPECT_TRUE(server);

@@ -73,12 +73,13 @@ class Served {
  public:
   explicit Served(ServeOptions options = immediate()) {
     options.server.port = 0;
-    endpoint_ = std::make_unique<UdacityEndpoint>(
-        options, std::make_unique<Borrowed>(controller),
-        ServeHooks{
-            .on_other_road =
-                [this](double distance) { note("another road at " + std::to_string(std::lround(distance))); },
-            .log = [this](std::string_view line) { note(line); }});
+    ServeHooks hooks;
+    hooks.on_other_road = [this](double distance) {
+      note("another road at " + std::to_string(std::lround(distance)));
+    };
+    hooks.log = [this](std::string_view line) { note(line); };
+    endpoint_ =
+        std::make_unique<UdacityEndpoint>(options, std::make_unique<Borrowed>(controller), std::move(hooks));
     router_ = std::make_unique<Router>(endpoint_.get(), nullptr);
     auto created =
         net::Server::create(options.server, router_->handlers(),

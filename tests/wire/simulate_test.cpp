@@ -310,10 +310,10 @@ TEST(ServeAndSimulate, DriveTheLakesideTogetherOverRealSockets) {
   ASSERT_TRUE(controller) << controller.error().message;
   ServeOptions options;
   options.server.port = 0;
-  options.vehicle = scenario.vehicle;
   std::string log;
-  UdacityEndpoint endpoint(options, std::move(*controller),
-                           {.log = [&](std::string_view line) { log += std::string(line) + "\n"; }});
+  ServeHooks hooks;
+  hooks.log = [&](std::string_view line) { log += std::string(line) + "\n"; };
+  UdacityEndpoint endpoint(options, std::move(*controller), std::move(hooks));
   Router router(&endpoint, nullptr);
   auto server = net::Server::create(options.server, router.handlers(), {});
   ASSERT_TRUE(server) << server.error().message;

@@ -50,7 +50,6 @@ ServedRun::ServedRun(const net::ServerOptions& server, const scenario::Scenario&
       description_{describe_served(scenario_, *controller_, track_)},
       assets_{std::move(assets)} {
   options_.server = server;
-  options_.vehicle = scenario_.vehicle;
   options_.scenario = scenario_;
   if (track_) options_.track = &*track_;
   options_.lap = std::move(lap);

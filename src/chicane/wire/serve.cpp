@@ -88,8 +88,8 @@ class UdacityEndpoint::Control {
           const ServeHooks& hooks, Answer answer)
       : options_{options},
         answer_{std::move(answer)},
-        drive_hooks_{hooks.drive()},
-        drive_{options.drive(), std::move(controller), drive_hooks_},
+        drive_hooks_{hooks},
+        drive_{options, std::move(controller), drive_hooks_},
         delay_{seconds(options.latency) + kTypicalTurnAround},
         thread_{[this] { work(); }} {}
   ~Control() { stop(); }

@@ -13,65 +13,34 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
-#include "chicane/model/vehicle.hpp"
 #include "chicane/net/server.hpp"
 #include "chicane/protocol/foxglove_codec.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
-#include "chicane/road/racing_road.hpp"
-#include "chicane/road/track.hpp"
 #include "chicane/run/external_drive.hpp"
-#include "chicane/run/setting.hpp"
-#include "chicane/scenario/scenario.hpp"
-#include "chicane/telemetry/change.hpp"
-#include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
 #include "chicane/wire/endpoint.hpp"
 #include "chicane/wire/sparse_log.hpp"
 
 namespace chicane::wire {
 
-/// How simulators are answered.
-struct ServeOptions {
+/// How simulators are answered. The deadline of a control step is 50 ms where nothing else is said.
+struct ServeOptions : run::ExternalDriveOptions {
+  ServeOptions() { step_budget = std::chrono::milliseconds{50}; }
+
   net::ServerOptions server;
-  model::VehicleParams vehicle;  ///< bounds of what is sent
-  scenario::Scenario scenario;   ///< what the controller was made from: needed to change it while it drives
-  /// The road that the simulator drives on, where it is known: the car is judged by the positions it sends.
-  /// Outlives the endpoint; null: not known, laps are timed all the same.
-  const road::Track* track = nullptr;
-  std::shared_ptr<const road::RacingRoad> lap{};  ///< planned, of a controller that races (run/racing.hpp)
   /// Artificial, between the end of a control step and its answer, as the original controller sleeps. [0, 0.5
   /// s]
   std::chrono::nanoseconds latency = std::chrono::milliseconds{100};
-  std::chrono::nanoseconds step_budget =
-      std::chrono::milliseconds{50};  ///< deadline of a control step; 0 = none
   /// A client that has said nothing for so long gets the Engine.IO open packet: stock clients wait for it,
   /// the original speaks first (and would double its loop if it got one).
   std::chrono::nanoseconds open_after = std::chrono::seconds{1};
-  /// From telemetry to telemetry, beside twice the usual delay: after so long nothing learned is trusted.
-  std::chrono::nanoseconds forget_after = std::chrono::milliseconds{500};
   std::chrono::nanoseconds quiet_after = std::chrono::seconds{1};   ///< then another connection may take over
   std::chrono::nanoseconds silent_after = std::chrono::seconds{3};  ///< then missing telemetry is reported
-
-  /// The part that the control cycles are made of.
-  [[nodiscard]] run::ExternalDriveOptions drive() const {
-    return {.scenario = scenario,
-            .track = track,
-            .lap = lap,
-            .step_budget = step_budget,
-            .forget_after = forget_after};
-  }
 };
 
-struct ServeHooks {
-  run::SettingQueue* settings = nullptr;  ///< that change before the next answer; outlives the endpoint
-  std::function<void(const telemetry::Change&)>
-      on_change{};                                          ///< when one was taken up, on the control thread
-  std::function<void(const telemetry::Frame&)> on_frame{};  ///< after each answer, on the control thread
-  std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< a lap was completed; the control thread
-  /// The simulator drives on another road than ServeOptions::track, so far from it at most [m], which is not
-  /// used any more. At most once, the control thread.
-  std::function<void(double)> on_other_road{};
+/// Those of the drive are called on the control thread.
+struct ServeHooks : run::ExternalDriveHooks {
   std::function<void(std::string_view)> log{};  ///< one line about the connection, on the network thread
   std::function<void(std::uint16_t port)> on_listening{};  ///< once, when the port is ours
   std::function<void()> on_end{};  ///< once: control has ended, the server still stands
@@ -79,15 +48,6 @@ struct ServeHooks {
   /// Settings by name, as viewers see them: for the network thread. Outlives the endpoint; null: none.
   protocol::foxglove::ParameterStore* parameters = nullptr;
   const protocol::Run* description = nullptr;  ///< of the run; outlives the endpoint; null: not known
-
-  /// The part that the control cycles call.
-  [[nodiscard]] run::ExternalDriveHooks drive() const {
-    return {.settings = settings,
-            .on_change = on_change,
-            .on_frame = on_frame,
-            .on_lap = on_lap,
-            .on_other_road = on_other_road};
-  }
 };
 
 /// What has been served so far.
