@@ -22,6 +22,7 @@ class Race : public testing::Test {
     scenario =
         protocol::compose({.scenario_file = {}, .settings = {{"track", "oval"}, {"laps", "0"}}}).value();
     loop = std::move(*run::ClosedLoop::create(scenario));
+    log.begin(scenario);
   }
   /// A race that has begun.
   void race(const std::string& question) {
@@ -35,9 +36,8 @@ class Race : public testing::Test {
   void drive(double until) {
     while (loop->time() < until) {
       const bool is_new = loop->advance();
-      if (const auto lap = loop->take_lap()) rival.note(*lap);
-      if (is_new) rival.note(loop->frame());
-      if (is_new && loop->cycle() % 32 == 0) wait();
+      if (const auto lap = loop->take_lap()) log.note(*lap);
+      if (is_new) log.note(loop->frame());
     }
     wait();
   }
@@ -46,7 +46,7 @@ class Race : public testing::Test {
     const telemetry::Change changed{
         .cycle = loop->cycle(), .time = loop->time(), .name = name, .value = value};
     loop->apply(changed);
-    rival.note(changed);
+    log.note(changed);
   }
   /// Until the rival is where the run is, or does not race.
   void wait() {
@@ -63,7 +63,8 @@ class Race : public testing::Test {
   scenario::Scenario scenario;
   std::unique_ptr<run::ClosedLoop> loop;
   std::atomic<bool> is_asked{false};
-  Rival rival{[this] { is_asked = true; }};
+  RunLog log{false};
+  Rival rival{log, [this] { is_asked = true; }};
 };
 
 TEST_F(Race, WithTheSameSettingsEndsInTheSameLapsBitForBitFaultsIncluded) {
@@ -103,7 +104,7 @@ TEST_F(Race, WithOtherSettingsTellsBothCarsThirdByThird) {
 TEST_F(Race, EndsWhenTheRunBeginsWithOtherChoicesAndWhenNobodyWantsIt) {
   race(R"({"settings":{"tracking_mpc.speed_limit_mps":25}})");
   drive(1.0);
-  rival.end_race();
+  log.begin(scenario);
   while (answer()["state"] == "racing") std::this_thread::yield();
   EXPECT_EQ(answer()["state"], "ended");
   EXPECT_EQ(answer()["why"], "the run began with other choices");

@@ -24,10 +24,11 @@ class Publisher : public testing::Test {
   std::vector<std::string> noted;
   run::SettingQueue requests;
   LiveSettings settings{{.scenario = {}, .has_world = false}, requests};
+  RunLog log{false};
   RunPublisher publisher{
-      viewer, settings, {LiveHooks{}, {.on_change = [this](const telemetry::Change& change) {
-                           noted.emplace_back(change.value.view());
-                         }}}};
+      viewer, settings, {.log = &log, .hooks = {.on_change = [this](const telemetry::Change& change) {
+                                        noted.emplace_back(change.value.view());
+                                      }}}};
   telemetry::Frame frame;
 };
 
@@ -43,6 +44,20 @@ TEST_F(Publisher, TellsOfFaultsThatBeganOrEndedByThemselvesOnly) {
   EXPECT_EQ(noted.size(), 3U);
   drive(true);
   EXPECT_EQ(noted.size(), 3U) << "it was asked for";
+}
+
+TEST_F(Publisher, NotesWhatItIsToldInTheLog) {
+  log.begin({});
+  frame.begins = true;
+  publisher.frame(frame);
+  publisher.change({.cycle = 1, .time = 0.04, .name = "latency_ms", .value = "60"});
+  publisher.lap({.lap = 7});
+  const auto known = log.since({});
+  ASSERT_TRUE(known) << known.error().message;
+  ASSERT_EQ(known->events->size(), 3U);
+  EXPECT_TRUE(std::get<RunLog::Step>((*known->events)[0]).begins);
+  EXPECT_EQ(std::get<RunLog::Change>((*known->events)[1]).value, "60");
+  EXPECT_EQ(std::get<telemetry::CompletedLap>((*known->events)[2]).lap, 7);
 }
 
 TEST_F(Publisher, TellsTheEndOnceForEachRun) {

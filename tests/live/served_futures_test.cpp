@@ -31,7 +31,7 @@ class Theirs {
  public:
   explicit Theirs(const Settings& settings)
       : loop_{std::move(*run::ClosedLoop::create(scenario_of(settings)))} {
-    journal.begin(loop_->scenario());
+    log.begin(loop_->scenario());
   }
   void drive(double seconds) {
     for (const double end = loop_->time() + seconds; loop_->time() < end;) static_cast<void>(step());
@@ -43,7 +43,7 @@ class Theirs {
       if (step()) all.emplace_back(loop_->frame().truth.x, loop_->frame().truth.y);
     return all;
   }
-  Journal journal;
+  RunLog log{false};
 
  private:
   /// A physics step; what is told of it.
@@ -52,8 +52,8 @@ class Theirs {
     telemetry::Frame frame = loop_->frame();
     frame.truth = {};
     frame.has_truth = false;
-    journal.note(frame);
-    static_cast<void>(journal.oldest());  // collects
+    log.note(frame);
+    static_cast<void>(log.end());  // collects
     return true;
   }
 
@@ -61,7 +61,7 @@ class Theirs {
 };
 
 struct Asked {
-  WhatIf::Answer answer;
+  recording::BranchReport answer;
   std::vector<Vec2> was;
 };
 Result<Asked> ask(ServedFutures& futures, Settings settings, double at = 1e9) {
@@ -83,7 +83,7 @@ class Futures : public testing::TestWithParam<Case> {};
 
 TEST_P(Futures, BeginWhereTheCarIsAndGoOnAsItDoes) {
   Theirs theirs(GetParam().settings);
-  ServedFutures futures(theirs.journal);
+  ServedFutures futures(theirs.log);
   futures.believe(scenario_of(GetParam().settings));
   for (const double more : {8.0, 5.0, 14.0, 20.0}) {
     theirs.drive(more);
@@ -93,7 +93,7 @@ TEST_P(Futures, BeginWhereTheCarIsAndGoOnAsItDoes) {
     ASSERT_TRUE(answer.stand_in);
     EXPECT_NEAR(answer.stand_in->compared, more == 8.0 ? 8.0 : 10.0, 0.2);
     EXPECT_LT(answer.stand_in->apart, GetParam().apart);
-    EXPECT_EQ(answer.report.recorded.mean_speed, answer.report.branched.mean_speed) << "nothing was changed";
+    EXPECT_EQ(answer.recorded.mean_speed, answer.branched.mean_speed) << "nothing was changed";
     const auto driven = theirs.way(75);
     ASSERT_GE(was.size(), driven.size());
     for (std::size_t i = 0; i < driven.size(); ++i)
@@ -110,15 +110,15 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(ServedFutures, TellWhatAChangeWouldDo) {
   Theirs theirs({});
-  ServedFutures futures(theirs.journal);
+  ServedFutures futures(theirs.log);
   futures.believe(scenario_of({}));
   theirs.drive(20.0);
   const auto slower = ask(futures, {{"tracking_mpc.speed_limit_mps", "12"}});
   ASSERT_TRUE(slower) << slower.error().message;
-  EXPECT_LT(slower->answer.report.branched.mean_speed, slower->answer.report.recorded.mean_speed - 2.0);
+  EXPECT_LT(slower->answer.branched.mean_speed, slower->answer.recorded.mean_speed - 2.0);
   const auto earlier = ask(futures, {}, 12.0);
   ASSERT_TRUE(earlier) << earlier.error().message;
-  EXPECT_NEAR(earlier->answer.report.at, 12.0, 0.1);
+  EXPECT_NEAR(earlier->answer.at, 12.0, 0.1);
   const auto unknown = ask(futures, {{"nothing", "1"}});
   ASSERT_FALSE(unknown);
   EXPECT_THAT(unknown.error().message, HasSubstr("nothing"));
@@ -126,7 +126,7 @@ TEST(ServedFutures, TellWhatAChangeWouldDo) {
 
 TEST(ServedFutures, SayHowFarOurCarIsFromTheirs) {
   Theirs theirs({{"plant_options.friction_scale", "0.6"}, {"latency_ms", "160"}});
-  ServedFutures futures(theirs.journal);
+  ServedFutures futures(theirs.log);
   futures.believe(scenario_of({}));
   theirs.drive(25.0);
   const auto asked = ask(futures, {});
@@ -137,7 +137,7 @@ TEST(ServedFutures, SayHowFarOurCarIsFromTheirs) {
 
 TEST(ServedFutures, SayWhyThereAreNone) {
   Theirs theirs({});
-  ServedFutures futures(theirs.journal);
+  ServedFutures futures(theirs.log);
   const auto why = [&](double at = 1e9) {
     const auto asked = ask(futures, {}, at);
     EXPECT_FALSE(asked);

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "chicane/live/journal.hpp"
+#include "chicane/live/run_log.hpp"
 #include "chicane/protocol/library.hpp"
 
 namespace chicane::live {
@@ -69,17 +69,17 @@ TEST(WhatIf, AnswersTheNewestQuestionWithBothFutures) {
   const auto scenario =
       protocol::compose({.scenario_file = {}, .settings = {{"track", "oval"}, {"laps", "0"}}});
   const auto loop = *run::ClosedLoop::create(*scenario);
-  Journal journal;
-  journal.begin(loop->scenario());
+  RunLog log(false);
+  log.begin(loop->scenario());
   for (int cycles = 0; cycles < 300;) {
     if (!loop->advance()) continue;
-    journal.note(loop->frame());
+    log.note(loop->frame());
     ++cycles;
   }
   std::atomic<int> computed{0};
   WhatIf what_if([&](const WhatIfQuestion& question, const recording::BranchHooks& hooks) {
     ++computed;
-    return recording::branch_run(journal.history()->events, question.options, hooks);
+    return log.branch(question.options, hooks);
   });
   EXPECT_EQ(Json::parse(what_if.answer())["state"], "none");
   ASSERT_TRUE(what_if.ask(R"({"at_s":0})"));

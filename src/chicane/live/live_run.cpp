@@ -7,7 +7,6 @@
 
 #include "chicane/live/description.hpp"
 #include "chicane/live/pages.hpp"
-#include "chicane/live/run_hooks.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 
 namespace chicane::live {
@@ -35,32 +34,23 @@ LiveRun::LiveRun(const LiveRunOptions& options, std::unique_ptr<run::ClosedLoop>
     : options_{options},
       controls_{controls},
       loop_{std::move(loop)},
-      settings_{{.scenario = loop_->scenario(),
-                 .faults = protocol::fault_controls(),
-                 .build = [this](ChosenRun next) { builder_.begin(std::move(next)); },
-                 .built = [this] { return built(); },
-                 .on_building =
-                     [this](const std::string& what) {
-                       viewer_.change_run([what](protocol::Run& run) { run.building = what; });
-                     },
-                 .say = [this](std::string_view line) { say(line); },
-                 .on_accepted =
-                     [this](const scenario::Scenario& now) {
-                       viewer_.change_run([latency = now.latency, vehicle = now.vehicle](protocol::Run& run) {
-                         run.latency = latency;
-                         run.vehicle = vehicle;
-                       });
-                     }},
+      settings_{told_to(viewer_, {.scenario = loop_->scenario(),
+                                  .faults = protocol::fault_controls(),
+                                  .build = [this](ChosenRun next) { builder_.begin(std::move(next)); },
+                                  .built = [this] { return built(); },
+                                  .say = [this](std::string_view line) { say(line); }}),
                 controls.settings},
       viewer_{{.run = live_description(*loop_),
                .services = services(controls, what_if_, rival_, settings_),
                .parameters = &settings_}},
       router_{nullptr, &viewer_, [this](std::string_view line) { say(line); }},
-      builder_{&live_description},
-      what_if_{[this](const WhatIfQuestion& question, const recording::BranchHooks& hooks) {
-        return follower_.branch(question.options, hooks);
+      builder_{[](ChosenRun next, const std::function<bool()>&) {
+        return build_run(std::move(next), &live_description);
       }},
-      rival_{[this] { controls_.wants_restart = true; }},
+      what_if_{[this](const WhatIfQuestion& question, const recording::BranchHooks& hooks) {
+        return log_.branch(question.options, hooks);
+      }},
+      rival_{log_, [this] { controls_.wants_restart = true; }},
       limit_{[this](const lap_time::LimitAnswer& news) {
         if (!news.found && hooks_.say) hooks_.say("no gap to the limit: " + news.why_not);
         viewer_.set_limit(news);
@@ -113,50 +103,34 @@ telemetry::RunSummary LiveRun::run(recording::Recorder* recorder, const LiveHook
     hooks_ = hooks;
   }
   recorder_ = recorder;
-  publisher_.emplace(
-      viewer_, settings_,
-      std::vector<LiveHooks>{recording_hooks(recorder, limit_), journal_hooks(journal_), hooks_});
-  journal_.begin(loop_->scenario());
+  publisher_.emplace(viewer_, settings_,
+                     RunListeners{.recorder = recorder, .limit = &limit_, .log = &log_, .hooks = hooks_});
+  log_.begin(loop_->scenario());
   limit_.search(loop_->track(), loop_->scenario());
   telemetry::RunSummary summary = drive();
   publisher_->end(summary);
-  if (limit_.is_awaited(summary) && !controls_.wants_stop)
-    publisher_->say("the limit is still being computed; Ctrl-C does without");
-  limit_.compare(summary, controls_.wants_stop);
-  record_news(recorder, limit_);
+  publisher_->compare(summary, controls_.wants_stop);
   viewer_.dismiss();
   return summary;
 }
 
 telemetry::RunSummary LiveRun::drive() {
   const run::RunHooks hooks{.on_frame =
-                                     [&](const telemetry::Frame& frame) {
-                                       limit_.follow(loop_->scenario(), frame);
-                                       publisher_->frame(frame);
-                                       rival_.note(frame);
-                                     },
-                                 .on_lap =
-                                     [&](const telemetry::CompletedLap& lap) {
-                                       publisher_->lap(lap);
-                                       rival_.note(lap);
-                                     },
-                                 .on_change = [&](const telemetry::Change& change) { note(change); },
-                                 .on_over =
-                                     [&] {
-                                       if (!publisher_->has_told_end()) publisher_->end(loop_->summary());
-                                     }};
+                                [&](const telemetry::Frame& frame) {
+                                  limit_.follow(loop_->scenario(), frame);
+                                  publisher_->frame(frame);
+                                },
+                            .on_lap = [&](const telemetry::CompletedLap& lap) { publisher_->lap(lap); },
+                            .on_change = [&](const telemetry::Change& change) { publisher_->change(change); },
+                            .on_over =
+                                [&] {
+                                  if (!publisher_->has_told_end()) publisher_->end(loop_->summary());
+                                }};
   for (;;) {
     telemetry::RunSummary summary = run::run_realtime(
         *loop_, {.step_budget = step_budget(), .stay_at_end = options_.stay_at_end}, controls_, hooks);
     if (!take_over()) return summary;
   }
-}
-
-/// A change that was asked for: the second car hears of it, too, but not of faults that begin by themselves,
-/// which it has of its own.
-void LiveRun::note(const telemetry::Change& change) {
-  publisher_->change(change);
-  rival_.note(change);
 }
 
 /// Goes on with the run that the next change begins. False when there is none.
@@ -172,11 +146,10 @@ bool LiveRun::take_over() {
   loop_ = std::move(run->loop);
   limit_.end();  // or its news could come after the description of another road
   viewer_.set_run(std::move(run->description));
-  journal_.begin(run->recorded->scenario);
+  log_.begin(run->recorded->scenario);
   if (recorder_ != nullptr) recorder_->record(std::move(run->recorded));
-  for (const telemetry::Change& choice : run->choices) note(choice);
+  for (const telemetry::Change& choice : run->choices) publisher_->change(choice);
   controls_.settings.pop();
-  rival_.end_race();
   limit_.search(loop_->track(), loop_->scenario());
   return true;
 }

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
-#include "chicane/live/journal.hpp"
 #include "chicane/live/live_settings.hpp"
+#include "chicane/live/newest_task.hpp"
 #include "chicane/live/rival.hpp"
 #include "chicane/live/run_builder.hpp"
-#include "chicane/live/run_follower.hpp"
 #include "chicane/live/run_limit.hpp"
+#include "chicane/live/run_log.hpp"
 #include "chicane/live/run_publisher.hpp"
 #include "chicane/live/what_if.hpp"
 #include "chicane/net/server.hpp"
@@ -43,11 +43,11 @@ struct LiveRunOptions {
 /// its viewers, recording, limit and settings, and what each thread hands to which.
 ///
 /// Threads, and what each owns: the thread of run() the loop, the recorder's input and RunPublisher; the
-/// network thread LiveSettings, the viewers and RunBuilder's results; a builder, a searcher of the limit and
-/// the recorder's writer have one each, and so do the collector of the Journal, RunFollower, WhatIf and
-/// Rival. The network thread hands changes to the loop through RunControls::settings and built runs through a
-/// queue under the one mutex here, which is held for a pointer's move. A setting that cannot change while a
-/// run goes on starts another one: built beside it, taken over between two cycles.
+/// network thread LiveSettings, the viewers and the runs that were built; a builder, a searcher of the limit
+/// and the recorder's writer have one each, and so do RunLog, WhatIf and Rival. The network thread hands
+/// changes to the loop through RunControls::settings and built runs through a queue under the one mutex here,
+/// which is held for a pointer's move. A setting that cannot change while a run goes on starts another one:
+/// built beside it, taken over between two cycles.
 class LiveRun {
  public:
   /// Opens the port. `controls` belongs to whoever may stop the run, and outlives this. kIo with the sentence
@@ -74,7 +74,6 @@ class LiveRun {
   [[nodiscard]] Result<void> open();
   [[nodiscard]] telemetry::RunSummary drive();
   void say(std::string_view line);
-  void note(const telemetry::Change& change);
   [[nodiscard]] bool take_over();
   [[nodiscard]] std::optional<Result<void>> built();
 
@@ -88,10 +87,9 @@ class LiveRun {
   recording::Recorder* recorder_ = nullptr;
   std::mutex mutex_;
   std::deque<std::unique_ptr<BuiltRun>> built_;  ///< one for each change that starts anew
-  RunBuilder builder_;                           ///< the network thread's
+  NewestTask<ChosenRun, Result<std::unique_ptr<BuiltRun>>> builder_;  ///< the network thread's
   LiveHooks hooks_;
-  Journal journal_;
-  RunFollower follower_{journal_};
+  RunLog log_{true};
   WhatIf what_if_;
   Rival rival_;
   RunLimit limit_;                       ///< ends before everything it tells

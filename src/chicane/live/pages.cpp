@@ -15,10 +15,13 @@ namespace {
 
 using protocol::Json;
 
+std::function<net::Content()> json_page(std::function<std::string()> text) {
+  return
+      [text = std::move(text)] { return net::Content{.content_type = "application/json", .bytes = text()}; };
+}
+
 std::function<net::Content()> mode_page(const Json& mode) {
-  return [text = protocol::json_text(mode) + "\n"] {
-    return net::Content{.content_type = "application/json", .bytes = text};
-  };
+  return json_page([text = protocol::json_text(mode) + "\n"] { return text; });
 }
 
 }  // namespace
@@ -45,15 +48,11 @@ wire::Pages live_pages(const LiveSettings& settings) {
 }
 
 void add_what_if(wire::Pages& pages, WhatIf& what_if) {
-  pages["/what_if.json"] = [&what_if] {
-    return net::Content{.content_type = "application/json", .bytes = what_if.answer()};
-  };
+  pages["/what_if.json"] = json_page([&what_if] { return what_if.answer(); });
 }
 
 void add_rival(wire::Pages& pages, const Rival& rival) {
-  pages["/rival.json"] = [&rival] {
-    return net::Content{.content_type = "application/json", .bytes = rival.answer()};
-  };
+  pages["/rival.json"] = json_page([&rival] { return rival.answer(); });
 }
 
 wire::Pages replay_pages(const std::vector<ServedLog>& logs, double start) {
@@ -62,9 +61,8 @@ wire::Pages replay_pages(const std::vector<ServedLog>& logs, double start) {
   for (const ServedLog& log : logs) {
     std::string url = fmt::format("/log/{}.mcap", list.size());
     if (!log.settings.empty()) {
-      pages[fmt::format("/log/{}.settings.json", list.size())] = [text = log.settings] {
-        return net::Content{.content_type = "application/json", .bytes = text};
-      };
+      pages[fmt::format("/log/{}.settings.json", list.size())] =
+          json_page([text = log.settings] { return text; });
     }
     list.push_back({{"name", log.name}, {"url", url}});
     pages[std::move(url)] = [file = log.file] {

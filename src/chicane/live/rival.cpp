@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <variant>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
-#include "chicane/live/detail/rounded.hpp"
+#include "chicane/live/detail/columns.hpp"
 #include "chicane/live/what_if.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/schema.hpp"
@@ -18,7 +19,6 @@ namespace {
 using protocol::Json;
 
 constexpr auto kLook = std::chrono::milliseconds(5);  // between two looks at what the run did
-constexpr std::uint64_t kSpare = 64;                  // places that cycles leave to laps and changes
 
 /// What both cars feel: the world, not the controller.
 bool is_of_the_world(std::string_view key) {
@@ -88,8 +88,8 @@ LapNotes LapNoter::finish(const telemetry::CompletedLap& lap) {
   return notes;
 }
 
-Rival::Rival(std::function<void()> begin_anew)
-    : begin_anew_{std::move(begin_anew)}, worker_{[this] { work(); }, kLook} {}
+Rival::Rival(RunLog& log, std::function<void()> begin_anew)
+    : log_{log}, begin_anew_{std::move(begin_anew)}, worker_{[this] { work(); }, kLook} {}
 
 Result<std::string> Rival::ask(std::string_view json, const scenario::Scenario& scenario) {
   const Result<WhatIfQuestion> question = read_question(json);
@@ -114,103 +114,79 @@ std::string Rival::answer() const {
   json["settings"] = std::move(settings);
   json["run"] = json_of(laps_of_run_);
   json["rival"] = json_of(laps_);
-  const std::array<std::pair<const char*, double Pose::*>, 7> columns{{{"time_s", &Pose::time},
-                                                                       {"x_m", &Pose::x},
-                                                                       {"y_m", &Pose::y},
-                                                                       {"yaw_rad", &Pose::yaw},
-                                                                       {"steer_rad", &Pose::steer},
-                                                                       {"speed_mps", &Pose::speed},
-                                                                       {"distance_m", &Pose::distance}}};
-  Json trace = Json::object();
-  for (const auto& [name, column] : columns) {
-    Json values = Json::array();
-    for (const Pose& pose : trace_) values.push_back(rounded(pose.*column));
-    trace[name] = std::move(values);
-  }
-  json["trace"] = std::move(trace);
+  json["trace"] = columns(kColumns, trace_);
   return protocol::json_text(json) + "\n";
-}
-
-void Rival::note(const telemetry::Frame& frame) noexcept {
-  const bool begins = frame.begins && frame.cycle == 0;
-  if (!begins && entries_.room() < kSpare) return;  // the next one says how far the run is
-  if (!entries_.push({.kind = begins ? Entry::Kind::kBegin : Entry::Kind::kCycle,
-                      .time = frame.time,
-                      .speed = hypot(frame.truth.vx, frame.truth.vy),
-                      .lateral_error = frame.lateral_error}))
-    has_lost_ = true;
-}
-
-void Rival::note(const telemetry::CompletedLap& lap) noexcept {
-  if (!entries_.push({.kind = Entry::Kind::kLap, .lap = lap})) has_lost_ = true;
-}
-
-void Rival::note(const telemetry::Change& change) noexcept {
-  if (!is_of_the_world(change.name.view())) return;
-  if (!entries_.push({.kind = Entry::Kind::kChange, .change = change})) has_lost_ = true;
-}
-
-void Rival::end_race() noexcept {
-  if (!entries_.push({.kind = Entry::Kind::kEnd})) has_lost_ = true;
 }
 
 void Rival::work() {
   std::unique_lock lock(mutex_);
   const std::optional<Wish> wish = std::exchange(wish_, std::nullopt);
   lock.unlock();
-  while (const Entry* entry = entries_.front()) {
-    take(*entry);
-    entries_.pop();
-  }
+  if (car_) catch_up();
   if (wish) build(*wish);
-  if (has_lost_.exchange(false) && loop_)
-    end(State::kEnded, "this computer could not keep up with both cars");
 }
 
 void Rival::build(const Wish& wish) {
-  loop_.reset();
-  own_.clear();
-  for (const auto& [key, value] : wish.settings) own_.push_back(key);
-  Result<std::unique_ptr<run::ClosedLoop>> loop = wish.settings.empty()
-                                                      ? Result<std::unique_ptr<run::ClosedLoop>>{nullptr}
-                                                      : run::ClosedLoop::create(wish.scenario);
+  car_.emplace(recording::ShadowObservers{
+      .on_step = [this](const run::ClosedLoop& loop) { note(loop); },
+      .on_lap = [this](const telemetry::CompletedLap& lap) { keep(laps_, own_laps_.finish(lap)); }});
+  const bool is_wanted = !wish.settings.empty();
+  const Result<void> built = is_wanted ? car_->begin(wish.scenario) : Result<void>{};
   {
     const std::lock_guard lock(mutex_);
     laps_of_run_.clear();
     laps_.clear();
     trace_.clear();
-    why_ = loop ? "" : loop.error().message;
+    why_ = built ? "" : built.error().message;
     settings_ = wish.settings;
-    state_ = !loop ? State::kFailed : *loop ? State::kWaiting : State::kNone;
+    state_ = !built ? State::kFailed : is_wanted ? State::kWaiting : State::kNone;
   }
-  if (!loop || !*loop) return;
-  loop_ = std::move(*loop);
-  planner_.emplace(run::LapPlanner::Clock::kVirtual);
+  if (!car_->has_begun()) return car_.reset();
+  place_ = log_.end();
   begin_anew_();
 }
 
-void Rival::take(const Entry& entry) {
-  if (!loop_) return;
-  using enum Entry::Kind;
-  if (entry.kind == kEnd) return end(State::kEnded, "the run began with other choices");
-  if (entry.kind == kBegin) begin();
-  {
-    const std::lock_guard lock(mutex_);
-    if (state_ != State::kRacing) return;  // it begins with the run's next beginning
-  }
-  if (entry.kind == kChange) {
-    changes_.push_back(entry.change);
-  } else if (entry.kind == kLap) {
-    keep(laps_of_run_, run_laps_.finish(entry.lap));
-  } else {
-    run_laps_.add(entry.time, entry.speed, entry.lateral_error);
-    follow(entry.time);
+/// Drives to where the run is.
+void Rival::catch_up() {
+  const Result<RunLog::Excerpt> news = log_.since(place_);
+  if (!news && is_racing()) return end(State::kEnded, "this computer could not keep up with both cars");
+  if (!news) return;
+  const RunLog::Place before = std::exchange(place_, news->end);
+  if (before.scenario != 0 && before.scenario != place_.scenario)
+    return end(State::kEnded, "the run began with other choices");
+  if (news->begin != before) begin();
+  if (!is_racing()) return;  // it begins with the run's next beginning
+  for (const RunLog::Event& event : *news->events) {
+    std::visit([this](const auto& one) { take(one); }, event);
+    if (!car_) return;
   }
 }
 
+void Rival::take(const RunLog::Step& step) {
+  constexpr double kRounding = 1e-9;
+  run_laps_.add(step.time, step.speed, step.lateral_error);
+  const run::ClosedLoop& loop = car_->loop();
+  car_->drive([&] { return loop.time() >= step.time + kRounding; });
+  if (loop.is_over()) end(State::kEnded, loop.summary().end_reason);
+}
+
+void Rival::take(const RunLog::Change& change) {
+  if (!is_of_the_world(change.name)) return;
+  if (const Result<run::Setting> setting = run::read_setting(change.told())) car_->apply(*setting);
+}
+
+void Rival::note(const run::ClosedLoop& loop) {
+  const telemetry::Frame& frame = loop.frame();
+  const model::State& car = frame.truth;
+  const double speed = hypot(car.vx, car.vy);
+  own_laps_.add(frame.time, speed, frame.lateral_error);
+  const std::lock_guard lock(mutex_);
+  trace_.push_back({frame.time, car.x, car.y, car.psi, frame.applied.steer, speed, loop.world().progress});
+  if (trace_.size() > kTrace) trace_.pop_front();
+}
+
 void Rival::begin() {
-  loop_->restart();
-  changes_.clear();
+  car_->loop().restart();
   own_laps_.begin();
   run_laps_.begin();
   const std::lock_guard lock(mutex_);
@@ -220,34 +196,13 @@ void Rival::begin() {
   state_ = State::kRacing;
 }
 
-/// Drives the rival to where the run is.
-void Rival::follow(double time) {
-  constexpr double kRounding = 1e-9;
-  while (loop_ && loop_->time() < time + kRounding) {
-    while (loop_->is_control_due() && !changes_.empty() && changes_.front().cycle <= loop_->cycle()) {
-      const bool is_own = std::find(own_.begin(), own_.end(), changes_.front().name.view()) != own_.end();
-      if (!is_own) loop_->apply(changes_.front());
-      changes_.pop_front();
-    }
-    const bool is_new = loop_->advance();
-    if (const auto lap = loop_->take_lap()) keep(laps_, own_laps_.finish(*lap));
-    if (is_new) {
-      const telemetry::Frame& frame = loop_->frame();
-      const model::State& car = frame.truth;
-      const double speed = hypot(car.vx, car.vy);
-      own_laps_.add(frame.time, speed, frame.lateral_error);
-      planner_->advance(*loop_);
-      const std::lock_guard lock(mutex_);
-      trace_.push_back(
-          {frame.time, car.x, car.y, car.psi, frame.applied.steer, speed, loop_->world().progress});
-      if (trace_.size() > kTrace) trace_.pop_front();
-    }
-    if (loop_->is_over()) end(State::kEnded, loop_->summary().end_reason);
-  }
+bool Rival::is_racing() const {
+  const std::lock_guard lock(mutex_);
+  return state_ == State::kRacing;
 }
 
 void Rival::end(State state, std::string why) {
-  loop_.reset();
+  car_.reset();
   const std::lock_guard lock(mutex_);
   state_ = state;
   why_ = std::move(why);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -15,12 +14,11 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/live/run_log.hpp"
 #include "chicane/live/worker.hpp"
+#include "chicane/recording/shadow_run.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/lap_planner.hpp"
-#include "chicane/run/thread_queue.hpp"
 #include "chicane/scenario/scenario.hpp"
-#include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
 
 namespace chicane::live {
@@ -48,9 +46,9 @@ class LapNoter {
   std::deque<Row> rows_;
 };
 
-/// A second car on the stage of a live run: the same track, car, seed and faults, with other settings, from
-/// the start line on. Its loop is driven on a thread of its own, of low priority, up to where the run is; the
-/// run's thread only notes what it did, and never waits.
+/// A second car on the stage of a live run: a shadow run on the same track, with the same car, seed and
+/// faults and other settings, from the start line on. It is driven on a thread of its own, of low priority,
+/// up to where the run is by its log; the run's thread does nothing for it.
 ///
 /// What acts on the world (faults, and settings of plant, sensor and latency) acts on both at the same cycle;
 /// settings of the controller that change meanwhile act on the run's own car alone. The race ends when the
@@ -60,8 +58,9 @@ class Rival {
   static constexpr std::size_t kMostLaps = 100;  ///< told of each car, the newest
   static constexpr std::size_t kTrace = 125;     ///< poses told of the rival, the newest: five seconds
 
-  /// `begin_anew` is called on the rival's thread when it is ready: both begin at the line.
-  explicit Rival(std::function<void()> begin_anew);
+  /// `log` outlives this. `begin_anew` is called on the rival's thread when it is ready: both begin at the
+  /// line.
+  Rival(RunLog& log, std::function<void()> begin_anew);
 
   /// The network thread: {"settings":{"latency_ms":60}} begins a race of `scenario`, {} ends it. The number
   /// of the race, as a text. kInvalidArgument in a sentence for viewers: for a setting that is unknown, out
@@ -70,48 +69,33 @@ class Rival {
   /// GET /rival.json (docs/viewer_laps.md). Any thread.
   [[nodiscard]] std::string answer() const;
 
-  /// The run's thread: after each control cycle, completed lap and change. Neither waits nor allocates.
-  void note(const telemetry::Frame& frame) noexcept;
-  void note(const telemetry::CompletedLap& lap) noexcept;
-  void note(const telemetry::Change& change) noexcept;
-  /// The run goes on with another track, car or controller.
-  void end_race() noexcept;
-
  private:
   enum class State { kNone, kBuilding, kWaiting, kRacing, kEnded, kFailed };
-  struct Entry {
-    enum class Kind { kCycle, kBegin, kLap, kChange, kEnd } kind = Kind::kCycle;
-    double time = 0.0;           ///< [s]
-    double speed = 0.0;          ///< [m/s]
-    double lateral_error = 0.0;  ///< [m]
-    telemetry::CompletedLap lap{};
-    telemetry::Change change{};
-  };
   struct Wish {
     scenario::Scenario scenario;
     std::vector<std::pair<std::string, std::string>> settings;
   };
-  struct Pose {
-    double time, x, y, yaw, steer, speed, distance;
-  };
+  static constexpr std::array kColumns{"time_s",    "x_m",       "y_m",       "yaw_rad",
+                                       "steer_rad", "speed_mps", "distance_m"};
 
   void work();
   void build(const Wish& wish);
-  void take(const Entry& entry);
-  void follow(double time);
+  void catch_up();
+  void take(const RunLog::Step& step);
+  void take(const RunLog::Change& change);
+  void take(const telemetry::CompletedLap& lap) { keep(laps_of_run_, run_laps_.finish(lap)); }
+  void note(const run::ClosedLoop& loop);
   void begin();
   void end(State state, std::string why);
   void keep(std::vector<LapNotes>& laps, const LapNotes& notes) const;
+  [[nodiscard]] bool is_racing() const;
 
+  RunLog& log_;
   std::function<void()> begin_anew_;
-  run::ThreadQueue<Entry> entries_;
-  std::atomic<bool> has_lost_{false};  ///< an entry that counts did not fit
 
   // The rival's thread:
-  std::unique_ptr<run::ClosedLoop> loop_;
-  std::optional<run::LapPlanner> planner_;
-  std::vector<std::string> own_;  ///< keys of the settings that are the rival's own
-  std::deque<telemetry::Change> changes_;
+  std::optional<recording::ShadowRun> car_;
+  RunLog::Place place_;  ///< of the run, up to which it has come
   LapNoter own_laps_, run_laps_;
 
   mutable std::mutex mutex_;  ///< of all below
@@ -121,7 +105,7 @@ class Rival {
   std::string why_;
   std::vector<std::pair<std::string, std::string>> settings_;
   std::vector<LapNotes> laps_of_run_, laps_;
-  std::deque<Pose> trace_;
+  std::deque<std::array<double, kColumns.size()>> trace_;
   Worker worker_;  // last
 };
 

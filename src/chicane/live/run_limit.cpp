@@ -6,6 +6,8 @@
 #include <thread>
 #include <utility>
 
+#include "chicane/run/plan_cache.hpp"
+
 namespace chicane::live {
 namespace {
 
@@ -16,7 +18,10 @@ constexpr const char* kOpenRoad = "the road is open: it has no laps";
 
 }  // namespace
 
-RunLimit::~RunLimit() { retire(); }
+RunLimit::RunLimit(std::function<void(const lap_time::LimitAnswer&)> on_news)
+    : on_news_{std::move(on_news)}, search_{&RunLimit::found, [this](const lap_time::LimitAnswer& answer) {
+                                              tell(answer);
+                                            }} {}
 
 lap_time::LimitAnswer RunLimit::first_answer(const road::Track& track) {
   return {.why_not = track.centre().is_closed() ? "it is still being computed" : kOpenRoad};
@@ -33,12 +38,27 @@ void RunLimit::search(const road::Track& track, const scenario::Scenario& scenar
 void RunLimit::begin() {
   retire();
   begins_at_.reset();
-  search_ = std::make_unique<LimitSearch>(
-      *track_, scenario_,
-      [this, first_lap = first_lap_](Result<std::shared_ptr<const lap_time::Limit>> limit) {
-        tell(limit ? lap_time::LimitAnswer{.found = *std::move(limit), .first_lap = first_lap}
-                   : lap_time::LimitAnswer{.why_not = limit.error().message, .first_lap = first_lap});
-      });
+  search_.begin({.track = *track_, .scenario = scenario_, .first_lap = first_lap_});
+}
+
+/// From the cache where it is known (run/plan_cache.hpp).
+lap_time::LimitAnswer RunLimit::found(const Wish& wish, const std::function<bool()>& is_wanted) {
+  const auto bound = [&]() -> Result<lap_time::PlantLimit> {
+    if (auto known = run::known_limit(wish.scenario, wish.track)) return std::move(*known);
+    return run::limit_of(wish.scenario, wish.track,
+                         {.wants_witness = false,
+                          .budget = kBudget,
+                          .go_on = [&](std::string_view, int, double) { return is_wanted(); }});
+  };
+  const Result<lap_time::PlantLimit> limit = bound();
+  lap_time::LimitAnswer answer{.first_lap = wish.first_lap};
+  if (!limit)
+    answer.why_not = limit.error().message;
+  else if (!limit->is_whole())
+    answer.why_not = "its search takes longer than beside a run; `chicane limit` finds it";
+  else
+    answer.found = std::make_shared<const lap_time::Limit>(lap_time::bound_from_start(wish.track, *limit));
+  return answer;
 }
 
 void RunLimit::tell(lap_time::LimitAnswer answer) {
@@ -74,13 +94,9 @@ void RunLimit::give_up(std::string why) {
   answer_ = std::make_shared<const lap_time::LimitAnswer>(lap_time::LimitAnswer{.why_not = std::move(why)});
 }
 
-/// The search before tells nothing any more; its thread is waited for when it has ended by itself.
+/// The search before tells nothing any more.
 void RunLimit::retire() {
-  if (search_) {
-    search_->cancel();
-    retired_.push_back(std::move(search_));
-  }
-  std::erase_if(retired_, [](const auto& search) { return search->has_ended(); });
+  search_.cancel();
   has_news_ = false;
   answer_.reset();
 }
@@ -92,7 +108,7 @@ std::shared_ptr<const lap_time::LimitAnswer> RunLimit::news() noexcept {
 
 void RunLimit::end() {
   begins_at_.reset();
-  if (search_) search_->cancel();
+  search_.cancel();
 }
 
 bool RunLimit::is_awaited(const telemetry::RunSummary& run) const noexcept {

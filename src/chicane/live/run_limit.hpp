@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "chicane/lap_time/limit.hpp"
-#include "chicane/live/limit_search.hpp"
+#include "chicane/live/newest_task.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -26,14 +26,13 @@ class RunLimit {
  public:
   /// Longest wait for a limit behind the end of a run.
   static constexpr std::chrono::seconds kPatience{60};
+  /// Work after which a search gives up (lap_time::PlanProgress) [s]: more than any car in full size needs on
+  /// a track that ships.
+  static constexpr double kBudget = 60.0;
 
   /// `on_news` hears, mostly on another thread, what a search has found and what no longer holds; may be
   /// empty. It must stay callable as long as this lives.
-  explicit RunLimit(std::function<void(const lap_time::LimitAnswer&)> on_news = {})
-      : on_news_{std::move(on_news)} {}
-  ~RunLimit();
-  RunLimit(const RunLimit&) = delete;
-  RunLimit& operator=(const RunLimit&) = delete;
+  explicit RunLimit(std::function<void(const lap_time::LimitAnswer&)> on_news = {});
 
   /// What viewers are told of a run on this road until there are news. An open road has no laps, nor a limit.
   [[nodiscard]] static lap_time::LimitAnswer first_answer(const road::Track& track);
@@ -49,9 +48,7 @@ class RunLimit {
   /// What is known now, once; null when there is nothing new. Neither waits nor allocates.
   [[nodiscard]] std::shared_ptr<const lap_time::LimitAnswer> news() noexcept;
   /// A search goes on.
-  [[nodiscard]] bool is_searching() const noexcept {
-    return begins_at_ || (search_ != nullptr && !search_->has_ended());
-  }
+  [[nodiscard]] bool is_searching() const noexcept { return begins_at_ || search_.is_computing(); }
 
   /// A search goes on, and there are laps to set beside what it will find.
   [[nodiscard]] bool is_awaited(const telemetry::RunSummary& run) const noexcept;
@@ -65,7 +62,13 @@ class RunLimit {
 
  private:
   using Clock = std::chrono::steady_clock;
+  struct Wish {
+    road::Track track;
+    scenario::Scenario scenario;
+    int first_lap = 1;
+  };
 
+  static lap_time::LimitAnswer found(const Wish& wish, const std::function<bool()>& is_wanted);
   void begin();
   void retire();
   void tell(lap_time::LimitAnswer answer);
@@ -73,12 +76,11 @@ class RunLimit {
   std::function<void(const lap_time::LimitAnswer&)> on_news_;
   std::shared_ptr<const lap_time::LimitAnswer> answer_;  ///< while a search goes on: written by it
   std::atomic<bool> has_news_{false};                    ///< it may be read
-  std::optional<road::Track> track_;            ///< of the run; none where there is nothing to search
-  scenario::Scenario scenario_;                 ///< its car, with the grip and mass of the newest search
-  int first_lap_ = 1;                           ///< LimitAnswer::first_lap
-  std::optional<Clock::time_point> begins_at_;  ///< the next search, when nothing changes until then
-  std::unique_ptr<LimitSearch> search_;
-  std::vector<std::unique_ptr<LimitSearch>> retired_;  ///< cancelled, and not ended yet
+  std::optional<road::Track> track_;                ///< of the run; none where there is nothing to search
+  scenario::Scenario scenario_;                     ///< its car, with the grip and mass of the newest search
+  int first_lap_ = 1;                               ///< LimitAnswer::first_lap
+  std::optional<Clock::time_point> begins_at_;      ///< the next search, when nothing changes until then
+  NewestTask<Wish, lap_time::LimitAnswer> search_;  // last: tells on its thread
 };
 
 }  // namespace chicane::live

@@ -27,21 +27,37 @@ wire::ViewerServices run_services(run::RunControls& controls) {
   return services;
 }
 
-RunPublisher::RunPublisher(wire::ViewerEndpoint& viewer, LiveSettings& settings, std::vector<LiveHooks> hooks)
-    : viewer_{viewer}, settings_{settings}, hooks_{std::move(hooks)}, faults_{protocol::fault_controls()} {}
+LiveSettingsOptions told_to(wire::ViewerEndpoint& viewer, LiveSettingsOptions options) {
+  options.on_building = [&viewer](const std::string& what) {
+    viewer.change_run([what](protocol::Run& run) { run.building = what; });
+  };
+  options.on_accepted = [&viewer](const scenario::Scenario& now) {
+    viewer.change_run([latency = now.latency, vehicle = now.vehicle](protocol::Run& run) {
+      run.latency = latency;
+      run.vehicle = vehicle;
+    });
+  };
+  return options;
+}
+
+RunPublisher::RunPublisher(wire::ViewerEndpoint& viewer, LiveSettings& settings, RunListeners listeners)
+    : viewer_{viewer}, settings_{settings}, to_{std::move(listeners)}, faults_{protocol::fault_controls()} {}
 
 void RunPublisher::frame(const telemetry::Frame& frame) {
   if (frame.begins && frame.cycle == 0) has_told_end_ = false;
-  for (const LiveHooks& each : hooks_)
-    if (each.on_frame) each.on_frame(frame);
+  record_limit();
+  if (to_.recorder != nullptr) to_.recorder->record(frame);
+  if (to_.log != nullptr) to_.log->note(frame);
+  if (to_.hooks.on_frame) to_.hooks.on_frame(frame);
   viewer_.publish(frame);
   time_ = frame.time;
   tell_faults(frame);
 }
 
 void RunPublisher::lap(const telemetry::CompletedLap& lap) {
-  for (const LiveHooks& each : hooks_)
-    if (each.on_lap) each.on_lap(lap);
+  if (to_.recorder != nullptr) to_.recorder->record(lap);
+  if (to_.log != nullptr) to_.log->note(lap);
+  if (to_.hooks.on_lap) to_.hooks.on_lap(lap);
   viewer_.publish(lap, time_);
 }
 
@@ -64,16 +80,28 @@ void RunPublisher::change(const telemetry::Change& change) {
     const bool is_on = change.value.view() != "false";
     told_faults_ = (told_faults_ & ~(1U << i)) | (is_on ? 1U << i : 0U);
   }
-  for (const LiveHooks& each : hooks_)
-    if (each.on_change) each.on_change(change);
+  if (to_.recorder != nullptr) to_.recorder->record(change);
+  if (to_.log != nullptr) to_.log->note(change);
+  if (to_.hooks.on_change) to_.hooks.on_change(change);
   settings_.tell(change);
   if (change.name.view() == run::LapPlanner::kChange)
     say("races by a new lap, planned with " + std::string(change.value.view()) + " of the believed grip");
 }
 
 void RunPublisher::say(std::string_view line) const {
-  for (const LiveHooks& each : hooks_)
-    if (each.say) each.say(line);
+  if (to_.hooks.say) to_.hooks.say(line);
+}
+
+void RunPublisher::record_limit() {
+  if (to_.recorder == nullptr || to_.limit == nullptr) return;
+  if (auto news = to_.limit->news()) to_.recorder->record(std::move(news));
+}
+
+void RunPublisher::compare(telemetry::RunSummary& summary, const std::atomic<bool>& wants_stop) {
+  if (to_.limit->is_awaited(summary) && !wants_stop)
+    say("the limit is still being computed; Ctrl-C does without");
+  to_.limit->compare(summary, wants_stop);
+  record_limit();
 }
 
 bool RunPublisher::end(const telemetry::RunSummary& summary) {

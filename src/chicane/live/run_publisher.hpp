@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <string_view>
 #include <vector>
 
 #include "chicane/live/live_settings.hpp"
+#include "chicane/live/run_limit.hpp"
+#include "chicane/live/run_log.hpp"
 #include "chicane/protocol/schema_json.hpp"
+#include "chicane/recording/recorder.hpp"
 #include "chicane/run/realtime_loop.hpp"
 #include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -16,8 +20,8 @@
 
 namespace chicane::live {
 
-/// Who hears of a live run beside its viewers: a recording, a journal, the program. Empty functions are not
-/// called. All but `say` on the thread that drives.
+/// What the program hears of a live run. Empty functions are not called. All but `say` on the thread that
+/// drives.
 struct LiveHooks {
   std::function<void(const telemetry::Frame&)> on_frame{};
   std::function<void(const telemetry::CompletedLap&)> on_lap{};
@@ -25,16 +29,28 @@ struct LiveHooks {
   std::function<void(std::string_view)> say{};  ///< one line for people; any thread
 };
 
+/// Who hears of a live run beside its viewers. Null: nobody. All outlive the publisher.
+struct RunListeners {
+  recording::Recorder* recorder = nullptr;
+  RunLimit* limit = nullptr;  ///< whose news are recorded
+  RunLog* log = nullptr;
+  LiveHooks hooks{};
+};
+
 /// Pause, step and reset of a run, which `controls` asks for.
 [[nodiscard]] wire::ViewerServices run_services(run::RunControls& controls);
 
-/// Hands what happens in a live run to viewers, to the settings that they see, and to its hooks. Adds what
-/// nobody asked for: that a fault began or ended by itself, and, once for each run, that it is over. One
+/// `options`, of which viewers are told what is being built, and delay and car once they are others. `viewer`
+/// outlives the settings.
+[[nodiscard]] LiveSettingsOptions told_to(wire::ViewerEndpoint& viewer, LiveSettingsOptions options);
+
+/// Hands what happens in a live run to viewers, to the settings that they see, and to its listeners. Adds
+/// what nobody asked for: that a fault began or ended by itself, and, once for each run, that it is over. One
 /// thread, the one that drives.
 class RunPublisher {
  public:
   /// `viewer` and `settings` outlive this.
-  RunPublisher(wire::ViewerEndpoint& viewer, LiveSettings& settings, std::vector<LiveHooks> hooks = {});
+  RunPublisher(wire::ViewerEndpoint& viewer, LiveSettings& settings, RunListeners listeners = {});
 
   /// After each control cycle.
   void frame(const telemetry::Frame& frame);
@@ -44,6 +60,9 @@ class RunPublisher {
   /// The run is over: tells viewers why, and gives true, the first time. A run that is driven on stays over.
   bool end(const telemetry::RunSummary& summary);
   [[nodiscard]] bool has_told_end() const { return has_told_end_; }
+  /// Sets the laps of a run that has ended beside its limit, which is waited for where a lap needs it, until
+  /// `wants_stop` (RunLimit::compare()). Pre: there is a limit.
+  void compare(telemetry::RunSummary& summary, const std::atomic<bool>& wants_stop);
   void say(std::string_view line) const;
 
   /// Of the last frame [s].
@@ -51,10 +70,11 @@ class RunPublisher {
 
  private:
   void tell_faults(const telemetry::Frame& frame);
+  void record_limit();
 
   wire::ViewerEndpoint& viewer_;
   LiveSettings& settings_;
-  std::vector<LiveHooks> hooks_;
+  RunListeners to_;
   const std::vector<protocol::Control> faults_;
   std::uint32_t told_faults_ = 0;  ///< bits, as viewers know them
   bool has_told_end_ = false;

@@ -70,22 +70,26 @@ void ServedFutures::give_up(std::string why) {
 }
 
 Result<ServedFutures::Known> ServedFutures::known_at(double time) {
-  const Result<Journal::Excerpt> excerpt = journal_.history(journal_.oldest());
+  const Result<RunLog::Excerpt> excerpt = log_.since({});
   if (!excerpt) return fail(excerpt.error());
   Known known;
-  const Result<void> read = excerpt->events([&](const recording::RecordedEvent& event) -> Result<void> {
-    const auto* step = std::get_if<recording::RecordedStep>(&event);
-    if (step == nullptr) return {};
-    const model::Measurement& now = step->step.measurement;
-    if (!std::isfinite(now.x + now.y + now.psi + now.speed)) return {};
-    if (!known.seen.empty() && now.time <= known.seen.back().time) return {};
+  std::vector<Seen>& seen = known.seen;
+  for (const RunLog::Event& event : *excerpt->events) {
+    const auto* step = std::get_if<RunLog::Step>(&event);
+    if (step == nullptr) continue;
+    const auto& [x, y, psi, speed, steer, throttle] = step->seen;
+    if (!std::isfinite(x + y + psi + speed)) continue;
+    if (!seen.empty() && step->time <= seen.back().time) continue;
     // Another car, or one that was put elsewhere.
-    if (!known.seen.empty() && now.time - known.seen.back().time > kLongestGap) known.seen.clear();
-    known.seen.push_back({now.time, std::clamp(now.delay, 0.0, kMostDelay), now.x, now.y, now.psi, now.speed,
-                          step->step.command});
-    return {};
-  });
-  if (!read) return fail(read.error());
+    if (!seen.empty() && step->time - seen.back().time > kLongestGap) seen.clear();
+    seen.push_back({.time = step->time,
+                    .delay = std::clamp(step->delay, 0.0, kMostDelay),
+                    .x = x,
+                    .y = y,
+                    .psi = psi,
+                    .speed = speed,
+                    .sent = {.steer = step->sent[0], .throttle = step->sent[1]}});
+  }
   const auto after = std::find_if(known.seen.begin(), known.seen.end(),
                                   [&](const Seen& each) { return each.time > time + 1e-9; });
   const auto count = static_cast<std::size_t>(after - known.seen.begin());
@@ -96,28 +100,28 @@ Result<ServedFutures::Known> ServedFutures::known_at(double time) {
   return known;
 }
 
-/// A run of ours that has seen what this one saw up to `to`, and goes on from there.
-Result<std::unique_ptr<run::ClosedLoop>> ServedFutures::followed(scenario::Scenario scenario,
-                                                                 const std::vector<Seen>& seen,
-                                                                 std::size_t to) {
+/// Begins `car` as a run of ours that has seen what this one saw up to `to`, and goes on from there.
+Result<void> ServedFutures::follow(recording::ShadowRun& car, scenario::Scenario scenario,
+                                   const std::vector<Seen>& seen, std::size_t to) {
   scenario.laps = 0;
   scenario.time_limit = 0.0;
   scenario.faults.clear();
   scenario.control_period = usual_period(seen, to, scenario.control_period);
   scenario.latency = seen[to].delay;
   auto loop = run::ClosedLoop::create(scenario, roads_);
-  if (!loop) return loop;
+  if (!loop) return fail(loop.error());
   (*loop)->drive_on();
   std::size_t from = to;
   while (from > 1 && seen[to].time - seen[from].time < kFollowed) --from;
   (*loop)->restart_at(moving(seen, from));
   for (std::size_t i = from; i <= to; ++i)
     (*loop)->follow(seen[i].time, moving(seen, i), seen[i].delay, seen[i].sent);
-  return loop;
+  car.begin(std::move(*loop));
+  return {};
 }
 
-Result<WhatIf::Answer> ServedFutures::branch(const recording::BranchOptions& options,
-                                             const recording::BranchHooks& hooks) {
+Result<recording::BranchReport> ServedFutures::branch(const recording::BranchOptions& options,
+                                                      const recording::BranchHooks& hooks) {
   std::unique_lock lock(mutex_);
   if (!why_not_.empty()) return fail(ErrorCode::kInvalidArgument, why_not_);
   if (!scenario_) return fail(ErrorCode::kInvalidArgument, "the simulator's road is not known");
@@ -127,34 +131,34 @@ Result<WhatIf::Answer> ServedFutures::branch(const recording::BranchOptions& opt
   if (!known) return fail(known.error());
   const std::vector<Seen>& seen = known->seen;
 
-  WhatIf::StandIn stand_in{.plant = scenario.plant};
+  recording::StandIn stand_in{.plant = scenario.plant};
   std::size_t before = known->at;
   while (before > 1 && seen[known->at].time - seen[before].time < kCompared) --before;
-  auto check = followed(scenario, seen, before);
-  if (!check) return fail(check.error());
-  stand_in.compared = seen[known->at].time - seen[before].time;
-  while ((*check)->time() < seen[known->at].time) {
-    if (hooks.go_on && !hooks.go_on((*check)->time())) return fail(ErrorCode::kInvalidArgument, "given up");
-    if (!(*check)->advance()) continue;
-    const telemetry::Frame& frame = (*check)->frame();
+  recording::ShadowRun check({.on_step = [&](const run::ClosedLoop& loop) {
+    const telemetry::Frame& frame = loop.frame();
     const Vec2 driven = place_at(seen, frame.time);
     stand_in.apart = std::max(stand_in.apart, hypot(frame.truth.x - driven.x(), frame.truth.y - driven.y()));
-  }
+  }});
+  if (Result<void> begun = follow(check, scenario, seen, before); !begun) return fail(begun.error());
+  stand_in.compared = seen[known->at].time - seen[before].time;
+  bool goes_on = true;
+  check.drive([&] {
+    const double time = check.loop().time();
+    goes_on = !hooks.go_on || hooks.go_on(time);
+    return !goes_on || time >= seen[known->at].time;
+  });
+  if (!goes_on) return fail(ErrorCode::kInvalidArgument, "given up");
 
-  auto loop = followed(scenario, seen, known->at);
-  if (!loop) return fail(loop.error());
+  const auto from = std::make_shared<recording::ShadowRun>();
+  if (Result<void> begun = follow(*from, scenario, seen, known->at); !begun) return fail(begun.error());
   recording::BranchOptions from_there = options;
   from_there.at = seen[known->at].time + 1.0;  // behind all that is told: the futures begin where it ends
   from_there.drives_both = true;
-  const std::uint64_t next = (*loop)->cycle();
-  from_there.from = std::make_shared<const recording::Checkpoint>(
-      recording::Checkpoint{.loop = std::move(*loop), .time = seen[known->at].time, .next_cycle = next});
+  from_there.from = from;
   const recording::RunEvents nothing = [](const auto&) { return Result<void>{}; };
   auto report = recording::branch_run(nothing, from_there, hooks);
-  if (!report) return fail(report.error());
-  WhatIf::Answer answer{std::move(*report)};
-  answer.stand_in = std::move(stand_in);
-  return answer;
+  if (report) report->stand_in = std::move(stand_in);
+  return report;
 }
 
 }  // namespace chicane::live

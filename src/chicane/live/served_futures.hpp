@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "chicane/base/result.hpp"
-#include "chicane/live/journal.hpp"
-#include "chicane/live/what_if.hpp"
+#include "chicane/live/run_log.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/recording/branch.hpp"
 #include "chicane/run/roads.hpp"
@@ -38,8 +36,8 @@ class ServedFutures {
   static constexpr double kFollowed = 150.0;  ///< of the run before the moment [s]
   static constexpr double kCompared = 10.0;   ///< [s]
 
-  /// `journal` must outlive it.
-  explicit ServedFutures(Journal& journal) : journal_{journal} {}
+  /// `log` must outlive it.
+  explicit ServedFutures(RunLog& log) : log_{log} {}
 
   /// Any thread: the settings that hold from now on; the scenario's track is the simulator's road.
   void believe(const scenario::Scenario& scenario);
@@ -48,8 +46,8 @@ class ServedFutures {
 
   /// One thread at a time: both futures from `options.at` on, with the settings that hold now, and with those
   /// of `options`. Fails as recording::branch_run() does, and while less than a second is known.
-  [[nodiscard]] Result<WhatIf::Answer> branch(const recording::BranchOptions& options,
-                                              const recording::BranchHooks& hooks);
+  [[nodiscard]] Result<recording::BranchReport> branch(const recording::BranchOptions& options,
+                                                       const recording::BranchHooks& hooks);
 
  private:
   struct Known {
@@ -57,11 +55,10 @@ class ServedFutures {
     std::size_t at = 0;      ///< the moment
   };
   [[nodiscard]] Result<Known> known_at(double time);
-  [[nodiscard]] Result<std::unique_ptr<run::ClosedLoop>> followed(scenario::Scenario scenario,
-                                                                  const std::vector<Seen>& seen,
-                                                                  std::size_t to);
+  [[nodiscard]] Result<void> follow(recording::ShadowRun& car, scenario::Scenario scenario,
+                                    const std::vector<Seen>& seen, std::size_t to);
 
-  Journal& journal_;
+  RunLog& log_;
   run::Roads roads_;
   std::mutex mutex_;  ///< of all below
   std::optional<scenario::Scenario> scenario_;

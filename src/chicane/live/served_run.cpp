@@ -9,7 +9,6 @@
 #include "chicane/live/description.hpp"
 #include "chicane/live/live_settings.hpp"
 #include "chicane/live/pages.hpp"
-#include "chicane/live/run_hooks.hpp"
 #include "chicane/live/run_limit.hpp"
 #include "chicane/live/served_futures.hpp"
 #include "chicane/live/what_if.hpp"
@@ -64,8 +63,8 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
                                           const std::atomic<bool>& stop, const ServeFunction& serve) {
   run::SettingQueue requests;
   LiveSettings settings({.scenario = scenario_, .has_world = false}, requests);
-  Journal journal;
-  ServedFutures futures(journal);
+  RunLog log(false);
+  ServedFutures futures(log);
   WhatIf what_if([&futures](const WhatIfQuestion& question, const recording::BranchHooks& branching) {
     return futures.branch(question.options, branching);
   });
@@ -83,8 +82,8 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
   if (!track_) limit.give_up(kUnknownRoad);
   RunPublisher publisher(
       viewer, settings,
-      {recording_hooks(recorder, limit), track_ ? journal_hooks(journal) : LiveHooks{}, hooks});
-  if (track_) journal.begin(scenario_);
+      {.recorder = recorder, .limit = &limit, .log = track_ ? &log : nullptr, .hooks = hooks});
+  if (track_) log.begin(scenario_);
   wire::ServeHooks serving;
   serving.settings = &requests;
   serving.parameters = &settings;
@@ -114,10 +113,7 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
   auto summary =
       serve(options_, std::move(controller_), std::move(serving), &viewer, std::move(assets_), stop);
   if (!summary) return summary;
-  if (limit.is_awaited(summary->run) && !stop)
-    publisher.say("the limit is still being computed; Ctrl-C does without");
-  limit.compare(summary->run, stop);
-  record_news(recorder, limit);
+  publisher.compare(summary->run, stop);
   return summary;
 }
 

@@ -11,7 +11,7 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
-#include "chicane/live/detail/rounded.hpp"
+#include "chicane/live/detail/columns.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -43,16 +43,7 @@ struct Trace {
                     frame.applied.throttle, frame.lateral_error, frame.edge_distance});
   }
   [[nodiscard]] Json json() const {
-    const std::size_t stride = std::max<std::size_t>(1, (rows.size() + kMostRows - 1) / kMostRows);
-    Json columns;
-    for (std::size_t column = 0; column < kColumns; ++column) {
-      Json values = Json::array();
-      for (std::size_t row = 0; row < rows.size(); ++row) {
-        if (row % stride == 0 || row + 1 == rows.size()) values.push_back(rounded(rows[row][column]));
-      }
-      columns[kNames[column]] = std::move(values);
-    }
-    return columns;
+    return columns(kNames, rows, std::max<std::size_t>(1, (rows.size() + kMostRows - 1) / kMostRows));
   }
 };
 
@@ -131,45 +122,28 @@ Result<WhatIfQuestion> read_question(std::string_view text) {
   return question;
 }
 
-WhatIf::WhatIf(Compute compute) : compute_{std::move(compute)}, worker_{[this] { work(); }} {}
-
-WhatIf::~WhatIf() {
-  const std::lock_guard lock(mutex_);
-  wish_.reset();
-  ++newest_;
-}
+WhatIf::WhatIf(Compute compute)
+    : compute_{std::move(compute)}, task_{[this](const Wish& wish, const std::function<bool()>& is_wanted) {
+        return computed(wish, is_wanted);
+      }} {}
 
 Result<std::string> WhatIf::ask(std::string_view json) {
   Result<WhatIfQuestion> question = read_question(json);
   if (!question) return fail(question.error());
-  const std::lock_guard lock(mutex_);
-  wish_ = std::move(*question);
   share_ = 0.0;
-  worker_.wake();
-  return fmt::format("{}", ++newest_);
+  answer_.clear();
+  task_.begin({.number = ++newest_, .question = std::move(*question)});
+  return fmt::format("{}", newest_);
 }
 
 std::string WhatIf::answer() {
-  const std::lock_guard lock(mutex_);
-  if (answered_ == newest_) return answer_ + "\n";
-  return protocol::json_text({{"id", newest_.load()}, {"state", "computing"}, {"share", rounded(share_)}}) +
-         "\n";
+  if (auto answer = task_.take()) answer_ = std::move(*answer);
+  if (!answer_.empty()) return answer_ + "\n";
+  return protocol::json_text({{"id", newest_}, {"state", "computing"}, {"share", rounded(share_)}}) + "\n";
 }
 
-void WhatIf::work() {
-  std::unique_lock lock(mutex_);
-  if (!wish_) return;
-  const WhatIfQuestion question = *std::exchange(wish_, std::nullopt);
-  const std::uint64_t number = newest_;
-  lock.unlock();
-  std::string answer = computed(number, question);
-  lock.lock();
-  if (number != newest_) return;
-  answer_ = std::move(answer);
-  answered_ = number;
-}
-
-std::string WhatIf::computed(std::uint64_t number, const WhatIfQuestion& question) {
+std::string WhatIf::computed(const Wish& wish, const std::function<bool()>& is_wanted) {
+  const WhatIfQuestion& question = wish.question;
   Trace was, branch;
   recording::BranchHooks hooks;
   hooks.on_future = [&](const recording::FutureStep& step) { (step.is_branch ? branch : was).add(step); };
@@ -178,21 +152,20 @@ std::string WhatIf::computed(std::uint64_t number, const WhatIfQuestion& questio
     if (!begin) begin = time;
     const double way = std::max(0.0, std::min(question.options.at, time) - *begin);
     share_ = std::min(1.0, (time - *begin) / (way + question.options.duration));
-    return number == newest_;
+    return is_wanted();
   };
-  const Result<Answer> found = compute_(question, hooks);
-  Json answer{{"id", number}, {"state", found ? "done" : "failed"}, {"asked", json_of(question)}};
-  if (!found) {
-    answer["why"] = found.error().message;
+  const Result<recording::BranchReport> report = compute_(question, hooks);
+  Json answer{{"id", wish.number}, {"state", report ? "done" : "failed"}, {"asked", json_of(question)}};
+  if (!report) {
+    answer["why"] = report.error().message;
     return protocol::json_text(answer);
   }
-  const recording::BranchReport* report = &found->report;
   answer["at_s"] = rounded(report->at);
   answer["cycle"] = report->cycle;
   answer["known_until_s"] = rounded(report->known_until);
   answer["is_exact"] = !report->first_difference;
   answer["end_reason"] = report->end_reason.empty() ? Json(nullptr) : Json(report->end_reason);
-  if (const auto& stand_in = found->stand_in) {
+  if (const auto& stand_in = report->stand_in) {
     answer["stand_in"] = {{"plant", stand_in->plant},
                           {"compared_s", rounded(stand_in->compared)},
                           {"apart_m", rounded(stand_in->apart)}};

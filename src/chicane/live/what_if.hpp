@@ -5,14 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "chicane/base/result.hpp"
-#include "chicane/live/worker.hpp"
+#include "chicane/live/newest_task.hpp"
 #include "chicane/recording/branch.hpp"
 
 namespace chicane::live {
@@ -35,27 +34,11 @@ struct WhatIfQuestion {
 /// answer() are one thread's, the network thread.
 class WhatIf {
  public:
-  /// What stood in for a car that others simulate.
-  struct StandIn {
-    std::string plant;      ///< of ours
-    double compared = 0.0;  ///< so long before the moment both drove from the same place [s]; 0: not compared
-    double apart = 0.0;     ///< and came so far from each other [m]
-  };
-  struct Answer {
-    recording::BranchReport report{};
-    std::optional<StandIn> stand_in{};
-    Answer() = default;
-    Answer(recording::BranchReport told) : report{std::move(told)} {}  // NOLINT(*-explicit-*)
-  };
   /// Computes a question; called on the other thread. `hooks` are handed on to recording::branch_run().
-  using Compute =
-      std::function<Result<Answer>(const WhatIfQuestion& question, const recording::BranchHooks& hooks)>;
+  using Compute = std::function<Result<recording::BranchReport>(const WhatIfQuestion& question,
+                                                                const recording::BranchHooks& hooks)>;
 
   explicit WhatIf(Compute compute);
-  /// Gives up what is being computed.
-  ~WhatIf();
-  WhatIf(const WhatIf&) = delete;
-  WhatIf& operator=(const WhatIf&) = delete;
 
   /// Begins, and does not wait; the number of the question, as a text.
   [[nodiscard]] Result<std::string> ask(std::string_view json);
@@ -63,18 +46,17 @@ class WhatIf {
   [[nodiscard]] std::string answer();
 
  private:
-  void work();
-  [[nodiscard]] std::string computed(std::uint64_t number, const WhatIfQuestion& question);
+  struct Wish {
+    std::uint64_t number = 0;
+    WhatIfQuestion question;
+  };
+  [[nodiscard]] std::string computed(const Wish& wish, const std::function<bool()>& is_wanted);
 
   Compute compute_;
-  std::atomic<std::uint64_t> newest_{
-      0};                           ///< number of the last question; the one being computed may be older
-  std::atomic<double> share_{0.0};  ///< of it that is computed
-  std::mutex mutex_;                ///< of all below
-  std::optional<WhatIfQuestion> wish_;
+  std::uint64_t newest_ = 0;        ///< number of the last question
+  std::atomic<double> share_{0.0};  ///< of the question that is being computed
   std::string answer_ = R"({"id":0,"state":"none"})";
-  std::uint64_t answered_ = 0;
-  Worker worker_;  // last
+  NewestTask<Wish, std::string> task_;  // last
 };
 
 }  // namespace chicane::live

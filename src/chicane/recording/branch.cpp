@@ -12,7 +12,6 @@
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/schema.hpp"
-#include "chicane/recording/rebuilt_run.hpp"
 #include "chicane/sim/judge.hpp"
 
 namespace chicane::recording {
@@ -119,15 +118,43 @@ class FutureMeter {
   int events_ = 0;
 };
 
+/// A setting or a fault that may change while a run goes on.
+Result<run::Setting> read_live(const telemetry::Change& change) {
+  const std::string_view key = change.name.view();
+  const protocol::Parameter* row = protocol::find(key);
+  if (row != nullptr && !protocol::is_live(*row)) {
+    return fail(ErrorCode::kInvalidArgument,
+                std::string(key) +
+                    ": got a change while the run goes on, expected a setting that can change then "
+                    "(docs/viewer.md)");
+  }
+  if (row == nullptr && !key.starts_with("fault."))
+    return fail(ErrorCode::kNotFound, fmt::format("{}: {}", printable(key), protocol::unknown_key(key)));
+  return run::read_setting(change);
+}
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
+/// One of the two futures: the recorded run computed again, then the shadow run by itself. The first one is
+/// the recorded run for as long as there is one; the second one leaves it at the branch, with the settings.
 class Branching {
  public:
-  Branching(const BranchOptions& options, const BranchHooks& hooks, const run::Factories& make)
-      : options_{options}, hooks_{hooks}, make_{make} {}
+  Branching(const BranchOptions& options, const BranchHooks& hooks, const run::Factories& make,
+            bool is_branch, BranchReport& report)
+      : options_{options},
+        hooks_{hooks},
+        is_branch_{is_branch},
+        report_{report},
+        car_{{.on_step = [this](const run::ClosedLoop& loop) { step(loop); },
+              .on_lap = [this](const telemetry::CompletedLap& lap) { add(lap); }},
+             make} {}
 
-  Result<BranchReport> run(const RunEvents& events) {
-    if (options_.from) go_on_from(*options_.from);
+  Result<Future> drive(const RunEvents& events) {
+    if (options_.from && !car_.begin(*options_.from))
+      return fail(ErrorCode::kInvalidArgument, "this controller cannot be copied");
+    last_log_time_ = car_.time();
     const Result<void> read = events([this](const RecordedEvent& event) {
-      return std::visit([this](const auto& one) { return take(one); }, event);
+      return std::visit([&](const auto& one) { return take(one, event); }, event);
     });
     if (!read) return fail(read.error());
     if (!has_branched_ && options_.drives_both) {
@@ -139,94 +166,70 @@ class Branching {
                               options_.at, last_log_time_));
     }
     report_.known_until = last_log_time_;
-    first_.finish_cycle();  // a recording ends with the last control step, a run may have gone on to a line
-    if (options_.drives_both && !is_first_over_) {
-      if (Result<void> done = drive_on(first_, recorded_, false); !done) return fail(done.error());
-    }
-    if (Result<void> done = drive_on(second_, branched_, true); !done) return fail(done.error());
-    report_.recorded = recorded_.future();
-    report_.branched = branched_.future();
-    return report_;
+    car_.finish_cycle();  // a recording ends with the last control step, a run may have gone on to a line
+    if (is_branch_ || (options_.drives_both && !is_over_)) drive_on();
+    if (has_given_up_) return fail(ErrorCode::kInvalidArgument, "given up");
+    return meter_.future();
   }
+
+  /// ShadowRun::first_difference() of all that was recorded, for the first future.
+  [[nodiscard]] std::optional<std::uint64_t> first_difference() const { return car_.first_difference(); }
 
  private:
-  void go_on_from(const Checkpoint& from) {
-    first_.begin(from.loop->copy());
-    second_.begin(from.loop->copy());
-    last_log_time_ = from.time;
-    next_cycle_ = from.next_cycle;
-    report_.first_difference = from.first_difference;
+  Result<void> take(const scenario::Scenario& /*scenario*/, const RecordedEvent& event) {
+    if (is_left_behind(has_branched_)) return {};
+    Result<void> begun = car_.follow(event);
+    return begun && is_branch_ && hooks_.on_begin ? hooks_.on_begin(car_.loop()) : begun;
   }
 
-  Result<void> take(const scenario::Scenario& scenario) {
-    if (ends_first(has_branched_)) return {};
-    if (Result<void> begun = first_.begin(scenario, make_); !begun) return begun;
-    if (has_branched_) return {};
-    if (Result<void> begun = second_.begin(scenario, make_); !begun) return begun;
-    return hooks_.on_begin ? hooks_.on_begin(second_.loop()) : Result<void>{};
+  Result<void> take(const telemetry::Change& change, const RecordedEvent& event) {
+    if (is_left_behind(false)) return {};
+    tell(change);
+    return car_.follow(event);
   }
 
-  Result<void> take(const telemetry::Change& change) {
-    if (is_first_over_) return {};
-    const Result<run::Setting> setting = run::read_setting(change);
-    if (setting) first_.apply(*setting);
-    if (setting && !has_branched_) second_.apply(*setting);
-    if (!has_branched_ && hooks_.on_change) hooks_.on_change(change);
-    return {};
-  }
-
-  Result<void> take(const RecordedStep& recorded) {
+  Result<void> take(const RecordedStep& recorded, const RecordedEvent& event) {
     last_log_time_ = recorded.log_time;
-    next_cycle_ = recorded.step.cycle + 1;
-    if (!may_go_on(recorded.log_time)) return fail(ErrorCode::kInvalidArgument, kGivenUp);
+    if (!may_go_on(recorded.log_time)) return fail(ErrorCode::kInvalidArgument, "given up");
     const bool is_start = !has_branched_ && recorded.log_time >= options_.at - 1e-9;
     if (is_start) {
       if (Result<void> branched = branch(recorded); !branched) return branched;
     }
     const bool is_seen = has_branched_ && is_within(recorded.log_time);
     // Of two futures that are compared, what follows is not needed, nor another run.
-    if (ends_first(has_branched_ && !is_start && (!is_seen || recorded.step.begins))) return {};
-    const telemetry::Frame& frame = first_.follow(recorded.step);
-    if (!report_.first_difference && !is_same(frame, recorded.step)) {
-      report_.first_difference = recorded.step.cycle;
-    }
-    if (has_branched_) {
-      if (is_seen) add(recorded_, first_.loop(), false);
-      return {};
-    }
+    if (is_left_behind(has_branched_ && !is_start && (!is_seen || recorded.step.begins))) return {};
+    if (Result<void> followed = car_.follow(event); !followed) return followed;
+    if (is_seen) add(car_.loop());
+    if (has_branched_ || !is_branch_) return {};
     ++report_.steps_before;
-    static_cast<void>(second_.follow(recorded.step));
-    if (hooks_.on_frame) hooks_.on_frame(second_.loop().frame());
+    if (hooks_.on_frame) hooks_.on_frame(car_.loop().frame());
     return {};
   }
 
   /// From now on: what comes next is not known yet.
   Result<void> branch_at_end() {
-    if (next_cycle_ == 0)
+    if (!car_.has_begun() || car_.next_cycle() == 0)
       return fail(ErrorCode::kInvalidArgument, "the run has not begun: there is nothing to go on from");
     RecordedStep next;
-    next.step.cycle = next_cycle_;
-    first_.finish_cycle();
-    second_.finish_cycle();
-    next.log_time = last_log_time_ + (first_.loop().time() - first_.loop().frame().time);
+    next.step.cycle = car_.next_cycle();
+    car_.finish_cycle();
+    next.log_time = last_log_time_ + (car_.loop().time() - car_.loop().frame().time);
     return branch(next);
   }
 
-  void add(FutureMeter& meter, const run::ClosedLoop& loop, bool is_branch) {
-    const double distance = meter.add(loop.frame(), loop.track());
-    if (hooks_.on_future)
-      hooks_.on_future({.frame = loop.frame(), .distance = distance, .is_branch = is_branch});
-  }
-
   Result<void> branch(const RecordedStep& recorded) {
-    first_.finish_cycle();
-    second_.finish_cycle();
+    car_.finish_cycle();
     has_branched_ = true;
     report_.at = recorded.log_time;
     report_.cycle = recorded.step.cycle;
-    run::ClosedLoop& loop = second_.loop();
+    run::ClosedLoop& loop = car_.loop();
     if (recorded.step.begins && loop.cycle() > 0) loop.restart();
-    branch_time_ = loop.time();
+    start_ = loop.time();
+    return is_branch_ ? change() : Result<void>{};
+  }
+
+  Result<void> change() {
+    const run::ClosedLoop& loop = car_.loop();
     scenario::Scenario changed = loop.scenario();
     for (const auto& [key, text] : options_.settings) {
       if (!decltype(telemetry::Change::value)::fits(text))
@@ -238,102 +241,98 @@ class Branching {
       const Result<run::Setting> setting = read_live(change);
       if (!setting) return fail(setting.error());
       if (const auto* field = std::get_if<run::FieldValue>(&setting->action)) run::write(changed, *field);
-      second_.apply(*setting);
-      if (hooks_.on_change) hooks_.on_change(change);
+      car_.apply(*setting);
+      tell(change);
     }
-    for (const protocol::Contradiction& found : protocol::contradictions(changed)) {
+    for (const protocol::Contradiction& found : protocol::contradictions(changed))
       return fail(ErrorCode::kInvalidArgument, fmt::format("{}: {}", found.key, found.message));
-    }
     return {};
   }
 
-  /// A setting or a fault that may change while a run goes on.
-  static Result<run::Setting> read_live(const telemetry::Change& change) {
-    const std::string_view key = change.name.view();
-    const protocol::Parameter* row = protocol::find(key);
-    if (row != nullptr && !protocol::is_live(*row)) {
-      return fail(ErrorCode::kInvalidArgument,
-                  std::string(key) +
-                      ": got a change while the run goes on, expected a setting that can change then "
-                      "(docs/viewer.md)");
-    }
-    if (row == nullptr && !key.starts_with("fault."))
-      return fail(ErrorCode::kNotFound, fmt::format("{}: {}", printable(key), protocol::unknown_key(key)));
-    return run::read_setting(change);
-  }
-
-  /// A future, in virtual time, from where it has come to.
-  Result<void> drive_on(RebuiltRun& car, FutureMeter& meter, bool is_branch) {
-    run::ClosedLoop& loop = car.loop();
+  /// By itself, from where it has come to.
+  void drive_on() {
+    const run::ClosedLoop& loop = car_.loop();
     const double rest = last_log_time_ - report_.at;
     const bool has_laps_only = options_.laps + options_.more_laps > 0 && options_.duration == 0.0;
     const double duration = options_.duration > 0.0 ? options_.duration : has_laps_only ? kForever : rest;
-    car.finish_cycle();
-    const double start = branch_time_;
-    while (true) {
-      if (loop.is_over()) {
-        if (is_branch) report_.end_reason = "the car left the road and did not come back";
-        return {};
-      }
-      if (options_.laps > 0 && (loop.world().lap >= options_.laps || loop.world().is_finished)) return {};
-      if (has_all_laps(meter)) return {};
-      if (loop.is_control_due() && loop.time() - start > duration + 1e-6) return {};
-      if (!car.advance()) continue;
-      car.race_by_learned_lap();
-      add(meter, loop, is_branch);
-      if (!may_go_on(report_.at + loop.time() - start)) return fail(ErrorCode::kInvalidArgument, kGivenUp);
-      if (is_branch && hooks_.on_frame) hooks_.on_frame(loop.frame());
-      if (loop.time() - start > kLongest) {
-        if (is_branch) report_.end_reason = "the laps were not driven within an hour";
-        return {};
-      }
-    }
+    const auto driven = [&] { return loop.time() - start_; };
+    car_.drive([&] {
+      if (has_given_up_ || has_all_laps() || driven() > kLongest) return true;
+      if (options_.laps > 0 && (loop.world().lap >= options_.laps || loop.world().is_finished)) return true;
+      return loop.is_control_due() && driven() > duration + 1e-6;
+    });
+    if (!is_branch_) return;
+    if (loop.is_over()) report_.end_reason = "the car left the road and did not come back";
+    if (driven() > kLongest) report_.end_reason = "the laps were not driven within an hour";
   }
 
-  /// The first future of two that are driven ends here, if `is_end`.
-  bool ends_first(bool is_end) {
-    is_first_over_ = is_first_over_ || (is_end && options_.drives_both);
-    return is_first_over_;
+  void step(const run::ClosedLoop& loop) {
+    add(loop);
+    has_given_up_ = !may_go_on(report_.at + loop.time() - start_);
+    if (is_branch_ && hooks_.on_frame) hooks_.on_frame(loop.frame());
+  }
+
+  /// A control step behind the branch.
+  void add(const run::ClosedLoop& loop) {
+    const double distance = meter_.add(loop.frame(), loop.track());
+    if (hooks_.on_future)
+      hooks_.on_future({.frame = loop.frame(), .distance = distance, .is_branch = is_branch_});
+  }
+
+  void add(const telemetry::CompletedLap& lap) {
+    if (has_branched_ && (is_branch_ || is_within(last_log_time_))) meter_.add(lap);
+    if (is_branch_ && hooks_.on_lap) hooks_.on_lap(lap);
+  }
+  void tell(const telemetry::Change& change) {
+    if (is_branch_ && hooks_.on_change) hooks_.on_change(change);
+  }
+
+  /// Nothing more of what was recorded is computed: the second future has branched, or, of two that are
+  /// driven, the first `ends`.
+  bool is_left_behind(bool ends) {
+    is_over_ = is_over_ || (ends && options_.drives_both);
+    return is_branch_ ? has_branched_ : is_over_;
   }
   [[nodiscard]] bool may_go_on(double time) const { return !hooks_.go_on || hooks_.go_on(time); }
-  [[nodiscard]] bool has_all_laps(const FutureMeter& meter) const {
-    return options_.more_laps > 0 && meter.crossings() >= options_.more_laps;
+  [[nodiscard]] bool has_all_laps() const {
+    return options_.more_laps > 0 && meter_.crossings() >= options_.more_laps;
   }
-
-  /// Of the recorded future: as long as the other one is asked to be.
+  /// Of what was recorded: as long as the second future is asked to be.
   [[nodiscard]] bool is_within(double log_time) const {
-    if (has_all_laps(recorded_)) return false;
+    if (has_all_laps()) return false;
     return log_time - report_.at <= (options_.duration > 0.0 ? options_.duration : kForever) + 1e-9;
   }
 
-  static constexpr const char* kGivenUp = "given up";
-  static constexpr double kForever = std::numeric_limits<double>::infinity();
   static constexpr double kLongest = 3600.0;  // [s] without a given duration
 
   const BranchOptions& options_;
   const BranchHooks& hooks_;
-  const run::Factories& make_;
-  RebuiltRun first_{[this](const telemetry::CompletedLap& lap) {
-    if (has_branched_ && is_within(last_log_time_)) recorded_.add(lap);
-  }};
-  RebuiltRun second_{[this](const telemetry::CompletedLap& lap) {
-    if (has_branched_) branched_.add(lap);
-    if (hooks_.on_lap) hooks_.on_lap(lap);
-  }};
-  FutureMeter recorded_, branched_;
-  BranchReport report_;
+  bool is_branch_;
+  BranchReport& report_;
+  ShadowRun car_;
+  FutureMeter meter_;
   bool has_branched_ = false;
-  bool is_first_over_ = false;
-  double branch_time_ = 0.0;      // of the run [s]
-  double last_log_time_ = 0.0;    // [s]
-  std::uint64_t next_cycle_ = 0;  // behind the last recorded one
+  bool is_over_ = false;  ///< the first future: what was recorded ends it
+  bool has_given_up_ = false;
+  double start_ = 0.0;          ///< of the run, at the branch [s]
+  double last_log_time_ = 0.0;  ///< [s]
 };
 
 }  // namespace
 
 Result<BranchReport> branch_run(const RunEvents& events, const BranchOptions& options,
                                 const BranchHooks& hooks, const run::Factories& make) {
-  return Branching(options, hooks, make).run(events);
+  BranchReport report;
+  Branching second(options, hooks, make, true, report);
+  auto branched = second.drive(events);
+  if (!branched) return fail(branched.error());
+  Branching first(options, hooks, make, false, report);
+  auto recorded = first.drive(events);
+  if (!recorded) return fail(recorded.error());
+  report.first_difference = first.first_difference();
+  report.recorded = std::move(*recorded);
+  report.branched = std::move(*branched);
+  return report;
 }
 
 Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks,

@@ -10,8 +10,7 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
-#include "chicane/recording/checkpoints.hpp"
-#include "chicane/recording/reader.hpp"
+#include "chicane/recording/shadow_run.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/telemetry/frame.hpp"
 
@@ -27,8 +26,8 @@ struct BranchOptions {
   int more_laps = 0;      ///< until the line was crossed so often from `at` on; 0: no matter
   /// The first future is driven on, too, where what is known of it ends before the second one does.
   bool drives_both = false;
-  /// Where to begin instead of at the start, with the events behind it; before `at`. Null: at the start.
-  std::shared_ptr<const Checkpoint> from{};
+  /// Begins here instead of at the start, with the events behind it; before `at`. Null: at the start.
+  std::shared_ptr<const ShadowRun> from{};
 };
 
 /// The end of a third of a lap that was passed.
@@ -58,6 +57,13 @@ struct FutureStep {
   bool is_branch = false;
 };
 
+/// The plant used in place of a car that others simulate.
+struct StandIn {
+  std::string plant;
+  double compared = 0.0;  ///< so long before the moment both drove from the same place [s]; 0: not compared
+  double apart = 0.0;     ///< and came so far from each other [m]
+};
+
 struct BranchReport {
   double at = 0.0;                 ///< where it begins: the first control step from there on [s]
   std::uint64_t cycle = 0;         ///< that control step, in its run
@@ -69,6 +75,7 @@ struct BranchReport {
   Future recorded{};
   Future branched{};
   std::string end_reason{};  ///< why the branch ended before its time; empty when it did not
+  std::optional<StandIn> stand_in{};
 };
 
 /// What listens to the second future, whole: the recorded run up to the branch, and what comes then.
@@ -82,17 +89,14 @@ struct BranchHooks {
   std::function<bool(double time)> go_on{};
 };
 
-/// Tells all events of a run to a visitor, in order; its failure ends them.
-using RunEvents = std::function<Result<void>(const std::function<Result<void>(const RecordedEvent&)>& visit)>;
-
 /// Computes a recorded run of `drive` again from its start, controller and plant, and drives on from
 /// `options.at` with other settings, in virtual time. Fails with kInvalidArgument when the moment is not in
 /// the recording, a setting is unknown, out of range or cannot change in a run that goes on, when
 /// BranchHooks::go_on gives up, or when the recording is not of our simulator.
 [[nodiscard]] Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks,
                                                     const run::Factories& make = {});
-/// The same of a run that is not a file; `options.log` is not used. Without a checkpoint to begin with the
-/// events are those of the whole run.
+/// The same of a run that is not a file, whose events are visited once for each future; `options.log` is not
+/// used. Without `options.from` they are the events of the whole run.
 [[nodiscard]] Result<BranchReport> branch_run(const RunEvents& events, const BranchOptions& options,
                                               const BranchHooks& hooks, const run::Factories& make = {});
 

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/recording/checkpoints.hpp"
+#include "chicane/recording/shadow_run.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/branch.hpp"
-#include "chicane/recording/rebuilt_run.hpp"
 
 namespace chicane::recording {
 namespace {
@@ -82,77 +81,58 @@ std::vector<double> numbers(const std::vector<RecordedEvent>& events, std::size_
   return all;
 }
 
-TEST(Checkpoints, LeadToTheSameFuturesAsTheStartOfTheRun) {
-  const auto events = drive(60.0);
-  Checkpoints checkpoints;
-  for (const RecordedEvent& event : events) ASSERT_TRUE(checkpoints.follow(event));
-  for (const double at : {0.0, 4.0, 7.98, 13.0, 25.0, 40.0, 59.0, 1e9}) {
+TEST(ShadowRun, LeadsToTheSameFuturesFromACopyAsFromTheStart) {
+  const auto events = drive(40.0);
+  for (const double at : {4.0, 7.98, 13.0, 25.0, 1e9}) {
     SCOPED_TRACE(at);
     BranchOptions options{
         .at = at, .settings = {{"tracking_mpc.speed_limit_mps", "12"}}, .duration = 4.0, .drives_both = true};
     const auto from_start = numbers(events, 0, options);
-    options.from = newest_before(checkpoints.kept(), at);
-    EXPECT_EQ(options.from == nullptr, at == 0.0);
-    if (!options.from) continue;
+    ShadowRun run;
+    std::size_t followed = 0;
+    for (; followed == 0 || (followed < events.size() && run.time() < at - 2.0); ++followed)
+      ASSERT_TRUE(run.follow(events[followed]));
+    const auto copy = std::make_shared<ShadowRun>();
+    ASSERT_TRUE(copy->begin(run));
+    options.from = copy;
     std::uint64_t steps_before = 0;
-    // The scenario, which no checkpoint counts, comes first.
-    EXPECT_EQ(numbers(events, options.from->event_count + 1, options, &steps_before), from_start);
-    EXPECT_LE(static_cast<double>(steps_before) * 0.04, std::max(60.0 - at, Checkpoints::kSpacing));
+    EXPECT_EQ(numbers(events, followed, options, &steps_before), from_start);
+    EXPECT_LE(steps_before, 51U);
   }
 }
 
-TEST(RebuiltRun, ComesOutTheSameToTheLastBitAndTellsItsLaps) {
+TEST(ShadowRun, ComesOutTheSameToTheLastBitAndTellsItsLaps) {
   int laps = 0;
-  RebuiltRun run([&](const telemetry::CompletedLap&) { ++laps; });
+  ShadowRun run({.on_lap = [&](const telemetry::CompletedLap&) { ++laps; }});
   EXPECT_FALSE(run.has_begun());
-  for (const RecordedEvent& event : drive(40.0)) {
-    if (const auto* scenario = std::get_if<scenario::Scenario>(&event)) {
-      ASSERT_TRUE(run.begin(*scenario, run::make_controller));
-    } else if (const auto* change = std::get_if<telemetry::Change>(&event)) {
-      run.apply(*run::read_setting(*change));
-    } else {
-      protocol::Step step = std::get<RecordedStep>(event).step;
-      const telemetry::Frame& frame = run.follow(step);
-      ASSERT_TRUE(is_same(frame, step)) << step.cycle;
-      step.measurement.x = std::nextafter(step.measurement.x, 1e9);
-      ASSERT_FALSE(is_same(frame, step)) << "a bit is a difference";
-    }
-  }
+  auto events = drive(40.0);
+  for (const RecordedEvent& event : events) ASSERT_TRUE(run.follow(event));
+  EXPECT_FALSE(run.first_difference());
+  EXPECT_EQ(run.next_cycle(), run.loop().cycle());
   EXPECT_EQ(laps, run.loop().world().lap);
   EXPECT_GE(laps, 1);
-  run.forget();
-  EXPECT_FALSE(run.has_begun());
+
+  auto& step = std::get<RecordedStep>(events[100]).step;
+  step.measurement.x = std::nextafter(step.measurement.x, 1e9);
+  ShadowRun other;
+  for (std::size_t i = 0; i < 120; ++i) ASSERT_TRUE(other.follow(events[i]));
+  EXPECT_EQ(other.first_difference(), step.cycle) << "a bit is a difference";
 }
 
-TEST(Checkpoints, AreFewAndNeverFartherThanAMomentIsAgo) {
-  Checkpoints checkpoints;
-  double last = 0.0;
-  for (const RecordedEvent& event : drive(600.0)) {
-    ASSERT_TRUE(checkpoints.follow(event));
-    const auto* step = std::get_if<RecordedStep>(&event);
-    if (step == nullptr || step->log_time < last + 1.0) continue;
-    last = step->log_time;
-    double after = last;
-    for (auto each = checkpoints.kept().rbegin(); each != checkpoints.kept().rend(); ++each) {
-      const double gap = after - (*each)->time;
-      EXPECT_LE(gap, std::max(last - after, Checkpoints::kSpacing) + 0.1) << last;
-      after = (*each)->time;
-    }
-    EXPECT_LE(checkpoints.kept().size(), 12U) << last;
-  }
-  EXPECT_GE(checkpoints.kept().size(), 5U);
-}
-
-TEST(Checkpoints, AreOfTheNewestRunAndOfWhatIsKnownOnly) {
-  const auto events = drive(20.0);
-  Checkpoints checkpoints;
-  for (const RecordedEvent& event : events) ASSERT_TRUE(checkpoints.follow(event));
-  const auto newest = newest_before(checkpoints.kept(), 1e9);
-  ASSERT_NE(newest, nullptr);
-  EXPECT_EQ(newest_before(checkpoints.kept(), 1e9, newest->event_count + 1), nullptr) << "forgotten by now";
-  EXPECT_LT(newest_before(checkpoints.kept(), newest->time)->time, newest->time);
-  ASSERT_TRUE(checkpoints.follow(events.front()));
-  EXPECT_TRUE(checkpoints.kept().empty());
+TEST(ShadowRun, DrivesByItselfAndTakesChangesAndFaultsAgain) {
+  int steps = 0;
+  ShadowRun run({.on_step = [&](const run::ClosedLoop&) { ++steps; }});
+  ASSERT_TRUE(run.begin(oval()));
+  run.drive([&] { return run.loop().time() >= 4.0 - 1e-9; });
+  EXPECT_EQ(steps, 100);
+  const auto apply = [&](std::string_view name, std::string_view value) {
+    run.apply(*run::read_setting({.name = name, .value = value}));
+    run.drive([&, until = run.loop().time() + 0.2] { return run.loop().time() >= until; });
+    return run.loop().frame().active_faults != 0U;
+  };
+  EXPECT_FALSE(apply("fault.half_grip", "false"));
+  EXPECT_TRUE(apply("fault.half_grip", "+2*0.9"));
+  EXPECT_FALSE(apply("fault.half_grip", "false"));
 }
 
 }  // namespace

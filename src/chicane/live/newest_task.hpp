@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "chicane/live/worker.hpp"
+
+namespace chicane::live {
+
+/// Computes an answer to the newest of several wishes, on a thread of its own with low priority: whoever
+/// wishes does not wait. A wish that waits is replaced by the next one; one that is being computed is told
+/// so, and its answer is thrown away.
+template <class Wish, class Answer>
+class NewestTask {
+ public:
+  /// `is_wanted`: false once nobody waits for this answer any more.
+  using Compute = std::function<Answer(Wish wish, const std::function<bool()>& is_wanted)>;
+  using OnAnswer = std::function<void(const Answer&)>;
+
+  /// Both are called on the thread; `on_answer` with each answer that is still wanted, and must call nothing
+  /// of this.
+  explicit NewestTask(Compute compute, OnAnswer on_answer = {})
+      : compute_{std::move(compute)}, on_answer_{std::move(on_answer)}, worker_{[this] { work(); }} {}
+  /// Cancels, and waits for the thread.
+  ~NewestTask() { cancel(); }
+  NewestTask(const NewestTask&) = delete;
+  NewestTask& operator=(const NewestTask&) = delete;
+
+  /// Any thread, as the rest.
+  void begin(Wish wish) {
+    const std::lock_guard lock(mutex_);
+    wish_ = std::move(wish);
+    answer_.reset();
+    ++newest_;
+    worker_.wake();
+  }
+  /// There is no answer, nor a call of `on_answer`, any more. Waits for no more than a call under way.
+  void cancel() {
+    const std::lock_guard lock(mutex_);
+    wish_.reset();
+    answer_.reset();
+    ++newest_;
+  }
+  /// The answer to the newest wish, once; none while it is computed, and when there is none.
+  [[nodiscard]] std::optional<Answer> take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(answer_, std::nullopt);
+  }
+  /// There is a wish without an answer.
+  [[nodiscard]] bool is_computing() const {
+    const std::lock_guard lock(mutex_);
+    return wish_ || (computed_ > 0 && computed_ == newest_);
+  }
+
+ private:
+  void work() {
+    std::unique_lock lock(mutex_);
+    if (!wish_) return;
+    Wish wish = *std::exchange(wish_, std::nullopt);
+    const std::uint64_t number = computed_ = newest_;
+    lock.unlock();
+    Answer answer = compute_(std::move(wish), [this, number] { return number == newest_; });
+    lock.lock();
+    computed_ = 0;
+    if (number != newest_) return;
+    if (on_answer_) on_answer_(answer);
+    answer_ = std::move(answer);
+  }
+
+  Compute compute_;
+  OnAnswer on_answer_;
+  mutable std::mutex mutex_;  ///< of all below
+  std::optional<Wish> wish_;
+  std::atomic<std::uint64_t> newest_{0};  ///< number of the last wish; read without the mutex
+  std::uint64_t computed_ = 0;            ///< number of the wish that is being computed; 0: none
+  std::optional<Answer> answer_;
+  Worker worker_;  // last
+};
+
+}  // namespace chicane::live

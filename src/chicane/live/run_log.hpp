@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "chicane/base/result.hpp"
+#include "chicane/live/worker.hpp"
+#include "chicane/recording/branch.hpp"
+#include "chicane/recording/shadow_run.hpp"
+#include "chicane/run/thread_queue.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/telemetry/change.hpp"
+#include "chicane/telemetry/frame.hpp"
+
+namespace chicane::live {
+
+/// The run that goes on, in memory, about 130 bytes a step: scenario, changes, laps, and of each control step
+/// all that is needed to compute it again, bit for bit. What computes beside the run reads it from here:
+/// other futures (what_if.hpp, served_futures.hpp) and a second car (rival.hpp).
+///
+/// The control thread notes through one ring; it neither waits nor allocates, but in begin(). A thread of low
+/// priority collects. Of a run that is longer than kMostEvents the newest events are known. One of which
+/// something did not fit into the ring is not known until the next one begins: since() says so.
+///
+/// With checkpoints the same thread computes the run once more, behind it, at what the run's own control
+/// steps cost, and keeps copies: kSpacing apart for the last moments, farther apart the longer ago, so that
+/// no moment is farther behind one than it is ago. A run of T seconds needs some 2 log2(T / kSpacing), of 8
+/// MB each.
+class RunLog {
+ public:
+  static constexpr std::size_t kMostEvents = 200'000;  ///< two hours with 25 steps a second
+  static constexpr double kSpacing = 10.0;             ///< of the newest checkpoints [s]
+
+  explicit RunLog(bool has_checkpoints);
+
+  /// The control thread: another run begins.
+  void begin(const scenario::Scenario& scenario);
+  /// The control thread, after each control step, change and completed lap.
+  void note(const telemetry::Frame& frame) noexcept;
+  void note(const telemetry::Change& change) noexcept { put(change); }
+  void note(const telemetry::CompletedLap& lap) noexcept { put(lap); }
+
+  /// A place between two events.
+  struct Place {
+    std::uint64_t scenario = 0;  ///< number of begin(), from 1; 0: before any run
+    std::uint64_t start = 0;     ///< number of the start from the line, rising over all runs
+    std::uint64_t event = 0;     ///< since that start
+    friend bool operator==(const Place&, const Place&) = default;
+    [[nodiscard]] bool is_in_start_of(const Place& other) const {
+      return scenario == other.scenario && start == other.start;
+    }
+  };
+  struct Step {
+    std::uint64_t cycle = 0;
+    double time = 0.0;   ///< [s]
+    double delay = 0.0;  ///< Measurement::delay [s]
+    std::uint32_t deadline_spent_at = 0;
+    bool begins = false;
+    std::array<double, 6> seen{};  ///< measured: x, y, psi, speed, steer, throttle
+    std::array<double, 2> sent{};  ///< steer, throttle
+    double speed = 0.0;            ///< of the plant [m/s]
+    double lateral_error = 0.0;    ///< from the track's line [m]
+  };
+  struct Change {
+    std::uint64_t cycle = 0;
+    double time = 0.0;  ///< [s]
+    std::string name, value;
+    [[nodiscard]] telemetry::Change told() const;
+  };
+  using Event = std::variant<Step, Change, telemetry::CompletedLap>;
+  struct Excerpt {
+    Place begin, end;  ///< `begin.event` 0: the whole run since its start
+    std::shared_ptr<const scenario::Scenario> scenario;
+    std::shared_ptr<const std::vector<Event>> events;
+    /// For recording::branch_run(): of the whole run its scenario first.
+    [[nodiscard]] recording::RunEvents recorded() const;
+  };
+  /// Any thread: the events from `from` on, or, where that is no place in the present run, of the whole run.
+  /// A run that was started anew is known from there on, with its settings. kInvalidArgument with the reason
+  /// when it is not known.
+  [[nodiscard]] Result<Excerpt> since(Place from);
+  /// Any thread: behind the newest event.
+  [[nodiscard]] Place end();
+
+  /// Any thread: branches the run, from a checkpoint where there is one before `options.at`. Fails as
+  /// recording::branch_run() and since() do, and for a moment that is not known any more.
+  [[nodiscard]] Result<recording::BranchReport> branch(const recording::BranchOptions& options,
+                                                       const recording::BranchHooks& hooks);
+
+ private:
+  using Begin = std::shared_ptr<const scenario::Scenario>;
+  using Entry = std::variant<Step, telemetry::Change, telemetry::CompletedLap, Begin>;
+  struct Checkpoint {
+    Place place;
+    std::shared_ptr<const recording::ShadowRun> run;
+  };
+
+  template <class Note>
+  void put(Note&& note) noexcept {
+    if (!ring_.push(std::forward<Note>(note))) has_lost_ = true;
+  }
+  void collect();
+  void take(Begin& scenario);
+  void take(const Step& step);
+  void take(const telemetry::Change& change);
+  void take(const telemetry::CompletedLap& lap) { add(lap); }
+  void add(Event event);
+  void start_anew(const Step& first);
+  [[nodiscard]] Place last() const;
+  void follow();
+  void keep(const Place& place);
+  void thin(double now);
+
+  run::ThreadQueue<Entry, 4096> ring_;
+  std::atomic<bool> has_lost_{false};  ///< something did not fit into the ring
+
+  // The worker's:
+  const bool has_checkpoints_;
+  std::optional<recording::ShadowRun> shadow_;  ///< none: a run that cannot be followed
+  Place followed_;
+
+  std::mutex mutex_;  ///< of all below
+  Begin scenario_;
+  const char* why_unknown_ = nullptr;
+  std::deque<Event> events_;
+  Place first_;                          ///< before the first of events_
+  std::vector<Checkpoint> checkpoints_;  ///< by rising time; written by the worker
+  Worker worker_;                        // last
+};
+
+}  // namespace chicane::live

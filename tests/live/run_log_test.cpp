@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/live/run_log.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "chicane/protocol/library.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "support/alloc_guard.hpp"
+
+namespace chicane::live {
+namespace {
+
+using recording::BranchReport;
+using testing::HasSubstr;
+
+std::unique_ptr<run::ClosedLoop> loop_of(
+    const std::vector<std::pair<std::string, std::string>>& settings = {}) {
+  std::vector<std::pair<std::string, std::string>> all{{"laps", "0"}, {"sensor.position_noise_m", "0.05"}};
+  all.insert(all.end(), settings.begin(), settings.end());
+  const auto scenario = protocol::compose({.scenario_file = {}, .settings = all});
+  EXPECT_TRUE(scenario);
+  return std::move(*run::ClosedLoop::create(*scenario));
+}
+
+/// A run whose log is kept.
+class Driven {
+ public:
+  Driven() { log.begin(loop->scenario()); }
+  void drive(int cycles, double budget = 0.0) {
+    for (int done = 0; done < cycles;) {
+      if (!loop->advance(budget)) continue;
+      log.note(loop->frame());
+      ++done;
+    }
+    while (!loop->is_control_due()) static_cast<void>(loop->advance());
+  }
+  void change(std::string_view name, std::string_view value) {
+    const telemetry::Change change{
+        .cycle = loop->cycle(), .time = loop->time(), .name = name, .value = value};
+    loop->apply(change);
+    log.note(change);
+  }
+  Result<BranchReport> branch(const recording::BranchOptions& options) { return log.branch(options, {}); }
+
+  std::unique_ptr<run::ClosedLoop> loop = loop_of();
+  RunLog log{false};
+};
+
+TEST(RunLog, KnowsARunWellEnoughToComputeItAgainBitForBit) {
+  Driven run;
+  run.drive(60);
+  run.change("tracking_mpc.speed_limit_mps", "12");
+  run.change("fault.half_grip", "+1*0.4");
+  run.drive(100, 1e-5);  // the clock ends the solver before it is done
+  run.change("manual.is_on", "true");
+  run.change("manual.steer", "0.1");
+  run.drive(20);
+  run.change("manual.is_on", "false");
+  run.drive(60);
+  const auto report = run.branch({.at = 9.0, .duration = 2.0, .drives_both = true});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_FALSE(report->first_difference) << *report->first_difference;
+  EXPECT_EQ(report->steps_before, 225U);
+  EXPECT_DOUBLE_EQ(report->known_until, 239 * 0.04);
+}
+
+TEST(RunLog, KnowsARunThatStartedAnewFromThereOnWithItsSettings) {
+  Driven run;
+  run.change("tracking_mpc.speed_limit_mps", "30");
+  run.drive(30);
+  run.change("tracking_mpc.speed_limit_mps", "9");
+  run.change("fault.link_lost", "+600");
+  run.drive(30);
+  run.loop->restart();
+  run.drive(100);
+  const auto report = run.branch({.at = 1.0, .duration = 3.0, .drives_both = true});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_FALSE(report->first_difference);
+  EXPECT_EQ(report->steps_before, 25U);
+  EXPECT_LT(report->recorded.top_speed, 10.5);
+  EXPECT_GT(report->recorded.top_speed, 3.0) << "the fault of before is over: the car drives";
+}
+
+TEST(RunLog, KnowsTheNewestRunOnly) {
+  Driven run;
+  run.drive(30);
+  run.loop = loop_of({{"track", "oval"}});
+  run.log.begin(run.loop->scenario());
+  run.drive(50);
+  const auto report = run.branch({.at = 1.0, .duration = 1.0, .drives_both = true});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_FALSE(report->first_difference);
+  EXPECT_EQ(report->cycle, 25U);
+}
+
+TEST(RunLog, SaysWhyARunIsNotKnown) {
+  RunLog log(false);
+  ASSERT_FALSE(log.since({}));
+  EXPECT_THAT(log.since({}).error().message, HasSubstr("has not begun"));
+
+  const auto loop = loop_of();
+  log.begin(loop->scenario());
+  while (!loop->advance()) {
+  }
+  telemetry::Frame frame = loop->frame();
+  for (std::size_t i = 0; i <= RunLog::kMostEvents; i += 1000) {
+    for (std::size_t k = 0; k < 1000; ++k) {
+      log.note(frame);
+      frame.begins = false;
+    }
+    static_cast<void>(log.since({}));  // collects
+  }
+  log.note(frame);
+  ASSERT_FALSE(log.since({}));
+  EXPECT_THAT(log.since({}).error().message, HasSubstr("too long"));
+  frame.begins = true;
+  log.note(frame);
+  EXPECT_TRUE(log.since({})) << "a run that starts anew is known again";
+}
+
+TEST(RunLog, AllocatesNothingOnTheControlThread) {
+  const auto loop = loop_of();
+  RunLog log(false);
+  log.begin(loop->scenario());
+  while (!loop->advance()) {
+  }
+  const telemetry::Change change{.name = "latency_ms", .value = "60"};
+  const test::AllocationGuard guard;
+  for (int i = 0; i < 1000; ++i) {
+    log.note(loop->frame());
+    log.note(change);
+  }
+  EXPECT_EQ(guard.count(), 0);
+}
+
+std::unique_ptr<run::ClosedLoop> oval() {
+  const auto scenario =
+      protocol::compose({.scenario_file = {}, .settings = {{"track", "oval"}, {"laps", "0"}}});
+  EXPECT_TRUE(scenario);
+  return std::move(*run::ClosedLoop::create(*scenario));
+}
+
+void drive(run::ClosedLoop& loop, RunLog& log, int cycles) {
+  for (int done = 0; done < cycles;) {
+    if (!loop.advance()) continue;
+    log.note(loop.frame());
+    ++done;
+    if (done % 1000 == 0) static_cast<void>(log.end());  // or the ring would be full
+  }
+}
+
+/// From now on, once a checkpoint is near enough.
+recording::BranchReport branch_from_checkpoint(RunLog& log, const recording::BranchOptions& options,
+                                               std::uint64_t most_steps) {
+  for (;;) {
+    const auto report = log.branch(options, {});
+    EXPECT_TRUE(report) << report.error().message;
+    if (!report || report->steps_before <= most_steps) return report.value_or(recording::BranchReport{});
+    std::this_thread::yield();
+  }
+}
+
+TEST(RunLog, SparesABranchTheWayFromTheStart) {
+  const auto loop = oval();
+  RunLog log(true);
+  log.begin(loop->scenario());
+  drive(*loop, log, 3000);
+  const recording::BranchOptions now{.at = 1e9, .duration = 2.0, .drives_both = true};
+  const auto report = branch_from_checkpoint(log, now, 260);
+  EXPECT_FALSE(report.first_difference);
+  EXPECT_EQ(report.cycle, 3000U);
+  const auto before_any = log.branch({.at = 0.0, .duration = 2.0, .drives_both = true}, {});
+  ASSERT_TRUE(before_any) << before_any.error().message;
+  EXPECT_EQ(before_any->cycle, 0U);
+}
+
+TEST(RunLog, FollowsARunThatBeginsAnew) {
+  const auto loop = oval();
+  RunLog log(true);
+  log.begin(loop->scenario());
+  drive(*loop, log, 1000);
+  const recording::BranchOptions now{.at = 1e9, .duration = 1.0, .drives_both = true};
+  EXPECT_EQ(branch_from_checkpoint(log, now, 260).cycle, 1000U);
+  loop->restart();
+  drive(*loop, log, 300);
+  const auto report = log.branch(now, {});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->cycle, 300U) << "of the run that was started anew";
+  EXPECT_FALSE(report->first_difference);
+}
+
+TEST(RunLog, GoesOnWhereTheStartIsForgottenAndSaysSoOfWhatIs) {
+  const auto loop = oval();
+  RunLog log(true);
+  log.begin(loop->scenario());
+  drive(*loop, log, 2000);
+  const recording::BranchOptions now{.at = 1e9, .duration = 1.0, .drives_both = true};
+  branch_from_checkpoint(log, now, 260);
+  // Changes are events, too: so many that the steps before a minute ago are forgotten.
+  const telemetry::Change change{.cycle = loop->cycle(),
+                                 .time = loop->time(),
+                                 .name = std::string_view("tracking_mpc.speed_limit_mps"),
+                                 .value = std::string_view("20")};
+  loop->apply(change);
+  for (std::size_t i = 0; i < RunLog::kMostEvents - 1000; ++i) {
+    log.note(change);
+    if (i % 1000 == 0) static_cast<void>(log.end());
+  }
+  drive(*loop, log, 200);
+  EXPECT_FALSE(log.since({})) << "the start is forgotten";
+  const auto report = log.branch(now, {});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_FALSE(report->first_difference);
+  EXPECT_EQ(report->cycle, 2200U);
+  const auto too_early = log.branch({.at = 1.0, .duration = 1.0, .drives_both = true}, {});
+  ASSERT_FALSE(too_early);
+  EXPECT_THAT(too_early.error().message, testing::HasSubstr("ask for a moment after"));
+}
+
+TEST(RunLog, HasAFewCheckpointsNeverFartherBehindAMomentThanItIsAgo) {
+  const auto loop = oval();
+  RunLog log(true);
+  log.begin(loop->scenario());
+  drive(*loop, log, 7500);
+  const double now = loop->time();
+  const recording::BranchOptions newest{.at = 1e9, .duration = 1.0, .drives_both = true};
+  branch_from_checkpoint(log, newest, 260);
+  for (const double at : {20.0, 100.0, 180.0, 240.0, 290.0}) {
+    const auto report = log.branch({.at = at, .duration = 1.0, .drives_both = true}, {});
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_FALSE(report->first_difference);
+    EXPECT_LE(static_cast<double>(report->steps_before) * 0.04, std::max(now - at, RunLog::kSpacing) + 0.1)
+        << at;
+  }
+}
+
+}  // namespace
+}  // namespace chicane::live
