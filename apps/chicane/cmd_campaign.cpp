@@ -234,7 +234,7 @@ ExitCode campaign(const Options& options) {
                       .rule = sweep::rule_of(*campaign, jobs, wants_stop),
                       .what = "groups of trials",
                       .keeps_failed = true};
-  const Result<RunLines> driven = drive_runs(runs, 1, options.campaign.results, wants_stop);
+  const Result<RunLines> driven = drive_runs(runs, 1, options.results_file, wants_stop);
   if (!driven) return report(driven.error());
   std::vector<CampaignGroup> groups;
   for (const auto& [run, line] : driven->lines) {

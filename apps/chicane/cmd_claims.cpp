@@ -342,7 +342,7 @@ ExitCode try_claims(const Options& options) {
   const std::string& page = options.claims.page;
   if (const Result<void> writable = check_writable(options.claims.is_check ? "" : page); !writable)
     return report(writable.error());
-  const Result<bool> is_whole = trials.drive(options.jobs, options.claims.results, stop);
+  const Result<bool> is_whole = trials.drive(options.jobs, options.results_file, stop);
   if (!is_whole) return report(is_whole.error());
   if (!*is_whole) {
     fmt::print(stderr, "stopped: nothing was compared or written\n");

@@ -20,7 +20,7 @@
 #include "experiment.hpp"
 #include "guard_notice.hpp"
 #include "interrupt.hpp"
-#include "limit_of.hpp"
+#include "limit_report.hpp"
 #include "plan_wait.hpp"
 #include "progress.hpp"
 #include "record.hpp"

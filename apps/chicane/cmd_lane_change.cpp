@@ -95,12 +95,12 @@ Result<RunLines> drive(const Options& options, const sweep::Plan& plan, const st
     if (!limit) return fail(limit.error());
     return std::optional(members_of(json_of(*limit)));
   };
-  return drive_runs({.plan = plan, .rule = rule}, options.jobs, options.lane_change.results, stop);
+  return drive_runs({.plan = plan, .rule = rule}, options.jobs, options.results_file, stop);
 }
 
 /// Prints a row for each car, with a column for each preset.
 void print(const Options& options, const RunLines& driven) {
-  const auto& [cars, presets, results] = options.lane_change;
+  const auto& [cars, presets] = options.lane_change;
   Json rows = Json::array();
   if (!options.is_json)
     fmt::print("{:<16} {:<14} {:>7} {:>11} {:>9}   {}\n", "car", "preset", "[km/h]", "exit [km/h]",

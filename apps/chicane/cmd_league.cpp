@@ -208,9 +208,9 @@ ExitCode compare_league(const Options& options) {
   for (const std::string& file : {options.output_file, options.csv_file, options.league.page})
     if (const Result<void> writable = check_writable(file); !writable) return report(writable.error());
   for (const std::string& command : options.league.servers) sweep::add_external(*league, command);
-  const std::string results = options.league.results.empty()
+  const std::string results = options.results_file.empty()
                                   ? std::filesystem::path(options.league.file).stem().string() + ".jsonl"
-                                  : options.league.results;
+                                  : options.results_file;
   LeagueRun run(options, std::move(*league), results, stop);
   if (const Result<void> done = run.drive(); !done) return report(done.error());
   const auto read = run.read();

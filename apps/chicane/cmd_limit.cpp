@@ -10,7 +10,6 @@
 #include "experiment.hpp"
 #include "guard_notice.hpp"
 #include "interrupt.hpp"
-#include "limit_of.hpp"
 #include "limit_report.hpp"
 #include "many_runs.hpp"
 

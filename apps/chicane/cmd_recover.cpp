@@ -184,7 +184,7 @@ Result<bool> drive_back(const Options& options, std::vector<CarOnTrack>& pairs,
     return std::optional(members_of(json_of(*outcome)));
   };
   Result<RunLines> driven = drive_runs({.plan = plan_of(options, numbers), .rule = rule, .what = "starts"},
-                                       options.jobs, options.recover.results, stop);
+                                       options.jobs, options.results_file, stop);
   if (!driven) return fail(driven.error());
   for (auto& [run, line] : driven->lines)
     pairs[run / numbers.size()].outcomes.emplace_back(numbers[run % numbers.size()], std::move(line));

@@ -9,6 +9,10 @@
 #include "chicane/base/result.hpp"
 #include "options.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace chicane::apps {
 
 struct Command {
@@ -16,6 +20,8 @@ struct Command {
   std::string_view group;  ///< heading in the help
   std::string_view summary;
   ExitCode (*run)(const Options&) = nullptr;
+  void (*add_options)(CLI::App& command, Options& options) = nullptr;
+  bool is_planning = false;  ///< it plans laps or finds limits, which it may keep
 };
 
 /// All commands, in the order of the help, group by group.

@@ -69,6 +69,8 @@ struct Options {
   bool is_markdown = false;            ///< list parameters, list faults, campaign
   std::string shell;                   ///< completion
 
+  /// league, claims, campaign, recover, lane-change: a line for each run; empty: none
+  std::string results_file;
   int jobs = 0;  ///< sweep, tune, claims, campaign: threads; 0: as many as cores
 
   /// A ROS 2 node: the controller, or the simulator.
@@ -128,13 +130,11 @@ struct Options {
     std::string folder = "studies/claims";
     std::string page{};     ///< to write; empty: details on stdout
     bool is_check = false;  ///< compare only
-    std::string results{};  ///< as Recover::results
   };
   Claims claims{};
 
   struct League {
     std::string file{};
-    std::string results{};               ///< a line for each run; empty: LEAGUE.jsonl
     std::string page{};                  ///< of docs/, written below its marker; empty: none
     std::vector<std::string> servers{};  ///< commands of external programs, beside those of the file
     bool wants_programs = true;          ///< false: no external ones are started
@@ -165,7 +165,6 @@ struct Options {
     double step = 0.5;       ///< between onsets [s]
     int onsets = 0;          ///< random moments of each group; 0: one each step
     std::uint64_t seed = 1;  ///< seed of the random moments
-    std::string results{};   ///< file; empty: none is kept
   };
   Campaign campaign{};
 
@@ -175,14 +174,12 @@ struct Options {
     int only = 0;            ///< this start alone, from 1; 0: all
     std::vector<std::string> tracks{"lakeside", "oval", "hairpins", "speedway"};
     std::vector<std::string> cars{"udacity", "road-car"};
-    std::string results{};  ///< file of the outcomes; empty: not kept
   };
   Recover recover{};
 
   struct LaneChange {
     std::vector<std::string> cars{"udacity", "road-car", "bmw-320i"};
     std::vector<std::string> presets{"race", "pure-pursuit", "stanley"};
-    std::string results{};  ///< as Recover::results
   };
   LaneChange lane_change{};
 
