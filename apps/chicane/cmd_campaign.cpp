@@ -19,9 +19,7 @@
 #include "chicane/sweep/campaign.hpp"
 #include "chicane/sweep/trial.hpp"
 #include "commands.hpp"
-#include "interrupt.hpp"
 #include "many_runs.hpp"
-#include "plan_runs.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -164,8 +162,7 @@ void print_json(const std::vector<Row>& rows) {
     json["worst"] = row.worst;
     all.push_back(std::move(json));
   }
-  fmt::print("{}\n",
-             protocol::json_text(protocol::Json{{"rows", std::move(all)}}, protocol::JsonLayout::kIndented));
+  print_rows(std::move(all));
 }
 
 /// The names themselves, or all that ship for the one name "all". Fails as protocol::locate() does.
@@ -224,9 +221,7 @@ void tell_errors(const std::vector<CampaignGroup>& groups) {
 }  // namespace
 
 ExitCode campaign(const Options& options) {
-  keep_memory();
-  static std::atomic<bool> wants_stop{false};  // static: must outlive the last signal
-  catch_interrupts(wants_stop);
+  const std::atomic<bool>& wants_stop = begin_many_runs();
   const Result<sweep::Campaign> campaign = campaign_of(options);
   if (!campaign) return report(campaign.error());
   const int jobs = run::threads_for(options.jobs);

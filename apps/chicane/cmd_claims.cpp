@@ -17,9 +17,7 @@
 #include "chicane/sweep/sweep.hpp"
 #include "chicane/sweep/trial.hpp"
 #include "commands.hpp"
-#include "interrupt.hpp"
 #include "many_runs.hpp"
-#include "plan_runs.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -45,8 +43,7 @@ const std::array<Reading, 3>& readings() {
 
 /// The reading that the claim's preset has.
 const Reading& own_reading(const Claim& claim) {
-  const auto request = sweep::request_of(claim.settings);
-  const auto scenario = request ? protocol::compose(*request) : fail(request.error());
+  const auto scenario = sweep::scenario_of(claim.settings);
   const auto is_set = [&](const char* key) {
     return scenario && protocol::get_text(*scenario, *protocol::find(key)) == "true";
   };
@@ -121,7 +118,7 @@ class Trials {
 
   /// False: it was stopped.
   Result<bool> drive(int jobs, const std::string& results, const std::atomic<bool>& stop) {
-    sweep::Axis axis = list_axis("trial", {});
+    sweep::Axis axis = sweep::list_axis("trial", {});
     axis.size = wanted_.size();
     sweep::Dimension& trials = axis.dimensions.front();
     for (const auto& [command, settings] : wanted_) {
@@ -136,18 +133,18 @@ class Trials {
     std::uint64_t run = 0;
     for (const auto& [command, settings] : wanted_) {
       const auto line = driven->lines.find(run++);
-      if (line != driven->lines.end()) lines_[command] = protocol::json_text(line->second);
+      if (line != driven->lines.end()) lines_[command] = line->second;
     }
     return driven->progress.is_complete();
   }
 
-  [[nodiscard]] const std::string& of(const Settings& settings) const {
+  [[nodiscard]] const protocol::Json& of(const Settings& settings) const {
     return lines_.at(sweep::command_of(settings));
   }
 
  private:
   std::map<std::string, Settings> wanted_;
-  std::map<std::string, std::string> lines_;
+  std::map<std::string, protocol::Json> lines_;
 };
 
 /// Whether a claim holds on a lake, by reading; none where it is not tried.
@@ -196,7 +193,7 @@ std::string grid_figures(const Claim& claim, const Trials& trials, const Lake& l
                          const std::string& column) {
   std::vector<std::pair<double, std::string>> clean;
   for (std::size_t i = claim.cases.size() - claim.grid_size; i < claim.cases.size(); ++i) {
-    const std::string& run = trials.of(settings_of(claim, claim.cases[i], lake, reading));
+    const protocol::Json& run = trials.of(settings_of(claim, claim.cases[i], lake, reading));
     const double value = sweep::number_of(run, column);
     if (sweep::number_of(run, "clean") > 0.0 && !std::isnan(value))
       clean.emplace_back(value, claim.cases[i].name);
@@ -214,7 +211,7 @@ std::string figures_of(const Claim& claim, const Trials& trials, const Lake& lak
     text += fmt::format("{}`{}`", text.empty() ? "" : "; ", column);
     for (std::size_t i = 0; i < claim.cases.size() - claim.grid_size; ++i) {
       const sweep::Case& each = claim.cases[i];
-      const std::string& run = trials.of(settings_of(claim, each, lake, reading));
+      const protocol::Json& run = trials.of(settings_of(claim, each, lake, reading));
       text += fmt::format("{} {}: {}", i == 0 ? "" : ",", each.name, figure(sweep::number_of(run, column)));
     }
     if (claim.grid_size > 0) text += ", " + grid_figures(claim, trials, lake, reading, column);
@@ -324,9 +321,7 @@ ExitCode compare(const std::string& file, const std::string& older, const std::s
 }  // namespace
 
 ExitCode try_claims(const Options& options) {
-  keep_memory();
-  static std::atomic<bool> stop{false};  // static: must outlive the last signal
-  catch_interrupts(stop);
+  const std::atomic<bool>& stop = begin_many_runs();
   const auto claims = read_claims(options.claims.folder, options.claims.ids);
   if (!claims) return report(claims.error());
   Trials trials;

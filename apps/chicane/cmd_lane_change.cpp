@@ -14,9 +14,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/lane_change.hpp"
 #include "commands.hpp"
-#include "interrupt.hpp"
 #include "many_runs.hpp"
-#include "plan_runs.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -45,7 +43,7 @@ Json json_of(const run::LaneChangeLimit& limit) {
   return {{"entry_kmph", limit.passed_kmph},
           {"exit_kmph", kKmph * limit.passed.exit_speed},
           {"room_m", limit.passed_kmph > 0 ? Json(limit.passed.room) : Json()},
-          {"room_above_m", number_or_null(limit.failed.room)},
+          {"room_above_m", limit.failed.room},
           {"passed_above", limit.failed.has_passed()}};
 }
 
@@ -80,7 +78,8 @@ Result<std::vector<scenario::Scenario>> scenarios_of(const Options& options, con
 /// Cars turn fastest: threads drive different cars.
 sweep::Plan plan_of(const Options& options) {
   sweep::Plan plan{.name = "lane-change", .fixed = options.settings, .keep = {"outcome"}};
-  plan.axes = {list_axis("preset", options.lane_change.presets), list_axis("car", options.lane_change.cars)};
+  plan.axes = {sweep::list_axis("preset", options.lane_change.presets),
+               sweep::list_axis("car", options.lane_change.cars)};
   return plan;
 }
 
@@ -93,7 +92,7 @@ Result<RunLines> drive(const Options& options, const sweep::Plan& plan, const st
     const scenario::Scenario& scenario = scenarios->at(run);
     const Result<run::LaneChangeLimit> limit = courses.at(scenario.car).find_limit(scenario);
     if (!limit) return fail(limit.error());
-    return std::optional(members_of(json_of(*limit)));
+    return std::optional(protocol::json_text(json_of(*limit)));
   };
   return drive_runs({.plan = plan, .rule = rule}, options.jobs, options.results_file, stop);
 }
@@ -119,16 +118,13 @@ void print(const Options& options, const RunLines& driven) {
       rows.push_back(std::move(row));
     }
   }
-  if (options.is_json)
-    fmt::print("{}\n", protocol::json_text(Json{{"rows", std::move(rows)}}, protocol::JsonLayout::kIndented));
+  if (options.is_json) print_rows(std::move(rows));
 }
 
 }  // namespace
 
 ExitCode lane_change(const Options& options) {
-  keep_memory();
-  static std::atomic<bool> wants_stop{false};  // static: must outlive the last signal
-  catch_interrupts(wants_stop);
+  const std::atomic<bool>& wants_stop = begin_many_runs();
   const Result<RunLines> driven = drive(options, plan_of(options), wants_stop);
   if (!driven) return report(driven.error());
   print(options, *driven);

@@ -20,7 +20,6 @@
 #include "chicane/sweep/trial.hpp"
 #include "chicane/wire/simulate.hpp"
 #include "commands.hpp"
-#include "interrupt.hpp"
 #include "many_runs.hpp"
 #include "ros_trial.hpp"
 
@@ -53,7 +52,7 @@ std::optional<int> free_port(int wanted) {
 std::string own_program() {
   std::error_code error;
   const auto path = std::filesystem::read_symlink("/proc/self/exe", error);
-  return error ? "chicane" : "'" + path.string() + "'";
+  return error ? "chicane" : sweep::shell_word(path.string());
 }
 
 /// Starts the program, drives it in real time, and ends it. A program that has not connected or not answered
@@ -69,9 +68,7 @@ Result<telemetry::RunSummary> drive_program(const ExternalTrial& trial, double p
     return fail(ErrorCode::kIo, fmt::format("port {} is taken by another program, and the command has no "
                                             "place {{port}}",
                                             sweep::kOriginalPort));
-  const auto request = sweep::request_of(trial.settings);
-  if (!request) return fail(request.error());
-  const auto scenario = protocol::compose(*request);
+  const auto scenario = sweep::scenario_of(trial.settings);
   if (!scenario) return fail(scenario.error());
   wire::SimulateOptions options;
   options.url = fmt::format("ws://127.0.0.1:{}/socket.io/?EIO=4&transport=websocket", *port);
@@ -114,10 +111,8 @@ class LeagueRun {
   Result<void> drive_own(sweep::BesideFile& beside) {
     RunCounter counter;
     std::optional<Error> failure;
-    sweep::SweepOptions sweeping{.jobs = run::threads_for(options_.jobs), .file = results_};
-    sweeping.on_progress = [&](const sweep::Progress& progress) {
-      counter.show(progress.found + progress.driven, progress.runs, progress.driven);
-    };
+    sweep::SweepOptions sweeping{
+        .jobs = run::threads_for(options_.jobs), .file = results_, .on_progress = counter.follow()};
     sweeping.on_run = [&](std::uint64_t run, const telemetry::RunSummary& summary) {
       if (const Result<void> kept = beside.add_times(run, summary); !kept) failure = kept.error();
     };
@@ -200,9 +195,7 @@ Result<void> write_pages(const Options& options, const League& league, const swe
 }  // namespace
 
 ExitCode compare_league(const Options& options) {
-  keep_memory();
-  static std::atomic<bool> stop{false};  // as long as signals may come
-  catch_interrupts(stop);
+  const std::atomic<bool>& stop = begin_many_runs();
   Result<League> league = sweep::read_league(options.league.file);
   if (!league) return report(league.error());
   for (const std::string& file : {options.output_file, options.csv_file, options.league.page})

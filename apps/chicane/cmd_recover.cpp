@@ -15,9 +15,7 @@
 #include "chicane/run/make.hpp"
 #include "chicane/run/way_back.hpp"
 #include "commands.hpp"
-#include "interrupt.hpp"
 #include "many_runs.hpp"
-#include "plan_runs.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -107,7 +105,7 @@ void print_json(const std::vector<CarOnTrack>& pairs) {
                    {"back", pair.back()},
                    {"outcomes", std::move(outcomes)}});
   }
-  fmt::print("{}\n", protocol::json_text(Json{{"rows", std::move(all)}}, protocol::JsonLayout::kIndented));
+  print_rows(std::move(all));
 }
 
 Json json_of(const WayBackOutcome& outcome) {
@@ -120,10 +118,10 @@ Json json_of(const WayBackOutcome& outcome) {
           {"vy_mps", start.vy},
           {"yaw_rate_degps", radians_to_degrees(start.r)},
           {"is_back", outcome.has_come_back()},
-          {"back_s", number_or_null(outcome.back)},
-          {"lapping_s", number_or_null(outcome.lapping)},
+          {"back_s", outcome.back},
+          {"lapping_s", outcome.lapping},
           {"farthest_m", outcome.farthest},
-          {"least_edge_m", number_or_null(outcome.least_edge)}};
+          {"least_edge_m", outcome.least_edge}};
 }
 
 Result<CarOnTrack> pair_of(const Options& options, const std::string& track, const std::string& car) {
@@ -167,8 +165,9 @@ sweep::Plan plan_of(const Options& options, const std::vector<int>& numbers) {
   sweep::Plan plan{.name = "recover", .fixed = options.settings, .keep = {"outcome"}};
   plan.fixed.emplace_back("starts", std::to_string(options.recover.starts));
   plan.fixed.emplace_back("start_seed", std::to_string(options.recover.seed));
-  plan.axes = {list_axis("track", options.recover.tracks), list_axis("car", options.recover.cars),
-               list_axis("start_number", std::move(texts))};
+  plan.axes = {sweep::list_axis("track", options.recover.tracks),
+               sweep::list_axis("car", options.recover.cars),
+               sweep::list_axis("start_number", std::move(texts))};
   return plan;
 }
 
@@ -181,7 +180,7 @@ Result<bool> drive_back(const Options& options, std::vector<CarOnTrack>& pairs,
     const auto start = static_cast<std::size_t>(numbers[run % numbers.size()]) - 1;
     const Result<WayBackOutcome> outcome = run::drive_back(pair.scenario, pair.starts[start], roads);
     if (!outcome) return fail(outcome.error());
-    return std::optional(members_of(json_of(*outcome)));
+    return std::optional(protocol::json_text(json_of(*outcome)));
   };
   Result<RunLines> driven = drive_runs({.plan = plan_of(options, numbers), .rule = rule, .what = "starts"},
                                        options.jobs, options.results_file, stop);
@@ -194,9 +193,7 @@ Result<bool> drive_back(const Options& options, std::vector<CarOnTrack>& pairs,
 }  // namespace
 
 ExitCode recover(const Options& options) {
-  keep_memory();
-  static std::atomic<bool> wants_stop{false};  // static: must outlive the last signal
-  catch_interrupts(wants_stop);
+  const std::atomic<bool>& wants_stop = begin_many_runs();
   Result<std::vector<CarOnTrack>> pairs = pairs_of(options);
   if (!pairs) return report(pairs.error());
   const Result<bool> is_whole = drive_back(options, *pairs, wants_stop);

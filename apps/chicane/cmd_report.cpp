@@ -9,7 +9,7 @@
 #include "chicane/live/assets.hpp"
 #include "chicane/recording/html_report.hpp"
 #include "chicane/recording/temporary_file.hpp"
-#include "chicane/sweep/comparison.hpp"
+#include "chicane/sweep/result_table.hpp"
 #include "chicane/sweep/summary_page.hpp"
 #include "commands.hpp"
 #include "foreign_log.hpp"

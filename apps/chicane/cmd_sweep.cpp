@@ -6,13 +6,12 @@
 #include <filesystem>
 
 #include "chicane/run/parallel.hpp"
-#include "chicane/sweep/csv.hpp"
-#include "chicane/sweep/merge.hpp"
 #include "chicane/sweep/plan_codec.hpp"
+#include "chicane/sweep/result_file.hpp"
+#include "chicane/sweep/result_table.hpp"
 #include "chicane/sweep/sweep.hpp"
 #include "chicane/sweep/trial.hpp"
 #include "commands.hpp"
-#include "interrupt.hpp"
 #include "many_runs.hpp"
 
 namespace chicane::apps {
@@ -42,9 +41,7 @@ ExitCode show(const sweep::Plan& plan, double number) {
 }  // namespace
 
 ExitCode drive_sweep(const Options& options) {
-  keep_memory();
-  static std::atomic<bool> stop{false};  // as long as signals may come
-  catch_interrupts(stop);
+  const std::atomic<bool>& stop = begin_many_runs();
   const Result<sweep::Plan> plan = sweep::read_plan(options.sweep.plan_file);
   if (!plan) return report(plan.error());
   if (options.sweep.shown) return show(*plan, *options.sweep.shown);
@@ -54,15 +51,9 @@ ExitCode drive_sweep(const Options& options) {
   if (!shard->from.empty())
     fmt::print(stderr, "part {} of {} ({}): {}\n", shard->index + 1, shard->count, shard->from, file);
   RunCounter counter;
-  const auto done =
-      sweep::drive_plan(*plan, *shard,
-                        {.jobs = run::threads_for(options.jobs),
-                         .file = file,
-                         .on_progress =
-                             [&](const sweep::Progress& progress) {
-                               counter.show(progress.found + progress.driven, progress.runs, progress.driven);
-                             }},
-                        stop);
+  const auto done = sweep::drive_plan(
+      *plan, *shard, {.jobs = run::threads_for(options.jobs), .file = file, .on_progress = counter.follow()},
+      stop);
   counter.end();
   if (!done) return report(done.error());
   fmt::print(stderr, "{}: {} of {} runs{}\n", file, done->found + done->driven, done->runs,

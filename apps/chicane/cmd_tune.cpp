@@ -11,7 +11,6 @@
 #include "chicane/sweep/trial.hpp"
 #include "chicane/sweep/tune.hpp"
 #include "commands.hpp"
-#include "interrupt.hpp"
 #include "many_runs.hpp"
 
 namespace chicane::apps {
@@ -39,12 +38,10 @@ std::string description_of(const Options& options, const sweep::TuneTask& task, 
 }
 
 protocol::Json json_of(const sweep::Verdict& verdict) {
-  return {{"lap_time_s", verdict.lap_time},
-          {"margin_m", verdict.margin},
-          {"steering_rate_radps", verdict.steering_rate},
-          {"off_track_events", verdict.off_track_events},
-          {"unfinished", verdict.unfinished},
-          {"driven", verdict.driven}};
+  protocol::Json json;
+  sweep::Verdict::rows(verdict, [&](const char* name, auto value) { json[name] = value; });
+  for (const char* name : {"progress", "passed"}) json.erase(name);  // of the search, not of the tuning
+  return json;
 }
 
 std::string json_of(const sweep::Tuning& tuning) {
@@ -66,10 +63,10 @@ std::string text_of(const sweep::Tuning& tuning) {
 }
 
 Result<void> keep(const Options& options, const sweep::TuneTask& task, const sweep::Tuning& tuning) {
-  const auto base = protocol::compose(*sweep::request_of(task.settings));
+  const auto base = sweep::scenario_of(task.settings);
   sweep::Settings settings = task.settings;
   settings.insert(settings.end(), tuning.values.begin(), tuning.values.end());
-  const auto found = protocol::compose(*sweep::request_of(settings));
+  const auto found = sweep::scenario_of(settings);
   if (!base || !found) return fail(!base ? base.error() : found.error());
   return write_file(options.output_file,
                     protocol::write_preset(*found, *base, description_of(options, task, tuning)));
@@ -78,9 +75,7 @@ Result<void> keep(const Options& options, const sweep::TuneTask& task, const swe
 }  // namespace
 
 ExitCode tune(const Options& options) {
-  keep_memory();
-  static std::atomic<bool> stop{false};  // as long as signals may come
-  catch_interrupts(stop);
+  const std::atomic<bool>& stop = begin_many_runs();
   sweep::TuneTask task{.settings = options.settings,
                        .over = options.tune.over,
                        .evaluations = options.tune.evaluations,

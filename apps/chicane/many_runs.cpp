@@ -10,10 +10,16 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/library.hpp"
+#include "chicane/recording/temporary_file.hpp"
+#include "chicane/run/parallel.hpp"
+#include "chicane/sweep/result_file.hpp"
+#include "chicane/sweep/trial.hpp"
+#include "interrupt.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -24,13 +30,30 @@ std::string time_left(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
+Result<sweep::Progress> drive(const PlanRuns& runs, const sweep::SweepOptions& options,
+                              const std::atomic<bool>& stop) {
+  return runs.rule ? sweep::drive_plan(runs.plan, {}, options, runs.rule, stop)
+                   : sweep::drive_plan(runs.plan, {}, options, stop);
+}
+
+/// The command that drives a run, or what makes it different.
+std::string name_of(const PlanRuns& runs, std::uint64_t run) {
+  if (!runs.rule) return sweep::command_of(runs.plan.settings_of(run));
+  std::string name;
+  for (const auto& [key, text] : runs.plan.at(run)) name += (name.empty() ? "" : ", ") + text;
+  return name;
+}
+
 }  // namespace
 
-void keep_memory() {
+std::atomic<bool>& begin_many_runs() {
+  static std::atomic<bool> stop{false};  // static: must outlive the last signal
 #ifdef __GLIBC__
   ::mallopt(M_MMAP_THRESHOLD, 1 << 30);
   ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
 #endif
+  catch_interrupts(stop);
+  return stop;
 }
 
 Result<void> check_page_name(std::string_view option, const std::string& file) {
@@ -69,6 +92,44 @@ void RunCounter::show(std::uint64_t done, std::uint64_t runs, std::uint64_t driv
 void RunCounter::end() {
   if (has_line_) fmt::print(stderr, "\n");
   has_line_ = false;
+}
+
+std::function<void(const sweep::Progress&)> RunCounter::follow() {
+  return [this](const sweep::Progress& progress) {
+    show(progress.found + progress.driven, progress.runs, progress.driven);
+  };
+}
+
+Result<RunLines> drive_runs(const PlanRuns& runs, int jobs, const std::string& results,
+                            const std::atomic<bool>& stop) {
+  const recording::TemporaryFile unnamed(".jsonl");
+  const std::string& file = results.empty() ? unnamed.path() : results;
+  RunCounter counter(runs.what);
+  const auto done =
+      drive(runs, {.jobs = run::threads_for(jobs), .file = file, .on_progress = counter.follow()}, stop);
+  counter.end();
+  if (!done) return fail(done.error());
+  RunLines found{.lines = {}, .progress = *done};
+  const auto keep = [&](std::uint64_t run, const protocol::Json& line) -> Result<void> {
+    found.lines[run] = line;
+    return {};
+  };
+  const auto read = sweep::read_runs(
+      file, [](const sweep::Header&) { return Result<void>{}; }, keep);
+  if (!read) return fail(read.error());
+  for (const auto& [run, line] : found.lines)
+    if (!runs.keeps_failed && line.contains("error"))
+      return fail(ErrorCode::kInvalidArgument,
+                  fmt::format("{}: {}", name_of(runs, run), line["error"].get<std::string>()));
+  if (!done->is_complete())
+    fmt::print(stderr, "stopped after {} of {} {}{}\n", done->found + done->driven, done->runs, runs.what,
+               results.empty() ? "" : ": the same command goes on with what is missing");
+  return found;
+}
+
+void print_rows(protocol::Json rows) {
+  fmt::print("{}\n",
+             protocol::json_text(protocol::Json{{"rows", std::move(rows)}}, protocol::JsonLayout::kIndented));
 }
 
 }  // namespace chicane::apps

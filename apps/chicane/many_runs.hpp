@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 
 #include "chicane/base/result.hpp"
+#include "chicane/protocol/json.hpp"
+#include "chicane/sweep/sweep.hpp"
 
 namespace chicane::apps {
 
-/// Each run takes some megabytes and gives them back: the process keeps them for the next one.
-void keep_memory();
+/// Begins a command that drives many runs. Each takes some megabytes and gives them back: the process keeps
+/// them for the next one. Ctrl-C and SIGTERM set the flag that is returned (interrupt.hpp).
+[[nodiscard]] std::atomic<bool>& begin_many_runs();
 
 /// Checks that the name of an HTML page is one that browsers open: `option`: got x.txt, expected a name that
 /// ends in .html. An empty name is no file; devices may have any.
@@ -31,6 +37,8 @@ class RunCounter {
   void show(std::uint64_t done, std::uint64_t runs, std::uint64_t driven);
   /// Leaves the cursor at the beginning of a line.
   void end();
+  /// For SweepOptions::on_progress, as long as this counter is there.
+  [[nodiscard]] std::function<void(const sweep::Progress&)> follow();
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -40,5 +48,28 @@ class RunCounter {
   Clock::time_point started_ = Clock::now();
   Clock::time_point next_;
 };
+
+/// The runs of a command: a plan, and what drives each of them.
+struct PlanRuns {
+  sweep::Plan plan;
+  sweep::RunRule rule{};      ///< empty: as a sweep does
+  const char* what = "runs";  ///< the word for what is counted
+  bool keeps_failed = false;  ///< a run that cannot be driven is a line with the reason, and no failure
+};
+
+/// Their lines by number; those that were stopped are missing.
+struct RunLines {
+  std::map<std::uint64_t, protocol::Json> lines;
+  sweep::Progress progress;
+};
+
+/// Drives them with `jobs` threads, 0: as many as there are processors, and tells on stderr how far it is.
+/// The lines are kept in `results`, where an older file is completed; empty: nowhere. Fails as
+/// sweep::drive_plan() does, and with the first line of a run that cannot be driven.
+[[nodiscard]] Result<RunLines> drive_runs(const PlanRuns& runs, int jobs, const std::string& results,
+                                          const std::atomic<bool>& stop);
+
+/// Prints `{"rows": [...]}` on stdout.
+void print_rows(protocol::Json rows);
 
 }  // namespace chicane::apps

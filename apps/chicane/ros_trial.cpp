@@ -13,6 +13,7 @@
 
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/protocol/library.hpp"
+#include "chicane/sweep/trial.hpp"
 #include "chicane/wire/server_process.hpp"
 
 namespace chicane::apps {
@@ -42,13 +43,6 @@ class Folder {
   fs::path path_;
 };
 
-/// One word of a shell.
-std::string quoted(const std::string& text) {
-  std::string safe = "'";
-  for (const char c : text) safe += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return safe + "'";
-}
-
 std::string last_line(const std::string& text) {
   const std::size_t end = text.find_last_not_of("\r\n");
   if (end == std::string::npos) return "it has said nothing";
@@ -68,8 +62,9 @@ Result<telemetry::RunSummary> drive_ros_program(const sweep::ExternalTrial& tria
   const std::string done = (folder.path() / "done").string();
   std::string simulator = fmt::format("{} ros --simulate --json --domain {}", own, domain);
   for (const auto& [key, text] : trial.settings)
-    simulator += fmt::format(" --set {}", quoted(key + "=" + text));
-  simulator += fmt::format(" > {} 2> {}; : > {}", quoted(out), quoted(err), quoted(done));
+    simulator += fmt::format(" --set {}", sweep::shell_word(key + "=" + text));
+  simulator += fmt::format(" > {} 2> {}; : > {}", sweep::shell_word(out), sweep::shell_word(err),
+                           sweep::shell_word(done));
 
   wire::SparseLog log({});
   wire::ServerProcess simulating(simulator, log);

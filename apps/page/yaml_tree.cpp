@@ -2,8 +2,6 @@
 // In the place of protocol/yaml_tree.cpp: the page reads its own files only, and has no yaml-cpp.
 #include "chicane/protocol/yaml_tree.hpp"
 
-#include "chicane/protocol/plain_yaml.hpp"
-
 namespace chicane::protocol {
 
 Result<YamlTree> parse_yaml(std::string_view text, const std::string& file) {

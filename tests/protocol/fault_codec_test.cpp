@@ -76,11 +76,11 @@ TEST(FaultYaml, RefusesWithFileLineAndKey) {
   EXPECT_THAT(refused("faults: 3\n"), HasSubstr("f.yaml:1: faults: got 3, expected a list"));
   EXPECT_THAT(refused("faults:\n  - 3\n"), HasSubstr("f.yaml:2: faults: got 3, expected {name: half_grip"));
   EXPECT_THAT(refused("faults:\n  - {name: half_grip, at: 3}\n"),
-              HasSubstr("f.yaml:2: faults: got at, expected name"));
+              HasSubstr("f.yaml:2: at: got an unknown key, expected name"));
   EXPECT_THAT(refused("laps: 1\nfaults:\n  - {name: hlaf_grip, at_s: 3}\n"),
               HasSubstr("f.yaml:3: faults.name: got hlaf_grip"));
   EXPECT_THAT(refused("faults:\n  - {name: half_grip, at_s: [1]}\n"),
-              HasSubstr("f.yaml:2: faults.at_s: got a list, expected one value"));
+              HasSubstr("f.yaml:2: at_s: got a list, expected text"));
   EXPECT_THAT(refused("faults:\n  - {name: half_grip, at_s: 1, for_s: 0}\n"),
               HasSubstr("faults.for_s: got 0"));
 }

@@ -28,11 +28,11 @@ claims:
   - {id: D2, says: it is there, found: works, see: somewhere}
 )";
 
-std::string line(const telemetry::RunSummary& summary) {
-  return line_of(Plan{}, 0, {}, RunOutcome{.run = summary});
+protocol::Json line(const telemetry::RunSummary& summary) {
+  return protocol::parse_json(line_of(Plan{}, 0, {}, RunOutcome{.run = summary}));
 }
 
-std::string run(double top, double lap, bool is_clean = true) {
+protocol::Json run(double top, double lap, bool is_clean = true) {
   telemetry::RunSummary summary;
   summary.total.top_speed = top;
   summary.laps = {{.lap_time = 99.0}, {.lap_time = lap}};
@@ -101,7 +101,7 @@ TEST(Claim, SaysWhatIsWrongWithAFile) {
   EXPECT_THAT(fault("claims: [{id: A, says: b, cases: {x: {lap: 2}}, true_when: [x.clean = 1]}]"),
               HasSubstr("lap: got an unknown key"));
   EXPECT_THAT(fault("claims: [{id: A, says: b, cases: {x: {}}, grid: {laps: 2}, true_when: [x.clean = 1]}]"),
-              HasSubstr("laps: expected a list of values"));
+              HasSubstr("laps: got 2, expected a list"));
   EXPECT_THAT(fault("claims: [{id: A, says: b, cases: {x: {}}, true_when: [each.clean = 1]}]"),
               HasSubstr("true_when"));
   EXPECT_THAT(fault("claims: [{id: A, says: b, found: works}, {id: A, says: b, found: works}]"),

@@ -150,11 +150,13 @@ TEST_F(LeagueFiles, TrialsStayWhenAnotherProgramsCommandChanges) {
   }
   const std::string before = league_.externals[0].command;
   league_.externals[0].command = "./another {port}";
-  const auto changed = BesideFile::open(path("b.jsonl"), league_);
-  ASSERT_TRUE(changed);
-  EXPECT_FALSE(changed->has_trial(league_.external_trials()[0]));
-  EXPECT_TRUE(changed->has_trial(league_.external_trials()[2]));
-  EXPECT_TRUE(changed->has_bound("oval", "udacity"));
+  {
+    const auto changed = BesideFile::open(path("b.jsonl"), league_);
+    ASSERT_TRUE(changed);
+    EXPECT_FALSE(changed->has_trial(league_.external_trials()[0]));
+    EXPECT_TRUE(changed->has_trial(league_.external_trials()[2]));
+    EXPECT_TRUE(changed->has_bound("oval", "udacity"));
+  }
   const auto results = read_results(league_, path("r.jsonl"), path("b.jsonl"));
   ASSERT_TRUE(results);
   EXPECT_EQ(results->cells[2].why, "not driven yet") << "the trial was of another command";

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <variant>
@@ -20,31 +21,25 @@ using telemetry::LapSummary;
 using telemetry::RunSummary;
 using telemetry::TimeSummary;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json numbers(const std::vector<double>& values) {
-  Json json = Json::array();
-  for (const double value : values) json.push_back(number(value));
-  return json;
+/// [%]
+std::array<double, 3> percent(const std::array<double, 3>& shares) {
+  return {100.0 * shares[0], 100.0 * shares[1], 100.0 * shares[2]};
 }
 
 Json to_object(const LapSummary& lap) {
-  return {{"lap_time_s", number(lap.lap_time)},
-          {"mean_speed_mps", number(lap.mean_speed)},
-          {"top_speed_mps", number(lap.top_speed)},
-          {"top_speed_mph", number(mps_to_mph(lap.top_speed))},
-          {"rms_lateral_error_m", number(lap.rms_lateral_error)},
-          {"max_abs_lateral_error_m", number(lap.max_abs_lateral_error)},
-          {"min_edge_distance_m", number(lap.min_edge_distance)},
-          {"max_lateral_acceleration_mps2", number(lap.max_lateral_acceleration)},
-          {"steering_rate_rms_radps", number(lap.steering_rate_rms)},
-          {"sector_times_s",
-           {number(lap.sector_times[0]), number(lap.sector_times[1]), number(lap.sector_times[2])}},
-          {"corner_times_s", numbers(lap.corner_times)},
-          {"gap_to_limit_percent", lap.gap_to_limit ? number(100.0 * *lap.gap_to_limit) : Json(nullptr)},
-          {"sector_gaps_to_limit_percent",
-           {number(100.0 * lap.sector_gaps[0]), number(100.0 * lap.sector_gaps[1]),
-            number(100.0 * lap.sector_gaps[2])}}};
+  return {{"lap_time_s", lap.lap_time},
+          {"mean_speed_mps", lap.mean_speed},
+          {"top_speed_mps", lap.top_speed},
+          {"top_speed_mph", mps_to_mph(lap.top_speed)},
+          {"rms_lateral_error_m", lap.rms_lateral_error},
+          {"max_abs_lateral_error_m", lap.max_abs_lateral_error},
+          {"min_edge_distance_m", lap.min_edge_distance},
+          {"max_lateral_acceleration_mps2", lap.max_lateral_acceleration},
+          {"steering_rate_rms_radps", lap.steering_rate_rms},
+          {"sector_times_s", lap.sector_times},
+          {"corner_times_s", lap.corner_times},
+          {"gap_to_limit_percent", 100.0 * lap.gap_to_limit.value_or(telemetry::kNotMeasured)},
+          {"sector_gaps_to_limit_percent", percent(lap.sector_gaps)}};
 }
 
 /// Numbered by their order.
@@ -72,18 +67,15 @@ std::string corner_lines(const RunSummary& run, const LapSummary& lap) {
 
 Json to_object(const std::optional<lap_time::LapTimes>& limit) {
   if (!limit) return nullptr;
-  return {
-      {"lap_time_s", number(limit->lap)},
-      {"sector_times_s", {number(limit->sectors[0]), number(limit->sectors[1]), number(limit->sectors[2])}},
-      {"corner_times_s", numbers(limit->corners)}};
+  return {{"lap_time_s", limit->lap}, {"sector_times_s", limit->sectors}, {"corner_times_s", limit->corners}};
 }
 
 Json to_object(const std::vector<lap_time::LapWithout>& laps) {
   Json json = Json::array();
   for (const lap_time::LapWithout& lap : laps) {
     json.push_back({{"cause", lap.cause},
-                    {"lap_time_s", number(lap.lap_time)},
-                    {"corner_times_s", numbers(lap.corners)},
+                    {"lap_time_s", lap.lap_time},
+                    {"corner_times_s", lap.corners},
                     {"off_track_events", lap.off_track_events}});
   }
   return json;
@@ -187,7 +179,7 @@ Json to_object(const controller::LearnedCar& learned) {
                        double in_unit) {
     if (!std::isfinite(estimate.value)) return;
     json[fmt::format("{}{}", name, unit)] = in_unit * estimate.value;
-    json[fmt::format("{}_sd{}", name, unit)] = number(in_unit * estimate.deviation);
+    json[fmt::format("{}_sd{}", name, unit)] = in_unit * estimate.deviation;
   };
   add("delay", "_ms", learned.delay, 1e3);
   add("steer_gain", "", learned.gain, 1.0);
@@ -303,41 +295,40 @@ Result<RunSummary> read_run(std::string_view text) {
 std::string to_json(const RunSummary& run) {
   Json laps = Json::array();
   for (const LapSummary& lap : run.laps) laps.push_back(to_object(lap));
-  const Json report{
-      {"track", run.track.empty() ? Json(nullptr) : Json(run.track)},
-      {"car", run.car},
-      {"controller", run.controller},
-      {"preset", run.preset},
-      {"guard", to_object(run.guard)},
-      {"seed", run.seed},
-      {"latency_ms", number(1e3 * run.latency)},
-      {"notices", run.notices},
-      {"completed", run.completed},
-      {"end_reason", run.end_reason},
-      {"laps_completed", run.laps_completed},
-      {"off_track_events", run.off_track_events},
-      {"out_of_track_time_s", number(run.out_of_track_time)},
-      {"corners", to_object(run.corners)},
-      {"laps", laps},
-      {"total", to_object(run.total)},
-      {"limit", to_object(run.limit)},
-      {"planned_corner_times_s", numbers(run.planned_corner_times)},
-      {"without", to_object(run.without)},
-      {"why_no_limit", run.why_no_limit.empty() ? Json(nullptr) : Json(run.why_no_limit)},
-      {"step_time_is", run.guard ? "control step" : "round trip"},
-      {"step_time_us", to_object(run.step_time)},
-      {"solve_time_us", to_object(run.solve_time)},
-      {"solver", {{"mean_iterations", number(run.mean_iterations)}, {"not_usable", run.not_usable}}},
-      {"cycles", run.cycles},
-      {"fallbacks", run.fallbacks},
-      {"guard_reasons", guard_reasons(run)},
-      {"learned", to_object(run.learned)},
-      {"gate_interventions", run.gate_interventions},
-      {"deadline_misses", run.deadline_misses},
-      {"duration_s", number(run.duration)},
-      {"wall_time_s", number(run.wall_time)},
-      {"state_hash", fmt::format("{:016x}", run.state_hash)},
-      {"arithmetic", arithmetic(chosen_instruction_set())}};
+  const Json report{{"track", run.track.empty() ? Json(nullptr) : Json(run.track)},
+                    {"car", run.car},
+                    {"controller", run.controller},
+                    {"preset", run.preset},
+                    {"guard", to_object(run.guard)},
+                    {"seed", run.seed},
+                    {"latency_ms", 1e3 * run.latency},
+                    {"notices", run.notices},
+                    {"completed", run.completed},
+                    {"end_reason", run.end_reason},
+                    {"laps_completed", run.laps_completed},
+                    {"off_track_events", run.off_track_events},
+                    {"out_of_track_time_s", run.out_of_track_time},
+                    {"corners", to_object(run.corners)},
+                    {"laps", laps},
+                    {"total", to_object(run.total)},
+                    {"limit", to_object(run.limit)},
+                    {"planned_corner_times_s", run.planned_corner_times},
+                    {"without", to_object(run.without)},
+                    {"why_no_limit", run.why_no_limit.empty() ? Json(nullptr) : Json(run.why_no_limit)},
+                    {"step_time_is", run.guard ? "control step" : "round trip"},
+                    {"step_time_us", to_object(run.step_time)},
+                    {"solve_time_us", to_object(run.solve_time)},
+                    {"solver", {{"mean_iterations", run.mean_iterations}, {"not_usable", run.not_usable}}},
+                    {"cycles", run.cycles},
+                    {"fallbacks", run.fallbacks},
+                    {"guard_reasons", guard_reasons(run)},
+                    {"learned", to_object(run.learned)},
+                    {"gate_interventions", run.gate_interventions},
+                    {"deadline_misses", run.deadline_misses},
+                    {"duration_s", run.duration},
+                    {"wall_time_s", run.wall_time},
+                    {"state_hash", fmt::format("{:016x}", run.state_hash)},
+                    {"arithmetic", arithmetic(chosen_instruction_set())}};
   return json_text(report, JsonLayout::kIndented) + "\n";
 }
 

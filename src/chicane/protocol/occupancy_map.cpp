@@ -3,95 +3,86 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
-#include <optional>
 #include <utility>
 #include <vector>
 
 #include "chicane/base/text.hpp"
-#include "chicane/protocol/csv_text.hpp"
 #include "chicane/protocol/detail/road_rows.hpp"
+#include "chicane/protocol/foreign_tracks.hpp"
 #include "chicane/protocol/library.hpp"
-#include "chicane/protocol/yaml_tree.hpp"
+#include "chicane/protocol/yaml_codec.hpp"
 
 namespace chicane::protocol {
 namespace {
 
-std::string shown_value(const YamlNode& node) {
-  return node.is_scalar() ? printable(node.text)
-         : node.is_list() ? "a list"
-         : node.is_map()  ? "a map"
-                          : "nothing";
+/// Maps count from where the robot stood when it began, looking along +x: where that is on the road, it is
+/// the start, and its direction that of the road.
+void begin_at_origin(TrackFile& content, const TrackReadOptions& options, double width) {
+  const Vec2 origin{};
+  double nearest = 1e9;
+  for (const road::TrackPoint& point : content.points)
+    nearest = std::min(nearest, (point.position - origin).norm());
+  const bool is_on_road = nearest < 0.5 * width;
+  begin_near(content, options.start.value_or(is_on_road ? origin : content.points.front().position));
+  const Vec2 along = content.points[1].position - content.points[0].position;
+  const bool looks_along = std::fabs(along.x()) > 0.7 * along.norm();
+  if (options.direction != TrackReadOptions::Direction::kOfTheFile) return;
+  const bool follows_origin = is_on_road && !options.start && looks_along;
+  if (follows_origin && along.x() < 0.0) reverse(content);
+  warn(content,
+       fmt::format(
+           "direction: {} (import --direction sets it), from ({:.2f}, {:.2f}) (import --start sets it)",
+           follows_origin ? "not in a map, that of the map's origin assumed"
+                          : "not in a map, counter-clockwise assumed",
+           content.points.front().position.x(), content.points.front().position.y()));
 }
-
-/// The keys of a file, and all that is wrong with them.
-struct MapKeys {
-  OccupancyMap map = {};
-  std::string file, image = {}, faults = {};
-  bool has_origin = false;
-
-  void fault(int line, std::string_view key, std::string_view got, std::string_view expected) {
-    faults += (faults.empty() ? "" : "\n") + fault_of(file, line, key, got, expected).message;
-  }
-
-  void read_number(const YamlEntry& entry, double least, double most, double& to) {
-    const auto value = entry.value.is_scalar() ? number(entry.value.text) : std::nullopt;
-    if (value && *value >= least && *value <= most) return void(to = *value);
-    fault(entry.value.line, entry.key.text, shown_value(entry.value),
-          fmt::format("a number in [{}, {}]", least, most));
-    to = least;  // said once
-  }
-
-  void read_origin(const YamlNode& list) {
-    has_origin = true;
-    std::vector<double> numbers;
-    for (const YamlNode* node : list.children)
-      if (const auto read = node->is_scalar() ? number(node->text) : std::nullopt) numbers.push_back(*read);
-    if (!list.is_list() || numbers.size() != list.children.size() || numbers.size() < 2 || numbers.size() > 3)
-      return fault(list.line, "origin", "something else", "[x, y, yaw]");
-    map.origin = {numbers[0], numbers[1]};
-    map.yaw = numbers.size() > 2 ? numbers[2] : 0.0;
-  }
-
-  void read(const YamlEntry& entry) {
-    const std::string& key = entry.key.text;
-    const std::string& text = entry.value.text;
-    if (key == "image") image = text;
-    if (key == "resolution") read_number(entry, 1e-4, 100.0, map.resolution);
-    if (key == "occupied_thresh") read_number(entry, 0.0, 1.0, map.occupied);
-    if (key == "free_thresh") read_number(entry, 0.0, 1.0, map.free);
-    if (key == "origin") read_origin(entry.value);
-    if (key == "mode" && text != "trinary" && text != "scale")
-      fault(entry.value.line, key, shown_value(entry.value), "trinary or scale");
-    if (key == "negate") {
-      double negate = text == "true" ? 1.0 : 0.0;
-      if (text != "true" && text != "false") read_number(entry, 0.0, 1.0, negate);
-      map.is_negated = negate != 0.0;
-    }
-  }
-};
 
 }  // namespace
 
 Result<OccupancyMap> parse_map(std::string_view text, const std::string& file) {
   const Result<YamlTree> tree = parse_yaml(text, file);
   if (!tree) return fail(tree.error());
-  if (!tree->root->is_map())
-    return fail(fault_of(file, 1, "file", shown_value(*tree->root),
-                         "a map with image, resolution and origin, as map_server has it"));
-  MapKeys keys{.file = file};
-  for (const YamlEntry& entry : tree->root->entries()) keys.read(entry);
-  if (keys.image.empty()) keys.fault(1, "image", "none", "the name of a PGM or PNG file");
-  if (keys.map.resolution <= 0.0) keys.fault(1, "resolution", "none", "the side of a cell > 0 m");
-  if (!keys.has_origin) keys.fault(1, "origin", "none", "[x, y, yaw]");
-  if (!keys.faults.empty()) return fail(ErrorCode::kParse, keys.faults);
-  const std::string path = (std::filesystem::path(file).parent_path() / keys.image).string();
+  OccupancyMap map;
+  YamlReader reader(file);
+  std::string image_file, mode;
+  std::vector<double> origin;
+  const auto take_origin = [&](const YamlNode& node) {
+    const auto number = number_in(node.text);
+    if (!number) return reader.refuse(node, "origin", "[x, y, yaw]");
+    origin.push_back(*number);
+  };
+  const auto take_negate = [&](const YamlEntry& entry) {
+    double negate = entry.value.text == "true" ? 1.0 : 0.0;
+    if (entry.value.text != "true" && entry.value.text != "false") reader.number(negate, 0.0, 1.0)(entry);
+    map.is_negated = negate != 0.0;
+  };
+  reader.read_map(*tree->root, "file", "a map with image, resolution and origin, as map_server has it",
+                  {{"image", reader.text(image_file)},
+                   {"resolution", reader.number(map.resolution, 1e-4, 100.0)},
+                   {"occupied_thresh", reader.number(map.occupied, 0.0, 1.0)},
+                   {"free_thresh", reader.number(map.free, 0.0, 1.0)},
+                   {"origin", reader.list("numbers: [x, y, yaw]", take_origin, 3)},
+                   {"mode", reader.choice(mode, {"trinary", "scale"})},
+                   {"negate", take_negate}},
+                  YamlReader::Others::kIgnored);
+  if (reader.is_faultless()) {
+    if (image_file.empty()) reader.fault(1, "image", "got none, expected the name of a PGM or PNG file");
+    if (map.resolution <= 0.0) reader.fault(1, "resolution", "got none, expected the side of a cell > 0 m");
+    if (origin.size() < 2) reader.fault(1, "origin", "got none, expected [x, y, yaw]");
+  }
+  if (!reader.is_faultless()) return fail(reader.error());
+  map.origin = {origin[0], origin[1]};
+  map.yaw = origin.size() > 2 ? origin[2] : 0.0;
+  const std::string path = (std::filesystem::path(file).parent_path() / image_file).string();
   const Result<std::string> bytes = read_file(path);
   if (!bytes) return fail(bytes.error());
   Result<survey::GreyImage> image = survey::read_image(*bytes, path);
   if (!image) return fail(image.error());
-  keys.map.image = std::move(*image);
-  return std::move(keys.map);
+  map.image = std::move(*image);
+  return map;
 }
 
 Result<OccupancyMap> read_map(const std::string& file) {
@@ -118,6 +109,28 @@ survey::FreeSpace free_space_of(const OccupancyMap& map) {
                                                 : survey::Cell::kUnknown);
     }
   return space;
+}
+
+Result<TrackFile> parse_map_track(std::string_view text, const std::string& file,
+                                  const TrackReadOptions& options) {
+  if (text.starts_with("\x89PNG") || text.starts_with("P5") || text.starts_with("P2"))
+    return fail(fault_of(file, 0, "file", "an image", "the YAML file beside it that says its resolution"));
+  const Result<OccupancyMap> map = parse_map(text, file);
+  if (!map) return fail(map.error());
+  Result<survey::FreeLoop> loop =
+      survey::find_loop(free_space_of(*map), {.least_width = options.least_width, .start = options.start});
+  if (!loop) return fail(loop.error().code, file + ": " + loop.error().message);
+  TrackFile content = RoadRows{file, options}.content;
+  content.points = std::move(loop->points);
+  content.is_closed = true;
+  content.is_own_size = true;
+  // Walls are where cells end: a line between them scatters by less than a cell.
+  content.options.smoothing_sigma = std::min(map->resolution, 0.1);
+  content.options.spacing = std::clamp(0.1 * loop->median_width, 0.05, 2.0);
+  if (loop->spots > 0)
+    warn(content, fmt::format("free space: {} spots below 0.25 m taken for noise of the map", loop->spots));
+  begin_at_origin(content, options, loop->median_width);
+  return content;
 }
 
 }  // namespace chicane::protocol

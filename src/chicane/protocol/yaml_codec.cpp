@@ -4,24 +4,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
+#include <set>
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/fault_codec.hpp"
-#include "chicane/protocol/yaml_tree.hpp"
 
 namespace chicane::protocol {
 namespace {
 
 constexpr int kMostNodes = 10000;  // counted with aliases followed
 constexpr int kMostDepth = static_cast<int>(YamlTree::kMostDepth);
-constexpr std::size_t kMostFaults = 50;
+
+/// "name, about or keep".
+std::string alternatives(const std::vector<std::string_view>& words) {
+  std::string text(words.front());
+  for (std::size_t i = 1; i < words.size(); ++i)
+    text += fmt::format("{}{}", i + 1 == words.size() ? " or " : ", ", words[i]);
+  return text;
+}
 
 /// Walks the nodes of one file and collects settings and faults.
-class Reader {
+class Reader : private YamlReader {
  public:
-  explicit Reader(const std::string& file) { document_.file = file; }
+  explicit Reader(const std::string& file) : YamlReader{file} { document_.file = file; }
 
   void read(const YamlNode& root) {
     if (!root.is_map()) {
@@ -30,32 +36,19 @@ class Reader {
                         root.kind == YamlNode::Kind::kNothing ? "an empty file" : shown(root)));
       return;
     }
-    read_map(root, "", 0);
+    read_settings(root, "", 0);
   }
 
   [[nodiscard]] Result<Document> result() && {
-    if (faults_.empty()) return std::move(document_);
-    if (faults_.size() >= kMostFaults) faults_.push_back(fmt::format("{}: and perhaps more", document_.file));
-    return fail(ErrorCode::kParse, fmt::format("{}", fmt::join(faults_, "\n")));
+    return is_faultless() ? Result<Document>(std::move(document_)) : fail(error());
   }
 
  private:
-  void fault(int line, std::string_view key, std::string_view what) {
-    faults_.push_back(fmt::format("{}{}: {}", place(document_.file, line), key, what));
-  }
-
-  static std::string shown(const YamlNode& node) {
-    if (node.is_map()) return "a map";
-    if (node.is_list()) return "a list";
-    if (!node.is_scalar()) return "nothing";
-    return node.tag == "!" ? fmt::format("\"{}\" in quotes", printable(node.text)) : printable(node.text);
-  }
-
-  void read_map(const YamlNode& map, const std::string& prefix, int depth) {
+  void read_settings(const YamlNode& map, const std::string& prefix, int depth) {
     for (const YamlEntry& entry : map.entries()) {
       if (++nodes_ == kMostNodes)
         fault(0, "file", fmt::format("got more than {} settings, expected fewer", kMostNodes));
-      if (nodes_ >= kMostNodes || faults_.size() >= kMostFaults) return;
+      if (nodes_ >= kMostNodes || is_full()) return;
       const int line = entry.key.line;
       if (!entry.key.is_scalar()) {
         fault(line, prefix.empty() ? "key" : prefix,
@@ -66,92 +59,55 @@ class Reader {
       const bool is_ros_wrapper =
           prefix.empty() && entry.value.is_map() && (name == "ros__parameters" || name.starts_with("/"));
       if (is_ros_wrapper && depth < kMostDepth) {
-        read_map(entry.value, "", depth + 1);
+        read_settings(entry.value, "", depth + 1);
       } else {
-        read_entry(prefix.empty() ? name : fmt::format("{}.{}", prefix, name), entry.value, line, depth);
+        read_entry(prefix.empty() ? name : fmt::format("{}.{}", prefix, name), entry, depth);
       }
     }
   }
 
-  void read_entry(const std::string& key, const YamlNode& node, int line, int depth) {
-    const auto [first, is_new] = lines_.emplace(key, line);
-    if (!is_new && !node.is_map()) {
-      fault(line, printable(key),
+  void read_entry(const std::string& key, const YamlEntry& entry, int depth) {
+    const auto [first, is_new] = lines_.emplace(key, entry.key.line);
+    const Parameter* parameter = find(key);
+    if (!is_new && !entry.value.is_map()) {
+      fault(entry.key.line, printable(key),
             fmt::format("got it a second time, expected it once (first on line {})", first->second));
-      return;
-    }
-    if (key == "preset") {
-      read_preset(node, line);
+    } else if (key == "preset") {
+      text(document_.preset.emplace(), "the name of a preset")(entry);
+      document_.preset_line = entry.key.line;
     } else if (key == "faults") {
-      read_faults(node, line);
-    } else if (const Parameter* parameter = find(key); parameter != nullptr) {
-      read_value(*parameter, node, line);
+      document_.faults.emplace();
+      list(
+          "faults", [this](const YamlNode& item) { read_fault_event(item); },
+          sim::FaultLab::kCapacity)(entry);
+    } else if (parameter != nullptr) {
+      read_value(*parameter, entry.value, entry.key.line);
     } else if (!is_group(key)) {
-      fault(line, printable(key), unknown_key(key));
-    } else if (!node.is_map()) {
-      fault(line, printable(key), fmt::format("got {}, expected a map of settings", shown(node)));
+      fault(entry.key.line, printable(key), unknown_key(key));
+    } else if (!entry.value.is_map()) {
+      fault(entry.key.line, printable(key),
+            fmt::format("got {}, expected a map of settings", shown(entry.value)));
     } else if (depth < kMostDepth) {
-      read_map(node, key, depth + 1);
+      read_settings(entry.value, key, depth + 1);
     }
   }
 
   static bool is_group(const std::string& key) {
-    return std::any_of(list().begin(), list().end(), [&](const Parameter& p) { return p.group == key; });
-  }
-
-  void read_preset(const YamlNode& node, int line) {
-    if (node.is_scalar() && !node.text.empty()) {
-      document_.preset = node.text;
-      document_.preset_line = line;
-    } else {
-      fault(line, "preset", fmt::format("got {}, expected the name of a preset", shown(node)));
-    }
-  }
-
-  void read_faults(const YamlNode& node, int line) {
-    if (!node.is_list() || node.children.size() > sim::FaultLab::kCapacity) {
-      fault(line, "faults",
-            fmt::format("got {}, expected a list of at most {} faults",
-                        node.is_list() ? fmt::format("{} of them", node.children.size()) : shown(node),
-                        sim::FaultLab::kCapacity));
-      return;
-    }
-    document_.faults.emplace();
-    for (const YamlNode* item : node.children) read_fault_event(*item);
+    return std::any_of(protocol::list().begin(), protocol::list().end(),
+                       [&](const Parameter& p) { return p.group == key; });
   }
 
   void read_fault_event(const YamlNode& item) {
-    const int line = item.line;
-    if (!item.is_map()) {
-      fault(line, "faults", fmt::format("got {}, expected {{name: half_grip, at_s: 12}}", shown(item)));
-      return;
-    }
-    FaultText text;
-    const std::array<std::pair<std::string_view, std::string*>, 4> fields{
-        {{"name", &text.name}, {"at_s", &text.at}, {"for_s", &text.duration}, {"strength", &text.strength}}};
-    for (const YamlEntry& entry : item.entries()) {
-      const int entry_line = entry.key.line;
-      const std::string name = entry.key.is_scalar() ? entry.key.text : "";
-      const auto* const field =
-          std::find_if(fields.begin(), fields.end(), [&](const auto& each) { return each.first == name; });
-      if (field == fields.end()) {
-        fault(entry_line, "faults",
-              fmt::format("got {}, expected name, at_s, for_s or strength", shown(entry.key)));
-        return;
-      }
-      if (!entry.value.is_scalar() || entry.value.text.empty()) {
-        fault(entry_line, fmt::format("faults.{}", name),
-              fmt::format("got {}, expected one value", shown(entry.value)));
-        return;
-      }
-      *field->second = entry.value.text;
-    }
-    const Result<sim::FaultEvent> event = read_fault(text);
-    if (!event) {
-      faults_.push_back(place(document_.file, line) + event.error().message);
-      return;
-    }
-    document_.faults->push_back(*event);
+    FaultText event;
+    const bool is_read = read_map(item, "faults", "{name: half_grip, at_s: 12}",
+                                  {{"name", text(event.name)},
+                                   {"at_s", text(event.at)},
+                                   {"for_s", text(event.duration)},
+                                   {"strength", text(event.strength)}});
+    if (!is_read) return;
+    const Result<sim::FaultEvent> read = read_fault(event);
+    if (!read) return fault(item.line, read.error());
+    document_.faults->push_back(*read);
   }
 
   void read_value(const Parameter& parameter, const YamlNode& node, int line) {
@@ -166,15 +122,11 @@ class Reader {
       return;
     }
     const Result<Value> value = parse(parameter, node.text);
-    if (!value) {
-      faults_.push_back(place(document_.file, line) + value.error().message);
-      return;
-    }
+    if (!value) return fault(line, value.error());
     document_.assignments.push_back({&parameter, *value, line});
   }
 
   Document document_;
-  std::vector<std::string> faults_;
   std::map<std::string, int> lines_;  // where each key was first seen
   int nodes_ = 0;
 };
@@ -242,6 +194,96 @@ scenario::Scenario silent(const scenario::Scenario& of) {
 std::string place(const std::string& file, int line) {
   if (file.empty()) return "";
   return line > 0 ? fmt::format("{}:{}: ", file, line) : fmt::format("{}: ", file);
+}
+
+std::string shown(const YamlNode& node) {
+  if (node.is_map()) return "a map";
+  if (node.is_list()) return "a list";
+  if (!node.is_scalar()) return "nothing";
+  const bool is_quoted = node.tag == "!" && !node.text.empty();
+  return is_quoted ? fmt::format("\"{}\" in quotes", printable(node.text)) : printable(node.text);
+}
+
+void YamlReader::fault(int line, std::string_view key, std::string_view what) {
+  fault(line, Error{ErrorCode::kParse, fmt::format("{}: {}", key, what)});
+}
+
+void YamlReader::fault(int line, const Error& error) {
+  if (!is_full()) faults_.push_back(place(file_, line) + error.message);
+}
+
+void YamlReader::refuse(const YamlNode& node, std::string_view key, std::string_view expected) {
+  fault(node.line, printable(key), fmt::format("got {}, expected {}", shown(node), expected));
+}
+
+void YamlReader::refuse(const YamlEntry& entry, std::string_view expected) {
+  fault(entry.key.line, entry.key.text, fmt::format("got {}, expected {}", shown(entry.value), expected));
+}
+
+Error YamlReader::error() const {
+  const std::string more = is_full() ? fmt::format("\n{}: and perhaps more", file_) : "";
+  return {ErrorCode::kParse, fmt::format("{}{}", fmt::join(faults_, "\n"), more)};
+}
+
+bool YamlReader::read_map(const YamlNode& node, std::string_view name, std::string_view expected,
+                          const std::vector<Key>& keys, Others others) {
+  const std::size_t before = faults_.size();
+  if (!node.is_map()) refuse(node, name, expected);
+  std::set<std::string_view> seen;
+  for (const YamlEntry& entry : node.entries()) {
+    const std::string& key = entry.key.text;
+    const auto row =
+        std::find_if(keys.begin(), keys.end(), [&](const Key& each) { return each.name == key; });
+    if (row == keys.end()) {
+      std::vector<std::string_view> names;
+      for (const Key& each : keys) names.push_back(each.name);
+      if (others == Others::kRefused)
+        fault(entry.key.line, printable(key),
+              fmt::format("got an unknown key, expected {}", alternatives(names)));
+    } else if (!seen.insert(row->name).second) {
+      fault(entry.key.line, key, "got it a second time, expected it once");
+    } else {
+      row->take(entry);
+    }
+  }
+  return faults_.size() == before;
+}
+
+YamlReader::Take YamlReader::text(std::string& to, std::string_view expected) {
+  return [this, &to, expected](const YamlEntry& entry) {
+    if (!entry.value.is_scalar() || entry.value.text.empty()) return refuse(entry, expected);
+    to = entry.value.text;
+  };
+}
+
+YamlReader::Take YamlReader::choice(std::string& to, std::vector<std::string_view> words) {
+  return [this, &to, words = std::move(words)](const YamlEntry& entry) {
+    if (std::find(words.begin(), words.end(), entry.value.text) == words.end())
+      return refuse(entry, alternatives(words));
+    to = entry.value.text;
+  };
+}
+
+YamlReader::Take YamlReader::number(double& to, double least, double most) {
+  return [this, &to, least, most](const YamlEntry& entry) {
+    const auto number = number_in(entry.value.text);
+    if (!number || *number < least || *number > most)
+      return refuse(entry, most == kEver ? "a number" : fmt::format("a number in [{}, {}]", least, most));
+    to = *number;
+  };
+}
+
+YamlReader::Take YamlReader::list(std::string what, std::function<void(const YamlNode&)> take,
+                                  std::size_t most) {
+  return [this, what = std::move(what), take = std::move(take), most](const YamlEntry& entry) {
+    if (!entry.value.is_list() || entry.value.children.size() > most)
+      return fault(entry.key.line, entry.key.text,
+                   fmt::format("got {}, expected a list of at most {} {}",
+                               entry.value.is_list() ? fmt::format("{} of them", entry.value.children.size())
+                                                     : shown(entry.value),
+                               most, what));
+    for (const YamlNode* node : entry.value.children) take(*node);
+  };
 }
 
 Result<Document> parse_document(std::string_view text, const std::string& file) {

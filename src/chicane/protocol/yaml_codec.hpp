@@ -1,16 +1,78 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "chicane/base/result.hpp"
 #include "chicane/protocol/schema.hpp"
+#include "chicane/protocol/yaml_tree.hpp"
 
 namespace chicane::protocol {
+
+/// "presets/x.yaml:7: ", "presets/x.yaml: " without a line, nothing without a file.
+[[nodiscard]] std::string place(const std::string& file, int line);
+
+/// For messages: "a map", "a list", "nothing", or the text, which stands in quotes where the file has it so.
+[[nodiscard]] std::string shown(const YamlNode& node);
+
+/// Reads the nodes of one file by tables of keys. What does not fit is a fault, "FILE:LINE: KEY: got X,
+/// expected Y"; reading goes on, and all faults, at most kMostFaults, make one error.
+class YamlReader {
+ public:
+  static constexpr std::size_t kMostFaults = 50;
+  static constexpr double kEver = std::numeric_limits<double>::infinity();
+
+  /// Takes a key with its value.
+  using Take = std::function<void(const YamlEntry&)>;
+  struct Key {
+    std::string_view name;
+    Take take;
+  };
+
+  enum class Others { kRefused, kIgnored };
+
+  explicit YamlReader(std::string file) : file_{std::move(file)} {}
+
+  void fault(int line, std::string_view key, std::string_view what);
+  /// `error` has the key in its message.
+  void fault(int line, const Error& error);
+  /// "got NODE, expected EXPECTED" on the node's line.
+  void refuse(const YamlNode& node, std::string_view key, std::string_view expected);
+  /// The same of an entry's value, on the line of its key.
+  void refuse(const YamlEntry& entry, std::string_view expected);
+  [[nodiscard]] bool is_faultless() const { return faults_.empty(); }
+  [[nodiscard]] bool is_full() const { return faults_.size() >= kMostFaults; }
+  /// All faults, a line each; kParse.
+  [[nodiscard]] Error error() const;
+
+  /// Each key of a map by its row, at most once. Faults: no map ("expected EXPECTED"), a key that comes
+  /// twice, a key without a row unless those are ignored. `name`: of the map, for messages. False after a
+  /// fault.
+  bool read_map(const YamlNode& node, std::string_view name, std::string_view expected,
+                const std::vector<Key>& keys, Others others = Others::kRefused);
+  // Rows of read_map(). `to` is as it was where the value is refused.
+
+  /// One value that is not empty.
+  [[nodiscard]] Take text(std::string& to, std::string_view expected = "text");
+  /// One of these words.
+  [[nodiscard]] Take choice(std::string& to, std::vector<std::string_view> words);
+  /// A finite number in [least, most].
+  [[nodiscard]] Take number(double& to, double least = -kEver, double most = kEver);
+  /// A list of at most `most` nodes, each taken by `take`. `what`: the word for them.
+  [[nodiscard]] Take list(std::string what, std::function<void(const YamlNode&)> take,
+                          std::size_t most = 1000);
+
+ private:
+  std::string file_;
+  std::vector<std::string> faults_;
+};
 
 /// One setting and where it was written.
 struct Assignment {
@@ -39,9 +101,6 @@ struct Document {
 /// and misplaced keys, wrong types, values out of range; files that are not UTF-8, indented by tabs, too
 /// large, or nested too deeply. Any bytes may be given; memory and time stay bounded.
 [[nodiscard]] Result<Document> parse_document(std::string_view text, const std::string& file);
-
-/// "presets/x.yaml:7: ", "presets/x.yaml: " without a line, nothing without a file.
-[[nodiscard]] std::string place(const std::string& file, int line);
 
 /// All layers in order, later ones win; then the settings are checked against each other. `scenario` changes
 /// completely or, on an error, not at all.

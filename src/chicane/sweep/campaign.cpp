@@ -26,13 +26,6 @@ constexpr std::size_t kBatch = 96;  ///< trials that share what comes before the
 constexpr const char* kOwn = "own";
 constexpr const char* kLasts = "inf";
 
-Axis axis_of(const char* key, std::vector<std::string> list) {
-  Axis axis;
-  axis.size = list.size();
-  axis.dimensions.push_back({.key = key, .list = std::move(list)});
-  return axis;
-}
-
 std::vector<std::string> faults_of(const Campaign& campaign) {
   std::vector<std::string> names = campaign.faults;
   const std::size_t singles = names.size();
@@ -117,17 +110,16 @@ Result<Place> place_of(const Campaign& campaign, const CampaignGroup& group) {
   return Place{std::move(*scenario), std::move(*lap)};
 }
 
-std::string members_of(const std::vector<CampaignTrial>& trials) {
+constexpr const char* kDuration = "for_s";  ///< a text, because it may be "inf"
+
+std::string text_of(const std::vector<CampaignTrial>& trials) {
   Json all = Json::array();
-  for (const CampaignTrial& trial : trials)
-    all.push_back({{"at_s", trial.at},
-                   {"until_s", trial.until},
-                   {"for_s", duration_text(trial.duration)},
-                   {"least_edge_m", trial.least_edge},
-                   {"off_anyway", trial.is_off_anyway},
-                   {"stands", trial.stands},
-                   {"not_controller", trial.replaced}});
-  return "\"trials\":" + protocol::json_text(all);
+  for (const CampaignTrial& trial : trials) {
+    Json& json = all.emplace_back(Json::object());
+    CampaignTrial::rows(trial, [&](const char* name, auto value) { json[name] = value; });
+    json[kDuration] = duration_text(trial.duration);
+  }
+  return protocol::json_text(Json{{"trials", std::move(all)}});
 }
 
 /// Drives groups of trials. Those that follow at the same place are driven with one that is asked for.
@@ -136,7 +128,7 @@ class Driver {
   Driver(const Campaign& campaign, int jobs, const std::atomic<bool>& stop)
       : campaign_{campaign}, plan_{plan_of(campaign)}, jobs_{jobs}, stop_{stop} {}
 
-  /// The members of the group's line; none when it was stopped.
+  /// The rest of the group's line; none when it was stopped.
   Result<std::optional<std::string>> drive(std::uint64_t run) {
     const CampaignGroup group = group_at(plan_, run);
     if (!place_ || !is_same_place(group, at_)) {
@@ -172,7 +164,7 @@ class Driver {
     for (std::size_t i = 0; i < ends.size() && !stop_; ++i) {
       std::vector<CampaignTrial> of_group;
       for (; next < ends[i]; ++next) of_group.push_back(trial_of((*driven)[next]));
-      ready_[first + i] = members_of(of_group);
+      ready_[first + i] = text_of(of_group);
     }
     return {};
   }
@@ -212,14 +204,13 @@ class Driver {
 };
 
 CampaignTrial trial_in(const Json& json) {
-  const std::string lasts = json.at("for_s");
-  return {.at = json.at("at_s"),
-          .until = json.at("until_s"),
-          .duration = lasts == kLasts ? run::kLasting : number_in(lasts).value_or(0.0),
-          .least_edge = json.at("least_edge_m"),
-          .is_off_anyway = json.at("off_anyway"),
-          .stands = json.at("stands"),
-          .replaced = json.at("not_controller")};
+  CampaignTrial trial;
+  CampaignTrial::rows(trial, [&](const char* name, auto& value) {
+    if (std::string_view(name) != kDuration) json.at(name).get_to(value);
+  });
+  const std::string lasts = json.at(kDuration);
+  trial.duration = lasts == kLasts ? run::kLasting : number_in(lasts).value_or(0.0);
+  return trial;
 }
 
 /// A name or a number.
@@ -260,9 +251,9 @@ Plan plan_of(const Campaign& campaign) {
   std::vector<std::string> durations;
   for (const double duration : campaign.durations) durations.push_back(duration_text(duration));
   if (durations.empty()) durations = {kOwn};
-  plan.axes = {axis_of("track", campaign.tracks), axis_of("car", campaign.cars),
-               axis_of("preset", campaign.presets), axis_of("fault", faults_of(campaign)),
-               axis_of("for_s", durations)};
+  plan.axes = {list_axis("track", campaign.tracks), list_axis("car", campaign.cars),
+               list_axis("preset", campaign.presets), list_axis("fault", faults_of(campaign)),
+               list_axis("for_s", durations)};
   return plan;
 }
 

@@ -40,6 +40,18 @@ struct CampaignTrial {
   bool is_off_anyway = false;  ///< the run without faults is off the road in that time, too
   bool stands = false;         ///< at the end
   std::int64_t replaced = 0;   ///< control steps that were not the controller's own answer
+
+  /// Tells `row` the name in JSON and the place of each value. `Self`: CampaignTrial, const or not.
+  template <class Self, class Row>
+  static void rows(Self& trial, Row&& row) {
+    row("at_s", trial.at);
+    row("until_s", trial.until);
+    row("for_s", trial.duration);
+    row("least_edge_m", trial.least_edge);
+    row("off_anyway", trial.is_off_anyway);
+    row("stands", trial.stands);
+    row("not_controller", trial.replaced);
+  }
 };
 
 /// One line of the results.

@@ -85,51 +85,47 @@ class ClaimReader : private detail::SettingsReader {
   }
 
   Result<std::vector<Claim>> read(const YamlNode& root) {
-    if (!root.is_map()) fault(1, "file", "expected a map with settings and claims");
     Claim shared;
-    for (const YamlEntry& entry : root.entries()) {
-      if (entry.key.text == "settings") shared.settings = settings_of(entry.value);
-      if (entry.key.text == "ours") shared.ours = entry.value.text;
-    }
-    for (const YamlEntry& entry : root.entries()) {
-      if (entry.key.text == "settings" || entry.key.text == "ours") continue;
-      if (entry.key.text != "claims" || !entry.value.is_list()) {
-        fault(entry.key.line, printable(entry.key.text), "expected settings, ours, or a list of claims");
-        continue;
-      }
-      for (const YamlNode* node : entry.value.children) read_claim(*node, shared);
-    }
+    std::vector<const YamlNode*> claims;
+    read_map(root, "file", "a map with settings and claims",
+             {{"settings", settings(shared.settings)},
+              {"ours", text(shared.ours)},
+              {"claims", list("claims", [&](const YamlNode& node) { claims.push_back(&node); })}});
+    for (const YamlNode* node : claims) read_claim(*node, shared);
     return is_faultless() ? Result<std::vector<Claim>>(std::move(claims_)) : fail(error());
   }
 
  private:
-  Settings settings_of(const YamlNode& map) {
-    Settings settings;
-    read_settings(map, settings);
-    return settings;
-  }
-
   /// `{horizon_steps: [7, 20], step_length_s: [0.1, 0.2]}` as four cases, "7/0.1" to "20/0.2".
-  std::vector<Case> grid_of(const YamlNode& map) {
+  void read_grid(const YamlEntry& grid, Claim& claim) {
     std::vector<Case> points{{}};
-    for (const YamlEntry& entry : map.entries()) {
-      if (!entry.value.is_list() || entry.value.children.empty()) {
-        fault(entry.key.line, printable(entry.key.text), "expected a list of values");
-        continue;
-      }
+    for (const YamlEntry& entry : named(grid)) {
+      std::vector<std::string> texts;
+      values(entry.key.text, texts)(entry);
+      if (texts.empty() && is_faultless()) refuse(entry, "values");
       std::vector<Case> finer;
       for (const Case& point : points) {
-        for (const YamlNode* value : entry.value.children) {
-          static_cast<void>(takes(entry.key.text, *value));
+        for (const std::string& text : texts) {
           Case next = point;
-          next.name += (next.name.empty() ? "" : "/") + value->text;
-          next.settings.emplace_back(entry.key.text, value->text);
+          next.name += (next.name.empty() ? "" : "/") + text;
+          next.settings.emplace_back(entry.key.text, text);
           finer.push_back(std::move(next));
         }
       }
       points = std::move(finer);
     }
-    return points;
+    claim.grid_size = points.size();
+    claim.cases.insert(claim.cases.end(), points.begin(), points.end());
+  }
+
+  void read_cases(const YamlEntry& entry, Claim& claim) {
+    for (const YamlEntry& each : named(entry))
+      read_settings(each.value, claim.cases.emplace_back(Case{.name = each.key.text}).settings);
+  }
+
+  void read_column(const YamlNode& node, Claim& claim) {
+    if (!is_column(node.text)) refuse(node, "shows", "a column");
+    claim.shows.push_back(node.text);
   }
 
   void check_quotation(int line, const std::string& quotation) {
@@ -144,49 +140,27 @@ class ClaimReader : private detail::SettingsReader {
   }
 
   void read_claim(const YamlNode& node, const Claim& shared) {
-    if (!node.is_map()) return fault(node.line, "claims", "expected a map with id and says");
     Claim claim = shared;
     std::vector<const YamlNode*> conditions;
-    for (const YamlEntry& entry : node.entries()) {
-      const std::string& key = entry.key.text;
-      const YamlNode& value = entry.value;
-      if (key == "quotes") check_quotation(value.line, value.text);
-      if (key == "id" || key == "says" || key == "quotes" || key == "found" || key == "see") {
-        (key == "id"       ? claim.id
-         : key == "says"   ? claim.says
-         : key == "quotes" ? claim.quotes
-         : key == "found"  ? claim.found
-                           : claim.see) = value.text;
-      } else if (key == "settings") {
-        for (auto& setting : settings_of(value)) claim.settings.push_back(std::move(setting));
-      } else if (key == "cases" && value.is_map()) {
-        for (const YamlEntry& each : value.entries())
-          claim.cases.push_back({each.key.text, settings_of(each.value)});
-      } else if (key == "grid" && value.is_map()) {
-        const std::vector<Case> points = grid_of(value);
-        claim.grid_size = points.size();
-        claim.cases.insert(claim.cases.end(), points.begin(), points.end());
-      } else if (key == "true_when" && value.is_list()) {
-        conditions = value.children;
-      } else if (key == "shows" && value.is_list()) {
-        for (const YamlNode* column : value.children) {
-          if (!is_column(column->text))
-            fault(column->line, "shows", fmt::format("got {}, expected a column", printable(column->text)));
-          claim.shows.push_back(column->text);
-        }
-      } else {
-        fault(entry.key.line, printable(key),
-              "expected id, says, quotes, settings, cases, grid (behind cases), true_when, shows, found or "
-              "see");
-      }
-    }
+    read_map(node, "claims", "a map with id and says",
+             {{"id", text(claim.id)},
+              {"says", text(claim.says)},
+              {"quotes",
+               [&](const YamlEntry& entry) {
+                 claim.quotes = entry.value.text;
+                 check_quotation(entry.value.line, claim.quotes);
+               }},
+              {"settings", settings(claim.settings)},
+              {"cases", [&](const YamlEntry& entry) { read_cases(entry, claim); }},
+              {"grid", [&](const YamlEntry& entry) { read_grid(entry, claim); }},
+              {"true_when", list("conditions", [&](const YamlNode& each) { conditions.push_back(&each); })},
+              {"shows", list("columns", [&](const YamlNode& column) { read_column(column, claim); })},
+              {"found", text(claim.found)},
+              {"see", text(claim.see)}});
     for (const YamlNode* each : conditions) {
       const auto condition = condition_in(each->text, claim.cases);
       if (condition) claim.conditions.push_back(*condition);
-      if (!condition)
-        fault(each->line, "true_when",
-              fmt::format("got {}, expected CASE.column > CASE.column * 1.02, or a number",
-                          printable(each->text)));
+      if (!condition) refuse(*each, "true_when", "CASE.column > CASE.column * 1.02, or a number");
     }
     if (claim.id.empty() || claim.says.empty() || !ids_.insert(claim.id).second)
       fault(node.line, "id", "expected an id of its own, and what is said");
@@ -201,7 +175,7 @@ class ClaimReader : private detail::SettingsReader {
   std::set<std::string> ids_;
 };
 
-bool is_clean(std::string_view line) { return number_of(line, "clean") > 0.0; }
+bool is_clean(const protocol::Json& line) { return number_of(line, "clean") > 0.0; }
 
 double value_of(const Condition::Value& value, const CaseResults& results) {
   if (value.name.empty()) return value.constant;
@@ -211,8 +185,7 @@ double value_of(const Condition::Value& value, const CaseResults& results) {
 
 }  // namespace
 
-double number_of(std::string_view text, std::string_view column) {
-  const protocol::Json line = protocol::parse_json(text);
+double number_of(const protocol::Json& line, std::string_view column) {
   if (!line.is_object()) return telemetry::kNotMeasured;
   if (column == "clean")
     return line.value("completed", false) && line.value("off_track_events", 1) == 0 ? 1.0 : 0.0;

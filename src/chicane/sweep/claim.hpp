@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/sweep/plan.hpp"
 
 /// A statement of a write-up, and how it is tried.
@@ -54,13 +55,13 @@ struct Claim {
 constexpr std::size_t kMostQuotedWords = 10;
 
 /// The lines of a claim's cases in one world (sweep.hpp), by their names.
-using CaseResults = std::map<std::string, std::string>;
+using CaseResults = std::map<std::string, protocol::Json>;
 
 /// Whether all conditions hold; a number that was not measured makes its condition false.
 [[nodiscard]] bool holds(const Claim& claim, const CaseResults& results);
 /// The number of a column in a line of results, "clean" or a place in a list ("lap_times_s[-1]") included;
 /// true is 1, and NaN where there is none.
-[[nodiscard]] double number_of(std::string_view line, std::string_view column);
+[[nodiscard]] double number_of(const protocol::Json& line, std::string_view column);
 
 /// Reads the claims of one file: `settings`, `ours`, and a list `claims` of {id, says, quotes, settings,
 /// cases: {name: {settings}}, grid: {key: [values]}, true_when: [conditions], shows: [columns]} or {id, says,

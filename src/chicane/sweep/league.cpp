@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/library.hpp"
@@ -21,7 +20,6 @@ namespace {
 using protocol::YamlEntry;
 using protocol::YamlNode;
 
-constexpr std::size_t kMostEntries = 1000;
 /// What a page shows.
 constexpr std::array kKept{"completed",
                            "end_reason",
@@ -42,14 +40,17 @@ class LeagueReader : private detail::SettingsReader {
   using SettingsReader::SettingsReader;
 
   Result<League> read(const YamlNode& root) {
-    entries_.key = kEntryKey;
     league_.plan.search = Search{.key = "speed_mps", .from = 8.0, .to = 80.0, .factor = 1.4};
-    if (!root.is_map()) {
-      fault(1, "file",
-            fmt::format("got {}, expected a league with entries, tracks and cars", detail::shown(root)));
-      return fail(error());
-    }
-    for (const YamlEntry& entry : root.entries()) read_part(entry);
+    std::string about;
+    read_map(root, "file", "a league with entries, tracks and cars",
+             {{"name", text(league_.name)},
+              {"about", text(about)},
+              {"settings", settings(league_.plan.fixed)},
+              {"search", search(league_.plan.search)},
+              {"entries", [this](const YamlEntry& entry) { read_entries(entry); }},
+              {"tracks", values("track", league_.tracks)},
+              {"cars", values("car", league_.cars)},
+              {"disturbances", [this](const YamlEntry& entry) { read_disturbances(entry); }}});
     if (entries_.list.empty() && league_.externals.empty())
       fault(root.line, "entries", "got none, expected some");
     if (league_.tracks.empty()) fault(root.line, "tracks", "got none, expected some");
@@ -62,88 +63,34 @@ class LeagueReader : private detail::SettingsReader {
   }
 
  private:
-  void read_part(const YamlEntry& entry) {
-    const std::string& name = entry.key.text;
-    if (!parts_.insert(name).second)
-      return fault(entry.key.line, printable(name), "got it a second time, expected it once");
-    if (name == "name" || name == "about") {
-      if (name == "name") league_.name = entry.value.text;
-    } else if (name == "settings") {
-      read_settings(entry.value, league_.plan.fixed);
-    } else if (name == "search") {
-      league_.plan.search = read_search(entry.value);
-    } else if (name == "tracks") {
-      league_.tracks = names_in(entry, "track");
-    } else if (name == "cars") {
-      league_.cars = names_in(entry, "car");
-    } else if (name == "entries") {
-      for (const YamlEntry& each : named(entry)) read_entry(each);
-    } else if (name == "disturbances") {
-      for (const YamlEntry& each : named(entry))
-        read_settings(each.value, league_.disturbances.emplace_back(each.key.text, Settings{}).second);
-    } else {
-      fault(entry.key.line, printable(name),
-            "got an unknown key, expected name, about, settings, search, entries, tracks, cars or "
-            "disturbances");
-    }
+  void read_disturbances(const YamlEntry& entry) {
+    for (const YamlEntry& each : named(entry))
+      read_settings(each.value, league_.disturbances.emplace_back(each.key.text, Settings{}).second);
   }
 
-  /// The parts of a map of maps, whose names are all different.
-  std::vector<YamlEntry> named(const YamlEntry& entry) {
-    std::set<std::string> names;
-    if (!entry.value.is_map() || entry.value.entries().size() > kMostEntries) {
-      fault(entry.key.line, entry.key.text,
-            fmt::format("got {}, expected a map of at most {} names", detail::shown(entry.value),
-                        kMostEntries));
-      return {};
-    }
-    for (const YamlEntry& each : entry.value.entries()) {
-      if (!names.insert(each.key.text).second)
-        fault(each.key.line, printable(each.key.text), "got it a second time, expected it once");
-    }
-    return entry.value.entries();
-  }
-
-  /// A list of values of `key`; without a key, of any names.
-  std::vector<std::string> names_in(const YamlEntry& entry, const std::string& key) {
-    std::vector<std::string> names;
-    if (!entry.value.is_list() || entry.value.children.size() > kMostEntries) {
-      fault(entry.key.line, entry.key.text,
-            fmt::format("got {}, expected a list", detail::shown(entry.value)));
-      return names;
-    }
-    for (const YamlNode* node : entry.value.children)
-      if (key.empty() ? node->is_scalar() : takes(key, *node)) names.push_back(node->text);
-    return names;
-  }
-
-  void read_entry(const YamlEntry& entry) {
-    const std::vector<YamlEntry> parts =
-        entry.value.is_map() ? entry.value.entries() : std::vector<YamlEntry>{};
-    const bool is_external = std::any_of(parts.begin(), parts.end(),
-                                         [](const YamlEntry& part) { return part.key.text == "server"; });
-    if (!is_external) {
-      entries_.list.push_back(entry.key.text);
-      return read_settings(entry.value, entries_.cases.emplace_back());
-    }
-    ExternalEntry external{.name = entry.key.text};
-    for (const YamlEntry& part : parts) {
-      const std::string& key = part.key.text;
-      if (key == "server" && part.value.is_scalar() && !part.value.text.empty()) {
-        external.command = part.value.text;
-      } else if (key == "tracks") {
-        external.tracks = names_in(part, "track");
-      } else if (key == "cars") {
-        external.cars = names_in(part, "car");
-      } else if (key == "disturbances") {
-        external.disturbances = names_in(part, "");
+  void read_entries(const YamlEntry& entry) {
+    for (const YamlEntry& each : named(entry)) {
+      const std::vector<YamlEntry> parts = each.value.entries();
+      const bool is_external = std::any_of(parts.begin(), parts.end(),
+                                           [](const YamlEntry& part) { return part.key.text == "server"; });
+      if (is_external) {
+        read_external(each);
       } else {
-        fault(part.key.line, printable(key),
-              fmt::format("got {}, expected server: a command, tracks, cars or disturbances of a program",
-                          detail::shown(part.value)));
+        entries_.list.push_back(each.key.text);
+        read_settings(each.value, entries_.cases.emplace_back());
       }
     }
-    league_.externals.push_back(std::move(external));
+  }
+
+  void read_external(const YamlEntry& entry) {
+    ExternalEntry& external = league_.externals.emplace_back();
+    external.name = entry.key.text;
+    read_map(entry.value, entry.key.text, "a program",
+             {{"server", text(external.command, "a command")},
+              {"tracks", values("track", external.tracks)},
+              {"cars", values("car", external.cars)},
+              {"disturbances",
+               list("names", [&](const YamlNode& name) { external.disturbances.push_back(name.text); })}});
   }
 
   /// What it does not say is everything.
@@ -161,26 +108,21 @@ class LeagueReader : private detail::SettingsReader {
   }
 
   void make_plan() {
-    const auto axis = [&](Dimension dimension) {
-      Axis& added = league_.plan.axes.emplace_back();
-      added.size = dimension.list.size();
-      added.dimensions.push_back(std::move(dimension));
-    };
-    axis(entries_);
-    axis({.key = "track", .list = league_.tracks});
-    axis({.key = "car", .list = league_.cars});
-    Dimension disturbances{.key = std::string(kDisturbanceKey)};
+    Axis entries = list_axis(kEntryKey, entries_.list);
+    entries.dimensions.front().cases = entries_.cases;
+    Axis disturbances = list_axis(kDisturbanceKey, {});
+    disturbances.size = league_.disturbances.size();
     for (const auto& [name, settings] : league_.disturbances) {
-      disturbances.list.push_back(name);
-      disturbances.cases.push_back(settings);
+      disturbances.dimensions.front().list.push_back(name);
+      disturbances.dimensions.front().cases.push_back(settings);
     }
-    axis(std::move(disturbances));
+    league_.plan.axes = {std::move(entries), list_axis("track", league_.tracks),
+                         list_axis("car", league_.cars), std::move(disturbances)};
     league_.plan.keep.assign(kKept.begin(), kKept.end());
   }
 
   League league_;
   Dimension entries_;
-  std::set<std::string> parts_;
 };
 
 bool has_place(const std::string& command, std::string_view name) {
@@ -257,9 +199,7 @@ Result<League> read_league(const std::string& file) {
 }
 
 Result<double> bound_of(const Settings& settings, const std::atomic<bool>& stop) {
-  const Result<protocol::Request> request = request_of(settings);
-  if (!request) return fail(request.error());
-  const Result<scenario::Scenario> scenario = protocol::compose(*request);
+  const Result<scenario::Scenario> scenario = scenario_of(settings);
   if (!scenario) return fail(scenario.error());
   const Result<road::Track> track = run::make_track(*scenario);
   if (!track) return fail(track.error());

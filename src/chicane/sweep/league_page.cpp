@@ -9,8 +9,8 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/report_document.hpp"
-#include "chicane/sweep/csv.hpp"
 #include "chicane/sweep/outcome.hpp"
+#include "chicane/sweep/result_table.hpp"
 
 namespace chicane::sweep {
 namespace {

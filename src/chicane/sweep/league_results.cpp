@@ -7,11 +7,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/sweep/outcome.hpp"
-#include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/trial.hpp"
 
 namespace chicane::sweep {
@@ -75,26 +73,20 @@ double LeagueCell::number(std::string_view column) const {
 }
 
 Result<BesideFile> BesideFile::open(const std::string& path, const League& league) {
-  BesideFile file(path);
+  BesideFile beside;
   const Json wanted = first_line(league);
-  std::ifstream stream(path, std::ios::binary);
-  std::string line;
-  if (!std::getline(stream, line)) {
-    if (const auto made = file.append(protocol::json_text(wanted)); !made) return fail(made.error());
-    return file;
-  }
-  if (line != protocol::json_text(wanted)) return fail(refusal_of(path, line, wanted));
-  while (std::getline(stream, line)) {
+  const auto refuse = [&](const std::string& first) { return refusal_of(path, first, wanted); };
+  const auto note = [&](const LinePlace&, const std::string& line) -> Result<void> {
     const Json json = protocol::parse_json(line);
-    if (!json.is_object()) continue;
     for (const char* kind : {"limit", "external"})
-      if (json.contains(kind)) file.keys_.push_back(protocol::json_text(json[kind]));
-  }
-  return file;
+      if (json.contains(kind)) beside.keys_.push_back(protocol::json_text(json[kind]));
+    return {};
+  };
+  Result<LineFile> file = LineFile::open(path, protocol::json_text(wanted), refuse, note);
+  if (!file) return fail(file.error());
+  beside.file_ = std::move(*file);
+  return beside;
 }
-
-BesideFile::BesideFile(BesideFile&& other) noexcept
-    : path_{std::move(other.path_)}, keys_{std::move(other.keys_)} {}
 
 bool BesideFile::has_bound(const std::string& track, const std::string& car) const {
   return std::find(keys_.begin(), keys_.end(), bound_key(track, car)) != keys_.end();
@@ -103,30 +95,26 @@ bool BesideFile::has_trial(const ExternalTrial& trial) const {
   return std::find(keys_.begin(), keys_.end(), trial_key(trial)) != keys_.end();
 }
 
-Result<void> BesideFile::append(const std::string& line) {
-  const std::lock_guard lock(mutex_);
-  return append_to_file(path_, line + '\n');
-}
-
 Result<void> BesideFile::add_bound(const std::string& track, const std::string& car,
                                    const Result<double>& bound) {
   Json json{{"limit", Json{{"track", track}, {"car", car}}}};
   if (bound) json["lap_time_s"] = *bound;
   if (!bound) json["error"] = bound.error().message;
-  return append(protocol::json_text(json));
+  return file_.append(protocol::json_text(json));
 }
 
 Result<void> BesideFile::add_times(std::uint64_t run, const telemetry::RunSummary& summary) {
-  return append(protocol::json_text(Json{{"run", run}, {"solve_time_us", times_of(summary.solve_time)}}));
+  return file_.append(
+      protocol::json_text(Json{{"run", run}, {"solve_time_us", times_of(summary.solve_time)}}));
 }
 
 Result<void> BesideFile::add_trial(const ExternalTrial& trial, const Result<telemetry::RunSummary>& run) {
   std::string line = fmt::format("{{\"external\":{},\"clean\":{}", trial_key(trial),
                                  run && telemetry::completed_on_road(*run));
-  if (!run) return append(line + ",\"error\":" + protocol::json_text(Json(run.error().message)) + "}");
+  if (!run) return file_.append(line + ",\"error\":" + protocol::json_text(Json(run.error().message)) + "}");
   for (const Column& column : columns()) line += fmt::format(",\"{}\":{}", column.name, column.text(*run));
-  return append(line +
-                fmt::format(",\"answer_time_us\":{}}}", protocol::json_text(times_of(run->step_time))));
+  return file_.append(line +
+                      fmt::format(",\"answer_time_us\":{}}}", protocol::json_text(times_of(run->step_time))));
 }
 
 namespace {
@@ -134,26 +122,24 @@ namespace {
 /// The runs of our own controllers, by their number; those that are missing stay without numbers.
 Result<void> read_own(const League& league, const std::string& file, LeagueResults& results) {
   std::vector<bool> seen(results.cells.size(), false);
-  const auto contents =
-      read_lines(file, [&](const LinePlace& place, const std::string& text) -> Result<void> {
-        if (place.run >= seen.size())
-          return fail(ErrorCode::kParse, "got a run that is none of the league's");
-        const Json json = protocol::parse_json(text);
-        if (!json.is_object()) return fail(ErrorCode::kParse, "got no JSON object");
-        LeagueCell& cell = results.cells[place.run];
-        seen[place.run] = true;
-        read_numbers(json, cell);
-        const double found = cell.number(kSearchValue);
-        cell.is_clean = std::isfinite(found);
-        Settings settings = league.plan.settings_of(place.run);
-        if (league.plan.search)
-          settings.emplace_back(league.plan.search->key,
-                                number_text(cell.is_clean ? found : league.plan.search->from));
-        cell.command = command_of(settings);
-        cell.why = cell.is_clean ? "" : reason_in(json, cell);
-        return {};
-      });
-  if (!contents) return fail(contents.error());
+  const auto take = [&](std::uint64_t run, const Json& json) -> Result<void> {
+    if (run >= seen.size()) return fail(ErrorCode::kParse, "got a run that is none of the league's");
+    LeagueCell& cell = results.cells[run];
+    seen[run] = true;
+    read_numbers(json, cell);
+    const double found = cell.number(kSearchValue);
+    cell.is_clean = std::isfinite(found);
+    Settings settings = league.plan.settings_of(run);
+    if (league.plan.search)
+      settings.emplace_back(league.plan.search->key,
+                            number_text(cell.is_clean ? found : league.plan.search->from));
+    cell.command = command_of(settings);
+    cell.why = cell.is_clean ? "" : reason_in(json, cell);
+    return {};
+  };
+  const auto read = read_runs(
+      file, [](const Header&) { return Result<void>{}; }, take);
+  if (!read) return read;
   results.missing = static_cast<std::uint64_t>(std::count(seen.begin(), seen.end(), false));
   return {};
 }

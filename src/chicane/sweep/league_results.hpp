@@ -2,7 +2,6 @@
 #pragma once
 
 #include <map>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,6 +9,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/sweep/league.hpp"
+#include "chicane/sweep/result_file.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
 /// What a league has found. The runs of our own controllers are the results of a sweep, the same bytes on
@@ -38,10 +38,8 @@ struct LeagueResults {
 /// The file beside the results: one JSON object in each line, a trial under its program's command.
 class BesideFile {
  public:
-  /// kInvalidArgument for the file of another league or plan, which stays as it is; kIo.
+  /// As LineFile::open(). kInvalidArgument for the file of another league or plan.
   [[nodiscard]] static Result<BesideFile> open(const std::string& path, const League& league);
-  BesideFile(BesideFile&& other) noexcept;
-  BesideFile& operator=(BesideFile&&) = delete;
 
   [[nodiscard]] bool has_bound(const std::string& track, const std::string& car) const;
   [[nodiscard]] bool has_trial(const ExternalTrial& trial) const;
@@ -53,12 +51,8 @@ class BesideFile {
   [[nodiscard]] Result<void> add_trial(const ExternalTrial& trial, const Result<telemetry::RunSummary>& run);
 
  private:
-  explicit BesideFile(std::string path) : path_{std::move(path)} {}
-  [[nodiscard]] Result<void> append(const std::string& line);
-
-  std::string path_;
+  LineFile file_{};
   std::vector<std::string> keys_{};  ///< of limits and trials that are there
-  std::mutex mutex_;
 };
 
 /// Both files. Fails as read_lines() does.

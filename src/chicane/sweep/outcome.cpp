@@ -20,40 +20,31 @@ using telemetry::RunSummary;
 
 std::string json_number(double value) { return std::isfinite(value) ? number_text(value) : "null"; }
 
-std::optional<double> measured(double value) {
-  return std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
-
 /// A column made of a function from run to number.
 template <auto Get>
 constexpr Column number(std::string_view name, std::string_view meaning) {
   return {name, meaning,
-          [](const RunSummary& run) { return json_number(static_cast<double>(std::invoke(Get, run))); },
-          [](const RunSummary& run) { return measured(static_cast<double>(std::invoke(Get, run))); }};
+          [](const RunSummary& run) { return json_number(static_cast<double>(std::invoke(Get, run))); }};
 }
 
 /// And a list with a number for each lap.
 template <auto Member>
 constexpr Column laps(std::string_view name, std::string_view meaning) {
-  return {name, meaning,
-          [](const RunSummary& run) {
+  return {name, meaning, [](const RunSummary& run) {
             std::string text = "[";
             for (const LapSummary& lap : run.laps)
               text += (text.size() > 1 ? "," : "") + json_number(lap.*Member);
             return text + "]";
-          },
-          [](const RunSummary&) { return std::optional<double>(); }};
+          }};
 }
 
 /// A text of what guards the run.
 template <auto Member>
 constexpr Column guard_column(std::string_view name, std::string_view meaning) {
-  return {name, meaning,
-          [](const RunSummary& run) -> std::string {
+  return {name, meaning, [](const RunSummary& run) -> std::string {
             if (!run.guard) return "null";
             return protocol::json_text(protocol::Json(protocol::guard_facts(*run.guard).*Member));
-          },
-          [](const RunSummary&) { return std::optional<double>(); }};
+          }};
 }
 
 std::string guard_reasons(const RunSummary& run) {
@@ -81,11 +72,9 @@ double driven_in_last_lap(const RunSummary& run) {
 
 constexpr std::array kColumns{
     Column{"completed", "All laps were driven.",
-           [](const RunSummary& run) -> std::string { return run.completed ? "true" : "false"; },
-           [](const RunSummary& run) { return std::optional(run.completed ? 1.0 : 0.0); }},
+           [](const RunSummary& run) -> std::string { return run.completed ? "true" : "false"; }},
     Column{"end_reason", "Why it ended otherwise.",
-           [](const RunSummary& run) { return protocol::json_text(protocol::Json(run.end_reason)); },
-           [](const RunSummary&) { return std::optional<double>(); }},
+           [](const RunSummary& run) { return protocol::json_text(protocol::Json(run.end_reason)); }},
     number<&RunSummary::laps_completed>("laps_completed", "Laps driven to their end."),
     number<&RunSummary::off_track_events>("off_track_events", "Times a tyre left the road."),
     number<&RunSummary::out_of_track_time>("out_of_track_time_s", "With a tyre off the road."),
@@ -113,7 +102,7 @@ constexpr std::array kColumns{
     number<&RunSummary::fallbacks>("fallbacks", "Control steps that were not the controller's own answer."),
     number<&RunSummary::gate_interventions>("gate_interventions", "Commands that the gate changed."),
     Column{"guard_reasons", "Control steps in which the guard found something, by its reason.",
-           &guard_reasons, [](const RunSummary&) { return std::optional<double>(); }},
+           &guard_reasons},
     laps<&LapSummary::lap_time>("lap_times_s", "Of each lap."),
     laps<&LapSummary::mean_speed>("lap_mean_speeds_mps", "Of each lap."),
     laps<&LapSummary::top_speed>("lap_top_speeds_mps", "Of each lap."),
@@ -123,8 +112,7 @@ constexpr std::array kColumns{
     guard_column<&protocol::GuardFacts::mode>("guard_mode", "What the guard does: on, observe or off."),
     guard_column<&protocol::GuardFacts::road>("guard_road", "Where the guard knows the road from."),
     Column{"state_hash", "Of every state and command: equal hashes mean equal runs.",
-           [](const RunSummary& run) { return fmt::format("\"{:016x}\"", run.state_hash); },
-           [](const RunSummary&) { return std::optional<double>(); }},
+           [](const RunSummary& run) { return fmt::format("\"{:016x}\"", run.state_hash); }},
 };
 
 }  // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,8 +17,6 @@ struct Column {
   /// As JSON: a number, true, false, null where nothing was measured, a text, a list of numbers or an object
   /// of counts.
   std::string (*text)(const telemetry::RunSummary&) = nullptr;
-  /// Its number, where it has one; true is 1.
-  std::optional<double> (*number)(const telemetry::RunSummary&) = nullptr;
 };
 
 /// Columns of a run that has searched (plan.hpp), before all others: the value found, null where there is

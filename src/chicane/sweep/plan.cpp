@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sweep/plan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/sweep/detail/text_hash.hpp"
 #include "chicane/sweep/sampling.hpp"
 
@@ -23,7 +29,40 @@ void add_settings(Fnv& hash, const Settings& settings) {
   }
 }
 
+using Named = std::set<std::pair<std::string, std::string>>;  ///< keys with their values, each once
+
+void add_named(const Settings& settings, Named& named) {
+  for (const auto& [key, text] : settings)
+    if (key == "preset" || key == "car" || key == "scenario" || key == "track") named.emplace(key, text);
+}
+
+Named named_in(const Plan& plan) {
+  Named named{{"scenario", ""}};  // the defaults
+  add_named(plan.fixed, named);
+  for (const Axis& axis : plan.axes) {
+    for (const Dimension& dimension : axis.dimensions) {
+      if (dimension.cases.empty())
+        for (const std::string& text : dimension.list) add_named({{dimension.key, text}}, named);
+      for (const Settings& meaning : dimension.cases) add_named(meaning, named);
+    }
+  }
+  return named;
+}
+
+std::string track_bytes(const std::string& track) {
+  const Result<std::string> file = protocol::locate(protocol::Shelf::kTrack, track);
+  const Result<std::string> bytes = file ? protocol::read_file(*file) : fail(file.error());
+  return bytes ? *bytes : bytes.error().message;
+}
+
 }  // namespace
+
+Axis list_axis(std::string_view key, std::vector<std::string> list) {
+  Axis axis;
+  axis.size = list.size();
+  axis.dimensions.push_back({.key = std::string(key), .list = std::move(list)});
+  return axis;
+}
 
 std::vector<double> Search::ladder() const {
   std::vector<double> values{to};
@@ -137,6 +176,26 @@ std::uint64_t Plan::hash() const {
   }
   for (const std::string& column : keep) add_text(hash, column);
   return hash.value();
+}
+
+std::string Plan::digest_of_files() const {
+  Named named = named_in(*this);
+  Fnv hash;
+  for (const auto& [key, text] : Named(named)) {
+    if (key == "track") continue;
+    protocol::Request request;
+    if (key == "scenario") {
+      request.scenario_file = text;
+    } else {
+      request.settings.emplace_back(key, text);
+    }
+    const Result<scenario::Scenario> scenario = protocol::compose(request);
+    if (scenario) named.emplace("track", scenario->track);
+    add_text(hash, scenario ? protocol::write_document(*scenario, "", true) : scenario.error().message);
+  }
+  for (const auto& [key, text] : named)
+    if (key == "track") add_text(hash, track_bytes(text));
+  return fmt::format("{:016x}", hash.value());
 }
 
 }  // namespace chicane::sweep

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,9 @@ struct Axis {
   /// The value of dimension `d` in place `i`.
   [[nodiscard]] std::string value(std::size_t d, std::uint64_t i) const;
 };
+
+/// An axis with a value of one key in each place.
+[[nodiscard]] Axis list_axis(std::string_view key, std::vector<std::string> list);
 
 /// Each run looks for the largest value of a key with which it is clean: all laps driven, no tyre off the
 /// road. From `to` downwards by `factor` until one is, then between that and the one before, in equal
@@ -80,6 +84,10 @@ struct Plan {
   [[nodiscard]] std::vector<std::string> keys() const;
   /// Of everything that a run depends on: equal numbers mean equal plans, wherever and however written.
   [[nodiscard]] std::uint64_t hash() const;
+  /// Of what the presets, cars, scenarios and tracks say that runs are driven with, the defaults among them:
+  /// equal texts mean that a run depends on the plan and its number alone. Files that are not there count by
+  /// their error.
+  [[nodiscard]] std::string digest_of_files() const;
 };
 
 }  // namespace chicane::sweep

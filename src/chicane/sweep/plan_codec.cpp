@@ -12,7 +12,6 @@
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
-#include "chicane/protocol/yaml_tree.hpp"
 #include "chicane/sweep/detail/settings_reader.hpp"
 #include "chicane/sweep/outcome.hpp"
 #include "chicane/sweep/sampling.hpp"
@@ -24,8 +23,6 @@ namespace {
 using protocol::YamlEntry;
 using protocol::YamlNode;
 
-using detail::shown;
-
 constexpr std::size_t kMostAxes = 20;
 constexpr std::string_view kFolder = "/*.csv";  ///< after a folder: all tracks in it
 constexpr double kMostSamples = 4294967295.0;
@@ -35,11 +32,16 @@ class PlanReader : private detail::SettingsReader {
   using SettingsReader::SettingsReader;
 
   Result<Plan> read(const YamlNode& root) {
-    if (!root.is_map()) {
-      fault(1, "file", fmt::format("got {}, expected a plan with settings and axes", shown(root)));
-    } else {
-      for (const YamlEntry& entry : root.entries()) read_part(entry);
-    }
+    std::string about;
+    const auto axis = [this](const YamlNode& node) { read_axis(node); };
+    read_map(root, "file", "a plan with settings and axes",
+             {{"name", text(plan_.name)},
+              {"about", text(about)},
+              {"settings", settings(plan_.fixed)},
+              {"axes", list("axes", axis, kMostAxes)},
+              {"search", search(plan_.search)},
+              {"marks", list("places", [this](const YamlNode& node) { read_mark(node); })},
+              {"keep", list("columns", [this](const YamlNode& node) { read_column(node); })}});
     check_size(root.line);
     check_marks();
     if (is_faultless()) return std::move(plan_);
@@ -47,51 +49,15 @@ class PlanReader : private detail::SettingsReader {
   }
 
  private:
-  void read_part(const YamlEntry& entry) {
-    const std::string& name = entry.key.text;
-    const int line = entry.key.line;
-    if (!parts_.insert(name).second)
-      return fault(line, printable(name), "got it a second time, expected it once");
-    if (name == "name" || name == "about") {
-      if (!entry.value.is_scalar())
-        return fault(line, name, fmt::format("got {}, expected text", shown(entry.value)));
-      if (name == "name") plan_.name = entry.value.text;
-    } else if (name == "settings") {
-      read_settings(entry.value, plan_.fixed);
-    } else if (name == "axes") {
-      read_axes(entry.value);
-    } else if (name == "search") {
-      plan_.search = read_search(entry.value);
-    } else if (name == "marks") {
-      read_marks(entry.value);
-    } else if (name == "keep") {
-      read_keep(entry.value);
-    } else {
-      fault(line, printable(name),
-            "got an unknown key, expected name, about, settings, axes, search, marks or keep");
-    }
-  }
-
-  void read_axes(const YamlNode& list) {
-    if (!list.is_list() || list.children.size() > kMostAxes)
-      return fault(list.line, "axes",
-                   fmt::format("got {}, expected a list of at most {} axes", shown(list), kMostAxes));
-    for (const YamlNode* node : list.children) {
-      if (node->is_map()) {
-        read_axis(*node);
-      } else {
-        fault(node->line, "axes", fmt::format("got {}, expected {{key: [values]}}", shown(*node)));
-      }
-    }
-  }
-
   void read_axis(const YamlNode& map) {
+    if (!map.is_map()) return refuse(map, "axes", "{key: [values]}");
     Axis axis;
     for (const YamlEntry& entry : map.entries()) {
       if (entry.key.text == "sample") read_sample(entry.value, axis);
     }
+    const bool is_sample = axis.kind != Axis::Kind::kTogether;
     std::optional<std::uint64_t> size;
-    if (axis.kind != Axis::Kind::kTogether) size = axis.size;
+    if (is_sample) size = axis.size;
     for (const YamlEntry& entry : map.entries()) {
       if (entry.key.text == "sample") continue;
       if (!keys_.insert(entry.key.text).second) {
@@ -99,14 +65,13 @@ class PlanReader : private detail::SettingsReader {
         continue;
       }
       const std::optional<std::uint64_t> length = read_dimension(entry, axis);
-      if (!length || axis.kind != Axis::Kind::kTogether) continue;
+      if (!length || is_sample) continue;
       if (size && *size != *length)
         fault(entry.key.line, entry.key.text,
               fmt::format("got {} values, expected {} as the other keys of this axis", *length, *size));
       size = length;
     }
     axis.size = size.value_or(0);
-    const bool is_sample = axis.kind != Axis::Kind::kTogether;
     if (is_sample && axis.dimensions.size() > static_cast<std::size_t>(kSobolDimensions))
       fault(map.line, "axes",
             fmt::format("got {} keys, expected at most {} in a sample", axis.dimensions.size(),
@@ -117,34 +82,13 @@ class PlanReader : private detail::SettingsReader {
   }
 
   void read_sample(const YamlNode& map, Axis& axis) {
-    if (!map.is_map())
-      return fault(map.line, "sample",
-                   fmt::format("got {}, expected {{method: sobol, count: 64, seed: 1}}", shown(map)));
-    axis.kind = Axis::Kind::kSobol;
-    for (const YamlEntry& entry : map.entries()) {
-      const std::string& key = entry.key.text;
-      if (key == "method") {
-        if (entry.value.text == "latin-hypercube") axis.kind = Axis::Kind::kLatinHypercube;
-        if (entry.value.text != "sobol" && entry.value.text != "latin-hypercube")
-          fault(entry.value.line, "sample.method",
-                fmt::format("got {}, expected sobol or latin-hypercube", shown(entry.value)));
-      } else if (key == "count") {
-        axis.size = count_of(entry.value, "sample.count", 1.0);
-      } else if (key == "seed") {
-        axis.seed = count_of(entry.value, "sample.seed", 0.0);
-      } else {
-        fault(entry.key.line, printable(key), "got an unknown key, expected method, count or seed");
-      }
-    }
-    if (axis.size == 0) fault(map.line, "sample.count", "got none, expected the number of points");
-  }
-
-  std::uint64_t count_of(const YamlNode& node, std::string_view key, double least) {
-    const std::optional<double> value = node.is_scalar() ? number_in(node.text) : std::nullopt;
-    if (value && *value >= least && *value <= kMostSamples && *value == std::floor(*value))
-      return static_cast<std::uint64_t>(*value);
-    fault(node.line, key, fmt::format("got {}, expected an integer from {} on", shown(node), least));
-    return 1;
+    std::string method;
+    const bool is_read = read_map(map, "sample", "{method: sobol, count: 64, seed: 1}",
+                                  {{"method", choice(method, {"sobol", "latin-hypercube"})},
+                                   {"count", count(axis.size, 1)},
+                                   {"seed", count(axis.seed, 0)}});
+    axis.kind = method == "latin-hypercube" ? Axis::Kind::kLatinHypercube : Axis::Kind::kSobol;
+    if (is_read && axis.size == 0) fault(map.line, "sample.count", "got none, expected the number of points");
   }
 
   /// The number of values; none for a range of a sample, or after a fault.
@@ -184,7 +128,7 @@ class PlanReader : private detail::SettingsReader {
     for (std::filesystem::directory_iterator each(folder, error), end; !error && each != end;
          each.increment(error))
       if (each->path().extension() == ".csv") files.push_back(each->path().string());
-    if (files.empty()) fault(node.line, "track", fmt::format("got {}, expected tracks there", shown(node)));
+    if (files.empty()) refuse(node, "track", "tracks there");
     std::sort(files.begin(), files.end());
     list.insert(list.end(), files.begin(), files.end());
   }
@@ -194,42 +138,34 @@ class PlanReader : private detail::SettingsReader {
     return node.is_map() && node.entries().size() == 1 && node.entries().front().key.text == "cases";
   }
   std::uint64_t read_cases(const YamlEntry& entry, Dimension& dimension) {
-    const YamlNode& cases = entry.value.entries().front().value;
+    const YamlEntry cases = entry.value.entries().front();
     if (check_setting(dimension.key, "1") || protocol::find(dimension.key) != nullptr)
       fault(entry.key.line, printable(dimension.key), "got a setting, expected a name of your own for cases");
-    if (!cases.is_map() || cases.entries().empty()) {
-      fault(entry.key.line, "cases", fmt::format("got {}, expected {{name: {{settings}}}}", shown(cases)));
-      return 0;
-    }
-    for (const YamlEntry& each : cases.entries()) {
-      if (std::find(dimension.list.begin(), dimension.list.end(), each.key.text) != dimension.list.end())
-        fault(each.key.line, printable(each.key.text), "got it a second time, expected it once");
+    for (const YamlEntry& each : named(cases)) {
       dimension.list.push_back(each.key.text);
       read_settings(each.value, dimension.cases.emplace_back());
     }
+    if (dimension.list.empty() && is_faultless()) refuse(cases.value, "cases", "{name: {settings}}");
     return dimension.list.size();
   }
 
   std::optional<std::uint64_t> read_range(const YamlNode& map, const Axis& axis, Dimension& dimension) {
-    std::optional<double> from, to, step;
-    std::optional<std::uint64_t> count;
-    for (const YamlEntry& entry : map.entries()) {
-      const std::string& key = entry.key.text;
-      if (key == "from" || key == "to") {
-        if (takes(dimension.key, entry.value)) (key == "from" ? from : to) = number_in(entry.value.text);
-      } else if (key == "step") {
-        step = number_in(entry.value.text);
-        if (!step || *step <= 0.0) fault(entry.value.line, "step", "expected a positive number");
-      } else if (key == "count") {
-        count = count_of(entry.value, "count", 1.0);
-      } else if (key == "scale" && (entry.value.text == "log" || entry.value.text == "linear")) {
-        dimension.is_logarithmic = entry.value.text == "log";
-      } else {
-        fault(entry.key.line, printable(key),
-              fmt::format("got {}, expected from, to, count or step, and scale: linear or log",
-                          shown(entry.value)));
-      }
-    }
+    std::optional<double> from, to;
+    double step = 0.0;
+    std::uint64_t count = 0;
+    std::string scale;
+    const auto bound = [&](std::optional<double>& end) -> Take {
+      return [&](const YamlEntry& entry) {
+        if (takes(dimension.key, entry.value)) end = number_in(entry.value.text);
+      };
+    };
+    read_map(map, dimension.key, "a range",
+             {{"from", bound(from)},
+              {"to", bound(to)},
+              {"step", number(step)},
+              {"count", this->count(count, 1)},
+              {"scale", choice(scale, {"linear", "log"})}});
+    dimension.is_logarithmic = scale == "log";
     const protocol::Parameter* row = protocol::find(dimension.key);
     dimension.is_integer = row != nullptr && row->option.kind == protocol::Kind::kInteger;
     if (!from || !to || *to < *from || (dimension.is_logarithmic && *from <= 0.0)) {
@@ -240,31 +176,27 @@ class PlanReader : private detail::SettingsReader {
     dimension.from = *from;
     dimension.to = *to;
     if (axis.kind != Axis::Kind::kTogether) return std::nullopt;
-    if (!count && !step && dimension.is_integer) step = 1.0;
-    if (count.has_value() == step.has_value()) {
-      fault(map.line, printable(dimension.key), "expected either count or step");
+    if (count == 0 && step == 0.0 && dimension.is_integer) step = 1.0;
+    if (step < 0.0 || (count == 0) == (step == 0.0)) {
+      fault(map.line, printable(dimension.key), "expected either count or step > 0");
       return std::nullopt;
     }
-    if (count) return count;
-    const double steps = std::floor((*to - *from) / *step + 1e-9);
+    if (count > 0) return count;
+    const double steps = std::floor((*to - *from) / step + 1e-9);
     if (!(steps < kMostSamples)) {
       fault(map.line, printable(dimension.key), "expected fewer steps");
       return std::nullopt;
     }
-    dimension.to = *from + steps * *step;
+    dimension.to = *from + steps * step;
     return static_cast<std::uint64_t>(steps) + 1;
   }
 
-  void read_marks(const YamlNode& list) {
-    if (!list.is_list())
-      return fault(list.line, "marks", fmt::format("got {}, expected a list of places", shown(list)));
-    for (const YamlNode* node : list.children) {
-      Settings& mark = plan_.marks.emplace_back();
-      if (!node->is_map()) fault(node->line, "marks", fmt::format("got {}, expected a place", shown(*node)));
-      for (const YamlEntry& entry : node->is_map() ? node->entries() : std::vector<YamlEntry>{}) {
-        mark.emplace_back(entry.key.text, entry.value.text);
-        marked_.emplace_back(entry.key.line, entry.key.text);
-      }
+  void read_mark(const YamlNode& node) {
+    if (!node.is_map()) return refuse(node, "marks", "a place");
+    Settings& mark = plan_.marks.emplace_back();
+    for (const YamlEntry& entry : node.entries()) {
+      mark.emplace_back(entry.key.text, entry.value.text);
+      marked_.emplace_back(entry.key.line, entry.key.text);
     }
   }
 
@@ -274,18 +206,12 @@ class PlanReader : private detail::SettingsReader {
         fault(line, printable(key), "got no key of an axis, expected marks at values of axes");
   }
 
-  void read_keep(const YamlNode& list) {
-    if (!list.is_list())
-      return fault(list.line, "keep", fmt::format("got {}, expected a list of columns", shown(list)));
+  void read_column(const YamlNode& node) {
+    plan_.keep.push_back(node.text);
+    if (find_column(node.text) != nullptr) return;
     std::vector<std::string_view> names;
     for (const Column& column : columns()) names.push_back(column.name);
-    for (const YamlNode* node : list.children) {
-      if (find_column(node->text) != nullptr) {
-        plan_.keep.push_back(node->text);
-      } else {
-        fault(node->line, "keep", fmt::format("got {}, expected one of {}", shown(*node), joined(names)));
-      }
-    }
+    refuse(node, "keep", fmt::format("one of {}", joined(names)));
   }
 
   void check_size(int line) {
@@ -298,7 +224,7 @@ class PlanReader : private detail::SettingsReader {
   }
 
   Plan plan_;
-  std::set<std::string> parts_, keys_;
+  std::set<std::string> keys_;
   std::vector<std::pair<int, std::string>> marked_;  ///< keys of the marks, with their lines
 };
 

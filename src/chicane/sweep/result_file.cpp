@@ -16,7 +16,6 @@
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
-#include "chicane/sweep/detail/named_files.hpp"
 #include "chicane/sweep/outcome.hpp"
 
 namespace chicane::sweep {
@@ -38,6 +37,19 @@ std::optional<std::uint64_t> run_of(const std::string& line) {
   if (comma == std::string::npos) return std::nullopt;
   const auto run = count_in(std::string_view(line).substr(kBegin.size(), comma - kBegin.size()));
   return run && *run < Plan::kMostRuns ? run : std::nullopt;
+}
+
+using OnLine = std::function<Result<void>(const LinePlace&, const std::string&)>;
+
+/// The same, told the run of each line; kParse for a line about none.
+OnLine of_runs(const OnLine& on_line) {
+  return [on_line](LinePlace place, const std::string& line) -> Result<void> {
+    const std::optional<std::uint64_t> run = run_of(line);
+    if (!run)
+      return fail(ErrorCode::kParse, fmt::format("got {}, expected the results of a run", printable(line)));
+    place.run = *run;
+    return on_line(place, line);
+  };
 }
 
 Json json_of(const Settings& settings) {
@@ -68,7 +80,7 @@ std::string header_of(const Plan& plan) {
               {"program", program_name()},
               {"guard", {{"version", safety::kGuardVersion}}},
               {"arithmetic", arithmetic(chosen_instruction_set())},
-              {"files", detail::digest_of_files(plan)}};
+              {"files", plan.digest_of_files()}};
   if (plan.search) header["search"] = plan.search->key;
   for (const Settings& mark : plan.marks) header["marks"].push_back(json_of(mark));
   for (const auto& [key, names] : plan.cases())
@@ -114,79 +126,90 @@ std::string difference_text(const Header& got, const Header& expected) {
   return "another first line, expected the same";
 }
 
-Result<FileContents> read_lines(
-    const std::string& file,
+Result<FileContents> read_text_lines(
+    const std::string& file, const std::function<Result<void>(const std::string&)>& on_first,
     const std::function<Result<void>(const LinePlace&, const std::string&)>& on_line) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return fail(ErrorCode::kNotFound, fmt::format("{}: {}", file, std::strerror(errno)));
   FileContents contents;
   std::string line;
   for (std::uint64_t number = 1; std::getline(stream, line) && !stream.eof(); ++number) {
-    const LinePlace place{run_of(line).value_or(Plan::kMostRuns), contents.whole, line.size()};
-    if (line.size() > kLongestLine || (number > 1 && place.run == Plan::kMostRuns)) {
-      return fail(
-          refusal(fmt::format("{}:{}", file, number), line, "the results of a run", ErrorCode::kParse));
-    }
+    const LinePlace place{0, contents.whole, line.size()};
     contents.whole += line.size() + 1;
+    const auto say = [&](const Error& error) {
+      return fail(error.code, fmt::format("{}:{}: {}", file, number, error.message));
+    };
+    if (line.size() > kLongestLine)
+      return say({ErrorCode::kParse, fmt::format("got {}, expected a shorter line", printable(line))});
     if (number == 1) {
       contents.header = line;
-      continue;
+      if (const Result<void> taken = on_first(line); !taken) return fail(taken.error());
+    } else if (const Result<void> taken = on_line(place, line); !taken) {
+      return say(taken.error());
     }
-    ++contents.lines;
-    if (const Result<void> done = on_line(place, line); !done)
-      return fail(done.error().code, fmt::format("{}:{}: {}", file, number, done.error().message));
   }
   if (stream.bad()) return fail(ErrorCode::kIo, fmt::format("{}: {}", file, std::strerror(errno)));
   return contents;
 }
 
-ResultFile::ResultFile(std::string path, int descriptor, const Shard& shard, std::uint64_t runs)
-    : path_{std::move(path)}, descriptor_{descriptor}, shard_{shard}, done_(shard.size(runs), false) {}
+Result<FileContents> read_lines(
+    const std::string& file,
+    const std::function<Result<void>(const LinePlace&, const std::string&)>& on_line) {
+  return read_text_lines(
+      file, [](const std::string&) { return Result<void>{}; }, of_runs(on_line));
+}
 
-ResultFile::ResultFile(ResultFile&& other) noexcept
-    : path_{std::move(other.path_)},
-      descriptor_{std::exchange(other.descriptor_, -1)},
-      shard_{std::move(other.shard_)},
-      done_{std::move(other.done_)},
-      done_count_{other.done_count_},
-      size_{other.size_} {}
+Result<void> read_runs(const std::string& file, const std::function<Result<void>(const Header&)>& on_header,
+                       const std::function<Result<void>(std::uint64_t, const Json&)>& on_run) {
+  const auto take_header = [&](const std::string& first) -> Result<void> {
+    const Result<Header> header = parse_header(first, file);
+    return header ? on_header(*header) : fail(header.error());
+  };
+  const auto take_run = [&](const LinePlace& place, const std::string& line) -> Result<void> {
+    const Json run = protocol::parse_json(line);
+    return run.is_object() ? on_run(place.run, run) : fail(ErrorCode::kParse, "got no JSON object");
+  };
+  const auto contents = read_text_lines(file, take_header, of_runs(take_run));
+  if (contents && contents->header.empty()) return take_header("");
+  return contents ? Result<void>{} : fail(contents.error());
+}
 
-ResultFile::~ResultFile() {
+LineFile::LineFile(LineFile&& other) noexcept { *this = std::move(other); }
+
+LineFile& LineFile::operator=(LineFile&& other) noexcept {
+  path_.swap(other.path_);
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(size_, other.size_);
+  return *this;
+}
+
+LineFile::~LineFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, const Shard& shard) {
-  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (descriptor < 0) return io_failure(path);
-  ResultFile file(path, descriptor, shard, plan.size());
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0)
+Result<LineFile> LineFile::open(
+    const std::string& path, const std::string& first, const std::function<Error(const std::string&)>& refuse,
+    const std::function<Result<void>(const LinePlace&, const std::string&)>& on_line) {
+  LineFile file;
+  file.path_ = path;
+  file.descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (file.descriptor_ < 0) return io_failure(path);
+  if (::flock(file.descriptor_, LOCK_EX | LOCK_NB) != 0)
     return fail(ErrorCode::kIo, fmt::format("{}: another process writes it", path));
-  const std::string header = header_of(plan);
-  const auto contents = read_lines(path, [&](const LinePlace& line, const std::string&) -> Result<void> {
-    if (line.run >= plan.size() || !shard.has(line.run))
-      return fail(ErrorCode::kInvalidArgument,
-                  fmt::format("got run {}, expected one of this shard", line.run));
-    if (!file.done_[line.run / shard.count]) ++file.done_count_;
-    file.done_[line.run / shard.count] = true;
-    return {};
-  });
+  const auto check = [&](const std::string& line) {
+    return line == first ? Result<void>{} : fail(refuse(line));
+  };
+  const auto contents = read_text_lines(path, check, on_line);
   if (!contents) return fail(contents.error());
-  if (!contents->header.empty() && contents->header != header) {
-    const Result<Header> got = parse_header(contents->header, path);
-    if (!got) return fail(got.error());
-    return fail(ErrorCode::kInvalidArgument,
-                fmt::format("{}: got results of {}; choose another file", path,
-                            difference_text(*got, parse_header(header, path).value())));
-  }
   file.size_ = contents->whole;
-  if (::ftruncate(descriptor, static_cast<off_t>(file.size_)) != 0) return io_failure(path);
-  if (contents->header.empty()) {
-    if (const Result<void> written = file.append(header); !written) return fail(written.error());
-  }
+  if (::ftruncate(file.descriptor_, static_cast<off_t>(file.size_)) != 0) return io_failure(path);
+  if (file.size_ > 0) return file;
+  if (const Result<void> written = file.append(first); !written) return fail(written.error());
   return file;
 }
 
-Result<void> ResultFile::append(std::string_view line) {
+Result<void> LineFile::append(std::string_view line) {
+  if (descriptor_ < 0) return {};
   std::string bytes(line);
   bytes += '\n';
   const std::lock_guard lock(mutex_);
@@ -198,6 +221,155 @@ Result<void> ResultFile::append(std::string_view line) {
   static_cast<void>(!::ftruncate(descriptor_, static_cast<off_t>(size_)));  // no half line is left behind
   errno = reason;
   return io_failure(path_);
+}
+
+Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, const Shard& shard) {
+  const std::string header = header_of(plan);
+  ResultFile file(shard, plan.size());
+  const auto refuse = [&](const std::string& first) {
+    const Result<Header> got = parse_header(first, path);
+    return got ? Error{ErrorCode::kInvalidArgument,
+                       fmt::format("{}: got results of {}; choose another file", path,
+                                   difference_text(*got, parse_header(header, path).value()))}
+               : got.error();
+  };
+  const auto note = [&](const LinePlace& line, const std::string&) -> Result<void> {
+    if (line.run >= plan.size() || !shard.has(line.run))
+      return fail(ErrorCode::kInvalidArgument,
+                  fmt::format("got run {}, expected one of this shard", line.run));
+    if (!file.done_[line.run / shard.count]) ++file.done_count_;
+    file.done_[line.run / shard.count] = true;
+    return {};
+  };
+  Result<LineFile> lines = LineFile::open(path, header, refuse, of_runs(note));
+  if (!lines) return fail(lines.error());
+  file.file_ = std::move(*lines);
+  return file;
+}
+
+namespace {
+
+constexpr std::size_t kMostNamed = 10000;  // missing runs that are looked at for a message
+constexpr std::size_t kMostRanges = 10;
+
+/// Where each run stands: 16 bytes for each, whatever is known of it.
+struct Found {
+  std::uint32_t file = 0;
+  std::uint32_t size = 0;  ///< 0: not found
+  std::uint64_t offset = 0;
+};
+
+class Merger {
+ public:
+  explicit Merger(const std::vector<std::string>& files) : files_{files} {
+    streams_.reserve(files.size());
+    for (const std::string& file : files) streams_.emplace_back(file, std::ios::binary);
+  }
+
+  Result<void> read() {
+    for (std::size_t i = 0; i < files_.size(); ++i)
+      if (const Result<void> done = read(static_cast<std::uint32_t>(i)); !done) return done;
+    return check_complete();
+  }
+
+  Result<MergeSummary> write(const std::string& output) {
+    FileWriter out(output);
+    out.write(header_ + '\n');
+    for (const Found& each : found_) out.write(line(each) + '\n');
+    if (const Result<void> written = out.finish(); !written) return fail(written.error());
+    return MergeSummary{.runs = found_.size(), .repeated = repeated_};
+  }
+
+ private:
+  Result<void> read(std::uint32_t index) {
+    const std::string& file = files_[index];
+    std::string first;
+    std::getline(streams_[index], first);
+    const Result<Header> header = parse_header(first, file);
+    if (!header) return fail(header.error());
+    if (index == 0) {
+      header_ = first;
+      found_.resize(header->runs);
+    } else if (first != header_) {
+      return fail(ErrorCode::kInvalidArgument,
+                  fmt::format("{}: got {} as in {}", file,
+                              difference_text(*header, parse_header(header_, files_[0]).value()), files_[0]));
+    }
+    const auto contents = read_lines(
+        file, [&](const LinePlace& place, const std::string& text) { return take(place, text, index); });
+    return contents ? Result<void>{} : fail(contents.error());
+  }
+
+  Result<void> take(const LinePlace& place, const std::string& text, std::uint32_t index) {
+    if (place.run >= found_.size())
+      return fail(ErrorCode::kParse, fmt::format("got run {}, expected one of {}", place.run, found_.size()));
+    Found& known = found_[place.run];
+    if (known.size == 0) {
+      known = {index, static_cast<std::uint32_t>(place.size), place.offset};
+      return {};
+    }
+    ++repeated_;
+    if (line(known) == text) return {};
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("got other results of run {} than {} has: they were driven with other files or "
+                            "another build",
+                            place.run, files_[known.file]));
+  }
+
+  std::string line(const Found& place) {
+    std::string text(place.size, '\0');
+    std::ifstream& stream = streams_[place.file];
+    stream.clear();
+    stream.seekg(static_cast<std::streamoff>(place.offset));
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    return text;
+  }
+
+  [[nodiscard]] Result<void> check_complete() const {
+    std::vector<std::uint64_t> missing;
+    std::uint64_t more = 0;
+    for (std::uint64_t run = 0; run < found_.size(); ++run) {
+      if (found_[run].size != 0) continue;
+      if (missing.size() < kMostNamed) {
+        missing.push_back(run);
+      } else {
+        ++more;
+      }
+    }
+    if (missing.empty()) return {};
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("{} of {} runs are missing: {}; the same sweep command drives them",
+                            missing.size() + more, found_.size(), ranges_text(missing, more)));
+  }
+
+  const std::vector<std::string>& files_;
+  std::vector<std::ifstream> streams_;
+  std::string header_;
+  std::vector<Found> found_;
+  std::uint64_t repeated_ = 0;
+};
+
+}  // namespace
+
+std::string ranges_text(const std::vector<std::uint64_t>& numbers, std::uint64_t more) {
+  std::string text;
+  std::size_t ranges = 0;
+  std::size_t i = 0;
+  while (i < numbers.size() && ranges < kMostRanges) {
+    std::size_t end = i;
+    while (end + 1 < numbers.size() && numbers[end + 1] == numbers[end] + 1) ++end;
+    if (ranges++ > 0) text += ", ";
+    text += end == i ? fmt::format("{}", numbers[i]) : fmt::format("{}-{}", numbers[i], numbers[end]);
+    i = end + 1;
+  }
+  more += numbers.size() - i;
+  return more > 0 ? fmt::format("{} and {} more", text, more) : text;
+}
+
+Result<MergeSummary> merge(const std::vector<std::string>& files, const std::string& output) {
+  Merger merger(files);
+  if (const Result<void> read = merger.read(); !read) return fail(read.error());
+  return merger.write(output);
 }
 
 }  // namespace chicane::sweep

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/sweep/plan.hpp"
 #include "chicane/sweep/shard.hpp"
 
@@ -25,7 +26,7 @@ namespace chicane::sweep {
 /// What the first line says.
 struct Header {
   std::string name{}, plan{}, program{}, arithmetic{};
-  std::string files{};  ///< detail::digest_of_files()
+  std::string files{};  ///< Plan::digest_of_files()
   std::uint64_t runs = 0;
   Settings fixed{};
   std::vector<std::string> keys{}, columns{};
@@ -48,40 +49,88 @@ struct LinePlace {
 struct FileContents {
   std::string header;
   std::uint64_t whole = 0;  ///< bytes up to the last line break
-  std::uint64_t lines = 0;  ///< about runs
 };
-/// Reads a file line by line; memory does not grow with it. A last line without its line break, which a
-/// killed process has left, is not told. kParse "FILE:LINE: …" for a line that is none of ours; kIo.
+/// Reads a file line by line; memory does not grow with it. `on_first` gets the first line, `on_line` each
+/// further one. A last line without its line break, which a killed process has left, is skipped. The error of
+/// `on_line` gets "FILE:LINE: " in front, that of `on_first` nothing. kParse for a line of more than 1 MiB;
+/// kIo.
+[[nodiscard]] Result<FileContents> read_text_lines(
+    const std::string& file, const std::function<Result<void>(const std::string&)>& on_first,
+    const std::function<Result<void>(const LinePlace&, const std::string&)>& on_line);
+/// Reads the lines about runs. kParse "FILE:LINE: …" for a line that is none; otherwise as read_text_lines().
 [[nodiscard]] Result<FileContents> read_lines(
     const std::string& file,
     const std::function<Result<void>(const LinePlace&, const std::string&)>& on_line);
 
-/// A file that a sweep appends to. Each line is written by one call, whole or not at all.
-class ResultFile {
- public:
-  /// Opens or makes the file, removes half a line at its end, and finds out which runs of the shard are done.
-  /// kInvalidArgument when it belongs to another plan or program, or another process writes it; kIo.
-  [[nodiscard]] static Result<ResultFile> open(const std::string& path, const Plan& plan, const Shard& shard);
-  ResultFile(ResultFile&& other) noexcept;
-  ResultFile& operator=(ResultFile&&) = delete;
-  ~ResultFile();
+/// Reads the lines about runs as JSON objects, behind the header. kParse for what is none; otherwise as
+/// read_lines().
+[[nodiscard]] Result<void> read_runs(
+    const std::string& file, const std::function<Result<void>(const Header&)>& on_header,
+    const std::function<Result<void>(std::uint64_t run, const protocol::Json&)>& on_run);
 
-  [[nodiscard]] bool has(std::uint64_t run) const { return done_[run / shard_.count]; }
-  /// Runs that were there when it was opened.
-  [[nodiscard]] std::uint64_t done() const noexcept { return done_count_; }
+/// A file that grows by lines, of which the first says what the others belong to. One process writes it. Each
+/// line is written by one call, whole or not at all.
+class LineFile {
+ public:
+  /// No file: append() does nothing.
+  LineFile() = default;
+  /// Opens the file, or makes it with the first line `first`, and removes half a line at its end. `refuse`:
+  /// the error for a file with another first line, which stays as it is; `on_line` gets the others, as in
+  /// read_text_lines(). kIo, also when another process writes it.
+  [[nodiscard]] static Result<LineFile> open(
+      const std::string& path, const std::string& first,
+      const std::function<Error(const std::string&)>& refuse,
+      const std::function<Result<void>(const LinePlace&, const std::string&)>& on_line);
+  LineFile(LineFile&& other) noexcept;
+  LineFile& operator=(LineFile&& other) noexcept;
+  ~LineFile();
+
   /// Any thread. kIo, and the file is as before, when the disk is full or gone.
   [[nodiscard]] Result<void> append(std::string_view line);
 
  private:
-  ResultFile(std::string path, int descriptor, const Shard& shard, std::uint64_t runs);
+  std::string path_{};
+  int descriptor_ = -1;
+  std::uint64_t size_ = 0;  ///< [byte]
+  std::mutex mutex_{};
+};
 
-  std::string path_;
-  int descriptor_;
+/// The results of a sweep that are written.
+class ResultFile {
+ public:
+  /// As LineFile::open(), and finds out which runs of the shard are done. kInvalidArgument when it belongs to
+  /// another plan or program.
+  [[nodiscard]] static Result<ResultFile> open(const std::string& path, const Plan& plan, const Shard& shard);
+
+  [[nodiscard]] bool has(std::uint64_t run) const { return done_[run / shard_.count]; }
+  /// Runs that were there when it was opened.
+  [[nodiscard]] std::uint64_t done() const noexcept { return done_count_; }
+  /// As LineFile::append().
+  [[nodiscard]] Result<void> append(std::string_view line) { return file_.append(line); }
+
+ private:
+  ResultFile(const Shard& shard, std::uint64_t runs) : shard_{shard}, done_(shard.size(runs), false) {}
+
+  LineFile file_{};
   Shard shard_;
   std::vector<bool> done_;  ///< by the place in the shard
   std::uint64_t done_count_ = 0;
-  std::uint64_t size_ = 0;  ///< [byte]
-  std::mutex mutex_;
 };
+
+struct MergeSummary {
+  std::uint64_t runs = 0;
+  std::uint64_t repeated = 0;  ///< that came twice, with the same results
+};
+
+/// Joins the files of a sweep's shards, in whatever order and however many, into `output`: the first line,
+/// then one line for each run in the order of the plan, the same bytes whichever process drove which run.
+/// `output` appears whole or not at all, and may be one of the files.
+///
+/// kInvalidArgument for files of different plans or programs, for missing runs, which are named, and for a
+/// run with two different results; kParse for lines that are none; kIo.
+[[nodiscard]] Result<MergeSummary> merge(const std::vector<std::string>& files, const std::string& output);
+
+/// "17-20, 33 and 5 more", of numbers that rise.
+[[nodiscard]] std::string ranges_text(const std::vector<std::uint64_t>& numbers, std::uint64_t more = 0);
 
 }  // namespace chicane::sweep

@@ -65,34 +65,18 @@ class Tally {
   std::optional<Error> error_;
 };
 
-/// As drive(); `is_hasty`: a tyre off the road ends it, too.
-Result<std::optional<telemetry::RunSummary>> drive_while(const Settings& settings, run::Roads& roads,
-                                                         const std::atomic<bool>& stop, bool is_hasty) {
-  const Result<protocol::Request> request = request_of(settings);
-  if (!request) return fail(request.error());
-  const Result<scenario::Scenario> scenario = protocol::compose(*request, roads.files());
-  if (!scenario) return fail(scenario.error());
-  const auto loop = run::ClosedLoop::create(*scenario, roads);
-  if (!loop && stop) return std::optional<telemetry::RunSummary>{};  // planning was stopped
-  if (!loop) return fail(loop.error());
-  telemetry::RunSummary summary = run::run_closed_loop(
-      **loop, {}, [&] { return stop.load() || (is_hasty && (*loop)->world().off_track_events > 0); });
-  if (stop && !(*loop)->is_over()) return std::optional<telemetry::RunSummary>{};
-  return std::optional(std::move(summary));
-}
-
-/// Line of a run with these members, or the reason why it cannot be driven.
-std::string line_with(std::uint64_t run, const Settings& varied, const Result<std::string>& members) {
+/// Line of a run with the members of an object, or the reason why it cannot be driven.
+std::string line_with(std::uint64_t run, const Settings& varied, const Result<std::string>& object) {
   std::string line = fmt::format("{{\"run\":{},\"settings\":{{", run);
   for (std::size_t i = 0; i < varied.size(); ++i) {
     const auto& [key, text] = varied[i];
     line += fmt::format("{}{}:{}", i == 0 ? "" : ",", quoted(key), setting_json(key, text));
   }
-  return line + (members ? fmt::format("}},{}}}", *members)
-                         : fmt::format("}},\"error\":{}}}", quoted(members.error().message)));
+  return line + (object ? "}," + object->substr(1)
+                        : fmt::format("}},\"error\":{}}}", quoted(object.error().message)));
 }
 
-/// The columns that the plan keeps, as members of a JSON object.
+/// The columns that the plan keeps, as a JSON object.
 std::string columns_of(const Plan& plan, const RunOutcome& outcome) {
   std::string text;
   if (plan.search)
@@ -108,7 +92,7 @@ std::string columns_of(const Plan& plan, const RunOutcome& outcome) {
   const bool has_hash =
       plan.keep.empty() || std::find(plan.keep.begin(), plan.keep.end(), "state_hash") != plan.keep.end();
   if (!has_hash) add(*find_column("state_hash"));
-  return text;
+  return "{" + text + "}";
 }
 
 /// One search of find_largest().
@@ -140,7 +124,7 @@ class Searcher {
     const double value = number_in(text).value_or(wanted);
     Settings tried = settings_;
     tried.emplace_back(search_.key, text);
-    auto driven = drive_while(tried, roads_, stop_, !is_last);
+    auto driven = drive(tried, roads_, stop_, is_last ? Until::kItsEnd : Until::kOffRoad);
     if (!driven) {  // a value that this controller does not take
       refusal_ = driven.error();
       unclean_ = value;
@@ -177,13 +161,17 @@ Result<std::optional<RunOutcome>> outcome_of(const Plan& plan, std::uint64_t run
 }  // namespace
 
 Result<std::optional<telemetry::RunSummary>> drive(const Settings& settings, run::Roads& roads,
-                                                   const std::atomic<bool>& stop) {
-  return drive_while(settings, roads, stop, false);
-}
-
-Result<std::optional<telemetry::RunSummary>> drive_while_on_road(const Settings& settings, run::Roads& roads,
-                                                                 const std::atomic<bool>& stop) {
-  return drive_while(settings, roads, stop, true);
+                                                   const std::atomic<bool>& stop, Until until) {
+  const Result<scenario::Scenario> scenario = scenario_of(settings);
+  if (!scenario) return fail(scenario.error());
+  const auto loop = run::ClosedLoop::create(*scenario, roads);
+  if (!loop && stop) return std::optional<telemetry::RunSummary>{};  // planning was stopped
+  if (!loop) return fail(loop.error());
+  const bool is_hasty = until == Until::kOffRoad;
+  telemetry::RunSummary summary = run::run_closed_loop(
+      **loop, {}, [&] { return stop.load() || (is_hasty && (*loop)->world().off_track_events > 0); });
+  if (stop && !(*loop)->is_over()) return std::optional<telemetry::RunSummary>{};
+  return std::optional(std::move(summary));
 }
 
 Result<std::optional<RunOutcome>> find_largest(const Search& search, const Settings& settings,
@@ -210,12 +198,12 @@ Result<Progress> drive_plan(const Plan& plan, const Shard& shard, const SweepOpt
     if (stop) return false;
     const Result<std::optional<std::string>> driven = rule(run, roads);
     if (driven && !*driven) return false;
-    const Result<std::string> members = driven ? Result<std::string>(**driven) : fail(driven.error());
-    if (const Result<void> written = file->append(line_with(run, plan.at(run), members)); !written) {
+    const Result<std::string> object = driven ? Result<std::string>(**driven) : fail(driven.error());
+    if (const Result<void> written = file->append(line_with(run, plan.at(run), object)); !written) {
       tally.fail_with(written.error());
       return false;
     }
-    tally.add(members ? nullptr : &members.error());
+    tally.add(object ? nullptr : &object.error());
     return true;
   });
   return tally.result();

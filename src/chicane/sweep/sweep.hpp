@@ -15,15 +15,13 @@
 
 namespace chicane::sweep {
 
-/// Drives one run as far as it goes: no sockets, no clock. Nothing when `stop` has ended it before. Fails as
-/// protocol::compose() and run::ClosedLoop::create() do.
-[[nodiscard]] Result<std::optional<telemetry::RunSummary>> drive(const Settings& settings, run::Roads& roads,
-                                                                 const std::atomic<bool>& stop);
+enum class Until { kItsEnd, kOffRoad };
 
-/// The same, and a run in which a tyre leaves the road ends there.
-[[nodiscard]] Result<std::optional<telemetry::RunSummary>> drive_while_on_road(const Settings& settings,
-                                                                               run::Roads& roads,
-                                                                               const std::atomic<bool>& stop);
+/// Drives one run to its end, or to the first time that a tyre leaves the road: no sockets, no clock. Nothing
+/// when `stop` has ended it before. Fails as protocol::compose() and run::ClosedLoop::create() do.
+[[nodiscard]] Result<std::optional<telemetry::RunSummary>> drive(const Settings& settings, run::Roads& roads,
+                                                                 const std::atomic<bool>& stop,
+                                                                 Until until = Until::kItsEnd);
 
 /// What a run of a plan has come to.
 struct RunOutcome {
@@ -61,9 +59,9 @@ struct SweepOptions {
   std::function<void(std::uint64_t run, const telemetry::RunSummary&)> on_run{};
 };
 
-/// What drives one run of a plan: gives the members of its line behind number and settings, such as
-/// `"back_s":12.5,"is_back":true`; none when it was stopped. An error: the run cannot be driven. Called by
-/// several threads, each with `roads` of its own.
+/// What drives one run of a plan: gives the rest of its line behind number and settings, a JSON object such
+/// as `{"back_s":12.5,"is_back":true}`; none when it was stopped. An error: the run cannot be driven. Called
+/// by several threads, each with `roads` of its own.
 using RunRule = std::function<Result<std::optional<std::string>>(std::uint64_t run, run::Roads& roads)>;
 
 /// Drives the runs of a shard that are not in the file yet, each by `rule`. Each run depends on the plan and

@@ -49,18 +49,6 @@ Result<void> check_fault_part(std::string_view key, const std::string& text) {
   return event ? Result<void>{} : fail(event.error());
 }
 
-/// In quotes where a shell would not take it as it is.
-std::string shell_word(const std::string& text) {
-  const bool is_plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-           std::string_view("-_./:=+@,%*").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  if (is_plain && text.find('*') == std::string::npos) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 /// As a browser's URLSearchParams reads it.
 std::string url_encoded(std::string_view text) {
   std::string encoded;
@@ -137,6 +125,22 @@ Result<protocol::Request> request_of(const Settings& settings) {
     request.faults.push_back(std::move(text));
   }
   return request;
+}
+
+Result<scenario::Scenario> scenario_of(const Settings& settings) {
+  const Result<protocol::Request> request = request_of(settings);
+  return request ? protocol::compose(*request) : fail(request.error());
+}
+
+std::string shell_word(const std::string& text) {
+  const bool is_plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           std::string_view("-_./:=+@,%*").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (is_plain && text.find('*') == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 std::string command_of(const Settings& settings) {

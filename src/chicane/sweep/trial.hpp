@@ -24,6 +24,12 @@ namespace chicane::sweep {
 /// The experiment that `settings` ask for; later ones win.
 [[nodiscard]] Result<protocol::Request> request_of(const Settings& settings);
 
+/// The scenario of request_of(). Fails as protocol::compose() does.
+[[nodiscard]] Result<scenario::Scenario> scenario_of(const Settings& settings);
+
+/// One word of a shell: in quotes where it would not be taken as it is.
+[[nodiscard]] std::string shell_word(const std::string& text);
+
 /// The command that drives it again: `chicane drive --fast --preset weighted --set laps=2 …`.
 [[nodiscard]] std::string command_of(const Settings& settings);
 

@@ -199,8 +199,7 @@ class Tuner {
          std::initializer_list<const Settings*>{&task_.settings, &values, &trials_[trial].settings})
       settings.insert(settings.end(), more->begin(), more->end());
     settings.emplace_back("time_limit_s", number_text(time_limit, kTuningDigits));
-    return is_by_hand_ ? drive(settings, roads_[trial], stop_)
-                       : drive_while_on_road(settings, roads_[trial], stop_);
+    return drive(settings, roads_[trial], stop_, is_by_hand_ ? Until::kItsEnd : Until::kOffRoad);
   }
 
   void add(Verdict& verdict, std::size_t trial, const Run& run) {
@@ -316,9 +315,7 @@ std::vector<std::string> default_keys(const scenario::Scenario& scenario) {
 
 Result<Tuning> tune(const TuneTask& task, const std::atomic<bool>& stop,
                     const std::function<void(int, const Verdict&)>& on_better) {
-  const Result<protocol::Request> request = request_of(task.settings);
-  if (!request) return fail(request.error());
-  const Result<scenario::Scenario> scenario = protocol::compose(*request);
+  const Result<scenario::Scenario> scenario = scenario_of(task.settings);
   if (!scenario) return fail(scenario.error());
   const std::vector<std::string> keys = task.over.empty() ? default_keys(*scenario) : task.over;
   std::vector<Knob> knobs;

@@ -55,6 +55,19 @@ struct Verdict {
   int driven = 0;              ///< trials
   int passed = 0;              ///< trials
   [[nodiscard]] bool is_clean() const noexcept { return off_track_events == 0 && unfinished == 0; }
+
+  /// Tells `row` the name in JSON and the place of each number. `Self`: Verdict, const or not.
+  template <class Self, class Row>
+  static void rows(Self& verdict, Row&& row) {
+    row("lap_time_s", verdict.lap_time);
+    row("margin_m", verdict.margin);
+    row("steering_rate_radps", verdict.steering_rate);
+    row("progress", verdict.progress);
+    row("off_track_events", verdict.off_track_events);
+    row("unfinished", verdict.unfinished);
+    row("driven", verdict.driven);
+    row("passed", verdict.passed);
+  }
 };
 
 struct Tuning {

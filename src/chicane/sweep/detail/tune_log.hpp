@@ -7,6 +7,7 @@
 #include "chicane/base/result.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sweep/plan.hpp"
+#include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/tune.hpp"
 
 namespace chicane::sweep::detail {
@@ -25,11 +26,8 @@ class TuneLog {
   [[nodiscard]] Result<void> add(const Settings& values, const Verdict& verdict);
 
  private:
-  explicit TuneLog(std::string path) : path_{std::move(path)} {}
-  Result<void> append(const std::string& line) const;
-
-  std::string path_;
-  std::map<Settings, Verdict> verdicts_;
+  LineFile file_{};
+  std::map<Settings, Verdict> verdicts_{};
 };
 
 /// Of a task: its settings and the scenario that they mean, keys and objective, the program and its

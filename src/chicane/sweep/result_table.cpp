@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/sweep/comparison.hpp"
+#include "chicane/sweep/result_table.hpp"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/sweep/result_file.hpp"
@@ -76,34 +77,34 @@ std::string setting_text(const Json& value) {
 }
 
 Result<void> add_results(const std::string& file, const std::string& key, ComparedRuns& found) {
-  const auto add = [&](const LinePlace& place, const std::string& line) -> Result<void> {
+  const auto check = [&](const Header& header) -> Result<void> {
+    if (std::find(header.keys.begin(), header.keys.end(), key) != header.keys.end()) return {};
+    return fail(
+        refusal("--compare", key, fmt::format("an axis of the sweep: {}", fmt::join(header.keys, ", "))));
+  };
+  const auto add = [&](std::uint64_t run, const Json& json) -> Result<void> {
     try {
-      const Json json = protocol::parse_json(line);
-      std::vector<std::string> common;
+      std::vector<std::string> common, keys;
       std::string value;
-      std::vector<std::string> keys;
       for (const auto& [name, setting] : json.at("settings").items()) {
         if (name != key) keys.push_back(name);
         if (name != key) common.push_back(setting_text(setting));
         if (name == key) value = setting_text(setting);
       }
       if (found.keys.empty()) found.keys = keys;
-      const auto first = found.first_run.emplace(std::move(common), place.run).first;
+      const auto first = found.first_run.emplace(std::move(common), run).first;
       found.by_first_run[first->second][value] = compared_run(json);
     } catch (const Json::exception&) {
-      return fail(ErrorCode::kParse, fmt::format("got {}, expected results", printable(line)));
+      return fail(ErrorCode::kParse,
+                  fmt::format("got {}, expected results", printable(protocol::json_text(json))));
     }
     return {};
   };
-  const auto contents = read_lines(file, add);
-  if (!contents) return fail(contents.error());
-  const auto header = parse_header(contents->header, file);
-  if (!header) return fail(header.error());
-  if (std::find(header->keys.begin(), header->keys.end(), key) == header->keys.end())
-    return fail(
-        refusal("--compare", key, fmt::format("an axis of the sweep: {}", fmt::join(header->keys, ", "))));
-  return {};
+  return read_runs(file, check, add);
 }
+
+/// A text as it is, all else as JSON; nothing for null.
+std::string cell_of(const Json& value) { return value.is_null() ? "" : csv_cell(setting_text(value)); }
 
 std::string table_head(const ComparedRuns& found, const std::string& key, const std::string& value) {
   std::string text = "|";
@@ -116,6 +117,36 @@ std::string table_head(const ComparedRuns& found, const std::string& key, const 
 }
 
 }  // namespace
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+Result<void> write_csv(const std::string& results, const std::string& csv) {
+  FileWriter out(csv);
+  Header columns;
+  const auto write_head = [&](const Header& header) -> Result<void> {
+    columns = header;
+    std::string row = "run";
+    for (const std::string& key : header.keys) row += ',' + cell_of(key);
+    for (const std::string& column : header.columns) row += ',' + cell_of(column);
+    out.write(row + ",error\r\n");
+    return {};
+  };
+  const auto write_run = [&](std::uint64_t number, const Json& run) -> Result<void> {
+    const Json settings = run.value("settings", Json::object());
+    std::string row = std::to_string(number);
+    for (const std::string& key : columns.keys) row += ',' + cell_of(settings.value(key, Json()));
+    for (const std::string& column : columns.columns) row += ',' + cell_of(run.value(column, Json()));
+    out.write(row + ',' + cell_of(run.value("error", Json())) + "\r\n");
+    return out.check();
+  };
+  const Result<void> read = read_runs(results, write_head, write_run);
+  return read ? out.finish() : fail(read.error());
+}
 
 Result<Comparison> compare(const std::vector<std::string>& results, const std::string& key,
                            const std::string& value) {

@@ -7,8 +7,17 @@
 
 #include "chicane/base/result.hpp"
 
-/// Runs of a sweep that differ in one setting alone, beside each other.
+/// Results of a sweep as tables: a row for each run, or runs that differ in one setting alone beside each
+/// other.
 namespace chicane::sweep {
+
+/// A value of RFC 4180, in quotes where it has to be.
+[[nodiscard]] std::string csv_cell(const std::string& text);
+
+/// Writes a file of results as comma separated values (RFC 4180): `run`, the keys of the axes, the columns.
+/// Lists stand in quotes, as JSON; what was not measured is empty. Memory does not grow with the file.
+/// kParse, kIo.
+[[nodiscard]] Result<void> write_csv(const std::string& results, const std::string& csv);
 
 /// A lap that takes longer by this share is worse.
 inline constexpr double kSlower = 0.01;

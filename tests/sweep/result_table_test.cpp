@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/sweep/comparison.hpp"
+#include "chicane/sweep/result_table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
