@@ -190,8 +190,8 @@ Result<void> LiveSettings::set_row(const protocol::Parameter& row, const Value& 
   return change_live(*setting, std::move(changed));
 }
 
-/// Of the run that goes on, and of the one that is being built, which is `changed`. What only that one can
-/// take waits for it.
+/// Changes the current run, and the one that is being built to `changed`. A change that is valid only in
+/// the latter waits for it.
 Result<void> LiveSettings::change_live(const run::Setting& setting, scenario::Scenario changed) {
   const auto& field = std::get<run::FieldValue>(setting.action);
   scenario::Scenario now = scenario_;

@@ -12,9 +12,9 @@
 
 namespace chicane::live {
 
-/// Computes an answer to the newest of several wishes, on a thread of its own with low priority: whoever
-/// wishes does not wait. A wish that waits is replaced by the next one; one that is being computed is told
-/// so, and its answer is thrown away.
+/// Computes the answer to the newest of several wishes, on a thread of its own with low priority; callers do
+/// not wait. A newer wish replaces one that waits, and cancels one that is being computed, whose answer is
+/// discarded.
 template <class Wish, class Answer>
 class NewestTask {
  public:

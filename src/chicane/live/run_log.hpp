@@ -24,18 +24,18 @@
 
 namespace chicane::live {
 
-/// The run that goes on, in memory, about 130 bytes a step: scenario, changes, laps, and of each control step
-/// all that is needed to compute it again, bit for bit. What computes beside the run reads it from here:
-/// other futures (what_if.hpp, served_futures.hpp) and a second car (rival.hpp).
+/// Events of the current run, in memory, about 130 bytes a step: scenario, changes, laps, and of each control
+/// step all that a bit-identical computation needs. Readers are other futures (what_if.hpp,
+/// served_futures.hpp) and the second car (rival.hpp).
 ///
 /// The control thread notes through one ring; it neither waits nor allocates, but in begin(). A thread of low
-/// priority collects. Of a run that is longer than kMostEvents the newest events are known. One of which
-/// something did not fit into the ring is not known until the next one begins: since() says so.
+/// priority collects. The log keeps the newest kMostEvents events. After an overflow of the ring the run is
+/// unknown until its next start: since() says so.
 ///
-/// With checkpoints the same thread computes the run once more, behind it, at what the run's own control
-/// steps cost, and keeps copies: kSpacing apart for the last moments, farther apart the longer ago, so that
-/// no moment is farther behind one than it is ago. A run of T seconds needs some 2 log2(T / kSpacing), of 8
-/// MB each.
+/// With checkpoints the same thread computes the run a second time, at the cost of the run's own control
+/// steps, and keeps copies: kSpacing apart for the last moments, farther apart the longer ago. The distance
+/// from a moment back to a checkpoint is at most its age. A run of T seconds needs some 2 log2(T / kSpacing)
+/// copies of 8 MB.
 class RunLog {
  public:
   static constexpr std::size_t kMostEvents = 200'000;  ///< two hours with 25 steps a second
@@ -85,9 +85,9 @@ class RunLog {
     /// For recording::branch_run(): of the whole run its scenario first.
     [[nodiscard]] recording::RunEvents recorded() const;
   };
-  /// Any thread: the events from `from` on, or, where that is no place in the present run, of the whole run.
-  /// A run that was started anew is known from there on, with its settings. kInvalidArgument with the reason
-  /// when it is not known.
+  /// Any thread: the events from `from` on; the whole run where `from` is no place in the current one. After
+  /// a restart the run is known from its start line, with its settings. kInvalidArgument with the reason
+  /// when the run is not known.
   [[nodiscard]] Result<Excerpt> since(Place from);
   /// Any thread: behind the newest event.
   [[nodiscard]] Place end();

@@ -27,7 +27,7 @@ wire::ViewerServices run_services(run::RunControls& controls) {
   return services;
 }
 
-LiveSettingsOptions told_to(wire::ViewerEndpoint& viewer, LiveSettingsOptions options) {
+LiveSettingsOptions with_viewer(wire::ViewerEndpoint& viewer, LiveSettingsOptions options) {
   options.on_building = [&viewer](const std::string& what) {
     viewer.change_run([what](protocol::Run& run) { run.building = what; });
   };

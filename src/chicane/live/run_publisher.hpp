@@ -29,7 +29,7 @@ struct LiveHooks {
   std::function<void(std::string_view)> say{};  ///< one line for people; any thread
 };
 
-/// Who hears of a live run beside its viewers. Null: nobody. All outlive the publisher.
+/// Listeners of a live run that are no viewers; null: none. All outlive the publisher.
 struct RunListeners {
   recording::Recorder* recorder = nullptr;
   RunLimit* limit = nullptr;  ///< whose news are recorded
@@ -40,9 +40,9 @@ struct RunListeners {
 /// Pause, step and reset of a run, which `controls` asks for.
 [[nodiscard]] wire::ViewerServices run_services(run::RunControls& controls);
 
-/// `options`, of which viewers are told what is being built, and delay and car once they are others. `viewer`
-/// outlives the settings.
-[[nodiscard]] LiveSettingsOptions told_to(wire::ViewerEndpoint& viewer, LiveSettingsOptions options);
+/// `options` with hooks that show viewers the run that is being built, and the delay and car that hold.
+/// `viewer` outlives the settings.
+[[nodiscard]] LiveSettingsOptions with_viewer(wire::ViewerEndpoint& viewer, LiveSettingsOptions options);
 
 /// Hands what happens in a live run to viewers, to the settings that they see, and to its listeners. Adds
 /// what nobody asked for: that a fault began or ended by itself, and, once for each run, that it is over. One
@@ -60,8 +60,8 @@ class RunPublisher {
   /// The run is over: tells viewers why, and gives true, the first time. A run that is driven on stays over.
   bool end(const telemetry::RunSummary& summary);
   [[nodiscard]] bool has_told_end() const { return has_told_end_; }
-  /// Sets the laps of a run that has ended beside its limit, which is waited for where a lap needs it, until
-  /// `wants_stop` (RunLimit::compare()). Pre: there is a limit.
+  /// Compares the laps of a run that has ended with its limit, and records the limit. Waits for it as
+  /// RunLimit::compare() does, until `wants_stop`. Pre: there is a limit.
   void compare(telemetry::RunSummary& summary, const std::atomic<bool>& wants_stop);
   void say(std::string_view line) const;
 

@@ -27,17 +27,17 @@ protocol::Run worker_description(const run::ClosedLoop& loop) {
 
 WorkerRun::WorkerRun(std::unique_ptr<run::ClosedLoop> loop, WorkerServer::Send send)
     : loop_{std::move(loop)},
-      settings_{told_to(viewer_, {.scenario = loop_->scenario(),
-                                  .faults = protocol::fault_controls(),
-                                  .build = [this](ChosenRun next) { wish_ = std::move(next); },
-                                  .built = [this]() -> std::optional<Result<void>> {
-                                    if (!wish_) return std::nullopt;
-                                    auto built =
-                                        build_run(*std::exchange(wish_, std::nullopt), &worker_description);
-                                    if (!built) return fail(built.error());
-                                    built_ = std::move(*built);
-                                    return Result<void>{};
-                                  }}),
+      settings_{with_viewer(viewer_, {.scenario = loop_->scenario(),
+                                      .faults = protocol::fault_controls(),
+                                      .build = [this](ChosenRun next) { wish_ = std::move(next); },
+                                      .built = [this]() -> std::optional<Result<void>> {
+                                        if (!wish_) return std::nullopt;
+                                        auto built = build_run(*std::exchange(wish_, std::nullopt),
+                                                               &worker_description);
+                                        if (!built) return fail(built.error());
+                                        built_ = std::move(*built);
+                                        return Result<void>{};
+                                      }}),
                 controls_.settings},
       viewer_{
           {.run = worker_description(*loop_), .services = run_services(controls_), .parameters = &settings_}},

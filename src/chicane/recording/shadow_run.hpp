@@ -26,8 +26,8 @@ struct ShadowObservers {
   std::function<void(const telemetry::CompletedLap&)> on_lap{};
 };
 
-/// A run of ours beside another one: begun from a scenario, a loop or a copy of a shadow run, computed again
-/// event by event with follow(), changed with apply(), and driven on by itself in virtual time with drive().
+/// A run of our simulator in the shadow of another run: begun from a scenario, a loop or a copy of a shadow
+/// run, computed event by event with follow(), changed with apply(), and driven in virtual time with drive().
 /// One thread.
 class ShadowRun {
  public:
@@ -58,8 +58,8 @@ class ShadowRun {
   void apply(const run::Setting& setting);
   /// Physics up to the next control step.
   void finish_cycle();
-  /// Drives by itself until `is_enough`, asked before each physics step, or until the car is lost; a lap that
-  /// the controller wants is planned beside it (LapPlanner, virtual clock).
+  /// Drives until `is_enough`, asked before each physics step, or until the car is lost. Plans the laps that
+  /// the controller wants (LapPlanner, virtual clock).
   void drive(const std::function<bool()>& is_enough);
 
   [[nodiscard]] run::ClosedLoop& loop() const { return *loop_; }
