@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "chicane/base/dual.hpp"
 #include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/problem.hpp"
+#include "problems/dual.hpp"
 
 namespace chicane::bench {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "chicane/base/dual.hpp"
 #include "families/kkt.hpp"
+#include "problems/dual.hpp"
 
 namespace chicane::bench {
 

@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "chicane/base/angle.hpp"
-#include "chicane/base/dual.hpp"
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
@@ -15,6 +14,7 @@
 #include "chicane/controller/local_fit.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/warm_start.hpp"
+#include "problems/dual.hpp"
 
 namespace chicane::bench {
 

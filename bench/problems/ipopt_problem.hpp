@@ -9,10 +9,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "chicane/base/dual.hpp"
 #include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/problem.hpp"
 #include "problems/cpu_time.hpp"
+#include "problems/dual.hpp"
 
 namespace chicane::bench {
 

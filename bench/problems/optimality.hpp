@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "chicane/base/dual.hpp"
 #include "chicane/solver/problem.hpp"
+#include "problems/dual.hpp"
 
 namespace chicane::bench {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chicane/base/dual.hpp"
+#include "chicane/base/jet.hpp"
 #include "chicane/model/prediction.hpp"
 
 namespace chicane::model {
@@ -87,9 +87,9 @@ TEST(SlidingBound, KnowsTheLongestDelayThatPermitsASlide) {
 TEST(SlidingBound, HasContinuousSlopes) {
   const SlidingBound bound(udacity_params());
   for (double v = 2.5; v < 70.0; v += 2.5) {
-    const auto at = bound.rear(Dual<1>::variable(v, 0));
+    const auto at = bound.rear(FullJet<1>::variable(v, 0));
     const double step = 1e-5;
-    EXPECT_NEAR(at.d[0], (bound.rear(v + step) - bound.rear(v - step)) / (2.0 * step), 0.02) << v;
+    EXPECT_NEAR(at.slopes[0], (bound.rear(v + step) - bound.rear(v - step)) / (2.0 * step), 0.02) << v;
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/base/jet.hpp"
 
 namespace chicane::model {
 namespace {
@@ -23,11 +24,11 @@ TEST(FrictionCurve, PassesThroughItsTwoPointsAndStaysAtTheAsymptote) {
 
 TEST(FrictionCurve, StartsWithTheSlopeOfItsExtremumAndIsFlatThere) {
   const FrictionCurve curve{0.2, 1.0, 0.5, 0.75};
-  EXPECT_NEAR(curve(Dual<1>::variable(0.0, 0)).d[0], 5.0, kRounding);
-  EXPECT_NEAR(curve(Dual<1>::variable(0.2 - 1e-9, 0)).d[0], 0.0,
+  EXPECT_NEAR(curve(FullJet<1>::variable(0.0, 0)).slopes[0], 5.0, kRounding);
+  EXPECT_NEAR(curve(FullJet<1>::variable(0.2 - 1e-9, 0)).slopes[0], 0.0,
               1e-7);  // slope changes by 20 per unit of slip
-  EXPECT_NEAR(curve(Dual<1>::variable(0.2 + 1e-9, 0)).d[0], 0.0, 1e-7);
-  EXPECT_NEAR(curve(Dual<1>::variable(0.5 - 1e-9, 0)).d[0], 0.0, 1e-7);
+  EXPECT_NEAR(curve(FullJet<1>::variable(0.2 + 1e-9, 0)).slopes[0], 0.0, 1e-7);
+  EXPECT_NEAR(curve(FullJet<1>::variable(0.5 - 1e-9, 0)).slopes[0], 0.0, 1e-7);
 }
 
 TEST(FrictionCurve, NeverExceedsItsExtremum) {
@@ -38,7 +39,7 @@ TEST(FrictionCurve, NeverExceedsItsExtremum) {
 
 TEST(MagicFormula, HasSlopeBcdAtZeroAndPeakD) {
   const MagicFormula tire{.stiffness = 10.0, .shape = 1.5, .peak = 1.2};
-  EXPECT_NEAR(tire(Dual<1>::variable(0.0, 0)).d[0], 18.0, kRounding);
+  EXPECT_NEAR(tire(FullJet<1>::variable(0.0, 0)).slopes[0], 18.0, kRounding);
   EXPECT_NEAR(tire(std::tan(kPi / 3.0) / 10.0), 1.2, kRounding);  // sin = 1 where C atan(B x) = π/2
   EXPECT_LT(tire(1.0), 1.2);
 }
@@ -51,7 +52,7 @@ TEST(MagicFormula, HasItsSecantWithoutAnAngle) {
   }
 }
 
-TEST(TireCurves, AreOddAndDualsGiveTheirSlope) {
+TEST(TireCurves, AreOddAndJetsGiveTheirSlope) {
   const FrictionCurve curve;
   const MagicFormula magic{.stiffness = 9.0, .shape = 1.4, .peak = 1.1, .curvature = -0.5};
   const auto check = [](const auto& f) {
@@ -59,7 +60,8 @@ TEST(TireCurves, AreOddAndDualsGiveTheirSlope) {
     for (double x : {-2.0, -0.7, -0.31, -0.05, 0.013, 0.12, 0.33, 0.49, 1.3}) {
       EXPECT_NEAR(f(-x), -f(x), kRounding) << x;
       const double difference = (f(x + kStep) - f(x - kStep)) / (2.0 * kStep);
-      EXPECT_NEAR(f(Dual<1>::variable(x, 0)).d[0], difference, 1e-7) << x;  // kStep² · third derivative
+      EXPECT_NEAR(f(FullJet<1>::variable(x, 0)).slopes[0], difference, 1e-7)
+          << x;  // kStep² · third derivative
     }
   };
   check([&](const auto& x) { return curve(x); });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "chicane/base/dual.hpp"
+#include "chicane/base/jet.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/model/vehicle.hpp"
 
@@ -36,7 +36,7 @@ struct BodyMotion {
 ///           of wheelbase l_f + l_r with a time constant of about v₀ / (C g). Smooth everywhere. Slips up to
 ///           the tyre's peak; beyond, forces saturate and never fall.
 /// Costs     one sin, cos and sqrt, two tanh; no allocation; const and safe to share. Template over the
-///           scalar: call it with Dual<N> for Jacobians.
+///           scalar: call it with FullJet<N> for Jacobians.
 struct SingleTrack {
   static constexpr double kSlipSpeed = 3.0;  ///< v₀ [m/s]: lateral stiffness is that of at least this speed
 

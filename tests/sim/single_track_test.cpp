@@ -34,7 +34,7 @@ std::array<T, 7> derivative(const SingleTrack& model, const std::array<T, 9>& po
   return flat(model.derivative(unflat(x), point[7], point[8]));
 }
 
-TEST(SingleTrack, DualJacobianEqualsCentralDifferences) {
+TEST(SingleTrack, JetJacobianEqualsCentralDifferences) {
   Random random{11};
   for (const VehicleParams& car : cars()) {
     const SingleTrack model{car};
@@ -45,9 +45,9 @@ TEST(SingleTrack, DualJacobianEqualsCentralDifferences) {
                                   random.uniform(-3, 3),     random.uniform(-1, 1),
                                   random.uniform(-0.4, 0.4), random.uniform(-1, 1),
                                   random.uniform(-9, 5)};
-      std::array<Dual<9>, 9> dual;
-      for (std::size_t i = 0; i < 9; ++i) dual[i] = Dual<9>::variable(point[i], static_cast<int>(i));
-      const std::array<Dual<9>, 7> exact = derivative(model, dual);
+      std::array<FullJet<9>, 9> jets;
+      for (std::size_t i = 0; i < 9; ++i) jets[i] = FullJet<9>::variable(point[i], static_cast<int>(i));
+      const std::array<FullJet<9>, 7> exact = derivative(model, jets);
       for (std::size_t i = 0; i < 9; ++i) {
         constexpr double kStep = 1e-5;
         std::array<double, 9> above = point;
@@ -60,7 +60,7 @@ TEST(SingleTrack, DualJacobianEqualsCentralDifferences) {
           const double difference = (f[row] - g[row]) / (2.0 * kStep);
           // Central differences err by kStep² times a third derivative of up to about 1e3, and rounding 1e-16
           // · 100 / kStep.
-          EXPECT_NEAR(exact[row].d[i], difference, 1e-6 * (1.0 + std::fabs(difference)))
+          EXPECT_NEAR(exact[row].slopes[i], difference, 1e-6 * (1.0 + std::fabs(difference)))
               << car.name << " row " << row << " column " << i << " v " << v;
         }
       }

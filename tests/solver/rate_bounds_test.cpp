@@ -49,7 +49,7 @@ bool inputs_are_admissible(const bench::RateInstance& instance, const Trajectory
 
 /// dJ/du of the simulated inputs by forward derivatives, all of stage 0 first.
 std::vector<double> gradient(const bench::RateInstance& instance, const Trajectory& t) {
-  using T = Dual<1>;
+  using T = FullJet<1>;
   std::vector<double> g;
   for (int stage = 0; stage < t.horizon; ++stage) {
     for (int input = 0; input < 2; ++input) {
@@ -57,7 +57,7 @@ std::vector<double> gradient(const bench::RateInstance& instance, const Trajecto
         const double u = t.u[static_cast<std::size_t>(k)][static_cast<std::size_t>(m)];
         return k == stage && m == input ? T::variable(u, 0) : T(u);
       });
-      g.push_back(cost.d[0]);
+      g.push_back(cost.slopes[0]);
     }
   }
   return g;

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "chicane/base/dual.hpp"
+#include "chicane/base/jet.hpp"
 #include "chicane/solver/describe.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 #include "problems/corridor_problem.hpp"
@@ -41,24 +41,29 @@ Derivatives<Nz> derivatives_of(const J& row) {
   return all;
 }
 
-/// Derivatives of each row of a structured problem, jets against duals of one type.
-template <class Row, class DualRow, int Nz>
-void expect_same_derivatives(const Row& jets, const DualRow& duals) {
+/// Derivatives of each row of a structured problem, jets of their own types against those of one type that
+/// store everything.
+template <class Row, class FullRow, int Nz>
+void expect_same_derivatives(const Row& jets, const FullRow& full) {
   constexpr auto count = static_cast<std::size_t>(Nz);
   std::size_t n = 0;
-  const auto compare = [&n](const Derivatives<count>& x, const Dual<Nz, Dual<Nz>>& y) {
+  const auto compare = [&n](const Derivatives<count>& x, const FullJet<Nz, 2>& y) {
     for (std::size_t i = 0; i < count; ++i) {
-      EXPECT_NEAR(x.first[i], y.d[i].v, 1e-12 * (1.0 + std::fabs(x.first[i]))) << n << ' ' << i;
+      EXPECT_NEAR(x.first[i], y.slopes[i], 1e-12 * (1.0 + std::fabs(x.first[i]))) << n << ' ' << i;
       for (std::size_t j = 0; j < count; ++j) {
         const double h = x.second[i][j];
-        EXPECT_NEAR(h, y.d[i].d[j], 1e-10 * (1.0 + std::fabs(h))) << n << ' ' << i << ' ' << j;
+        EXPECT_NEAR(
+            h,
+            y.curvatures[static_cast<std::size_t>(Pairs::index_of(static_cast<int>(i), static_cast<int>(j)))],
+            1e-10 * (1.0 + std::fabs(h)))
+            << n << ' ' << i << ' ' << j;
       }
     }
     ++n;
   };
   jet::repeat<solver::kRowSize<Row>>([&](auto i) {
     compare(derivatives_of<count>(solver::as_jet<double, 2>(std::get<i>(jets))),
-            Dual<Nz, Dual<Nz>>(std::get<i>(duals)));
+            FullJet<Nz, 2>(std::get<i>(full)));
   });
 }
 
@@ -66,29 +71,29 @@ template <class P>
 void check_derivatives(const P& problem, const std::array<double, P::kNx>& x0,
                        const std::array<double, P::kNu>& u0) {
   constexpr int nz = P::kNx + P::kNu;
-  using D = Dual<nz, Dual<nz>>;
+  using D = FullJet<nz, 2>;
   solver::StateJets<P, double, 2> x;
   solver::InputJets<P, double, 2> u;
   std::array<D, P::kNx> xd;
   std::array<D, P::kNu> ud;
   jet::repeat<P::kNx>([&](auto i) {
     std::get<i>(x).v = x0[i];
-    xd[i] = D::variable(Dual<nz>::variable(x0[i], i), i);
+    xd[i] = D::variable(x0[i], i);
   });
   jet::repeat<P::kNu>([&](auto m) {
     std::get<m>(u).v = u0[m];
-    ud[m] = D::variable(Dual<nz>::variable(u0[m], P::kNx + m), P::kNx + m);
+    ud[m] = D::variable(u0[m], P::kNx + m);
   });
-  const auto check = [](const auto& jets, const auto& duals) {
-    expect_same_derivatives<std::remove_cvref_t<decltype(jets)>, std::remove_cvref_t<decltype(duals)>, nz>(
-        jets, duals);
+  const auto check = [](const auto& jets, const auto& full) {
+    expect_same_derivatives<std::remove_cvref_t<decltype(jets)>, std::remove_cvref_t<decltype(full)>, nz>(
+        jets, full);
   };
   check(problem.dynamics(1, x, u), problem.dynamics(1, xd, ud));
   check(problem.residual(1, x, u), problem.residual(1, xd, ud));
   if constexpr (P::kNc > 0) check(problem.constraint(1, x, u), problem.constraint(1, xd, ud));
 }
 
-TEST(StructuredProblem, HasTheFirstAndSecondDerivativesOfDuals) {
+TEST(StructuredProblem, HasTheFirstAndSecondDerivativesOfFullJets) {
   Random random{4};
   for (int turn = 0; turn < 20; ++turn) {
     const auto instance = bench::random_instance(random, 20);

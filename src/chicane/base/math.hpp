@@ -32,6 +32,9 @@ struct SineCosine {
 [[nodiscard]] inline double abs(double x) noexcept { return std::fabs(x); }
 [[nodiscard]] inline double hypot(double x, double y) noexcept { return std::sqrt(x * x + y * y); }
 
+/// The plain number: packs and jets have the value that is in them.
+[[nodiscard]] constexpr double value_of(double x) noexcept { return x; }
+
 /// Choices as functions, so that code over any scalar needs no branch: the same names work on packs and jets.
 [[nodiscard]] constexpr double select(bool chosen, double a, double b) noexcept { return chosen ? a : b; }
 [[nodiscard]] constexpr double max(double a, double b) noexcept { return a > b ? a : b; }

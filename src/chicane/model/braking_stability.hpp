@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "chicane/base/dual.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/model/vehicle.hpp"
 
 namespace chicane::model {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "chicane/base/angle.hpp"
-#include "chicane/base/dual.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/model/vehicle.hpp"
 

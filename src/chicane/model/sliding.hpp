@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "chicane/base/dual.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/model/vehicle.hpp"
 
 namespace chicane::model {

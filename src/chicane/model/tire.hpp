@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "chicane/base/dual.hpp"
+#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::model {
 
 /// Normalised tyre curves: force over load from slip. Odd functions of slip, templates over the scalar, so
-/// that a Dual gives their slope. Equations and sources: docs/model.md, eq. 10–12.
+/// that a jet gives their slope. Equations and sources: docs/model.md, eq. 10–12.
 
 /// Magic formula y = D sin(C atan(B x − E (B x − atan(B x)))), slope B C D at 0 (eq. 10; Pacejka 2012,
 /// §4.3.1).
@@ -20,8 +20,11 @@ struct MagicFormula {
   template <class T>
   [[nodiscard]] T operator()(const T& x) const {
     const T bx = stiffness * x;
+    if (curvature == 0.0) return peak * sin(shape * atan(bx));
     return peak * sin(shape * atan(bx - curvature * (bx - atan(bx))));
   }
+  /// Slip of the largest value: C atan(B x) = π/2. Pre: E = 0, C > 1.
+  [[nodiscard]] double peak_slip() const noexcept { return tan(kPi / (2.0 * shape)) / stiffness; }
 };
 
 /// sin(C atan(x/C)) over x, by the square of the slip x > 0: the magic formula's secant. For C = 3/2 without

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "chicane/base/angle.hpp"
-#include "chicane/base/dual.hpp"
+#include "chicane/base/jet.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::sim {
@@ -140,10 +140,10 @@ double UdacityCar::forward_force(Wheel& wheel, double speed_along, double dt) co
   const double denominator =
       is_driven ? fastest + params_.driven_speed_offset : std::max(fastest, params_.rolling_speed_floor);
   wheel.slip_ratio = (rim - speed_along) / denominator;
-  const Dual<1> normalised = params_.forward(Dual<1>::variable(wheel.slip_ratio, 0));
+  const FullJet<1> normalised = params_.forward(FullJet<1>::variable(wheel.slip_ratio, 0));
   const double force = wheel.load * normalised.v;
   const double stiffness =
-      std::max(wheel.load * normalised.d[0] / denominator, 0.0);  // per slip speed [N s/m]
+      std::max(wheel.load * normalised.slopes[0] / denominator, 0.0);  // per slip speed [N s/m]
   const double body_gain = dt * stiffness * 4.0 / params_.mass;
   const double wheel_gain = dt * stiffness * wheel.radius / wheel.inertia;
 

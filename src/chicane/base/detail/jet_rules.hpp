@@ -55,6 +55,13 @@ struct Jet {
       !(F == First && U == Unit &&
         P == Second)) constexpr Jet(const Jet<V, Order, F, U, P>& narrow);  // NOLINT: as safe as int to long
 
+  /// Variable number `index` itself. Pre: it is in First.
+  static constexpr Jet variable(const V& value, int index) requires(Unit == 0) {
+    Jet result(value);
+    result.slopes[rank_of(First, index)] = V(1.0);
+    return result;
+  }
+
   // clang-format off: compilers show the comment
   operator double() const =
       delete;  // NOLINT  a jet is no number: write sin(x), not std::sin(x); auto y = x, not double y = x
@@ -65,6 +72,11 @@ struct Jet {
   constexpr Jet& operator*=(const Jet& o) { return *this = *this * o; }
   constexpr Jet& operator/=(const Jet& o) { return *this = *this / o; }
 };
+
+/// A number with its derivatives by N variables, all stored: for code over arrays of one scalar.
+template <int N, int Order = 1>
+using FullJet = Jet<double, Order, first_variables(N), 0,
+                    Order == 2 ? Pairs::of(first_variables(N), first_variables(N)) : Pairs{}>;
 
 /// Variable number `Index` itself.
 template <int Order, int Index, class V>

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
 
+#include "chicane/base/jet.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/lap_time/detail/collocation.hpp"
-#include "chicane/lap_time/detail/curved.hpp"
 
 namespace chicane::lap_time {
 
@@ -25,7 +26,7 @@ struct RoadNodes {
 /// First variables of every plant's model: position and motion of the body in the road's axes.
 enum CommonState { kOffset, kHeading, kVx, kVy, kYawRate, kSteer, kPedal };
 
-/// Size of a model, and the functions of a node by numbers and by curved numbers.
+/// Size of a model, and the functions of a node by numbers and by jets.
 template <class Model>
 class ModelFunctions final : public NodeFunctions {
  public:
@@ -42,21 +43,20 @@ class ModelFunctions final : public NodeFunctions {
   }
   void derivatives(int node, const double* z, const double* weights, double* out, double* jacobian,
                    double* hessian) const override {
-    using C = Curved<Model::kVariables>;
+    using T = LooseJet<double, Model::kVariables>;
     constexpr std::size_t kCount = Model::kStates + Model::kEquations + 1 + Model::kInequalities;
-    std::array<C, Model::kVariables> x;
-    std::array<C, kCount> f;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      x[i] = C(z[i]);
-      x[i].g[i] = 1.0;
-    }
-    model_.template functions<C>(static_cast<std::size_t>(node), x.data(), f.data());
-    for (std::size_t i = 0; i < C::kEntries; ++i) hessian[i] = 0.0;
+    std::array<T, Model::kVariables> x;
+    std::array<T, kCount> f;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = T::variable(z[i], static_cast<int>(i));
+    model_.template functions<T>(static_cast<std::size_t>(node), x.data(), f.data());
+    std::fill_n(hessian, T::kCurvatures, 0.0);
     for (std::size_t m = 0; m < kCount; ++m) {
       out[m] = f[m].v;
-      for (std::size_t i = 0; i < x.size(); ++i) jacobian[m * x.size() + i] = f[m].g[i];
+      std::copy(f[m].slopes.begin(), f[m].slopes.end(), jacobian + m * x.size());
       if (weights[m] == 0.0) continue;
-      for (std::size_t i = 0; i < C::kEntries; ++i) hessian[i] += weights[m] * f[m].h[i];
+      f[m].each_curvature([&](std::size_t i, std::size_t j, double curvature) {
+        hessian[j * (j + 1) / 2 + i] += weights[m] * curvature;
+      });
     }
   }
 

@@ -8,6 +8,7 @@
 
 namespace chicane {
 
+/// For checks of the solver, which share no line with its jets and have no limit of variables.
 /// Forward-mode dual number: a value and its derivatives with respect to N variables. T may itself be a Dual,
 /// which gives exact second derivatives. Use: write a model as a template over its scalar and call it with
 /// Dual<N>.
@@ -90,7 +91,6 @@ struct Dual {
 };
 
 /// The plain number inside, however deeply nested.
-[[nodiscard]] constexpr double value_of(double x) noexcept { return x; }
 template <int N, class T>
 [[nodiscard]] constexpr double value_of(const Dual<N, T>& x) noexcept {
   return value_of(x.v);
