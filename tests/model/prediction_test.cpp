@@ -103,14 +103,6 @@ TEST(PredictionModel, SteersForTheYawAccelerationAskedFor) {
   }
 }
 
-TEST(PredictionModel, IsLessStableTheFasterAndTheHarderItBrakes) {
-  const PredictionModel model(road_car_params());
-  EXPECT_GT(model.stability(20.0, 3.0), model.stability(40.0, 3.0));
-  EXPECT_GT(model.stability(40.0, 3.0), model.stability(40.0, 7.0));
-  EXPECT_LT(model.stability(45.0, 8.0), 1.0) << "the rear is unloaded";
-  EXPECT_EQ(model.stability(20.0, 0.0), std::numeric_limits<double>::infinity()) << "it understeers";
-}
-
 /// Lateral force of the front axle over its load, straight ahead with the wheel turned by `slip`.
 double front_force(const PredictionModel& model, double slip, double acceleration) {
   constexpr double kShort = 1e-6;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "chicane/base/math.hpp"
+#include "chicane/model/yaw_stability.hpp"
 
 namespace chicane::model {
 namespace {
@@ -69,14 +70,7 @@ double BrakingStability::pole(double v, double use, double force) const noexcept
   const double front = load * slope(front_, use, force / load);
   const double rear = load * slope(rear_, use, force / load);
   if (!(rear > 0.0)) return std::numeric_limits<double>::infinity();
-  const double a = car_.front_axle;
-  const double b = car_.rear_axle;
-  const double turn = car_.mass / car_.yaw_inertia;
-  const double damping = 0.5 * (front + rear + turn * (a * a * front + b * b * rear)) / v;
-  const double wheelbase = a + b;
-  const double spring = turn * (front * rear * wheelbase * wheelbase / (v * v) -
-                                (1.0 - car_.steer_helper) * (a * front - b * rear));
-  return std::sqrt(std::max(damping * damping - spring, 0.0)) - damping;
+  return yaw_pole(car_, v, {front, rear});
 }
 
 double BrakingStability::most_braking(double v, double use) const noexcept {

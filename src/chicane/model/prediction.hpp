@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/math.hpp"
@@ -153,18 +152,6 @@ class PredictionModel {
             tires.along_rear};
   }
 
-  /// Static stability at speed v [m/s] and deceleration `a` [m/s²] on a straight: k_f k_r L² over
-  /// v² (a k_f − b k_r), where load transfer and braking slip have changed the stiffnesses. Below 1 the car
-  /// turns away from its path by itself; infinite where it understeers.
-  [[nodiscard]] double stability(double v, double a) const noexcept {
-    const model::VehicleParams& p = vehicle_;
-    const Tires<double> tires = tire_state<false>(BodyMotion<double>{v, 0.0, 0.0, 0.0, -a}, 0.0);
-    const double front = tires.stiffness_front, rear = tires.stiffness_rear;
-    const double moment = (1.0 - p.steer_helper) * v * v * (p.front_axle * front - p.rear_axle * rear);
-    if (!(moment > 0.0)) return std::numeric_limits<double>::infinity();
-    return front * rear * p.wheelbase() * p.wheelbase() / moment;
-  }
-
   /// The road-wheel angle at which the yaw rate begins to change by `yaw_acceleration` [rad/s²], lag apart;
   /// no more slip than gives nine tenths of the front tyres' peak [rad].
   [[nodiscard]] double steer_for(const BodyMotion<double>& m, double yaw_acceleration) const noexcept {
@@ -248,34 +235,34 @@ class PredictionModel {
     const T side = 2.0 * positive<kSmooth>(sideways, kBlend) - sideways;
     // An inner wheel that is driven too hard spins; anti-lock keeps one that brakes.
     const T driving = (drive + kLeastSide) / (drive + brake + kLeastSide);
-    struct Axle {
+    struct LoadedAxle {
       double cornering, unloading, rest;
       T slip, part, grip, pull, along, square, stiffness;
     };
-    Axle axles[2] = {{p.cornering_front,
-                      unloading_front_,
-                      p.rear_axle * per_wheelbase,
-                      slip_front,
-                      part_front,
-                      grip_front,
-                      T(p.drive_share_front * drive + p.brake_share_front * brake),
-                      {},
-                      {},
-                      {}},
-                     {p.cornering_rear,
-                      unloading_rear_,
-                      p.front_axle * per_wheelbase,
-                      slip_rear,
-                      part_rear,
-                      grip_rear,
-                      T((1.0 - p.drive_share_front) * drive + (1.0 - p.brake_share_front) * brake),
-                      {},
-                      {},
-                      {}}};
+    LoadedAxle axles[2] = {{p.cornering_front,
+                            unloading_front_,
+                            p.rear_axle * per_wheelbase,
+                            slip_front,
+                            part_front,
+                            grip_front,
+                            T(p.drive_share_front * drive + p.brake_share_front * brake),
+                            {},
+                            {},
+                            {}},
+                           {p.cornering_rear,
+                            unloading_rear_,
+                            p.front_axle * per_wheelbase,
+                            slip_rear,
+                            part_rear,
+                            grip_rear,
+                            T((1.0 - p.drive_share_front) * drive + (1.0 - p.brake_share_front) * brake),
+                            {},
+                            {},
+                            {}}};
     T lost[2] = {T(0.0), T(0.0)};
     // Loops that stay loops: code for one wheel, a quarter of what the compiler would have to work on.
 #pragma GCC unroll 1
-    for (Axle& axle : axles) {
+    for (LoadedAxle& axle : axles) {
       const T z = (axle.cornering / p.friction) * axle.slip;
       const T z2 = z * z;
       const T shift = axle.unloading * side;

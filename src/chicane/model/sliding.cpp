@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "chicane/base/math.hpp"
+#include "chicane/model/yaw_stability.hpp"
 
 namespace chicane::model {
 namespace {
@@ -49,14 +50,10 @@ double SlidingBound::slope(double slip) const noexcept {
 }
 
 double SlidingBound::pole(double v, double front_slip, double rear_slip) const noexcept {
-  const double a = car_.front_axle, b = car_.rear_axle, wheelbase = car_.wheelbase();
-  const double per_inertia = car_.mass / car_.yaw_inertia;
-  const double front = car_.cornering_front * car_.load(v) * b / wheelbase * slope(front_slip);
-  const double rear = car_.cornering_rear * car_.load(v) * a / wheelbase * slope(rear_slip);
-  const double p = (front + rear + per_inertia * (a * a * front + b * b * rear)) / (2.0 * v);
-  const double q = per_inertia * (front * rear * wheelbase * wheelbase / (v * v) -
-                                  (1.0 - car_.steer_helper) * (a * front - b * rear));
-  return p * p > q ? std::sqrt(p * p - q) - p : -p;
+  const double load = car_.load(v);
+  const double front = car_.cornering_front * load * car_.rear_axle / car_.wheelbase() * slope(front_slip);
+  const double rear = car_.cornering_rear * load * car_.front_axle / car_.wheelbase() * slope(rear_slip);
+  return yaw_pole(car_, v, {front, rear});
 }
 
 double SlidingBound::worst_pole(double v, double rear_slip) const noexcept {

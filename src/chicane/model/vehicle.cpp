@@ -22,7 +22,7 @@ constexpr std::array kOptions{
     option<&P::length>("length", unit::kMetre, 0.01, 30, "Length of the body."),
     option<&P::width>("width", unit::kMetre, 0.01, 10, "Width of the body."),
     option<&P::kinematic_length>("kinematic_length", unit::kMetre, 0.01, 20, "L_f of the described model."),
-    option<&P::mass>("mass", unit::kKilogram, 1e-3, 1e5, "Mass."),
+    option<&P::mass>("mass", unit::kKilogram, 1e-3, 1e5, "Mass, wheels included."),
     option<&P::yaw_inertia>("yaw_inertia", unit::kInertia, 1e-8, 1e6,
                             "Moment of inertia about the vertical axis."),
     option<&P::height>("height", unit::kMetre, 0, 5,
@@ -37,7 +37,7 @@ constexpr std::array kOptions{
                                 "Lateral force over load for each radian of slip, front."),
     option<&P::cornering_rear>("cornering_rear", unit::per("1/rad"), 0.1, 200,
                                "Lateral force over load for each radian of slip, rear."),
-    option<&P::friction>("friction", unit::kNone, 0.01, 5, "Largest lateral force over load."),
+    option<&P::friction>("friction", unit::kNone, 0.01, 5, "Peak force of a tyre over its load."),
     option<&P::friction_coupling>(
         "friction_coupling", unit::kNone, 0, 1,
         "1 where braking and cornering share the tyre's force, 0 where they do not."),
@@ -77,7 +77,7 @@ constexpr std::array kOptions{
     option<&P::drive_share_front>("drive_share_front", unit::kNone, 0, 1,
                                   "Share of the front wheels in the drive force."),
     option<&P::load_sensitivity>("load_sensitivity", unit::kNone, 0, 0.5,
-                                 "Share of the friction that an axle loses when its load doubles."),
+                                 "Share of the friction that a tyre loses when its load doubles."),
     option<&P::tire_shape>("tire_shape", unit::kNone, 0, 2.5,
                            "C of the magic formula; 0: the original simulator's curve."),
     option<&P::reverse_speed>("reverse_speed", unit::kSpeed, 0, 10,
@@ -154,29 +154,16 @@ double VehicleParams::cornering_friction() const noexcept {
 
 VehicleParams road_car_params() {
   VehicleParams p;
+  static_cast<CarBody&>(p) = {};
   p.name = "road-car";
-  p.brake_share_front = 0.72;
-  p.drive_share_front = 0.4;
-  p.roll_share_front = 0.58;
-  p.load_sensitivity = 0.08;
   p.tire_shape = 1.5;
   p.reverse_speed = 0.0;
   p.brake_latch_speed = 0.0;
-  p.front_axle = 1.25;
-  p.rear_axle = 1.45;
-  p.track_width = 1.60;
-  p.tire_width = 0.205;
   p.length = 4.30;
   p.width = 1.80;
   p.kinematic_length = 2.70;
-  p.mass = 1300.0;
-  p.yaw_inertia = 2000.0;
-  p.height = 0.5;
-  p.steer_rate_limit = 1.5707963267948966;
-  p.steer_lag = 0.05;
   p.cornering_front = 16.2;
   p.cornering_rear = 18.0;
-  p.friction = 1.2;
   p.friction_coupling = 1.0;
   p.load_constant = 9.81;
   p.load_per_speed = 0.0;
@@ -188,7 +175,6 @@ VehicleParams road_car_params() {
   p.drag_quadratic = 2.9e-4;
   p.brake_acceleration = 9.14;
   p.brake_throttle_limit = 1.0;
-  p.drive_lag = 0.1;
   return p;
 }
 

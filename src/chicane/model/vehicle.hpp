@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <limits>
 #include <span>
 #include <string>
@@ -10,41 +11,87 @@
 
 namespace chicane::model {
 
+/// An axle, as shares of the car.
+struct Axle {
+  double x;            ///< ahead of the centre of mass [m]
+  double half_track;   ///< from its middle to the centre of a wheel [m]
+  double rest;         ///< of the load at rest, for each of its wheels
+  double roll_share;   ///< of the load that moves to the outer wheels in a bend
+  double drive_share;  ///< of the drive force
+  double brake_share;  ///< of the braking force
+};
+
+/// What plants and controllers' models of a car have in common. Defaults are those of an ordinary car, the
+/// plant `road-car`; origin of each number: docs/plants.md, table 4.
+struct CarBody {
+  double front_axle = 1.25;         ///< centre of mass to front axle [m]
+  double rear_axle = 1.45;          ///< centre of mass to rear axle [m]
+  double track_width = 1.60;        ///< between the centres of the wheels of an axle [m]
+  double tire_width = 0.205;        ///< width of a contact patch [m]
+  double mass = 1300.0;             ///< [kg]
+  double yaw_inertia = 2000.0;      ///< [kg m²]
+  double height = 0.50;             ///< of the centre of mass above the road; 0: no load transfer [m]
+  double roll_share_front = 0.58;   ///< of the load that moves to the outer wheels in a bend
+  double brake_share_front = 0.72;  ///< of the braking force; the front locks first up to 0.9 g, as UN
+                                    ///< R13-H asks of road cars
+  double drive_share_front = 0.40;  ///< of the drive force; open differentials
+  double friction = 1.20;           ///< peak force over load, at rest
+  double load_sensitivity = 0.08;   ///< share of the friction that a tyre loses when its load doubles
+  double steer_limit = 0.4363323129985824;       ///< of the road wheels, 25° [rad]
+  double steer_rate_limit = 1.5707963267948966;  ///< 90°/s [rad/s]
+  double steer_lag = 0.05;                       ///< time constant of the steering [s], 0 = instant
+  double drive_lag = 0.1;                        ///< of drive and brakes [s]
+
+  [[nodiscard]] double wheelbase() const noexcept { return front_axle + rear_axle; }
+  [[nodiscard]] double half_track() const noexcept { return 0.5 * track_width; }
+  [[nodiscard]] double half_tire() const noexcept { return 0.5 * tire_width; }
+  /// The front axle, then the rear one.
+  [[nodiscard]] std::array<Axle, 2> axles() const noexcept {
+    return {Axle{front_axle, half_track(), 0.5 * rear_axle / wheelbase(), roll_share_front, drive_share_front,
+                 brake_share_front},
+            Axle{-rear_axle, half_track(), 0.5 * front_axle / wheelbase(), 1.0 - roll_share_front,
+                 1.0 - drive_share_front, 1.0 - brake_share_front}};
+  }
+
+  friend bool operator==(const CarBody&, const CarBody&) = default;
+};
+
 /// A controller's model of a car: geometry, a single track with saturating tyres, and a longitudinal
 /// law. The simulator's plants are richer (sim/plant.hpp). Values of shipped cars: data/cars/*.yaml, each
 /// with its origin.
-struct VehicleParams {
+struct VehicleParams : CarBody {
+  VehicleParams()
+      : CarBody{.front_axle = 1.27,
+                .rear_axle = 1.60,
+                .track_width = 2.0,
+                .tire_width = 0.20,
+                .mass = 1000.0,
+                .yaw_inertia = 1600.0,
+                .height = 0.0,
+                .roll_share_front = 0.5,
+                .brake_share_front = 0.5,
+                .drive_share_front = 0.5,
+                .friction = 1.08,
+                .load_sensitivity = 0.0,
+                .steer_rate_limit = std::numeric_limits<double>::infinity(),
+                .steer_lag = 0.0,
+                .drive_lag = 0.0} {}
+
   std::string name = "udacity";
 
   double scale = 1.0;  ///< of a model car, 0.1 for 1:10: settings of controller and guard in metres and
                        ///< seconds are those of the car in full size (model/similarity.hpp)
 
   // Geometry.
-  double front_axle = 1.27;        ///< centre of mass to front axle [m]
-  double rear_axle = 1.60;         ///< centre of mass to rear axle [m]
-  double track_width = 2.0;        ///< between the centres of the wheels of an axle [m]
-  double tire_width = 0.20;        ///< width of a contact patch [m]
   double length = 4.47;            ///< body [m]
   double width = 2.43;             ///< body [m]
   double kinematic_length = 2.67;  ///< L_f of the described model: ψ' = v δ / L_f [m]
 
-  // Mass.
-  double mass = 1000.0;         ///< [kg]
-  double yaw_inertia = 1600.0;  ///< [kg m²]
-  double height = 0.0;          ///< of the centre of mass above the road: load transfer along the car [m]
-
-  // Steering.
-  double steer_limit = 0.4363323129985824;                            ///< 25° [rad]
-  double steer_rate_limit = std::numeric_limits<double>::infinity();  ///< [rad/s]
-  double steer_lag = 0.0;  ///< time constant of the steering actuator [s], 0 = instant
-
   // Tyres: force = load · friction · curve(cornering · slip / friction), load = mass · (load_0 + load_v · v +
   // load_vv · v²) by axle (docs/tracking_model.md, eq. 4a–4c).
-  double cornering_front = 5.0;   ///< normalised cornering stiffness [1/rad]
-  double cornering_rear = 4.92;   ///< [1/rad]
-  double friction = 1.08;         ///< peak force over load
-  double load_sensitivity = 0.0;  ///< share of the friction that an axle loses when its load doubles
-  double tire_shape = 0.0;        ///< C of the magic formula; 0: the original simulator's curve
+  double cornering_front = 5.0;  ///< normalised cornering stiffness [1/rad]
+  double cornering_rear = 4.92;  ///< [1/rad]
+  double tire_shape = 0.0;       ///< C of the magic formula; 0: the original simulator's curve
   double friction_coupling =
       0.0;  ///< 1 = friction ellipse (a real tyre), 0 = braking and cornering do not share force
   double load_constant = 12.22;    ///< normal acceleration at rest [m/s²]
@@ -66,13 +113,9 @@ struct VehicleParams {
   double drag_quadratic = 0.0;                  ///< [1/m]
   double brake_acceleration = 218.0;  ///< per unit of negative throttle, before the wheels lock [m/s²]
   double brake_throttle_limit =
-      0.04;                ///< largest useful negative throttle: beyond it the wheels lock (1 = proportional)
-  double drive_lag = 0.0;  ///< time constant of drive and brake [s]
+      0.04;  ///< largest useful negative throttle: beyond it the wheels lock (1 = proportional)
   double valid_speed = std::numeric_limits<double>::infinity();  ///< up to which these parameters hold:
                                                                  ///< planned no faster [m/s]
-  double roll_share_front = 0.5;   ///< of the load that moves to the outer wheels in a bend
-  double brake_share_front = 0.5;  ///< of the braking force
-  double drive_share_front = 0.5;  ///< of the drive force
 
   // The reverse gear.
   double reverse_speed = 2.235;  ///< below it a negative throttle is the reverse gear [m/s]; 0: it never is
@@ -85,7 +128,6 @@ struct VehicleParams {
   double brake_release_throttle = -0.01;  ///< a throttle that releases them, sent for one control period at
                                           ///< or below brake_latch_speed
 
-  [[nodiscard]] double wheelbase() const noexcept { return front_axle + rear_axle; }
   /// Normal acceleration carried by the tyres at speed v [m/s²].
   [[nodiscard]] double load(double v) const noexcept {
     return load_constant + load_per_speed * v + load_quadratic * v * v;

@@ -26,22 +26,8 @@ void StopCar::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   model_.set_vehicle(vehicle);
   const model::VehicleParams& p = vehicle;
   has_wheels_ = p.friction_coupling > 0.0 && p.tire_shape > 0.0 && !(p.steer_helper > 0.0);
-  const double front = p.rear_axle / p.wheelbase();
-  const double rear = p.front_axle / p.wheelbase();
-  axles_[0] = {p.front_axle,
-               p.cornering_front / p.friction,
-               0.5 * front * p.load_constant,
-               front,
-               p.roll_share_front,
-               p.drive_share_front,
-               p.brake_share_front};
-  axles_[1] = {-p.rear_axle,
-               p.cornering_rear / p.friction,
-               0.5 * rear * p.load_constant,
-               rear,
-               1.0 - p.roll_share_front,
-               1.0 - p.drive_share_front,
-               1.0 - p.brake_share_front};
+  axles_ = p.axles();
+  cornering_ = {p.cornering_front / p.friction, p.cornering_rear / p.friction};
 }
 
 StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
@@ -53,37 +39,31 @@ StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
   const double down = 0.5 * (p.load(m.vx) - p.load_constant);
   const double pitch = 0.5 * p.height / p.wheelbase() * at.load_along;
   const double roll = p.height / p.track_width * at.load_across;
-  double along = p.drag_constant - drag;  // what the air brakes
-  double across = 0.0;
-  double moment = 0.0;  // over mass
-  for (int i = 0; i < 2; ++i) {
-    const Axle& axle = axles_[i];
-    const double steer = i == 0 ? m.steer : 0.0;
+  const auto secant = [&p](double square) {
+    return model::magic_secant(p.tire_shape, square + kLeastSquare);
+  };
+  const auto force_of = [&](std::size_t i, const model::Axle& axle, const model::Planar<double>& v) {
+    const bool is_front = i < 2;
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
     const double asked = 0.5 * pedal * (pedal > 0.0 ? axle.drive_share : axle.brake_share);
-    for (const double side : {1.0, -1.0}) {
-      const double beside = 0.5 * side * p.track_width;
-      const double moved =
-          std::max((i == 0 ? -pitch : pitch) - side * axle.roll_share * roll, (kLeastLoad - 1.0) * axle.rest);
-      const double load = axle.rest + moved + axle.share * down;
-      const double most = p.friction * (1.0 - p.load_sensitivity * moved / axle.rest) * load;
-      const double forward = std::max(m.vx - m.r * beside, 0.25 * m.vx);  // of a car that spins, too
-      const double slip = steer - (m.vy + m.r * axle.place) / forward;
-      // The slip along that gives the force asked for beside the slip across, by similarity.
-      const double use = std::clamp((asked - rolling * load) / most, -kMostAlong, kMostAlong);
-      const double z = axle.cornering * slip;
-      const auto secant = [&p](double to) { return model::magic_secant(p.tire_shape, to + kLeastSquare); };
-      const double square = use * use;
-      const double first = secant(z * z + square / std::sqrt(1.0 - square * square));
-      const double force_across = most * z * secant(z * z + square / (first * first));
-      const double force_along = most * use;
-      const double x = force_along - steer * force_across;
-      const double y = force_across + steer * force_along;
-      along += x;
-      across += y;
-      moment += axle.place * y - beside * x;
-    }
-  }
-  return {along + m.r * m.vy, across - m.r * m.vx, p.mass / p.yaw_inertia * moment, along, across};
+    const double rest = axle.rest * p.load_constant;
+    const double moved =
+        std::max((is_front ? -pitch : pitch) - side * axle.roll_share * roll, (kLeastLoad - 1.0) * rest);
+    const double load = rest + moved + 2.0 * axle.rest * down;
+    const double most = p.friction * (1.0 - p.load_sensitivity * moved / rest) * load;
+    const double forward = std::max(v.x, 0.25 * m.vx);  // of a car that spins, too
+    const double slip = (is_front ? m.steer : 0.0) - v.y / forward;
+    // The slip along that gives the force asked for beside the slip across, by similarity.
+    const double use = std::clamp((asked - rolling * load) / most, -kMostAlong, kMostAlong);
+    const double z = cornering_[i / 2] * slip;
+    const double square = use * use;
+    const double first = secant(z * z + square / std::sqrt(1.0 - square * square));
+    return model::Planar<double>{most * use, most * z * secant(z * z + square / (first * first))};
+  };
+  const double air = p.drag_constant - drag;
+  const auto sum =
+      model::wheel_forces<double>(axles_, {m.vx, m.vy}, m.r, 1.0, m.steer, {air, 0.0, 0.0}, force_of);
+  return {sum.x + m.r * m.vy, sum.y - m.r * m.vx, p.mass / p.yaw_inertia * sum.moment, sum.x, sum.y};
 }
 
 StopCar::Step StopCar::step(double dt) const noexcept {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/model/wheel_forces.hpp"
 
 namespace chicane::safety {
 
@@ -49,22 +52,14 @@ class StopCar {
     double vx, vy, r;      ///< [m/s²], [rad/s²]
     double along, across;  ///< of the body [m/s²]
   };
-  struct Axle {
-    double place = 0.0;        ///< before the centre of mass [m]
-    double cornering = 0.0;    ///< over friction [1/rad]
-    double rest = 0.0;         ///< load of a wheel at rest over the car's mass [m/s²]
-    double share = 0.0;        ///< of the car's load
-    double roll_share = 0.0;   ///< of the load that moves across
-    double drive_share = 0.0;  ///< of the drive
-    double brake_share = 0.0;  ///< and of the brakes
-  };
   [[nodiscard]] Change change(const StopMotion& at) const noexcept;
 
   static constexpr double kSlowest = 12.0;  ///< [m/s] stiff tyres would need shorter steps
 
   model::PredictionModel model_;
   bool has_wheels_ = false;
-  Axle axles_[2];
+  std::array<model::Axle, 2> axles_{};
+  std::array<double, 2> cornering_{};  ///< over friction, of the axles [1/rad]
 };
 
 }  // namespace chicane::safety

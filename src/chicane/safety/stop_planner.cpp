@@ -11,6 +11,7 @@
 #include "chicane/base/math.hpp"
 #include "chicane/base/math_pack.hpp"
 #include "chicane/base/pack.hpp"
+#include "chicane/model/yaw_stability.hpp"
 #include "chicane/safety/stop_player.hpp"
 
 namespace chicane::safety {
@@ -171,9 +172,7 @@ double StopPlanner::turning_room(const road::KnownRoad& road, const StopStart& a
   return comes_nearer ? hypot(outside, length) - now : 0.0;
 }
 
-/// One over the static stability of a car that moves like `m` and brakes: (1 − h) v² (a k_f − b k_r) over
-/// k_f k_r L², with the slopes of the axles' forces at their slip angles. Above 1 it turns away from its path
-/// by itself; negative where it understeers, infinite where the rear axle slides.
+/// That of a car that moves like `m` and brakes, with the slopes of the axles' forces at their slip angles.
 double StopPlanner::instability(const model::BodyMotion<double>& m, double deceleration) const noexcept {
   using Both = Pack<arch::Baseline, 2>;  // slip angles more and less by kSlipShift, together
   const model::VehicleParams& car = model_.vehicle();
@@ -186,10 +185,7 @@ double StopPlanner::instability(const model::BodyMotion<double>& m, double decel
   const double moment = car.yaw_inertia / car.mass * (change.r[1] - change.r[0]) / (2.0 * kSlipShift);
   const double front = (car.rear_axle * force + moment) / car.wheelbase();
   const double rear = (car.front_axle * force - moment) / car.wheelbase();
-  if (!(rear > 0.0)) return std::numeric_limits<double>::infinity();
-  if (!(front > 0.0)) return -1.0;
-  return (1.0 - car.steer_helper) * v * v * (car.front_axle * front - car.rear_axle * rear) /
-         (front * rear * car.wheelbase() * car.wheelbase());
+  return model::static_instability(car, v, {front, rear});
 }
 
 /// Share of a deceleration that leaves the car as stable as asked (5).

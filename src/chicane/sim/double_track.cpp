@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "chicane/base/angle.hpp"
@@ -14,15 +15,13 @@ namespace {
 
 double finite_or_zero(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
 
-/// `v` from axes turned by an angle with cosine c and sine s, to the axes it is turned against.
-Vec2 turned(const Vec2& v, double c, double s) noexcept {
-  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+/// `v` in the axes of a body that is turned by an angle with cosine c and sine s, from those of the world.
+Vec2 in_body(const Vec2& v, double c, double s) noexcept {
+  const auto turned = model::in_turned_axes(model::Planar<double>{v.x(), v.y()}, c, s);
+  return {turned.x, turned.y};
 }
-
-/// Where the curve has its maximum: C atan(B x) = π/2.
-double peak_slip_of(const model::MagicFormula& tire) noexcept {
-  return tan(kPi / (2.0 * tire.shape)) / tire.stiffness;
-}
+/// The other way round.
+Vec2 in_world(const Vec2& v, double c, double s) noexcept { return in_body(v, c, -s); }
 
 /// Parts of a step in which the stiffest wheel's slip turns by no more than a quarter of a radian: slip and
 /// speed of a wheel are an oscillator of frequency √(R² k / (J σ)), k force per slip.
@@ -41,92 +40,81 @@ using P = DoubleTrackParams;
 constexpr Unit kNewton{"N", "_n"};
 constexpr Unit kWatt{"W", "_w"};
 constexpr Unit kPressure = unit::per("kg/m");
-constexpr std::array kOptions{
-    option<&P::mass>("mass", unit::kKilogram, 1e-3, 1e5, "Mass, wheels included."),
-    option<&P::yaw_inertia>("yaw_inertia", unit::kInertia, 1e-8, 1e6,
-                            "Moment of inertia about the vertical axis."),
-    option<&P::front_axle>("front_axle", unit::kMetre, 0.01, 10, "Centre of mass to front axle."),
-    option<&P::rear_axle>("rear_axle", unit::kMetre, 0.01, 10, "Centre of mass to rear axle."),
-    option<&P::track_width>("track_width", unit::kMetre, 0.01, 10,
-                            "Distance between the centres of the wheels of an axle."),
-    option<&P::tire_width>("tire_width", unit::kMetre, 0, 2, "Width of a contact patch."),
-    option<&P::height>("height", unit::kMetre, 0, 5, "Centre of mass above the road."),
-    option<&P::roll_share_front>(
-        "roll_share_front", unit::kNone, 0, 1,
-        "Share of the front axle in the load that moves to the outer wheels in a bend."),
-    option<&P::load_lag>("load_lag", unit::kMillisecond, 1, 1000, "Time constant of the load transfer."),
-    option<&P::wheel_radius>("wheel_radius", unit::kMetre, 0.001, 2, "Radius of the wheels."),
-    option<&P::wheel_inertia>("wheel_inertia", unit::kInertia, 1e-10, 1000,
-                              "Inertia of each of four wheels, with what turns along with it."),
-    option<&P::rolling_resistance>("rolling_resistance", unit::kNone, 0, 1, "Resistance over load."),
-    option<&P::drag>("drag", kPressure, 0, 100, "Resistance of the air for each (m/s)²."),
-    option<&P::downforce_front>("downforce_front", kPressure, 0, 100,
-                                "Load of the front axle for each (m/s)²."),
-    option<&P::downforce_rear>("downforce_rear", kPressure, 0, 100, "Load of the rear axle for each (m/s)²."),
-    option<&P::friction>("friction", unit::kNone, 0.01, 5, "Peak force of a tyre over its load at rest."),
-    option<&P::load_sensitivity>("load_sensitivity", unit::kNone, 0, 0.5,
-                                 "Share of the friction that a wheel loses when its load doubles."),
-    option<&P::stiffness_front>("stiffness_front", unit::kNone, 0.5, 100, "Magic formula B, front."),
-    option<&P::stiffness_rear>("stiffness_rear", unit::kNone, 0.5, 100, "Magic formula B, rear."),
-    option<&P::shape>("shape", unit::kNone, 1.05, 2.5, "Magic formula C."),
-    option<&P::relaxation_along>("relaxation_along", unit::kMetre, 0.001, 10,
-                                 "Relaxation length of forward slip."),
-    option<&P::relaxation_across>("relaxation_across", unit::kMetre, 0.001, 10,
-                                  "Relaxation length of lateral slip."),
-    option<&P::creep_speed>("creep_speed", unit::kSpeed, 0.01, 20,
-                            "Slip damping fades out up to this speed."),
-    option<&P::creep_damping>("creep_damping", unit::per("s/m"), 0, 10,
-                              "Slip for each m/s of slip speed, at standstill."),
-    option<&P::drive_force>("drive_force", kNewton, 1e-3, 1e6, "Force of all wheels at full throttle."),
-    option<&P::drive_power>("drive_power", kWatt, 1e-3, 1e8, "Cap of drive force times speed."),
-    option<&P::drive_share_front>("drive_share_front", unit::kNone, 0, 1,
-                                  "Share of the front wheels in the drive force."),
-    option<&P::drive_friction>("drive_friction", kNewton, 0, 1e5,
-                               "Friction of motor and gears, on the driven wheels."),
-    option<&P::brake_force>("brake_force", kNewton, 1e-3, 1e6, "Force of all wheels at throttle -1."),
-    option<&P::brake_share_front>("brake_share_front", unit::kNone, 0, 1,
-                                  "Share of the front wheels in the braking force."),
-    option<&P::abs_slip_start>("abs_slip_start", unit::kNone, 0.01, 1,
-                               "Forward slip at which anti-lock begins to take brake torque away."),
-    option<&P::abs_slip_end>("abs_slip_end", unit::kNone, 0.02, 2, "Slip at which nothing is left."),
-    option<&P::abs_speed>("abs_speed", unit::kSpeed, 0, 20, "Speed below which there is no anti-lock."),
-    option<&P::traction_slip_start>(
-        "traction_slip_start", unit::kNone, 0.01, 1,
-        "Forward slip at which traction control begins to take drive torque away; "
-        "infinite where there is none.")
-        .or_infinite(),
-    option<&P::traction_slip_end>("traction_slip_end", unit::kNone, 0.02, 2, "Slip at which nothing is left.")
-        .or_infinite(),
-    option<&P::steer_limit>("steer_limit", unit::kDegree, 0.1, 80, "Largest road-wheel angle."),
-    option<&P::steer_rate_limit>("steer_rate_limit", unit::kDegreePerSecond, 1, 1e4,
-                                 "Fastest change of the road-wheel angle.")
-        .or_infinite(),
-    option<&P::steer_lag>("steer_lag", unit::kMillisecond, 0, 1000, "Time constant of the steering."),
-    option<&P::drive_lag>("drive_lag", unit::kMillisecond, 0, 5000, "Time constant of drive and brakes."),
-};
+
+/// The row of a field of model::CarBody, which models have, too.
+const Option& body_row(std::string_view name) noexcept {
+  return *std::ranges::find(model::vehicle_options(), name, &Option::name);
+}
 
 }  // namespace
 
-std::span<const Option> double_track_options() noexcept { return kOptions; }
+std::span<const Option> double_track_options() noexcept {
+  static const std::array kOptions{
+      body_row("mass"),
+      body_row("yaw_inertia"),
+      body_row("front_axle"),
+      body_row("rear_axle"),
+      body_row("track_width"),
+      body_row("tire_width"),
+      body_row("height"),
+      body_row("roll_share_front"),
+      option<&P::load_lag>("load_lag", unit::kMillisecond, 1, 1000, "Time constant of the load transfer."),
+      option<&P::wheel_radius>("wheel_radius", unit::kMetre, 0.001, 2, "Radius of the wheels."),
+      option<&P::wheel_inertia>("wheel_inertia", unit::kInertia, 1e-10, 1000,
+                                "Inertia of each of four wheels, with what turns along with it."),
+      option<&P::rolling_resistance>("rolling_resistance", unit::kNone, 0, 1, "Resistance over load."),
+      option<&P::drag>("drag", kPressure, 0, 100, "Resistance of the air for each (m/s)²."),
+      option<&P::downforce_front>("downforce_front", kPressure, 0, 100,
+                                  "Load of the front axle for each (m/s)²."),
+      option<&P::downforce_rear>("downforce_rear", kPressure, 0, 100,
+                                 "Load of the rear axle for each (m/s)²."),
+      body_row("friction"),
+      body_row("load_sensitivity"),
+      option<&P::stiffness_front>("stiffness_front", unit::kNone, 0.5, 100, "Magic formula B, front."),
+      option<&P::stiffness_rear>("stiffness_rear", unit::kNone, 0.5, 100, "Magic formula B, rear."),
+      option<&P::shape>("shape", unit::kNone, 1.05, 2.5, "Magic formula C."),
+      option<&P::relaxation_along>("relaxation_along", unit::kMetre, 0.001, 10,
+                                   "Relaxation length of forward slip."),
+      option<&P::relaxation_across>("relaxation_across", unit::kMetre, 0.001, 10,
+                                    "Relaxation length of lateral slip."),
+      option<&P::creep_speed>("creep_speed", unit::kSpeed, 0.01, 20,
+                              "Slip damping fades out up to this speed."),
+      option<&P::creep_damping>("creep_damping", unit::per("s/m"), 0, 10,
+                                "Slip for each m/s of slip speed, at standstill."),
+      option<&P::drive_force>("drive_force", kNewton, 1e-3, 1e6, "Force of all wheels at full throttle."),
+      option<&P::drive_power>("drive_power", kWatt, 1e-3, 1e8, "Cap of drive force times speed."),
+      body_row("drive_share_front"),
+      option<&P::drive_friction>("drive_friction", kNewton, 0, 1e5,
+                                 "Friction of motor and gears, on the driven wheels."),
+      option<&P::brake_force>("brake_force", kNewton, 1e-3, 1e6, "Force of all wheels at throttle -1."),
+      body_row("brake_share_front"),
+      option<&P::abs_slip_start>("abs_slip_start", unit::kNone, 0.01, 1,
+                                 "Forward slip at which anti-lock begins to take brake torque away."),
+      option<&P::abs_slip_end>("abs_slip_end", unit::kNone, 0.02, 2, "Slip at which nothing is left."),
+      option<&P::abs_speed>("abs_speed", unit::kSpeed, 0, 20, "Speed below which there is no anti-lock."),
+      option<&P::traction_slip_start>(
+          "traction_slip_start", unit::kNone, 0.01, 1,
+          "Forward slip at which traction control begins to take drive torque away; "
+          "infinite where there is none.")
+          .or_infinite(),
+      option<&P::traction_slip_end>("traction_slip_end", unit::kNone, 0.02, 2,
+                                    "Slip at which nothing is left.")
+          .or_infinite(),
+      body_row("steer_limit"),
+      body_row("steer_rate_limit"),
+      body_row("steer_lag"),
+      body_row("drive_lag"),
+  };
+  return kOptions;
+}
 
 model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams body) {
   model::VehicleParams m = std::move(body);
-  m.front_axle = p.front_axle;
-  m.rear_axle = p.rear_axle;
-  m.track_width = p.track_width;
-  m.tire_width = p.tire_width;
+  static_cast<model::CarBody&>(m) = p;
   m.kinematic_length = p.wheelbase();
-  m.mass = p.mass;
-  m.yaw_inertia = p.yaw_inertia;
-  m.height = p.height;
-  m.steer_limit = p.steer_limit;
-  m.steer_rate_limit = p.steer_rate_limit;
-  m.steer_lag = p.steer_lag;
   const double slope = p.shape * p.friction;
   m.cornering_front = p.stiffness_front * slope;
   m.cornering_rear = p.stiffness_rear * slope;
-  m.friction = p.friction;
-  m.load_sensitivity = p.load_sensitivity;
   m.tire_shape = p.shape;
   m.friction_coupling = 1.0;
   m.load_constant = DoubleTrackParams::kGravity;
@@ -146,10 +134,6 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
   m.brake_acceleration = p.brake_force / inertia;
   // Anti-lock takes what the tyres cannot give.
   m.brake_throttle_limit = std::min(1.0, p.friction * DoubleTrackParams::kGravity / m.brake_acceleration);
-  m.drive_lag = p.drive_lag;
-  m.roll_share_front = p.roll_share_front;
-  m.brake_share_front = p.brake_share_front;
-  m.drive_share_front = p.drive_share_front;
   m.reverse_speed = 0.0;
   m.brake_latch_speed = 0.0;
   return m;
@@ -157,18 +141,7 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
 
 DoubleTrackParams plant_of(const model::VehicleParams& m, DoubleTrackParams like) {
   DoubleTrackParams p = like;
-  p.front_axle = m.front_axle;
-  p.rear_axle = m.rear_axle;
-  p.track_width = m.track_width;
-  p.tire_width = m.tire_width;
-  p.mass = m.mass;
-  p.yaw_inertia = m.yaw_inertia;
-  p.height = m.height;
-  p.steer_limit = m.steer_limit;
-  p.steer_rate_limit = m.steer_rate_limit;
-  p.steer_lag = m.steer_lag;
-  p.friction = m.friction;
-  p.load_sensitivity = m.load_sensitivity;
+  static_cast<model::CarBody&>(p) = m;
   if (m.tire_shape > 0.0) p.shape = m.tire_shape;
   const double slope = p.shape * p.friction;
   p.stiffness_front = m.cornering_front / slope;
@@ -187,10 +160,6 @@ DoubleTrackParams plant_of(const model::VehicleParams& m, DoubleTrackParams like
   p.rolling_resistance = (resistance - p.drive_friction) / (DoubleTrackParams::kGravity * p.mass);
   p.drag = std::max(0.0, m.drag_quadratic * inertia - p.rolling_resistance * downforce);
   p.brake_force = m.brake_acceleration * inertia;
-  p.drive_lag = m.drive_lag;
-  p.roll_share_front = m.roll_share_front;
-  p.brake_share_front = m.brake_share_front;
-  p.drive_share_front = m.drive_share_front;
   return p;
 }
 
@@ -200,17 +169,13 @@ DoubleTrack::DoubleTrack(const DoubleTrackParams& params) noexcept
       steer_{params.steer()},
       pedal_way_{params.pedal()},
       parts_{parts_of(params)},
-      dt_{kStepLength / parts_} {
+      dt_{kStepLength / parts_},
+      axles_{params.axles()} {
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
-    const bool is_front = i < 2;
     Wheel& wheel = wheels_[i];
-    wheel.position = {is_front ? params.front_axle : -params.rear_axle,
-                      i % 2 == 0 ? params.half_track() : -params.half_track()};
-    wheel.static_load = static_load(is_front);
-    wheel.tire = {.stiffness = is_front ? params.stiffness_front : params.stiffness_rear,
-                  .shape = params.shape,
-                  .peak = 1.0};
-    wheel.peak_slip = peak_slip_of(wheel.tire);
+    wheel.static_load = params.static_load(i < 2);
+    wheel.tire = params.tire(i < 2);
+    wheel.peak_slip = wheel.tire.peak_slip();
   }
   reset({}, 0.0);
 }
@@ -233,7 +198,7 @@ void DoubleTrack::set_motion(const Vec2& velocity, double yaw_rate) noexcept {
   state_.vx = velocity.x();
   state_.vy = velocity.y();
   state_.r = yaw_rate;
-  velocity_ = turned(velocity, cos(state_.psi), sin(state_.psi));
+  velocity_ = in_world(velocity, cos(state_.psi), sin(state_.psi));
   for (Wheel& wheel : wheels_) wheel.speed = velocity.x() / params_.wheel_radius;
   output_.speed = velocity.norm();
 }
@@ -242,13 +207,7 @@ void DoubleTrack::deviate(const PlantDeviation& deviation) noexcept {
   params_.mass = nominal_.mass * deviation.mass_scale;
   params_.yaw_inertia = nominal_.yaw_inertia * deviation.mass_scale;
   params_.friction = nominal_.friction * deviation.friction_scale;
-  for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].static_load = static_load(i < 2);
-}
-
-double DoubleTrack::static_load(bool is_front) const noexcept {
-  const double wheelbase = params_.wheelbase();
-  return 0.5 * params_.mass * DoubleTrackParams::kGravity *
-         (is_front ? params_.rear_axle : params_.front_axle) / wheelbase;
+  for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].static_load = params_.static_load(i < 2);
 }
 
 void DoubleTrack::advance(const model::Command& command) noexcept {
@@ -264,39 +223,32 @@ void DoubleTrack::advance(const model::Command& command) noexcept {
 }
 
 void DoubleTrack::load_wheels() noexcept {
-  const double along = params_.mass * params_.height * transfer_.x() / params_.wheelbase();
-  const double across = params_.mass * params_.height * transfer_.y() / (2.0 * params_.half_track());
-  const double pressure = 0.5 * velocity_.squared_norm();
-  for (std::size_t i = 0; i < wheels_.size(); ++i) {
-    const double share = i < 2 ? params_.roll_share_front : 1.0 - params_.roll_share_front;
-    const double change = (i < 2 ? -0.5 : 0.5) * along + (i % 2 == 0 ? -share : share) * across;
-    const double down = pressure * (i < 2 ? params_.downforce_front : params_.downforce_rear);
-    wheels_[i].load = std::max(wheels_[i].static_load + change + down, 0.0);
-  }
+  const auto shift = params_.load_shift(transfer_.x(), transfer_.y(), 0.5 * velocity_.squared_norm());
+  for (std::size_t i = 0; i < wheels_.size(); ++i)
+    wheels_[i].load = std::max(params_.wheel_load(i, wheels_[i].static_load, shift), 0.0);
 }
 
-Vec2 DoubleTrack::tire_force(Wheel& wheel, const Vec2& v) const noexcept {
+model::Planar<double> DoubleTrack::tire_force(Wheel& wheel, const model::Planar<double>& v) const noexcept {
   // Relaxed slips (docs/plants.md, eq. 5), implicit in the slip: stable at any speed.
-  const double rolling = std::fabs(v.x());
-  const double slide = wheel.speed * params_.wheel_radius - v.x();
+  const double rolling = std::fabs(v.x);
+  const double slide = wheel.speed * params_.wheel_radius - v.x;
   const double gain_along = dt_ / params_.relaxation_along;
   const double gain_across = dt_ / params_.relaxation_across;
   wheel.slip_along =
       std::clamp((wheel.slip_along + gain_along * slide) / (1.0 + gain_along * rolling), -1.0, 1.0);
   wheel.slip_across =
-      std::clamp((wheel.slip_across - gain_across * v.y()) / (1.0 + gain_across * rolling), -1.0, 1.0);
+      std::clamp((wheel.slip_across - gain_across * v.y) / (1.0 + gain_across * rolling), -1.0, 1.0);
 
   // Damping that keeps a standing tyre from ringing like a spring.
   const double damping = params_.creep_damping * std::max(1.0 - rolling / params_.creep_speed, 0.0);
   const double along = wheel.slip_along + damping * slide;
-  const double across = wheel.slip_across - damping * v.y();
+  const double across = wheel.slip_across - damping * v.y;
 
   // Combined slip by similarity (eq. 6).
   const double size = hypot(along, across);
   wheel.use = 0.0;
-  if (size < 1e-9 || wheel.load <= 0.0) return Vec2{};
-  const double friction =
-      params_.friction * (1.0 - params_.load_sensitivity * (wheel.load / wheel.static_load - 1.0));
+  if (size < 1e-9 || wheel.load <= 0.0) return {};
+  const double friction = params_.grip(wheel.load, wheel.static_load);
   const double share = wheel.tire(size);
   wheel.use = size < wheel.peak_slip ? share : size / wheel.peak_slip;
   const double force = wheel.load * std::max(friction, 0.1) * disturbance_.grip * share;
@@ -305,17 +257,13 @@ Vec2 DoubleTrack::tire_force(Wheel& wheel, const Vec2& v) const noexcept {
 
 void DoubleTrack::spin(Wheel& wheel, double force, double drive, double brake,
                        double speed_along) const noexcept {
-  // Anti-lock: less brake the more the wheel slips.
   if (std::fabs(speed_along) > params_.abs_speed) {
     const double slip = -wheel.slip_along * (speed_along > 0.0 ? 1.0 : -1.0);
-    brake *=
-        std::clamp((params_.abs_slip_end - slip) / (params_.abs_slip_end - params_.abs_slip_start), 0.0, 1.0);
+    brake *= model::torque_share<model::Sharp>(slip, params_.abs_slip_start, params_.abs_slip_end);
   }
   if (params_.has_traction_control()) {
     const double slip = wheel.slip_along * (speed_along < 0.0 ? -1.0 : 1.0);
-    drive *= std::clamp(
-        (params_.traction_slip_end - slip) / (params_.traction_slip_end - params_.traction_slip_start), 0.0,
-        1.0);
+    drive *= model::torque_share<model::Sharp>(slip, params_.traction_slip_start, params_.traction_slip_end);
   }
   const double resistance =
       brake + params_.rolling_resistance * wheel.load * params_.wheel_radius + wheel.friction;
@@ -329,33 +277,26 @@ void DoubleTrack::move() noexcept {
   const double s = sin(state_.psi);
   const double cos_steer = cos(state_.steer);
   const double sin_steer = sin(state_.steer);
-  const Vec2 v_B = turned(velocity_, c, -s);
+  const Vec2 v_B = in_body(velocity_, c, s);
   const double speed = velocity_.norm();
 
   const double drive_force = std::min(std::max(pedal_, 0.0) * params_.drive_force,
                                       params_.drive_power / std::max(std::fabs(v_B.x()), 1.0));
   const double brake_force = std::max(-pedal_, 0.0) * params_.brake_force;
-  Vec2 force_B = -params_.drag * speed * v_B;
-  double moment = 0.0;
-  for (std::size_t i = 0; i < wheels_.size(); ++i) {
-    Wheel& wheel = wheels_[i];
-    const bool is_front = i < 2;
-    const double cw = is_front ? cos_steer : 1.0;
-    const double sw = is_front ? sin_steer : 0.0;
-    const Vec2 v_wheel = turned(
-        Vec2{v_B.x() - state_.r * wheel.position.y(), v_B.y() + state_.r * wheel.position.x()}, cw, -sw);
-    const Vec2 force_wheel = tire_force(wheel, v_wheel);
-    const double drive_share = is_front ? params_.drive_share_front : 1.0 - params_.drive_share_front;
-    const double brake_share = is_front ? params_.brake_share_front : 1.0 - params_.brake_share_front;
-    wheel.friction = 0.5 * drive_share * params_.drive_friction * params_.wheel_radius;
-    spin(wheel, force_wheel.x(), 0.5 * drive_share * drive_force * params_.wheel_radius,
-         0.5 * brake_share * brake_force * params_.wheel_radius, v_wheel.x());
-    const Vec2 force = turned(force_wheel, cw, sw);
-    force_B += force;
-    moment += wheel.position.x() * force.y() - wheel.position.y() * force.x();
-    output_.slip_angle[i] = -atan(wheel.slip_across);
-    output_.slip_ratio[i] = wheel.slip_along;
-  }
+  const Vec2 air = -params_.drag * speed * v_B;
+  const auto sum = model::wheel_forces<double>(
+      axles_, {v_B.x(), v_B.y()}, state_.r, cos_steer, sin_steer, {air.x(), air.y(), 0.0},
+      [&](std::size_t i, const model::Axle& axle, const model::Planar<double>& v) {
+        Wheel& wheel = wheels_[i];
+        const model::Planar<double> rolling = i < 2 ? model::in_turned_axes(v, cos_steer, sin_steer) : v;
+        const model::Planar<double> force = tire_force(wheel, rolling);
+        wheel.friction = 0.5 * axle.drive_share * params_.drive_friction * params_.wheel_radius;
+        spin(wheel, force.x, 0.5 * axle.drive_share * drive_force * params_.wheel_radius,
+             0.5 * axle.brake_share * brake_force * params_.wheel_radius, rolling.x);
+        output_.slip_angle[i] = -atan(wheel.slip_across);
+        output_.slip_ratio[i] = wheel.slip_along;
+        return force;
+      });
   for (std::size_t axle = 0; axle < 2; ++axle) {
     const Wheel& left = wheels_[2 * axle];
     const Wheel& right = wheels_[2 * axle + 1];
@@ -363,15 +304,14 @@ void DoubleTrack::move() noexcept {
         (left.load * left.use + right.load * right.use) / std::max(left.load + right.load, 1e-9);
   }
 
-  force_B.y() += params_.mass * disturbance_.side_acceleration;
-  const Vec2 a_B = force_B / params_.mass;
+  const Vec2 a_B = Vec2{sum.x, sum.y + params_.mass * disturbance_.side_acceleration} / params_.mass;
   transfer_ += (dt_ / params_.load_lag) * (a_B - transfer_);
-  velocity_ += dt_ * turned(a_B, c, s);
-  state_.r += dt_ * moment / params_.yaw_inertia;
+  velocity_ += dt_ * in_world(a_B, c, s);
+  state_.r += dt_ * sum.moment / params_.yaw_inertia;
   state_.x += dt_ * velocity_.x();
   state_.y += dt_ * velocity_.y();
   state_.psi += dt_ * state_.r;
-  const Vec2 v_after = turned(velocity_, cos(state_.psi), -sin(state_.psi));
+  const Vec2 v_after = in_body(velocity_, cos(state_.psi), sin(state_.psi));
   state_.vx = v_after.x();
   state_.vy = v_after.y();
   output_.ax = a_B.x();

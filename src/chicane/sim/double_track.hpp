@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <span>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "chicane/model/actuator.hpp"
 #include "chicane/model/tire.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/model/wheel_forces.hpp"
 #include "chicane/sim/plant.hpp"
 
 namespace chicane::sim {
@@ -18,16 +20,8 @@ namespace chicane::sim {
 /// A car with four wheels on a plane, as data. The defaults are those of the plant `road-car`, an ordinary
 /// car of 1300 kg and 200 kW on summer tyres; origin of each number: docs/plants.md, table 4. Other cars:
 /// data/cars/*.yaml.
-struct DoubleTrackParams {
-  double mass = 1300.0;            ///< [kg]
-  double yaw_inertia = 2000.0;     ///< [kg m²]
-  double front_axle = 1.25;        ///< centre of mass to front axle [m]
-  double rear_axle = 1.45;         ///< [m]
-  double track_width = 1.60;       ///< between the centres of the wheels of an axle [m]
-  double tire_width = 0.205;       ///< of a contact patch [m]
-  double height = 0.50;            ///< of the centre of mass [m]
-  double roll_share_front = 0.58;  ///< of the lateral load transfer, by springs and anti-roll bars
-  double load_lag = 0.06;          ///< time constant of the load transfer: the body rolls and pitches [s]
+struct DoubleTrackParams : model::CarBody {
+  double load_lag = 0.06;  ///< time constant of the load transfer: the body rolls and pitches [s]
 
   double wheel_radius = 0.31;         ///< [m]
   double wheel_inertia = 1.2;         ///< of each of four, with what turns along with it [kg m²]
@@ -36,9 +30,7 @@ struct DoubleTrackParams {
   double downforce_front = 0.0;       ///< ½ ρ c_l A that presses the front axle down [kg/m]
   double downforce_rear = 0.0;        ///< and the rear one [kg/m]
 
-  double friction = 1.20;          ///< peak force over load at the static load of a wheel
-  double load_sensitivity = 0.08;  ///< friction lost per static load of a wheel added
-  double stiffness_front = 9.0;    ///< magic formula B of slip; front less for compliance of the steering
+  double stiffness_front = 9.0;  ///< magic formula B of slip; front less for compliance of the steering
   double stiffness_rear = 10.0;
   double shape = 1.5;               ///< magic formula C
   double relaxation_along = 0.15;   ///< relaxation length of forward slip [m]
@@ -46,13 +38,10 @@ struct DoubleTrackParams {
   double creep_speed = 3.0;         ///< slip damping fades out up to this speed [m/s]
   double creep_damping = 0.12;      ///< slip per m/s of slip speed, at standstill [s/m]
 
-  double drive_force = 7300.0;      ///< at full throttle [N]
-  double drive_power = 200.0e3;     ///< [W]
-  double drive_share_front = 0.40;  ///< open differentials
-  double drive_friction = 0.0;      ///< of motor and gears, on the driven wheels [N]
-  double brake_force = 12350.0;     ///< at throttle −1 [N]
-  double brake_share_front =
-      0.72;                      ///< bias; the front locks first up to 0.9 g, as UN R13-H asks of road cars
+  double drive_force = 7300.0;   ///< at full throttle [N]
+  double drive_power = 200.0e3;  ///< [W]
+  double drive_friction = 0.0;   ///< of motor and gears, on the driven wheels [N]
+  double brake_force = 12350.0;  ///< at throttle −1 [N]
   double abs_slip_start = 0.10;  ///< anti-lock: brake torque falls from here ...
   double abs_slip_end = 0.18;    ///< ... to nothing here
   double abs_speed = 1.5;        ///< no anti-lock below [m/s]
@@ -60,18 +49,41 @@ struct DoubleTrackParams {
                                                                          ///< falls from here; infinite: none
   double traction_slip_end = std::numeric_limits<double>::infinity();    ///< to nothing here
 
-  double steer_limit = 0.4363323129985824;       ///< of the road wheels, 25° [rad]
-  double steer_rate_limit = 1.5707963267948966;  ///< 90°/s [rad/s]
-  double steer_lag = 0.05;                       ///< time constant [s]
-  double drive_lag = 0.1;                        ///< of drive and brakes [s]
-
   static constexpr double kGravity = 9.81;  ///< [m/s²]
-  [[nodiscard]] double wheelbase() const noexcept { return front_axle + rear_axle; }
   [[nodiscard]] bool has_traction_control() const noexcept {
     return traction_slip_end < std::numeric_limits<double>::infinity();
   }
-  [[nodiscard]] double half_track() const noexcept { return 0.5 * track_width; }
-  [[nodiscard]] double half_tire() const noexcept { return 0.5 * tire_width; }
+  [[nodiscard]] model::MagicFormula tire(bool is_front) const noexcept {
+    return {.stiffness = is_front ? stiffness_front : stiffness_rear, .shape = shape, .peak = 1.0};
+  }
+  /// Load of one wheel at rest [N].
+  [[nodiscard]] double static_load(bool is_front) const noexcept {
+    return 0.5 * mass * kGravity * (is_front ? rear_axle : front_axle) / wheelbase();
+  }
+  /// What moves load between the wheels: forces along and across [N], and half the square of the speed.
+  template <class T>
+  struct LoadShift {
+    T along, across, pressure;
+  };
+  template <class T>
+  [[nodiscard]] LoadShift<T> load_shift(const T& ax, const T& ay, const T& pressure) const {
+    return {mass * height * ax / wheelbase(), mass * height * ay / (2.0 * half_track()), pressure};
+  }
+  /// Load of wheel `i` of wheel_forces() [N], negative where it would lift; `rest` is its static load
+  /// (docs/plants.md, eq. 2).
+  template <class T>
+  [[nodiscard]] T wheel_load(std::size_t i, double rest, const LoadShift<T>& shift) const {
+    const double share = i < 2 ? roll_share_front : 1.0 - roll_share_front;
+    const T change = (i < 2 ? -0.5 : 0.5) * shift.along + (i % 2 == 0 ? -share : share) * shift.across;
+    const double downforce = i < 2 ? downforce_front : downforce_rear;
+    if (downforce == 0.0) return rest + change;
+    return rest + change + shift.pressure * downforce;
+  }
+  /// Peak force over load (eq. 3).
+  template <class T>
+  [[nodiscard]] T grip(const T& load, double rest) const {
+    return friction * (1.0 - load_sensitivity * (load / rest - 1.0));
+  }
   [[nodiscard]] model::Actuator steer() const noexcept {
     return {.low = -steer_limit, .high = steer_limit, .lag = steer_lag, .rate = steer_rate_limit};
   }
@@ -125,7 +137,6 @@ class DoubleTrack final : public Plant {
 
  private:
   struct Wheel {
-    Vec2 position{};           ///< in B [m]
     double static_load = 0.0;  ///< [N]
     double load = 0.0;         ///< [N]
     double speed = 0.0;        ///< [rad/s]
@@ -137,9 +148,8 @@ class DoubleTrack final : public Plant {
     double use = 0.0;        ///< of the grip, as PlantOutput::tire_use
   };
 
-  [[nodiscard]] double static_load(bool is_front) const noexcept;  ///< of one wheel [N]
   void load_wheels() noexcept;
-  [[nodiscard]] Vec2 tire_force(Wheel& wheel, const Vec2& v) const noexcept;
+  [[nodiscard]] model::Planar<double> tire_force(Wheel& wheel, const model::Planar<double>& v) const noexcept;
   void spin(Wheel& wheel, double force, double drive, double brake, double speed_along) const noexcept;
   void move() noexcept;
 
@@ -149,6 +159,7 @@ class DoubleTrack final : public Plant {
   int parts_ = 1;            ///< of a step
   double dt_ = kStepLength;  ///< of a part [s]
   Disturbance disturbance_;
+  std::array<model::Axle, 2> axles_;
   std::array<Wheel, 4> wheels_{};
   Vec2 velocity_{};     ///< in W [m/s]
   Vec2 transfer_{};     ///< lagged acceleration that shifts load, in B [m/s²]

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "chicane/base/math.hpp"
+#include "chicane/model/tire.hpp"
 
 namespace chicane::identify {
 namespace {
@@ -41,47 +42,32 @@ FourWheels::FourWheels(const model::VehicleParams& vehicle, const Wheels& wheels
       wheels_{wheels},
       rotating_{wheels.rotating},
       inertia_{0.25 * std::max(wheels.rotating - 1.0, 0.005)},
-      turn_{vehicle.mass / vehicle.yaw_inertia} {
-  const double a = vehicle.front_axle, b = vehicle.rear_axle;
-  const double half = 0.5 * vehicle.track_width;
-  const auto across = [&](double other, double share) {
-    return 2.0 * vehicle.height * share * vehicle.wheelbase() / (vehicle.track_width * kGravity * other);
-  };
-  axles_[0] = {a,
-               half,
-               vehicle.cornering_front / vehicle.friction,
-               0.5 * b / vehicle.wheelbase(),
-               -vehicle.height / (kGravity * b),
-               across(b, vehicle.roll_share_front),
-               0.5 * vehicle.drive_share_front,
-               0.5 * vehicle.brake_share_front};
-  axles_[1] = {-b,
-               half,
-               vehicle.cornering_rear / vehicle.friction,
-               0.5 * a / vehicle.wheelbase(),
-               vehicle.height / (kGravity * a),
-               across(a, 1.0 - vehicle.roll_share_front),
-               0.5 * (1.0 - vehicle.drive_share_front),
-               0.5 * (1.0 - vehicle.brake_share_front)};
+      turn_{vehicle.mass / vehicle.yaw_inertia},
+      axles_{vehicle.axles()} {
+  const double pitch = vehicle.height / kGravity;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const model::Axle& axle = axles_[i];
+    const double share = 2.0 * axle.rest;
+    const double cornering = i == 0 ? vehicle.cornering_front : vehicle.cornering_rear;
+    tires_[i] = {cornering / vehicle.friction, (i == 0 ? -pitch : pitch) / (share * vehicle.wheelbase()),
+                 2.0 * pitch * axle.roll_share / (vehicle.track_width * share)};
+  }
 }
 
 FourWheels::Motion FourWheels::steady(double vx, double vy, double r, double steer,
                                       double acceleration) const noexcept {
   Motion motion{.vx = vx, .vy = vy, .r = r};
   for (std::size_t i = 0; i < 4; ++i) {
-    const Axle& axle = axles_[i / 2];
-    const double y = i % 2 == 0 ? axle.width_half : -axle.width_half;
+    const model::Axle& axle = axles_[i / 2];
+    const double y = i % 2 == 0 ? axle.half_track : -axle.half_track;
     const double angle = i < 2 ? steer : 0.0;
-    const double c = cos(angle), s = sin(angle);
-    const double wx = vx - r * y, wy = vy + r * axle.x;
-    motion.slip[i] = -(c * wy - s * wx) / std::max(std::fabs(c * wx + s * wy), kLeastSpeed);
-    motion.rolling[i] = c * wx + s * wy - dt_ * acceleration;
-  }
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Axle& axle = axles_[i / 2];
-    const double stiffness = vehicle_.friction * axle.cornering * axle.rest * kGravity;
-    motion.slip_along[i] =
-        std::clamp((acceleration >= 0.0 ? axle.drive : axle.brake) * acceleration / stiffness, -0.1, 0.1);
+    const auto rolling =
+        model::in_turned_axes(model::Planar<double>{vx - r * y, vy + r * axle.x}, cos(angle), sin(angle));
+    motion.slip[i] = -rolling.y / std::max(std::fabs(rolling.x), kLeastSpeed);
+    motion.rolling[i] = rolling.x - dt_ * acceleration;
+    const double stiffness = vehicle_.friction * tires_[i / 2].cornering * axle.rest * kGravity;
+    const double share = 0.5 * (acceleration >= 0.0 ? axle.drive_share : axle.brake_share);
+    motion.slip_along[i] = std::clamp(share * acceleration / stiffness, -0.1, 0.1);
   }
   motion.along = motion.forward = acceleration;
   motion.across = motion.sideways = vx * r;
@@ -98,56 +84,53 @@ void FourWheels::advance(Motion& motion, double steer, double steer_middle, doub
   motion.across += load_share_ * (motion.sideways - motion.across);
   const double c0 = cos(steer), s0 = sin(steer);
   const double cm = cos(steer_middle), sm = sin(steer_middle);
-  double forward = 0.0, sideways = 0.0, moment = 0.0, lost = 0.0;
-  for (std::size_t i = 0; i < 4; ++i) {
+  motion.resistance = 0.0;
+  const auto force_of = [&](std::size_t i, const model::Axle& axle, const model::Planar<double>& v) {
     const bool is_front = i < 2;
-    const Axle& axle = axles_[i / 2];
-    const double y = i % 2 == 0 ? axle.width_half : -axle.width_half;
+    const Tire& tire = tires_[i / 2];
     // Slip across, over the step whose middle the begin of this one is.
-    const double bx = motion.vx - motion.r * y, by = motion.vy + motion.r * axle.x;
-    const double wx = is_front ? c0 * bx + s0 * by : bx;
-    const double wy = is_front ? c0 * by - s0 * bx : by;
-    const double rolling = std::max(std::fabs(wx), kLeastSpeed);
+    const model::Planar<double> w = is_front ? model::in_turned_axes(v, c0, s0) : v;
+    const double rolling = std::max(std::fabs(w.x), kLeastSpeed);
     const double keeps = decay(dt_ * rolling * per_relaxation_);
-    motion.slip[i] = std::clamp(-wy / rolling + (motion.slip[i] + wy / rolling) * keeps, -1.0, 1.0);
+    motion.slip[i] = std::clamp(-w.y / rolling + (motion.slip[i] + w.y / rolling) * keeps, -1.0, 1.0);
     const double damping = kCreepDamping * std::max(1.0 - rolling / kCreepSpeed, 0.0);
-    const double slip = motion.slip[i] - damping * wy;
+    const double slip = motion.slip[i] - damping * w.y;
 
     const double side = i % 2 == 0 ? -1.0 : 1.0;  // in a bend to the left the right wheels get more
     const double part = std::max(
-        kLeastLoad, 1.0 + rest * (axle.per_along * motion.along + side * axle.per_across * motion.across));
+        kLeastLoad, 1.0 + rest * (tire.per_along * motion.along + side * tire.per_across * motion.across));
     const double load = axle.rest * pressed * part * (1.0 + vehicle_.load_sensitivity * (1.0 - part));
     const double most = vehicle_.friction * load;
     // The slip along the tyre at which the wheel's torque and force agree, the wheel's own inertia included;
     // the secant of the tyre curve is that of both slips together, by similarity.
-    const double z = axle.cornering * slip;
+    const double z = tire.cornering * slip;
     const double inertia = inertia_ * rolling / dt_;
     const double holds_back =
-        rotating_ * vehicle_.drag_constant * axle.rest * part + inertia_ * (wx - motion.rolling[i]) / dt_;
-    motion.rolling[i] = wx;
+        rotating_ * vehicle_.drag_constant * axle.rest * part + inertia_ * (w.x - motion.rolling[i]) / dt_;
+    motion.rolling[i] = w.x;
     double& along = motion.slip_along[i];
     const double before = along;
-    double of = secant(z * z + axle.cornering * axle.cornering * along * along);
+    const auto secant = [&] {
+      const double square = z * z + tire.cornering * tire.cornering * along * along;
+      return model::magic_secant(vehicle_.tire_shape, square + kLeastSquare);
+    };
+    const double share = 0.5 * (force >= 0.0 ? axle.drive_share : axle.brake_share);
+    double of = secant();
     for (int step = 0; step < 2; ++step) {
-      const double torque = rotating_ * (force >= 0.0 ? axle.drive : axle.brake) * std::fabs(force);
-      along = slip_for(torque, force >= 0.0 ? 1.0 : -1.0, force >= 0.0 ? wheels_.drive : wheels_.brakes,
-                       most * axle.cornering * of + inertia, inertia * before - holds_back);
-      of = secant(z * z + axle.cornering * axle.cornering * along * along);
+      along = slip_for(rotating_ * share * std::fabs(force), force >= 0.0 ? 1.0 : -1.0,
+                       force >= 0.0 ? wheels_.drive : wheels_.brakes, most * tire.cornering * of + inertia,
+                       inertia * before - holds_back);
+      of = secant();
     }
-    const double fy = most * z * of;
-    const double fx = most * axle.cornering * along * of;
-    const double px = is_front ? cm * fx - sm * fy : fx;
-    const double py = is_front ? sm * fx + cm * fy : fy;
-    forward += px;
-    sideways += py;
-    moment += axle.x * py - y * px;
-    lost += is_front ? sm * fy : 0.0;
-  }
-  forward -= rotating_ * (drag - vehicle_.drag_constant);
-  motion.resistance = lost;
-  motion.forward = forward;
-  motion.sideways = sideways;
-  const double r = motion.r + dt_ * turn_ * moment;
+    const model::Planar<double> made{most * tire.cornering * along * of, most * z * of};
+    if (is_front) motion.resistance += sm * made.y;
+    return made;
+  };
+  const auto sum =
+      model::wheel_forces<double>(axles_, {motion.vx, motion.vy}, motion.r, cm, sm, {}, force_of);
+  motion.forward = sum.x - rotating_ * (drag - vehicle_.drag_constant);
+  motion.sideways = sum.y;
+  const double r = motion.r + dt_ * turn_ * sum.moment;
   const double turned = 0.5 * dt_ * (motion.r + r);
   motion.r = r;
   // Velocity keeps its direction in the plane; the axes turn, half of it before the forces act.
@@ -160,14 +143,9 @@ void FourWheels::advance(Motion& motion, double steer, double steer_middle, doub
     x = first;
   };
   turn(0.5 * turned, motion.vx, motion.vy);
-  motion.vx += dt_ * forward;
-  motion.vy += dt_ * sideways;
+  motion.vx += dt_ * motion.forward;
+  motion.vy += dt_ * motion.sideways;
   turn(0.5 * turned, motion.vx, motion.vy);
-}
-
-double FourWheels::secant(double square) const noexcept {
-  const double z = sqrt(square + kLeastSquare);
-  return sin(vehicle_.tire_shape * atan(z / vehicle_.tire_shape)) / z;
 }
 
 }  // namespace chicane::identify

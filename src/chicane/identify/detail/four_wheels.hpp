@@ -5,6 +5,7 @@
 
 #include "chicane/identify/wheels.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/model/wheel_forces.hpp"
 
 namespace chicane::identify {
 
@@ -37,15 +38,11 @@ class FourWheels {
   void advance(Motion& motion, double steer, double steer_middle, double force, double drag) const noexcept;
 
  private:
-  struct Axle {
-    double x, width_half;  ///< of its wheels ahead of the centre of mass, half of the track [m]
-    double cornering;      ///< over friction
-    double rest;           ///< share of the load of each wheel
-    double per_along;      ///< of a wheel's load at rest, for each m/s² along
-    double per_across;     ///< and across
-    double drive, brake;   ///< shares of each wheel
+  struct Tire {
+    double cornering;   ///< over friction
+    double per_along;   ///< of a wheel's load at rest, for each m/s² along
+    double per_across;  ///< and across
   };
-  [[nodiscard]] double secant(double square) const noexcept;
 
   model::VehicleParams vehicle_;
   double dt_;
@@ -55,7 +52,8 @@ class FourWheels {
   double rotating_;
   double inertia_;  ///< of a wheel, over the square of its radius and the car's mass
   double turn_;     ///< mass over yaw inertia [1/m²]
-  std::array<Axle, 2> axles_;
+  std::array<model::Axle, 2> axles_;
+  std::array<Tire, 2> tires_{};  ///< of the axles
 };
 
 /// Whether FourWheels can stand for that car.

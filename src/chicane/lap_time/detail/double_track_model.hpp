@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "chicane/base/angle.hpp"
 #include "chicane/lap_time/detail/plant_model.hpp"
+#include "chicane/model/wheel_forces.hpp"
 #include "chicane/sim/double_track.hpp"
 
 namespace chicane::lap_time {
@@ -42,75 +42,46 @@ struct DoubleTrackModel {
     const T& vx = z[kVx];
     const T& vy = z[kVy];
     const T& r = z[kYawRate];
-    const T cs = cos(z[kSteer]);
-    const T sn = sin(z[kSteer]);
-    const double wheelbase = car.wheelbase();
-    const double along_share = 0.5 * car.mass * car.height / wheelbase;
-    const double across_share = car.mass * car.height / (2.0 * car.half_track());
-    const T drive = (0.5 * car.drive_force) * smooth_positive(z[kPedal], kPedalCorner);
-    const T brake = (0.5 * car.brake_force) * smooth_positive(T(-z[kPedal]), kPedalCorner);
+    const T cosine = cos(z[kSteer]);
+    const T sine = sin(z[kSteer]);
+    const T square = vx * vx + vy * vy;
+    // Without downforce: plans that count on it leave the road when they are driven.
+    const auto shift = car.load_shift(z[kShiftX], z[kShiftY], T(0.0));
+    const T drive = (0.5 * car.drive_force) * Corners::positive(z[kPedal], kPedalCorner);
+    const T brake = (0.5 * car.brake_force) * Corners::positive(T(-z[kPedal]), kPedalCorner);
     const T spin = (car.wheel_inertia / (car.wheel_radius * car.wheel_radius)) * (z[kShiftX] + r * vy);
-    T fx(0.0);
-    T fy(0.0);
-    T moment(0.0);
+    const T air = -car.drag * sqrt(square);
     Motion<T> m;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const bool is_front = i < 2;
-      const double x = is_front ? car.front_axle : -car.rear_axle;
-      const double y = i % 2 == 0 ? car.half_track() : -car.half_track();
-      const double rest = 0.5 * car.mass * sim::DoubleTrackParams::kGravity *
-                          (is_front ? car.rear_axle : car.front_axle) / wheelbase;
-      const double roll = is_front ? car.roll_share_front : 1.0 - car.roll_share_front;
-      const T load = smooth_positive(T(rest + (is_front ? -along_share : along_share) * z[kShiftX] +
-                                       (i % 2 == 0 ? -roll : roll) * across_share * z[kShiftY]),
-                                     kLoadCorner);
-      const T vx_here = vx - y * r;
-      const T vy_here = vy + x * r;
-      const T along = is_front ? T(cs * vx_here + sn * vy_here) : vx_here;
-      const T across = is_front ? T(cs * vy_here - sn * vx_here) : vy_here;
+    const auto force_of = [&](std::size_t i, const model::Axle& axle, const model::Planar<T>& v) {
+      const double rest = car.static_load(i < 2);
+      const T load = Corners::positive(car.wheel_load(i, rest, shift), kLoadCorner);
+      const model::Planar<T> rolling = i < 2 ? model::in_turned_axes(v, cosine, sine) : v;
       const T& slip = z[kSlip + i];
-      const T side = -across / along;
+      const T side = -rolling.y / rolling.x;
       m.slip[i] = slip * slip + side * side;
       const T size = sqrt(m.slip[i] + kLeastSlip * kLeastSlip);
-      const double stiffness = is_front ? car.stiffness_front : car.stiffness_rear;
-      const T force = (grip_share * car.friction) * load *
-                      (1.0 + car.load_sensitivity - (car.load_sensitivity / rest) * load) *
-                      sin(car.shape * atan(stiffness * size)) / size;
-      const T f_along = force * slip;
-      const T f_across = force * side;
-      const double drive_share = is_front ? car.drive_share_front : 1.0 - car.drive_share_front;
-      const double brake_share = is_front ? car.brake_share_front : 1.0 - car.brake_share_front;
-      m.balance[i] = (1.0 / rest) * (f_along - drive_share * drive * spin_share(slip) +
-                                     brake_share * brake * lock_share(slip) + car.rolling_resistance * load +
-                                     0.5 * drive_share * car.drive_friction + spin);
-      const T bx = is_front ? T(cs * f_along - sn * f_across) : f_along;
-      const T by = is_front ? T(sn * f_along + cs * f_across) : f_across;
-      fx += bx;
-      fy += by;
-      moment += x * by - y * bx;
-    }
-    const T speed = sqrt(vx * vx + vy * vy);
-    m.ax = (1.0 / car.mass) * (fx - car.drag * speed * vx);
-    m.ay = (1.0 / car.mass) * (fy - car.drag * speed * vy);
-    m.yaw = (1.0 / car.yaw_inertia) * moment;
+      const T force = grip_share * (load * car.grip(load, rest)) * car.tire(i < 2)(size) / size;
+      const model::Planar<T> tire{force * slip, force * side};
+      m.balance[i] =
+          (1.0 / rest) * (tire.x - axle.drive_share * driven(drive, slip) +
+                          axle.brake_share * brake *
+                              model::torque_share<Corners>(T(-slip), car.abs_slip_start, car.abs_slip_end) +
+                          car.rolling_resistance * load + 0.5 * axle.drive_share * car.drive_friction + spin);
+      return tire;
+    };
+    const auto sum = model::wheel_forces<T>(car.axles(), {vx, vy}, r, cosine, sine,
+                                            {air * vx, air * vy, T(0.0)}, force_of);
+    m.ax = (1.0 / car.mass) * sum.x;
+    m.ay = (1.0 / car.mass) * sum.y;
+    m.yaw = (1.0 / car.yaw_inertia) * sum.moment;
     return m;
   }
 
-  /// What anti-lock leaves of the brake: 1 falling to 0 between two slips.
+  /// What traction control leaves of the drive.
   template <class T>
-  [[nodiscard]] T lock_share(const T& slip) const {
-    const double span = car.abs_slip_end - car.abs_slip_start;
-    const T left = (1.0 / span) * (slip + car.abs_slip_end);
-    return smooth_positive(left, kLockCorner) - smooth_positive(T(left - 1.0), kLockCorner);
-  }
-
-  /// And traction control of the drive.
-  template <class T>
-  [[nodiscard]] T spin_share(const T& slip) const {
-    if (!car.has_traction_control()) return T(1.0);
-    const double span = car.traction_slip_end - car.traction_slip_start;
-    const T left = (1.0 / span) * (car.traction_slip_end - slip);
-    return smooth_positive(left, kLockCorner) - smooth_positive(T(left - 1.0), kLockCorner);
+  [[nodiscard]] T driven(const T& drive, const T& slip) const {
+    if (!car.has_traction_control()) return drive;
+    return drive * model::torque_share<Corners>(slip, car.traction_slip_start, car.traction_slip_end);
   }
 
   template <class T>
@@ -152,21 +123,18 @@ struct DoubleTrackModel {
     *out++ = 0.1 * (z[kVx] - 2.5);
     *out++ = 1.0 - (1.0 / 100.0) * z[kVx];
     for (std::size_t i = 0; i < 4; ++i) {
-      const double most = slip_share * peak_slip(i < 2);
+      const double most = slip_share * car.tire(i < 2).peak_slip();
       *out++ = 1.0 - (1.0 / (most * most)) * m.slip[i];
     }
   }
 
-  [[nodiscard]] double peak_slip(bool is_front) const {
-    return chicane::tan(kPi / (2.0 * car.shape)) / (is_front ? car.stiffness_front : car.stiffness_rear);
-  }
   static constexpr double kNoCap = 10.0;
 
  private:
+  using Corners = model::Rounded;
   static constexpr double kPedalCorner = 0.01;
   static constexpr double kLoadCorner = 50.0;  ///< [N]
   static constexpr double kLeastSlip = 1e-3;
-  static constexpr double kLockCorner = 0.02;
 };
 
 }  // namespace chicane::lap_time

@@ -158,7 +158,6 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
   }
   void guess(double v, double a, double curvature, double* z) const override {
     const sim::DoubleTrackParams& car = model_.car;
-    const double wheelbase = car.front_axle + car.rear_axle;
     const double side = v * v * curvature;
     const double slope = kGravity * car.friction * car.shape;
     const double rear_slip = side / (slope * car.stiffness_rear);
@@ -166,16 +165,15 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
     z[kVx] = v;
     z[kVy] = car.rear_axle * z[kYawRate] - v * rear_slip;
     z[kHeading] = -z[kVy] / v;
-    z[kSteer] = wheelbase * curvature + side / (slope * car.stiffness_front) - rear_slip;
+    z[kSteer] = car.wheelbase() * curvature + side / (slope * car.stiffness_front) - rear_slip;
     z[kPedal] = a * car.mass / (a > 0.0 ? car.drive_force : car.brake_force);
     z[DoubleTrackModel::kShiftX] = a;
     z[DoubleTrackModel::kShiftY] = side;
-    for (int i = 0; i < 4; ++i) {
-      const double front = a > 0.0 ? car.drive_share_front : car.brake_share_front;
-      const double share =
-          i < 2 ? front * wheelbase / car.rear_axle : (1.0 - front) * wheelbase / car.front_axle;
-      z[DoubleTrackModel::kSlip + i] =
-          share * a / (slope * (i < 2 ? car.stiffness_front : car.stiffness_rear));
+    const auto axles = car.axles();
+    for (std::size_t i = 0; i < 4; ++i) {
+      const model::Axle& axle = axles[i / 2];
+      const double share = 0.5 * (a > 0.0 ? axle.drive_share : axle.brake_share) / axle.rest;
+      z[DoubleTrackModel::kSlip + i] = share * a / (slope * car.tire(i < 2).stiffness);
     }
   }
   [[nodiscard]] road::RacingLinePoint point(const double* z) const override {
@@ -231,7 +229,7 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
     // More slip than that of the peak would give less force, not more.
     const auto course = [&](double vx, double vy, double r) { return (vy + car.front_axle * r) / vx; };
     const double planned = z[kSteer] - course(z[kVx], z[kVy], z[kYawRate]);
-    const double most = std::max(kMostSlip * model_.peak_slip(true), std::fabs(planned));
+    const double most = std::max(kMostSlip * car.tire(true).peak_slip(), std::fabs(planned));
     const double now = course(std::max(state.vx, 1.0), state.vy, state.r);
     const double steer = std::clamp(state.steer + car.steer_lag * inputs[0], now - most, now + most);
     return {std::clamp(steer, -car.steer_limit, car.steer_limit),

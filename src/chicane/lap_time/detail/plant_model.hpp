@@ -92,10 +92,4 @@ struct OnRoad {
   }
 };
 
-/// max(x, 0), smooth within about `width`.
-template <class T>
-[[nodiscard]] T smooth_positive(const T& x, double width) {
-  return 0.5 * (x + sqrt(x * x + width * width));
-}
-
 }  // namespace chicane::lap_time
