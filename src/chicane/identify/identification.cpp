@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <string>
 #include <string_view>
+#include <variant>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/option.hpp"
@@ -30,13 +33,13 @@ constexpr std::size_t kFewWindows = 12;             ///< for a rough look
 
 /// A number that is estimated: where it is in a car in full size, and what is expected of it.
 struct Row {
-  std::string_view key, unit;
-  double per_si;     ///< what people see of one in SI
-  bool is_log;       ///< positive: its logarithm is estimated
-  double mean;       ///< [SI]
-  double deviation;  ///< [SI], or of the logarithm
-  double& (*of)(Car&);
-  double per_full_size = 1.0;  ///< of the car as it is [SI], over that of the car in full size
+  std::string key;
+  Unit unit;
+  bool is_log;                            ///< positive: its logarithm is estimated
+  double mean;                            ///< [SI]
+  double deviation;                       ///< [SI], or of the logarithm
+  std::function<void(Car&, double)> put;  ///< a value in SI
+  double per_full_size = 1.0;             ///< of the car as it is [SI], over that of the car in full size
 };
 
 /// What numbers with this unit are in the car as it is, over those in full size (model/similarity.hpp).
@@ -71,68 +74,49 @@ void scale_wheelbase(Car& car, double to) {
   car.vehicle.kinematic_length *= by;
 }
 
-/// `start`: in full size.
+template <auto... Members>
+void put(Car& car, double value) {
+  (car.*....*Members) = value;
+}
+
+/// Those that the car has, in the order of its report. `start`: in full size.
 std::vector<Row> rows_for(const model::VehicleParams& start, const Wheels& wheels, bool has_pedal,
                           bool is_centre_of_mass) {
-  std::vector<Row> rows{
-      {"latency_ms", "ms", 1e3, false, 0.1, 0.1, [](Car& c) -> double& { return c.delay; }},
-      {"steer_lag_ms", "ms", 1e3, true, std::max(start.steer_lag, 0.02), 1.0,
-       [](Car& c) -> double& { return c.vehicle.steer_lag; }},
-      {"steer_offset_deg", "deg", 180.0 / kPi, false, 0.0, 0.035,
-       [](Car& c) -> double& { return c.steer_offset; }},
-      {"wheelbase_m", "m", 1.0, true, start.wheelbase(), 0.2, nullptr},
-      {"cornering_front", "1/rad", 1.0, true, start.cornering_front, 0.5,
-       [](Car& c) -> double& { return c.vehicle.cornering_front; }},
-      {"cornering_rear", "1/rad", 1.0, true, start.cornering_rear, 0.5,
-       [](Car& c) -> double& { return c.vehicle.cornering_rear; }},
-      {"friction", "", 1.0, true, start.friction, 0.3, [](Car& c) -> double& { return c.vehicle.friction; }},
-      {"yaw_inertia_kgm2", "kg m²", 1.0, true, start.yaw_inertia, 0.3,
-       [](Car& c) -> double& { return c.vehicle.yaw_inertia; }},
+  std::vector<Row> rows{{"latency_ms", unit::kMillisecond, false, 0.1, 0.1, put<&Car::delay>}};
+  const auto add = [&](std::string_view name, double deviation, double least = 0.0) {
+    const Option& option = *std::ranges::find(model::vehicle_options(), name, &Option::name);
+    const double mean = std::max(std::get<double>(option.read(&start)), least);
+    if (!(mean > 0.0) || !std::isfinite(mean)) return;
+    rows.push_back({option_key("", option), option.unit, true, mean, deviation,
+                    [&option](Car& car, double value) { option.write(&car.vehicle, value); }});
   };
+  add("steer_lag", 1.0, 0.02);
+  rows.push_back({"steer_offset_deg", unit::kDegree, false, 0.0, 0.035, put<&Car::steer_offset>});
+  rows.push_back({"wheelbase_m", unit::kMetre, true, start.wheelbase(), 0.2, scale_wheelbase});
+  add("cornering_front", 0.5);
+  add("cornering_rear", 0.5);
+  add("friction", 0.3);
+  add("yaw_inertia", 0.3);
   if (has_four_wheels(start)) {
-    rows.push_back({"relaxation_m", "m", 1.0, true, wheels.relaxation, 0.7,
-                    [](Car& c) -> double& { return c.wheels.relaxation; }});
-    rows.push_back({"load_lag_ms", "ms", 1e3, true, wheels.load_lag, 1.0,
-                    [](Car& c) -> double& { return c.wheels.load_lag; }});
-    rows.push_back({kRotating, "", 1.0, true, wheels.rotating, 0.03,
-                    [](Car& c) -> double& { return c.wheels.rotating; }});
+    rows.push_back(
+        {"relaxation_m", unit::kMetre, true, wheels.relaxation, 0.7, put<&Car::wheels, &Wheels::relaxation>});
+    rows.push_back({"load_lag_ms", unit::kMillisecond, true, wheels.load_lag, 1.0,
+                    put<&Car::wheels, &Wheels::load_lag>});
+    rows.push_back({std::string(kRotating), unit::kNone, true, wheels.rotating, 0.03,
+                    put<&Car::wheels, &Wheels::rotating>});
   }
-  if (std::isfinite(start.steer_rate_limit))
-    rows.push_back({"steer_rate_limit_degps", "deg/s", 180.0 / kPi, true, start.steer_rate_limit, 1.0,
-                    [](Car& c) -> double& { return c.vehicle.steer_rate_limit; }});
+  add("steer_rate_limit", 1.0);
   if (!is_centre_of_mass)
-    rows.push_back({"reference_m", "m", 1.0, false, 0.0, 0.5 * start.wheelbase(),
-                    [](Car& c) -> double& { return c.reference; }});
+    rows.push_back({"reference_m", unit::kMetre, false, 0.0, 0.5 * start.wheelbase(), put<&Car::reference>});
   if (!has_pedal) return rows;
-  const auto add = [&](Row row) {
-    if (row.mean > 0.0 && std::isfinite(row.mean)) rows.push_back(row);
-  };
-  add({"drive_acceleration_mps2", "m/s²", 1.0, true, start.drive_acceleration, 0.5,
-       [](Car& c) -> double& { return c.vehicle.drive_acceleration; }});
-  add({"drive_power_per_mass_wpkg", "W/kg", 1.0, true, start.drive_power_per_mass, 0.5,
-       [](Car& c) -> double& { return c.vehicle.drive_power_per_mass; }});
-  add({"brake_acceleration_mps2", "m/s²", 1.0, true, start.brake_acceleration, 0.5,
-       [](Car& c) -> double& { return c.vehicle.brake_acceleration; }});
-  add({"drive_lag_ms", "ms", 1e3, true, std::max(start.drive_lag, 0.02), 1.0,
-       [](Car& c) -> double& { return c.vehicle.drive_lag; }});
-  add({"drag_constant_mps2", "m/s²", 1.0, true, start.drag_constant, 1.0,
-       [](Car& c) -> double& { return c.vehicle.drag_constant; }});
-  add({"drag_linear", "1/s", 1.0, true, start.drag_linear, 1.0,
-       [](Car& c) -> double& { return c.vehicle.drag_linear; }});
-  add({"drag_quadratic", "1/m", 1.0, true, start.drag_quadratic, 1.0,
-       [](Car& c) -> double& { return c.vehicle.drag_quadratic; }});
+  for (const std::string_view name : {"drive_acceleration", "drive_power_per_mass", "brake_acceleration"})
+    add(name, 0.5);
+  add("drive_lag", 1.0, 0.02);
+  for (const std::string_view name : {"drag_constant", "drag_linear", "drag_quadratic"}) add(name, 1.0);
   return rows;
 }
 
 double value_of(const Row& row, double theta) { return row.is_log ? exp(theta) : theta; }
-
-void set(const Row& row, double value, Car& car) {
-  if (row.of == nullptr) {
-    scale_wheelbase(car, value);
-  } else {
-    row.of(car) = value;
-  }
-}
 
 Beliefs beliefs_of(const std::vector<Row>& rows, const model::VehicleParams& start, const Wheels& wheels) {
   Beliefs beliefs;
@@ -142,7 +126,7 @@ Beliefs beliefs_of(const std::vector<Row>& rows, const model::VehicleParams& sta
   }
   beliefs.car = [rows, start, wheels](const std::vector<double>& theta) {
     Car car{.vehicle = start, .wheels = wheels};
-    for (std::size_t i = 0; i < rows.size(); ++i) set(rows[i], value_of(rows[i], theta[i]), car);
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].put(car, value_of(rows[i], theta[i]));
     car.delay = std::max(0.0, car.delay);
     return car;
   };
@@ -294,7 +278,7 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, con
                 fmt::format("logs: got {:.0f} s of driving to fit, expected at least {:.3g} s",
                             to_fit / similarity.time(), 10.0 / similarity.time()));
   std::vector<Row> rows = rows_for(start, wheels, has_pedal, is_centre_of_mass);
-  for (Row& row : rows) row.per_full_size = per_full_size(row.unit, similarity);
+  for (Row& row : rows) row.per_full_size = per_full_size(row.unit.name, similarity);
   const Beliefs beliefs = beliefs_of(rows, start, wheels);
   Noise noise{0.055, 0.055, 0.005, 0.1, 0.02};
   const Noise least{1e-3, 1e-3, 2e-4, 5e-3, 1e-3};
@@ -327,7 +311,7 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, con
   const Car car = beliefs.car(fit.theta);
   Car as_it_is{.vehicle = told, .wheels = options.wheels};
   for (std::size_t i = 0; i < rows.size(); ++i)
-    set(rows[i], rows[i].per_full_size * value_of(rows[i], fit.theta[i]), as_it_is);
+    rows[i].put(as_it_is, rows[i].per_full_size * value_of(rows[i], fit.theta[i]));
   found.vehicle = as_it_is.vehicle;
   found.delay = std::max(0.0, as_it_is.delay);
   found.wheels = as_it_is.wheels;
@@ -337,9 +321,9 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, con
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double deviation = fit.deviation[i];
     const auto outside = [&](double theta) {
-      return value_of(rows[i], theta) * rows[i].per_full_size * rows[i].per_si;
+      return rows[i].unit.from_si(value_of(rows[i], theta) * rows[i].per_full_size);
     };
-    found.estimates.push_back({std::string(rows[i].key), std::string(rows[i].unit), outside(fit.theta[i]),
+    found.estimates.push_back({rows[i].key, std::string(rows[i].unit.name), outside(fit.theta[i]),
                                outside(fit.theta[i] - 2.0 * deviation),
                                outside(fit.theta[i] + 2.0 * deviation), outside(beliefs.mean[i]),
                                deviation < 0.4 * beliefs.deviation[i]});
