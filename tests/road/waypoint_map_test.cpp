@@ -95,14 +95,14 @@ TEST(WaypointMap, IsNotClosedByAnotherPassageOfACrossing) {
   }
 }
 
-constexpr double kRadius = 100.0;
-constexpr int kCount = 52;  // waypoints, 12.1 m apart
+constexpr double kRingRadius = 100.0;
+constexpr int kRingWaypoints = 52;  // waypoints, 12.1 m apart
 
 std::vector<Vec2> circle() {
   std::vector<Vec2> points;
-  for (int i = 0; i < kCount; ++i) {
-    const double angle = kTwoPi * i / kCount;
-    points.emplace_back(kRadius * cos(angle), kRadius * sin(angle));
+  for (int i = 0; i < kRingWaypoints; ++i) {
+    const double angle = kTwoPi * i / kRingWaypoints;
+    points.emplace_back(kRingRadius * cos(angle), kRingRadius * sin(angle));
   }
   return points;
 }
@@ -127,8 +127,8 @@ TEST(WaypointLine, GoesThroughTheWaypointsAtTheirArcLength) {
         << i;
   }
   for (int i = 5; i < 15; ++i) {
-    EXPECT_NEAR(line.along(i + 1) - line.along(i), kTwoPi * kRadius / kCount, 0.01) << i;
-    EXPECT_NEAR(line.at(line.along(i)).curvature, 1.0 / kRadius, 2e-4) << i;
+    EXPECT_NEAR(line.along(i + 1) - line.along(i), kTwoPi * kRingRadius / kRingWaypoints, 0.01) << i;
+    EXPECT_NEAR(line.at(line.along(i)).curvature, 1.0 / kRingRadius, 2e-4) << i;
   }
 }
 
@@ -168,15 +168,15 @@ TEST(WaypointLine, GoesStraightOnBehindItsLastWaypoint) {
 }
 
 TEST(WaypointLine, CountsWaypointsOnInTheSecondLap) {
-  const WaypointMap map = map_of(kCount + 6);
+  const WaypointMap map = map_of(kRingWaypoints + 6);
   ASSERT_TRUE(map.is_closed());
-  ASSERT_EQ(map.points().size(), static_cast<std::size_t>(kCount));
+  ASSERT_EQ(map.points().size(), static_cast<std::size_t>(kRingWaypoints));
   WaypointLine line;
   line.clear();
-  for (int newest = 11; newest < kCount + 10; ++newest) ASSERT_TRUE(line.extend(map, newest));
-  EXPECT_LT((line.at(line.along(kCount + 3)).position - map.points()[3]).norm(), 0.01);
-  EXPECT_NEAR(line.along(kCount + 4) - line.along(4), kTwoPi * kRadius, 0.1);
-  EXPECT_NEAR(line.at(line.along(kCount + 4)).heading - line.at(line.along(4)).heading, kTwoPi, 0.01);
+  for (int newest = 11; newest < kRingWaypoints + 10; ++newest) ASSERT_TRUE(line.extend(map, newest));
+  EXPECT_LT((line.at(line.along(kRingWaypoints + 3)).position - map.points()[3]).norm(), 0.01);
+  EXPECT_NEAR(line.along(kRingWaypoints + 4) - line.along(4), kTwoPi * kRingRadius, 0.1);
+  EXPECT_NEAR(line.at(line.along(kRingWaypoints + 4)).heading - line.at(line.along(4)).heading, kTwoPi, 0.01);
   EXPECT_FALSE(line.is_full());
 }
 
