@@ -24,7 +24,7 @@ TEST(InstructionSet, IsFoundByItsNameWhereTheProcessorHasIt) {
   EXPECT_FALSE(instruction_set_by_name(""));
   const Result<InstructionSet> unknown = instruction_set_by_name("avx3");
   ASSERT_FALSE(unknown);
-  EXPECT_NE(unknown.error().message.find("got \"avx3\", expected one of baseline"), std::string::npos);
+  EXPECT_NE(unknown.error().message.find("got \"avx3\", expected one of "), std::string::npos);
 #if defined(__x86_64__)
   const Result<InstructionSet> foreign = instruction_set_by_name("neon");
   ASSERT_FALSE(foreign);
