@@ -112,8 +112,6 @@ TEST_F(Files, SayInOneSentenceWhyTheyCannotBeWritten) {
   const std::string nowhere = path("no/such/a");
   EXPECT_EQ(message(write_file(nowhere, "x")), nowhere + ": cannot be written: No such file or directory");
   EXPECT_EQ(message(check_writable(nowhere)), nowhere + ": cannot be written: No such file or directory");
-  EXPECT_EQ(message(append_to_file(nowhere, "x")),
-            nowhere + ": cannot be written: No such file or directory");
   EXPECT_EQ(message(write_file(folder_.string(), "x")),
             folder_.string() + ": cannot be written: Is a directory");
   EXPECT_EQ(message(check_writable(folder_.string())),
@@ -150,17 +148,6 @@ TEST_F(Files, ChecksLeaveNothing) {
   EXPECT_TRUE(check_writable(""));
   EXPECT_TRUE(check_writable(path("new")));
   EXPECT_EQ(count(), 0);
-}
-
-TEST_F(Files, TakeWhatIsAppendedWholeOrNotAtAll) {
-  EXPECT_TRUE(append_to_file(path("a"), "one\n"));
-  EXPECT_TRUE(append_to_file(path("a"), "two\n"));
-  {
-    const FileSizeLimit limit(1024);
-    EXPECT_EQ(message(append_to_file(path("a"), std::string(5000, 'x'))),
-              path("a") + ": cannot be written: File too large");
-  }
-  EXPECT_EQ(content("a"), "one\ntwo\n");
 }
 
 }  // namespace

@@ -106,17 +106,6 @@ Result<void> write_file(const std::string& path, std::string_view bytes, unsigne
   return file.finish();
 }
 
-Result<void> append_to_file(const std::string& path, std::string_view bytes) {
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (descriptor < 0) return cannot_be_written(path, errno);
-  const off_t size = ::lseek(descriptor, 0, SEEK_END);
-  const bool is_written = write_all(descriptor, bytes);
-  int reason = is_written ? 0 : errno;
-  if (!is_written) static_cast<void>(!::ftruncate(descriptor, size));  // no half line is left behind
-  if (::close(descriptor) != 0 && reason == 0) reason = errno;
-  return reason == 0 ? Result<void>{} : cannot_be_written(path, reason);
-}
-
 Result<void> check_writable(const std::string& path) {
   return path.empty() ? Result<void>{} : FileWriter(path).check();
 }

@@ -41,9 +41,6 @@ class FileWriter {
 /// Replaces the file's content, or changes nothing. kIo.
 [[nodiscard]] Result<void> write_file(const std::string& path, std::string_view bytes, unsigned mode = 0666);
 
-/// Adds to the end of a file, which is made when there is none: all or nothing. kIo.
-[[nodiscard]] Result<void> append_to_file(const std::string& path, std::string_view bytes);
-
 /// Before what takes long: that write_file() can begin. Changes nothing; an empty name is no file. kIo.
 [[nodiscard]] Result<void> check_writable(const std::string& path);
 
