@@ -40,7 +40,8 @@ std::string description_of(const Options& options, const sweep::TuneTask& task, 
 protocol::Json json_of(const sweep::Verdict& verdict) {
   protocol::Json json;
   sweep::Verdict::rows(verdict, [&](const char* name, auto value) { json[name] = value; });
-  for (const char* name : {"progress", "passed"}) json.erase(name);  // of the search, not of the tuning
+  for (const char* name : {"progress", "passed"})
+    json.erase(name);  // numbers of the search, not of the tuning
   return json;
 }
 

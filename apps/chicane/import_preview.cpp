@@ -19,9 +19,9 @@ using protocol::ReportDocument;
 
 constexpr int kSteps = 800;                // along the road
 constexpr double kCells = 500.0;           // along the longer side of a map
-constexpr std::size_t kMostPoints = 4000;  // of the file
+constexpr std::size_t kMostPoints = 4000;  // points of a file drawn at most
 
-/// What is known of a place on a map.
+/// State of a place on a map.
 enum Place { kWall, kFree, kUnknown, kOutside };
 
 Place place_in(const protocol::OccupancyMap& map, const survey::FreeSpace& space, const Vec2& at) {

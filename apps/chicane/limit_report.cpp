@@ -41,14 +41,14 @@ Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario, const 
   const bool is_terminal = isatty(STDERR_FILENO) == 1;
   const auto start = Clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-  double told = 0.0;
+  double shown_at = 0.0;
   lap_time::PlantLimitOptions options{.wants_witness = question.wants_witness, .budget = question.budget};
   lap_time::PlanProgress progress;
   options.on_progress = [&](const lap_time::PlanProgress& come) { progress = come; };
   options.go_on = [&](std::string_view stage, int turn, double lap_time) {
     const double now = seconds();
-    if (now - told >= (is_terminal ? 0.1 : 10.0)) {
-      told = now;
+    if (now - shown_at >= (is_terminal ? 0.1 : 10.0)) {
+      shown_at = now;
       const bool is_far = progress.work >= progress.expected;
       const std::string left =
           is_far ? "" : fmt::format(", about {:.0f} s left", now * (progress.expected / progress.work - 1.0));
@@ -59,7 +59,7 @@ Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario, const 
   };
   Result<lap_time::PlantLimit> limit = run::limit_of(scenario, track, options);
   wall_time = seconds();
-  if (is_terminal && told > 0.0) fmt::print(stderr, "\r\x1b[K");
+  if (is_terminal && shown_at > 0.0) fmt::print(stderr, "\r\x1b[K");
   return limit;
 }
 

@@ -13,7 +13,7 @@ namespace chicane::apps {
 
 struct LimitQuestion {
   bool wants_witness = true;
-  double budget = 600.0;  ///< of work; then the best lap so far is the answer [s]
+  double budget = 600.0;  ///< time of work; the best lap so far is the answer then [s]
 };
 
 /// The limit of an experiment's plant, found while the caller waits; tells on stderr how it goes. `wall_time`

@@ -37,7 +37,7 @@ class RunCounter {
   void show(std::uint64_t done, std::uint64_t runs, std::uint64_t driven);
   /// Leaves the cursor at the beginning of a line.
   void end();
-  /// For SweepOptions::on_progress, as long as this counter is there.
+  /// Observer for SweepOptions::on_progress, valid as long as this counter.
   [[nodiscard]] std::function<void(const sweep::Progress&)> follow();
 
  private:
@@ -57,7 +57,7 @@ struct PlanRuns {
   bool keeps_failed = false;  ///< a run that cannot be driven is a line with the reason, and no failure
 };
 
-/// Their lines by number; those that were stopped are missing.
+/// Lines of results by number; stopped runs are missing.
 struct RunLines {
   std::map<std::uint64_t, protocol::Json> lines;
   sweep::Progress progress;

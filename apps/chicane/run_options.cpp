@@ -59,7 +59,7 @@ void add_logs(CLI::App& command, Options& options, const std::string& help) {
   add(command, "logs", options.log_files, "LOG", help)->required();
 }
 
-/// For logs of other programs.
+/// Options that read logs of other programs.
 void add_foreign(CLI::App& command, Options& options) {
   add_setting(command, options, "--track", "track", "NAME|FILE", "Road of a log of another program");
   add_setting(command, options, "--car", "car", "NAME|FILE", "Car of a log of another program");

@@ -6,7 +6,7 @@
 
 #include "options.hpp"
 
-/// What the options of commands are made of.
+/// Building blocks of the options of commands.
 namespace chicane::apps {
 
 /// An option. `type`: the word for its value in the help.

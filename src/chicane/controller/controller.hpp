@@ -28,13 +28,13 @@ struct Estimate {
   double deviation = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation
 };
 
-/// Estimates of the car that a run has made by the last measurement, beyond what was told. The car is driven
-/// with them in steps (docs/identification.md).
+/// Estimates of the car that a run has made by the last measurement, beyond the configured car. The car is
+/// driven with them in steps (docs/identification.md).
 struct LearnedCar {
-  Estimate delay;   ///< time by which commands act later than told [s]
+  Estimate delay;   ///< time by which commands act later than configured [s]
   Estimate gain;    ///< steering gain: wheels turn to gain · command + offset
   Estimate offset;  ///< [rad]
-  Estimate grip;    ///< grip of the tyres, share of the told one
+  Estimate grip;    ///< grip of the tyres, share of the configured grip
 };
 
 /// One predicted moment.

@@ -60,7 +60,7 @@ inline void mind_helper_gap(tracking::TrackingProblem& problem, const tracking::
 }
 
 /// Expresses the states of an answer along another line, so that it goes on as the first guess there: a guess
-/// made anew at the limit of the tyres is one from which a step does not converge. `plan`: where the states
+/// made newly at the limit of the tyres is one from which a step does not converge. `plan`: where the states
 /// are in the world. `far` [m]: beside the line. False, and an answer of no use, where one is farther.
 /// Allocates nothing.
 [[nodiscard]] inline bool move_to_line(const road::ReferenceLine& line, const Plan& plan, double reach,

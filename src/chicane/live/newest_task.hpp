@@ -18,7 +18,7 @@ namespace chicane::live {
 template <class Wish, class Answer>
 class NewestTask {
  public:
-  /// `is_wanted`: false once nobody waits for this answer any more.
+  /// `is_wanted`: false once this answer is discarded.
   using Compute = std::function<Answer(Wish wish, const std::function<bool()>& is_wanted)>;
   using OnAnswer = std::function<void(const Answer&)>;
 

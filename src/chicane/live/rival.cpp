@@ -172,7 +172,7 @@ void Rival::take(const RunLog::Step& step) {
 
 void Rival::take(const RunLog::Change& change) {
   if (!is_of_the_world(change.name)) return;
-  if (const Result<run::Setting> setting = run::read_setting(change.told())) car_->apply(*setting);
+  if (const Result<run::Setting> setting = run::read_setting(change.as_recorded())) car_->apply(*setting);
 }
 
 void Rival::note(const run::ClosedLoop& loop) {

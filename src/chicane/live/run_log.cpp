@@ -120,7 +120,7 @@ RunLog::Place RunLog::last() const {
   return place;
 }
 
-telemetry::Change RunLog::Change::told() const {
+telemetry::Change RunLog::Change::as_recorded() const {
   return {.cycle = cycle, .time = time, .name = name, .value = value};
 }
 
@@ -129,7 +129,7 @@ recording::RunEvents RunLog::Excerpt::recorded() const {
     Result<void> done = begin.event == 0 ? visit(*scenario) : Result<void>{};
     for (std::size_t i = 0; i < events->size() && done; ++i) {
       if (const auto* step = std::get_if<Step>(&(*events)[i])) done = visit(recorded_of(*step));
-      if (const auto* change = std::get_if<Change>(&(*events)[i])) done = visit(change->told());
+      if (const auto* change = std::get_if<Change>(&(*events)[i])) done = visit(change->as_recorded());
     }
     return done;
   };
@@ -173,7 +173,8 @@ void RunLog::follow() {
   for (const Event& event : *news->events) {
     ++place.event;
     if (!shadow_) return;
-    if (const auto* change = std::get_if<Change>(&event)) static_cast<void>(shadow_->follow(change->told()));
+    if (const auto* change = std::get_if<Change>(&event))
+      static_cast<void>(shadow_->follow(change->as_recorded()));
     const auto* step = std::get_if<Step>(&event);
     if (step == nullptr) continue;
     static_cast<void>(shadow_->follow(recorded_of(*step)));

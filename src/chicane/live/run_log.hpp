@@ -75,7 +75,7 @@ class RunLog {
     std::uint64_t cycle = 0;
     double time = 0.0;  ///< [s]
     std::string name, value;
-    [[nodiscard]] telemetry::Change told() const;
+    [[nodiscard]] telemetry::Change as_recorded() const;
   };
   using Event = std::variant<Step, Change, telemetry::CompletedLap>;
   struct Excerpt {

@@ -21,7 +21,7 @@ struct Axle {
   double brake_share;  ///< of the braking force
 };
 
-/// What plants and controllers' models of a car have in common. Defaults are those of an ordinary car, the
+/// Parameters that plants and controllers' models of a car share. Defaults are those of an ordinary car, the
 /// plant `road-car`; origin of each number: docs/plants.md, table 4.
 struct CarBody {
   double front_axle = 1.25;         ///< centre of mass to front axle [m]

@@ -42,8 +42,8 @@ struct WheelForces {
 };
 
 /// Adds the forces of the wheels 0 to 3, front left, front right, rear left, rear right, to `sum`.
-/// `force_of(i, axle, v)` is that of wheel i in its own axes, `v` the velocity of its centre in the car's.
-/// `cosine` and `sine` are those of the front wheels' angle.
+/// `force_of(i, axle, v)` is the force of wheel i in its own axes, `v` the velocity of its centre in the
+/// car's. `cosine` and `sine` belong to the angle of the front wheels.
 template <class T, class ForceOf>
 [[nodiscard]] WheelForces<T> wheel_forces(const std::array<Axle, 2>& axles, const Planar<T>& velocity,
                                           const T& yaw_rate, const T& cosine, const T& sine,

@@ -15,7 +15,7 @@ namespace {
 
 double finite_or_zero(double value) noexcept { return std::isfinite(value) ? value : 0.0; }
 
-/// `v` in the axes of a body that is turned by an angle with cosine c and sine s, from those of the world.
+/// `v` in the axes of a body that is turned by an angle with cosine c and sine s, given in axes of the world.
 Vec2 in_body(const Vec2& v, double c, double s) noexcept {
   const auto turned = model::in_turned_axes(model::Planar<double>{v.x(), v.y()}, c, s);
   return {turned.x, turned.y};

@@ -41,7 +41,7 @@ std::optional<std::uint64_t> run_of(const std::string& line) {
 
 using OnLine = std::function<Result<void>(const LinePlace&, const std::string&)>;
 
-/// The same, told the run of each line; kParse for a line about none.
+/// Adds the number of its run to each line; kParse for a line without one.
 OnLine of_runs(const OnLine& on_line) {
   return [on_line](LinePlace place, const std::string& line) -> Result<void> {
     const std::optional<std::uint64_t> run = run_of(line);
