@@ -107,37 +107,33 @@ class Checks(unittest.TestCase):
         list_file = "tools/header_tests.txt"
         names = {
             "src/chicane/base/math.hpp": "double root(double x);\n",
-            "src/chicane/solver/solve.hpp": "struct Answer { double x = 0.0; };\n",
+            "src/chicane/solver/solve.hpp": "struct Answer { double x = 0.0; };\nAnswer solve();\n",
             "src/chicane/solver/detail/kernel.hpp": "void kernel();\n",  # needs no test
             "tests/base/math_test.cpp": '#include "chicane/base/math.hpp"\nauto two = root(4.0);\n',
             "tests/solver/solve_test.cpp": '#include "chicane/solver/solve.hpp"\nAnswer answer;\n',
         }
         self.assertEqual(self.violations(check_header_tests.check, files=names), [])
         new = {"src/chicane/base/angle.hpp": "double wrap(double x);\n"}
-        data = {"src/chicane/base/place.hpp": "struct Place { double x = root(2.0); bool operator==(const Place&) const = default; };\n"}
+        data = {"src/chicane/base/place.hpp": "struct Place { double x = root(2.0); bool operator==(const Place&) const = default; };\n",
+                "src/chicane/base/CMakeLists.txt": ("chicane_module(base HEADERS math.hpp angle.hpp place.hpp)\n",)}
+        new["src/chicane/base/CMakeLists.txt"] = data["src/chicane/base/CMakeLists.txt"]
+        self.assertEqual(self.violations(check_header_tests.check, files=names | data), [])
+        self.assertEqual(self.violations(check_header_tests.check, files=names | new | {list_file: ("# why\nbase/angle.hpp: hard\n",)}), [])
         for files, reason in (
-            (new, "got no test, expected tests/base/angle_test.cpp or a line in tools/header_tests.txt"),
-            ({"tests/base/math_test.cpp": ('#include <cmath>\nauto two = root(4.0);\n',)}, "math_test.cpp does not include it"),
-            ({"tests/base/math_test.cpp": ('#include "chicane/base/math.hpp"\n// root\n',)}, "uses no name that it declares"),
-            (new | {list_file: ("base/angle.hpp: tested by base/gone_test.cpp\n",)}, "gone_test.cpp does not exist"),
-            (new | {list_file: ("base/angle.hpp: tested by base/math_test.cpp\n",)}, "math_test.cpp does not include it"),
-            (new | {list_file: ("base/angle.hpp: data only\n",)}, "declares functions"),
-            (new | {list_file: ("base/angle.hpp: no test:\n",)}, "expected 'MODULE/NAME.hpp"),
-            ({list_file: ("base/gone.hpp: data only\n",)}, "is gone: remove the line"),
-            ({list_file: ("base/math.hpp: no test: hard\n",)}, "has tests/base/math_test.cpp: remove the line"),
-            (data | {list_file: ("base/place.hpp: data only\nbase/place.hpp: data only\n",)}, "is listed twice"),
+            (new, "angle.hpp:1: no test in tests/ uses it"),
+            ({"tests/base/math_test.cpp": ('#include <cmath>\nauto two = root(4.0);\n',)}, "math.hpp:1: no test in tests/ uses it"),
+            ({"tests/base/math_test.cpp": ('#include "chicane/base/math.hpp"\n// root\n',)}, "math.hpp:1: no test in tests/ uses it"),
+            ({"tests/solver/CMakeLists.txt": ("chicane_test(solver SOURCES other_test.cpp)\n",)}, "solve.hpp:1: no test in tests/ uses it"),
+            (new | {list_file: ("base/angle.hpp:\n",)}, "expected 'MODULE/NAME.hpp: REASON'"),
+            ({list_file: ("base/gone.hpp: hard\n",)}, "is gone: remove the line"),
+            ({list_file: ("base/math.hpp: hard\n",)}, "needs no reason: remove the line"),
+            (new | {list_file: ("base/angle.hpp: hard\nbase/angle.hpp: hard\n",)}, "is listed twice"),
         ):
             with self.subTest(reason):
                 found = self.violations(check_header_tests.check, files=names | files)
                 self.assertTrue(any(reason in violation for violation in found), found)
                 for violation in found:
                     self.assertRegex(violation, r"^[\w/.]+:\d+: ")
-        for line in ("no test: a place", "tested by solver/solve_test.cpp", "data only"):
-            files = names | data | {
-                list_file: (f"# why\nbase/place.hpp: {line}\n",),
-                "tests/solver/solve_test.cpp": '#include "chicane/solver/solve.hpp"\n#include "chicane/base/place.hpp"\nPlace at; Answer a;\n',
-            }
-            self.assertEqual(self.violations(check_header_tests.check, files=files), [], line)
 
     def test_comments_strings_and_other_names_are_no_violation(self):
         text = '// std::sin(x), the car\n/* throw */ const char* s = "throw std::mutex"; int scar; char c = \'"\'; // throw\n'
