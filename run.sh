@@ -5,7 +5,7 @@
 #   ./run.sh --laps 1                             options alone mean `drive`
 #   ./run.sh drive --fast --laps 2 --json         any command of `chicane`; stdout carries its results only
 #   ./run.sh bench                                builds the benchmark, too, with Ipopt to compare with
-#   ./run.sh tune --preset race -o mine.yaml      searches a better tuning; installs NLopt, too
+#   ./run.sh sweep studies/plans/NAME.yaml        builds the program of many runs, logs and reports, too; `tune` installs NLopt
 #   ./run.sh ros --car f1tenth                    a ROS 2 node; installs Cyclone DDS, too (docs/ros.md)
 #   ./run.sh package [--page]                     makes Debian packages and a tarball in build/release/packages (docs/packages.md)
 #   ./run.sh python [ARGUMENT...]                 Python with `import chicane` (docs/python.md): a prompt, or a script and its arguments
@@ -54,7 +54,9 @@ extra=()
 case " $* " in
   *' -h '* | *' --help '*) ;;
   ' bench '*) target=chicane_bench extra=("${bench_packages[@]}") ;;
-  ' tune '*) extra=("${tune_packages[@]}") ;;
+  ' tune '*) target=chicane_lab extra=("${lab_packages[@]}" "${tune_packages[@]}") ;;
+  ' campaign '* | ' claims '* | ' identify '* | ' import '* | ' lane-change '* | ' league '* | ' merge '* | ' recover '* | ' report '* | ' sweep '* | ' video '*)
+    target=chicane_lab extra=("${lab_packages[@]}") ;;
   ' ros '*) target=chicane_ros_app extra=("${ros_packages[@]}") ;;
 esac
 mapfile -t node < <(node_packages)

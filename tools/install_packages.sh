@@ -4,19 +4,20 @@
 # To build and run the program.
 run_packages=(
   g++ cmake ninja-build ccache pkg-config
-  libexpected-dev libboost-dev nlohmann-json3-dev libyaml-cpp-dev libcli11-dev libeigen3-dev libfmt-dev libzstd-dev
-  libpng-dev libpugixml-dev libsqlite3-dev
+  libexpected-dev libboost-dev nlohmann-json3-dev libyaml-cpp-dev libcli11-dev libfmt-dev libzstd-dev libpng-dev libpugixml-dev
 )
 # To compare with Ipopt in `chicane bench`, on top of those.
 bench_packages=(coinor-libipopt-dev liblapack-dev libblas-dev)
 # For `chicane ros`, on top of the first.
 ros_packages=(cyclonedds-dev libssl-dev)
-# For `chicane tune`, on top of the first.
+# For chicane-lab, the program of many runs, logs and reports, on top of the first.
+lab_packages=(libeigen3-dev libsqlite3-dev)
+# For `chicane tune`, on top of those.
 tune_packages=(libnlopt-dev)
 # For the Python module, on top of the first.
 python_packages=(python3 python3-dev python3-venv python3-pip python3-numpy pybind11-dev)
 # To make packages of all that the program can do, on top of the first.
-package_packages=(dpkg-dev "${tune_packages[@]}" "${ros_packages[@]}" "${python_packages[@]}")
+package_packages=(dpkg-dev "${lab_packages[@]}" "${tune_packages[@]}" "${ros_packages[@]}" "${python_packages[@]}")
 # To build and run the tests, on top of the first.
 test_packages=("${bench_packages[@]}" "${package_packages[@]}" libgtest-dev libgmock-dev libfastcdr-dev locales python3-pandas mypy groff fish parallel)
 # For a page that drives without a program, on top of the first: 1 GB.

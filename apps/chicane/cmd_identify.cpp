@@ -24,7 +24,7 @@
 #include "commands.hpp"
 #include "identify_page.hpp"
 #include "interrupt.hpp"
-#include "many_runs.hpp"
+#include "record.hpp"
 
 namespace chicane::apps {
 namespace {

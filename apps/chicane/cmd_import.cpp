@@ -17,7 +17,7 @@
 #include "chicane/road/point_fit.hpp"
 #include "commands.hpp"
 #include "import_preview.hpp"
-#include "many_runs.hpp"
+#include "record.hpp"
 
 namespace chicane::apps {
 namespace {

@@ -21,6 +21,7 @@
 #include "chicane/wire/simulate.hpp"
 #include "commands.hpp"
 #include "many_runs.hpp"
+#include "other_program.hpp"
 #include "ros_trial.hpp"
 
 namespace chicane::apps {
@@ -48,11 +49,10 @@ std::optional<int> free_port(int wanted) {
   return is_free ? std::optional<int>(ntohs(address.sin_port)) : std::nullopt;
 }
 
-/// For {chicane}: the shell need not know where we are.
-std::string own_program() {
-  std::error_code error;
-  const auto path = std::filesystem::read_symlink("/proc/self/exe", error);
-  return error ? "chicane" : sweep::shell_word(path.string());
+/// For {chicane}: the shell need not know where it is.
+std::string driving_program() {
+  const std::string program = other_program("chicane", false);
+  return program.empty() ? "chicane" : sweep::shell_word(program);
 }
 
 /// Starts the program, drives it in real time, and ends it. A program that has not connected or not answered
@@ -60,8 +60,8 @@ std::string own_program() {
 Result<telemetry::RunSummary> drive_program(const ExternalTrial& trial, double patience,
                                             const std::atomic<bool>& stop) {
   if (sweep::is_ros(trial))
-    return drive_ros_program(trial, kRosDomain + static_cast<int>(::getpid()) % kRosDomains, own_program(),
-                             patience, stop);
+    return drive_ros_program(trial, kRosDomain + static_cast<int>(::getpid()) % kRosDomains,
+                             driving_program(), patience, stop);
   const bool has_port = trial.command.find("{port}") != std::string::npos;
   const std::optional<int> port = free_port(has_port ? 0 : sweep::kOriginalPort);
   if (!port)
@@ -72,7 +72,7 @@ Result<telemetry::RunSummary> drive_program(const ExternalTrial& trial, double p
   if (!scenario) return fail(scenario.error());
   wire::SimulateOptions options;
   options.url = fmt::format("ws://127.0.0.1:{}/socket.io/?EIO=4&transport=websocket", *port);
-  options.server_command = sweep::filled(trial, *port, own_program());
+  options.server_command = sweep::filled(trial, *port, driving_program());
   options.lost_after = options.hopeless_after =
       std::chrono::milliseconds(static_cast<long long>(1e3 * patience));
   const auto done = wire::simulate(options, *scenario, {}, stop);

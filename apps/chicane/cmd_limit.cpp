@@ -11,7 +11,6 @@
 #include "guard_notice.hpp"
 #include "interrupt.hpp"
 #include "limit_report.hpp"
-#include "many_runs.hpp"
 
 namespace chicane::apps {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -24,7 +25,6 @@
 #include "chicane/wire/endpoint.hpp"
 #include "chicane/wire/viewer.hpp"
 #include "commands.hpp"
-#include "foreign_log.hpp"
 #include "interrupt.hpp"
 #include "record.hpp"
 #include "replay_report.hpp"
@@ -36,12 +36,12 @@ namespace {
 /// writer was killed, or is compressed.
 class Shown {
  public:
-  explicit Shown(const Options& options) : options_{options} {}
+  Shown(const Options& options, LogConverter convert) : options_{options}, convert_{convert} {}
 
   Result<void> add(std::string file, std::string name) {
-    if (is_foreign_log(file)) {
+    if (convert_ != nullptr && recording::is_foreign_log(file)) {
       copies_.emplace_back(".mcap");
-      if (Result<void> made = convert_foreign_log(file, options_, copies_.back().path()); !made) return made;
+      if (Result<void> made = convert_(file, options_, copies_.back().path()); !made) return made;
       file = copies_.back().path();
     }
     const Result<telemetry::McapReport> read = recording::check_recording(file);
@@ -80,6 +80,7 @@ class Shown {
 
  private:
   const Options& options_;
+  LogConverter convert_;
   std::list<recording::TemporaryFile> copies_;
   std::vector<live::ServedLog> logs_;
 };
@@ -169,7 +170,7 @@ Result<ExitCode> branch(const Options& options) {
   fmt::print("{}", options.is_json ? to_json(*report) : to_text(*report, options.settings));
   std::fflush(stdout);
   if (has_page(options)) {
-    Shown shown(options);
+    Shown shown(options, nullptr);
     if (Result<void> added = shown.add(log, std::filesystem::path(log).filename().string()); !added)
       return fail(added.error());
     if (Result<void> added = shown.add(file, fmt::format("branch at {:.1f} s", report->at)); !added)
@@ -190,11 +191,11 @@ Result<ExitCode> verify(const Options& options) {
   return is_verified ? kSuccess : kRunFailed;
 }
 
-Result<ExitCode> show_logs(const Options& options) {
+Result<ExitCode> show_logs(const Options& options, LogConverter convert) {
   if (!has_page(options)) {
     return fail(ErrorCode::kInvalidArgument, "replay: got nothing to do, expected --verify or --branch-at");
   }
-  Shown shown(options);
+  Shown shown(options, convert);
   for (const std::string& log : options.log_files) {
     if (Result<void> added = shown.add(log, std::filesystem::path(log).filename().string()); !added)
       return fail(added.error());
@@ -203,13 +204,22 @@ Result<ExitCode> show_logs(const Options& options) {
   return kSuccess;
 }
 
+bool shows_foreign_logs(const Options& options) {
+  return !options.wants_verification && !options.branch_at &&
+         std::any_of(options.log_files.begin(), options.log_files.end(), recording::is_foreign_log);
+}
+
 }  // namespace
 
-ExitCode replay(const Options& options) {
+ExitCode replay_logs(const Options& options, LogConverter convert) {
   const Result<ExitCode> done = options.wants_verification ? verify(options)
                                 : options.branch_at        ? branch(options)
-                                                           : show_logs(options);
+                                                           : show_logs(options, convert);
   return done ? *done : report(done.error());
+}
+
+ExitCode replay(const Options& options) {
+  return shows_foreign_logs(options) ? in_lab(options) : replay_logs(options, nullptr);
 }
 
 }  // namespace chicane::apps

@@ -8,12 +8,13 @@
 #include "chicane/base/text.hpp"
 #include "chicane/live/assets.hpp"
 #include "chicane/recording/html_report.hpp"
+#include "chicane/recording/reader.hpp"
 #include "chicane/recording/temporary_file.hpp"
 #include "chicane/sweep/result_table.hpp"
 #include "chicane/sweep/summary_page.hpp"
 #include "commands.hpp"
 #include "foreign_log.hpp"
-#include "many_runs.hpp"
+#include "record.hpp"
 
 namespace chicane::apps {
 
@@ -80,7 +81,7 @@ ExitCode report_logs(const Options& options) {
                                       options.output_file)});
     }
     std::string read = file;
-    if (named && is_foreign_log(file)) {
+    if (named && recording::is_foreign_log(file)) {
       copies.emplace_back(".mcap");
       read = copies.back().path();
       if (const Result<void> made = convert_foreign_log(file, options, read); !made)

@@ -17,9 +17,9 @@
 namespace chicane::apps {
 namespace {
 
-Result<sweep::Shard> shard_of(const Options& options) {
-  if (!options.sweep.shard.empty()) return sweep::parse_shard(options.sweep.shard);
-  return sweep::environment_shard([](const char* name) { return std::getenv(name); });
+Result<run::Shard> shard_of(const Options& options) {
+  if (!options.sweep.shard.empty()) return run::parse_shard(options.sweep.shard);
+  return run::environment_shard([](const char* name) { return std::getenv(name); });
 }
 
 std::string output_of(const Options& options) {
@@ -45,7 +45,7 @@ ExitCode drive_sweep(const Options& options) {
   const Result<sweep::Plan> plan = sweep::read_plan(options.sweep.plan_file);
   if (!plan) return report(plan.error());
   if (options.sweep.shown) return show(*plan, *options.sweep.shown);
-  const Result<sweep::Shard> shard = shard_of(options);
+  const Result<run::Shard> shard = shard_of(options);
   if (!shard) return report(shard.error());
   const std::string file = shard->file_of(output_of(options));
   if (!shard->from.empty())

@@ -30,10 +30,30 @@ struct Command {
 [[nodiscard]] ExitCode drive(const Options& options);
 [[nodiscard]] ExitCode serve(const Options& options);
 [[nodiscard]] ExitCode simulate(const Options& options);
+[[nodiscard]] ExitCode limit(const Options& options);
+[[nodiscard]] ExitCode check(const Options& options);
+[[nodiscard]] ExitCode list(const Options& options);
+/// What `chicane list` takes.
+[[nodiscard]] std::vector<std::string> list_names();
+[[nodiscard]] ExitCode completion(const Options& options);
+[[nodiscard]] ExitCode manual(const Options& options);
+
+/// Reads a log of another program into a recording, `output`.
+using LogConverter = Result<void> (*)(const std::string& file, const Options& options,
+                                      const std::string& output);
+/// Shows recordings, verifies them or drives on from within one. A log of another program is in_lab()'s.
+[[nodiscard]] ExitCode replay(const Options& options);
+/// The same with logs of other programs, which `convert` reads; null: there are none.
+[[nodiscard]] ExitCode replay_logs(const Options& options, LogConverter convert);
+
 /// Becomes the program chicane-ros (ros_main.cpp); kUsage where that is not installed.
 [[nodiscard]] ExitCode ros(const Options& options);
-[[nodiscard]] ExitCode limit(const Options& options);
-[[nodiscard]] ExitCode replay(const Options& options);
+/// Becomes the program chicane-bench (bench/program); kEnvironment where that is not built.
+[[nodiscard]] ExitCode bench(const Options& options);
+/// Becomes the program chicane-lab (lab_main.cpp); kEnvironment where that is not built.
+[[nodiscard]] ExitCode in_lab(const Options& options);
+
+/// The commands of chicane-lab: many runs, logs and reports.
 [[nodiscard]] ExitCode import_road(const Options& options);
 [[nodiscard]] ExitCode identify_car(const Options& options);
 [[nodiscard]] ExitCode report_logs(const Options& options);
@@ -46,14 +66,6 @@ struct Command {
 [[nodiscard]] ExitCode campaign(const Options& options);
 [[nodiscard]] ExitCode recover(const Options& options);
 [[nodiscard]] ExitCode lane_change(const Options& options);
-[[nodiscard]] ExitCode check(const Options& options);
-[[nodiscard]] ExitCode list(const Options& options);
-/// What `chicane list` takes.
-[[nodiscard]] std::vector<std::string> list_names();
-/// Becomes the program chicane-bench (bench/program); kEnvironment where that is not built.
-[[nodiscard]] ExitCode bench(const Options& options);
-[[nodiscard]] ExitCode completion(const Options& options);
-[[nodiscard]] ExitCode manual(const Options& options);
 
 /// Says the error on stderr; which exit code it is.
 [[nodiscard]] ExitCode report(const Error& error);

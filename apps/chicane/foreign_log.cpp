@@ -5,20 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <optional>
 
 #include "chicane/base/math.hpp"
 #include "chicane/identify/drive_log.hpp"
 #include "chicane/live/description.hpp"
-#include "chicane/protocol/car_messages.hpp"
 #include "chicane/protocol/library.hpp"
-#include "chicane/recording/reader.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/roadside.hpp"
-#include "chicane/telemetry/mcap_reader.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -42,22 +38,6 @@ std::string in_words(const identify::DriveLog& log, const road::Track* track, in
 }
 
 }  // namespace
-
-bool is_foreign_log(const std::string& file) {
-  std::error_code trouble;
-  if (std::filesystem::is_directory(file, trouble)) return true;  // a bag, as rosbag2 writes it
-  if (file.ends_with(".db3") || file.ends_with(".csv")) return true;
-  if (!file.ends_with(".mcap")) return false;
-  bool is_ours = false, has_odometry = false;
-  telemetry::McapVisitor visitor;
-  visitor.on_message = [&](const telemetry::McapMessage& message) {
-    is_ours |= message.channel.topic == recording::kFrameTopic;
-    has_odometry = has_odometry || (message.channel.type == protocol::OdometryMessage::kType &&
-                                    message.channel.message_encoding == "cdr" &&
-                                    protocol::decode<protocol::OdometryMessage>(message.bytes).has_value());
-  };
-  return telemetry::read_mcap(file, visitor) && has_odometry && !is_ours;
-}
 
 Result<void> convert_foreign_log(const std::string& file, const Options& options, const std::string& output) {
   const auto log = identify::read_plain_log(file, {.columns = {},

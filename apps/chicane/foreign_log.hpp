@@ -16,8 +16,4 @@ namespace chicane::apps {
 [[nodiscard]] Result<void> convert_foreign_log(const std::string& file, const Options& options,
                                                const std::string& output);
 
-/// Whether a file is a log of another program: a CSV table, a bag of SQLite or a bag's folder by its name, an
-/// MCAP file by its topics, odometry in CDR and no control step of ours.
-[[nodiscard]] bool is_foreign_log(const std::string& file);
-
 }  // namespace chicane::apps

@@ -7,7 +7,7 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/run/fault_campaign.hpp"
-#include "chicane/sweep/shard.hpp"
+#include "chicane/run/shard.hpp"
 #include "command_options.hpp"
 #include "setting_options.hpp"
 
@@ -56,7 +56,7 @@ void add_sweep(CLI::App& command, Options& options) {
   add(command, "--shard", sweep.shard, "I/N",
       "Drive part I of N, into FILE.I-of-N.jsonl; in a Slurm array or under MPI it is known without it")
       ->check([](const std::string& text) {
-        const auto shard = sweep::parse_shard(text);
+        const auto shard = run::parse_shard(text);
         return shard ? std::string() : shard.error().message;
       });
   add(command, "--show", sweep.shown, "RUN",

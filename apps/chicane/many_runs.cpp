@@ -8,12 +8,10 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <string>
 #include <utility>
 
 #include "chicane/base/file.hpp"
-#include "chicane/base/text.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/temporary_file.hpp"
 #include "chicane/run/parallel.hpp"
@@ -54,15 +52,6 @@ std::atomic<bool>& begin_many_runs() {
 #endif
   catch_interrupts(stop);
   return stop;
-}
-
-Result<void> check_page_name(std::string_view option, const std::string& file) {
-  const std::filesystem::path extension = std::filesystem::path(file).extension();
-  std::error_code error;
-  const bool is_device =
-      std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error);
-  if (file.empty() || extension == ".html" || extension == ".htm" || is_device) return {};
-  return fail(refusal(option, file, "a name that ends in .html"));
 }
 
 Result<void> write_below(const std::string& page, std::string_view marker, const std::string& text) {

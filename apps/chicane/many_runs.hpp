@@ -19,10 +19,6 @@ namespace chicane::apps {
 /// them for the next one. Ctrl-C and SIGTERM set the flag that is returned (interrupt.hpp).
 [[nodiscard]] std::atomic<bool>& begin_many_runs();
 
-/// Checks that the name of an HTML page is one that browsers open: `option`: got x.txt, expected a name that
-/// ends in .html. An empty name is no file; devices may have any.
-[[nodiscard]] Result<void> check_page_name(std::string_view option, const std::string& file);
-
 /// Replaces what a page has behind `marker`; a page without one is replaced. kIo.
 [[nodiscard]] Result<void> write_below(const std::string& page, std::string_view marker,
                                        const std::string& text);

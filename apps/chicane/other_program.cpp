@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Seen from the folder of this program: a build folder, an installation.
-constexpr const char* kPlaces[] = {"", "../libexec/chicane"};
+/// Seen from the folder of this program: a build folder, bin and libexec/chicane of an installation.
+constexpr const char* kPlaces[] = {"", "../libexec/chicane", "../../bin"};
 
 bool is_program(const fs::path& file) {
   std::error_code error;

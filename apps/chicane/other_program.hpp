@@ -7,7 +7,7 @@
 /// Programs that are installed apart from this one, and do the work of one of its commands.
 namespace chicane::apps {
 
-/// The program of that name: beside this one in a build folder, in libexec/chicane of an installation, or on
+/// The program of that name: in the folder of this one, in libexec/chicane or bin of an installation, or on
 /// PATH where `is_on_path`. Empty when there is none.
 [[nodiscard]] std::string other_program(const std::string& name, bool is_on_path);
 

@@ -12,7 +12,6 @@
 #include "chicane/live/assets.hpp"
 #include "chicane/recording/bag_metadata.hpp"
 #include "chicane/recording/html_report.hpp"
-#include "many_runs.hpp"
 
 namespace chicane::apps {
 
@@ -29,6 +28,15 @@ Result<void> can_be_reported(const std::string& file) {
 }
 
 }  // namespace
+
+Result<void> check_page_name(std::string_view option, const std::string& file) {
+  const std::filesystem::path extension = std::filesystem::path(file).extension();
+  std::error_code error;
+  const bool is_device =
+      std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error);
+  if (file.empty() || extension == ".html" || extension == ".htm" || is_device) return {};
+  return fail(refusal(option, file, "a name that ends in .html"));
+}
 
 Result<std::unique_ptr<KeptRun>> KeptRun::start(const Options& options, protocol::Run run,
                                                 const scenario::Scenario& scenario, double step_budget) {

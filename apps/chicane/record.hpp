@@ -13,6 +13,10 @@
 
 namespace chicane::apps {
 
+/// Checks that the name of an HTML page is one that browsers open: `option`: got x.txt, expected a name that
+/// ends in .html. An empty name is no file; devices may have any.
+[[nodiscard]] Result<void> check_page_name(std::string_view option, const std::string& file);
+
 /// What --record and --report keep of a run: every control step. Nothing is kept where neither is asked for.
 class KeptRun {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `chicane bench` starts chicane-bench and `chicane ros` chicane-ros, wherever the program stands. Seen with
-// a copy of the program and scripts.
+// Commands that are programs of their own, chicane-bench, chicane-ros and chicane-lab, are started wherever
+// the program stands. Seen with a copy of the program and scripts.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -105,6 +107,55 @@ TEST_F(OtherProgram, RosStartsTheProgramBesideItWithTheSameWords) {
   put_script("bin/chicane-ros");
   EXPECT_EQ(run("ros --track oval --set 'horizon.steps=12' --domain 7"), 7);
   EXPECT_EQ(out, "--track oval --set horizon.steps=12 --domain 7\n");
+}
+
+TEST_F(OtherProgram, LabSaysHowToBuildTheProgramThatIsMissing) {
+  EXPECT_EQ(run("lane-change"), 3);
+  EXPECT_EQ(out, "");
+  EXPECT_THAT(err, HasSubstr("chicane lane-change: chicane-lab"));
+  EXPECT_THAT(err, HasSubstr("./run.sh lane-change"));
+  EXPECT_THAT(err, HasSubstr("--target chicane_lab"));
+}
+
+TEST_F(OtherProgram, HelpOfLabAndMistakesNeedNoOtherProgram) {
+  EXPECT_EQ(run("sweep --help"), 0);
+  EXPECT_THAT(out, HasSubstr("--shard"));
+  EXPECT_EQ(run("sweep plan.yaml --shard 4/3"), 2);
+  EXPECT_THAT(err, HasSubstr("chicane sweep: --shard"));
+}
+
+TEST_F(OtherProgram, LabStartsItsProgramWithTheCommandAndTheSameWords) {
+  put_script("libexec/chicane/chicane-lab");
+  EXPECT_EQ(run("merge a.jsonl 'b c.jsonl' -o all.jsonl"), 7);
+  EXPECT_EQ(out, "merge a.jsonl b c.jsonl -o all.jsonl\n");
+}
+
+/// The quoted words of a file's lines that begin with `begin`, with `quote` around each.
+std::set<std::string> quoted_words(const std::string& file, const std::string& begin, char quote) {
+  std::set<std::string> words;
+  std::ifstream in(std::string(CHICANE_SOURCE_DIR) + file);
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with(begin)) continue;
+    const std::regex word(std::string(1, quote) + R"( ?([a-z-]+) ?)" + quote);
+    for (std::sregex_iterator at(line.begin(), line.end(), word), end; at != end; ++at)
+      words.insert((*at)[1]);
+  }
+  return words;
+}
+
+TEST(Lab, IsBuiltByRunShForEachOfItsCommands) {
+  std::set<std::string> commands = quoted_words("/apps/chicane/lab_main.cpp", "    {\"", '"');
+  commands.erase("replay");  // of recordings it needs no other program
+  EXPECT_EQ(commands.size(), 12U);
+  std::set<std::string> built = quoted_words("/run.sh", "  ' campaign '", '\'');
+  built.insert("tune");  // which needs a package more
+  EXPECT_EQ(built, commands);
+}
+
+TEST_F(OtherProgram, LabShowsLogsOfOtherPrograms) {
+  put_script("bin/chicane-lab");
+  EXPECT_EQ(run("replay drive.csv"), 7);
+  EXPECT_EQ(out, "replay drive.csv\n");
 }
 
 TEST_F(OtherProgram, RosStartsTheProgramOfAnInstallationOrOnThePath) {

@@ -28,7 +28,7 @@ expect() {
   [ "$owners" = root/root ] || fail "$package: got the owners $owners, expected root/root"
 }
 library='usr/lib/[a-z0-9_]+-linux-gnu'
-expect chicane usr/bin/chicane usr/share/chicane/{tracks/lakeside.csv,cars/udacity.yaml,presets/default.yaml,scenarios/first-lap.yaml} \
+expect chicane usr/bin/chicane usr/libexec/chicane/chicane-lab usr/share/chicane/{tracks/lakeside.csv,cars/udacity.yaml,presets/default.yaml,scenarios/first-lap.yaml} \
   usr/share/man/man1/chicane.1.gz usr/share/bash-completion/completions/chicane.bash usr/share/zsh/vendor-completions/_chicane \
   usr/share/fish/vendor_completions.d/chicane.fish usr/share/applications/chicane.desktop usr/share/icons/hicolor/scalable/apps/chicane.svg \
   usr/lib/systemd/system/chicane-serve@.service

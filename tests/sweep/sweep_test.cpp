@@ -49,7 +49,7 @@ class Sweep : public testing::Test {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
   }
-  Result<Progress> run(const std::string& file, const Shard& shard = {}, int jobs = 1) {
+  Result<Progress> run(const std::string& file, const run::Shard& shard = {}, int jobs = 1) {
     return drive_plan(plan_, shard, {.jobs = jobs, .file = path(file)}, stop_);
   }
   /// The merged bytes of some files.

@@ -2,11 +2,13 @@
 #include "chicane/recording/reader.hpp"
 
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <variant>
 
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/car_messages.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/recording/recorder.hpp"
 
@@ -127,6 +129,22 @@ Result<scenario::Scenario> recorded_scenario(const std::string& path) {
     return fail(ErrorCode::kInvalidArgument, path + ": mode: got serve, expected drive");
   }
   return *first;
+}
+
+bool is_foreign_log(const std::string& file) {
+  std::error_code trouble;
+  if (std::filesystem::is_directory(file, trouble)) return true;  // a bag, as rosbag2 writes it
+  if (file.ends_with(".db3") || file.ends_with(".csv")) return true;
+  if (!file.ends_with(".mcap")) return false;
+  bool is_ours = false, has_odometry = false;
+  telemetry::McapVisitor visitor;
+  visitor.on_message = [&](const telemetry::McapMessage& message) {
+    is_ours |= message.channel.topic == kFrameTopic;
+    has_odometry = has_odometry || (message.channel.type == protocol::OdometryMessage::kType &&
+                                    message.channel.message_encoding == "cdr" &&
+                                    protocol::decode<protocol::OdometryMessage>(message.bytes).has_value());
+  };
+  return telemetry::read_mcap(file, visitor) && has_odometry && !is_ours;
 }
 
 Result<telemetry::McapReport> check_recording(const std::string& path) {

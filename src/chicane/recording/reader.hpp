@@ -50,6 +50,10 @@ struct RecordingHead {
 /// kInvalidArgument for a recording of `serve`, whose car is not here to drive on.
 [[nodiscard]] Result<scenario::Scenario> recorded_scenario(const std::string& path);
 
+/// Whether a file is a log of another program: a CSV table, a bag of SQLite or a bag's folder by its name, an
+/// MCAP file by its topics, odometry in CDR and no control step of ours.
+[[nodiscard]] bool is_foreign_log(const std::string& file);
+
 /// Whether a file can be shown: how much of it there is. Also kParse "x.mcap: got no control step, expected a
 /// recording of ours, or …" for bags of other programs, and for a recording cut before its first step is
 /// whole.

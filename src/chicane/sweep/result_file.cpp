@@ -223,7 +223,7 @@ Result<void> LineFile::append(std::string_view line) {
   return io_failure(path_);
 }
 
-Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, const Shard& shard) {
+Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, const run::Shard& shard) {
   const std::string header = header_of(plan);
   ResultFile file(shard, plan.size());
   const auto refuse = [&](const std::string& first) {

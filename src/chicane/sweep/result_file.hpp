@@ -10,8 +10,8 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/protocol/json.hpp"
+#include "chicane/run/shard.hpp"
 #include "chicane/sweep/plan.hpp"
-#include "chicane/sweep/shard.hpp"
 
 /// The file of a sweep: one JSON object in each line, the first about plan and program, each further about
 /// one run, `{"run":17,…}`, in the order in which they ended.
@@ -100,7 +100,8 @@ class ResultFile {
  public:
   /// As LineFile::open(), and finds out which runs of the shard are done. kInvalidArgument when it belongs to
   /// another plan or program.
-  [[nodiscard]] static Result<ResultFile> open(const std::string& path, const Plan& plan, const Shard& shard);
+  [[nodiscard]] static Result<ResultFile> open(const std::string& path, const Plan& plan,
+                                               const run::Shard& shard);
 
   [[nodiscard]] bool has(std::uint64_t run) const { return done_[run / shard_.count]; }
   /// Runs that were there when it was opened.
@@ -109,10 +110,10 @@ class ResultFile {
   [[nodiscard]] Result<void> append(std::string_view line) { return file_.append(line); }
 
  private:
-  ResultFile(const Shard& shard, std::uint64_t runs) : shard_{shard}, done_(shard.size(runs), false) {}
+  ResultFile(const run::Shard& shard, std::uint64_t runs) : shard_{shard}, done_(shard.size(runs), false) {}
 
   LineFile file_{};
-  Shard shard_;
+  run::Shard shard_;
   std::vector<bool> done_;  ///< by the place in the shard
   std::uint64_t done_count_ = 0;
 };

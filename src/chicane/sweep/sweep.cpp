@@ -186,7 +186,7 @@ std::string line_of(const Plan& plan, std::uint64_t run, const Settings& varied,
                    result ? Result<std::string>(columns_of(plan, *result)) : fail(result.error()));
 }
 
-Result<Progress> drive_plan(const Plan& plan, const Shard& shard, const SweepOptions& options,
+Result<Progress> drive_plan(const Plan& plan, const run::Shard& shard, const SweepOptions& options,
                             const RunRule& rule, const std::atomic<bool>& stop) {
   Result<ResultFile> file = ResultFile::open(options.file, plan, shard);
   if (!file) return fail(file.error());
@@ -209,7 +209,7 @@ Result<Progress> drive_plan(const Plan& plan, const Shard& shard, const SweepOpt
   return tally.result();
 }
 
-Result<Progress> drive_plan(const Plan& plan, const Shard& shard, const SweepOptions& options,
+Result<Progress> drive_plan(const Plan& plan, const run::Shard& shard, const SweepOptions& options,
                             const std::atomic<bool>& stop) {
   std::mutex mutex;  // of options.on_run
   const RunRule rule = [&](std::uint64_t run, run::Roads& roads) -> Result<std::optional<std::string>> {

@@ -9,8 +9,8 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/run/roads.hpp"
+#include "chicane/run/shard.hpp"
 #include "chicane/sweep/plan.hpp"
-#include "chicane/sweep/shard.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::sweep {
@@ -67,10 +67,11 @@ using RunRule = std::function<Result<std::optional<std::string>>(std::uint64_t r
 /// Drives the runs of a shard that are not in the file yet, each by `rule`. Each run depends on the plan and
 /// its number alone: not on threads, shards, order or what was driven before. Ends early with what there is
 /// when `stop` is set; kIo when the file cannot be written, with all runs so far in it.
-[[nodiscard]] Result<Progress> drive_plan(const Plan& plan, const Shard& shard, const SweepOptions& options,
-                                          const RunRule& rule, const std::atomic<bool>& stop);
-/// The same, each run driven once or searched as the plan says.
-[[nodiscard]] Result<Progress> drive_plan(const Plan& plan, const Shard& shard, const SweepOptions& options,
+[[nodiscard]] Result<Progress> drive_plan(const Plan& plan, const run::Shard& shard,
+                                          const SweepOptions& options, const RunRule& rule,
                                           const std::atomic<bool>& stop);
+/// The same, each run driven once or searched as the plan says.
+[[nodiscard]] Result<Progress> drive_plan(const Plan& plan, const run::Shard& shard,
+                                          const SweepOptions& options, const std::atomic<bool>& stop);
 
 }  // namespace chicane::sweep

@@ -8,7 +8,7 @@
 
 #include "chicane/base/result.hpp"
 
-namespace chicane::sweep {
+namespace chicane::run {
 
 /// The part of a sweep that one process drives: the runs whose index leaves the remainder `index` when
 /// divided by `count`.
@@ -36,4 +36,4 @@ struct Shard {
 /// and for arrays with holes.
 [[nodiscard]] Result<Shard> environment_shard(const std::function<const char*(const char*)>& variable);
 
-}  // namespace chicane::sweep
+}  // namespace chicane::run

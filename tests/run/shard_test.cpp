@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/sweep/shard.hpp"
+#include "chicane/run/shard.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
 
-namespace chicane::sweep {
+namespace chicane::run {
 namespace {
 
 using Environment = std::map<std::string, std::string>;
@@ -72,4 +72,4 @@ TEST(Shard, RefusesArraysWithHolesAndNumbersThatMakeNoSense) {
 }
 
 }  // namespace
-}  // namespace chicane::sweep
+}  // namespace chicane::run

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/sweep/shard.hpp"
+#include "chicane/run/shard.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "chicane/base/text.hpp"
 
-namespace chicane::sweep {
+namespace chicane::run {
 namespace {
 
 constexpr std::uint64_t kMostShards = 1'000'000;
@@ -105,4 +105,4 @@ Result<Shard> environment_shard(const Variable& variable) {
                fmt::format("{} of {}", rank->from, array->from)};
 }
 
-}  // namespace chicane::sweep
+}  // namespace chicane::run
