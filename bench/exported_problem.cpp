@@ -79,7 +79,7 @@ int main() {
     reference = ipopt.solve(arrays, x0, plan);
     ipopt_least = std::min(ipopt_least, reference.time);
     const auto zero = [](int, int) { return 0.0; };
-    ipopt_cost = bench::check_kkt(arrays, plan, zero, zero).cost;
+    ipopt_cost = bench::check_kkt(arrays, plan, zero).cost;
   }
   std::printf("{\"own_s\": %.9g, \"own_cost\": %.12g, \"status\": %d, \"warm_s\": %.9g, ", own->least,
               own->cost, own->status, warm->least);

@@ -82,12 +82,11 @@ struct NoHardPrices {
   double terminal_constraint_multiplier(int) const { return 0.0; }
 };
 
-/// Checks a trajectory with the prices of its soft constraints, `price(k, c)`, of the bounds on changes
-/// of inputs, `rate_price(k, m)`, and of what must hold. Everything else is computed here, by dual numbers,
-/// stage by stage: no line is shared with the solver.
-template <solver::OcpProblem P, int Capacity, class Price, class RatePrice, class HardPrice = NoHardPrices>
+/// Checks a trajectory with the prices of its soft constraints, `price(k, c)`, and of what must hold.
+/// Everything else is computed here, by dual numbers, stage by stage: no line is shared with the solver.
+template <solver::OcpProblem P, int Capacity, class Price, class HardPrice = NoHardPrices>
 KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::kNx, P::kNu, Capacity>& t,
-                      const Price& price, const RatePrice& rate_price, const HardPrice& hard = {}) {
+                      const Price& price, const HardPrice& hard = {}) {
   constexpr int kNx = P::kNx, kNu = P::kNu, kNz = kNx + kNu;
   using D = Dual<kNz>;
   constexpr double kUnit = 2.2e-16;
@@ -184,16 +183,11 @@ KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::
     const auto low = problem.input_lower(stage);
     const auto high = problem.input_upper(stage);
     for (std::size_t m = 0; m < kNu; ++m) {
-      double gradient = slope[kNx + m];
-      if constexpr (solver::kHasRateBounds<P>) gradient += rate_price(stage, static_cast<int>(m));
+      const double gradient = slope[kNx + m];
       const double at = t.u[k][m];
       const double moved = std::clamp(at - gradient, low[m], high[m]);
       result.stationarity = std::max(result.stationarity, std::fabs(moved - at));
       result.outside = std::max({result.outside, low[m] - at, at - high[m]});
-      if constexpr (solver::kHasRateBounds<P>) {
-        if (P::kPreviousInput[m] >= 0)
-          slope[static_cast<std::size_t>(P::kPreviousInput[m])] -= rate_price(stage, static_cast<int>(m));
-      }
     }
     for (std::size_t m = 0; m < kNu; ++m) result.rounding = std::max(result.rounding, noise[kNx + m]);
     for (std::size_t i = 0; i < kNx; ++i) {

@@ -98,8 +98,7 @@ class FamilyMeasurement {
       }
       const OverArrays<P> arrays{one.problem};
       const KktResidual kkt = check_kkt(
-          arrays, *t, [&](int k, int c) { return ocp->constraint_multiplier(k, c); },
-          [&](int k, int m) { return -ocp->rate_multiplier(k, m); }, hard_prices(*ocp));
+          arrays, *t, [&](int k, int c) { return ocp->constraint_multiplier(k, c); }, hard_prices(*ocp));
       const bool is_optimal = report.status == solver::SolveStatus::kOptimal;
       const bool is_asked = !is_optimal || i - request.first < request.ipopt_instances;
       const ReferenceAnswer reference = reference_of(request, references, one, arrays, start, i, is_asked);
@@ -171,8 +170,7 @@ class FamilyMeasurement {
       }
       solver::roll_out(one.problem, one.start, *t);
     }
-    const KktResidual kkt = check_kkt(
-        arrays, *t, [](int, int) { return 0.0; }, [](int, int) { return 0.0; });
+    const KktResidual kkt = check_kkt(arrays, *t, [](int, int) { return 0.0; });
     return references[key] = {report.is_solved, report.is_impossible,
                               report.is_impossible ? kkt.total : kkt.cost, report.time, report.iterations};
 #else

@@ -118,7 +118,7 @@ class LoopMeasurement {
 #if defined(CHICANE_HAVE_IPOPT)
     const auto cost = [&](const Trajectory& t) {
       const auto nothing = [](int, int) { return 0.0; };
-      return check_kkt(arrays, t, nothing, nothing).cost;
+      return check_kkt(arrays, t, nothing).cost;
     };
     const auto t = std::make_unique<Trajectory>(start);
     ipopt_.remember();

@@ -82,11 +82,10 @@ class Judge {
   }
   [[nodiscard]] KktResidual check(const solver::Trajectory<P::kNx, P::kNu, Capacity>& t) const {
     const auto price = [&](int k, int c) { return ocp_.constraint_multiplier(k, c); };
-    const auto rate_price = [&](int k, int m) { return -ocp_.rate_multiplier(k, m); };
     if constexpr (kIsHard) {
-      return check_kkt(arrays_, t, price, rate_price, ocp_);
+      return check_kkt(arrays_, t, price, ocp_);
     } else {
-      return check_kkt(arrays_, t, price, rate_price);
+      return check_kkt(arrays_, t, price);
     }
   }
 

@@ -20,7 +20,6 @@ namespace chicane::bench {
 template <class P, int Capacity>
 void make_case(Random& random, FuzzCase<P, Capacity>& one) {
   static_cast<typename P::Data&>(one.problem) = P::Data::make(random);
-  if constexpr (solver::kHasRateBounds<P>) one.problem.most = random.uniform(0.01, 2.0);
   const auto chance = [&](double share) { return random.uniform() < share; };
   const double wide = chance(0.1) ? 100.0 : 1.0;
   for (double& x : one.start) x = chance(0.002) ? not_a_number(random) : wide * random.normal();

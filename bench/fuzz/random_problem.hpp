@@ -184,39 +184,6 @@ struct RandomPlain : RandomStructured<Nx, Nu, Nc> {
   const { return solver::to_array<T>(Base::constraint(k, x, u)); }
 };
 
-/// Bounds on the change of input 0, whose last value is the last state.
-template <int Nx, int Nu, int Nc>
-struct RandomRates : RandomStructured<Nx, Nu, Nc> {
-  using Base = RandomStructured<Nx, Nu, Nc>;
-  static constexpr std::array<int, Nu> kPreviousInput = [] {
-    std::array<int, Nu> state{};
-    state.fill(-1);
-    state[0] = Nx - 1;
-    return state;
-  }();
-  double most = 1.0;
-  template <class K, class X, class U>
-  auto dynamics(K, const X& x, const U& u) const {
-    return Base::template row<Nx>([&](auto i) {
-      if constexpr (i == Nx - 1) {
-        return std::get<0>(u);
-      } else {
-        return this->template next<i>(x, u);
-      }
-    });
-  }
-  [[nodiscard]] std::array<double, Nu> input_rate_lower(int) const {
-    std::array<double, Nu> rates;
-    rates.fill(-most);
-    return rates;
-  }
-  [[nodiscard]] std::array<double, Nu> input_rate_upper(int) const {
-    std::array<double, Nu> rates;
-    rates.fill(most);
-    return rates;
-  }
-};
-
 /// What must hold beside: hard limits, an equation of each stage, some at the end; some of them cannot.
 template <int Nx, int Nu, int Nc, int Nh, int Neh, int Nec>
 struct RandomHard : RandomStructured<Nx, Nu, Nc> {

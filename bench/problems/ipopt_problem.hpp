@@ -24,7 +24,7 @@ struct Multipliers {
 /// Any OcpProblem as a sparse nonlinear program for Ipopt (Wächter, Biegler 2006): states and inputs as
 /// variables, dynamics as equations, soft constraints with explicit slacks, exact first and second
 /// derivatives by dual numbers. Variables: u_0, x_1, u_1, …, x_N, then the slacks. Equations: dynamics, then
-/// constraints with slacks, then changes of inputs where those are bounded, then what else must hold.
+/// constraints with slacks, then what else must hold.
 template <solver::OcpProblem P>
 class IpoptProblem : public Ipopt::TNLP {
  public:
@@ -34,7 +34,6 @@ class IpoptProblem : public Ipopt::TNLP {
   static constexpr int kNu = P::kNu;
   static constexpr int kNc = P::kNc;
   static constexpr int kNz = kNx + kNu;
-  static constexpr int kNd = solver::kHasRateBounds<P> ? kNu : 0;
   static constexpr int kNh = solver::equality_count<P>();
   static constexpr int kNeh = solver::terminal_equality_count<P>();
   static constexpr int kNec = solver::terminal_constraint_count<P>();
@@ -52,15 +51,12 @@ class IpoptProblem : public Ipopt::TNLP {
   static int at_u(int k) { return k * kNz; }
   static int at_x(int k) { return (k - 1) * kNz + kNu; }
   [[nodiscard]] int at_s(int k) const { return horizon * kNz + k * kNc; }
-  /// The row of the change of input m of stage k.
-  [[nodiscard]] int rate_row(int k, int m) const { return horizon * (kNx + kNc) + k * kNd + m; }
-
-  [[nodiscard]] int equality_row(int k, int n) const { return horizon * (kNx + kNc + kNd) + k * kNh + n; }
-  [[nodiscard]] int terminal_row(int n) const { return horizon * (kNx + kNc + kNd + kNh) + n; }
+  [[nodiscard]] int equality_row(int k, int n) const { return horizon * (kNx + kNc) + k * kNh + n; }
+  [[nodiscard]] int terminal_row(int n) const { return horizon * (kNx + kNc + kNh) + n; }
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
     n = horizon * (kNz + kNc);
-    m = horizon * (kNx + kNc + kNd + kNh) + kNeh + kNec;
+    m = horizon * (kNx + kNc + kNh) + kNeh + kNec;
     jacobian = visit_jacobian(nullptr, [](int, int, double) {});
     hessian = visit_hessian(nullptr, 0.0, nullptr, [](int, int, double) {});
     style = C_STYLE;
@@ -82,14 +78,6 @@ class IpoptProblem : public Ipopt::TNLP {
         high[at_s(k) + c] = must_hold(c) ? 0.0 : 2e19;
         g_low[horizon * kNx + k * kNc + c] = -2e19;
         g_high[horizon * kNx + k * kNc + c] = 0.0;
-      }
-      if constexpr (kNd > 0) {
-        for (int m = 0; m < kNu; ++m) {
-          const auto input = static_cast<std::size_t>(m);
-          const bool is_bounded = P::kPreviousInput[input] >= 0;
-          g_low[rate_row(k, m)] = is_bounded ? std::fmax(problem->input_rate_lower(k)[input], -2e19) : -2e19;
-          g_high[rate_row(k, m)] = is_bounded ? std::fmin(problem->input_rate_upper(k)[input], 2e19) : 2e19;
-        }
       }
       for (int i = 0; i < kNh; ++i) g_low[equality_row(k, i)] = g_high[equality_row(k, i)] = 0.0;
     }
@@ -162,7 +150,6 @@ class IpoptProblem : public Ipopt::TNLP {
           g[horizon * kNx + k * kNc + c] = values[static_cast<std::size_t>(c)] - w[at_s(k) + c];
         }
       }
-      for (int m = 0; m < kNd; ++m) g[rate_row(k, m)] = change<double>(x, u, m);
       if constexpr (kNh > 0) {
         int row = equality_row(k, 0);
         for (const double h : problem->equality(k, x, u)) g[row++] = h;
@@ -277,13 +264,6 @@ class IpoptProblem : public Ipopt::TNLP {
     return u;
   }
 
-  /// u_m − the state that holds its previous value.
-  template <class T>
-  static T change(const std::array<T, kNx>& x, const std::array<T, kNu>& u, int m) {
-    const int state = solver::previous_inputs<P>()[static_cast<std::size_t>(m)];
-    return u[static_cast<std::size_t>(m)] - x[static_cast<std::size_t>(std::max(state, 0))];
-  }
-
   template <class Put>
   int visit_jacobian(const Number* w, const Put& put) {
     using D = Dual<kNz>;
@@ -305,7 +285,6 @@ class IpoptProblem : public Ipopt::TNLP {
         put(k * kNx + i, at_x(k + 1) + i, -1.0);
         ++count;
       }
-      for (int m = 0; m < kNd; ++m) row(rate_row(k, m), k, change<D>(x, u, m));
       if constexpr (kNc > 0) {
         const auto values = problem->constraint(k, x, u);
         for (int c = 0; c < kNc; ++c) {

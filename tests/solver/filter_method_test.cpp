@@ -30,9 +30,8 @@ Solved<P> solve(int seed, NaiveStart start, solver::SolverOptions options = {}) 
   const auto t = std::make_unique<typename Measurement::Trajectory>(Measurement::guess(instance, start));
   Solved<P> solved;
   solved.report = ocp->solve(instance.problem, instance.start, *t);
-  solved.kkt = check_kkt(
-      OverArrays<P>{instance.problem}, *t, [&](int k, int c) { return ocp->constraint_multiplier(k, c); },
-      [&](int k, int m) { return -ocp->rate_multiplier(k, m); });
+  solved.kkt = check_kkt(OverArrays<P>{instance.problem}, *t,
+                         [&](int k, int c) { return ocp->constraint_multiplier(k, c); });
   return solved;
 }
 
@@ -78,7 +77,7 @@ TEST(FilterMethod, HandsOutNoWorseThanTheGuessWhenTheBudgetEnds) {
       const auto instance = FamilyMeasurement<CartPole>::instance(seed);
       const auto guess = FamilyMeasurement<CartPole>::guess(instance, NaiveStart::kIdle);
       const auto none = [](int, int) { return 0.0; };
-      const double before = check_kkt(OverArrays<CartPole>{instance.problem}, guess, none, none).cost;
+      const double before = check_kkt(OverArrays<CartPole>{instance.problem}, guess, none).cost;
       const auto [report, kkt] = solve<CartPole>(seed, NaiveStart::kIdle, {.max_iterations = iterations});
       EXPECT_LE(kkt.cost, (1.0 + 1e-9) * before) << iterations << " " << seed;
     }

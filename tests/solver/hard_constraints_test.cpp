@@ -187,7 +187,7 @@ void expect_optimal(std::initializer_list<int> seeds, NaiveStart start, solver::
     ASSERT_EQ(report.status, SolveStatus::kOptimal) << seed;
     const KktResidual kkt = check_kkt(
         OverArrays<P>{instance.problem}, *t, [&](int k, int c) { return ocp->constraint_multiplier(k, c); },
-        [&](int k, int m) { return -ocp->rate_multiplier(k, m); }, *ocp);
+        *ocp);
     EXPECT_LE(kkt.miss, 1e-6) << seed;
     EXPECT_LE(kkt.stationarity, 1.5e-6 + kkt.rounding) << seed;
     EXPECT_LE(kkt.defect, 1e-12) << seed;

@@ -21,7 +21,7 @@ void expect_calm(int seed, NaiveStart start, const solver::SolverOptions& option
   const solver::SolveReport report = ocp->solve(instance.problem, instance.start, *t);
   EXPECT_EQ(report.status, solver::SolveStatus::kOptimal) << seed;
   const auto none = [](int, int) { return 0.0; };
-  const KktResidual kkt = check_kkt(OverArrays<LongChain>{instance.problem}, *t, none, none);
+  const KktResidual kkt = check_kkt(OverArrays<LongChain>{instance.problem}, *t, none);
   EXPECT_LE(kkt.stationarity, 1.1e-6) << seed;
   EXPECT_LE(kkt.defect, 1e-12) << seed;
   EXPECT_LE(kkt.outside, 0.0) << seed;

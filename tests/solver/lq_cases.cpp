@@ -5,10 +5,8 @@
 namespace chicane::test {
 
 template void solve_lq<arch::Native, SparsePattern>(const LqData&, LqAnswer&) noexcept;
-template void solve_lq<arch::Native, RatePattern>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, MemorylessPattern>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, solver::FullPattern<2, 1>>(const LqData&, LqAnswer&) noexcept;
 template void solve_lq<arch::Native, Compact<SparsePattern>>(const LqData&, LqAnswer&) noexcept;
-template void solve_lq<arch::Native, Compact<RatePattern>>(const LqData&, LqAnswer&) noexcept;
 
 }  // namespace chicane::test

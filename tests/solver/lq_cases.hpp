@@ -21,8 +21,6 @@ struct LqData {
   double terminal[kMostStates + 1][kMostStates]{};  ///< last row: gradient
   double low[kMostStages][kMostInputs]{};
   double high[kMostStages][kMostInputs]{};
-  double rate_low[kMostStages][kMostInputs]{};
-  double rate_high[kMostStages][kMostInputs]{};
 };
 
 struct LqAnswer {
@@ -30,7 +28,6 @@ struct LqAnswer {
   double du[LqData::kMostStages][LqData::kMostInputs]{};
   double shift = 0.0;         ///< of the first backward sweep
   int sweeps = 0;             ///< until nothing contradicts; 100 when that does not happen
-  bool ends_inside = false;   ///< with the interior point's step, whose working set was contradicted
   bool again_is_same = true;  ///< sweeps begun at the last change gave the bits of whole ones
 };
 
@@ -68,12 +65,6 @@ struct SparsePattern {
     set(8, 9);
     return l;
   }();
-  static constexpr std::array<int, kNu> kRateState{-1, -1};
-};
-
-/// The same with bounds on the changes of both inputs.
-struct RatePattern : SparsePattern {
-  static constexpr std::array<int, kNu> kRateState{5, 6};
 };
 
 /// No state depends on another one: F has inputs only.

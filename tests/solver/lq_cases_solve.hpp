@@ -4,7 +4,6 @@
 #include <cstring>
 #include <memory>
 
-#include "chicane/solver/detail/interior_point.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
 #include "solver/lq_cases.hpp"
 
@@ -35,8 +34,6 @@ void load(const LqData& data, solver::LqProblem<Pattern, LqData::kMostStages>& l
     for (std::size_t m = 0; m < Layout::kNu; ++m) {
       lq.low[m][k] = data.low[k][m];
       lq.high[m][k] = data.high[k][m];
-      lq.rate_low[m][k] = data.rate_low[k][m];
-      lq.rate_high[m][k] = data.rate_high[k][m];
     }
   }
   for (std::size_t i = 0; i <= Layout::kNx; ++i) {
@@ -67,22 +64,6 @@ void solve_lq(const LqData& data, LqAnswer& answer) noexcept {
     check->backward(data.horizon);
     answer.again_is_same =
         answer.again_is_same && std::memcmp(check->feedback, qp->feedback, sizeof qp->feedback) == 0;
-  }
-  if constexpr (Solver::kHasRates) {
-    if (answer.sweeps == 100) {
-      const auto interior = std::make_unique<solver::InteriorPoint<Solver>>();
-      const auto slope = [&](std::size_t k, std::size_t m) { return data.L[k][kNx][kNx + 1 + m]; };
-      answer.sweeps = interior->solve(*qp, data.horizon, slope, [] { return false; });
-      answer.ends_inside = true;
-      interior->put_step(*qp, data.horizon);
-      for (int turn = 0; turn < 20; ++turn) {
-        qp->backward(data.horizon);
-        if (qp->forward(data.horizon, turn < 5 ? Solver::Repair::kAll : Solver::Repair::kLast) > 0) continue;
-        answer.ends_inside = false;
-        break;
-      }
-      if (answer.ends_inside) interior->put_step(*qp, data.horizon);
-    }
   }
   for (std::size_t k = 0; k < data.horizon; ++k) {
     for (std::size_t i = 0; i < kNx; ++i) answer.dx[k + 1][i] = qp->dx[k + 1][i];

@@ -56,15 +56,6 @@ std::unique_ptr<LqData> random_data(Random& random, std::size_t horizon) {
       data->low[k][m] = kind < 0.1 ? -kInfinity : centre - width;
       data->high[k][m] = kind > 0.9 ? kInfinity : centre + width;
       if (kind > 0.45 && kind < 0.5) data->low[k][m] = data->high[k][m] = centre;
-      data->rate_low[k][m] = Layout::has_rate_bounds() ? -random.uniform(0.01, 0.4) : -kInfinity;
-      data->rate_high[k][m] = Layout::has_rate_bounds() ? random.uniform(0.01, 0.4) : kInfinity;
-    }
-    if (Layout::has_rate_bounds()) {  // bounds that do not contradict each other
-      for (std::size_t m = 0; m < Layout::kNu; ++m) {
-        data->low[k][m] = k == 0 ? -random.uniform(0.3, 1.0) : data->low[0][m];
-        data->high[k][m] = k == 0 ? random.uniform(0.3, 1.0) : data->high[0][m];
-        data->F[k][static_cast<std::size_t>(Pattern::kRateState[m])][kNx] = 0.0;
-      }
     }
   }
   for (std::size_t i = 0; i < kNx; ++i) {
@@ -98,9 +89,8 @@ Condensed condense(const LqData& data) {
   const Eigen::Index n = horizon * kNu;
   Eigen::MatrixXd X = Eigen::MatrixXd::Zero(kNx, n + 1);
   Eigen::MatrixXd total = Eigen::MatrixXd::Zero(n + 1, n + 1);
-  const bool has_rates = solver::Layout<Pattern>::has_rate_bounds();
   Condensed c;
-  c.C = Eigen::MatrixXd::Zero(has_rates ? 2 * n : n, n);
+  c.C = Eigen::MatrixXd::Zero(n, n);
   c.low = c.high = Eigen::VectorXd::Zero(c.C.rows());
   for (Eigen::Index k = 0; k < horizon; ++k) {
     Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(kNx + 1 + kNu, n + 1);
@@ -121,12 +111,6 @@ Condensed condense(const LqData& data) {
       c.C(row, row) = 1.0;
       c.low(row) = data.low[k][m];
       c.high(row) = data.high[k][m];
-      if (!has_rates) continue;
-      const auto last = X.row(Pattern::kRateState[static_cast<std::size_t>(m)]);
-      c.C.row(n + row) = -last.head(n);
-      c.C(n + row, row) += 1.0;
-      c.low(n + row) = data.rate_low[k][m] + last(n);
-      c.high(n + row) = data.rate_high[k][m] + last(n);
     }
     X = F * Z;
   }
@@ -198,14 +182,13 @@ std::vector<InstructionSet> available_sets() {
 
 template <class Pattern>
 class LqSolverOn : public testing::Test {};
-using Patterns =
-    testing::Types<test::SparsePattern, test::RatePattern, test::MemorylessPattern, solver::FullPattern<2, 1>,
+using Patterns = testing::Types<test::SparsePattern, test::MemorylessPattern, solver::FullPattern<2, 1>,
 #ifdef CHICANE_SLOW_TESTS  // between the sizes of the others; seconds of compiler time for each set
-                   solver::FullPattern<8, 2>, test::Compact<solver::FullPattern<8, 2>>,
+                                solver::FullPattern<8, 2>, test::Compact<solver::FullPattern<8, 2>>,
 #endif
-                   solver::FullPattern<5, 3>, solver::FullPattern<2, 4>, solver::FullPattern<10, 2>,
-                   test::Compact<test::SparsePattern>, test::Compact<test::RatePattern>,
-                   test::Compact<solver::FullPattern<23, 2>>>;  // the last one: in loops
+                                solver::FullPattern<5, 3>, solver::FullPattern<2, 4>,
+                                solver::FullPattern<10, 2>, test::Compact<test::SparsePattern>,
+                                test::Compact<solver::FullPattern<23, 2>>>;  // the last one: in loops
 TYPED_TEST_SUITE(LqSolverOn, Patterns);
 
 TYPED_TEST(LqSolverOn, FindsTheOptimumOfTheWholeProblem) {
@@ -266,8 +249,8 @@ TYPED_TEST(LqSolverOn, ShiftsInputsWhoseCostIsNotConvex) {
   constexpr std::size_t kInput = TypeParam::kNx + 1;
   data->L[3][kInput][kInput] -= 100.0;
   for (std::size_t m = 0; m < TypeParam::kNu; ++m) {
-    data->low[3][m] = data->rate_low[3][m] = -1.0;  // free at first: the shift is that of the whole block
-    data->high[3][m] = data->rate_high[3][m] = 1.0;
+    data->low[3][m] = -1.0;  // free at first: the shift is that of the whole block
+    data->high[3][m] = 1.0;
   }
   for (const InstructionSet set : available_sets()) {
     const LqAnswer answer = solve<TypeParam>(set, *data);
@@ -293,7 +276,6 @@ void expect_same_bits_when_compact() {
 }
 TEST(LqSolver, HasTheSameBitsWhereItIsBuiltQuickly) {
   expect_same_bits_when_compact<test::SparsePattern>();
-  expect_same_bits_when_compact<test::RatePattern>();
 #ifdef CHICANE_SLOW_TESTS
   expect_same_bits_when_compact<solver::FullPattern<8, 2>>();
 #endif

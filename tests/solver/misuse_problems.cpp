@@ -110,12 +110,9 @@ struct NoRows : Base {
 struct NoSizes {
   static constexpr int kNx = 2, kNu = 1;
 };
-struct RateWithoutState : Base {
+struct BoundsOnChanges : Base {
   std::array<double, 1> input_rate_lower(int) const { return {-1.0}; }
   std::array<double, 1> input_rate_upper(int) const { return {1.0}; }
-};
-struct StateWithoutRate : Base {
-  static constexpr std::array<int, 1> kPreviousInput{0};
 };
 struct DynamicsOfTwo : Base {
   template <class X, class U>
@@ -169,14 +166,12 @@ Solver<ShortResidual> problem13;
 Solver<NoRows> problem14;
 // expect: a problem says `static constexpr int kNx
 Solver<NoSizes> problem15;
-// expect: bounds on changes of inputs need `static constexpr
-Solver<RateWithoutState> problem16;
-// expect: with kPreviousInput, a std::array<int, kNu>, write
-Solver<StateWithoutRate> problem17;
+// expect: bounds on the changes of inputs: make the change the input
+Solver<BoundsOnChanges> problem16;
 // expect: write `template <class K, class X, class U> auto dynamics(K k
-Solver<DynamicsOfTwo> problem18;
+Solver<DynamicsOfTwo> problem17;
 // expect: write `std::array<double, kNu> input_lower(int k) const`
-Solver<BoundOfNoStage> problem19;
+Solver<BoundOfNoStage> problem18;
 // expect: write `std::string_view constraint_name(int) const`
-Solver<NameOfNothing> problem20;
+Solver<NameOfNothing> problem19;
 #endif

@@ -237,7 +237,6 @@ inline constexpr chicane_problem kProblemForC{
 /// The problem of a type, for C.
 template <OcpProblem P>
 [[nodiscard]] const chicane_problem* c_problem() noexcept {
-  static_assert(!kHasRateBounds<P>, "no bounds on the changes of inputs in the C interface");
   return &detail::kProblemForC<P>;
 }
 

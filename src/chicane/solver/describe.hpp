@@ -23,19 +23,10 @@ namespace detail {
 }  // namespace detail
 
 /// A report in one sentence, in the problem's own words: "infeasible: right edge exceeded by 0.12 m at stage
-/// 14", "optimal: change of steering beyond its bound by 0.1 rad at stage 0". What has no name is "constraint
-/// 1" or "input 0". Allocates: not for the control loop.
+/// 14". What has no name is "constraint 1". Allocates: not for the control loop.
 template <OcpProblem P>
 [[nodiscard]] std::string describe(const P& problem, const SolveReport& report) {
   std::string text{to_string(report.status)};
-  if (report.rate_input >= 0) {
-    std::string name = "input " + std::to_string(report.rate_input);
-    std::string unit;
-    if constexpr (requires { problem.input_name(0); }) name = problem.input_name(report.rate_input);
-    if constexpr (requires { problem.input_unit(0); }) unit = problem.input_unit(report.rate_input);
-    text += ": change of " + name + " beyond its bound by " +
-            detail::amount(report.rate_excess, unit, report.rate_stage);
-  }
   if (report.worst_constraint < 0) return text;
   std::string name = "constraint " + std::to_string(report.worst_constraint);
   std::string unit;

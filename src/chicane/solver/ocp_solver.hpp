@@ -88,11 +88,11 @@ class OcpSolver {
 
   /// After a usable solve, or after a solve that ended at its limit with a finite answer: linearises and
   /// factorises there, so that feedback() takes a few sweeps. False where that is not finite.
-  bool prepare(const P& problem) noexcept requires(!kHasRateBounds<P>);
+  bool prepare(const P& problem) noexcept;
   /// The answer from x0 by what prepare() has left: the solution of that quadratic program with the step of
   /// the first state given, its inputs inside their bounds. Soft constraints and what must hold answer as at
   /// the prepared point; input bounds become active and inactive. May be called again and again.
-  FeedbackReport feedback(const State& x0, Trajectory& trajectory) noexcept requires(!kHasRateBounds<P>);
+  FeedbackReport feedback(const State& x0, Trajectory& trajectory) noexcept;
 
   /// From the next solve on, iterations are added to `log`, which must live as long; null: none.
   void record_iterations(IterationLog* log) noexcept { log_ = log; }
@@ -123,22 +123,9 @@ class OcpSolver {
   void reprice(const P& problem) noexcept { barrier_.reprice(problem, t_.horizon); }
 
   /// After a solve: the price of state i of x_{k+1}, i.e. d(cost)/dx of what follows; k < horizon.
-  [[nodiscard]] double adjoint(int k, int i) const noexcept {
-    double price = now_.adjoint[i][k];
-    for (std::size_t m = 0; m < kNu; ++m) {
-      if (previous_inputs<P>()[m] == i) price -= now_.chains.price(static_cast<std::size_t>(k + 1), m);
-    }
-    return price;
-  }
+  [[nodiscard]] double adjoint(int k, int i) const noexcept { return now_.adjoint[i][k]; }
   /// The multiplier of the bounds of input m of stage k: d(cost)/d(bound), 0 between them.
-  [[nodiscard]] double bound_multiplier(int k, int m) const noexcept {
-    const auto stage = static_cast<std::size_t>(k);
-    return now_.slope[m][k] + now_.chains.price(stage, m) - now_.chains.price(stage + 1, m);
-  }
-  /// The same of the bounds on its change, u_k − u_{k−1}; 0 where that has none.
-  [[nodiscard]] double rate_multiplier(int k, int m) const noexcept {
-    return -now_.chains.price(static_cast<std::size_t>(k), m);
-  }
+  [[nodiscard]] double bound_multiplier(int k, int m) const noexcept { return now_.slope[m][k]; }
   /// The multiplier of soft constraint c of stage k: what a unit more room would save.
   [[nodiscard]] double constraint_multiplier(int k, int c) const noexcept {
     return barrier_.multiplier(static_cast<std::size_t>(c), static_cast<std::size_t>(k));
@@ -163,9 +150,6 @@ class OcpSolver {
   using Evaluate = Evaluation<P, Arch>;
   using Lq = LqSolver<Arch, ProblemPattern<P>, kSize>;
   using V = Stages<Arch>;
-
-  static_assert(ProblemPattern<P>::keeps_previous_inputs(),
-                "dynamics() has to return input m as it is for the state kPreviousInput[m]");
 
   /// All iterations, from an iterate that is ready to be linearised.
   CHICANE_INLINE SolveReport run(const P& problem, const State& x0, Trajectory& trajectory,
@@ -230,7 +214,6 @@ class OcpSolver {
         now_.upper[m][k] = high[m];
       }
     }
-    if (!now_.chains.set(problem, x0, target_)) return false;
     const bool is_good = take_guess(problem, trajectory);
     barrier_.start(problem, final_barrier(problem), Evaluate::violation(problem, t_));
     return is_good;
@@ -255,7 +238,6 @@ class OcpSolver {
       for (std::size_t k = 0; k < target_; ++k)
         t_.u[m][k] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
     }
-    admit_inputs();
     if ((options_.start_from_states && take_states(trajectory)) || roll_out(problem)) return true;
     fill_inputs(0);
     if (roll_out(problem)) return true;
@@ -268,10 +250,6 @@ class OcpSolver {
   }
   /// A simulation whose functions are not finite somewhere: the first state everywhere may be better. Once.
   bool stand_still(const P& problem, const SolveReport& report) noexcept;
-  /// Inputs whose changes are bounded become the nearest admissible ones.
-  void admit_inputs() noexcept {
-    now_.chains.admit(t_.horizon, [&](std::size_t k, std::size_t m) -> double& { return t_.u[m][k]; });
-  }
   /// The states of the warm start from x_1 on. False when one is not finite.
   bool take_states(const Trajectory& trajectory) noexcept {
     double sum = 0.0;
@@ -294,7 +272,6 @@ class OcpSolver {
       for (std::size_t k = from; k < t_.horizon; ++k)
         t_.u[m][k] = nearest(0.0, now_.lower[m][k], now_.upper[m][k]);
     }
-    admit_inputs();
   }
   /// Simulates the inputs from x_0. True when every state is finite.
   bool roll_out(const P& problem) noexcept { return RollOut<P, Arch>::run(problem, t_); }
@@ -311,10 +288,7 @@ class OcpSolver {
     } else {
       with_order(std::integral_constant<int, 1>{});
     }
-    if constexpr (kHasRateBounds<P>) {
-      if (is_fresh_) now_.chains.guess(now_.slope, t_.horizon, lq_);
-    }
-    qp_.choose(is_fresh_ && !kHasRateBounds<P>);
+    qp_.choose(is_fresh_);
     is_fresh_ = false;
   }
 
@@ -341,19 +315,16 @@ class OcpSolver {
   /// Takes the whole step of the quadratic program. False at the deadline, or where nothing helps.
   bool full_step(const P& problem, const Trajectory& trajectory, const Deadline& deadline,
                  SolveReport& report) noexcept {
-    using Outcome = typename WorkingSetQp<P, Lq>::Outcome;
+    using Outcome = typename WorkingSetQp<Lq>::Outcome;
     const bool may_circle = kCanFilter && options_.may_start_short && !has_filtered_;
     const Outcome outcome = qp_.solve(
-        lq_, t_.horizon, is_exact_, [&] { take_gauss_newton(problem); },
-        [&](std::size_t k, std::size_t m) { return now_.slope[m][k]; }, deadline, may_circle, report.sweeps);
+        lq_, t_.horizon, is_exact_, [&] { take_gauss_newton(problem); }, deadline, may_circle, report.sweeps);
     if (outcome != Outcome::kSolved)
       return outcome == Outcome::kCircles && recover(problem, trajectory, report);
     const double longest = collect_step<Arch, true>(lq_, t_.horizon, step_);
-    now_.chains.cut(lq_, step_);
     const double length = barrier_.step(problem, step_);
     if (!is_growing()) barrier_.lower(length, longest);
     add_step<Arch>(t_, length, step_, t_);
-    now_.chains.keep_previous(t_);
     progress_.note(longest, !barrier_.is_final() && !is_growing());
     if (log_ != nullptr) log_->set_step(length * longest);
     is_exact_ = options_.second_order && ((longest <= kNear && curvature_pays()) || is_crawling());
@@ -421,7 +392,7 @@ class OcpSolver {
     t_ = best_;
     SolveReport unused;
     linearise(problem, unused);
-    return descent_.simulate(problem, now_, lq_, barrier_, t_) || roll_out(problem);
+    return descent_.simulate(problem, lq_, barrier_, t_) || roll_out(problem);
   }
 
   /// The second rung: solve a short horizon first and let it grow. Short problems are easy, and each is a
@@ -464,7 +435,7 @@ class OcpSolver {
   SolverOptions options_;
   Linearisation<P, kSize, Arch> now_;  ///< of the present iterate
   Lq lq_;                              ///< its quadratic program
-  WorkingSetQp<P, Lq> qp_;             ///< what solves it
+  WorkingSetQp<Lq> qp_;                ///< what solves it
   using Slacks = Barrier<P, kSize, Arch>;
   Slacks barrier_;
   Descent<P, kSize, Arch> descent_;

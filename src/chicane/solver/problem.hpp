@@ -31,16 +31,8 @@ namespace chicane::solver {
 ///     std::string_view constraint_name(int constraint) const;  // optional
 ///     std::string_view constraint_unit(int constraint) const;  // optional
 ///
-/// Costs on input changes: make the previous input part of the state. **Bounds on input changes** (rates)
-/// that must hold: say which state that is, for each input, -1 where there is no such bound:
-///
-///     static constexpr std::array<int, kNu> kPreviousInput;      // that state of x_{k+1} is u_k; in x_0 it
-///                                                                // is the last input before the horizon
-///     std::array<double, kNu> input_rate_lower(int k) const;     // of u_k − u_{k−1}; may be -infinity
-///     std::array<double, kNu> input_rate_upper(int k) const;
-///     std::string_view input_name(int input) const, input_unit(int input) const;  // optional
-///
-/// Where they contradict input_lower and input_upper, those count; the report says by how much.
+/// Costs on input changes: make the previous input part of the state. Bounds on input changes: make the
+/// change the input, and the input a state, which soft constraints keep inside its bounds.
 ///
 /// **For budgets of a few iterations**, a type may say `static constexpr bool kRealTime = true`: the filter
 /// method, which solves from poor guesses in tens of iterations, is left out, and is not compiled.
@@ -119,24 +111,6 @@ concept OcpProblem = detail::is_problem<P>();
 /// Level 2 of the interface.
 template <class P>
 concept StructuredProblem = OcpProblem<P> && detail::TakesSymbols<P>;
-
-/// Whether a problem has bounds on the changes of inputs.
-template <class P>
-inline constexpr bool kHasRateBounds = requires {
-  P::kPreviousInput;
-};
-
-/// The state that holds the previous value of each input whose change is bounded; -1 for the others.
-template <OcpProblem P>
-[[nodiscard]] constexpr std::array<int, P::kNu> previous_inputs() noexcept {
-  if constexpr (kHasRateBounds<P>) {
-    return P::kPreviousInput;
-  } else {
-    std::array<int, P::kNu> none{};
-    none.fill(-1);
-    return none;
-  }
-}
 
 /// How many of its kNc soft constraints a problem has: all, unless it says so when the program runs.
 template <class P>

@@ -57,10 +57,6 @@ struct SolveReport {
                            ///< above their caps, where one is
   int worst_stage = -1;    ///< where it is; -1 when nothing is violated
   int worst_constraint = -1;
-  double rate_excess = 0.0;  ///< largest amount by which an input's own bounds overrule one on its change, in
-                             ///< the input's unit
-  int rate_stage = -1;       ///< where that is; -1 when nothing is overruled
-  int rate_input = -1;
   double gap = 0.0;  ///< complementarity gap Σ (t z + s n) of the soft constraints: what the barrier costs,
                      ///< at most in a convex problem
 };

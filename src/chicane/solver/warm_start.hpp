@@ -7,13 +7,11 @@
 #include <cstddef>
 
 #include "chicane/base/inlining.hpp"
-#include "chicane/solver/detail/input_chains.hpp"
 #include "chicane/solver/problem.hpp"
 
 namespace chicane::solver {
 
-/// Moves every input into its bounds, also those on its changes: trajectory.x[0] knows the last one before
-/// the horizon. One that is not a number becomes the admissible value nearest to zero.
+/// Moves every input into its bounds. One that is not a number becomes the admissible value nearest to zero.
 template <OcpProblem P, int Capacity>
 CHICANE_INLINE inline void clamp_inputs(const P& problem,
                                         Trajectory<P::kNx, P::kNu, Capacity>& trajectory) noexcept {
@@ -25,12 +23,6 @@ CHICANE_INLINE inline void clamp_inputs(const P& problem,
       double& u = trajectory.u[stage][m];
       u = std::min(std::max(std::isfinite(u) ? u : 0.0, low[m]), high[m]);
     }
-  }
-  if constexpr (kHasRateBounds<P>) {
-    InputChains<P, static_cast<std::size_t>(Capacity)> chains;
-    chains.set(problem, trajectory.x[0], static_cast<std::size_t>(trajectory.horizon));
-    chains.admit(static_cast<std::size_t>(trajectory.horizon),
-                 [&](std::size_t k, std::size_t m) -> double& { return trajectory.u[k][m]; });
   }
 }
 

@@ -50,22 +50,13 @@ CHICANE_INLINE inline std::array<T, N + M> join(const std::array<T, N>& a, const
   return result;
 }
 
-/// Which states hold previous inputs, where the problem says so.
-template <class P>
-struct PreviousInputs {};
-template <class P>
-requires kHasRateBounds<P>
-struct PreviousInputs<P> {
-  static constexpr std::array<int, P::kNu> kPreviousInput = P::kPreviousInput;
-};
-
 }  // namespace detail
 
 /// A problem whose equalities and terminal constraints are residuals √ρ (h + y/ρ) beside its own: its
 /// augmented Lagrangian, up to a constant (docs/solver_hard.md, eq. 56). Everything else is as the problem
 /// has it.
 template <HardProblem P, int Capacity>
-class Augmented : public detail::PreviousInputs<P> {
+class Augmented {
  public:
   static constexpr int kNx = P::kNx, kNu = P::kNu, kNc = P::kNc;
   static constexpr int kEqualities = equality_count<P>();
@@ -154,12 +145,6 @@ class Augmented : public detail::PreviousInputs<P> {
   }
   [[nodiscard]] auto input_lower(int k) const { return problem->input_lower(k); }
   [[nodiscard]] auto input_upper(int k) const { return problem->input_upper(k); }
-  [[nodiscard]] auto input_rate_lower(int k) const requires kHasRateBounds<P> {
-    return problem->input_rate_lower(k);
-  }
-  [[nodiscard]] auto input_rate_upper(int k) const requires kHasRateBounds<P> {
-    return problem->input_rate_upper(k);
-  }
 
  private:
   template <class X>

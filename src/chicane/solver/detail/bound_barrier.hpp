@@ -10,7 +10,6 @@
 #include "chicane/solver/detail/filter.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
-#include "chicane/solver/detail/rate_set.hpp"
 
 namespace chicane::solver {
 
@@ -20,9 +19,9 @@ struct StepLengths {
   double dual = 1.0;
 };
 
-/// The bounds on inputs and on their changes as barriers (docs/solver_filter.md, eq. 30–33): each has a slack
-/// t > 0 and a multiplier z > 0. Kept from iterate to iterate of the nonlinear problem, unlike those of
-/// InteriorPoint. Eight stages at a time; what does not exist has z = 0 and t = 1, and counts for nothing.
+/// The bounds on inputs as barriers (docs/solver_filter.md, eq. 30–33): each has a slack
+/// t > 0 and a multiplier z > 0, kept from iterate to iterate of the nonlinear problem. Eight stages at a
+/// time; what does not exist has z = 0 and t = 1, and counts for nothing.
 template <class Solver, std::size_t Capacity, class Arch>
 class BoundBarrier {
  public:
@@ -79,19 +78,12 @@ class BoundBarrier {
     });
     return {largest(product), sum(multipliers), count_};
   }
-  /// What the multipliers of the bounds of input m of stage k pull at it, and at the state that its change
-  /// starts from.
+  /// What the multipliers of the bounds of input m of stage k pull at it.
   [[nodiscard]] double pull(std::size_t k, std::size_t m) const noexcept {
     double sum = 0.0;
     for (std::size_t n = 0; n < kKinds; ++n) sum += sign(static_cast<Kind>(n)) * side_[m][n].z[k];
     return sum;
   }
-  [[nodiscard]] double rate_pull(std::size_t k, std::size_t m) const noexcept {
-    double sum = 0.0;
-    for (std::size_t n = kRateLow; n < kKinds; ++n) sum -= sign(static_cast<Kind>(n)) * side_[m][n].z[k];
-    return sum;
-  }
-
   /// Adds z + μ/t − D·bound and D = z/t to the stages (eq. 31).
   void add_to(Solver& qp, double mu) const noexcept {
     each([&](std::size_t m, Kind kind, const Side& side, std::size_t k0, const auto& exists) {
@@ -107,11 +99,6 @@ class BoundBarrier {
         if (D[lane] == 0.0) continue;
         add(u, u, D[lane]);
         add(u, Layout::kOne, g[lane]);
-        if (!is_rate(kind)) continue;
-        const std::size_t p = Solver::rate_state(m);
-        add(u, p, -D[lane]);
-        add(p, p, D[lane]);
-        add(Layout::kOne, p, -g[lane]);
       }
     });
   }
@@ -123,8 +110,7 @@ class BoundBarrier {
     V primal(0.0);
     V dual(0.0);
     each([&](std::size_t m, Kind kind, Side& side, std::size_t k, const auto& exists) {
-      V value = V::load(step.u[m] + k);
-      if (is_rate(kind)) value -= V::load(step.x[Solver::rate_state(m)] + k);
+      const V value = V::load(step.u[m] + k);
       const V t = V::load(side.t + k), z = V::load(side.z + k);
       const V bound = bounds_of(qp, k, m, kind);
       const V distance = bound - sign(kind) * value;
@@ -167,11 +153,7 @@ class BoundBarrier {
     V misses(0.0);
     V logs(0.0);
     each([&](std::size_t m, Kind kind, Side& side, std::size_t k, const auto& exists) {
-      V moved = V::load(point.u[m] + k) - V::load(from.u[m] + k);
-      if (is_rate(kind)) {
-        const std::size_t p = Solver::rate_state(m);
-        moved -= V::load(point.x[p] + k) - V::load(from.x[p] + k);
-      }
+      const V moved = V::load(point.u[m] + k) - V::load(from.u[m] + k);
       const V distance = bounds_of(qp, k, m, kind) - sign(kind) * moved;
       const V at = select(exists, max(distance, 1e-3 * V::load(side.t + k)), V(1.0));
       at.store(side.at + k);
@@ -204,13 +186,7 @@ class BoundBarrier {
           return side.exists[k] != 0.0 &&
                  side.t[k] < kActive * (other.exists[k] != 0.0 ? side.t[k] + other.t[k] : 1.0);
         };
-        const Hold own = is_active(kOwnHigh) ? Hold::kHigh : (is_active(kOwnLow) ? Hold::kLow : Hold::kFree);
-        Hold tie = Hold::kFree;
-        if constexpr (Solver::kHasRates) {
-          if (is_active(kRateHigh)) tie = Hold::kRateHigh;
-          if (is_active(kRateLow)) tie = Hold::kRateLow;
-        }
-        RateSet<kNu>(qp.hold, m).set(k, own, tie);
+        qp.hold[k][m] = is_active(kHigh) ? Hold::kHigh : (is_active(kLow) ? Hold::kLow : Hold::kFree);
       }
     }
   }
@@ -219,8 +195,7 @@ class BoundBarrier {
   static constexpr std::size_t kStride = padded_stages(Capacity);
   static constexpr double kPush = 1e-2;  ///< of the width
   static constexpr double kWide = 1e2;
-  enum Kind : std::size_t { kOwnLow, kOwnHigh, kRateLow, kRateHigh, kMostKinds };
-  static constexpr std::size_t kKinds = Solver::kHasRates ? kMostKinds : kRateLow;
+  enum Kind : std::size_t { kLow, kHigh, kKinds };
   /// One bound of one input, stage after stage.
   struct alignas(64) Side {
     double t[kStride]{}, z[kStride]{};
@@ -229,22 +204,10 @@ class BoundBarrier {
     double miss[kStride]{};
     double exists[kStride]{};  ///< 1, else 0
   };
-  static constexpr bool is_rate(Kind kind) noexcept { return kind == kRateLow || kind == kRateHigh; }
-  static constexpr double sign(Kind kind) noexcept {
-    return kind == kOwnHigh || kind == kRateHigh ? 1.0 : -1.0;
-  }
+  static constexpr double sign(Kind kind) noexcept { return kind == kHigh ? 1.0 : -1.0; }
   /// How far the bound is in its direction, of the stages from k on.
   static const double* bound_at(const Solver& qp, std::size_t k, std::size_t m, Kind kind) noexcept {
-    switch (kind) {
-      case kOwnLow:
-        return qp.lq.low[m] + k;
-      case kOwnHigh:
-        return qp.lq.high[m] + k;
-      case kRateLow:
-        return qp.lq.rate_low[m] + k;
-      default:
-        return qp.lq.rate_high[m] + k;
-    }
+    return (kind == kLow ? qp.lq.low[m] : qp.lq.high[m]) + k;
   }
   static double bound_of(const Solver& qp, std::size_t k, std::size_t m, Kind kind) noexcept {
     return sign(kind) * *bound_at(qp, k, m, kind);
@@ -256,7 +219,6 @@ class BoundBarrier {
     return qp.lq.high[m][k] > qp.lq.low[m][k];
   }
   static bool has_bound(const Solver& qp, std::size_t k, std::size_t m, Kind kind) noexcept {
-    if (is_rate(kind) && !Solver::has_rate(m)) return false;
     return has_width(qp, k, m) && std::isfinite(bound_of(qp, k, m, kind));
   }
   /// Calls visit(input, kind, side, stage, which of the eight from it on exist).

@@ -57,9 +57,9 @@ class Descent {
 
   /// Simulates the trajectory with the gains as feedback, so that an unstable system stays near it. False,
   /// and nothing changed, when that is not finite.
-  bool simulate(const P& problem, const Linearised& now, Lq& lq, const Slacks& slacks, Point& t) noexcept {
+  bool simulate(const P& problem, Lq& lq, const Slacks& slacks, Point& t) noexcept {
     lq.backward(t.horizon, shift_, true);
-    if (!std::isfinite(try_step(problem, t, now, lq, slacks, 0.0))) return false;
+    if (!std::isfinite(try_step(problem, t, lq, slacks, 0.0))) return false;
     t = candidate_;
     return true;
   }
@@ -80,7 +80,7 @@ class Descent {
       for (int trial = 0; trial < kHalvings; ++trial, length *= 0.5) {
         if (deadline.spent()) return false;
         const double allowed = now.merit + 1e-4 * length * expected + 1e-13 * std::fabs(now.merit);
-        if (!(try_step(problem, t, now, lq, slacks, length) <= allowed)) continue;
+        if (!(try_step(problem, t, lq, slacks, length) <= allowed)) continue;
         moved_ = longest_move(t, candidate_);
         t = candidate_;
         slacks.lower_for_gain(-expected, t.horizon);
@@ -113,7 +113,7 @@ class Descent {
   }
 
   /// Simulates the gains from t into candidate_ with the constant part times `length`; returns the merit.
-  double try_step(const P& problem, const Point& t, const Linearised& now, const Lq& lq, const Slacks& slacks,
+  double try_step(const P& problem, const Point& t, const Lq& lq, const Slacks& slacks,
                   double length) noexcept {
     using One = typename Evaluate::One;
     candidate_.horizon = t.horizon;
@@ -124,9 +124,6 @@ class Descent {
         double du = length * lq.constant(k, m);
         for (std::size_t i = 0; i < kNx; ++i) du += lq.gain(k, m, i) * (candidate_.x[i][k] - t.x[i][k]);
         candidate_.u[m][k] = t.u[m][k] + std::min(std::max(du, lq.lq.low[m][k]), lq.lq.high[m][k]);
-        if (now.chains.is_bounded(m))
-          candidate_.u[m][k] =
-              now.chains.admit(k, m, candidate_.u[m][k], k > 0 ? candidate_.u[m][k - 1] : 0.0);
       }
       const auto x = candidate_.template state<One>(k);
       const auto u = candidate_.template input<One>(k);

@@ -59,7 +59,6 @@ class FilterMethod {
       for (std::size_t k = 0; k < t.horizon; ++k)
         t.u[m][k] = Bounds::inside(t.u[m][k], now.lower[m][k], now.upper[m][k]);
     }
-    now.chains.keep_previous(t);
     has_prices_ = false;
     is_exact_ = is_exact;
     is_fresh_ = is_new_barrier_ = are_sides_new_ = true;
@@ -164,7 +163,7 @@ class FilterMethod {
     if (deadline.spent()) return Outcome::kSpent;
     if (!factorise(lq, t.horizon, report.sweeps)) {
       failures_ = std::max(failures_, 1);
-      return recover(problem, now, lq, t);
+      return recover(problem, lq, t);
     }
     lq.forward(t.horizon, Lq::Repair::kNone);
     collect_step<Arch, false>(lq, t.horizon, step_);
@@ -214,11 +213,7 @@ class FilterMethod {
     double prices = 0.0;
     for (std::size_t i = 0; i < kNx; ++i) {
       for (std::size_t k = 1; k < t.horizon; ++k) {
-        double sum = residual_[i][k];
-        for (std::size_t m = 0; Lq::kHasRates && m < kNu; ++m) {
-          if (Lq::has_rate(m) && Lq::rate_state(m) == i) sum += bounds_.rate_pull(k, m);
-        }
-        dual = std::max(dual, std::fabs(sum));
+        dual = std::max(dual, std::fabs(residual_[i][k]));
         prices += std::fabs(now.adjoint[i][k]);
       }
       double end = lq.lq.terminal[kNx][i] - now.adjoint[i][t.horizon - 1];
@@ -326,13 +321,12 @@ class FilterMethod {
     for (int trial = 0; trial == 0 || length >= least; ++trial, length *= 0.5) {
       if (deadline.spent()) return Outcome::kSpent;
       add_step<Arch>(t, length, step_, candidate_);
-      now.chains.keep_previous(candidate_);
       Merit there = measure(problem, now, slacks, candidate_, length);
       bool is_good = is_acceptable(here, there, slope, length);
       // A step whose second order opens defects (Maratos): the same direction without them.
       const bool opens_defects = kHasHardRows<P> && there.miss > here.miss;
       if (!is_good && (trial >= kPatience || opens_defects)) {
-        const bool is_there = simulate(problem, now, lq, t, length);
+        const bool is_there = simulate(problem, lq, t, length);
         there = is_there ? measure(problem, now, slacks, candidate_, length, &lq, &t)
                          : Merit{kInfinity, kInfinity};
         is_good = is_there && is_acceptable(here, there, slope, length);
@@ -359,7 +353,7 @@ class FilterMethod {
       return Outcome::kGoing;
     }
     last_shift_ = shift_;
-    return recover(problem, now, lq, t);
+    return recover(problem, lq, t);
   }
   /// Of Wächter and Biegler: enough descent where the equations hold and the step promises it, else less of
   /// miss or cost.
@@ -419,7 +413,7 @@ class FilterMethod {
   // ---- when no step is good
 
   /// First a larger shift, then prices and slacks anew, then a simulation, which has no defects.
-  Outcome recover(const P& problem, const Linearised& now, const Lq& lq, Point& t) noexcept {
+  Outcome recover(const P& problem, const Lq& lq, Point& t) noexcept {
     constexpr int kMostSimulations = 8;
     candidate_ = t;
     ++failures_;
@@ -432,7 +426,7 @@ class FilterMethod {
     if (failures_ == 2) return Outcome::kGoing;
     failures_ = 1;
     if (++simulations_ > kMostSimulations) return Outcome::kStuck;
-    if (!simulate(problem, now, lq, t, 1.0, 0.0) && !simulate(problem, now, lq, t, 0.0, 0.0)) {
+    if (!simulate(problem, lq, t, 1.0, 0.0) && !simulate(problem, lq, t, 0.0, 0.0)) {
       candidate_ = t;
       return Outcome::kStuck;
     }
@@ -440,15 +434,14 @@ class FilterMethod {
     are_sides_new_ = true;
     return Outcome::kGoing;
   }
-  bool simulate(const P& problem, const Linearised& now, const Lq& lq, const Point& t,
-                double length) noexcept {
-    return simulate(problem, now, lq, t, 1.0, length, 1.0 - length);
+  bool simulate(const P& problem, const Lq& lq, const Point& t, double length) noexcept {
+    return simulate(problem, lq, t, 1.0, length, 1.0 - length);
   }
   /// candidate_ by simulation: inputs of t, with `feedback` times the gains and `length` of the step's
   /// constant part, cut to 0.99 of the way to their bounds; a share `kept` of each defect stays. False when
   /// that is not finite.
-  bool simulate(const P& problem, const Linearised& now, const Lq& lq, const Point& t, double feedback,
-                double length, double kept = 0.0) noexcept;
+  bool simulate(const P& problem, const Lq& lq, const Point& t, double feedback, double length,
+                double kept = 0.0) noexcept;
 
   Bounds bounds_;
   SoftSteps<P, Capacity, Arch> soft_;

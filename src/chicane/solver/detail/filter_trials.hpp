@@ -57,9 +57,8 @@ Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]
 }
 
 template <OcpProblem P, std::size_t Capacity, class Arch>
-bool FilterMethod<P, Capacity, Arch>::simulate(const P& problem, const Linearised& now, const Lq& lq,
-                                               const Point& t, double feedback, double length,
-                                               double kept) noexcept {
+bool FilterMethod<P, Capacity, Arch>::simulate(const P& problem, const Lq& lq, const Point& t,
+                                               double feedback, double length, double kept) noexcept {
   using One = typename Evaluate::One;
   constexpr double kShare = 0.99;
   candidate_.horizon = t.horizon;
@@ -70,11 +69,6 @@ bool FilterMethod<P, Capacity, Arch>::simulate(const P& problem, const Linearise
       for (std::size_t i = 0; feedback > 0.0 && i < kNx; ++i)
         du += feedback * lq.gain(k, m, i) * (candidate_.x[i][k] - t.x[i][k]);
       du = std::min(std::max(du, kShare * lq.lq.low[m][k]), kShare * lq.lq.high[m][k]);
-      if (Lq::kHasRates && Lq::has_rate(m) && k > 0) {
-        const double was = candidate_.u[m][k - 1] - t.u[m][k - 1];
-        du =
-            was + std::min(std::max(du - was, kShare * lq.lq.rate_low[m][k]), kShare * lq.lq.rate_high[m][k]);
-      }
       candidate_.u[m][k] = t.u[m][k] + du;
     }
     const auto next =
@@ -86,7 +80,6 @@ bool FilterMethod<P, Capacity, Arch>::simulate(const P& problem, const Linearise
     }
     if (!(sum == 0.0)) return false;
   }
-  now.chains.keep_previous(candidate_);
   return true;
 }
 

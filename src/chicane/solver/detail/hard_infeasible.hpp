@@ -89,7 +89,6 @@ template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::leads_downhill(const P& problem, const State& x0, Trajectory& trajectory,
                                                    HardReport& report) noexcept {
   constexpr double kLess = 0.9, kFarthest = 1e20;
-  if (kHasRateBounds<P>) return false;
   weigh_misses(0.0, least_unit_);
   HardReport seen;
   downhill_ = least_;  // which finish() may change

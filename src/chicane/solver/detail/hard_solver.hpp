@@ -77,7 +77,6 @@ class HardSolver {
   /// As of problems without.
   [[nodiscard]] double adjoint(int k, int i) const noexcept { return inner_.adjoint(k, i); }
   [[nodiscard]] double bound_multiplier(int k, int m) const noexcept { return inner_.bound_multiplier(k, m); }
-  [[nodiscard]] double rate_multiplier(int k, int m) const noexcept { return inner_.rate_multiplier(k, m); }
   [[nodiscard]] double constraint_multiplier(int k, int c) const noexcept {
     return inner_.constraint_multiplier(k, c);
   }

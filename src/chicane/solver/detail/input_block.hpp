@@ -3,62 +3,12 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/pack.hpp"
 #include "chicane/solver/detail/small_qp.hpp"
 
 namespace chicane::solver {
-
-/// What one input of one stage must respect: bounds of its own, and bounds on its change moved to where the
-/// state it starts from is. Where both contradict each other, its own bounds count.
-struct InputBounds {
-  double own_low;
-  double own_high;
-  double rate_low = -std::numeric_limits<double>::infinity();
-  double rate_high = std::numeric_limits<double>::infinity();
-
-  [[nodiscard]] CHICANE_INLINE double low() const noexcept {
-    const double low = own_low > rate_low ? own_low : rate_low;
-    return low < own_high ? low : own_high;
-  }
-  [[nodiscard]] CHICANE_INLINE double high() const noexcept {
-    const double high = own_high < rate_high ? own_high : rate_high;
-    return high > own_low ? high : own_low;
-  }
-  [[nodiscard]] CHICANE_INLINE double at(Hold hold) const noexcept {
-    switch (hold) {
-      case Hold::kRateLow:
-        return rate_low;
-      case Hold::kRateHigh:
-        return rate_high;
-      case Hold::kHigh:
-        return own_high;
-      default:
-        return own_low;
-    }
-  }
-  /// Which of the two bounds on that side it is.
-  [[nodiscard]] Hold which(Hold side) const noexcept {
-    if (side == Hold::kLow) return rate_low > own_low && rate_low < own_high ? Hold::kRateLow : Hold::kLow;
-    if (side == Hold::kHigh)
-      return rate_high < own_high && rate_high > own_low ? Hold::kRateHigh : Hold::kHigh;
-    return Hold::kFree;
-  }
-  /// The working-set rule of the primal-dual active set method: an input beyond a bound is held there, a held
-  /// one whose cost falls towards the inside (`slope` = dJ/du) is let go, one held beyond the other kind of
-  /// bound goes there. `curvature` scales the tolerance; an interval without width is always held.
-  [[nodiscard]] CHICANE_INLINE Hold next(Hold hold, double u, double slope, double curvature) const noexcept {
-    constexpr double kTolerance = 1e-10;
-    if (!(high() > low())) return which(Hold::kLow);
-    if (u > high() + kTolerance) return which(Hold::kHigh);
-    if (u < low() - kTolerance) return which(Hold::kLow);
-    if (hold == Hold::kFree) return hold;
-    const double inward = static_cast<int>(hold) < 0 ? -slope : slope;  // > 0: the cost falls inside
-    return inward > kTolerance * (1.0 + std::fabs(curvature)) ? Hold::kFree : hold;
-  }
-};
 
 /// The inputs' part of one stage's elimination: their curvature H and slope g, and the inverse of the free
 /// part of H as adjugate · scale (so that the rest of the stage need not wait for the division). Rows and

@@ -13,7 +13,6 @@
 #include "chicane/solver/detail/barrier.hpp"
 #include "chicane/solver/detail/evaluation.hpp"
 #include "chicane/solver/detail/hard_rows.hpp"
-#include "chicane/solver/detail/input_chains.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/pattern.hpp"
 #include "chicane/solver/detail/problem_pattern.hpp"
@@ -44,7 +43,6 @@ class Linearisation {
   alignas(64) double adjoint[kNx][kStageStride<Capacity>]{};  ///< adjoint[i][k]: price of x_{k+1}
   alignas(64) double lower[kNu][kStageStride<Capacity>]{};    ///< bounds of the inputs
   alignas(64) double upper[kNu][kStageStride<Capacity>]{};
-  InputChains<P, Capacity> chains;  ///< inputs whose changes are bounded, with all their bounds
   using Hard = typename HardRowsOf<P, Capacity, Arch>::Type;
   Hard hard;                   ///< rows that must hold, for the primal-dual method
   double merit = 0.0;          ///< cost with the barrier's smoothed penalties; when slacks were centred
@@ -66,11 +64,6 @@ class Linearisation {
       linearise_stages<kHasOneLinearisation ? 2 : Order>(
           problem, t, k - 8, {centre, defect_share, exactness<Order>()}, slacks, lambda, lq, sums);
     sums.finish(*this, report);
-    if constexpr (kHasRateBounds<P>) {  // measured by whole chains
-      chains.fold_first(lq);
-      if (std::isfinite(report.stationarity) && std::isfinite(report.defect))
-        report.stationarity = std::max(report.stationarity, chains.distance(t, slope));
-    }
   }
 
  private:
@@ -417,14 +410,8 @@ class Linearisation {
       low.store(lq.low[m] + k0);
       high.store(lq.high[m] + k0);
       sums.slopes += select(live, sum, V(0.0));
-      if constexpr (Pattern::kRateState[m] >= 0) {
-        const V change = u - V::load(t.x[Pattern::kRateState[m]] + k0);
-        (V::load(chains[m].rate_low + k0) - change).store(lq.rate_low[m] + k0);
-        (V::load(chains[m].rate_high + k0) - change).store(lq.rate_high[m] + k0);
-      } else {
-        const V projected = select(live, abs(min(max(-sum, low), high)), V(0.0));
-        sums.stationarity = max(sums.stationarity, projected);
-      }
+      const V projected = select(live, abs(min(max(-sum, low), high)), V(0.0));
+      sums.stationarity = max(sums.stationarity, projected);
     });
   }
 

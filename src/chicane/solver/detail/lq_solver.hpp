@@ -10,7 +10,6 @@
 #include "chicane/base/pack.hpp"
 #include "chicane/solver/detail/input_block.hpp"
 #include "chicane/solver/detail/pattern.hpp"
-#include "chicane/solver/detail/rate_set.hpp"
 #include "chicane/solver/detail/small_qp.hpp"
 #include "chicane/solver/detail/stage_algebra.hpp"
 
@@ -26,7 +25,7 @@ struct alignas(64) Feedback {
   double g[Nu]{};      ///< its slope at δu = 0
 };
 
-/// Solves min Σ ½ zᵀLz + terminal cost s.t. δx₀ given, δx⁺ = F z and bounds on δu and on its change, for one
+/// Solves min Σ ½ zᵀLz + terminal cost s.t. δx₀ given, δx⁺ = F z and bounds on δu, for one
 /// horizon (docs/solver.md, eq. 8–11). A backward sweep eliminates stage by stage with the inputs of the
 /// working set held at their bounds; a forward sweep finds the step and corrects the working set. Repeating
 /// both until nothing changes is the primal-dual active set method (Hintermüller, Ito, Kunisch 2003).
@@ -41,7 +40,6 @@ class LqSolver {
   static constexpr std::size_t kNx = Layout::kNx;
   static constexpr std::size_t kNu = Layout::kNu;
   static constexpr std::size_t kLanes = Layout::kLanes;
-  static constexpr bool kHasRates = Layout::has_rate_bounds();
 
   Lq lq;                          ///< the problem
   Hold hold[Lq::kStages][kNu]{};  ///< working set
@@ -50,12 +48,6 @@ class LqSolver {
   alignas(
       64) double dx[Capacity + 1][kLanes]{};  ///< step of the states; of the first one as it is set, else 0
   double du[Capacity][kNu]{};                 ///< step of the inputs
-
-  /// Whether the change of input m is bounded, and the state that it starts from.
-  static constexpr bool has_rate(std::size_t m) noexcept { return Pattern::kRateState[m] >= 0; }
-  static constexpr std::size_t rate_state(std::size_t m) noexcept {
-    return Pattern::kRateState[m] < 0 ? 0 : static_cast<std::size_t>(Pattern::kRateState[m]);
-  }
 
   /// Factorises all stages with `shift` added to the input blocks. `choose`: take the working set of each
   /// stage from its own small box problem (that is control-limited differential dynamic programming; the step
@@ -89,18 +81,12 @@ class LqSolver {
   int forward(std::size_t horizon, Repair repair) noexcept {
     Contradictions found;
     double x[kNx];
-    double carried[kNu] = {};
     unroll<kNx>([&](auto i) CHICANE_INLINE { x[i] = dx[0][i]; });
     for (std::size_t k = 0; k < horizon; ++k) {
       double u[kNu];
       unroll<kNu>([&](auto m) CHICANE_INLINE {
         const double value = Algebra::dot_row(feedback[k].row[m], x, feedback[k].constant[m]);
-        const InputBounds bounds = bounds_of(k, m, x);
-        if constexpr (has_rate(m)) {
-          u[m] = with_rate(k, m, value, bounds, repair, carried[m], found);
-        } else {
-          u[m] = without_rate(k, m, value, bounds, repair, found);
-        }
+        u[m] = input(k, m, value, repair, found);
         du[k][m] = u[m];
       });
       Algebra::advance(lq.stage[k], x, u);
@@ -108,10 +94,7 @@ class LqSolver {
     }
     if (found.count == 0) return 0;
     last_change_ = found.stage;
-    if (repair == Repair::kLast) apply(found);
-    if (kHasRates && repair != Repair::kNone) {
-      for (std::size_t m = 0; m < kNu; ++m) RateSet<kNu, Arch>(hold, m).tidy(horizon);
-    }
+    if (repair == Repair::kLast) hold[found.stage][found.input] = found.next;
     return found.count;
   }
 
@@ -140,8 +123,7 @@ class LqSolver {
   }
   /// How far du follows its input's own feedback: the gain that belongs to state i, 0 where it is held.
   [[nodiscard]] double gain(std::size_t k, std::size_t m, std::size_t i) const noexcept {
-    if (hold[k][m] == Hold::kFree) return feedback[k].row[m][i];
-    return is_rate(hold[k][m]) && i == rate_state(m) ? 1.0 : 0.0;
+    return hold[k][m] == Hold::kFree ? feedback[k].row[m][i] : 0.0;
   }
   /// The part of du that does not depend on the state.
   [[nodiscard]] double constant(std::size_t k, std::size_t m) const noexcept {
@@ -156,10 +138,6 @@ class LqSolver {
   using Block = InputBlock<Arch, kNu>;
   /// Rounding errors that are not symmetric are averaged away every few stages.
   static constexpr std::size_t kSymmetryPeriod = 8;
-
-  static constexpr bool is_rate(Hold hold) noexcept {
-    return hold == Hold::kRateLow || hold == Hold::kRateHigh;
-  }
 
   static constexpr bool kIsCompact = is_compact<Pattern>();
   /// `choose`, `shift_states`: types, with a sweep for each use; bools of compact solvers, with one for all.
@@ -259,14 +237,7 @@ class LqSolver {
       unroll<kNu>([&](auto l) CHICANE_INLINE { out.H[m][l] = block.H[m][l]; });
     });
     if (any_held) {
-      if constexpr (kHasRates) {
-        Value changed = P;
-        follow_rates(k, block, r, changed);
-        hold_inputs(k, block, is_held, r, changed);
-        P = changed;
-      } else {
-        hold_inputs(k, block, is_held, r, unused_);
-      }
+      hold_inputs(k, block, is_held, r);
     }
   }
 
@@ -300,15 +271,14 @@ class LqSolver {
     for (std::size_t m = 0; m < kNu; ++m) {
       for (std::size_t l = 0; l < kNu; ++l) box.H[m][l] = block.H[m][l];
       box.g[m] = block.g[m];
-      const InputBounds bounds = bounds_of(k, m, kAtRest);
-      box.low[m] = bounds.low();
-      box.high[m] = bounds.high();
+      box.low[m] = lq.low[m][k];
+      box.high[m] = lq.high[m][k];
     }
     const double extra = box.make_positive();
     box.solve();
     for (std::size_t m = 0; m < kNu; ++m) {
       block.H[m][m] = box.H[m][m];
-      hold[k][m] = bounds_of(k, m, kAtRest).which(box.hold[m]);
+      hold[k][m] = box.hold[m];
     }
     return extra;
   }
@@ -324,33 +294,9 @@ class LqSolver {
     });
   }
 
-  /// An input whose change is at its bound follows the state that holds its previous value; the free ones
-  /// answer (eq. K7).
-  void follow_rates(std::size_t k, const Block& block, const double (&r)[kNu][kLanes], Value& P) noexcept {
-    for (std::size_t h = 0; h < kNu; ++h) {
-      if (!is_rate(hold[k][h])) continue;
-      const Vector unit = unit_of_rate_state(h);
-      for (std::size_t m = 0; m < kNu; ++m) {
-        double follow = m == h ? 1.0 : 0.0;
-        for (std::size_t l = 0; l < kNu && m != h; ++l)
-          follow -= block.scale * block.adjugate[m][l] * block.H[l][h];
-        for (std::size_t j = 0; j < kNx; ++j) P.column[j].add(r[m][j] * follow, unit);
-        Vector row = Vector::load(feedback[k].row[m]);
-        row.add(follow, unit);
-        row.store(feedback[k].row[m]);
-      }
-    }
-  }
-  static Vector unit_of_rate_state(std::size_t m) noexcept {
-    alignas(64) double lanes[kLanes]{};
-    lanes[rate_state(m)] = 1.0;
-    return Vector::load(lanes);
-  }
-
-  /// Keeps the slopes of held inputs for the forward sweep; those at a bound on their change also act on the
-  /// value function through the state they follow.
+  /// Keeps the slopes of held inputs for the forward sweep.
   void hold_inputs(std::size_t k, const Block& block, const bool (&is_held)[kNu],
-                   const double (&r)[kNu][kLanes], Value& P) noexcept {
+                   const double (&r)[kNu][kLanes]) noexcept {
     Vector slope[kNu];
     double constant[kNu];
     for (std::size_t h = 0; h < kNu; ++h) {
@@ -363,111 +309,46 @@ class LqSolver {
     }
     for (std::size_t h = 0; h < kNu; ++h) {
       if (!is_held[h]) continue;
-      if constexpr (kHasRates) fixed_[k][h] = feedback[k].constant[h];
       slope[h].store(feedback[k].row[h]);
       feedback[k].constant[h] = constant[h];
-      if constexpr (kHasRates) {
-        if (!is_rate(hold[k][h])) continue;
-        P.column[rate_state(h)].add(slope[h]);
-        P.column[kNx].add(constant[h], unit_of_rate_state(h));
-      }
     }
   }
 
   // ---- working set
 
-  using Finding = typename RateSet<kNu, Arch>::Finding;
   /// What contradicted the working set in a forward sweep: how many, and the last one.
   struct Contradictions {
     int count = 0;
     std::size_t stage = 0;
     std::size_t input = 0;
-    Hold next = Hold::kFree;           ///< what to do about it, without bounds on changes
-    Finding finding = Finding::kNone;  ///< and with them
-    InputBounds bounds{};
-    double u = 0.0;
+    Hold next = Hold::kFree;  ///< what to do about it
     void add(std::size_t k, std::size_t m, Hold wanted) noexcept {
       ++count;
       stage = k;
       input = m;
       next = wanted;
-      finding = Finding::kNone;
     }
   };
 
-  void apply(const Contradictions& found) noexcept {
-    if (!kHasRates || found.finding == Finding::kNone) {
-      hold[found.stage][found.input] = found.next;
-    } else if constexpr (kHasRates) {
-      RateSet<kNu, Arch>(hold, found.input).repair(found.stage, found.finding, found.bounds, found.u);
-    }
-  }
-
   /// An input in the forward sweep: free at `value`, or held where its slope is `value`.
-  CHICANE_INLINE double without_rate(std::size_t k, std::size_t m, double value, const InputBounds& bounds,
-                                     Repair repair, Contradictions& found) noexcept {
+  CHICANE_INLINE double input(std::size_t k, std::size_t m, double value, Repair repair,
+                              Contradictions& found) noexcept {
+    const double low = lq.low[m][k], high = lq.high[m][k];
     const Hold now = hold[k][m];
-    const double u = now == Hold::kFree ? value : bounds.at(now);
-    if (repair == Repair::kClip) return std::min(std::max(u, bounds.low()), bounds.high());
-    if (const Hold next = bounds.next(now, u, value, feedback[k].H[m][m]); next != now) [[unlikely]] {
+    const double u = now == Hold::kFree ? value : bound(k, m, now);
+    if (repair == Repair::kClip) return std::min(std::max(u, low), high);
+    if (const Hold next = next_hold(now, u, value, low, high, feedback[k].H[m][m]); next != now)
+        [[unlikely]] {
       if (repair == Repair::kAll) hold[k][m] = next;
       found.add(k, m, next);
     }
     return u;
   }
 
-  /// One input whose change is bounded: its step; `carried` is the slope of the members that it fixes.
-  double with_rate(std::size_t k, std::size_t m, double value, const InputBounds& bounds, Repair repair,
-                   double& carried, Contradictions& found) noexcept {
-    using Set = RateSet<kNu, Arch>;
-    const Hold now = hold[k][m];
-    double u = now == Hold::kFree ? value : (Set::precedes(now) ? fixed_[k][m] : bounds.at(now));
-    const double slope = value + (Set::is_fixed(now) ? carried : 0.0);
-    carried = Set::precedes(now) ? slope : 0.0;
-    if (repair == Repair::kClip) return std::min(std::max(u, bounds.low()), bounds.high());
-    const Finding finding = Set::find(now, bounds, u, slope, feedback[k].H[m][m]);
-    if (finding == Finding::kNone) return u;
-    if (repair == Repair::kAll) Set(hold, m).repair(k, finding, bounds, u);
-    found.add(k, m, now);
-    found.finding = finding;
-    found.bounds = bounds;
-    found.u = u;
-    return u;
+  [[nodiscard]] CHICANE_INLINE double bound(std::size_t k, std::size_t m, Hold at) const noexcept {
+    return at == Hold::kHigh ? lq.high[m][k] : lq.low[m][k];
   }
 
-  // ---- bounds
-
-  static constexpr double kAtRest[kNx] = {};
-
-  [[nodiscard]] double bound(std::size_t k, std::size_t m, Hold at) const noexcept {
-    switch (at) {
-      case Hold::kRateLow:
-        return lq.rate_low[m][k];
-      case Hold::kRateHigh:
-        return lq.rate_high[m][k];
-      case Hold::kHigh:
-        return lq.high[m][k];
-      case Hold::kNextLow:
-        return fixed_[k + 1][m] - lq.rate_low[m][k + 1] - lq.stage[k].defect(rate_state(m));
-      case Hold::kNextHigh:
-        return fixed_[k + 1][m] - lq.rate_high[m][k + 1] - lq.stage[k].defect(rate_state(m));
-      default:
-        return lq.low[m][k];
-    }
-  }
-  CHICANE_INLINE InputBounds bounds_of(std::size_t k, std::size_t m, const double (&x)[kNx]) const noexcept {
-    InputBounds bounds{lq.low[m][k], lq.high[m][k]};
-    if constexpr (kHasRates) {
-      if (const int state = Pattern::kRateState[m]; state >= 0) {
-        bounds.rate_low = lq.rate_low[m][k] + x[static_cast<std::size_t>(state)];
-        bounds.rate_high = lq.rate_high[m][k] + x[static_cast<std::size_t>(state)];
-      }
-    }
-    return bounds;
-  }
-
-  Value unused_{};
-  double fixed_[Capacity + 1][kNu]{};                          ///< of inputs that the working set fixes
   alignas(64) double value_[Capacity + 1][kNx + 1][kLanes]{};  ///< P of every stage, to start again from
   std::size_t last_change_ = 0;  ///< last stage whose working set forward() changed
 };

@@ -58,8 +58,6 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
     for (std::size_t m = 0; m < kNu; ++m)
       trajectory.u[k][m] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
   }
-  now_.chains.admit(t_.horizon, [&](std::size_t k, std::size_t m) -> double& { return trajectory.u[k][m]; });
-  now_.chains.tell(report);
   tell_violation(problem, barrier_, t_.horizon, report);
   report.status = status;
   return report;

@@ -132,7 +132,6 @@ bool OcpSolver<P, Capacity, Arch>::grow(const P& problem) noexcept {
     for (std::size_t k = known; k < t_.horizon; ++k)
       t_.u[m][k] = nearest(t_.u[m][known - 1], now_.lower[m][k], now_.upper[m][k]);
   }
-  admit_inputs();
   return restart(problem);
 }
 

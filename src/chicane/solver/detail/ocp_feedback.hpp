@@ -11,7 +11,7 @@ namespace chicane::solver {
 // Preparation and feedback of OcpSolver (docs/solver.md, "Preparation and feedback").
 
 template <OcpProblem P, int Capacity, class Arch>
-bool OcpSolver<P, Capacity, Arch>::prepare(const P& problem) noexcept requires(!kHasRateBounds<P>) {
+bool OcpSolver<P, Capacity, Arch>::prepare(const P& problem) noexcept {
   full_steps_ = true;
   is_fresh_ = false;
   is_exact_ = options_.second_order;
@@ -26,8 +26,7 @@ bool OcpSolver<P, Capacity, Arch>::prepare(const P& problem) noexcept requires(!
 }
 
 template <OcpProblem P, int Capacity, class Arch>
-FeedbackReport OcpSolver<P, Capacity, Arch>::feedback(const State& x0, Trajectory& trajectory) noexcept
-    requires(!kHasRateBounds<P>) {
+FeedbackReport OcpSolver<P, Capacity, Arch>::feedback(const State& x0, Trajectory& trajectory) noexcept {
   constexpr int kMaxSweeps = 20;
   using Repair = typename Lq::Repair;
   for (std::size_t i = 0; i < kNx; ++i) lq_.dx[0][i] = x0[i] - t_.x[i][0];

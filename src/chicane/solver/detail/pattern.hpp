@@ -18,9 +18,6 @@ enum class Entry : std::uint8_t { kZero, kOne, kValue };
 /// zero, in z = (δx, 1, δu): F (δx⁺ = F z; column Nx, the defect, is always there) and L (cost ½ zᵀ L z,
 /// symmetric; its row and column Nx, the gradient, are read where L says so and the entry (Nx, Nx) never is).
 /// This one knows nothing: every entry counts.
-///
-/// kRateState[m] is the number of the state that holds the previous value of input m, where the problem has
-/// bounds on how fast that input changes; -1 where it has none.
 template <std::size_t Nx, std::size_t Nu>
 struct FullPattern {
   static constexpr std::size_t kNx = Nx;
@@ -35,11 +32,6 @@ struct FullPattern {
     std::array<std::array<bool, kNz>, kNz> l{};
     for (auto& row : l) row.fill(true);
     return l;
-  }();
-  static constexpr std::array<int, Nu> kRateState = [] {
-    std::array<int, Nu> none{};
-    none.fill(-1);
-    return none;
   }();
 };
 
@@ -183,12 +175,6 @@ struct Layout {
     return is_full;
   }
   static constexpr bool is_large() noexcept { return kNx + kNu > kMostUnrolled; }
-  static constexpr bool has_rate_bounds() noexcept {
-    for (const int state : Pattern::kRateState) {
-      if (state >= 0) return true;
-    }
-    return false;
-  }
 };
 
 /// One linear-quadratic problem: the stages' Jacobians, costs and bounds, and the terminal cost. Stages are
@@ -210,8 +196,6 @@ struct LqProblem {
   Stage stage[kStages]{};
   alignas(64) double low[kNu][kStages]{};  ///< bounds on δu; infinite where there are none
   alignas(64) double high[kNu][kStages]{};
-  alignas(64) double rate_low[kNu][kStages]{};  ///< bounds on δu − δx of the rate state, where there is one
-  alignas(64) double rate_high[kNu][kStages]{};
   alignas(64) double terminal[kNx + 1][kLanes]{};  ///< P_N; its last row is the gradient
 
   LqProblem() noexcept {

@@ -114,7 +114,6 @@ CHICANE_END_FUNCTION(terminal_residual)
 CHICANE_END_FUNCTION(terminal_equality)
 CHICANE_END_FUNCTION(terminal_constraint)
 CHICANE_MEMBER(is_hard)
-CHICANE_MEMBER(kPreviousInput)
 CHICANE_MEMBER(constraint_name)
 CHICANE_MEMBER(constraint_unit)
 CHICANE_MEMBER(input_name)
@@ -125,18 +124,6 @@ CHICANE_MEMBER(terminal_constraint_name)
 #undef CHICANE_END_FUNCTION
 #undef CHICANE_STAGE_FUNCTION
 #undef CHICANE_MEMBER
-
-/// Each is a state, and no two inputs share one.
-template <int Nx, std::size_t Nu>
-constexpr bool names_states(const std::array<int, Nu>& previous) noexcept {
-  for (std::size_t m = 0; m < Nu; ++m) {
-    if (previous[m] < -1 || previous[m] >= Nx) return false;
-    for (std::size_t l = 0; l < m; ++l) {
-      if (previous[m] >= 0 && previous[m] == previous[l]) return false;
-    }
-  }
-  return true;
-}
 
 // ---- the checks, in the order in which they are of use
 
@@ -206,27 +193,9 @@ consteval bool check_bounds() {
       "write `std::array<double, kNu> input_lower(int k) const` and the same of input_upper(int k)");
   constexpr bool kHasRate = requires(const P& p) { p.input_rate_lower(0); }
   || requires(const P& p) { p.input_rate_upper(0); };
-  static_assert(
-      !kHasRate || HasMember_kPreviousInput<P>::value,
-      "bounds on changes of inputs need `static constexpr std::array<int, kNu> kPreviousInput = {...};`: the "
-      "state that holds the previous value of each input, -1 where there is none");
-  if constexpr (requires { P::kPreviousInput; }) {
-    constexpr bool kAreRates = requires(const P& p) {
-      requires std::same_as<std::remove_cvref_t<decltype(P::kPreviousInput)>, std::array<int, P::kNu>>;
-      { p.input_rate_lower(0) } -> std::same_as<std::array<double, P::kNu>>;
-      { p.input_rate_upper(0) } -> std::same_as<std::array<double, P::kNu>>;
-    };
-    static_assert(
-        kAreRates,
-        "with kPreviousInput, a std::array<int, kNu>, write `std::array<double, kNu> input_rate_lower(int k) "
-        "const` and the same of input_rate_upper(int k)");
-    if constexpr (kAreRates) {
-      static_assert(names_states<P::kNx>(P::kPreviousInput),
-                    "kPreviousInput: a state of its own for each input, or -1");
-      return kHasBounds && names_states<P::kNx>(P::kPreviousInput);
-    }
-    return false;
-  }
+  static_assert(!kHasRate,
+                "bounds on the changes of inputs: make the change the input, and the input a state "
+                "(chicane/solver/problem.hpp)");
   return kHasBounds && !kHasRate;
 }
 

@@ -116,7 +116,6 @@ struct StructuredPattern {
   }
   using Constraint = typename decltype(constraint_type())::type;
 
-  static constexpr auto kRateState = previous_inputs<P>();
   static constexpr bool kIsCompact = has_filter_method<P>();
   static constexpr auto kF = [] {
     std::array<std::array<Entry, kNz>, kNx> f{};
@@ -144,36 +143,15 @@ struct StructuredPattern {
       const std::size_t u = kNx + 1 + m;
       l[u][u] = l[u][kNx] = l[kNx][u] = true;
     }
-    for (std::size_t m = 0; m < kNu; ++m) {  // barriers of bounds on changes (interior_point.hpp)
-      if (kRateState[m] < 0) continue;
-      const auto p = static_cast<std::size_t>(kRateState[m]);
-      const std::size_t u = kNx + 1 + m;
-      l[p][p] = l[u][u] = l[p][u] = l[u][p] = true;
-      l[p][kNx] = l[kNx][p] = l[u][kNx] = l[kNx][u] = true;
-    }
     return l;
   }();
-  /// The states that are said to hold previous inputs do.
-  static constexpr bool keeps_previous_inputs() noexcept {
-    for (int m = 0; m < P::kNu; ++m) {
-      const int state = kRateState[static_cast<std::size_t>(m)];
-      if (state < 0) continue;
-      const auto row = static_cast<std::size_t>(state);
-      const Variables input = variable(P::kNx + m);
-      if (detail::RowSets<Next>::kFirst[row] != input || detail::RowSets<Next>::kUnit[row] != input)
-        return false;
-    }
-    return true;
-  }
 };
 
-/// Every entry counts; which states hold previous inputs is known.
+/// Every entry counts.
 template <OcpProblem P>
 struct DensePattern : FullPattern<P::kNx, P::kNu> {
-  static constexpr auto kRateState = previous_inputs<P>();
   static constexpr bool kIsCompact =
       has_filter_method<P>() || static_cast<std::size_t>(P::kNx + P::kNu) > kMostUnrolled;
-  static constexpr bool keeps_previous_inputs() noexcept { return true; }
 };
 
 namespace detail {

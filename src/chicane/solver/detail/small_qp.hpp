@@ -6,27 +6,19 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "chicane/base/inlining.hpp"
 #include "chicane/base/instruction_set.hpp"
 
 namespace chicane::solver {
 
-/// Where an input stands in the working set: free, at a bound of its own, at a bound on its change from the
-/// one before (kRate…), or fixed by the next one, whose change from it is at a bound (kNext…).
-enum class Hold : std::int8_t {
-  kNextLow = -3,
-  kRateLow = -2,
-  kLow = -1,
-  kFree = 0,
-  kHigh = 1,
-  kRateHigh = 2,
-  kNextHigh = 3
-};
+/// Where an input stands in the working set: free, or at one of its bounds.
+enum class Hold : std::int8_t { kLow = -1, kFree = 0, kHigh = 1 };
 
 /// The working-set rule of the primal-dual active set method: an input beyond a bound is held there, a held
 /// one whose cost falls towards the inside (`slope` = dJ/du) is let go. `curvature` scales the tolerance; an
 /// interval without width is always held.
-[[nodiscard]] inline Hold next_hold(Hold hold, double u, double slope, double low, double high,
-                                    double curvature) noexcept {
+[[nodiscard]] CHICANE_INLINE inline Hold next_hold(Hold hold, double u, double slope, double low, double high,
+                                                   double curvature) noexcept {
   constexpr double kTolerance = 1e-10;
   if (!(high > low)) return Hold::kLow;
   if (hold == Hold::kFree) {

@@ -4,18 +4,15 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <type_traits>
 
 #include "chicane/base/deadline.hpp"
-#include "chicane/solver/detail/interior_point.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
-#include "chicane/solver/problem.hpp"
 
 namespace chicane::solver {
 
-/// Solves the quadratic program of one iteration by corrections of its working set, else stage by stage, or
-/// with bounds on changes by an interior point (docs/solver.md, "Bounds: primal-dual active set").
-template <OcpProblem P, class Lq>
+/// Solves the quadratic program of one iteration by corrections of its working set, else stage by stage
+/// (docs/solver.md, "Bounds: primal-dual active set").
+template <class Lq>
 class WorkingSetQp {
  public:
   using Repair = typename Lq::Repair;
@@ -30,30 +27,22 @@ class WorkingSetQp {
   };
 
   /// Leaves the step in `lq`; adds to `sweeps`. `is_exact`: the stages have exact Hessians, which
-  /// `take_gauss_newton()` replaces where they are indefinite, and unsets. `slope(k, m)`: of the cost by
-  /// input m. With `may_circle` nothing else is tried where the working set cycles.
-  template <class TakeGaussNewton, class Slope>
+  /// `take_gauss_newton()` replaces where they are indefinite, and unsets. With `may_circle` nothing else is
+  /// tried where the working set cycles.
+  template <class TakeGaussNewton>
   Outcome solve(Lq& lq, std::size_t horizon, const bool& is_exact, const TakeGaussNewton& take_gauss_newton,
-                const Slope& slope, const Deadline& deadline, bool may_circle, int& sweeps) noexcept {
+                const Deadline& deadline, bool may_circle, int& sweeps) noexcept {
     const Outcome outcome = correct(lq, horizon, is_exact, take_gauss_newton, deadline, sweeps);
     if (outcome != Outcome::kCircles || may_circle) return outcome;
-    if constexpr (kHasRateBounds<P>) {
-      if (is_exact) take_gauss_newton();
-      sweeps += interior_.solve(lq, horizon, slope, [&] { return deadline.spent(); });
-      const Outcome refined = correct(lq, horizon, is_exact, take_gauss_newton, deadline, sweeps);
-      if (refined == Outcome::kCircles) interior_.put_step(lq, horizon);
-      return refined == Outcome::kSpent ? refined : Outcome::kSolved;
-    } else {
-      ++sweeps;
-      lq.backward(horizon, 0.0, true);
-      lq.forward(horizon, Repair::kClip);
-      return Outcome::kSolved;
-    }
+    ++sweeps;
+    lq.backward(horizon, 0.0, true);
+    lq.forward(horizon, Repair::kClip);
+    return Outcome::kSolved;
   }
 
  private:
   /// Sweeps that may correct the whole working set in vain.
-  static constexpr int kChances = kHasRateBounds<P> ? 3 : 5;
+  static constexpr int kChances = 5;
 
   /// All corrections at once as long as that lowers their number, then one by one if there are few. The first
   /// set of all is the one of the stages' own box problems.
@@ -75,8 +64,7 @@ class WorkingSetQp {
       const int contradictions = lq.forward(horizon, chances > 0 ? Repair::kAll : Repair::kLast);
       if (contradictions == 0) return Outcome::kSolved;
       if (deadline.spent()) return Outcome::kSpent;
-      if (chances == 0 && contradictions > (kHasRateBounds<P> ? 0 : kMaxSweeps - sweep))
-        return Outcome::kCircles;
+      if (chances == 0 && contradictions > kMaxSweeps - sweep) return Outcome::kCircles;
       chances = contradictions < fewest ? kChances : chances - 1;
       fewest = std::min(fewest, contradictions);
       ++sweeps;
@@ -85,7 +73,6 @@ class WorkingSetQp {
     return Outcome::kCircles;
   }
 
-  std::conditional_t<kHasRateBounds<P>, InteriorPoint<Lq>, std::nullptr_t> interior_{};
   bool chooses_ = false;
 };
 
