@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/foreign_tracks.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,8 +13,11 @@
 #include <string>
 #include <vector>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/protocol/library.hpp"
+#include "chicane/road/point_fit.hpp"
+#include "support/stadium.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -116,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
              0.7,
              true,
              {},
-             "noise of 0.5 m assumed (import --smoothing-m sets it)"},
+             "noise of 0.05 m estimated from the points (import --smoothing-m sets it)"},
         Kind{"course.osm", kLength, 0.5, 6.0, 0.7, true, {}, "way: 2 of 3 ways taken"},
         Kind{"course.geojson", kLength, 0.5, 6.0, 0.7, true, {}, "metres east and north of 48.2001"},
         Kind{"course.xodr", kLength, 0.2, 6.0, 0.1, true, {}, "lanes: those of type driving"},
@@ -156,6 +160,21 @@ TEST(ForeignTracks, RefusesInWordsWhatIsNoRoad) {
                 AllOf(::testing::StartsWith(kData + "tracks/" + name), HasSubstr(words)));
     EXPECT_EQ(track.error().code, ErrorCode::kParse);
   }
+}
+
+// A uniform spline left the points of 24 of 40 drawn circuits by more than the width of the road.
+TEST(ForeignTracks, DrawnCircuitsWithLongStraightsAreWithinTheirNoise) {
+  std::string text = R"({"type": "LineString", "coordinates": [)";
+  constexpr double kNorth = 111178.0, kEast = 76056.0;  // metres of a degree at 47 degrees
+  for (const Vec2& point : test::stadium(40.0, 9, 300.0))
+    text += fmt::format("[{:.6f}, {:.6f}], ", 8.0 + point.x() / kEast, 47.0 + point.y() / kNorth);
+  text.resize(text.size() - 2);
+  const auto content = parse_track(text + "]}", "drawn.geojson", {.is_closed = true});
+  ASSERT_TRUE(content) << content.error().message;
+  const auto track = make_track(*content);
+  ASSERT_TRUE(track) << track.error().message;
+  EXPECT_NEAR(track->length(), 600.0 + kTwoPi * 40.0, 0.005 * 851.0);
+  EXPECT_LT(road::point_fit(*track).most, 2.0 * content->options.smoothing_sigma + 0.01);
 }
 
 TEST(ForeignTracks, NamesElementAndLineOfAFault) {

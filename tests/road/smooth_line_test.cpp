@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/random.hpp"
+#include "support/stadium.hpp"
 
 namespace chicane::road {
 namespace {
@@ -57,6 +59,32 @@ TEST(SmoothLine, SaysWhereEachGivenPointIsAlongIt) {
   ASSERT_EQ(line->parameter.size(), 100u);
   for (std::size_t i = 1; i < 100; ++i)
     EXPECT_NEAR(line->parameter[i] - line->parameter[i - 1], kTwoPi * 50.0 / 100.0, 0.02) << i;
+}
+
+/// Distance of a place from the stadium of test::stadium(radius, …, straight) [m].
+double from_stadium(const Vec2& place, double radius, double straight) {
+  const double beyond = place.x() - std::clamp(place.x(), 0.0, straight);
+  return std::fabs(std::hypot(beyond, place.y()) - radius);
+}
+
+// The straights bowed by up to 40 m: the third derivative says nothing of a gap 20 times the usual one.
+TEST(SmoothLine, KeepsStraightsAndArcsOfUnevenPoints) {
+  for (const double sigma : {0.1, 1.0}) {
+    const std::vector<Vec2> points = test::stadium(40.0, 9, 300.0);
+    const Result<SmoothLine> line = smooth_line(points, true, 2.0, sigma);
+    ASSERT_TRUE(line) << line.error().message;
+    EXPECT_NEAR(line->length, 600.0 + kTwoPi * 40.0, 3.0);
+    EXPECT_LE(line->max_deviation, 2.0 * sigma + 0.01);
+    double worst = 0.0;
+    for (const Vec2& knot : line->knots) worst = std::max(worst, from_stadium(knot, 40.0, 300.0));
+    EXPECT_LT(worst, 0.8 + 2.0 * sigma);
+  }
+}
+
+TEST(SmoothLine, FindsTheNoiseOfThePoints) {
+  for (const double noise : {0.05, 0.3})
+    EXPECT_NEAR(estimate_noise(circle(300, noise), true, 2.0), noise, 0.2 * noise);
+  EXPECT_LT(estimate_noise(circle(100, 0.0), true, 2.0), 0.01);
 }
 
 // Files of 300 and of six points took 12 GB and a minute.

@@ -214,6 +214,19 @@ TEST(Track, RefusesOptionsOutOfRange) {
   EXPECT_EQ(refusal(points, true, {.start_d = 6.0}), "start_d: got 6, expected a place on the road");
 }
 
+TEST(Track, RefusesALineThatLeavesAPointByTheRoadsWidth) {
+  std::vector<TrackPoint> points = loop_points(100, 0.0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].position *= i % 2 == 0 ? 0.985 : 1.015;
+    points[i].left = points[i].right = 0.3;
+  }
+  const std::string words = refusal(points, true, {.smoothing_sigma = 1.0});
+  EXPECT_TRUE(words.starts_with("points[18]: got 0.414 m beside")) << words;
+  EXPECT_TRUE(
+      words.ends_with(" m beside the smooth line, expected less than the 0.3 m to the edge of the road"))
+      << words;
+}
+
 /// A figure of eight, `height` m high on each side, 4 m to each edge.
 std::vector<TrackPoint> eight_points(double height) {
   std::vector<TrackPoint> points;

@@ -14,6 +14,7 @@
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/csv_text.hpp"
 #include "chicane/protocol/detail/foreign_roads.hpp"
+#include "chicane/road/smooth_line.hpp"
 #include "chicane/survey/geodesy.hpp"
 #include "chicane/survey/sampled_line.hpp"
 
@@ -26,6 +27,7 @@ constexpr double kLeastStep = 1.0;    // nearer places are where a receiver stan
 constexpr double kLeastLap = 150.0;   // [m]
 constexpr double kMeets = 25.0;       // a lap is over where it comes this near to its beginning [m]
 constexpr double kMostExtent = 50e3;  // [m]
+constexpr double kLeastNoise = 0.05;  // half a unit of the sixth decimal of a degree [m]
 
 /// Points up to where the line meets its beginning in the same direction; how many laps the line has.
 double cut_first_lap(std::vector<Vec2>& points) {
@@ -84,10 +86,14 @@ Result<TrackFile> track_of_line(GeoLine line) {
   warn(*built, fmt::format("places: metres east and north of {:.6f}, {:.6f}; heights left out",
                            middle.latitude, middle.longitude));
   if (laps > 1.2) warn(*built, fmt::format("laps: the first of {:.1f} taken", laps));
-  built->options.smoothing_sigma = line.noise * rows.options.scale;
-  if (!rows.options.smoothing_sigma)
-    warn(*built, fmt::format("smoothing: noise of {} m assumed (import --smoothing-m sets it)",
-                             built->options.smoothing_sigma));
+  if (!rows.options.smoothing_sigma) {
+    double& noise = built->options.smoothing_sigma;
+    noise = std::clamp(road::estimate_noise(points, built->is_closed, built->options.spacing), kLeastNoise,
+                       line.most_noise);
+    warn(*built, fmt::format("smoothing: noise of {:.2f} m estimated from the points (import --smoothing-m "
+                             "sets it)",
+                             noise));
+  }
   if (!has_width) warn_of_width(*built, rows.options);
   return built;
 }

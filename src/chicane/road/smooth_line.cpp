@@ -24,6 +24,50 @@ constexpr double kLeastShare = 0.01;  // of the length of the chords, in that of
 constexpr double kMostShare = 2.0;
 constexpr double kMostUnrolled = 4e6;       // points
 constexpr double kMaxShareOfLength = 0.02;  // of ℓ in the length of a short line
+constexpr double kMostEvenRatio = 4.0;      // longest gap of even points, in median gaps
+constexpr double kMostNoise = 1.0;          // standard deviation that cross-validation begins with [m]
+constexpr double kLeastShareOfGap = 0.1;    // of ℓ in the median gap: a shorter one interpolates
+constexpr std::size_t kMostLeftOut = 200;   // points that cross-validation leaves out, one at a time
+
+/// Distances between neighbours [m].
+struct Gaps {
+  double median = 0.0, longest = 0.0, mean = 0.0;
+};
+
+/// The penalty of equation (1): its order m, the differences of the coefficients, the constant of equation
+/// (2).
+struct Penalty {
+  int order = 3;
+  std::array<double, 4> differences{-1.0, 3.0, -3.0, 1.0};
+  double noise_factor = 0.0556;
+  double step = 0.5;       // from one ℓ to the next smaller one
+  double usual_gap = 0.0;  // [m]
+
+  explicit Penalty(const Gaps& gaps) noexcept : usual_gap{gaps.median} {
+    if (gaps.longest <= kMostEvenRatio * gaps.median) return;
+    order = 2;
+    differences = {1.0, -2.0, 1.0, 0.0};
+    noise_factor = 0.0884;
+    step = std::sqrt(0.5);
+  }
+  /// ℓ^2m / h^(2m − 1)
+  [[nodiscard]] double weight(double smoothing, double spacing) const noexcept {
+    const double ratio = smoothing / spacing;
+    double weight = 1.0;
+    for (int i = 0; i < 2 * order - 1; ++i) weight *= ratio;
+    return weight * smoothing;
+  }
+  /// Uneven points are far apart where the road is straight: there the line resists bending.
+  [[nodiscard]] double stiffness(double gap) const noexcept {
+    const double ratio = order == 3 ? 1.0 : std::max(gap / usual_gap, 1.0);
+    return ratio * ratio;
+  }
+  /// Whether noise of σ explains the deviations. A point of an uneven line has no neighbours to average with.
+  [[nodiscard]] bool explains(double sigma, const SmoothLine& line) const noexcept {
+    const double most = (order == 3 ? 4.0 : 2.0) * sigma;
+    return line.rms_deviation <= sigma + 0.002 && line.max_deviation <= most + 0.01;
+  }
+};
 
 /// Uniform cubic B-spline with values and derivatives, unit knot distance: coefficient i has its peak at i
 /// − 1.
@@ -54,17 +98,23 @@ Vec2 combine(const std::array<double, 4>& weights, const Vec2* coefficients) noe
 /// Symmetric positive definite band matrix: row i holds entries (i, i … i + 3).
 using Band = std::vector<std::array<double, 4>>;
 
-/// Solves A x = b in place by L D Lᵀ.
-void solve_band(Band& a, std::vector<Vec2>& x) noexcept {
+/// L D Lᵀ in place.
+void factorise(Band& a) noexcept {
   const std::size_t n = a.size();
   for (std::size_t i = 0; i < n; ++i) {
     const std::array<double, 4> row = a[i];
     for (std::size_t k = 1; k < 4 && i + k < n; ++k) {
       const double factor = row[k] / row[0];
       for (std::size_t m = k; m < 4; ++m) a[i + k][m - k] -= factor * row[m];
-      x[i + k] -= factor * x[i];
     }
   }
+}
+
+/// Solves A x = b in place for a factorised A.
+void substitute(const Band& a, std::vector<Vec2>& x) noexcept {
+  const std::size_t n = a.size();
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 1; k < 4 && i + k < n; ++k) x[i + k] -= a[i][k] / a[i][0] * x[i];
   for (std::size_t i = n; i-- > 0;) {
     for (std::size_t k = 1; k < 4 && i + k < n; ++k) x[i] -= a[i][k] * x[i + k];
     x[i] /= a[i][0];
@@ -110,6 +160,8 @@ Unrolled unroll(const std::vector<double>& parameter, double length, bool closed
 
 struct Fit {
   std::vector<Vec2> coefficients;
+  Band band;                    // factorised matrix of the coefficients
+  std::vector<double> weights;  // of the points
   std::size_t lead = 0;
   double spacing = 0.0;
   double length = 0.0;
@@ -120,32 +172,40 @@ struct Fit {
   }
 };
 
-/// Equation (1): B' W B + ℓ⁶/h⁵ D' D, with D the third differences of the coefficients.
-void solve(Fit& fit, std::span<const Vec2> points, bool closed, double smoothing) {
+/// Equation (1): B' W B + ℓ^2m/h^(2m−1) D' D, with D the m-th differences of the coefficients.
+void solve(Fit& fit, std::span<const Vec2> points, bool closed, const Penalty& penalty, double smoothing) {
   const Unrolled rolled = unroll(fit.parameter, fit.length, closed, fit.spacing, smoothing);
   fit.lead = rolled.lead;
   fit.coefficients.assign(rolled.count, Vec2{});
-  Band band(rolled.count, {0.0, 0.0, 0.0, 0.0});
+  fit.band.assign(rolled.count, {0.0, 0.0, 0.0, 0.0});
+  fit.weights.assign(points.size(), 0.0);
   for (std::size_t i = 0; i < rolled.s.size(); ++i) {
     const double before = i > 0 ? rolled.s[i] - rolled.s[i - 1] : 0.0;
     const double after = i + 1 < rolled.s.size() ? rolled.s[i + 1] - rolled.s[i] : 0.0;
     const double weight = 0.5 * (before + after);
+    fit.weights[rolled.point[i]] = std::max(fit.weights[rolled.point[i]], weight);
     const Basis basis = fit.basis(rolled.s[i]);
     const std::array<double, 4> value = basis.value();
     for (std::size_t k = 0; k < 4; ++k) {
-      for (std::size_t m = k; m < 4; ++m) band[basis.first + k][m - k] += weight * value[k] * value[m];
+      for (std::size_t m = k; m < 4; ++m) fit.band[basis.first + k][m - k] += weight * value[k] * value[m];
       fit.coefficients[basis.first + k] += weight * value[k] * points[rolled.point[i]];
     }
   }
-  const double ratio = smoothing / fit.spacing;
-  const double penalty = ratio * ratio * ratio * ratio * ratio * smoothing;
-  constexpr std::array<double, 4> kThird{-1.0, 3.0, -3.0, 1.0};
-  for (std::size_t i = 0; i + 3 < rolled.count; ++i) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      for (std::size_t m = k; m < 4; ++m) band[i + k][m - k] += penalty * kThird[k] * kThird[m];
+  const double weight = penalty.weight(smoothing, fit.spacing);
+  const std::array<double, 4>& differences = penalty.differences;
+  const std::size_t members = static_cast<std::size_t>(penalty.order) + 1;
+  std::size_t next = 1;
+  for (std::size_t i = 0; i + members <= rolled.count; ++i) {
+    const double s = fit.spacing * (static_cast<double>(i) - static_cast<double>(rolled.lead));
+    while (next + 1 < rolled.s.size() && rolled.s[next] < s) ++next;
+    const double price = weight * penalty.stiffness(rolled.s[next] - rolled.s[next - 1]);
+    for (std::size_t k = 0; k < members; ++k) {
+      for (std::size_t m = k; m < members; ++m)
+        fit.band[i + k][m - k] += price * differences[k] * differences[m];
     }
   }
-  solve_band(band, fit.coefficients);
+  factorise(fit.band);
+  substitute(fit.band, fit.coefficients);
 }
 
 /// Replaces the parameter of the points by their arc length along the fitted line.
@@ -185,25 +245,31 @@ std::size_t interval_count(double length, double spacing) noexcept {
   return static_cast<std::size_t>(std::clamp(std::round(length / spacing), 8.0, 1e9));
 }
 
-double median_of_gaps(std::span<const Vec2> points) {
+Gaps gaps_of(std::span<const Vec2> points, bool closed, double length) {
   std::vector<double> gaps;
   gaps.reserve(points.size());
   for (std::size_t i = 1; i < points.size(); ++i) gaps.push_back((points[i] - points[i - 1]).norm());
   const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
   std::nth_element(gaps.begin(), middle, gaps.end());
-  return *middle;
+  const double closing = closed ? (points.front() - points.back()).norm() : 0.0;
+  return {*middle, std::max(closing, *std::max_element(gaps.begin(), gaps.end())),
+          length / static_cast<double>(points.size())};
+}
+
+/// Distance of point i from the line, across it [m].
+double deviation_at(const Fit& fit, std::span<const Vec2> points, std::size_t i) {
+  const Basis basis = fit.basis(fit.parameter[i]);
+  const Vec2* c = &fit.coefficients[std::min(basis.first, fit.coefficients.size() - 4)];
+  const Vec2 gap = points[i] - combine(basis.value(), c);
+  const Vec2 tangent = combine(basis.slope(), c);
+  return std::fabs(tangent.x() * gap.y() - tangent.y() * gap.x()) / std::max(tangent.norm(), 1e-12);
 }
 
 SmoothLine finish(Fit&& fit, std::span<const Vec2> points, bool closed) {
   SmoothLine line;
   double sum = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Basis basis = fit.basis(fit.parameter[i]);
-    const std::size_t first = std::min(basis.first, fit.coefficients.size() - 4);
-    const Vec2 gap = points[i] - combine(basis.value(), &fit.coefficients[first]);
-    const Vec2 tangent = combine(basis.slope(), &fit.coefficients[first]);
-    const double across =
-        std::fabs(tangent.x() * gap.y() - tangent.y() * gap.x()) / std::max(tangent.norm(), 1e-12);
+    const double across = deviation_at(fit, points, i);
     sum += across * across;
     line.max_deviation = std::max(line.max_deviation, across);
   }
@@ -227,42 +293,104 @@ bool is_solvable(const Fit& fit, const Fit& raw, std::size_t points, double smoo
          kOverlapLengths * smoothing / fit.length * static_cast<double>(points) <= kMostUnrolled;
 }
 
+/// Equation (2): the ℓ for which white noise σ every Δ metres leaves the accepted noise of the curvature.
+double demanded_length(const Penalty& penalty, double sigma, double gap, double length) {
+  const double share = penalty.noise_factor * sigma * sigma * gap / (kCurvatureNoise * kCurvatureNoise);
+  const double demanded = sigma > 0.0 ? exp(0.2 * log(share)) : 0.0;
+  return std::max(std::min(demanded, kMaxShareOfLength * length), kMinSmoothingLength);
+}
+
+/// The line for one ℓ, its points by distance along it.
+Result<Fit> fitted(const Fit& raw, std::span<const Vec2> points, bool closed, double spacing,
+                   const Penalty& penalty, double smoothing) {
+  const double longest = spacing * static_cast<double>(kMaxKnots);
+  if (!(raw.length >= kMinLength && raw.length <= longest)) {
+    return fail(ErrorCode::kInvalidArgument, "points: got a line of " + number_text(raw.length) +
+                                                 " m, expected " + number_text(kMinLength) + " to " +
+                                                 number_text(longest) + " m");
+  }
+  Fit fit = raw;
+  for (int pass = 0; pass < kParameterPasses; ++pass) {
+    if (pass > 0) measure(fit);
+    if (!is_solvable(fit, raw, points.size(), smoothing)) {
+      return fail(ErrorCode::kInvalidArgument,
+                  "points: got points that no smooth line follows, expected more of them, or a wider "
+                  "spacing than " +
+                      number_text(spacing) + " m");
+    }
+    fit.spacing = fit.length / static_cast<double>(interval_count(fit.length, spacing));
+    solve(fit, points, closed, penalty, smoothing);
+  }
+  return fit;
+}
+
+/// Errors of predicting each point from all others, equation (3).
+struct Validation {
+  double error = 0.0;      // mean square [m²]
+  double tolerance = 0.0;  // standard error of it [m²]
+  double variance = 0.0;   // of the noise across the line [m²]
+};
+
+Validation validate(const Fit& fit, std::span<const Vec2> points) {
+  const std::size_t stride = (points.size() + kMostLeftOut - 1) / kMostLeftOut;
+  double count = 0.0, sum = 0.0, squares = 0.0, residual = 0.0, freedom = 0.0;
+  std::vector<Vec2> influence;
+  for (std::size_t i = 0; i < points.size(); i += stride) {
+    const Basis basis = fit.basis(fit.parameter[i]);
+    const std::size_t first = std::min(basis.first, fit.coefficients.size() - 4);
+    const std::array<double, 4> value = basis.value();
+    influence.assign(fit.coefficients.size(), Vec2{});
+    for (std::size_t k = 0; k < 4; ++k) influence[first + k] = {fit.weights[i] * value[k], 0.0};
+    substitute(fit.band, influence);
+    const double own = std::max(1.0 - combine(value, &influence[first]).x(), 1e-9);
+    const double across = deviation_at(fit, points, i);
+    const double square = across * across;
+    const double error = square / (own * own);
+    count += 1.0;
+    sum += error;
+    squares += error * error;
+    residual += square;
+    freedom += own;
+  }
+  const double mean = sum / count;
+  return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / count), residual / freedom};
+}
+
 }  // namespace
+
+double estimate_noise(std::span<const Vec2> points, bool closed, double spacing) {
+  const Fit raw = initial_fit(points, closed);
+  const Gaps gaps = gaps_of(points, closed, raw.length);
+  const Penalty penalty{gaps};
+  std::vector<Validation> rungs;
+  double smoothing = demanded_length(penalty, kMostNoise, gaps.mean, raw.length);
+  const double least = std::max(kLeastShareOfGap * gaps.median, kMinSmoothingLength);
+  for (; smoothing >= least; smoothing *= std::sqrt(0.5)) {
+    const Result<Fit> fit = fitted(raw, points, closed, spacing, penalty, smoothing);
+    if (fit) rungs.push_back(validate(*fit, points));
+  }
+  if (rungs.empty()) return kMostNoise;
+  const Validation& best = *std::min_element(
+      rungs.begin(), rungs.end(), [](const Validation& a, const Validation& b) { return a.error < b.error; });
+  const auto smoothest = std::find_if(rungs.begin(), rungs.end(), [&](const Validation& rung) {
+    return rung.error <= best.error + best.tolerance;
+  });
+  return std::min(std::sqrt(smoothest->variance), kMostNoise);
+}
 
 Result<SmoothLine> smooth_line(std::span<const Vec2> points, bool closed, double spacing, double sigma) {
   const Fit raw = initial_fit(points, closed);
-  const double mean_gap = raw.length / static_cast<double>(points.size());
-  const double median_gap = median_of_gaps(points);
-  // Equation (2): white noise σ every Δ metres leaves a curvature noise of sqrt(0.0556 σ² Δ / ℓ⁵).
-  const double demanded =
-      sigma > 0.0 ? exp(0.2 * log(0.0556 * sigma * sigma * mean_gap / (kCurvatureNoise * kCurvatureNoise)))
-                  : 0.0;
-  double smoothing = std::max(std::min(demanded, kMaxShareOfLength * raw.length), kMinSmoothingLength);
+  const Gaps gaps = gaps_of(points, closed, raw.length);
+  const Penalty penalty{gaps};
+  double smoothing = demanded_length(penalty, sigma, gaps.mean, raw.length);
   while (true) {
-    if (!(raw.length >= kMinLength && raw.length <= spacing * static_cast<double>(kMaxKnots))) {
-      return fail(ErrorCode::kInvalidArgument, "points: got a line of " + number_text(raw.length) +
-                                                   " m, expected " + number_text(kMinLength) + " to " +
-                                                   number_text(spacing * static_cast<double>(kMaxKnots)) +
-                                                   " m");
-    }
-    Fit fit = raw;
-    for (int pass = 0; pass < kParameterPasses; ++pass) {
-      if (pass > 0) measure(fit);
-      if (!is_solvable(fit, raw, points.size(), smoothing)) {
-        return fail(ErrorCode::kInvalidArgument,
-                    "points: got points that no smooth line follows, expected more of them, or a wider "
-                    "spacing than " +
-                        number_text(spacing) + " m");
-      }
-      fit.spacing = fit.length / static_cast<double>(interval_count(fit.length, spacing));
-      solve(fit, points, closed, smoothing);
-    }
-    SmoothLine line = finish(std::move(fit), points, closed);
+    Result<Fit> fit = fitted(raw, points, closed, spacing, penalty, smoothing);
+    if (!fit) return fail(fit.error());
+    SmoothLine line = finish(std::move(*fit), points, closed);
     line.smoothing_length = smoothing;
-    const bool is_close = line.rms_deviation <= sigma + 0.002 && line.max_deviation <= 4.0 * sigma + 0.01;
-    if (is_close || smoothing <= kMinSmoothingLength) return line;
-    smoothing = std::max(0.5 * smoothing, kMinSmoothingLength);
-    spacing = std::min(spacing, std::max(2.0 * smoothing, 0.25 * median_gap));
+    if (penalty.explains(sigma, line) || smoothing <= kMinSmoothingLength) return line;
+    smoothing = std::max(penalty.step * smoothing, kMinSmoothingLength);
+    spacing = std::min(spacing, std::max(2.0 * smoothing, 0.25 * gaps.median));
   }
 }
 

@@ -20,15 +20,22 @@ struct SmoothLine {
   double max_deviation = 0.0;     ///< [m]
 };
 
-/// Penalised cubic B-spline r(s) that minimises Σ Δsᵢ |r(sᵢ) − pᵢ|² + ℓ⁶ ∫ |r'''|² ds (docs/tracks.md, eq. 1;
-/// Eilers and Marx 1996). Wavelengths below about 2π ℓ are damped; straight lines and parabolas are kept
-/// exactly. ℓ is what `sigma` demands: noise of that size leaves 0.003 1/m of curvature noise (eq. 2). It
-/// shrinks (and the spacing with it) where the line would leave the points by more than their noise explains:
-/// rms > σ or any > 4 σ (plus millimetres, for σ = 0).
+/// Penalised cubic B-spline r(s) that minimises Σ Δsᵢ |r(sᵢ) − pᵢ|² + ℓ^2m ∫ |r⁽ᵐ⁾|² ds over the distance s
+/// (docs/tracks.md, eq. 1; Eilers and Marx 1996). m is 3, and 2 where the longest gap is over four times the
+/// median one. Wavelengths below about 2π ℓ are damped. ℓ is what `sigma` demands: noise of that size leaves
+/// 0.003 1/m of curvature noise (eq. 2). It shrinks (and the spacing with it) where the line would leave the
+/// points by more than their noise explains: rms > σ or any > 4 σ, with m = 2 any > 2 σ (plus millimetres,
+/// for σ = 0).
 ///
 /// Pre: finite points, at least two different. Fails with kInvalidArgument when the line needs more than
 /// 200,000 knots, and where there are so many to each point that rounding wins. Memory: 400,000 knots.
 [[nodiscard]] Result<SmoothLine> smooth_line(std::span<const Vec2> points, bool closed, double spacing,
                                              double sigma);
+
+/// Standard deviation of the points' noise across the line [m], at most 1, by leave-one-out cross-validation
+/// of (1) (docs/tracks.md, eq. 3): of the largest ℓ that predicts left-out points as well as the best one
+/// does, within a standard error. Pre: finite points, at least two different; spacing of the knots [m].
+/// Allocates.
+[[nodiscard]] double estimate_noise(std::span<const Vec2> points, bool closed, double spacing);
 
 }  // namespace chicane::road

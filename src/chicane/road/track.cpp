@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "chicane/base/text.hpp"
 #include "chicane/road/detail/crossing.hpp"
 #include "chicane/road/detail/point_text.hpp"
 #include "chicane/road/smooth_line.hpp"
@@ -131,12 +132,7 @@ Result<Track> Track::create(std::string name, const std::vector<TrackPoint>& poi
   Track track{std::move(name), std::move(*centre)};
   for (double& s : line->parameter) s *= track.length() / line->length;
   track.set_widths(points, line->parameter);
-  for (std::size_t k = 0; k < track.left_.size(); ++k) {
-    if (track.left_[k] > 0.0 && track.right_[k] > 0.0) continue;
-    return fail(invalid("smoothing_sigma", number_text(options.smoothing_sigma),
-                        "less noise than width at s = " +
-                            number_text(std::round(static_cast<double>(k) * track.width_spacing_)) + " m"));
-  }
+  if (std::optional<Error> error = track.check_fit(points)) return fail(std::move(*error));
   track.crossings_ = *crossings;
   track.kerb_width_ = options.kerb_width;
   track.start_s_ = track.centre_.wrap(options.start_s);
@@ -159,6 +155,17 @@ Result<Track> Track::create(std::string name, const std::vector<TrackPoint>& poi
   }
   track.raw_points_ = points;
   return track;
+}
+
+std::optional<Error> Track::check_fit(const std::vector<TrackPoint>& points) const {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double off = centre_.project(points[i].position, raw_places_[i], 5.0).d;
+    const double room = off > 0.0 ? points[i].right : points[i].left;
+    if (std::fabs(off) < room) continue;
+    return invalid(point_name(i), chicane::number_text(std::fabs(off), 3) + " m beside the smooth line",
+                   "less than the " + number_text(room) + " m to the edge of the road");
+  }
+  return std::nullopt;
 }
 
 Track Track::scaled(double factor) const {

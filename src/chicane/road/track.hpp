@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,8 @@ struct TrackOptions {
 class Track {
  public:
   /// Fails with kInvalidArgument and the index of the point, counted from 0, for: fewer than 4 different
-  /// points, non-finite numbers, widths <= 0 or > 1 km, gaps > 10 km, a line that crosses itself at less than
+  /// points, non-finite numbers, widths <= 0 or > 1 km, gaps > 10 km, a point that the smooth line leaves by
+  /// its distance to the edge, a line that crosses itself at less than
   /// 30 degrees or again within four widths of the road; also for options out of range. 100,000 points take
   /// less than a second.
   [[nodiscard]] static Result<Track> create(std::string name, const std::vector<TrackPoint>& points,
@@ -69,6 +71,8 @@ class Track {
  private:
   Track(std::string name, Path centre) : name_{std::move(name)}, centre_{std::move(centre)} {}
   void set_widths(const std::vector<TrackPoint>& points, const std::vector<double>& guesses);
+  /// The first point that the line leaves by more than the road's width on that side.
+  [[nodiscard]] std::optional<Error> check_fit(const std::vector<TrackPoint>& points) const;
   [[nodiscard]] double width_at(const std::vector<double>& table, double s) const noexcept;
 
   std::string name_;

@@ -13,12 +13,12 @@ namespace chicane::protocol {
 struct GeoLine {
   GeoLine(const std::string& file, const TrackReadOptions& options, bool driven = false)
       : rows{file, options, {{"latitude", Column::kLatitude}, {"longitude", Column::kLongitude}}},
-        noise{driven ? 1.0 : 0.5},
+        most_noise{driven ? 1.0 : 0.25},
         is_driven{driven} {}
 
   RoadRows rows;
   double width = 0.0;  ///< [m]; 0: not in the file
-  double noise;        ///< standard deviation of the places [m]
+  double most_noise;   ///< upper limit of the estimated standard deviation of the places [m]
   bool is_driven;      ///< a log of driving, which may have several laps
 };
 
