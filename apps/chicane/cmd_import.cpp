@@ -26,18 +26,22 @@ using protocol::TrackFile;
 using protocol::TrackReadOptions;
 
 constexpr double kModelRoad = 3.0;     // a narrower road is that of a model car [m]
-constexpr double kModelScale = 0.1;    // scale of its assumed noise and spacing
+constexpr double kWideRoad = 30.0;     // a wider road may have another unit [m]
+constexpr double kModelScale = 0.1;    // scale of a model road's assumed noise and spacing
 constexpr double kPointsAcross = 5.0;  // spacing of the points is the width over this
 
 /// A road as it was read, and as it is written.
 struct Imported {
   TrackFile content;
   road::Track track;
-  std::string kind;      ///< "occupancy map"
-  double spacing = 0.0;  ///< distance between the written points [m]
+  std::string kind;         ///< "occupancy map"
+  double spacing = 0.0;     ///< distance between the written points [m]
+  double mean_width = 0.0;  ///< [m]
   road::PointFit fit{};
   double narrowest = 1e9, widest = 0.0;  ///< [m]
   double sharpest = 0.0;                 ///< curvature [1/m]
+
+  [[nodiscard]] bool is_model() const noexcept { return mean_width < kModelRoad; }
 };
 
 TrackReadOptions read_options(const Options::Import& import, double scale) {
@@ -83,18 +87,21 @@ Result<Imported> read_road(const Options::Import& import) {
   if (mean_width(*content) < kModelRoad) {
     content = protocol::parse_track(*text, import.file, read_options(import, kModelScale));
     if (!content) return fail(content.error());
-    content->is_own_size = true;
-    content->warnings.push_back(fmt::format(
-        "{}: size: {:.2g} m wide, taken for the road of a model car in its own size (track_scale=1)",
-        import.file, mean_width(*content)));
   }
-  const double usual = std::clamp(mean_width(*content) / kPointsAcross, 0.05, 2.0);
+  const double width = mean_width(*content);
+  if (width > kWideRoad)
+    content->warnings.push_back(
+        fmt::format("{}: size: {:.0f} m wide on average, expected at most {:g} m: is "
+                    "the file in metres (a map: is its resolution)?",
+                    import.file, width, kWideRoad));
+  const double usual = std::clamp(width / kPointsAcross, 0.05, 2.0);
   Result<road::Track> track = protocol::make_track(*content);
   if (!track) return fail(track.error());
   Imported road{.content = std::move(*content),
                 .track = std::move(*track),
                 .kind = std::string{protocol::road_kind(*text)},
-                .spacing = import.spacing.value_or(usual)};
+                .spacing = import.spacing.value_or(usual),
+                .mean_width = width};
   measure(road);
   return road;
 }
@@ -103,7 +110,6 @@ Result<Imported> read_road(const Options::Import& import) {
 TrackFile resampled(const Imported& road) {
   TrackFile out;
   out.is_closed = road.track.centre().is_closed();
-  out.is_own_size = road.content.is_own_size;
   out.options = road.content.options;
   out.options.smoothing_sigma = 0.0;
   out.options.spacing = road.spacing;
@@ -121,11 +127,10 @@ TrackFile resampled(const Imported& road) {
 }
 
 std::string in_words(const Imported& road) {
-  const bool is_model = road.content.is_own_size && road.widest < kModelRoad;
   return fmt::format(
       "{} road, {:.{}f} m long, {:.2f} to {:.2f} m wide, {}; {} points of the file are {:.3f} m from its "
       "line (rms), {:.3f} m at most",
-      road.track.centre().is_closed() ? "closed" : "open", road.track.length(), is_model ? 2 : 1,
+      road.track.centre().is_closed() ? "closed" : "open", road.track.length(), road.is_model() ? 2 : 1,
       road.narrowest, road.widest,
       road.sharpest > 1e-6 ? fmt::format("tightest radius {:.2f} m", 1.0 / road.sharpest) : "straight",
       road.content.points.size(), road.fit.rms, road.fit.most);
@@ -142,8 +147,6 @@ std::string in_json(const Imported& road) {
   json["points"] = road.content.points.size();
   json["rms_m"] = road.fit.rms;
   json["max_m"] = road.fit.most;
-  json["track_scale"] =
-      road.content.is_own_size ? nlohmann::ordered_json(1) : nlohmann::ordered_json(nullptr);
   json["notices"] = road.content.warnings;
   return json.dump(2) + "\n";
 }
@@ -192,7 +195,7 @@ Result<void> import_and_tell(const Options& options) {
   fmt::print("{}: {}\n", import.file, in_words(*road));
   if (!options.output_file.empty())
     fmt::print("{}: chicane drive --track {}{}\n", options.output_file, options.output_file,
-               road->content.is_own_size && road->widest < kModelRoad ? " --car f1tenth" : "");
+               road->is_model() ? " --car f1tenth" : "");
   return {};
 }
 

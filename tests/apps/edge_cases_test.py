@@ -22,7 +22,7 @@ from edge_sockets import Bicycle, Controller, WebSocket, steering_of, telemetry
 PROGRAM = sys.argv.pop(1)
 HERE = Path(__file__).resolve().parent
 DATA = HERE / "edges"
-MODEL = ["--car", "f1tenth", "--set", "track_scale=1"]
+MODEL = ["--car", "f1tenth"]
 
 
 def environment():
@@ -167,15 +167,12 @@ class Files(unittest.TestCase):
         self.assert_read(self.file("within.csv", "x,y\n% half of it\n" + ring(lambda x, y: f"{x},{y}  # by hand")), "closed track, 377.0 m long")
 
     # 10. Lengths of model scale.
-    def test_a_scaled_road_is_told(self):
-        code, _, err = run("drive", "--fast", "--laps", "1", "--car", "f1tenth", "--track", "28_rect_0.7.csv")
+    def test_a_file_has_the_size_that_it_says(self):
+        self.assert_read("28_rect_0.7.csv", "at least 2.00 m wide", words=MODEL)
+        self.assert_refused("28_rect_0.7.csv", "a road of model size needs a model car: --car f1tenth")
+        code, _, err = run("check", "--car", "f1tenth", "--track", "28_rect_0.7.csv", "--set", "track_scale=0.1")
         self.assertEqual(code, 2)
-        self.assertIn("0.1 of its file's size, the car's scale: track_scale=1", err)
-        code, _, err = run("drive", "--fast", "--laps", "1", "--car", "f1tenth", "--preset", "race", "--track", "28_rect_0.7.csv")
-        self.assertEqual(code, 2)
-        self.assertIn("track_scale=1", err)
-        self.assert_read("01_total_width.csv", "is driven at 0.1 of its size, the scale of the car f1tenth", words=["--car", "f1tenth"])
-        self.assert_refused("28_rect_0.7.csv", "--car f1tenth --set track_scale=1")
+        self.assertIn("track_scale: got 0.1 with the file", err)
 
     def test_noise_is_assumed_in_the_roads_scale(self):
         for name in ("28_rect_0.7.csv", "28_rect_0.7_s.csv"):

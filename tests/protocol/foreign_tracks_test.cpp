@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/road/point_fit.hpp"
@@ -123,10 +125,11 @@ INSTANTIATE_TEST_SUITE_P(
              "noise of 0.05 m estimated from the points (import --smoothing-m sets it)"},
         Kind{"course.osm", kLength, 0.5, 6.0, 0.7, true, {}, "way: 2 of 3 ways taken"},
         Kind{"course.geojson", kLength, 0.5, 6.0, 0.7, true, {}, "metres east and north of 48.2001"},
-        Kind{"course.xodr", kLength, 0.2, 6.0, 0.1, true, {}, "lanes: those of type driving"},
+        // Its arcs of 20 m move inwards by 0.07 m where their ends are eased.
+        Kind{"course.xodr", kLength, 0.5, 6.0, 0.1, true, {}, "lanes: those of type driving"},
         Kind{"course.commonroad.xml", kLength, 0.3, 6.0, 0.1},
         // What is asked for.
-        Kind{"course.xodr", kLength, 0.2, 6.0, 0.1, false, {.direction = Direction::kReversed}, "lanes"},
+        Kind{"course.xodr", kLength, 0.5, 6.0, 0.1, false, {.direction = Direction::kReversed}, "lanes"},
         Kind{"clockwise.csv",
              kLength,
              0.3,
@@ -199,6 +202,71 @@ TEST(ForeignTracks, NamesElementAndLineOfAFault) {
               HasSubstr("f.xml:3: y: got zero, expected a finite number"));
 }
 
+/// An OpenDRIVE file of one road, 4 m to each side, of lines and arcs: x, y, heading, length, curvature.
+std::string open_drive(const std::vector<std::array<double, 5>>& pieces, const std::string& more = "") {
+  std::string plan;
+  for (const auto& [x, y, heading, length, curvature] : pieces)
+    plan += fmt::format("<geometry x='{}' y='{}' hdg='{}' length='{}'><arc curvature='{}'/></geometry>", x, y,
+                        heading, length, curvature);
+  const auto lane = [](const char* side, int id) {
+    return fmt::format("<{}><lane id='{}' type='driving'><width a='4'/></lane></{}>", side, id, side);
+  };
+  return fmt::format(
+      "<OpenDRIVE><road id='7'><planView>{}</planView><lanes><laneSection s='0'>{}{}</laneSection>"
+      "</lanes></road>{}</OpenDRIVE>",
+      plan, lane("left", 1), lane("right", -1), more);
+}
+
+TEST(OpenDrive, KeepsItsLengthAndItsArcs) {
+  const auto straight = make_track(*parse_track(open_drive({{0, 0, 0, 500, 0}}), "f.xodr"));
+  ASSERT_TRUE(straight) << straight.error().message;
+  EXPECT_FALSE(straight->centre().is_closed());
+  EXPECT_NEAR(straight->length(), 500.0, 0.01);
+  const double half = kPi * 40.0;
+  const std::string loop = open_drive(
+      {{0, 0, 0, 100, 0}, {100, 0, 0, half, 0.025}, {100, 80, kPi, 100, 0}, {0, 80, kPi, half, 0.025}});
+  const auto track = make_track(*parse_track(loop, "f.xodr"));
+  ASSERT_TRUE(track) << track.error().message;
+  double sharpest = 0.0;
+  for (double s = 0.0; s < track->length(); s += 0.5)
+    sharpest = std::max(sharpest, track->centre().at(s).curvature);
+  EXPECT_NEAR(1.0 / sharpest, 40.0, 0.6);
+  EXPECT_NEAR(track->length(), 200.0 + 2.0 * half, 0.5);
+  // The outer edge of an arc stays where the file has it.
+  const double s = 100.0 + 0.5 * half;
+  EXPECT_NEAR((track->centre().at(s).position - Vec2{100.0, 40.0}).norm() + track->right_width(s), 44.0,
+              0.01);
+}
+
+TEST(OpenDrive, RefusesJumpsKinksAndJunctions) {
+  const auto message = [](const std::string& text) { return parse_track(text, "f.xodr").error().message; };
+  EXPECT_THAT(
+      message(open_drive({{0, 0, 0, 100, 0}, {100, 1.5, 0, 50, 0.02}})),
+      HasSubstr("geometry: got a jump of 1.50 m at s = 100.0 m of road 7, expected pieces that join"));
+  EXPECT_THAT(message(open_drive({{0, 0, 0, 100, 0}, {100, 0, 0.2, 50, 0.02}})),
+              HasSubstr("geometry: got a kink of 0.20 rad at s = 100.0 m of road 7"));
+  EXPECT_THAT(message(open_drive({{0, 0, 0, 100, 0}}, "<junction id='1'/>")),
+              HasSubstr("junction: got a network of 1 roads, expected one course without junctions"));
+}
+
+TEST(ForeignTracks, NamesFilesThatAreNoRoads) {
+  const auto message = [](std::string_view text) { return parse_track(text, "f").error().message; };
+  EXPECT_THAT(message("<osm><way id='1'><nd ref='1'/><nd ref='2'/></way><relation id='3'>\n"
+                      "<tag k='type' v='lanelet'/></relation></osm>"),
+              HasSubstr("f:1: relation: got a lanelet of a Lanelet2 map, expected ways of a course"));
+  EXPECT_THAT(
+      message("<commonRoad><lanelet id='1'><successor ref='2'/><successor ref='3'/></lanelet></commonRoad>"),
+      HasSubstr("lanelet: got a network with 1 forks, expected one course"));
+  EXPECT_THAT(message("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n"),
+              HasSubstr("f:1: file: got a pointer of git-LFS, expected the file itself (git lfs pull)"));
+  EXPECT_THAT(message(R"({"X": [0], "Y": [0], "X_i": [0], "Y_i": [0]})"),
+              HasSubstr("got a track.json of MPCC"));
+  EXPECT_THAT(message("image: none.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n"),
+              HasSubstr("f: image: got none.pgm, which cannot be read, expected a PGM or PNG file"));
+  EXPECT_THAT(message("image: none.pgm\nresolution: 0.05\norigin: [0, 0, -nan]\n"),
+              HasSubstr("f:3: origin: yaw: got -nan, expected a finite number"));
+}
+
 /// Names, lengths and widths of tests/data/maps/expected.csv.
 struct Map {
   std::string name;
@@ -224,7 +292,6 @@ TEST(OccupancyMaps, BecomeRoadsWithTheDrawnLengthAndWidth) {
     const std::string file = kData + "maps/" + map.name + ".yaml";
     const auto content = parse_track(read_file(file).value(), file, {.scale = 0.1});
     ASSERT_TRUE(content) << content.error().message;
-    EXPECT_TRUE(content->is_own_size);
     const auto track = make_track(*content);
     ASSERT_TRUE(track) << track.error().message;
     EXPECT_TRUE(track->centre().is_closed());

@@ -82,7 +82,6 @@ TEST(Origin, ANoteOfARoadIsNoSetting) {
   const Result<TrackFile> content =
       parse_track("# note: track_scale=2\n# note: x_m, y_m\nx_m,y_m\n0,0\n9,0\n9,9\n0,9\n", "a.csv");
   ASSERT_TRUE(content) << content.error().message;
-  EXPECT_FALSE(content->is_own_size);
   EXPECT_EQ(content->points.size(), 4U);
 }
 

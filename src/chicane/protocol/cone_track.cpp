@@ -53,7 +53,6 @@ Result<TrackFile> track_of_cones(const RoadRows& rows) {
   TrackFile content = RoadRows{file, rows.options}.content;
   content.points = std::move(road->points);
   content.is_closed = road->is_closed;
-  content.is_own_size = true;
   content.options.smoothing_sigma = std::min(0.1, 0.05 * road->median_width);
   content.options.spacing = std::clamp(0.2 * road->median_width, 0.05, 2.0);
   for (std::size_t i = 0; i < road->gaps.size() && i < kMostNamed; ++i) {

@@ -139,11 +139,6 @@ class TableReader {
       if (value != "true" && value != "false") return fault(key, printable(value), "true or false");
       if (!rows_.options.is_closed) rows_.closed = value == "true";
     }
-    if (key == "track_scale") {
-      if (value != "1")
-        return fault(key, printable(value), "1, for a road in the size in which it is driven");
-      rows_.content.is_own_size = true;
-    }
     for (const TrackSetting& setting : kTrackSettings) {
       if (key != setting.key) continue;
       const std::optional<double> parsed = number(value);
@@ -305,7 +300,6 @@ std::string write_csv_track(const TrackFile& content, std::string_view descripti
       std::back_inserter(text),
       "# closed={}, start_s_m={}, start_d_m={}, spacing_m={}, smoothing_sigma_m={}, kerb_width_m={}\n",
       content.is_closed, o.start_s, o.start_d, o.spacing, o.smoothing_sigma, o.kerb_width);
-  if (content.is_own_size) text += "# track_scale=1\n";
   if (o.finish_s != 0.0) fmt::format_to(std::back_inserter(text), "# finish_s_m={}\n", o.finish_s);
   text += "# x_m,y_m,w_tr_right_m,w_tr_left_m\n";
   for (const road::TrackPoint& p : content.points) {

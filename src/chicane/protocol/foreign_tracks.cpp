@@ -50,7 +50,7 @@ bool is_json(std::string_view text) noexcept {
   if (head.empty() || head[0] != '{') return false;
   const std::string_view body = text.substr(0, std::size_t{1} << 20U);
   const auto has = [&](std::string_view word) { return body.find(word) != std::string_view::npos; };
-  return has("\"type\"") || has("wpnts") || has("map_info_str");
+  return has("\"type\"") || has("wpnts") || has("map_info_str") || has("\"X_i\"");
 }
 
 bool is_yaml_cones(std::string_view text) noexcept {

@@ -180,6 +180,10 @@ void join(OsmWay& way, std::vector<OsmWay>& others) {
 
 Result<TrackFile> track_of_osm(const XmlDocument& xml, const TrackReadOptions& options) {
   constexpr std::size_t kMostWays = 2000;
+  for (const pugi::xml_node relation : xml.root().children("relation"))
+    if (relation.find_child_by_attribute("tag", "v", "lanelet"))
+      return fail(fault_of(xml.file, xml.line_of(relation), "relation", "a lanelet of a Lanelet2 map",
+                           "ways of a course, since maps of lanelets are not read"));
   std::map<std::string, pugi::xml_node, std::less<>> nodes;
   for (const pugi::xml_node node : xml.root().children("node"))
     if (node.attribute("action").value() != std::string_view("delete"))

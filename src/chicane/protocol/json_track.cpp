@@ -54,7 +54,6 @@ Result<TrackFile> track_of_way_points(const Json& root, const std::string& file,
     add_rows(list, std::vector<const char*>{"x_m", "y_m", "d_left", "d_right"}, rows);
     Result<TrackFile> content = rows.build();
     if (!content) return content;
-    content->is_own_size = true;
     double width = 0.0;
     for (const road::TrackPoint& point : content->points)
       width += (point.left + point.right) / static_cast<double>(content->points.size());
@@ -63,6 +62,9 @@ Result<TrackFile> track_of_way_points(const Json& root, const std::string& file,
     warn(*content, fmt::format("{}: taken of the file's lines", key));
     return content;
   }
+  if (root.contains("X_i"))
+    return fail(fault_of(file, 0, "X_i", "a track.json of MPCC, with its edges as lists of their own",
+                         "a table of x_m, y_m, w_tr_right_m, w_tr_left_m"));
   return fail(fault_of(file, 0, "centerline_waypoints", "no wpnts",
                        "a list of them there or in global_traj_wpnts_iqp"));
 }

@@ -198,28 +198,30 @@ void note_idle(const Document& asked, scenario::Scenario& scenario) {
   }
 }
 
-/// What was assumed of the road: by its reader, where it is no shipped one; and of its size. A file that says
-/// so is driven in its own size.
-void note_track(bool is_asked_for, scenario::Scenario& scenario) {
+/// What the reader of a road's file assumed. The road has the size that its file says: only shipped tracks
+/// follow the scale of the car.
+Result<void> note_track(bool is_asked_for, scenario::Scenario& scenario) {
   const double scale = scenario.vehicle.scale;
-  const bool is_file = is_path(scenario.track);
-  if (is_file || scale != 1.0) {
-    const Result<std::string> file = locate(Shelf::kTrack, scenario.track);
-    const Result<std::string> text = file ? read_file(*file) : fail(file.error());
-    const auto content = text ? parse_track(*text, *file, {.scale = scenario.scale_of_file()})
-                              : Result<TrackFile>{fail(text.error())};
-    if (content) {  // what is wrong with it the run itself will tell
-      if (content->is_own_size && scenario.track_scale == 0.0) scenario.track_scale = 1.0;
-      if (is_file)
-        scenario.notices.insert(scenario.notices.end(), content->warnings.begin(), content->warnings.end());
-    }
+  if (!is_path(scenario.track)) {
+    if (is_asked_for && scale != 1.0 && scenario.track_scale == 0.0)
+      scenario.notices.push_back(
+          fmt::format("track_scale: got none, so {} is driven at {:g} of its size, the scale of the car {}",
+                      scenario.track, scale, scenario.car));
+    return {};
   }
-  if (is_asked_for && scale != 1.0 && scenario.track_scale == 0.0)
-    scenario.notices.push_back(
-        fmt::format("track_scale: got none, so {} is driven at {:g} of its size, the scale of the car {}; "
-                    "track_scale=1 is for a "
-                    "road in the car's own size",
-                    scenario.track, scale, scenario.car));
+  if (scenario.track_scale != 0.0 && scenario.track_scale != 1.0)
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("track_scale: got {:g} with the file {}, expected none: a file's road has the "
+                            "size that its file says",
+                            scenario.track_scale, scenario.track));
+  if (scale != 1.0) scenario.track_scale = 1.0;
+  const Result<std::string> file = locate(Shelf::kTrack, scenario.track);
+  const Result<std::string> text = file ? read_file(*file) : fail(file.error());
+  const auto content = text ? parse_track(*text, *file, {.scale = scenario.scale_of_file()})
+                            : Result<TrackFile>{fail(text.error())};
+  if (content)  // the run itself reports its faults
+    scenario.notices.insert(scenario.notices.end(), content->warnings.begin(), content->warnings.end());
+  return {};
 }
 
 /// A race with less friction than the model has, because no more is known of the car.
@@ -425,7 +427,8 @@ Result<scenario::Scenario> compose(const Request& request, RememberedFiles& file
   if (!faults.empty()) return faults.failure();
   for (auto layer = layers.end() - static_cast<std::ptrdiff_t>(asked); layer != layers.end(); ++layer)
     note_idle(*layer, scenario);
-  note_track(is_set(layers, "track"), scenario);
+  if (const Result<void> noted = note_track(is_set(layers, "track"), scenario); !noted)
+    return fail(noted.error());
   note_friction(scenario);
   return scenario;
 }

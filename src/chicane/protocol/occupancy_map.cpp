@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -50,8 +51,10 @@ Result<OccupancyMap> parse_map(std::string_view text, const std::string& file) {
   std::string image_file, mode;
   std::vector<double> origin;
   const auto take_origin = [&](const YamlNode& node) {
+    constexpr std::array kNames{"origin: x", "origin: y", "origin: yaw"};
     const auto number = number_in(node.text);
-    if (!number) return reader.refuse(node, "origin", "[x, y, yaw]");
+    if (!number)
+      return reader.refuse(node, kNames[std::min<std::size_t>(origin.size(), 2)], "a finite number");
     origin.push_back(*number);
   };
   const auto take_negate = [&](const YamlEntry& entry) {
@@ -78,7 +81,9 @@ Result<OccupancyMap> parse_map(std::string_view text, const std::string& file) {
   map.yaw = origin.size() > 2 ? origin[2] : 0.0;
   const std::string path = (std::filesystem::path(file).parent_path() / image_file).string();
   const Result<std::string> bytes = read_file(path);
-  if (!bytes) return fail(bytes.error());
+  if (!bytes)
+    return fail(fault_of(file, 0, "image", fmt::format("{}, which cannot be read", printable(image_file)),
+                         "a PGM or PNG file beside the map"));
   Result<survey::GreyImage> image = survey::read_image(*bytes, path);
   if (!image) return fail(image.error());
   map.image = std::move(*image);
@@ -123,7 +128,6 @@ Result<TrackFile> parse_map_track(std::string_view text, const std::string& file
   TrackFile content = RoadRows{file, options}.content;
   content.points = std::move(loop->points);
   content.is_closed = true;
-  content.is_own_size = true;
   // Walls are where cells end: a line between them scatters by less than a cell.
   content.options.smoothing_sigma = std::min(map->resolution, 0.1);
   content.options.spacing = std::clamp(0.1 * loop->median_width, 0.05, 2.0);

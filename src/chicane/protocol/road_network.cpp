@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/csv_text.hpp"
@@ -25,6 +26,11 @@ using pugi::xml_node;
 
 constexpr double kMostLength = 100e3;  // [m]
 constexpr double kLeastWidth = 0.5;    // of a cross-section [m]
+constexpr double kStep = 0.5;          // between places of a reference line [m]
+constexpr double kSpacing = 2.0;       // between points of the road [m]
+constexpr double kReach = 4.0;         // of the moving average [m]
+constexpr double kMostJump = 0.1;      // between the pieces of a reference line [m]
+constexpr double kMostKink = 0.05;     // [rad]
 
 // OpenDRIVE: a reference line of lines, arcs, spirals and polynomials, with lanes beside it.
 
@@ -181,6 +187,18 @@ std::optional<std::pair<double, double>> driven_at(const std::vector<LaneSection
                                                                    : std::nullopt;
 }
 
+/// Whether a piece begins where and as the one before ends.
+void check_joint(const std::pair<Vec2, double>& end, const std::pair<Vec2, double>& begin, double s,
+                 const std::string& road, int line, RoadRows& rows) {
+  const double jump = (begin.first - end.first).norm();
+  const double kink = std::fabs(angle_difference(begin.second, end.second));
+  if (jump <= kMostJump && kink <= kMostKink) return;
+  rows.fault(line, "geometry",
+             jump > kMostJump ? fmt::format("a jump of {:.2f} m at s = {:.1f} m of road {}", jump, s, road)
+                              : fmt::format("a kink of {:.2f} rad at s = {:.1f} m of road {}", kink, s, road),
+             fmt::format("pieces that join within {} m and {} rad", kMostJump, kMostKink));
+}
+
 /// Points in the middle of a road's lanes, in its direction or against it.
 void lay_out(const XmlDocument& xml, xml_node road, bool is_forward, RoadRows& rows) {
   const xml_node plan = road.child("planView"), lanes = road.child("lanes");
@@ -191,6 +209,7 @@ void lay_out(const XmlDocument& xml, xml_node road, bool is_forward, RoadRows& r
   const std::vector<LaneSection> sections = sections_of(lanes);
   std::vector<road::TrackPoint> points;
   double passed = 0.0;
+  std::optional<std::pair<Vec2, double>> end;
   for (const xml_node node : plan.children("geometry")) {
     const Geometry geometry(node);
     if (!geometry.is_sound())
@@ -199,9 +218,12 @@ void lay_out(const XmlDocument& xml, xml_node road, bool is_forward, RoadRows& r
     if (geometry.length() < 1e-6) continue;
     if (passed > kMostLength)
       return rows.fault(xml.line_of(node), "geometry", "more than 100 km", "a course");
-    const int count = std::max(1, static_cast<int>(std::ceil(geometry.length() / 2.0)));
+    const int count = std::max(1, static_cast<int>(std::ceil(geometry.length() / kStep)));
     const std::vector<std::pair<Vec2, double>> samples = geometry.sampled(count);
-    for (int i = 0; i < count; ++i) {
+    if (end)
+      check_joint(*end, samples.front(), passed, road.attribute("id").value(), xml.line_of(node), rows);
+    if (rows.error) return;
+    for (int i = end ? 1 : 0; i <= count; ++i) {
       const auto& [place, heading] = samples[static_cast<std::size_t>(i)];
       const double s = passed + geometry.length() * i / count;
       const auto driven = driven_at(sections, offsets, s);
@@ -214,9 +236,53 @@ void lay_out(const XmlDocument& xml, xml_node road, bool is_forward, RoadRows& r
           {place + middle * Vec2{-sin(heading), cos(heading)}, 0.5 * (high - low), 0.5 * (high - low)});
     }
     passed += geometry.length();
+    end = samples.back();
   }
   if (!is_forward) std::reverse(points.begin(), points.end());
-  for (const road::TrackPoint& point : points) rows.add(point);
+  for (const road::TrackPoint& point : points) {
+    const std::vector<road::TrackPoint>& known = rows.content.points;
+    if (known.empty() || (known.back().position - point.position).norm() >= kClosingCopy) rows.add(point);
+  }
+}
+
+/// Every kSpacing the mean place within kReach, weighted by a triangle: where an arc meets a straight the
+/// curvature rises along twice the reach, and an arc of radius R moves inwards by kReach² / 12 R. Edges stay.
+std::vector<road::TrackPoint> eased(const std::vector<road::TrackPoint>& points, bool closed) {
+  const auto n = static_cast<std::ptrdiff_t>(points.size());
+  const auto at = [&](std::ptrdiff_t i) -> const Vec2& {
+    return points[static_cast<std::size_t>((i + n) % n)].position;
+  };
+  std::vector<double> s{0.0};
+  for (std::ptrdiff_t i = 1; i <= n; ++i) s.push_back(s.back() + (at(i) - at(i - 1)).norm());
+  const double length = closed ? s.back() : s[points.size() - 1];
+  const auto place = [&](std::ptrdiff_t i) {
+    const std::ptrdiff_t lap = i < 0 ? -1 : i / n;
+    return s[static_cast<std::size_t>(i - lap * n)] + static_cast<double>(lap) * length;
+  };
+  std::vector<road::TrackPoint> result;
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    const double here = place(i);
+    const bool is_last = !closed && i + 1 == n;
+    if (here < kSpacing * static_cast<double>(result.size()) - 0.5 * kStep && !is_last) continue;
+    const double reach = std::min(kReach, closed ? 0.25 * length : std::min(here, length - here));
+    road::TrackPoint point = points[static_cast<std::size_t>(i)];
+    Vec2 sum = reach * at(i);
+    double weights = reach;
+    for (const std::ptrdiff_t way : {-1, 1}) {
+      for (std::ptrdiff_t j = i + way; std::fabs(place(j) - here) < reach; j += way) {
+        const double weight = reach - std::fabs(place(j) - here);
+        sum += weight * at(j);
+        weights += weight;
+      }
+    }
+    if (weights > 0.0) {
+      const Vec2 moved = sum / weights - point.position, chord = at(i + 1) - at(i - 1);
+      const double offset = (chord.x() * moved.y() - chord.y() * moved.x()) / std::max(chord.norm(), 1e-12);
+      point = {point.position + moved, point.left - offset, point.right + offset};
+    }
+    result.push_back(point);
+  }
+  return result;
 }
 
 }  // namespace
@@ -224,25 +290,24 @@ void lay_out(const XmlDocument& xml, xml_node road, bool is_forward, RoadRows& r
 Result<TrackFile> track_of_opendrive(const XmlDocument& xml, const TrackReadOptions& options) {
   std::map<std::string, xml_node> roads;
   std::string at;
-  std::size_t count = 0;
   for (const xml_node node : xml.root().children("road")) {
-    ++count;
     const std::string id = node.attribute("id").value();
     roads.emplace(id, node);
-    const std::string_view junction = node.attribute("junction").value();
-    if (at.empty() && (junction.empty() || junction == "-1")) at = id;
+    if (at.empty()) at = id;
   }
-  if (at.empty()) return fail(fault_of(xml.file, 0, "road", "none outside of junctions", "one"));
+  if (const xml_node junction = xml.root().child("junction"))
+    return fail(fault_of(xml.file, xml.line_of(junction), "junction",
+                         fmt::format("a network of {} roads", roads.size()), "one course without junctions"));
+  if (at.empty()) return fail(fault_of(xml.file, 0, "road", "none", "one"));
   RoadRows rows{xml.file, options};
   const std::string first = at;
   std::set<std::string> driven;
-  bool is_forward = true, is_closed = false, ends_at_junction = false;
+  bool is_forward = true, is_closed = false;
   while (!at.empty() && roads.contains(at) && !rows.error && driven.insert(at).second) {
     lay_out(xml, roads.at(at), is_forward, rows);
     const xml_node next = roads.at(at).child("link").child(is_forward ? "successor" : "predecessor");
     const bool is_road = next.attribute("elementType").value() == std::string_view("road");
     const std::string_view contact = next.attribute("contactPoint").value();
-    ends_at_junction = is_forward && next && !is_road;
     at = is_road ? next.attribute("elementId").value() : "";
     is_forward = is_forward ? contact != "end" : contact == "start";
     is_closed = at == first && is_forward;
@@ -253,11 +318,11 @@ Result<TrackFile> track_of_opendrive(const XmlDocument& xml, const TrackReadOpti
   if (!content) return content;
   warn(*content,
        "lanes: those of type driving, of both directions, taken as one road; heights and banking left out");
-  if (driven.size() < count)
+  if (driven.size() < roads.size())
     warn(*content, fmt::format("road: {} of {} roads taken, from {} along its successors", driven.size(),
-                               count, printable(first)));
-  if (ends_at_junction) warn(*content, "road: ends at a junction, which is not followed");
-  content->options.smoothing_sigma = 0.02 * options.scale;
+                               roads.size(), printable(first)));
+  content->points = eased(content->points, content->is_closed);
+  content->options.smoothing_sigma = 0.002 * options.scale;
   return content;
 }
 
@@ -309,12 +374,17 @@ std::string reference(xml_node lanelet, const char* to) { return lanelet.child(t
 Result<TrackFile> track_of_commonroad(const XmlDocument& xml, const TrackReadOptions& options) {
   std::map<std::string, xml_node> lanelets;
   std::string first;
+  std::size_t forks = 0;
   for (const xml_node node : xml.root().children("lanelet")) {
     const std::string id = node.attribute("id").value();
     lanelets.emplace(id, node);
     if (first.empty()) first = id;
+    forks += node.child("successor").next_sibling("successor") ? 1U : 0U;
   }
   if (first.empty()) return fail(fault_of(xml.file, 0, "lanelet", "none", "at least one"));
+  if (forks > 0)
+    return fail(fault_of(xml.file, 0, "lanelet", fmt::format("a network with {} forks", forks),
+                         "one course: lanelets of at most one successor"));
   // Back to where the chain begins; round a loop to where it was entered.
   std::set<std::string> seen;
   std::string begin = first;
@@ -326,12 +396,10 @@ Result<TrackFile> track_of_commonroad(const XmlDocument& xml, const TrackReadOpt
   first = begin;
   RoadRows rows{xml.file, options};
   std::set<std::string> driven;
-  std::size_t forks = 0;
   std::string at = first;
   while (lanelets.contains(at) && !rows.error && driven.insert(at).second) {
     const xml_node lanelet = lanelets.at(at);
     lay_out(xml, lanelet, rows);
-    forks += lanelet.child("successor").next_sibling("successor") ? 1U : 0U;
     at = reference(lanelet, "successor");
   }
   rows.expect_points(4);
@@ -342,7 +410,6 @@ Result<TrackFile> track_of_commonroad(const XmlDocument& xml, const TrackReadOpt
     warn(*content,
          fmt::format("lanelet: {} of {} taken, from {} along successors; lanes beside them are no road",
                      driven.size(), lanelets.size(), printable(first)));
-  if (forks > 0) warn(*content, fmt::format("lanelet: the first successor taken at {} forks", forks));
   content->options.smoothing_sigma = 0.05 * options.scale;
   return content;
 }

@@ -26,7 +26,7 @@ auto run_options() {
       option<&S::track>("track", "Shipped track by name, or a file."),
       option<&S::track_scale>(
           "track_scale", unit::kNone, 0, 10,
-          "Size of the track over that of its file; 0 is the car's scale: 1 but for model cars."),
+          "Size of a shipped track over that of its file; 0 is the car's scale. Files keep their size."),
       option<&S::car>("car", "Shipped car by name, or a file."),
       option<&S::plant>("plant", sim::plant_names(), "Simulated car; normally set by the car file."),
       option<&S::controller>("controller", controller::Registry::kNames,

@@ -74,6 +74,8 @@ Result<TrackFile> parse_track(std::string_view text, const std::string& file,
   }
   if (text.size() > kMaxTrackBytes)
     return fail(fault_of(file, 0, "file", fmt::format("{} bytes", text.size()), "at most 64 MiB"));
+  if (text.starts_with("version https://git-lfs.github.com/"))
+    return fail(fault_of(file, 1, "file", "a pointer of git-LFS", "the file itself (git lfs pull)"));
   const TrackFormat* format = foreign_format_of(text);
   if (format == nullptr) format = track_format_of(file);
   Result<TrackFile> content = (format != nullptr ? *format : kFormats.front()).parse(text, file, options);

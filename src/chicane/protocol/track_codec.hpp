@@ -19,8 +19,8 @@ struct TrackReadOptions {
   double default_right = 4.5;  ///< [m]; the same
   std::optional<bool> is_closed =
       std::nullopt;  ///< forces it; else the file says it, or the gap from last to first point does
-  /// Of the file's metres: 0.1 where the file has the road of a tenth of the size. What is assumed (widths,
-  /// noise and spacing of the points) is that of a full-size road times this; (0, 1000].
+  /// Size of what is assumed (widths, noise and spacing of the points) over that for a full-size road; the
+  /// file's own lengths stay; (0, 1000].
   double scale = 1.0;
 
   // What `chicane import` asks for.
@@ -39,10 +39,8 @@ struct TrackFile {
   std::vector<road::TrackPoint> points;  ///< a closing copy of the first point is taken away
   std::vector<int> lines;                ///< of each point in the file, from 1
   bool is_closed = true;
-  road::TrackOptions options;  ///< what the file says of them, else the defaults
-  double scale = 1.0;          ///< as TrackReadOptions has it
-  /// The road is in the size in which it is driven, as maps that a model car made are: track_scale=1.
-  bool is_own_size = false;
+  road::TrackOptions options;         ///< what the file says of them, else the defaults
+  double scale = 1.0;                 ///< as TrackReadOptions has it
   std::vector<std::string> warnings;  ///< "file:line: column: what was assumed or ignored"
 };
 

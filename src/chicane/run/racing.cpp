@@ -71,17 +71,11 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const road::Track& track
   return std::make_shared<const road::RacingRoad>(road::line_points(track, *lap), track, planned);
 }
 
-/// What may be wrong with the road's size: a file in model size taken for one in full size, or the other way
-/// round.
+/// A road of model size under a car of full size.
 std::string size_remedy(const scenario::Scenario& scenario, const road::Track& track) {
-  const double scale = scenario.vehicle.scale;
-  if (scale != 1.0 && scenario.track_scale == 0.0)
-    return "; the road is driven at " + number_text(scale) +
-           " of its file's size, the car's scale: track_scale=1 takes it as it is";
-  const bool may_be_model = scale == 1.0 && track.left_width(0.0) + track.right_width(0.0) < kModelRoad;
-  return may_be_model
-             ? "; a road of model size needs a model car and its own size: --car f1tenth --set track_scale=1"
-             : "";
+  const bool may_be_model =
+      scenario.vehicle.scale == 1.0 && track.left_width(0.0) + track.right_width(0.0) < kModelRoad;
+  return may_be_model ? "; a road of model size needs a model car: --car f1tenth" : "";
 }
 
 /// As the controller of a model car sees the road.

@@ -22,10 +22,10 @@ namespace chicane::scenario {
 /// protocol/schema.hpp lists.
 struct Scenario {
   std::string preset = "default";
-  std::string track = "lakeside";           ///< name of a shipped track, or a file
-  double track_scale = 0.0;                 ///< the track's size over that of its file; 0: the car's scale
-  std::string car = "udacity";              ///< name of a shipped car, or a file
-  std::string plant = "udacity";            ///< one of sim::plants(); set by the car
+  std::string track = "lakeside";  ///< name of a shipped track, or a file
+  double track_scale = 0.0;        ///< of a shipped track: its size over the file's; 0: the car's scale
+  std::string car = "udacity";     ///< name of a shipped car, or a file
+  std::string plant = "udacity";   ///< one of sim::plants(); set by the car
   std::string controller = "tracking-mpc";  ///< one of controller::Registry
 
   int laps = 3;  ///< the first is from standstill; 0 = until stopped

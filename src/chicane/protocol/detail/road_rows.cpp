@@ -16,8 +16,7 @@
 namespace chicane::protocol {
 namespace {
 
-constexpr double kClosingCopy = 1e-3;  // a last point this near to the first repeats it [m]
-constexpr double kLoopGap = 1.5;       // a loop's last gap is at most this times the longest other one
+constexpr double kLoopGap = 1.5;  // a loop's last gap is at most this times the longest other one
 
 struct Range {
   double least, most;
