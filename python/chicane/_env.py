@@ -11,7 +11,7 @@ from ._types import npt
 from . import _chicane
 from ._request import Settings, make_request
 from ._track import AnyTrack
-from ._spaces import BaseEnv, BaseVecEnv, Box, batch_space, box
+from ._spaces import AUTORESET, BaseEnv, BaseVecEnv, Box, batch_space, box
 
 Array = npt.NDArray[np.float64]
 Info = dict[str, Any]
@@ -48,7 +48,8 @@ class Env(BaseEnv):
         observation, info = env.reset()
         observation, reward, terminated, truncated, info = env.step([steer, throttle])
 
-    It is a gymnasium.Env where gymnasium can be imported, and has the same methods where not.
+    It is a gymnasium.Env where gymnasium can be imported, made by gymnasium.make("chicane/Race-v0") too, and has the same
+    methods where not. It cannot be pickled or copied: a run has no copy; make another one with the same arguments and seed.
 
     action: array of shape (2,): steer [rad], left positive, and throttle in [-1, 1], negative brakes. It answers the
         observation before it, acts `latency_ms` later, and is limited to what the car can do.
@@ -70,25 +71,29 @@ class Env(BaseEnv):
     faults: in every episode, as in drive(). random_faults: one of these in each episode.
     randomise: settings that are drawn evenly for each episode: {"plant_options.friction_scale": (0.7, 1.0)}.
     starts_anywhere: on the centre line, standing; else at the track's start.
-    settings: any others; the guard is off unless settings["guard.mode"] says otherwise."""
+    settings: any others; the guard is off unless settings["guard.mode"] says otherwise.
+    render_mode: "rgb_array" for pictures by render(), or None."""
 
-    metadata: dict[str, Any] = {"render_modes": []}
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 20}
 
     def __init__(self, track: AnyTrack | None = None, car: str | None = None, rate_hz: float = 20.0, noise: bool | Settings = False,
                  seed: int = 1, *, observation: str = "track", reward: Reward | None = None, faults: Iterable[str] = (),
                  random_faults: Iterable[str] = (), randomise: Mapping[str, tuple[float, float]] = {},
                  starts_anywhere: bool = False, ends_off_road: bool = True, off_road_cost: float = 10.0, episode_s: float = 0.0,
-                 settings: Settings = {}) -> None:
+                 settings: Settings = {}, render_mode: str | None = None) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode: got {render_mode!r}, expected None or \"rgb_array\"")
         options = _options(observation, randomise, random_faults, starts_anywhere, ends_off_road, off_road_cost, episode_s)
         self._core = _chicane.Environment(_request(track, car, rate_hz, noise, seed, faults, settings), options)
         self._reward = reward
         self._next_seed = seed
-        self.render_mode = None
+        self.render_mode = render_mode
         self.action_space: Box = _action_space(self._core)
         self.observation_space: Box = _observation_space(self._core)
 
     def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None) -> tuple[Array, Info]:
         """Begins an episode. `seed`: of everything random in it; None: the one after the last. `options` are not used."""
+        super().reset(seed=seed)
         if seed is not None:
             self._next_seed = seed
         self._core.reset(self._next_seed)
@@ -118,8 +123,14 @@ class Env(BaseEnv):
         """Of every state and command of the episode: that of a run (run["state_hash"]) with the same commands."""
         return f"{self._core.state_hash:016x}"
 
-    def render(self) -> None:
-        """Draws nothing: a recording of the trained controller (drive(record=...), view()) shows more."""
+    def render(self) -> npt.NDArray[np.uint8] | None:
+        """The road from above and the car, shape (400, 400, 3), with render_mode="rgb_array"; else None.
+
+        A recording of the trained controller (drive(record=...), view()) shows more."""
+        return _picture(self._core.edges(), *self._core.pose()) if self.render_mode else None
+
+    def __reduce__(self) -> Any:
+        raise TypeError("Env: got a copy or pickle of a run, expected another Env with the same arguments and seed")
 
     def close(self) -> None:
         """Nothing to give back."""
@@ -137,10 +148,10 @@ class VecEnv(BaseVecEnv):
 
     Arguments are those of Env, and `count`, `threads` (0: as many as processors). Shapes have `count` in front. The bits
     do not depend on `threads`: environment i begins with seed + i, and each episode that ends is followed at once by one
-    with the next seed. Then infos["final_observation"] has the last observations of all environments, and
-    infos["_final_observation"] says of which the episode has ended (gymnasium's autoreset in the same step)."""
+    with the next seed. Then infos["final_obs"] has the last observations of all environments, and infos["_final_obs"] says
+    of which the episode has ended (gymnasium's AutoresetMode.SAME_STEP)."""
 
-    metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": "SameStep"}
+    metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AUTORESET}
 
     def __init__(self, count: int, track: AnyTrack | None = None, car: str | None = None, rate_hz: float = 20.0,
                  noise: bool | Settings = False, seed: int = 1, *, threads: int = 0, observation: str = "track",
@@ -160,6 +171,7 @@ class VecEnv(BaseVecEnv):
 
     def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None) -> tuple[Array, Info]:
         """Begins an episode in each. `seed`: of the first; None: the one of the constructor. `options` are not used."""
+        super().reset(seed=seed)
         if seed is not None:
             self._seed = seed
         return self._core.reset(self._seed), {}
@@ -168,7 +180,7 @@ class VecEnv(BaseVecEnv):
         """One control period in each; `actions` of shape (count, 2)."""
         observations, rewards, terminated, truncated, last = self._core.step(actions)
         ended = terminated | truncated
-        infos: Info = {"final_observation": last, "_final_observation": ended} if ended.any() else {}
+        infos: Info = {"final_obs": last, "_final_obs": ended} if ended.any() else {}
         return observations, rewards, terminated, truncated, infos
 
     def info(self, index: int) -> Info:
@@ -183,6 +195,23 @@ class VecEnv(BaseVecEnv):
 
     def __repr__(self) -> str:
         return f"<VecEnv: {self.num_envs} environments, observation {self.single_observation_space.shape}>"
+
+
+def _picture(edges: Array, x: float, y: float, yaw: float) -> npt.NDArray[np.uint8]:
+    """Edges of the road, (n, 2) and dense, in black on white; the car in red, at least nine pixels long."""
+    low, high = edges.min(axis=0), edges.max(axis=0)
+    scale = 380.0 / (high - low).max()
+    picture = np.full((400, 400, 3), 255, np.uint8)
+
+    def paint(places: Array, colour: tuple[int, int, int]) -> None:
+        pixels = np.rint((places - 0.5 * (low + high)) * scale).astype(int) + 200
+        column, row = np.clip(pixels, 0, 399).T
+        picture[399 - row, column] = colour
+    paint(edges, (0, 0, 0))
+    along, across = np.meshgrid(np.linspace(-4.5, 4.5, 19) / scale, np.linspace(-2.0, 2.0, 9) / scale)
+    turn = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
+    paint(np.array([x, y]) + np.stack([along.ravel(), across.ravel()], axis=1) @ turn, (200, 0, 0))
+    return picture
 
 
 def _action_space(core: _chicane.Environment) -> Box:

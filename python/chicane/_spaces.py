@@ -48,6 +48,9 @@ class PlainEnv:
         """The environment itself."""
         return self
 
+    def reset(self, *, seed: int | None = None, options: Any = None) -> Any:
+        """Keeps no generator: everything random is C++'s."""
+
     def __enter__(self) -> Any:
         return self
 
@@ -55,6 +58,7 @@ class PlainEnv:
         self.close()  # type: ignore[attr-defined]
 
 
+AUTORESET: Any = "SameStep"
 if TYPE_CHECKING:
     Box = PlainBox
     BaseEnv = PlainEnv
@@ -62,10 +66,15 @@ if TYPE_CHECKING:
 else:
     try:
         from gymnasium import Env as BaseEnv
+        from gymnasium import register
         from gymnasium.spaces import Box
+        from gymnasium.vector import AutoresetMode
         from gymnasium.vector import VectorEnv as BaseVecEnv
     except ImportError:
         Box, BaseEnv, BaseVecEnv = PlainBox, PlainEnv, PlainEnv
+    else:
+        AUTORESET = AutoresetMode.SAME_STEP
+        register(id="chicane/Race-v0", entry_point="chicane:Env")
 
 
 def box(low: Array, high: Array) -> Box:

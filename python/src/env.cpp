@@ -89,6 +89,25 @@ py::dict info_of(const Environment& environment) {
   return info;
 }
 
+/// Places of both edges of the road, (n, 2), nearer than a 400th of its length.
+Numbers edges_of(const Environment& environment) {
+  constexpr int kPlaces = 2000;  // on each side
+  const road::Track& track = environment.loop().track();
+  Numbers edges({py::ssize_t{2 * kPlaces}, py::ssize_t{2}});
+  double* to = edges.mutable_data();
+  for (int i = 0; i < kPlaces; ++i) {
+    const double s = track.length() * i / kPlaces;
+    const auto at = track.centre().at(s);
+    const Vec2 left{-std::sin(at.heading), std::cos(at.heading)};
+    for (const double d : {track.left_width(s), -track.right_width(s)}) {
+      const Vec2 place = at.position + d * left;
+      *to++ = place.x();
+      *to++ = place.y();
+    }
+  }
+  return edges;
+}
+
 py::tuple step(Environment& environment, const Numbers& action) {
   if (action.ndim() != 1 || action.shape(0) != 2)
     throw py::value_error(
@@ -209,6 +228,12 @@ void add_environment(py::module_& module) {
       .def("repeat", repeat, py::arg("actions"))
       .def("observe", observation_of)
       .def("info", info_of)
+      .def("edges", edges_of)
+      .def("pose",
+           [](const Environment& self) {
+             const model::State& car = self.loop().car();
+             return py::make_tuple(car.x, car.y, car.psi);
+           })
       .def("set", [](Environment& self, const std::string& key,
                      const std::string& text) { check(self.set(key, text)); })
       .def_property_readonly("size", &Environment::size)

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The environment: the loop of drive(), step by step."""
+import copy
+import importlib.util
 import os
+import pickle
 import subprocess
 import sys
 import unittest
@@ -15,18 +18,43 @@ FAKE_GYMNASIUM = """
 import sys, types
 for name in ("gymnasium", "gymnasium.spaces", "gymnasium.vector"):
     sys.modules[name] = types.ModuleType(name)
-class Base: pass
+class Base:
+    def reset(self, seed=None): self.seeded = seed
 class Box:
     def __init__(self, low, high, dtype): self.low, self.high, self.shape, self.dtype = low, high, low.shape, dtype
 sys.modules["gymnasium"].Env = type("Env", (Base,), {})
 sys.modules["gymnasium.vector"].VectorEnv = type("VectorEnv", (Base,), {})
 sys.modules["gymnasium.spaces"].Box = Box
+sys.modules["gymnasium.vector"].AutoresetMode = types.SimpleNamespace(SAME_STEP="same")
+ids = []
+sys.modules["gymnasium"].register = lambda id, entry_point: ids.append((id, entry_point))
 import chicane as ch
 env = ch.Env("oval")
 assert isinstance(env, sys.modules["gymnasium"].Env) and isinstance(env.action_space, Box), ch.Env.__mro__
 assert issubclass(ch.VecEnv, sys.modules["gymnasium.vector"].VectorEnv)
+assert ids == [("chicane/Race-v0", "chicane:Env")], ids
 env.reset(seed=3)
+assert env.seeded == 3
 env.step([0.0, 1.0])
+"""
+
+# Where gymnasium is looked for: what the interpreter imports, or a folder with its source (its package `gymnasium`).
+GYMNASIUM = os.environ.get("CHICANE_GYMNASIUM", "")
+CHECKED = """
+import sys
+sys.path.insert(0, sys.argv[1]) if sys.argv[1] else None
+import gymnasium, numpy as np, chicane as ch
+from gymnasium.utils.env_checker import check_env
+from gymnasium.wrappers.vector import RecordEpisodeStatistics
+check_env(ch.Env("oval"), skip_render_check=True)
+env = gymnasium.make("chicane/Race-v0", track="oval", render_mode="rgb_array")
+check_env(env.unwrapped)
+env.reset(seed=1)
+assert env.render().shape == (400, 400, 3)
+envs = RecordEpisodeStatistics(ch.VecEnv(3, "oval", episode_s=0.5))
+envs.reset(seed=1)
+for _ in range(12): infos = envs.step(np.zeros((3, 2)))[4] or infos if _ else {}
+assert infos["_episode"].all() and infos["final_obs"].shape == (3, 15), infos
 """
 
 
@@ -120,6 +148,27 @@ class Environment(unittest.TestCase):
     def test_is_gymnasiums_where_that_is_there(self):
         subprocess.run([sys.executable, "-c", FAKE_GYMNASIUM], check=True)
 
+    def test_is_valid_by_gymnasiums_own_checkers(self):
+        if not GYMNASIUM and importlib.util.find_spec("gymnasium") is None:
+            self.skipTest("gymnasium cannot be imported, and $CHICANE_GYMNASIUM names no folder with its source")
+        subprocess.run([sys.executable, "-W", "ignore", "-c", CHECKED, GYMNASIUM], check=True)
+
+    def test_draws_road_and_car(self):
+        env = ch.Env("oval", render_mode="rgb_array")
+        env.reset()
+        picture = env.render()
+        self.assertEqual((picture.shape, picture.dtype), ((400, 400, 3), np.uint8))
+        self.assertGreater((picture == 0).all(axis=2).sum(), 1000)
+        self.assertGreater((picture == [200, 0, 0]).all(axis=2).sum(), 30)
+        self.assertIsNone(ch.Env("oval").render())
+        with self.assertRaisesRegex(ValueError, "render_mode: got 'human', expected None or"):
+            ch.Env("oval", render_mode="human")
+
+    def test_refuses_copies(self):
+        for take in (copy.deepcopy, pickle.dumps):
+            with self.assertRaisesRegex(TypeError, "expected another Env with the same arguments and seed"):
+                take(ch.Env("oval"))
+
 
 class Many(unittest.TestCase):
     def test_bits_do_not_depend_on_threads(self):
@@ -131,7 +180,7 @@ class Many(unittest.TestCase):
                 actions = np.stack([np.full(7, 0.1), np.linspace(0.2, 1.0, 7)], axis=1)
                 observations, rewards, terminated, truncated, infos = envs.step(actions)
                 ends += int((terminated | truncated).sum())
-                told += [observations, rewards, infos.get("final_observation", rewards)]
+                told += [observations, rewards, infos.get("final_obs", rewards)]
             return ends, b"".join(array.tobytes() for array in told)
 
         ends, told = episodes(1)
