@@ -148,6 +148,19 @@ TEST(HardConstraints, SayWhatCannotHoldAndWhere) {
   EXPECT_EQ(report.status, SolveStatus::kInfeasible);
 }
 
+TEST(HardConstraints, AreUsableOnlyWhereTheyHold) {
+  const auto ocp = std::make_unique<PushSolver>();
+  PushPlan plan;
+  constexpr double kReach = 1.9;  // of pushing with 1 m/s² for all stages [m]
+  for (const double beyond : {1e-4, 3e-4, 5e-4, 1e-3, 3e-3, 1e-2, 0.1, 1.0}) {
+    const HardReport report = solve({.goal = kReach + beyond, .end_speed = 10.0, .most = 1.0}, plan, *ocp);
+    EXPECT_FALSE(solver::usable(report.status)) << beyond;
+    EXPECT_GE(report.miss, 0.9 * beyond) << beyond;
+  }
+  const HardReport report = solve({.goal = kReach - 1e-4, .end_speed = 10.0, .most = 1.0}, plan, *ocp);
+  EXPECT_EQ(report.status, SolveStatus::kOptimal);
+}
+
 TEST(HardConstraints, GoOnFromMultipliersOfTheLastSolve) {
   const auto ocp = std::make_unique<PushSolver>(solver::SolverOptions{.start_from_states = true});
   PushPlan plan{.horizon = kStages};

@@ -153,7 +153,8 @@ struct Trajectory {
 
 /// How the solver behaves. Defaults suit control at 10–100 Hz.
 struct SolverOptions {
-  double tolerance = 1e-6;        ///< stationarity accepted as optimal; (0, 1e-2]
+  double tolerance = 1e-6;        ///< stationarity accepted as optimal; (0, 1e-2]. What must hold holds
+                                  ///< within it in every usable answer
   double loose_tolerance = 1e-2;  ///< stationarity accepted when the budget is spent; [tolerance, 1e3]
   int max_iterations = 1000;  ///< SQP iterations, those of a shorter horizon by their share; worst-case time
                               ///< is proportional to it; [1, 10000]. Controllers ask for fewer

@@ -16,7 +16,7 @@ namespace chicane::solver {
 #define CHICANE_SOLVE_STATUSES(ROW)                                                                              \
   /* all residuals <= tolerance */                                                                               \
   ROW(kOptimal, 0, "optimal", kOk, "the solver converged")                                                       \
-  /* deadline or max_iterations reached; input bounds hold, residuals <= loose_tolerance */                      \
+  /* deadline or max_iterations reached; input bounds and what must hold do, residuals <= loose_tolerance */     \
   ROW(kBudgetSpent, 1, "budget_spent", kOk, "the solver stopped at its limit, close enough to the optimum")       \
   /* steps are as short as rounding lets them; a residual above tolerance is what is left of it */               \
   ROW(kAtFloor, 2, "at_floor", kOk, "the solver converged as far as rounding allows")                            \

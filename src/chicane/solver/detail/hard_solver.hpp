@@ -37,9 +37,8 @@ class HardSolver {
   /// From the next solve on: SolverOptions::max_iterations, of all rounds together.
   void allow_iterations(int most) noexcept { options_.max_iterations = most; }
 
-  /// As OcpSolver::solve of problems without. kOptimal and kAtFloor: no miss above `tolerance`;
-  /// kBudgetSpent: none above `loose_tolerance`; kInfeasible: the misses have a local minimum above zero
-  /// here.
+  /// As OcpSolver::solve of problems without. A usable answer misses nothing by more than `tolerance`, also
+  /// with kBudgetSpent; kInfeasible: the misses have a local minimum above zero here.
   HardReport solve(const P& problem, const State& x0, Trajectory& trajectory,
                    Deadline deadline = Deadline::never()) noexcept {
     prices_.is_known = false;
@@ -172,7 +171,7 @@ class HardSolver {
     if (is_replaced) assess(x0, trajectory, true, report);
     Misses now = measure(problem, trajectory, &report);
     for (std::size_t n = kNeh; n < kEnd; ++n) count_distance(now, n);
-    const bool is_close = !is_replaced && usable(report.status) && now.worst() <= options_.loose_tolerance;
+    const bool is_close = !is_replaced && usable(report.status) && now.worst() <= options_.tolerance;
     if (is_close) return finish(SolveStatus::kBudgetSpent, now, report);
     if (is_certified_) return tell_infeasible(problem, x0, trajectory, report);
     if (take_guess(problem, x0, trajectory, report)) now = measure(problem, trajectory, &report);
@@ -208,14 +207,15 @@ class HardSolver {
     assess(x0, kept_, false, report);
     return true;
   }
-  /// The residuals of `trajectory`, simulated or with its states, become those of `report`.
+  /// `report` becomes one of `trajectory`, simulated or with its states; its status and its counts stay.
   void assess(const State& x0, Trajectory& trajectory, bool with_states, HardReport& report) noexcept {
     inner_.allow_iterations(0);
     inner_.start_from_states(with_states);
-    const SolveReport seen = inner_.solve(problem_, x0, trajectory);
-    report.stationarity = seen.stationarity;
-    report.defect = seen.defect;
-    report.complementarity = seen.complementarity;
+    const SolveReport kept = report;
+    static_cast<SolveReport&>(report) = inner_.solve(problem_, x0, trajectory);
+    report.status = kept.status;
+    report.iterations = kept.iterations;
+    report.sweeps = kept.sweeps;
   }
 
   /// The point that the first weights led to, if it misses less than `miss`: true then.
