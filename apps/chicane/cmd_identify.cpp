@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <charconv>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -32,37 +34,66 @@ namespace {
 using identify::Estimate;
 using identify::Identification;
 
+constexpr std::size_t kMostColumns = 1000;
+
 Result<identify::LogOptions> log_options(const Options::Identify& options) {
-  identify::LogOptions log{{}, options.odom_topic, options.drive_topic};
+  identify::LogOptions log{.odom_topic = options.odom_topic, .drive_topic = options.drive_topic};
   for (const std::string& column : options.columns) {
     const std::size_t equals = column.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == column.size())
-      return fail(refusal("--columns", column, "MEANING=NAME such as steer=delta_rad"));
-    log.columns[column.substr(0, equals)] = column.substr(equals + 1);
+      return fail(refusal("--columns", column,
+                          "MEANING=NAME such as steer=delta_rad, or POSITION=MEANING such as 0=time"));
+    const std::string left = column.substr(0, equals);
+    std::size_t position = 0;
+    const auto end = std::from_chars(left.data(), left.data() + left.size(), position);
+    if (end.ec == std::errc{} && end.ptr == left.data() + left.size() && position < kMostColumns)
+      log.positions[position] = column.substr(equals + 1);
+    else
+      log.columns[left] = column.substr(equals + 1);
   }
+  if (!log.positions.empty() && !log.columns.empty())
+    return fail(refusal("--columns", fmt::format("{}", fmt::join(options.columns, ",")),
+                        "names or positions for all columns"));
   return log;
 }
 
-/// Progress on a terminal: a line that renews itself.
+/// Progress on a terminal: a line that renews itself. Ends at an interrupt and at the end of a time budget.
 class Share {
  public:
   bool operator()(double done) {
     if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\ridentify: {:3.0f} %", 100.0 * done);
-    return !wants_stop_;
+    return goes_on();
   }
-  explicit Share(const std::atomic<bool>& wants_stop) : wants_stop_{wants_stop} {}
-  ~Share() {
+  [[nodiscard]] bool goes_on() const { return !wants_stop_ && !is_late(); }
+  [[nodiscard]] bool is_late() const { return std::chrono::steady_clock::now() > end_; }
+  Share(const std::atomic<bool>& wants_stop, double budget_s)
+      : wants_stop_{wants_stop},
+        end_{std::chrono::steady_clock::now() +
+             std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                 std::chrono::duration<double>(budget_s))} {}
+  void clear() const {
     if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r               \r");
   }
-  Share(const Share&) = delete;
-  Share& operator=(const Share&) = delete;
 
  private:
   const std::atomic<bool>& wants_stop_;
+  std::chrono::steady_clock::time_point end_;
 };
 
 std::string interval(const Estimate& each) {
   return fmt::format("{} to {}", number_text(each.low, 3), number_text(each.high, 3));
+}
+
+/// Why the car should not be driven by; empty where its predictions hold.
+std::string doubt(const Identification& found) {
+  if (found.predicts()) return {};
+  const identify::PredictionError& error = found.held_out.front();
+  constexpr double kDegrees = 180.0 / kPi;
+  return fmt::format(
+      "held-out prediction: got {:.2f} m and {:.1f} deg off after {:.2g} s, expected less than the {:.2f} m "
+      "and "
+      "{:.1f} deg of a car that keeps its speed and yaw rate",
+      error.position, kDegrees * error.yaw, error.ahead, error.kept_position, kDegrees * error.kept_yaw);
 }
 
 std::string advice(const Identification& found) {
@@ -128,6 +159,7 @@ std::string json_of(const Identification& found) {
   json["correlation"] = found.correlation;
   json["tire_use"] = {found.use_front, found.use_rear};
   json["knows_tires"] = found.knows_tires();
+  json["predicts"] = found.predicts();
   json["friction_low"] = found.least_friction();
   json["friction_shown"] = found.shown_friction();
   json["held_out"] = nlohmann::ordered_json::array();
@@ -161,6 +193,7 @@ std::string to_car(const Identification& found, scenario::Scenario scenario, con
     text +=
         "# Grip is not known: the tyres were used too little. Race by it only with a friction_low of "
         "yours.\n";
+  if (!found.predicts()) text += "# Written by --force: " + doubt(found) + "\n";
   text +=
       "# [log] 95 % interval in brackets; [assumed] as the car it began with, because the log does not "
       "excite it.\n";
@@ -299,8 +332,9 @@ Result<void> identify_and_tell(const Options& options) {
     std::move(parts->begin(), parts->end(), std::back_inserter(logs));
     names += (names.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
   }
+  Share share(wants_stop, options.identify.budget_s);
   if (is_nobodys(logs, options)) {
-    const Result<std::string> car = car_for(logs, [&] { return !wants_stop; });
+    const Result<std::string> car = car_for(logs, [&] { return share.goes_on(); });
     if (!car) return fail(car.error());
     auto settings = options.settings;
     settings.insert(settings.begin(), {"car", *car});
@@ -308,23 +342,25 @@ Result<void> identify_and_tell(const Options& options) {
     if (!start) return fail(start.error());
     forget_slow_steering(start->vehicle);
   }
-  const auto found = [&] {
-    Share share(wants_stop);
-    return identify::identify(logs, start->vehicle,
-                              {.hold_out = options.identify.hold_out,
-                               .wheels = wheels_of(*start),
-                               .progress = [&](double done) { return share(done); }});
-  }();
+  const auto found = identify::identify(logs, start->vehicle,
+                                        {.hold_out = options.identify.hold_out,
+                                         .wheels = wheels_of(*start),
+                                         .progress = [&](double done) { return share(done); }});
+  share.clear();
   if (!found) return fail(found.error());
   if (wants_stop) fmt::print(stderr, "identify: interrupted, these are the values so far\n");
-  if (!options.output_file.empty()) {
+  if (!wants_stop && share.is_late())
+    fmt::print(stderr, "identify: {:g} s (--budget-s) are over, these are the values so far\n",
+               options.identify.budget_s);
+  const bool is_kept = !options.output_file.empty() && (found->predicts() || options.identify.is_forced);
+  if (is_kept) {
     if (Result<void> kept = write_file(options.output_file, to_car(*found, *start, names)); !kept)
       return kept;
   }
-  const std::string command = options.output_file.empty()
-                                  ? ""
-                                  : fmt::format("chicane drive --car {}{}", options.output_file,
-                                                found->knows_tires() ? " --preset race" : "");
+  const bool may_race = found->knows_tires() && found->predicts();
+  const std::string command = !is_kept ? ""
+                                       : fmt::format("chicane drive --car {}{}", options.output_file,
+                                                     may_race ? " --preset race" : "");
   if (!options.report_file.empty()) {
     const auto kept = recording::write_document(
         options.report_file,
@@ -334,6 +370,8 @@ Result<void> identify_and_tell(const Options& options) {
   }
   fmt::print("{}", options.is_json ? json_of(*found) : table_of(*found, names));
   if (!command.empty() && !options.is_json) fmt::print("\n{}: {}\n", options.output_file, command);
+  if (!options.output_file.empty() && !is_kept)
+    return fail(ErrorCode::kInvalidArgument, doubt(*found) + ": no car is written (--force writes it)");
   return {};
 }
 

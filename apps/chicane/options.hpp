@@ -93,7 +93,9 @@ struct Options {
 
   struct Identify {
     double hold_out = 0.3;               ///< share of each log for the prediction errors
-    std::vector<std::string> columns{};  ///< MEANING=NAME of a CSV file
+    std::vector<std::string> columns{};  ///< MEANING=NAME or POSITION=MEANING of a CSV file
+    double budget_s = 120.0;             ///< of the search
+    bool is_forced = false;              ///< writes a car that does not predict its log
     std::string odom_topic{}, drive_topic{};
   };
   Identify identify{};

@@ -261,8 +261,12 @@ void add_identify(CLI::App& command, Options& options) {
             "Share of each log, at its end, that only tests the predictions")
       ->check(CLI::Range(0.0, 0.8));
   add(command, "--columns", options.identify.columns, "MEANING=NAME,...",
-      "Columns of a CSV file with names of their own: steer=cmd_delta_rad,psi=yaw_deg")
+      "Columns of a CSV file with other names: steer=cmd_delta_rad,psi=yaw_deg; without a header: 0=time,1=x")
       ->delimiter(',');
+  add_shown(command, "--budget-s", options.identify.budget_s, "X", "End the search after so long [s]")
+      ->check(CLI::Range(1.0, 86400.0));
+  command.add_flag("--force", options.identify.is_forced,
+                   "Write the car also where it does not predict its log");
   add(command, "--odom-topic", options.identify.odom_topic, "TOPIC", "Odometry of a bag that has several");
   add(command, "--drive-topic", options.identify.drive_topic, "TOPIC", "Commands of a bag that has several");
   add_json(command, options);

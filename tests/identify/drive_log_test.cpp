@@ -66,6 +66,21 @@ class Csv {
   std::string file_;
 };
 
+TEST(DriveLog, IsReadFromACsvFileWithoutAHeaderByPositions) {
+  const std::string all = rows("", plain);
+  const Csv csv(all.substr(1));
+  const auto logs = csv.read(
+      {.positions = {{0, "time"}, {1, "x"}, {2, "y"}, {3, "psi_rad"}, {4, "speed_mps"}, {5, "steer"}}});
+  ASSERT_TRUE(logs) << logs.error().message;
+  ASSERT_EQ(logs->size(), 1U);
+  EXPECT_EQ(logs->front().samples.size(), 200U);
+  EXPECT_DOUBLE_EQ(logs->front().told.front().steer, 0.27);
+  EXPECT_THAT(csv.refusal({.positions = {{0, "time"}, {1, "x"}}}), HasSubstr("expected a column y"));
+  EXPECT_THAT(
+      csv.refusal({.positions = {{0, "time"}, {1, "x"}, {2, "y"}, {3, "psi"}, {4, "speed"}, {9, "steer"}}}),
+      HasSubstr(":1: row: got 6 columns, expected 10"));
+}
+
 TEST(DriveLog, IsReadFromACsvFileWithAHeader) {
   const auto logs = Csv(rows("time,x,y,psi,speed,steer", plain)).read();
   ASSERT_TRUE(logs) << logs.error().message;

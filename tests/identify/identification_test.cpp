@@ -83,7 +83,22 @@ TEST(Identification, FindsTheCarThatDrove) {
   }
   ASSERT_EQ(found->held_out.size(), 3U);
   EXPECT_LT(found->held_out[0].position, 0.1);
+  EXPECT_GT(found->held_out[0].kept_position, 0.1);
+  EXPECT_TRUE(found->predicts());
   EXPECT_LT(found->held_out[2].position, 0.3);
+}
+
+// A public log whose commands moved nothing became a car with 398 % of the peak's slip, and race was
+// recommended.
+TEST(Identification, DoesNotPredictByCommandsThatDidNotDriveTheCar) {
+  DriveLog log = drive_log({{"car", "road-car"}, {"track", "hairpins"}, {"laps", "1"}});
+  std::vector<double> steer;
+  for (const Told& told : log.told) steer.push_back(told.steer);
+  for (std::size_t i = 0; i < steer.size(); ++i)
+    log.told[i].steer = -steer[(i + steer.size() / 3) % steer.size()];
+  const auto found = identify({log}, guess(), {.hold_out = 0.3, .is_rough = true});
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_FALSE(found->predicts()) << found->held_out[0].position << ' ' << found->held_out[0].kept_position;
 }
 
 #ifdef CHICANE_SLOW_TESTS

@@ -47,6 +47,23 @@ TEST(ConeLine, OtherColoursGoTheOtherWayRound) {
   EXPECT_LT(road->points[0].position.x() * along.y() - road->points[0].position.y() * along.x(), 0.0);
 }
 
+// Two circles side by side, 3 m wide, whose ways cross in the middle.
+TEST(ConeLine, RefusesASkidpad) {
+  Cones cones;
+  for (const double side : {-1.0, 1.0}) {
+    for (int i = 0; i < 16; ++i) {
+      const double angle = kTwoPi * i / 16.0;
+      const Vec2 direction{std::cos(angle), std::sin(angle)};
+      const Vec2 middle{9.125 * side, 0.0}, outer = middle + 10.625 * direction;
+      (side < 0.0 ? cones.left : cones.right).push_back(middle + 7.625 * direction);
+      if (outer.x() * side > 1.5) (side < 0.0 ? cones.right : cones.left).push_back(outer);
+    }
+    for (const double y : {-17.0, -14.0, -11.0, 11.0, 14.0, 17.0}) cones.either.push_back({1.5 * side, y});
+  }
+  EXPECT_THAT(line_between(cones).error().message,
+              HasSubstr("expected one that does not cross itself, as a skidpad does"));
+}
+
 TEST(ConeLine, MissingConesAreNamedAndBridged) {
   Cones cones = ring();
   cones.left.erase(cones.left.begin() + 7, cones.left.begin() + 9);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <string>
@@ -41,10 +42,11 @@ struct DriveLog {
 
 /// How a log is read.
 struct LogOptions {
-  std::map<std::string, std::string> columns{};  ///< of a CSV file: {"steer", "cmd_delta_rad"}
-  std::string odom_topic{};                      ///< of a foreign MCAP file; empty: the only one of its type
-  std::string drive_topic{};                     ///< the same
-  bool needs_commands = true;                    ///< false: a log of the car alone is one, too
+  std::map<std::string, std::string> columns{};    ///< of a CSV file: {"steer", "cmd_delta_rad"}
+  std::map<std::size_t, std::string> positions{};  ///< of a CSV file without a header, from 0: {0, "time_ms"}
+  std::string odom_topic{};    ///< of a foreign MCAP file; empty: the only one of its type
+  std::string drive_topic{};   ///< the same
+  bool needs_commands = true;  ///< false: a log of the car alone is one, too
 };
 
 /// Reads recordings of ours, bags of ROS 2 (MCAP, SQLite) with nav_msgs/Odometry and

@@ -14,6 +14,7 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/option.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/identify/detail/window_fit.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/similarity.hpp"
@@ -210,6 +211,23 @@ std::vector<PredictedStretch> predict(const std::vector<DriveLog>& logs, std::ve
   return stretches;
 }
 
+/// Where a car would be that keeps the speed and the mean yaw rate of the samples that are known.
+Compared kept_motion(const PredictedStretch& stretch, const Compared& at) {
+  const Compared& first = stretch.samples.front();
+  const Compared* last = &first;
+  for (const Compared& each : stretch.samples)
+    if (each.time <= stretch.known) last = &each;
+  const double rate = (last->psi - first.psi) / std::max(last->time - first.time, 1e-9);
+  const double ahead = at.time - last->time;
+  const double half_turn = 0.5 * rate * ahead;
+  const double middle = last->psi + half_turn;
+  const double chord = last->speed * ahead * (std::fabs(half_turn) > 1e-6 ? sin(half_turn) / half_turn : 1.0);
+  return {.time = at.time,
+          .model_x = last->x + chord * cos(middle),
+          .model_y = last->y + chord * sin(middle),
+          .model_psi = last->psi + rate * ahead};
+}
+
 /// One, two and three seconds ahead.
 std::vector<PredictionError> prediction_errors(const std::vector<PredictedStretch>& stretches) {
   std::vector<PredictionError> found;
@@ -224,11 +242,15 @@ std::vector<PredictionError> prediction_errors(const std::vector<PredictedStretc
           (at->model_x - at->x) * (at->model_x - at->x) + (at->model_y - at->y) * (at->model_y - at->y);
       sum.yaw += (at->model_psi - at->psi) * (at->model_psi - at->psi);
       sum.speed += (at->model_speed - at->speed) * (at->model_speed - at->speed);
+      const Compared kept = kept_motion(stretch, *at);
+      sum.kept_position += Vec2{kept.model_x - at->x, kept.model_y - at->y}.squared_norm();
+      sum.kept_yaw += (kept.model_psi - at->psi) * (kept.model_psi - at->psi);
       ++count;
     }
     if (count == 0) continue;
     const auto mean = [&](double squares) { return std::sqrt(squares / count); };
-    found.push_back({ahead, mean(sum.position), mean(sum.yaw), mean(sum.speed)});
+    found.push_back({ahead, mean(sum.position), mean(sum.yaw), mean(sum.speed), mean(sum.kept_position),
+                     mean(sum.kept_yaw)});
   }
   return found;
 }
@@ -349,6 +371,7 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, con
   for (PredictionError& error : found.held_out) {
     error.ahead /= similarity.time();
     error.position /= similarity.length();
+    error.kept_position /= similarity.length();
     error.speed /= similarity.speed();
   }
   return found;
@@ -387,6 +410,13 @@ double turning_wheelbase(const std::vector<DriveLog>& logs) {
   }
   const double wheelbase = (cs * aa - as * ca) / (cc * aa - ca * ca);
   return count >= kFewest && wheelbase > 0.0 ? wheelbase : std::numeric_limits<double>::quiet_NaN();
+}
+
+bool Identification::predicts() const noexcept {
+  if (held_out.empty()) return true;
+  const PredictionError& error = held_out.front();
+  return error.position <= std::max(error.kept_position, 0.1) &&
+         error.yaw <= std::max(error.kept_yaw, kPi / 180.0);
 }
 
 bool Identification::knows_tires() const noexcept {

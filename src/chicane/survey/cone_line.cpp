@@ -21,9 +21,10 @@ namespace {
 constexpr std::size_t kMostCones = 20000;
 constexpr double kMostExtent = 20000.0;  // [m]
 constexpr double kMostCells = 2e6;
-constexpr double kFinest = 0.05;  // side of a cell [m]
-constexpr double kGap = 1.6;      // times the median distance of neighbours
-constexpr std::size_t kNear = 4;  // distances to each side that a gap is compared with
+constexpr double kFinest = 0.05;     // side of a cell [m]
+constexpr double kGap = 1.6;         // times the median distance of neighbours
+constexpr double kLeastShare = 0.2;  // narrowest width of a course over the median one
+constexpr std::size_t kNear = 4;     // distances to each side that a gap is compared with
 constexpr double kFarAway =
     3.0;  // a line is between cones where they are nearer than so many median half widths
 
@@ -261,6 +262,15 @@ Result<ConeRoad> line_between(const Cones& given) {
     widths.push_back(to_l + to_r);
   }
   road.median_width = median(widths);
+  const auto narrowest = std::min_element(widths.begin(), widths.end());
+  if (*narrowest < kLeastShare * road.median_width) {
+    const Vec2& place = line[static_cast<std::size_t>(narrowest - widths.begin())];
+    return fail(
+        ErrorCode::kParse,
+        fmt::format("cones: got a course {:.1f} m wide at ({:.2f}, {:.2f}) and {:.1f} m in the median, "
+                    "expected one that does not cross itself, as a skidpad does",
+                    *narrowest, place.x(), place.y(), road.median_width));
+  }
   return road;
 }
 

@@ -102,6 +102,14 @@ Result<LogRows> read_csv_rows(const std::string& text, const std::string& file, 
   char separator = ',';
   protocol::CsvLines lines(text);
   const auto place = [&] { return fmt::format("{}:{}", file, lines.number()); };
+  std::vector<std::string_view> named;
+  if (!options.positions.empty()) {
+    named.resize(options.positions.rbegin()->first + 1);
+    for (const auto& [at, name] : options.positions) named[at] = name;
+    const auto read = read_header(named, "--columns", options);
+    if (!read) return fail(read.error());
+    header = *read;
+  }
   for (std::optional<std::string_view> next = lines.next(); next; next = lines.next()) {
     std::string_view line = *next;
     if (!header) {
@@ -114,7 +122,9 @@ Result<LogRows> read_csv_rows(const std::string& text, const std::string& file, 
       continue;
     }
     if (line.empty() || line.starts_with('#')) continue;
+    if (!named.empty() && rows.samples.empty()) separator = protocol::separator_of(line);
     const std::vector<std::string_view> values = protocol::split(line, separator);
+    if (!named.empty() && rows.samples.empty()) header->count = std::max(named.size(), values.size());
     if (values.size() != header->count)
       return fail(ErrorCode::kParse,
                   fmt::format("{}: row: got {} columns, expected {}", place(), values.size(), header->count));
