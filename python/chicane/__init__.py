@@ -20,7 +20,7 @@ from . import _interpreter
 
 _interpreter.prepare()
 
-from ._chicane import NO_ANSWER, CarState, Command, Seen, __version__  # noqa: E402
+from ._chicane import NO_ANSWER, CarState, Command, Measurement, __version__  # noqa: E402
 from ._controller import Controller  # noqa: E402
 from ._drive import drive, read, verify  # noqa: E402
 from ._integrators import gauss_legendre, implicit_euler  # noqa: E402
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "CarState", "Command", "Controller", "Env", "Feedback", "Frames", "Iterations", "Limit", "NO_ANSWER", "Plant", "Problem", "Recording", "Run",
-    "Seen", "Solution", "Solutions", "Symbol", "TraceError", "Track", "TrackReader", "VecEnv", "__version__", "acos", "asin", "atan", "atan2",
+    "Measurement", "Solution", "Solutions", "Symbol", "TraceError", "Track", "TrackReader", "VecEnv", "__version__", "acos", "asin", "atan", "atan2",
     "cars", "clip", "cos", "drive", "exp", "faults", "frame_fields", "gauss_legendre", "hypot", "implicit_euler", "limit", "log",
     "maximum", "minimum", "norm2", "parameters", "presets", "read", "rk4", "scenarios", "sin", "sqrt", "sweep", "table", "tan", "tanh",
     "tracks", "use_track_reader", "verify", "view", "where",

@@ -25,7 +25,7 @@ class NoAnswer:
 
 NO_ANSWER: NoAnswer
 
-class Seen:
+class Measurement:
     """What a controller is told in one cycle, of the car as it is, noise, age and faults of the sensors included."""
     @property
     def time(self) -> float:

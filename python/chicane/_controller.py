@@ -2,7 +2,7 @@
 """The base class of controllers written in Python."""
 from __future__ import annotations
 
-from ._chicane import Command, NoAnswer, Seen
+from ._chicane import Command, Measurement, NoAnswer
 
 
 class Controller:
@@ -21,7 +21,7 @@ class Controller:
     and the guard stops the car; Run.error has the traceback.
     """
 
-    def step(self, seen: Seen) -> Command | tuple[float, float] | NoAnswer:
+    def step(self, seen: Measurement) -> Command | tuple[float, float] | NoAnswer:
         """The command for one measurement: Command(steer [rad], throttle [-1, 1]), or these two as a tuple.
 
         Called once in each control period (40 ms unless said otherwise). The command acts `seen.delay` seconds after

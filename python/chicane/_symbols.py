@@ -25,7 +25,7 @@ class TraceError(ValueError):
 def caller() -> str:
     """File, line and text of the innermost line that is neither of this package nor of numpy."""
     frame = sys._getframe(1)
-    while frame.f_back is not None and frame.f_code.co_filename.startswith(_OWN_FOLDERS):
+    while frame.f_back is not None and frame.f_code.co_filename.startswith((*_OWN_FOLDERS, "<__array_function__")):
         frame = frame.f_back
     text = linecache.getline(frame.f_code.co_filename, frame.f_lineno).strip()
     return f"{frame.f_code.co_filename}:{frame.f_lineno}: {text}" if text else f"{frame.f_code.co_filename}:{frame.f_lineno}"
@@ -161,7 +161,7 @@ class Symbol:
         raise refuse("a branch on a symbol", "ch.where(condition, a, b), or ch.minimum, ch.maximum, ch.clip")
 
     def __float__(self) -> float:
-        raise refuse("a symbol where a number is needed", "ch.sin or np.sin in the place of math.sin, and no float()")
+        raise refuse("a symbol where a number is needed", "ch.sin, np.sin or others that have a derivative: not math.sin, float(), np.floor")
 
     __int__ = __index__ = __float__
 

@@ -4,14 +4,19 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <cmath>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "chicane/base/math.hpp"
 #include "chicane/base/result.hpp"
+#include "chicane/base/text.hpp"
 #include "chicane/base/vec2.hpp"
+#include "chicane/model/state.hpp"
 
 namespace chicane::python {
 
@@ -53,6 +58,18 @@ inline py::array_t<double> to_array(std::span<const Vec2> points) {
     *to++ = point.y();
   }
   return array;
+}
+
+/// ValueError for a steering that is not finite or beyond a right angle, as degrees are, and for a throttle
+/// that is not finite. Beyond the car's steering limit and beyond [-1, 1] the car takes the limit.
+inline void check_command(const char* what, const model::Command& command) {
+  const auto refuse = [&](const char* name, double value, const char* expected) {
+    throw py::value_error(std::string(what) + ": " + name + ": got " + number_text(value, 6) + ", expected " +
+                          expected);
+  };
+  if (!(std::fabs(command.steer) <= 0.5 * kPi))
+    refuse("steer", command.steer, "a number in [-1.57, 1.57] rad (is it in degrees?)");
+  if (!std::isfinite(command.throttle)) refuse("throttle", command.throttle, "a finite number");
 }
 
 inline py::str to_text(std::string_view text) { return {text.data(), text.size()}; }

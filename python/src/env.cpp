@@ -52,12 +52,6 @@ std::unique_ptr<Environment> make_environment(const protocol::Request& request, 
   }));
 }
 
-void check_action(double steer, double throttle) {
-  if (!std::isfinite(steer) || !std::isfinite(throttle))
-    throw py::value_error("action: got " + std::to_string(steer) + ", " + std::to_string(throttle) +
-                          ", expected two finite numbers: steer [rad], throttle [-1, 1]");
-}
-
 void check_shape(const Numbers& actions, std::size_t count) {
   if (actions.ndim() == 2 && static_cast<std::size_t>(actions.shape(0)) == count && actions.shape(1) == 2)
     return;
@@ -113,7 +107,7 @@ py::tuple step(Environment& environment, const Numbers& action) {
     throw py::value_error(
         "action: got an array of another shape, expected (2,): steer [rad], throttle [-1, 1]");
   const model::Command command{action.at(0), action.at(1)};
-  check_action(command.steer, command.throttle);
+  check_command("action", command);
   const StepOutcome outcome = unlocked([&] { return environment.step(command); });
   return py::make_tuple(observation_of(environment), outcome.reward, outcome.terminated, outcome.truncated,
                         info_of(environment));
@@ -160,7 +154,8 @@ class Batch {
   /// anew at once.
   py::tuple step(const Numbers& actions) {
     check_shape(actions, size());
-    for (py::ssize_t i = 0; i < actions.shape(0); ++i) check_action(actions.at(i, 0), actions.at(i, 1));
+    for (py::ssize_t i = 0; i < actions.shape(0); ++i)
+      check_command("actions", {actions.at(i, 0), actions.at(i, 1)});
     std::vector<StepOutcome> outcomes(size());
     Numbers last = make_observations();
     const double* const commands = actions.data();

@@ -27,16 +27,6 @@ model::Command command_of(const py::object& answer) {
   }
 }
 
-void check_finite(const model::Command& command) {
-  const auto check = [](const char* name, double value) {
-    if (!std::isfinite(value))
-      throw py::value_error(std::string("step: ") + name + ": got " + std::to_string(value) +
-                            ", expected a finite number");
-  };
-  check("steer", command.steer);
-  check("throttle", command.throttle);
-}
-
 /// An error of the call itself, such as a wrong number of arguments, has no trace.
 std::string traceback_of(py::error_already_set& error) {
   const py::object trace = error.trace() ? py::object(error.trace()) : py::none();
@@ -128,7 +118,7 @@ const controller::StepResult& PythonController::step(const model::Measurement& n
     const py::object answer = object_.attr("step")(seen);
     if (py::isinstance<NoAnswer>(answer)) return;
     const model::Command command = command_of(answer);
-    check_finite(command);
+    check_command("step", command);
     result_.command = command;
     result_.answer = controller::Answer::kDrive;
   });
@@ -142,7 +132,9 @@ void PythonController::reset() noexcept {
 void add_controller(py::module_& module) {
   py::class_<model::Command>(module, "Command")
       .def(py::init([](double steer, double throttle) {
-             return model::Command{steer, throttle};
+             const model::Command command{steer, throttle};
+             check_command("Command", command);
+             return command;
            }),
            py::arg("steer") = 0.0, py::arg("throttle") = 0.0)
       .def_readwrite("steer", &model::Command::steer)
@@ -155,7 +147,7 @@ void add_controller(py::module_& module) {
   const auto number = [](double model::Measurement::*field) {
     return [field](const Seen& seen) { return seen.measurement.*field; };
   };
-  py::class_<Seen>(module, "Seen")
+  py::class_<Seen>(module, "Measurement")
       .def_property_readonly("time", number(&model::Measurement::time))
       .def_property_readonly("x", number(&model::Measurement::x))
       .def_property_readonly("y", number(&model::Measurement::y))
@@ -171,9 +163,10 @@ void add_controller(py::module_& module) {
       .def_property_readonly("steer_limit", [](const Seen& seen) { return seen.vehicle->steer_limit; })
       .def("__repr__", [](const Seen& seen) {
         const model::Measurement& now = seen.measurement;
-        return py::
-            str("Seen(time={:.2f} s, x={:.2f} m, y={:.2f} m, yaw={:.3f} rad, speed={:.2f} m/s, {} waypoints)")
-                .format(now.time, now.x, now.y, now.psi, now.speed, now.waypoint_count);
+        return py::str(
+                   "Measurement(time={:.2f} s, x={:.2f} m, y={:.2f} m, yaw={:.3f} rad, speed={:.2f} m/s, {} "
+                   "waypoints)")
+            .format(now.time, now.x, now.y, now.psi, now.speed, now.waypoint_count);
       });
 }
 

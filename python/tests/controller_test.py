@@ -86,8 +86,9 @@ class Controllers(unittest.TestCase):
 
         failures = (
             (lambda: [][1], r"Failing failed at 5\.00 s; the guard stops the car:\n(?s:Traceback.*)IndexError: list index"),
-            (lambda: (math.nan, 0.0), r"step: steer: got nan, expected a finite number"),
-            (lambda: ch.Command(0.0, math.inf), r"step: throttle: got inf, expected a finite number"),
+            (lambda: (math.nan, 0.0), r"step: steer: got nan, expected a number in \[-1.57, 1.57\] rad"),
+            (lambda: (12.0, 0.0), r"step: steer: got 12, expected .* \(is it in degrees\?\)"),
+            (lambda: ch.Command(0.0, math.inf), r"Command: throttle: got inf, expected a finite number"),
             (lambda: None, r"step: got None, expected Command\(steer, throttle\), two numbers or NO_ANSWER"),
             (lambda: "fast", r"step: got 'fast', expected Command"),
             (endless, r"TimeoutError\nstep: it took longer than 0\.2 s \(step_limit_s\)"))

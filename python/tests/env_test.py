@@ -134,7 +134,8 @@ class Environment(unittest.TestCase):
     def test_refuses_what_it_cannot_do(self):
         env = ch.Env("oval")
         for action, message in (([0.0], r"action: got an array of another shape, expected \(2,\)"),
-                                ([float("nan"), 0.0], "action: got nan, .*expected two finite numbers")):
+                                ([float("nan"), 0.0], "action: steer: got nan, expected a number in"),
+                                ([20.0, 0.0], r"action: steer: got 20, .*is it in degrees\?")):
             with self.subTest(message), self.assertRaisesRegex(ValueError, message):
                 env.step(action)
         for arguments, message in (({"rate_hz": 500}, r"rate_hz: got 500, expected a number in \[1, 200\]"),

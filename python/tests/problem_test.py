@@ -427,6 +427,8 @@ class Misuses(unittest.TestCase):
                     lambda: ocp.dynamics(lambda x, u: [x[0] if x[1] > 1 else x[1], 0]))
         self.refuse(here + r".*got a symbol where a number is needed, expected ch\.sin", lambda: ocp.cost(lambda x, u: math.sin(x[0])))
         self.refuse(here + r".*got a symbol where a number is needed", lambda: ocp.cost(lambda x, u: float(x[0])))
+        self.refuse(here + r".*got a branch on a symbol", lambda: ocp.cost(lambda x, u: np.where(x[0] > 0.0, x[0], 0.0)))
+        self.refuse(here + r".*not math\.sin, float\(\), np\.floor", lambda: ocp.cost(lambda x, u: np.floor(x[0])))
         self.refuse(here + r".*got == of a symbol", lambda: ocp.cost(lambda x, u: x[0] == 1))
         self.refuse(here + r".*got a branch on a symbol", lambda: ocp.cost(lambda x, u: max(x[0], 0.0)))
         self.refuse(here + r".*got str beside a symbol", lambda: ocp.cost(lambda x, u: x[0] + "1"), TypeError)
