@@ -165,7 +165,7 @@ class Problem:
                 break
         told["cost"] += self._offset(full)
         self._solved_by, self._prepared = solver, None
-        self._course = self._last = Solution(self, told, state, values, full)
+        self._course = self._last = Solution(self, told, state, values, full, tolerance)
         return self._last
 
     def prepare(self, x0: npt.ArrayLike | None = None, p: npt.ArrayLike | None = None, *, shift: int = 0, tolerance: float = 1e-6,

@@ -30,7 +30,8 @@ class Solution:
     the barrier of soft and hard limits costs, at most in a convex problem. time: how long C++ worked [s]. log: the iterations, where solve() was
     asked for them (Iterations), else None."""
 
-    def __init__(self, problem: Problem, told: dict[str, Any], x0: Array, parameters: Array, full: Array) -> None:
+    def __init__(self, problem: Problem, told: dict[str, Any], x0: Array, parameters: Array, full: Array,
+                 tolerance: float) -> None:
         self._problem = problem
         self._parameters, self._full = parameters, full
         self.x0 = x0
@@ -52,11 +53,10 @@ class Solution:
                                                                             "terminal_equality", "terminal_constraint")}
         self.multipliers["equalities"] = np.ascontiguousarray(told["equalities"][:, problem.unknowns:])
         self.multipliers["bounds"] = np.ascontiguousarray(told["bounds"][:, :problem.nu])
-        self.violation, self.violated = self._find_violation(told)
+        self.violation, self.violated = self._find_violation(told, tolerance)
 
-    def _find_violation(self, told: dict[str, Any]) -> tuple[float, str]:
-        """The worst one, and its name and stage."""
-        tolerance = 1e-5
+    def _find_violation(self, told: dict[str, Any], tolerance: float) -> tuple[float, str]:
+        """The worst one above the tolerance of the solve, and its name and stage."""
         names = self._problem.names
         found = (0.0, "")
         if told["worst_constraint"] >= 0 and told["violation"] > tolerance:
