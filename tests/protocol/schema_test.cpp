@@ -209,7 +209,7 @@ TEST(Schema, OnlyWhatMakesTheRunAnotherOneIsNotLive) {
                           "preset", "track", "track_scale", "car", "plant", "controller", "seed",
                           "friction_low", "control_period_ms", "waypoints_sent", "vehicle.name",
                           "vehicle.scale", "guard.mode", "guard.road", "guard.half_width_m", "guard.receiver",
-                          "guard.margin_m", "guard.blind_time_s", "identify.during_run"}));
+                          "guard.margin_m", "guard.blind_time_s"}));
 }
 
 TEST(Schema, SuggestsWhatWasMeant) {

@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Controllers, RecordedController,
 // Delay and steering that a run finds out about its car are found again, and taken up at the same steps.
 TEST(Recorder, HasARunThatIdentifiesItsCar) {
   const TemporaryFile file;
-  const auto loop = short_run({{"car", "road-car"}, {"identify.during_run", "true"}, {"time_limit_s", "20"}});
+  const auto loop = short_run({{"car", "road-car"}, {"time_limit_s", "20"}});
   loop->set_fault(
       {.fault = *sim::fault_named("steering_offset"), .at = 0.0, .duration = 60.0, .strength = 2.0});
   const RecorderReport recorded = record(*loop, file.path());

@@ -289,8 +289,7 @@ constexpr std::array kGroups{
     FrameGroup{"Why the controller chose this command", kReasons},
     FrameGroup{"The simulated car: share of its grip that each axle uses; faults that are on", kCar},
     FrameGroup{"How good the answer is", kSolver},
-    FrameGroup{"What the run has found out about its car (identify.during_run, tracking_mpc.learn_grip); "
-               "else not-a-number",
+    FrameGroup{"What the run has found out about its car (docs/identification.md); else not-a-number",
                kLearned},
 };
 

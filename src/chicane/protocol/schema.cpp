@@ -78,7 +78,6 @@ Table make_table() {
   table.add("plant_params", "", sim::double_track_options(),
             [](Scenario& s) -> void* { return &s.plant_params; });
   table.add("guard", "", safety::guard_options(), [](Scenario& s) -> void* { return &s.guard; });
-  table.add("identify", "", safety::identify_options(), [](Scenario& s) -> void* { return &s.identify; });
   table.add("plant_options", "", sim::deviation_options(),
             [](Scenario& s) -> void* { return &s.plant_options; });
   table.add("sensor", "", sim::sensor_options(), [](Scenario& s) -> void* { return &s.sensor; });
@@ -123,7 +122,6 @@ bool is_live(const Parameter& parameter) {
                                                       "friction_low", "waypoints_sent"};
   return parameter.option.kind != Kind::kText &&  // preset, track, car: names
          parameter.group != "guard" &&            // what watches over a run is fixed when it starts
-         parameter.group != "identify" &&         // and what is found out in it
          parameter.group != "plant_params" &&     // and so is the car
          std::find(kWhatRuns.begin(), kWhatRuns.end(), parameter.key) == kWhatRuns.end();
 }

@@ -31,9 +31,7 @@ ControlCycle::ControlCycle(std::unique_ptr<controller::Controller> controller,
 ControlCycle::ControlCycle(std::unique_ptr<controller::Controller> controller,
                            const scenario::Scenario& scenario, road::KnownRoad road)
     : similarity_{scenario.vehicle},
-      guard_{std::move(controller), full_size(scenario), scenario.guard, std::move(road)} {
-  guard_.learn_actuators(scenario.identify.during_run);
-}
+      guard_{std::move(controller), full_size(scenario), scenario.guard, std::move(road)} {}
 
 void ControlCycle::use_line(std::shared_ptr<const road::RacingRoad> lap) {
   if (lap) guard_.use_line(std::move(lap));

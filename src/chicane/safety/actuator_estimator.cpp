@@ -26,6 +26,7 @@ constexpr double kFar = 1.0;  // deviations of the estimate from that place, fro
 constexpr double kCorrelated = 2.0;        // [s] of which correlation and variance are the mean
 constexpr double kMostCorrelation = 0.98;  // from one measurement to the next: some information is left
 constexpr double kSure = 3.0;              // deviations by which an estimate differs from what is driven with
+constexpr double kShown = 1.0;             // [s] of driving until the estimate is reported
 constexpr double kTold = 0.1;  // of the usual deviation: an estimate that is less certain tells too little
 
 // Of delay [s], gain, offset [rad] and grip: by how much an estimator differs, what is assumed to be usual
@@ -220,16 +221,21 @@ ActuatorEstimator::Solution ActuatorEstimator::solve() const noexcept {
   return found;
 }
 
+/// Delay, gain and offset pass for each other in bends that are much alike: all are known, or none is.
+bool ActuatorEstimator::is_certain() const noexcept {
+  const auto is_known = [&](Unknown i) { return solution_.deviation[i] <= kTold * kRows[i].usual; };
+  return time_ >= kEnough && is_known(kDelay) && is_known(kGain) && is_known(kOffset);
+}
+
 bool ActuatorEstimator::take_up() noexcept {
-  if (time_ < kEnough) return false;
+  if (!is_certain()) return false;
   const ActuatorAnswer before = answer_;
   const auto follow = [&](double& driven, Unknown i) {
     const double estimate = std::clamp(here_[i] + solution_.value[i], kRows[i].least, kRows[i].most);
     const double deviation = solution_.deviation[i];
     const bool is_better = deviation < 0.5 * taken_up_[i];
     const double apart = kSure * (is_better ? deviation : hypot(deviation, taken_up_[i]));
-    if (deviation > kTold * kRows[i].usual || std::fabs(estimate - driven) <= std::max(kRows[i].step, apart))
-      return;
+    if (std::fabs(estimate - driven) <= std::max(kRows[i].step, apart)) return;
     driven = estimate;
     taken_up_[i] = deviation;
   };
@@ -240,7 +246,7 @@ bool ActuatorEstimator::take_up() noexcept {
 }
 
 controller::LearnedCar ActuatorEstimator::learned() const noexcept {
-  if (time_ < kEnough) return {};
+  if (time_ < kShown) return {};
   const auto estimate = [&](Unknown i) {
     return controller::Estimate{here_[i] + solution_.value[i], solution_.deviation[i]};
   };

@@ -20,12 +20,13 @@ namespace chicane::safety {
 /// each, and least squares over the last kMemory of driving finds the unknowns with their deviations. The
 /// grip is among them, so that tyres that give less do not pass for another steering.
 ///
-/// What is driven with, answer(), follows the estimate in steps, where that is certain enough and differs by
-/// more than a step and three deviations of both. One thread; allocates nothing.
+/// What is driven with, answer(), follows the estimate in steps, where delay, gain and offset are certain
+/// enough together, and one differs by more than a step and three deviations of both. One thread; allocates
+/// nothing.
 class ActuatorEstimator {
  public:
   static constexpr double kMemory = 10.0;    ///< time constant of forgetting [s]
-  static constexpr double kEnough = 1.0;     ///< of driving until something is known [s]
+  static constexpr double kEnough = 5.0;     ///< of driving, until an estimate is driven with [s]
   static constexpr double kMostDelay = 0.3;  ///< [s]
 
   explicit ActuatorEstimator(const model::VehicleParams& vehicle) noexcept;
@@ -75,6 +76,7 @@ class ActuatorEstimator {
                                                 const Values& values) const noexcept;
   void believe() noexcept;
   void move_on() noexcept;
+  [[nodiscard]] bool is_certain() const noexcept;
   [[nodiscard]] Solution solve() const noexcept;
 
   model::VehicleParams vehicle_;  ///< as told, without a name

@@ -44,6 +44,7 @@ Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::Ve
       options_{options},
       monitor_{vehicle.length, vehicle.wheelbase()},
       actuators_{vehicle},
+      learned_{vehicle},
       fallback_{vehicle},
       gate_{vehicle},
       road_{std::move(road)},
@@ -65,7 +66,7 @@ void Guard::reset() noexcept {
   monitor_.reset();
   reset_watch_.reset();
   actuators_.reset();
-  if (learned_) learned_->reset();
+  learned_.reset();
   sent_.clear();
   told_.clear();
   count_with_answer();
@@ -84,14 +85,9 @@ void Guard::reset() noexcept {
   tried_ = 0.0;
 }
 
-void Guard::learn_actuators(bool is_on) {
-  learned_.reset();
-  if (is_on) learned_.emplace(vehicle_);
-}
-
 void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   vehicle_ = vehicle;
-  if (learned_) learned_->set_vehicle(vehicle);
+  learned_.set_vehicle(vehicle);
   believe_grip(grip_);
 }
 
@@ -116,13 +112,13 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
                            controller::StepResult& result) noexcept {
   take_up_actuators();
   model::Measurement now = measured;
-  if (learned_) now.delay = std::max(now.delay + learned_->answer().delay, 0.0);
+  now.delay = std::max(now.delay + learned_.answer().delay, 0.0);
   const bool is_off = options_.mode == GuardMode::kOff;
-  if (is_off && learned_) learned_->see(now, told_);
+  if (options_.mode != GuardMode::kOn) learned_.see(now, told_);
   const model::Measurement& seen = is_off ? now : look(now);
   result = controller_->step(seen, deadline);
   report_ = {};
-  if (learned_) report_learned(result.report.learned);
+  report_learned(result.report.learned);
   if (!is_finite(result.command)) result.answer = Answer::kNone;
   choose(seen, cycle, result);
   const model::Command asked = result.command;
@@ -144,7 +140,7 @@ void Guard::send(const Cycle& cycle, const model::Command& asked, controller::St
                   !is_same(gated.command, cycle.manual.value_or(answer().command_for(asked)));
   const model::Command effect = answer().effect_of(gated.command);
   controller_->note_sent(effect);
-  if ((options_.mode == GuardMode::kOff && !learned_) || !std::isfinite(sent_from_)) return;
+  if (!std::isfinite(sent_from_)) return;
   told_.add(sent_from_, gated.command);
   sent_.add(sent_from_, effect);
   if (answer().is_usual()) return;
@@ -159,17 +155,16 @@ void Guard::send(const Cycle& cycle, const model::Command& asked, controller::St
 void Guard::count_with_answer() noexcept {
   constexpr ActuatorAnswer kUsual;
   const ActuatorAnswer& watched = options_.mode == GuardMode::kOn ? actuators_.answer() : kUsual;
-  answer_ = learned_ ? watched.after(learned_->answer()) : watched;
+  answer_ = watched.after(learned_.answer());
   sent_ = told_.changed([this](const model::Command& command) { return answer_.effect_of(command); });
 }
 
 /// Between two cycles: what was learned is driven with from now on, and what the watch found beyond it is
 /// looked for anew.
 void Guard::take_up_actuators() noexcept {
-  if (!learned_) return;
-  const double delay = learned_->answer().delay;
-  if (!learned_->take_up()) return;
-  told_.delay(learned_->answer().delay - delay);
+  const double delay = learned_.answer().delay;
+  if (!learned_.take_up()) return;
+  told_.delay(learned_.answer().delay - delay);
   actuators_.reset();
   count_with_answer();
   count_with_actuators();
@@ -177,7 +172,7 @@ void Guard::take_up_actuators() noexcept {
 
 void Guard::report_learned(controller::LearnedCar& learned) const noexcept {
   const controller::Estimate grip = learned.grip;
-  learned = learned_->learned();
+  learned = learned_.learned();
   if (std::isfinite(grip.value)) learned.grip = grip;
 }
 
@@ -188,19 +183,15 @@ void Guard::watch_actuators(const model::Measurement& seen) noexcept {
                           found.heading_jump || found.position_jump || direction_.rolls_back();
   if (is_doubted) return actuators_.skip();
   const ActuatorAnswer before = actuators_.answer();
-  if (learned_) learned_->see(seen, told_);
+  if (options_.mode == GuardMode::kOn) learned_.see(seen, told_);
   ActuatorWatch::AxleUse use;
   const model::State& car = estimator_.state();
   if (estimator_.is_started() && car.vx > kRollsBackAtMost) {
     const auto tires = model_.tire_use(model::BodyMotion<double>{car.vx, car.vy, car.r, car.steer, 0.0});
     use = {tires.front, tires.rear, car.vy / car.vx};
   }
-  if (learned_) {
-    const ActuatorAnswer& usual = learned_->answer();
-    actuators_.see(seen, told_.changed([&](const auto& command) { return usual.effect_of(command); }), use);
-  } else {
-    actuators_.see(seen, told_, use);
-  }
+  const ActuatorAnswer& usual = learned_.answer();
+  actuators_.see(seen, told_.changed([&](const auto& command) { return usual.effect_of(command); }), use);
   const ActuatorAnswer& after = actuators_.answer();
   if (after.gain != before.gain || after.offset != before.offset || after.braking != before.braking)
     count_with_answer();
@@ -326,7 +317,9 @@ bool Guard::slow_down(const StopStart& start, const Cycle& cycle, controller::St
 /// The command inside range and rate, without the reverse gear: a stop ends in standstill. No drive beyond
 /// the speed up to which the car's parameters hold: no stop can be computed from there.
 model::Command Guard::limited(const model::Command& command, double interval) const noexcept {
-  model::Command inside = answer().effect_of(gate_.limited(answer().command_for(command), interval).command);
+  const model::Command told = answer().command_for(command);
+  const model::Command gated = gate_.limited(told, interval).command;
+  model::Command inside = is_same(gated, told) ? command : answer().effect_of(gated);
   const model::VehicleParams& car = model_.vehicle();
   const double v = act_speed_;
   if (inside.throttle > 0.0) {

@@ -62,10 +62,6 @@ class Guard {
   Guard(const Guard& other);
   Guard& operator=(const Guard&) = delete;
 
-  /// Whether delay and steering are estimated while the car drives, and driven with, in any mode; off at
-  /// first. Before a run.
-  void learn_actuators(bool is_on);
-
   /// What else holds in a cycle.
   struct Cycle {
     double interval = 0.0;  ///< since the command before [s], for the rate limit; <= 0: not limited
@@ -141,7 +137,7 @@ class Guard {
   MeasurementMonitor monitor_;
   ResetWatch reset_watch_;
   ActuatorWatch actuators_;  ///< by how the wheels turn by what was learned
-  std::optional<ActuatorEstimator> learned_;
+  ActuatorEstimator learned_;
   ActuatorAnswer answer_;  ///< that commands are sent for: what was learned, and what is watched beyond it
   Supervisor supervisor_;
   Fallback fallback_;

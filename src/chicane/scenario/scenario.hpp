@@ -9,7 +9,6 @@
 #include "chicane/controller/registry.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/safety/guard_options.hpp"
-#include "chicane/safety/identify_options.hpp"
 #include "chicane/sim/double_track.hpp"
 #include "chicane/sim/fault.hpp"
 #include "chicane/sim/plant.hpp"
@@ -42,7 +41,6 @@ struct Scenario {
       std::numeric_limits<double>::infinity();  ///< least friction that the car is known to have: what a race
                                                 ///< is planned with; 0: not known; infinite: vehicle.friction
   safety::GuardOptions guard;                   ///< what watches over the controller
-  safety::IdentifyOptions identify;             ///< what is found out about the car while it drives
   sim::DoubleTrackParams plant_params;  ///< of the plant `double-track`, whose model follows from them
   sim::PlantDeviation plant_options;
   sim::SensorOptions sensor;

@@ -144,7 +144,7 @@ export interface Frame {
   /** of the car now from where plans said, one delay and one period ago */
   prediction_error_m: number;
 
-  // What the run has found out about its car (identify.during_run, tracking_mpc.learn_grip); else not-a-number
+  // What the run has found out about its car (docs/identification.md); else not-a-number
   /** by which commands act later than told */
   learned_delay_s: number;
   /** its standard deviation */
