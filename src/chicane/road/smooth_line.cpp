@@ -24,14 +24,16 @@ constexpr double kLeastShare = 0.01;  // of the length of the chords, in that of
 constexpr double kMostShare = 2.0;
 constexpr double kMostUnrolled = 4e6;       // points
 constexpr double kMaxShareOfLength = 0.02;  // of ℓ in the length of a short line
-constexpr double kMostEvenRatio = 4.0;      // longest gap of even points, in median gaps
+constexpr double kMostUneven = 4.0;         // of even points: a gap over the median of those around it
+constexpr std::ptrdiff_t kNearGaps = 3;     // around a gap, on each side
 constexpr double kMostNoise = 1.0;          // standard deviation that cross-validation begins with [m]
 constexpr double kLeastShareOfGap = 0.1;    // of ℓ in the median gap: a shorter one interpolates
 constexpr std::size_t kMostLeftOut = 200;   // points that cross-validation leaves out, one at a time
 
 /// Distances between neighbours [m].
 struct Gaps {
-  double median = 0.0, longest = 0.0, mean = 0.0;
+  double median = 0.0, mean = 0.0;
+  double unevenness = 0.0;  // largest ratio of a gap to the median of those around it
 };
 
 /// The penalty of equation (1): its order m, the differences of the coefficients, the constant of equation
@@ -44,7 +46,7 @@ struct Penalty {
   double usual_gap = 0.0;  // [m]
 
   explicit Penalty(const Gaps& gaps) noexcept : usual_gap{gaps.median} {
-    if (gaps.longest <= kMostEvenRatio * gaps.median) return;
+    if (gaps.unevenness <= kMostUneven) return;
     order = 2;
     differences = {1.0, -2.0, 1.0, 0.0};
     noise_factor = 0.0884;
@@ -245,15 +247,27 @@ std::size_t interval_count(double length, double spacing) noexcept {
   return static_cast<std::size_t>(std::clamp(std::round(length / spacing), 8.0, 1e9));
 }
 
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 Gaps gaps_of(std::span<const Vec2> points, bool closed, double length) {
   std::vector<double> gaps;
   gaps.reserve(points.size());
   for (std::size_t i = 1; i < points.size(); ++i) gaps.push_back((points[i] - points[i - 1]).norm());
-  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-  std::nth_element(gaps.begin(), middle, gaps.end());
-  const double closing = closed ? (points.front() - points.back()).norm() : 0.0;
-  return {*middle, std::max(closing, *std::max_element(gaps.begin(), gaps.end())),
-          length / static_cast<double>(points.size())};
+  Gaps found{.median = median_of(gaps), .mean = length / static_cast<double>(points.size())};
+  if (closed) gaps.push_back((points.front() - points.back()).norm());
+  const auto n = static_cast<std::ptrdiff_t>(gaps.size());
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    std::vector<double> near;
+    for (std::ptrdiff_t k = i - kNearGaps; k <= i + kNearGaps; ++k)
+      if (closed || (k >= 0 && k < n)) near.push_back(gaps[static_cast<std::size_t>((k % n + n) % n)]);
+    const double usual = std::max(median_of(std::move(near)), 1e-9);
+    found.unevenness = std::max(found.unevenness, gaps[static_cast<std::size_t>(i)] / usual);
+  }
+  return found;
 }
 
 /// Distance of point i from the line, across it [m].

@@ -21,11 +21,11 @@ struct SmoothLine {
 };
 
 /// Penalised cubic B-spline r(s) that minimises Σ Δsᵢ |r(sᵢ) − pᵢ|² + ℓ^2m ∫ |r⁽ᵐ⁾|² ds over the distance s
-/// (docs/tracks.md, eq. 1; Eilers and Marx 1996). m is 3, and 2 where the longest gap is over four times the
-/// median one. Wavelengths below about 2π ℓ are damped. ℓ is what `sigma` demands: noise of that size leaves
-/// 0.003 1/m of curvature noise (eq. 2). It shrinks (and the spacing with it) where the line would leave the
-/// points by more than their noise explains: rms > σ or any > 4 σ, with m = 2 any > 2 σ (plus millimetres,
-/// for σ = 0).
+/// (docs/tracks.md, eq. 1; Eilers and Marx 1996). m is 3, and 2 where a gap is over four times the median of
+/// the seven around it. Wavelengths below about 2π ℓ are damped. ℓ is what `sigma` demands: noise of that
+/// size leaves 0.003 1/m of curvature noise (eq. 2). It shrinks (and the spacing with it) where the line
+/// would leave the points by more than their noise explains: rms > σ or any > 4 σ, with m = 2 any > 2 σ (plus
+/// millimetres, for σ = 0).
 ///
 /// Pre: finite points, at least two different. Fails with kInvalidArgument when the line needs more than
 /// 200,000 knots, and where there are so many to each point that rounding wins. Memory: 400,000 knots.
