@@ -35,7 +35,11 @@ Result<wire::ServeSummary> serve_until_stopped(const Options& options) {
   if (!track) return fail(track.error());
   return drive_external_car(
       options, std::move(*scenario), std::move(*track),
-      [](std::uint16_t port) { return fmt::format("a simulator on port {}", port); }, stop);
+      [](std::uint16_t port) { return fmt::format("a simulator on port {}", port); }, stop,
+      [&options](wire::ServeOptions serving, auto&&... rest) {
+        serving.clock.lock_step = 1e-3 * options.lock_step_ms;
+        return wire::serve(serving, std::forward<decltype(rest)>(rest)...);
+      });
 }
 
 }  // namespace

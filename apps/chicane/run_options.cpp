@@ -169,6 +169,9 @@ void add_serve(CLI::App& command, Options& options) {
       command, options, "--track", "track", "NAME|FILE",
       "Road of the simulator: judges tyres, tells the gap to the limit. For the original game its course's "
       "lake_track_waypoints.csv; lap times need none");
+  add(command, "--lock-step-ms", options.lock_step_ms, "X",
+      "Time that the simulator advances with each answer; else the measurements show its clock")
+      ->check(CLI::Range(1.0, 1000.0));
   add_port(command, options);
   add_record(command, options);
   command.add_flag("--json", options.is_json,

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "chicane/run/make.hpp"
@@ -73,6 +76,47 @@ TEST_F(ExternalDriveTest, TrustsNothingLearnedAfterALongGap) {
   EXPECT_TRUE(frames_[2].begins);
   EXPECT_TRUE(frames_[3].begins);  // the first may have waited as long
   EXPECT_FALSE(frames_[4].begins);
+}
+
+TEST_F(ExternalDriveTest, CountsByTheClockOfASlowSimulatorAndSaysSoOnce) {
+  std::vector<std::string> said;
+  hooks_.on_clock = [&](std::string_view sentence) { said.emplace_back(sentence); };
+  auto controller = make_controller(scenario_);
+  ASSERT_TRUE(controller);
+  ExternalDrive drive({.scenario = scenario_, .clock = {.is_estimated = true}}, std::move(*controller),
+                      hooks_);
+  const auto start = ExternalDrive::Clock::now();
+  double x = 0.0, v = 0.0;
+  for (int i = 0; i < 150; ++i) {
+    ExternalDrive::Sighting now = seen(start + i * milliseconds{120}, x);
+    now.measured->speed = v;
+    for (int k = 0; k < 6; ++k)
+      now.measured->waypoints[static_cast<std::size_t>(k)] = {15.0 * (std::floor(x / 15.0) + k - 1), 0.0};
+    const double drive_on = drive.step(now).applied.throttle;
+    drive.finish();
+    const double gained = 0.06 * longitudinal_acceleration(scenario_.vehicle, drive_on, v);
+    x += 0.06 * (v + 0.5 * gained);
+    v = std::max(v + gained, 0.0);
+  }
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0], "the simulator's clock runs at 0.50 of the wall's: counted by it");
+  const telemetry::Frame& last = frames_.back();
+  EXPECT_NEAR(last.time - frames_[frames_.size() - 11].time, 0.6, 0.01);
+  EXPECT_NEAR(last.measurement.delay, 0.05, 0.001);
+  EXPECT_GT(v, 10.0);
+  EXPECT_EQ(last.guard.reason, controller::GuardReason::kNone);
+}
+
+TEST_F(ExternalDriveTest, ARunThatBeginsAnewTrustsNothingLearned) {
+  ExternalDrive drive = make();
+  const auto now = ExternalDrive::Clock::now();
+  drive.step(seen(now, 0.0));
+  drive.finish();
+  drive.begin_anew();
+  drive.step(seen(now + milliseconds{40}, 70.0));
+  drive.finish();
+  EXPECT_TRUE(frames_[1].begins);
+  EXPECT_NE(frames_[1].guard.reason, controller::GuardReason::kPositionJump);
 }
 
 }  // namespace

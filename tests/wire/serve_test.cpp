@@ -82,6 +82,16 @@ TEST(Serve, ManualDrivingIsAnsweredAtOnceWithoutTheLatency) {
   EXPECT_EQ(served.controller.steps(), 0);
 }
 
+TEST(Serve, BeginsAnewOnceWhenAPersonDrives) {
+  Served served;
+  RawSocket client = served.connect();
+  for (const bool is_manual : {false, true, true, false, false}) {
+    client.send(RawSocket::masked(is_manual ? R"(42["telemetry",null])" : std::string(kRealTelemetry)));
+    ASSERT_TRUE(client.frame());
+  }
+  EXPECT_EQ(served.controller.resets(), 2) << "with the connection, and when the person takes over";
+}
+
 TEST(Serve, TheLatencyDelaysTheAnswerAndNothingElse) {
   ServeOptions options = Served::immediate();
   options.latency = 300ms;

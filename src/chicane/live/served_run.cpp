@@ -100,6 +100,7 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
                     "used, and laps are taken from where the car drives",
                     track_->name(), distance));
   };
+  serving.on_clock = [&](std::string_view sentence) { publisher.say(sentence); };
   serving.log = [&](std::string_view line) { publisher.say(line); };
   serving.on_listening = on_listening;
   serving.on_end = [&] {

@@ -35,15 +35,21 @@ ExternalDrive::ExternalDrive(ExternalDriveOptions options, std::unique_ptr<contr
       hooks_{hooks},
       scenario_{options_.scenario},
       cycle_{std::move(controller), options_.scenario, options_.track},
-      roadside_{options_.track, options_.scenario} {
+      roadside_{options_.track, options_.scenario},
+      clock_{options_.clock, options_.scenario.vehicle, Clock::now()} {
   cycle_.use_line(options_.lap);
 }
 
 void ExternalDrive::begin() {
+  begin_anew();
+  clock_.begin();
+  begins_again_ = false;
+}
+
+void ExternalDrive::begin_anew() {
   cycle_.begin(cycle_.next());
   last_received_.reset();
-  last_begun_.reset();
-  begins_again_ = false;
+  last_time_.reset();
   roadside_.resume();
 }
 
@@ -52,23 +58,22 @@ std::optional<double> ExternalDrive::gap(Clock::time_point received) const {
   return seconds(received - *last_received_);
 }
 
-double ExternalDrive::time(Clock::time_point at) const { return seconds(at - started_); }
-
 const telemetry::Frame& ExternalDrive::step(const Sighting& sighting) {
   if (const auto since = gap(sighting.received)) watch_gap(*since, sighting.usual_delay);
+  count_time(sighting);
   last_received_ = sighting.received;
-  take_up_changes(time(sighting.received));
+  const double now = time(sighting.received);
+  take_up_changes(now);
   check_road(sighting);
   frame_.has_measurement = sighting.measured.has_value();
   frame_.measurement = frame_.has_measurement ? *sighting.measured : nothing_measured();
-  frame_.measurement.time = time(sighting.received);
-  frame_.measurement.delay = sighting.delay;
+  frame_.measurement.time = now;
+  frame_.measurement.delay = clock_.delay(sighting.delay);
   frame_.applied = last_sent_;
-  const Clock::time_point now = Clock::now();
   const Deadline deadline =
       options_.step_budget.count() > 0 ? Deadline::after(options_.step_budget) : Deadline::stopwatch();
-  cycle_.step({.deadline = deadline, .interval = last_begun_ ? seconds(now - *last_begun_) : 0.0}, frame_);
-  last_begun_ = now;
+  cycle_.step({.deadline = deadline, .interval = last_time_ ? now - *last_time_ : 0.0}, frame_);
+  last_time_ = now;
   last_sent_ = frame_.result.command;
   return frame_;
 }
@@ -88,12 +93,17 @@ void ExternalDrive::finish() {
 /// not known which. The first telemetry may have waited as long, so that the second one begins anew, too.
 void ExternalDrive::watch_gap(double gap, double delay) {
   const bool is_long = gap > seconds(options_.forget_after) + kGapInDelays * delay;
-  if (is_long || begins_again_) {
-    cycle_.begin(cycle_.next());
-    last_begun_.reset();
-    roadside_.resume();
-  }
+  if (is_long || begins_again_) begin_anew();
   begins_again_ = is_long;
+}
+
+/// What was computed by another time does not hold.
+void ExternalDrive::count_time(const Sighting& sighting) {
+  const model::Measurement* measured = sighting.measured ? &*sighting.measured : nullptr;
+  const bool is_another = clock_.advance(sighting.received, measured, std::exchange(acting_, last_sent_));
+  if (!is_another) return;
+  begin_anew();
+  if (hooks_.on_clock) hooks_.on_clock(clock_.news());
 }
 
 /// A track that was told, and is not the one whose waypoints are shown, is not used any more.

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/measurement.hpp"
@@ -12,6 +13,7 @@
 #include "chicane/road/track.hpp"
 #include "chicane/run/control_cycle.hpp"
 #include "chicane/run/lap_planner.hpp"
+#include "chicane/run/plant_clock.hpp"
 #include "chicane/run/roadside.hpp"
 #include "chicane/run/setting.hpp"
 #include "chicane/safety/stop_plan.hpp"
@@ -32,6 +34,7 @@ struct ExternalDriveOptions {
   std::chrono::nanoseconds step_budget{0};        ///< deadline of a control step; 0 = none
   /// From cycle to cycle, beside twice the delay: after so long nothing learned is trusted.
   std::chrono::nanoseconds forget_after = std::chrono::milliseconds{500};
+  PlantClockOptions clock{};  ///< what the run's time is counted by
 };
 
 /// Empty functions are not called.
@@ -42,6 +45,7 @@ struct ExternalDriveHooks {
   std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< a lap was completed
   /// The car drives on another road than ExternalDriveOptions::track, so far from it at most [m]. Once.
   std::function<void(double)> on_other_road{};
+  std::function<void(std::string_view)> on_clock{};  ///< time is counted otherwise: a sentence for people
 };
 
 /// The control cycles of a car that is not simulated here, whatever dialect it speaks: the cycle, the account
@@ -55,8 +59,8 @@ class ExternalDrive {
   struct Sighting {
     Clock::time_point received{};                  ///< when the measurement came
     std::optional<model::Measurement> measured{};  ///< none: unusable, or it did not come
-    double delay = 0.0;                            ///< expected until the command acts [s]
-    double usual_delay = 0.0;                      ///< the same as it was expected at the cycle before [s]
+    double delay = 0.0;        ///< expected until the command acts, by the wall's clock [s]
+    double usual_delay = 0.0;  ///< the same as it was expected at the cycle before [s]
   };
 
   /// Pre: `controller` is not null. `hooks` outlive this.
@@ -67,8 +71,8 @@ class ExternalDrive {
   void begin();
   /// Time between the last two cycles, if the one that comes now is `received`; none at the beginning [s].
   [[nodiscard]] std::optional<double> gap(Clock::time_point received) const;
-  /// A person has driven meanwhile: the gap to the next measurement means nothing.
-  void forget_time() { last_received_.reset(); }
+  /// A person drives, or the car was put elsewhere: the next measurement is the first of a run.
+  void begin_anew();
 
   /// One cycle: the command is the frame's.
   const telemetry::Frame& step(const Sighting& sighting);
@@ -78,12 +82,13 @@ class ExternalDrive {
   [[nodiscard]] const telemetry::Frame& frame() const { return frame_; }
   /// The stop at hand with the last command.
   [[nodiscard]] const safety::StopPlan& stop() const { return cycle_.stop(); }
-  /// Time of the run [s]: since this was made.
-  [[nodiscard]] double time(Clock::time_point at) const;
+  /// Time of the run [s], since this was made, by PlantClock.
+  [[nodiscard]] double time(Clock::time_point at) const { return clock_.at(at); }
   [[nodiscard]] telemetry::RunSummary summary() const { return roadside_.summary(); }
 
  private:
   void watch_gap(double gap, double delay);
+  void count_time(const Sighting& sighting);
   void check_road(const Sighting& sighting);
   void take_up_changes(double time);
 
@@ -93,12 +98,13 @@ class ExternalDrive {
   ControlCycle cycle_;
   LapPlanner planner_{LapPlanner::Clock::kReal};
   Roadside roadside_;
-  const Clock::time_point started_ = Clock::now();
+  PlantClock clock_;
   std::optional<Clock::time_point> last_received_;
-  std::optional<Clock::time_point> last_begun_;
+  std::optional<double> last_time_;  ///< of the last cycle since the run began [s]
   bool begins_again_ = false;
   bool is_other_road_ = false;  ///< than the one that was told
   model::Command last_sent_;
+  model::Command acting_;  ///< between the last two measurements: a command acts from the next one on
   telemetry::Frame frame_;
 };
 

@@ -66,6 +66,12 @@ struct Request {
   bool wants_stop_plan = false;
 };
 
+/// Telemetry carries no time: the simulator's clock shows in how far the car has moved.
+run::ExternalDriveOptions by_simulator_clock(run::ExternalDriveOptions options) {
+  options.clock.is_estimated = true;
+  return options;
+}
+
 /// Whether the query of a request's target ("/path?a=1&b=2") has this item.
 bool has_item(std::string_view target, std::string_view item) {
   std::size_t begin = target.find('?');
@@ -89,7 +95,7 @@ class UdacityEndpoint::Control {
       : options_{options},
         answer_{std::move(answer)},
         drive_hooks_{hooks},
-        drive_{options, std::move(controller), drive_hooks_},
+        drive_{by_simulator_clock(options), std::move(controller), drive_hooks_},
         delay_{seconds(options.latency) + kTypicalTurnAround},
         thread_{[this] { work(); }} {}
   ~Control() { stop(); }
@@ -136,7 +142,7 @@ class UdacityEndpoint::Control {
       if (request.from != driven_) begin(request.from);
       if (request.kind == Request::Kind::kManual) {
         ++manual_;
-        drive_.forget_time();
+        if (!std::exchange(is_by_hand_, true)) drive_.begin_anew();
         answer_(request, protocol::encode_manual(), std::chrono::nanoseconds{0});
       } else {
         drive(request);
@@ -152,6 +158,7 @@ class UdacityEndpoint::Control {
   }
 
   void drive(const Request& request) {
+    is_by_hand_ = false;
     run::ExternalDrive::Sighting sighting{.received = request.received, .usual_delay = delay_.value()};
     if (const auto gap = drive_.gap(request.received)) {
       delay_.add(*gap);
@@ -184,6 +191,7 @@ class UdacityEndpoint::Control {
   DelayMeter delay_;
   telemetry::RunSummary run_;
   net::ConnectionId driven_ = 0;
+  bool is_by_hand_ = false;  ///< a person drives
   std::atomic<std::uint64_t> answers_{0};
   std::atomic<std::uint64_t> manual_{0};
   std::atomic<std::uint64_t> interventions_{0};

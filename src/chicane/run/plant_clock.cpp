@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/run/plant_clock.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
+
+namespace chicane::run {
+namespace {
+
+constexpr double kFullSize = 4.5;      // [m] length of a car
+constexpr double kLegWay = 0.5;        // [m] of one leg, for a car in full size
+constexpr double kLeastSpeed = 0.5;    // [m/s] that tells a time, for a car in full size
+constexpr double kLongestStep = 5.0;   // [s] between measurements that say anything of each other
+constexpr std::size_t kLeastLegs = 5;  // that tell a clock
+constexpr double kClockAcross = 0.3;   // share of the way that a car may move across its heading
+constexpr double kJump = 0.3;          // [m] and beside it
+constexpr double kSpeedJump = 2.0;     // [m/s] and
+constexpr double kMostBraking = 20.0;  // [m/s²] by which a speed changes
+constexpr double kDrives = 0.1;        // pedal that drives
+constexpr double kPedalMemory = 3.0;   // [s]
+constexpr double kLeastAsked = 1.0;    // [m/s] after which a pedal tells a clock from a speed
+constexpr double kSteadier = 0.5;      // share of the other's deviation with which one explanation is better
+constexpr double kLeastDeviation = 0.02;
+constexpr double kFollowed = 0.1;  // share of a difference that is made up for with each leg
+constexpr double kBurst = 0.5;     // share by which a step in lock step differs that had to wait
+constexpr double kOfStep = 0.15;   // share by which its time differs from the others'
+constexpr double kSame = 0.03;     // logarithm of a ratio that counts as 1
+
+double in_seconds(PlantClock::Clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+bool is_finite(const model::Measurement& each) {
+  return std::isfinite(each.x + each.y + each.psi + each.speed);
+}
+
+}  // namespace
+
+PlantClock::PlantClock(const PlantClockOptions& options, const model::VehicleParams& vehicle,
+                       Clock::time_point start)
+    : options_{options},
+      vehicle_{vehicle},
+      size_{std::min(vehicle.length / kFullSize, 1.0)},
+      wall_{start},
+      step_{options.lock_step} {}
+
+void PlantClock::begin() {
+  ratio_ = 1.0;
+  step_ = options_.lock_step;
+  has_last_ = false;
+  forget();
+}
+
+/// What was measured says nothing of what will be: the speed sensor changed.
+void PlantClock::forget() {
+  is_speed_known_ = false;
+  count_ = 0;
+  leg_ = {};
+  asked_ = gained_ = 0.0;
+}
+
+double PlantClock::at(Clock::time_point wall) const {
+  const double since = ratio_ * in_seconds(wall - wall_);
+  return time_ + (step_ > 0.0 ? std::clamp(since, 0.0, step_) : since);
+}
+
+bool PlantClock::advance(Clock::time_point received, const model::Measurement* measured,
+                         const model::Command& acting) {
+  const double wall = in_seconds(received - wall_);
+  wall_ = received;
+  Leg step;
+  const bool is_whole = measured != nullptr && is_finite(*measured);
+  if (is_whole && has_last_ && options_.is_estimated && wall > 0.0 && wall < kLongestStep)
+    step = step_of(wall, *measured, acting);
+  time_ += time_of(wall, step);
+  has_last_ = is_whole;
+  if (is_whole) last_ = *measured;
+  return step.steps > 0 && add(step) && take_up();
+}
+
+/// Where one message of a simulator in lock step had to wait, its displacement tells the time.
+double PlantClock::time_of(double wall, const Leg& step) const {
+  if (step_ > 0.0) return step_;
+  const double expected = ratio_ * wall;
+  if (step.way < kLegWay * size_ || count_ < kLeastLegs) return expected;
+  const double usual = fit([](const Leg& leg) { return leg.steps; }).value;
+  const bool has_waited = std::fabs(step.plant - expected) > kBurst * expected;
+  return has_waited && std::fabs(step.plant - usual) < kOfStep * usual ? step.plant : expected;
+}
+
+/// The time that the simulator advanced by since the measurement before; no steps where that does not show.
+PlantClock::Leg PlantClock::step_of(double wall, const model::Measurement& now,
+                                    const model::Command& acting) {
+  const double speed = 0.5 * (std::fabs(now.speed) + std::fabs(last_.speed));
+  const double heading = last_.psi + 0.5 * angle_difference(now.psi, last_.psi);
+  const double dx = now.x - last_.x;
+  const double dy = now.y - last_.y;
+  const double way = dx * cos(heading) + dy * sin(heading);
+  const double across = std::fabs(dy * cos(heading) - dx * sin(heading));
+  const double gained = std::fabs(now.speed) - std::fabs(last_.speed);
+  const double plant = way / std::max(speed, 1e-6);
+  const double longest = std::min(std::max(plant, ratio_ * wall), 1.0);
+  if (std::fabs(gained) > kSpeedJump + kMostBraking * longest) forget();
+  const bool is_driving = speed > kLeastSpeed * std::sqrt(size_) && way > 0.0;
+  const bool is_along = across < kJump * size_ + kClockAcross * way;
+  if (!is_driving || !is_along || plant < kSlowest * wall || plant > kFastest * wall) {
+    leg_ = {};
+    return {};
+  }
+  if (acting.throttle > kDrives) {
+    const double kept = exp(-plant / kPedalMemory);
+    asked_ = kept * asked_ + plant * longitudinal_acceleration(vehicle_, acting.throttle, speed);
+    gained_ = kept * gained_ + gained;
+  }
+  return {.wall = wall, .plant = plant, .way = way, .steps = 1};
+}
+
+/// True: another leg is complete.
+bool PlantClock::add(const Leg& step) {
+  leg_ = {leg_.wall + step.wall, leg_.plant + step.plant, leg_.way + step.way, leg_.steps + 1};
+  if (leg_.way < kLegWay * size_) return false;
+  legs_[count_++ % kLegs] = leg_;
+  leg_ = {};
+  return count_ >= kLeastLegs;
+}
+
+template <class Base>
+PlantClock::Fit PlantClock::fit(const Base& base) const {
+  const std::size_t size = std::min(count_, kLegs);
+  std::array<double, kLegs> values{};
+  for (std::size_t i = 0; i < size; ++i) values[i] = log(legs_[i].plant / base(legs_[i]));
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(size / 2);
+  std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(size));
+  Fit fit{.value = exp(*middle)};
+  for (std::size_t i = 0; i < size; ++i)
+    fit.deviation += std::fabs(values[i] - *middle) / static_cast<double>(size);
+  return fit;
+}
+
+/// Whether the pedals gain speed as in the time that the displacement shows: with a speed in another unit
+/// they gain the square of its share.
+bool PlantClock::agrees_with_pedal() const {
+  if (is_speed_known_) return true;
+  if (!(asked_ > kLeastAsked * std::sqrt(size_)) || !(gained_ > 0.0)) return false;
+  return std::fabs(log(gained_ / asked_)) < log(kPedalError);
+}
+
+bool PlantClock::take_up() {
+  if (options_.lock_step > 0.0) return false;
+  const Fit by_clock = fit([](const Leg& leg) { return leg.wall; });
+  const Fit by_step = fit([](const Leg& leg) { return leg.steps; });
+  const bool was_in_step = step_ > 0.0;
+  const double worse = std::max(by_clock.deviation, by_step.deviation);
+  const bool is_told = worse > kLeastDeviation;
+  const bool is_in_step = was_in_step ? !(is_told && by_clock.deviation < kSteadier * by_step.deviation)
+                                      : is_told && by_step.deviation < kSteadier * by_clock.deviation;
+  const double counted = was_in_step ? step_ : ratio_;
+  const double found = is_in_step ? by_step.value : by_clock.value;
+  const double deviation = is_in_step ? by_step.deviation : by_clock.deviation;
+  const double size = static_cast<double>(std::min(count_, kLegs));
+  const double off = log(found / counted);
+  const bool is_another =
+      is_in_step != was_in_step || std::fabs(off) > log(kLeastChange) + 2.0 * deviation / std::sqrt(size);
+  if (!is_another) {
+    if (count_ >= kLegs) is_speed_known_ = true;
+    // What is counted otherwise anyway is followed closely.
+    if (was_in_step || ratio_ != 1.0) (was_in_step ? step_ : ratio_) *= exp(kFollowed * off);
+    return false;
+  }
+  if (!agrees_with_pedal()) return false;
+  is_speed_known_ = true;
+  step_ = is_in_step ? by_step.value : 0.0;
+  ratio_ = std::fabs(log(by_clock.value)) < kSame ? 1.0 : by_clock.value;
+  count_ = 0;
+  return true;
+}
+
+std::string PlantClock::news() const {
+  const std::string counted = step_ > 0.0
+                                  ? fmt::format("the simulator advances {:.3g} s with each answer", step_)
+                                  : fmt::format("the simulator's clock runs at {:.2f} of the wall's", ratio_);
+  const bool is_doubtful = step_ == 0.0 && ratio_ != 1.0 && 2.0 * std::fabs(log(ratio_)) < log(kPedalError);
+  return counted + ": counted by it" +
+         (is_doubtful ? "; a speed that is wrong by that share looks the same" : "");
+}
+
+}  // namespace chicane::run

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+#include "chicane/model/measurement.hpp"
+#include "chicane/model/vehicle.hpp"
+
+namespace chicane::run {
+
+/// What the time of a car is counted by that another program simulates.
+struct PlantClockOptions {
+  bool is_estimated = false;  ///< false: by arrival; true: by the ratio that the measurements show
+  double lock_step = 0.0;     ///< time that the simulator advances with each answer [s]; 0: by its own clock
+};
+
+/// Time of the run of a car that another program simulates (docs/protocol_behaviour.md, "The clock"). A
+/// displacement over its speed is the time that the simulator has advanced by. Over the last measurements of
+/// a car that drives it tells whether the simulator runs at a ratio of the wall's time, or in lock step: by
+/// the same time with each answer. Noise and delays of a busy machine change neither.
+///
+/// A speed in another unit looks like another clock, but for the acceleration that a pedal gives: no ratio is
+/// taken up that contradicts it. No allocation but in news(); one thread.
+class PlantClock {
+ public:
+  using Clock = std::chrono::steady_clock;
+  static constexpr double kSlowest = 0.02, kFastest = 20.0;  ///< ratios that are looked for
+  static constexpr double kLeastChange = 1.15;               ///< factor by which another ratio differs
+  static constexpr double kPedalError = 1.5;  ///< factor by which the effect of a pedal may differ
+
+  PlantClock(const PlantClockOptions& options, const model::VehicleParams& vehicle, Clock::time_point start);
+
+  /// Another car: nothing is known of its clock. The time goes on.
+  void begin();
+  /// A message came at `received`, with `measured` (null: nothing usable), while `acting` acted on the car.
+  /// True: time is counted otherwise from now on, what was computed by the time before does not hold.
+  bool advance(Clock::time_point received, const model::Measurement* measured, const model::Command& acting);
+
+  /// Time of the run [s] at a moment of the wall's clock.
+  [[nodiscard]] double at(Clock::time_point wall) const;
+  /// Run time in which a command acts that the wall's clock expects after `delay` [s].
+  [[nodiscard]] double delay(double delay) const { return step_ > 0.0 ? step_ : ratio_ * delay; }
+  [[nodiscard]] double ratio() const { return ratio_; }     ///< of run time to the wall's time
+  [[nodiscard]] double lock_step() const { return step_; }  ///< [s]; 0: by its own clock
+  /// How time is counted, as a sentence for people.
+  [[nodiscard]] std::string news() const;
+
+ private:
+  /// One stretch of driving.
+  struct Leg {
+    double wall = 0.0;   ///< [s]
+    double plant = 0.0;  ///< displacement over speed [s]
+    double way = 0.0;    ///< [m]
+    int steps = 0;
+  };
+  static constexpr std::size_t kLegs = 12;
+  /// Median of the legs' ratios, and the mean deviation of their logarithms from it.
+  struct Fit {
+    double value = 0.0, deviation = 0.0;
+  };
+
+  void forget();
+  [[nodiscard]] Leg step_of(double wall, const model::Measurement& now, const model::Command& acting);
+  [[nodiscard]] bool add(const Leg& step);
+  [[nodiscard]] bool take_up();
+  [[nodiscard]] bool agrees_with_pedal() const;
+  template <class Base>
+  [[nodiscard]] Fit fit(const Base& base) const;
+  [[nodiscard]] double time_of(double wall, const Leg& step) const;
+
+  PlantClockOptions options_;
+  model::VehicleParams vehicle_;
+  double size_;  ///< of the car over one in full size
+  Clock::time_point wall_;
+  double time_ = 0.0;  ///< of the run, at wall_ [s]
+  double ratio_ = 1.0;
+  double step_;
+  bool has_last_ = false;
+  bool is_speed_known_ = false;  ///< the speed has agreed with the clock, or a pedal with the speed
+  model::Measurement last_;
+  Leg leg_;
+  std::array<Leg, kLegs> legs_{};
+  std::size_t count_ = 0;
+  double asked_ = 0.0, gained_ = 0.0;  ///< speed that the pedal should have given lately, and has [m/s]
+};
+
+}  // namespace chicane::run
