@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
 #include "chicane/controller/guard_words.hpp"
 
@@ -25,9 +26,16 @@ std::string intervention_of(const telemetry::Frame& frame) {
   return controller::sentence_of(controller::describe_driver(frame.guard.rung, frame.guard.reason));
 }
 
+/// What ends a stop that does not end when the sensor agrees again; empty: nothing has to be done.
+std::string_view end_of(controller::GuardReason reason) {
+  using enum controller::GuardReason;
+  const bool is_tried = reason == kSpeedMismatch || reason == kHeadingJump || reason == kPositionJump;
+  return is_tried ? "; it is tried by half a metre, else ends by a restart, or by driving by hand" : "";
+}
+
 /// Why a car stands: the intervention, else the pedal that acts on it.
 std::string reason_of_standing(const telemetry::Frame& frame) {
-  if (is_intervention(frame)) return intervention_of(frame);
+  if (is_intervention(frame)) return intervention_of(frame).append(end_of(frame.guard.reason));
   const double pedal = frame.applied.throttle;
   if (pedal > kNoPedal) return fmt::format("a throttle of {:.2f} does not move it", pedal);
   return pedal < -kNoPedal ? fmt::format("the controller brakes with {:.2f}", -pedal)

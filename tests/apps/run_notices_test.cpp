@@ -106,6 +106,16 @@ TEST(RunNotices, SayOnceThatTheCarStandsAndThatItMovesAgain) {
   EXPECT_THAT(run.said[1], HasSubstr("the car moves again, after 11.9 s"));
 }
 
+TEST(RunNotices, SayWhatEndsAStopForAPlaceInDoubt) {
+  Watched run;
+  telemetry::Frame frame = stopped_by_guard();
+  frame.guard.reason = GuardReason::kPositionJump;
+  frame.measurement.speed = 0.0;
+  run.see(frame, 3.0);
+  ASSERT_FALSE(run.said.empty());
+  EXPECT_THAT(run.said.back(), HasSubstr("tried by half a metre, else ends by a restart"));
+}
+
 TEST(RunNotices, SayWhyTheCarStands) {
   const auto reason = [](const telemetry::Frame& frame) {
     Watched run;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string_view>
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
@@ -55,6 +56,31 @@ TEST(ControlCycle, CountsItsCyclesAndSaysWhereARunBegins) {
   step();
   EXPECT_TRUE(frame->begins);
   EXPECT_EQ(frame->cycle, 40U);
+}
+
+/// A user's controller may write any size; a model car's plan is brought to scale point by point.
+class EndlessPlan final : public controller::Controller {
+ public:
+  const controller::StepResult& step(const model::Measurement&, Deadline) noexcept override {
+    result_.plan.size = result_.plan.reference_size = 1'000'000;
+    result_.command = {0.0, 0.1};
+    return result_;
+  }
+  void reset() noexcept override {}
+  [[nodiscard]] std::string_view name() const noexcept override { return "endless-plan"; }
+
+ private:
+  controller::StepResult result_;
+};
+
+TEST(ControlCycle, KeepsAPlanOfAnySizeWithinItsCapacity) {
+  const auto scenario = protocol::compose({.scenario_file = {}, .settings = {{"car", "f1tenth"}}}).value();
+  ControlCycle cycle(std::make_unique<EndlessPlan>(), scenario, nullptr);
+  const auto frame = std::make_unique<telemetry::Frame>();
+  frame->measurement = {.x = 0.0, .y = 0.0, .psi = 0.0, .speed = 1.0};
+  cycle.step({.interval = 0.04}, *frame);
+  EXPECT_LE(frame->result.plan.size, controller::Plan::kCapacity);
+  EXPECT_LE(frame->result.plan.reference_size, controller::Plan::kCapacity);
 }
 
 TEST(ControlCycle, StopsWhenNothingIsMeasured) {

@@ -78,6 +78,34 @@ road::RoadData straight_road(int intervals) {
   return road;
 }
 
+TEST_F(GuardTest, BeginsAControllerAnewThatHasNoAnswerToWholeMeasurements) {
+  scripted_.result.answer = Answer::kNone;
+  const int before = scripted_.resets;
+  for (int i = 0; i <= 60; ++i) step(at(1000.0 + 0.04 * i));
+  EXPECT_EQ(scripted_.resets - before, 2);
+  for (int i = 61; i <= 120; ++i) {
+    model::Measurement blind = at(1000.0 + 0.04 * i);
+    blind.x = kNaN;
+    step(blind);
+  }
+  EXPECT_EQ(scripted_.resets - before, 2) << "nothing to answer";
+}
+
+TEST_F(GuardTest, BelievesThePlaceToWhichAPersonHasDriven) {
+  scripted_.result.command = {0.0, 0.2};
+  const auto elsewhere = [](int i) {
+    model::Measurement now = at(0.04 * i);
+    now.y = 70.0;
+    return now;
+  };
+  for (int i = 0; i < 60; ++i) step(at(0.04 * i));
+  for (int i = 60; i < 70; ++i) step(elsewhere(i));
+  EXPECT_EQ(result_.guard.reason, controller::GuardReason::kPositionJump);
+  for (int i = 70; i < 80; ++i) step(elsewhere(i), {.interval = 0.04, .manual = model::Command{0.0, 0.2}});
+  for (int i = 80; i < 90; ++i) step(elsewhere(i));
+  EXPECT_NE(result_.guard.reason, controller::GuardReason::kPositionJump);
+}
+
 /// A car that stands although it should move has a sentence and a way out: its pedals are released now and
 /// then, more often where a brake is known to stay on.
 TEST(GuardOfAStuckCar, NamesItAndReleasesItsPedals) {

@@ -79,5 +79,54 @@ TEST(ResetWatch, DoesNotWaitForACarThatStillMovesElsewhere) {
   EXPECT_FALSE(watch.is_waiting());
 }
 
+/// A localiser that jumps while the car drives says nothing of standstill: the car has to rest first.
+TEST(ResetWatch, AsksACarThatRestsWhereItIsMeasured) {
+  for (const bool answers : {true, false}) {
+    ResetWatch watch;
+    model::Measurement now{.x = 0.0, .speed = 10.0};
+    watch.see(now, 0.0);
+    now.x = 70.0;
+    now.time += kCycle;
+    watch.see(now, 0.0);
+    EXPECT_TRUE(watch.has_jumped());
+    EXPECT_FALSE(watch.is_waiting());
+    EXPECT_FALSE(watch.rests());
+    now.speed = 0.0;
+    for (double since = 0.0; since < ResetWatch::kRest + 2 * kCycle; since += kCycle) {
+      now.time += kCycle;
+      watch.see(now, 0.0);
+    }
+    EXPECT_TRUE(watch.rests());
+    watch.ask();
+    auto moves = driven(1.0);
+    bool has_answered = false;
+    for (double since = 0.0; since < 3.0; since += kCycle) {
+      now.time += kCycle;
+      if (answers) moves(now);
+      watch.see(now, 0.3);
+      has_answered |= watch.has_answered();
+    }
+    EXPECT_EQ(has_answered, answers);
+    EXPECT_EQ(watch.is_waiting(), !answers);
+    watch.give_up();
+    EXPECT_FALSE(watch.is_waiting());
+    for (double since = 0.0; since < 2.0; since += kCycle) {
+      now.time += kCycle;
+      now.speed = 0.0;
+      watch.see(now, 0.0);
+    }
+    EXPECT_EQ(watch.rests(), answers) << "a place that did not answer is not tried again";
+  }
+}
+
+TEST(ResetWatch, BelievesNoSpeedOfHalfTheWay) {
+  auto halved = [moves = driven(1.0)](model::Measurement& now) mutable {
+    now.speed *= 2.0;
+    moves(now);
+    now.speed *= 0.5;
+  };
+  EXPECT_FALSE(is_believed(0.3, 1.5, halved));
+}
+
 }  // namespace
 }  // namespace chicane::safety

@@ -11,15 +11,10 @@ namespace {
 using enum controller::GuardReason;
 
 /// Judges `findings` each 40 ms for `seconds`; the last verdict.
-Supervisor::Verdict after(Supervisor& supervisor, const Findings& findings, double& time, double seconds,
-                          double speed = 20.0) {
+Supervisor::Verdict after(Supervisor& supervisor, const Findings& findings, double& time, double seconds) {
   Supervisor::Verdict verdict;
-  bool may_begin_anew = false;
-  for (const double end = time + seconds; time < end; time += 0.04) {
-    verdict = supervisor.judge(findings, time, speed);
-    may_begin_anew |= verdict.may_begin_anew;
-  }
-  verdict.may_begin_anew = may_begin_anew;
+  for (const double end = time + seconds; time < end; time += 0.04)
+    verdict = supervisor.judge(findings, time);
   return verdict;
 }
 
@@ -28,15 +23,15 @@ TEST(Supervisor, ToleratesWhatIsShortAndStopsForWhatLasts) {
     Findings findings;
     findings.*each.finding = true;
     Supervisor supervisor;
-    EXPECT_FALSE(supervisor.judge({}, 10.0, 20.0).must_stop);
+    EXPECT_FALSE(supervisor.judge({}, 10.0).must_stop);
     if (each.tolerated > 0.0) {
-      EXPECT_FALSE(supervisor.judge(findings, 10.0 + 0.999 * each.tolerated, 20.0).must_stop);
+      EXPECT_FALSE(supervisor.judge(findings, 10.0 + 0.999 * each.tolerated).must_stop);
     }
-    const Supervisor::Verdict verdict = supervisor.judge(findings, 10.001 + each.tolerated, 20.0);
+    const Supervisor::Verdict verdict = supervisor.judge(findings, 10.001 + each.tolerated);
     EXPECT_TRUE(verdict.must_stop);
     EXPECT_EQ(verdict.reason, each.reason);
-    EXPECT_FALSE(supervisor.judge({}, 10.01 + each.tolerated, 20.0).must_stop) << "it ends by itself";
-    EXPECT_EQ(supervisor.judge({}, 10.02 + each.tolerated, 20.0).reason, kNone);
+    EXPECT_FALSE(supervisor.judge({}, 10.01 + each.tolerated).must_stop) << "it ends by itself";
+    EXPECT_EQ(supervisor.judge({}, 10.02 + each.tolerated).reason, kNone);
   }
 }
 
@@ -50,9 +45,9 @@ TEST(Supervisor, HasEachConditionWithItsTimeInTheOrderOfSeverity) {
   } expected[] = {{&Findings::late, kLate, 0.12, ConditionEnd::kByItself},
                   {&Findings::unmeasured, kNotMeasured, 0.12, ConditionEnd::kByItself},
                   {&Findings::frozen, kFrozen, 0.0, ConditionEnd::kByItself},
-                  {&Findings::speed_mismatch, kSpeedMismatch, 0.1, ConditionEnd::kAfterStanding},
-                  {&Findings::heading_jump, kHeadingJump, 0.1, ConditionEnd::kByPerson},
-                  {&Findings::position_jump, kPositionJump, 0.1, ConditionEnd::kByPerson}};
+                  {&Findings::speed_mismatch, kSpeedMismatch, 0.1, ConditionEnd::kByTrial},
+                  {&Findings::heading_jump, kHeadingJump, 0.1, ConditionEnd::kByTrial},
+                  {&Findings::position_jump, kPositionJump, 0.1, ConditionEnd::kByTrial}};
   ASSERT_EQ(kConditions.size(), std::size(expected));
   for (std::size_t i = 0; i < kConditions.size(); ++i) {
     EXPECT_EQ(kConditions[i].finding, expected[i].finding) << i;
@@ -64,7 +59,7 @@ TEST(Supervisor, HasEachConditionWithItsTimeInTheOrderOfSeverity) {
 
 TEST(Supervisor, StopsAtOnceForAFrozenSensor) {
   Supervisor supervisor;
-  EXPECT_TRUE(supervisor.judge({.frozen = true}, 5.0, 20.0).must_stop);
+  EXPECT_TRUE(supervisor.judge({.frozen = true}, 5.0).must_stop);
 }
 
 /// At 300 ms between measurements the first one in doubt comes 300 ms after the last good one.
@@ -73,9 +68,9 @@ TEST(Supervisor, StopsForASpeedThatTwoMeasurementsShow) {
     Findings findings;
     findings.*each.finding = true;
     Supervisor supervisor;
-    EXPECT_FALSE(supervisor.judge({}, 5.0, 20.0).must_stop);
-    EXPECT_EQ(supervisor.judge(findings, 5.3, 20.0).must_stop, each.reason != kSpeedMismatch);
-    EXPECT_TRUE(supervisor.judge(findings, 5.6, 20.0).must_stop);
+    EXPECT_FALSE(supervisor.judge({}, 5.0).must_stop);
+    EXPECT_EQ(supervisor.judge(findings, 5.3).must_stop, each.reason != kSpeedMismatch);
+    EXPECT_TRUE(supervisor.judge(findings, 5.6).must_stop);
   }
 }
 
@@ -84,65 +79,23 @@ TEST(Supervisor, NamesTheWorstCondition) {
   double time = 0.0;
   EXPECT_EQ(after(supervisor, {.unmeasured = true, .position_jump = true}, time, 1.0).reason, kPositionJump);
   // The worst that has lasted: a jump of this moment is tolerated.
-  EXPECT_EQ(supervisor.judge({.unmeasured = true}, time, 20.0).reason, kNotMeasured);
-  EXPECT_EQ(supervisor.judge({.unmeasured = true, .position_jump = true}, time + 0.04, 20.0).reason,
-            kNotMeasured);
-}
-
-TEST(Supervisor, CountsStandingFromWhenTheCarStood) {
-  Supervisor supervisor;
-  double time = 0.0;
-  const Findings wrong{.speed_mismatch = true};
-  EXPECT_FALSE(after(supervisor, wrong, time, Supervisor::kStanding - 0.1, 0.0).may_begin_anew);
-  EXPECT_FALSE(after(supervisor, wrong, time, 0.04, Supervisor::kStandingSpeed).may_begin_anew) << "it moves";
-  EXPECT_FALSE(after(supervisor, wrong, time, Supervisor::kStanding - 0.1, 0.0).may_begin_anew);
-  EXPECT_FALSE(after(supervisor, {}, time, 0.04, 0.0).may_begin_anew) << "it agrees";
-  EXPECT_FALSE(after(supervisor, wrong, time, Supervisor::kStanding - 0.1, 0.0).may_begin_anew);
-}
-
-TEST(Supervisor, BelievesASpeedAnewAfterAMinuteAgain) {
-  Supervisor supervisor;
-  double time = 0.0;
-  const Findings wrong{.speed_mismatch = true};
-  ASSERT_TRUE(after(supervisor, wrong, time, Supervisor::kStanding + 0.2, 0.0).may_begin_anew);
-  const double at = time;
-  EXPECT_FALSE(after(supervisor, wrong, time, Supervisor::kOnceIn - 1.0, 0.0).may_begin_anew);
-  EXPECT_TRUE(after(supervisor, wrong, time, 2.0, 0.0).may_begin_anew) << time - at;
+  EXPECT_EQ(supervisor.judge({.unmeasured = true}, time).reason, kNotMeasured);
+  EXPECT_EQ(supervisor.judge({.unmeasured = true, .position_jump = true}, time + 0.04).reason, kNotMeasured);
 }
 
 TEST(Supervisor, ForgetsAllOnReset) {
   Supervisor supervisor;
   double time = 0.0;
-  EXPECT_TRUE(after(supervisor, {.heading_jump = true}, time, 5.0, 0.0).must_stop);
-  supervisor.rearm();
+  EXPECT_TRUE(after(supervisor, {.heading_jump = true}, time, 5.0).must_stop);
   supervisor.reset();
-  EXPECT_FALSE(supervisor.judge({.heading_jump = true}, 0.05, 0.0).must_stop);
-  time = 0.05;
-  EXPECT_FALSE(after(supervisor, {.heading_jump = true}, time, 5.0, 0.0).may_begin_anew) << "no person since";
+  EXPECT_FALSE(supervisor.judge({.heading_jump = true}, 0.05).must_stop);
 }
 
-TEST(Supervisor, BelievesASpeedAnewOnceWhenTheCarHasStood) {
-  Supervisor supervisor;
-  double time = 0.0;
-  const Findings wrong{.speed_mismatch = true};
-  EXPECT_FALSE(after(supervisor, wrong, time, 20.0, 5.0).may_begin_anew) << "it moves";
-  EXPECT_TRUE(after(supervisor, wrong, time, Supervisor::kStanding + 0.2, 0.0).may_begin_anew);
-  EXPECT_FALSE(after(supervisor, wrong, time, 20.0, 0.0).may_begin_anew) << "not twice within a minute";
-  supervisor.rearm();
-  EXPECT_TRUE(after(supervisor, wrong, time, Supervisor::kStanding + 0.2, 0.0).may_begin_anew) << "a person";
-}
-
-/// Believed after three seconds, a place that had jumped by 5 m led a car off the road that it stood on.
-TEST(Supervisor, BelievesAPlaceThatJumpedOnlyWhenAPersonHasTakenOver) {
-  for (const Findings& jump : {Findings{.heading_jump = true}, Findings{.position_jump = true}}) {
-    Supervisor supervisor;
-    double time = 0.0;
-    EXPECT_FALSE(after(supervisor, jump, time, 200.0, 0.0).may_begin_anew);
-    supervisor.rearm();
-    EXPECT_FALSE(after(supervisor, jump, time, 5.0, 5.0).may_begin_anew) << "it moves";
-    EXPECT_TRUE(after(supervisor, jump, time, Supervisor::kStanding + 0.2, 0.0).may_begin_anew);
-    EXPECT_FALSE(after(supervisor, jump, time, 200.0, 0.0).may_begin_anew);
-  }
+TEST(Supervisor, WantsATrialWhereSpeedHeadingOrPlaceIsInDoubt) {
+  EXPECT_FALSE(Supervisor::wants_trial({.late = true, .unmeasured = true, .frozen = true}));
+  EXPECT_TRUE(Supervisor::wants_trial({.speed_mismatch = true}));
+  EXPECT_TRUE(Supervisor::wants_trial({.heading_jump = true}));
+  EXPECT_TRUE(Supervisor::wants_trial({.position_jump = true}));
 }
 
 }  // namespace

@@ -39,7 +39,7 @@
   ROW(kLate, "late", kError, "the measurements are of an earlier moment")                                        \
   ROW(kOtherSteering, "other_steering", kWarning, "the wheels turn otherwise than they are asked to")            \
   ROW(kWeakBrakes, "weak_brakes", kWarning, "the brakes give less than they are asked for")                      \
-  ROW(kStuck, "stuck", kWarning, "the car does not move although it is told to")
+  ROW(kStuck, "stuck", kWarning, "the car stands although its road goes on")
 // clang-format on
 
 namespace chicane::controller {

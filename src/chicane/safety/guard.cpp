@@ -27,6 +27,12 @@ bool is_finite(const model::Command& command) noexcept {
   return std::isfinite(command.steer) && std::isfinite(command.throttle);
 }
 
+/// A controller of users may have written any size: nobody behind the guard has to look.
+void clamp_sizes(controller::Plan& plan) noexcept {
+  plan.size = std::clamp(plan.size, 0, controller::Plan::kCapacity);
+  plan.reference_size = std::clamp(plan.reference_size, 0, controller::Plan::kCapacity);
+}
+
 bool is_same(const model::Command& a, const model::Command& b) noexcept {
   return a.steer == b.steer && a.throttle == b.throttle;
 }
@@ -55,6 +61,7 @@ Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::Ve
                .open_time = options.blind_time}},
       model_{vehicle} {
   estimator_.estimate_disturbance(filter_.planner().has_wheels());
+  refused_since_ = answered_at_ = std::numeric_limits<double>::infinity();
 }
 
 Guard::Guard(const Guard& other) = default;
@@ -79,8 +86,11 @@ void Guard::reset() noexcept {
   direction_.reset();
   filter_.forget();
   has_place_ = is_astray_ = false;
-  is_led_ = rests_ = false;
-  refused_since_ = stuck_since_ = still_since_ = moved_at_ = 0.0;
+  is_led_ = is_idle_ = rests_ = is_by_hand_ = has_jumped_ = false;
+  ask_at_ = 0.0;
+  ask_pause_ = kAskPause;
+  refused_since_ = answered_at_ = std::numeric_limits<double>::infinity();
+  stuck_since_ = still_since_ = moved_at_ = 0.0;
   released_at_ = std::numeric_limits<double>::infinity();
   tried_ = 0.0;
 }
@@ -115,10 +125,15 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   now.delay = std::max(now.delay + learned_.answer().delay, 0.0);
   const bool is_off = options_.mode == GuardMode::kOff;
   if (options_.mode != GuardMode::kOn) learned_.see(now, told_);
+  // What was in doubt while a person drove says nothing of where the person has driven to.
+  const bool is_handed_back = std::exchange(is_by_hand_, cycle.manual.has_value()) && !cycle.manual;
+  if (is_handed_back && Supervisor::wants_trial(monitor_.findings())) begin_here();
   const model::Measurement& seen = is_off ? now : look(now);
   result = controller_->step(seen, deadline);
+  watch_answer(seen, result.answer != Answer::kNone);
   report_ = {};
   report_learned(result.report.learned);
+  clamp_sizes(result.plan);
   if (!is_finite(result.command)) result.answer = Answer::kNone;
   choose(seen, cycle, result);
   const model::Command asked = result.command;
@@ -245,17 +260,11 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   filter_.begin_cycle();
   const bool has_answer = result.answer != Answer::kNone;
   if (options_.mode == GuardMode::kOff || cycle.manual) {
-    if (cycle.manual) supervisor_.rearm();
     filter_.forget();
     return has_answer ? accept(seen, result) : fall_back(seen, result);
   }
 
-  const Supervisor::Verdict verdict =
-      supervisor_.judge(monitor_.findings(), seen.time, estimator_.state().vx);
-  if (verdict.may_begin_anew) {
-    monitor_.reset();
-    estimator_.reset();
-  }
+  const Supervisor::Verdict verdict = supervisor_.judge(monitor_.findings(), seen.time);
   const std::optional<StopStart> start = place_on_road(sent_from_);
   watch_course(start);
   report_.reason = verdict.reason;
@@ -268,9 +277,14 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   if (may_send && start) may_send = filter(*start, cycle, result);
   if (options_.mode == GuardMode::kObserve)
     return has_answer ? accept(seen, result) : fall_back(seen, result);
-  if (may_send && !is_astray_) {
-    is_led_ = false;
-    refused_since_ = seen.time;
+  is_idle_ = has_answer && idles(result);
+  refused_since_ = std::min(refused_since_, seen.time);
+  if (may_send && !is_astray_ && !(is_idle_ && (is_led_ || seen.time - refused_since_ > kStuckTime))) {
+    // One accepted command does not move a car that stands.
+    if (!is_idle_ && std::fabs(estimator_.state().vx) >= kStandingSpeed) {
+      is_led_ = false;
+      refused_since_ = seen.time;
+    }
     return accept(seen, result);
   }
   if (verdict.must_stop && start && try_reset(*start, cycle, seen.time, result)) return;

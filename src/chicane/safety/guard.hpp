@@ -92,6 +92,8 @@ class Guard {
 
  private:
   static constexpr double kStandingSpeed = 0.5;  ///< [m/s]
+  static constexpr double kStuckTime = 3.0;      ///< [s] a car that should move may stand
+  static constexpr double kAskPause = 4.0;       ///< [s] after the first trial of a car in doubt
   static constexpr double kGuessedWidth = 1.0;   ///< [m] by which an assumed width may be too small
   static constexpr double kRollsBackAtMost =
       3.0;  ///< [m/s] faster a car does not roll back: its heading is wrong
@@ -111,10 +113,16 @@ class Guard {
   [[nodiscard]] bool drive_backup(const StopStart& start, controller::StepResult& result) noexcept;
   void show_backup(const StopStart& start, controller::Plan& plan) const noexcept;
   void watch_course(const std::optional<StopStart>& start) noexcept;
+  [[nodiscard]] bool idles(const controller::StepResult& result) const noexcept;
   [[nodiscard]] bool should_lead_back(double time, bool has_answer) noexcept;
   [[nodiscard]] bool lead_back(double act, const Cycle& cycle, controller::StepResult& result) noexcept;
+  [[nodiscard]] model::Command creep_step(const StopStart& start, const model::State& car) const noexcept;
   [[nodiscard]] double against_rolling_back() const noexcept;
   void watch_for_reset(const model::Measurement& measured) noexcept;
+  [[nodiscard]] bool may_ask(const model::Measurement& measured) const noexcept;
+  [[nodiscard]] bool agrees_with_road(const model::Measurement& measured) const noexcept;
+  void begin_here() noexcept;
+  void watch_answer(const model::Measurement& seen, bool has_answer) noexcept;
   [[nodiscard]] bool try_reset(const StopStart& start, const Cycle& cycle, double time,
                                controller::StepResult& result) noexcept;
   void watch_rest(double time, double throttle) noexcept;
@@ -152,13 +160,20 @@ class Guard {
   PredictiveFilter filter_;
   model::PredictionModel model_;
   double s_ = 0.0;  ///< on the known road where the command acts [m]
+  double d_ = 0.0;  ///< to the left of its line [m]
   unsigned revision_ = 0;
   bool has_place_ = false;
   bool is_far_ = false;            ///< the car is far from the known road
   bool is_astray_ = false;         ///< it is off the road or across it
   bool has_stood_astray_ = false;  ///< since it is astray; from then on it may leave the road to turn
   bool is_led_ = false;            ///< it stood while commands were refused, and is led back to the line
+  bool is_idle_ = false;           ///< its controller does not drive a car that stands, or is led
   bool rests_ = false;             ///< it came to rest, and has not been asked to drive since
+  bool is_by_hand_ = false;        ///< a person drove in the last cycle
+  bool has_jumped_ = false;        ///< the measured place, since something is in doubt
+  double ask_at_ = 0.0;            ///< from when on a car in doubt may be tried again [s]
+  double ask_pause_ = kAskPause;   ///< after the next trial [s]
+  double answered_at_ = 0.0;       ///< by the controller, last [s]
   double tried_ = 0.0;             ///< way driven to see whether the car was put elsewhere, by the model [m]
   double still_since_ = 0.0;       ///< a car that is measured elsewhere stands by the estimate [s]
   double refused_since_ = 0.0;     ///< commands of a standing car [s]

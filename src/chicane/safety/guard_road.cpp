@@ -88,6 +88,7 @@ std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   is_far_ = !has_place_;
   if (is_far_) return std::nullopt;
   s_ = place.s;
+  d_ = place.d;
   const double e = angle_difference(car.psi, line.at(place.s).heading);
   return StopStart{.time = act_time,
                    .s = place.s,

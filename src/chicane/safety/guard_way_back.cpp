@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/safety/guard.hpp"
 #include "chicane/tracking/way_back.hpp"
@@ -22,7 +23,6 @@ constexpr double kAcross = 0.8;        // [rad] off the road's direction the car
 constexpr double kAlong = 0.2;         // [rad] within which it is along it again
 constexpr double kRefusedTime = 1.0;   // [s] of refused commands after which a standing car is led back
 constexpr double kReleaseTime = 0.5;   // [s] a car that should move may stand before its brake is released
-constexpr double kStuckTime = 3.0;     // [s] a car that should move may stand before it is stuck
 constexpr double kDrives = 0.1;        // pedal from which on a car should move
 constexpr double kMostAgainstRolling = 0.7;  // pedal against rolling back
 constexpr double kStillTime = 1.0;   // [s] a car stands before it is tried whether it was put elsewhere
@@ -30,16 +30,75 @@ constexpr double kTrialWay = 0.5;    // share of the car's length that is driven
 constexpr double kTrialRoom = 1.0;   // to the edge [m], where no stop fits
 constexpr double kTrialSpeed = 1.0;  // [m/s]
 constexpr double kTrialPedal = 0.3;
+constexpr double kCreep = 1.0;             // [m/s] of a car that turns at the edge
+constexpr double kCreepDrive = 2.5;        // [1/s] of its drive: turned wheels resist
+constexpr double kCreepAhead = 0.3;        // [s] of creeping that is simulated
+constexpr double kCreepNearer = 1e-3;      // [m] by which it may come nearer in that time
+constexpr double kTurnedWheels = 0.1;      // share of full lock that wheels may lack
+constexpr double kLongestAskPause = 60.0;  // [s] between two trials
+constexpr double kMostAside = 1.0;         // [m] by which a place may have jumped across the road
+constexpr double kChord = 0.7;             // [m] by which waypoints cut a bend
+constexpr double kFarFromRoad = 20.0;      // [m] beside its line
+constexpr double kAlongWaypoints = 0.35;   // [rad] off the line of waypoints that bends between them
+constexpr double kNoAnswerTime = 1.0;      // [s] after which a controller without an answer begins anew
 
 }  // namespace
 
-/// A car that was put elsewhere begins anew there; what was learned of a road may be another one's.
+/// A car that was put elsewhere, or is measured right again, begins anew where it answers.
 void Guard::watch_for_reset(const model::Measurement& measured) noexcept {
+  const bool has_jumped = reset_watch_.has_jumped() && monitor_.findings().position_jump;
   reset_watch_.see(measured, sent_.at(measured.time).throttle);
+  if (!Supervisor::wants_trial(monitor_.findings())) {
+    has_jumped_ = false;
+    ask_at_ = 0.0;
+    ask_pause_ = kAskPause;
+  }
+  has_jumped_ = has_jumped_ || has_jumped;
+  if (may_ask(measured)) {
+    reset_watch_.ask();
+    ask_at_ = measured.time + ask_pause_;
+    ask_pause_ = std::min(2.0 * ask_pause_, kLongestAskPause);
+  }
   if (!reset_watch_.is_waiting()) tried_ = 0.0;
   const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed || tried_ > 0.0;
   if (!reset_watch_.is_waiting() || !stands) still_since_ = measured.time;
-  if (!reset_watch_.has_answered()) return;
+  if (reset_watch_.has_answered()) begin_here();
+}
+
+/// The car has stood while its measurements agreed with each other and with the road that they show. A place
+/// that has jumped aside is left to a person: the car would be led off the road by it.
+bool Guard::may_ask(const model::Measurement& measured) const noexcept {
+  const Findings& found = monitor_.findings();
+  const bool is_doubted = Supervisor::wants_trial(found) && !found.unmeasured && !found.frozen && !found.late;
+  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed && reset_watch_.rests();
+  if (!is_doubted || !stands || reset_watch_.is_waiting() || !(measured.time >= ask_at_)) return false;
+  return !has_jumped_ || agrees_with_road(measured);
+}
+
+bool Guard::agrees_with_road(const model::Measurement& measured) const noexcept {
+  const Vec2 place{measured.x, measured.y};
+  const road::ReferenceLine& line = road_.line();
+  if (options_.road == GuardRoad::kTrack && !line.is_empty()) {
+    const auto at = line.project_along(place, measured.psi, 2.0 * model_.vehicle().width);
+    return at.distance < kFarFromRoad && std::fabs(at.d - d_) < kMostAside &&
+           std::fabs(angle_difference(measured.psi, line.at(at.s).heading)) < kAlongWaypoints;
+  }
+  const auto size = static_cast<std::size_t>(std::max(measured.waypoint_count, 0));
+  for (std::size_t i = 0; i + 1 < size; ++i) {
+    const Vec2 way = measured.waypoints[i + 1] - measured.waypoints[i];
+    const Vec2 from = place - measured.waypoints[i];
+    const double length = way.norm();
+    const double along = length > 0.0 ? (from.x() * way.x() + from.y() * way.y()) / length : -1.0;
+    if (along < 0.0 || along > length) continue;
+    const double aside = (way.x() * from.y() - way.y() * from.x()) / length;
+    const double course = angle_difference(measured.psi, atan2(way.y(), way.x()));
+    if (std::fabs(aside - d_) < kMostAside + kChord && std::fabs(course) < kAlongWaypoints) return true;
+  }
+  return size < 2;
+}
+
+/// Nothing that was computed of the car before holds; what was learned of a road may be another one's.
+void Guard::begin_here() noexcept {
   estimator_.reset();
   monitor_.reset();
   supervisor_.reset();
@@ -47,14 +106,28 @@ void Guard::watch_for_reset(const model::Measurement& measured) noexcept {
   filter_.forget();
   if (options_.mode == GuardMode::kOn) controller_->reset();
   if (options_.road == GuardRoad::kWaypoints) road_.reset();
-  has_place_ = is_astray_ = is_led_ = false;
+  has_place_ = is_astray_ = is_led_ = has_jumped_ = false;
+}
+
+/// A controller without an answer to whole measurements begins anew now and then: the car may have been put
+/// where its road, or its estimate, does not lead.
+void Guard::watch_answer(const model::Measurement& seen, bool has_answer) noexcept {
+  if (has_answer || !std::isfinite(seen.x + seen.y + seen.psi + seen.speed)) answered_at_ = seen.time;
+  answered_at_ = std::min(answered_at_, seen.time);
+  if (!(seen.time - answered_at_ > kNoAnswerTime)) return;
+  controller_->reset();
+  answered_at_ = seen.time;
 }
 
 /// By the estimate the car stands, but it is measured elsewhere: at walking pace, within half a car's length,
 /// it shows whether it answers there. False where it is not tried.
 bool Guard::try_reset(const StopStart& start, const Cycle& cycle, double time,
                       controller::StepResult& result) noexcept {
-  if (!(time - still_since_ > kStillTime) || tried_ > kTrialWay * model_.vehicle().length) return false;
+  if (!(time - still_since_ > kStillTime)) return false;
+  if (tried_ > kTrialWay * model_.vehicle().length) {
+    reset_watch_.give_up();
+    return false;
+  }
   const double speed = std::fabs(estimator_.state().vx);
   const model::Command command{0.0, speed < kTrialSpeed ? kTrialPedal : 0.0};
   // A car that stopped where the known road ends has no stop ahead of it; well inside the edges and along the
@@ -92,6 +165,13 @@ bool Guard::should_lead_back(double time, bool has_answer) noexcept {
   return is_astray_ || (is_led_ && has_answer);
 }
 
+/// The car stands, or is led on, and its controller does not drive it although it aims at a speed.
+bool Guard::idles(const controller::StepResult& result) const noexcept {
+  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed;
+  return (stands || is_led_) && result.report.speed_reference > kTrialSpeed &&
+         !(result.command.throttle > kDrives);
+}
+
 /// Walking pace on a course that meets the road; false where the car is too fast or lost.
 bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& result) noexcept {
   const road::ReferenceLine& line = road_.line();
@@ -107,10 +187,19 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
                               : tracking::way_back(line, place, car, model_.vehicle());
   const std::optional<StopStart> start = place_on_road(act);
   if (is_astray_) filter_.forget();
-  const Fit fit = start ? verify(*start, cycle, result.command, true) : Fit::kNone;
+  const double edge = start ? filter_.planner().edge(road_, *start) : 0.0;
+  const bool stands = std::fabs(car.vx) < kStandingSpeed && !rolls_back;
+  const bool creeps = start && stands && edge >= 0.0 && edge < options_.margin;
+  Fit fit = Fit::kNone;
+  if (creeps) {
+    result.command = creep_step(*start, car);
+    fit = Fit::kSeen;
+  } else if (start) {
+    fit = verify(*start, cycle, result.command, true);
+  }
   // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there,
   // and once it stands.
-  const bool is_off = start && filter_.planner().edge(road_, *start) < 0.0;
+  const bool is_off = start && edge < 0.0;
   if (start && !is_off && fit == Fit::kNone && (!has_stood_astray_ || result.answer == Answer::kDrive))
     return false;
   if (fit == Fit::kNone) filter_.forget();
@@ -118,6 +207,22 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   result.plan.size = result.plan.reference_size = 0;
   report_.rung = Rung::kReturnToRoad;
   return true;
+}
+
+/// At full lock away from the near edge a car soon comes no nearer to it (eq. 6a); until then it may take
+/// half of the margin. Its wheels turn first: the stop of a car that does not move is the standstill it
+/// begins from.
+model::Command Guard::creep_step(const StopStart& start, const model::State& car) const noexcept {
+  const model::VehicleParams& vehicle = model_.vehicle();
+  const double lock = std::copysign(vehicle.steer_limit, -start.d);
+  const model::Command rest{lock, throttle_to_rest(vehicle, -kCreepDrive, std::max(car.vx, 0.0))};
+  if (!(std::fabs(lock - car.steer) < kTurnedWheels * vehicle.steer_limit)) return rest;
+  const double drive = kCreepDrive * std::max(kCreep - car.vx, 0.0);
+  const model::Command creep{lock, throttle_for(vehicle, drive, car.vx)};
+  double edge = filter_.planner().edge(road_, start);
+  const double kept = std::min(edge, 0.5 * options_.margin) - kCreepNearer;
+  static_cast<void>(filter_.planner().advance(road_, start, creep, kCreepAhead, edge));
+  return edge > kept ? creep : rest;
 }
 
 double Guard::against_rolling_back() const noexcept {
@@ -140,7 +245,8 @@ void Guard::watch_rest(double time, double throttle) noexcept {
 void Guard::free_stuck_car(double time, controller::StepResult& result) noexcept {
   model::Command& command = result.command;
   const model::VehicleParams& car = model_.vehicle();
-  const bool should_move = command.throttle > kDrives && std::fabs(estimator_.state().vx) < kStandingSpeed;
+  const bool should_move =
+      (command.throttle > kDrives || is_idle_) && std::fabs(estimator_.state().vx) < kStandingSpeed;
   if (!should_move || !(released_at_ <= time)) stuck_since_ = released_at_ = time;
   controller::GuardReason& reason = report_.reason;
   const bool has_worse = controller::word_of(reason).severity == Severity::kError;

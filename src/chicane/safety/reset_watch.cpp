@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::safety {
@@ -20,13 +21,30 @@ bool ResetWatch::jumps(const model::Measurement& now) const noexcept {
   return hypot(now.x - last_.x, now.y - last_.y) > kJump + kSpeedError * driven;
 }
 
+void ResetWatch::ask() noexcept {
+  is_waiting_ = true;
+  origin_ = last_;
+  driven_ = asked_ = 0.0;
+}
+
+void ResetWatch::give_up() noexcept {
+  is_waiting_ = false;
+  silent_ = origin_;
+}
+
+bool ResetWatch::rests() const noexcept {
+  const bool was_silent =
+      last_.time - silent_.time < kLongest && hypot(last_.x - silent_.x, last_.y - silent_.y) < kWay;
+  return last_.time - rests_since_.time > kRest && !was_silent;
+}
+
 void ResetWatch::see(const model::Measurement& now, double pedal) noexcept {
   has_answered_ = false;
   if (!std::isfinite(now.time + now.x + now.y + now.psi + now.speed)) return;
   if (has_last_ && now.time <= last_.time) return;
-  const bool has_jumped = has_last_ && jumps(now);
+  has_jumped_ = has_last_ && jumps(now);
   const double elapsed = now.time - last_.time;
-  if (has_jumped) {
+  if (has_jumped_) {
     is_waiting_ = now.speed < kStandingSpeed;
     origin_ = now;
     driven_ = asked_ = 0.0;
@@ -42,6 +60,10 @@ void ResetWatch::see(const model::Measurement& now, double pedal) noexcept {
     has_answered_ = way > kWay && agrees && along * asked_ > 0.0;
     is_waiting_ = !has_answered_ && (agrees || way < kWay) && now.time - origin_.time < kLongest;
   }
+  const bool goes_on = has_last_ && now.speed < kStandingSpeed &&
+                       hypot(now.x - rests_since_.x, now.y - rests_since_.y) < kRestWay &&
+                       std::fabs(angle_difference(now.psi, rests_since_.psi)) < kRestTurn;
+  if (!goes_on) rests_since_ = now;
   last_ = now;
   has_last_ = true;
 }

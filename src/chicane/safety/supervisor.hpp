@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -11,10 +12,9 @@ namespace chicane::safety {
 
 /// How a condition ends.
 enum class ConditionEnd {
-  kByItself,       ///< when the sensor agrees again
-  kAfterStanding,  ///< also when the car has stood for Supervisor::kStanding: the sensor is believed anew,
-                   ///< once in kOnceIn
-  kByPerson        ///< also when the car has stood so and a person has taken over or reset the run
+  kByItself,  ///< when the sensor agrees again
+  kByTrial    ///< also when the car stands and answers its pedal where it is measured (ResetWatch), or by a
+              ///< person who takes over or resets the run
 };
 
 /// What the car is stopped for.
@@ -34,34 +34,22 @@ inline constexpr std::array<Condition, 6> kConditions{{
     {&Findings::late, controller::GuardReason::kLate, 0.12, ConditionEnd::kByItself},
     {&Findings::unmeasured, controller::GuardReason::kNotMeasured, 0.12, ConditionEnd::kByItself},
     {&Findings::frozen, controller::GuardReason::kFrozen, 0.0, ConditionEnd::kByItself},
-    {&Findings::speed_mismatch, controller::GuardReason::kSpeedMismatch, 0.1, ConditionEnd::kAfterStanding,
-     2},
-    {&Findings::heading_jump, controller::GuardReason::kHeadingJump, 0.1, ConditionEnd::kByPerson},
-    {&Findings::position_jump, controller::GuardReason::kPositionJump, 0.1, ConditionEnd::kByPerson},
+    {&Findings::speed_mismatch, controller::GuardReason::kSpeedMismatch, 0.1, ConditionEnd::kByTrial, 2},
+    {&Findings::heading_jump, controller::GuardReason::kHeadingJump, 0.1, ConditionEnd::kByTrial},
+    {&Findings::position_jump, controller::GuardReason::kPositionJump, 0.1, ConditionEnd::kByTrial},
 }};
 
-/// Decides by kConditions whether the car has to be stopped, and when it may drive on. A place that was
-/// believed because it lasts would lead a car off the road that it stands on. No allocation; one thread.
+/// Decides by kConditions whether the car has to be stopped. A place that was believed because it lasts would
+/// lead a car off the road that it stands on. No allocation; one thread.
 class Supervisor {
  public:
-  static constexpr double kStanding = 3.0;       ///< [s]
-  static constexpr double kOnceIn = 60.0;        ///< [s]
-  static constexpr double kStandingSpeed = 0.3;  ///< [m/s]
-
   void reset() noexcept { *this = {}; }
-  /// A person has taken over: what was latched is forgotten.
-  void rearm() noexcept {
-    rearmed_ = kNever;
-    has_person_ = true;
-  }
 
   struct Verdict {
     controller::GuardReason reason = controller::GuardReason::kNone;
     bool must_stop = false;
-    bool may_begin_anew = false;  ///< stands, and the sensors may be believed anew
   };
-  /// `speed`: as estimated [m/s].
-  [[nodiscard]] Verdict judge(const Findings& findings, double time, double speed) noexcept {
+  [[nodiscard]] Verdict judge(const Findings& findings, double time) noexcept {
     Verdict verdict;
     const Condition* worst = nullptr;
     for (std::size_t i = 0; i < kConditions.size(); ++i) {
@@ -73,25 +61,18 @@ class Supervisor {
         worst = &each;
     }
     if (worst != nullptr) verdict = {.reason = worst->reason, .must_stop = true};
-    const bool is_latched = worst != nullptr && worst->ends != ConditionEnd::kByItself;
-    if (!is_latched || !(speed < kStandingSpeed)) stood_ = time;
-    if (!is_latched || !(time - stood_ > kStanding)) return verdict;
-    verdict.may_begin_anew =
-        worst->ends == ConditionEnd::kAfterStanding ? time - rearmed_ > kOnceIn : has_person_;
-    if (verdict.may_begin_anew) {
-      rearmed_ = time;
-      has_person_ = false;
-    }
     return verdict;
+  }
+  /// Something is found that a trial may end.
+  [[nodiscard]] static bool wants_trial(const Findings& findings) noexcept {
+    return std::any_of(kConditions.begin(), kConditions.end(), [&](const Condition& each) {
+      return each.ends == ConditionEnd::kByTrial && findings.*each.finding;
+    });
   }
 
  private:
-  static constexpr double kNever = -1e9;
   std::array<double, kConditions.size()> since_{};  ///< when each was last not there [s]
   std::array<long, kConditions.size()> shown_{};    ///< measurements in a row that show it
-  double stood_ = 0.0;
-  double rearmed_ = kNever;
-  bool has_person_ = false;  ///< has taken over since
 };
 
 }  // namespace chicane::safety

@@ -225,7 +225,7 @@ export const REASON = {
   OTHER_STEERING: 11,
   /** the brakes give less than they are asked for */
   WEAK_BRAKES: 12,
-  /** the car does not move although it is told to */
+  /** the car stands although its road goes on */
   STUCK: 13,
 } as const;
 
@@ -521,7 +521,7 @@ export const REASON_WORDS: Words = {
   },
   [REASON.STUCK]: {
     severity: 'warning',
-    text: 'the car does not move although it is told to',
+    text: 'the car stands although its road goes on',
   },
 };
 

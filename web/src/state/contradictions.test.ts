@@ -118,7 +118,7 @@ describe('the page', () => {
         'The guard holds the car back',
         'A receiver left alone could not stop the car on the road.',
       ],
-      [REASON.STUCK]: ['The car stands and should drive', 'The car does not move although it is told to.'],
+      [REASON.STUCK]: ['The car stands and should drive', 'The car stands although its road goes on.'],
     };
     for (const [reason, [title, text]] of Object.entries(titles)) {
       const frame = frameWith({ guard_reason: Number(reason) });

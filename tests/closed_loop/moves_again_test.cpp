@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+// A healthy car whose measurements agree moves again: whatever its simulator's clock, whatever put it
+// elsewhere, whatever fault has ended (docs/safety.md, "The conditions").
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chicane/base/angle.hpp"
+#include "chicane/base/random.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "chicane/run/external_drive.hpp"
+#include "chicane/run/make.hpp"
+#include "chicane/run/observe.hpp"
+#include "chicane/sim/fault.hpp"
+#include "chicane/sim/sensor.hpp"
+#include "chicane/sim/world.hpp"
+#include "closed_loop/drive.hpp"
+
+namespace chicane::run {
+namespace {
+
+constexpr double kAgain = 10.0;  // [s] after which a car has to move
+constexpr double kMoves = 3.0;   // [m/s]
+constexpr double kCycle = 0.12;  // [s] of the wall's clock from telemetry to telemetry
+
+enum class Event { kNone, kHandedBack, kReset, kPutElsewhere, kMoved1, kMoved3, kMoved10, kMoved70 };
+constexpr const char* kEventNames[] = {"none",    "handed_back", "reset",    "put_elsewhere",
+                                       "moved_1", "moved_3",     "moved_10", "moved_70"};
+enum class Jitter { kNone, kThird, kBursts };
+constexpr const char* kJitterNames[] = {"steady", "jitter", "bursts"};
+
+struct Cell {
+  double ratio = 1.0;  ///< of the simulator's clock to the wall's
+  Jitter jitter = Jitter::kNone;
+  Event event = Event::kNone;
+  bool is_guarded = true;
+  const char* preset = "default";
+};
+std::ostream& operator<<(std::ostream& out, const Cell& cell) {
+  return out << cell.preset << (cell.is_guarded ? "" : " without guard") << ", clock " << cell.ratio << ' '
+             << kJitterNames[static_cast<std::size_t>(cell.jitter)] << ", "
+             << kEventNames[static_cast<std::size_t>(cell.event)];
+}
+
+/// The original's client, with a clock of its own, and a virtual one of the wall.
+class Client {
+ public:
+  explicit Client(const Cell& cell)
+      : cell_{cell},
+        scenario_{*protocol::compose({.scenario_file = "",
+                                      .settings = {{"preset", cell.preset},
+                                                   {"track", "lakeside"},
+                                                   {"guard.mode", cell.is_guarded ? "on" : "off"},
+                                                   {"guard.road", "waypoints"}}})},
+        track_{*make_track(scenario_)},
+        waypoints_{*make_waypoints(track_)},
+        plant_{std::move(*make_plant(scenario_))},
+        world_{*plant_, track_},
+        drive_{{.scenario = scenario_, .clock = {.is_estimated = true}},
+               std::move(*make_controller(scenario_)),
+               hooks_} {
+    world_.place(track_.start_s(), track_.start_d());
+  }
+
+  /// Telemetry, its answer, and the simulator's time until the next one.
+  void turn() {
+    const model::State& car = plant_->state();
+    model::Measurement now{.x = car.x, .y = car.y, .psi = car.psi, .speed = plant_->output().speed};
+    sim::select_waypoints(waypoints_, {.x = now.x, .y = now.y, .psi = now.psi}, scenario_.waypoints_sent,
+                          now);
+    const model::Command answer =
+        drive_.step({.received = wall(), .measured = now, .delay = kCycle, .usual_delay = kCycle})
+            .result.command;
+    drive_.finish();
+    double cycle = kCycle;
+    if (cell_.jitter == Jitter::kThird) cycle *= chance_.uniform(0.7, 1.3);
+    if (cell_.jitter == Jitter::kBursts && ++cycles_ % 20 == 0) cycle += 0.3;
+    wait(cycle, acting_);
+    acting_ = answer;
+    stood_ = speed() < kMoves ? stood_ + cell_.ratio * cycle : 0.0;
+    longest_ = std::max(longest_, stood_);
+  }
+  /// The same for `time` [s] of the simulator.
+  void drive(double time) {
+    for (const double end = time_ + time; time_ < end;) turn();
+  }
+  void happen(Event event) {
+    switch (event) {
+      case Event::kNone:
+        return;
+      case Event::kHandedBack:
+        drive_.begin_anew();
+        wait(3.0, {});
+        return move(70.0, speed());
+      case Event::kReset:
+        return move(track_.start_s() - world_.state().s, 0.0);
+      case Event::kPutElsewhere:
+        return move(200.0, 10.0);
+      case Event::kMoved1:
+        return move(1.0, speed());
+      case Event::kMoved3:
+        return move(3.0, speed());
+      case Event::kMoved10:
+        return move(10.0, speed());
+      case Event::kMoved70:
+        return move(70.0, speed());
+    }
+  }
+  [[nodiscard]] double speed() const { return plant_->output().speed; }
+  void forget_standing() { stood_ = longest_ = 0.0; }
+  [[nodiscard]] double stood() const { return longest_; }  ///< longest, simulator's time [s]
+  [[nodiscard]] double least_edge() const { return least_edge_; }
+  [[nodiscard]] const telemetry::Frame& frame() const { return drive_.frame(); }
+
+ private:
+  [[nodiscard]] ExternalDrive::Clock::time_point wall() const {
+    return start_ + std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * wall_));
+  }
+  void wait(double cycle, const model::Command& command) {
+    wall_ += cycle;
+    time_ += cell_.ratio * cycle;
+    while (simulated_ + plant_->step_length() <= time_) {
+      world_.advance(command);
+      simulated_ += plant_->step_length();
+      least_edge_ = std::min(least_edge_, world_.state().edge_distance);
+    }
+  }
+  /// Along the road, as far beside its line, as far off its course, and turning as before.
+  void move(double ahead, double speed) {
+    const double s = world_.state().s;
+    const road::PathPoint from = track_.centre().at(s), to = track_.centre().at(s + ahead);
+    model::State car = plant_->state();
+    const double beside = speed > 0.0 ? world_.state().lateral_error : 0.0;
+    const double share = car.vx > 0.0 ? speed / car.vx : 0.0;
+    car.x = to.position.x() - beside * std::sin(to.heading);
+    car.y = to.position.y() + beside * std::cos(to.heading);
+    car.psi = to.heading + (speed > 0.0 ? angle_difference(car.psi, from.heading) : 0.0);
+    car.vx *= share;
+    car.vy *= share;
+    car.r *= share;
+    world_.reset(car);
+  }
+
+  Cell cell_;
+  scenario::Scenario scenario_;
+  road::Track track_, waypoints_;
+  std::unique_ptr<sim::Plant> plant_;
+  sim::World world_;
+  ExternalDriveHooks hooks_;
+  ExternalDrive drive_;
+  Random chance_{5};
+  model::Command acting_;
+  const ExternalDrive::Clock::time_point start_ = ExternalDrive::Clock::now();
+  double wall_ = 0.0, time_ = 0.0, simulated_ = 0.0;  ///< [s]
+  double stood_ = 0.0, longest_ = 0.0;                ///< [s]
+  double least_edge_ = std::numeric_limits<double>::infinity();
+  int cycles_ = 0;
+};
+
+std::vector<Cell> cells() {
+  std::vector<Cell> all;
+  for (const char* preset : {"default", "weighted", "pid", "race"})
+    for (const bool is_guarded : {true, false})
+      for (const Jitter jitter : {Jitter::kNone, Jitter::kThird, Jitter::kBursts})
+        for (const double ratio : {0.2, 0.5, 0.8, 1.0, 1.25, 2.0, 5.0})
+          for (int event = 0; event < 8; ++event)
+            all.push_back({ratio, jitter, static_cast<Event>(event), is_guarded, preset});
+  if (kDrivesAll) return all;
+  std::vector<Cell> some;
+  for (std::size_t i = 5; i < all.size(); i += 83) some.push_back(all[i]);
+  return some;
+}
+
+/// A simulator that is fast does not wait: at 2 and 5 times the wall's clock its car drives on for 0.8 s and
+/// more with a command, and for longer where the answer bursts. No controller here drives that.
+bool is_drivable(const Cell& cell) {
+  const double longest = cell.ratio * (kCycle + (cell.jitter == Jitter::kBursts ? 0.3 : 0.0));
+  return longest < (cell.is_guarded ? 0.7 : 0.4);
+}
+
+TEST(MovesAgain, WhateverTheSimulatorsClockAndWhereverTheCarIsPut) {
+  for (const Cell& cell : cells()) {
+    if (!is_drivable(cell)) continue;
+    Client client(cell);
+    client.drive(14.0);
+    client.forget_standing();
+    client.happen(cell.event);
+    client.drive(24.0);
+    EXPECT_LT(client.stood(), kAgain) << cell;
+    EXPECT_GT(client.speed(), 0.5 * kMoves)
+        << cell << ": " << controller::word_of(client.frame().guard.reason).sentence;
+    // A place that jumps while the car drives is a lie until it is tried.
+    if (cell.is_guarded && cell.event < Event::kPutElsewhere) {
+      EXPECT_GT(client.least_edge(), 0.0) << cell;
+    }
+  }
+}
+
+/// A short run with a fault that ends: the time for which the car stands afterwards [s].
+struct Standing {
+  double longest = 0.0;
+  double least_edge = std::numeric_limits<double>::infinity();
+  std::string what{};
+};
+
+Standing drive_with_fault(Random& chance) {
+  const auto pick = [&](const auto& names) { return names[chance.bits() % std::size(names)]; };
+  static constexpr const char* kTracks[] = {"lakeside", "oval", "hairpins", "speedway"};
+  static constexpr const char* kCars[] = {"udacity", "road-car", "bmw-320i", "vw-vanagon"};
+  static constexpr const char* kPresets[] = {"default", "default", "pid", "measured-latency", "sixty-mph"};
+  static constexpr double kLasts[] = {0.3, 1.0, 2.0, 5.0};
+  const std::string car = pick(kCars), track = pick(kTracks), preset = pick(kPresets);
+  const auto& kinds = sim::fault_kinds();
+  const auto index = chance.bits() % kinds.size();
+  sim::FaultEvent event = sim::default_event(static_cast<sim::Fault>(index), chance.uniform(4.0, 30.0));
+  event.duration = pick(kLasts);
+  auto scenario = *protocol::compose(
+      {.scenario_file = "", .settings = {{"preset", preset}, {"car", car}, {"track", track}, {"laps", "0"}}});
+  // Other cars, configured right.
+  scenario.vehicle.mass *= chance.uniform(0.8, 1.2);
+  scenario.faults = {event};
+  Standing result{.what = preset + ' ' + car + ' ' + track + ' ' + std::string(kinds[index].name) + '@' +
+                          std::to_string(event.at) + '+' + std::to_string(event.duration)};
+  auto made = ClosedLoop::create(scenario);
+  if (!made) return result;
+  ClosedLoop& loop = **made;
+  const double ended = event.at + event.duration;
+  double stands_since = ended;
+  while (loop.time() < ended + 20.0 && !loop.is_over()) {
+    loop.advance();
+    result.least_edge = std::min(result.least_edge, loop.world().edge_distance);
+    const telemetry::Frame& frame = loop.frame();
+    if (loop.time() < ended || std::hypot(frame.truth.vx, frame.truth.vy) > 1.0) stands_since = loop.time();
+    result.longest = std::max(result.longest, loop.time() - stands_since);
+  }
+  result.what += ": " + std::string(controller::word_of(loop.frame().guard.reason).name);
+  return result;
+}
+
+/// Other runs: --gtest_random_seed=N.
+TEST(MovesAgain, AfterAFaultThatHasEnded) {
+  Random chance(57 + static_cast<std::uint64_t>(testing::GTEST_FLAG(random_seed)));
+  int stood = 0;
+  const int runs = kDrivesAll ? 20000 : 4;
+  for (int i = 0; i < runs; ++i) {
+    const Standing standing = drive_with_fault(chance);
+    if (standing.longest <= kAgain) continue;
+    ++stood;
+    ADD_FAILURE() << "run " << i << ' ' << standing.what << " stands " << standing.longest << " s, edge "
+                  << standing.least_edge;
+  }
+  RecordProperty("stood", stood);
+}
+
+}  // namespace
+}  // namespace chicane::run
