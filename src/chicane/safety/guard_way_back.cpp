@@ -189,7 +189,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   if (is_astray_) filter_.forget();
   const double edge = start ? filter_.planner().edge(road_, *start) : 0.0;
   const bool stands = std::fabs(car.vx) < kStandingSpeed && !rolls_back;
-  const bool creeps = start && stands && edge >= 0.0 && edge < options_.margin;
+  const bool creeps = start && stands && !is_astray_ && edge >= 0.0 && edge < options_.margin;
   Fit fit = Fit::kNone;
   if (creeps) {
     result.command = creep_step(*start, car);
