@@ -36,7 +36,7 @@ describe('the page', () => {
     assert.deepEqual(await row.locator('td').allInnerTexts(), ['9.076', '8.99 to 9.16']);
     await origin.getByText('Assumed, because the log does not excite it: steer rate limit, friction, ').waitFor();
     await origin.getByText('Read from a GeoJSON file.').waitFor();
-    await origin.getByText('smoothing: noise of 0.5 m assumed').waitFor();
+    await origin.getByText(/smoothing: noise of \d\.\d+ m estimated from the points/).waitFor();
     await origin.getByText(/^\d+ points of the file, 0\.\d{3} m from the line \(rms\), \d\.\d{3} m at most$/).waitFor();
     await row.getByRole('button').click();
     await page.locator('.meaning-box:popover-open').waitFor();

@@ -64,7 +64,7 @@ TEST_F(MapFile, SaysWhatIsWrongWithALine) {
   EXPECT_EQ(fault_of("image: m.pgm\nresolution: -1\norigin: [0, 0]\n"),
             "map.yaml:2: resolution: got -1, expected a number in [0.0001, 100]");
   EXPECT_EQ(fault_of("image: m.pgm\nresolution: 0.05\norigin: [0, a]\nmode: raw\n"),
-            "map.yaml:3: origin: got a, expected [x, y, yaw]\n"
+            "map.yaml:3: origin: y: got a, expected a finite number\n"
             "map.yaml:4: mode: got raw, expected trinary or scale");
   EXPECT_EQ(fault_of("resolution: 0.05\norigin: [0, 0, 0]\n"),
             "map.yaml:1: image: got none, expected the name of a PGM or PNG file");

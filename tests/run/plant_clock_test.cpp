@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "chicane/base/random.hpp"
 #include "chicane/model/vehicle.hpp"
@@ -73,6 +74,18 @@ TEST_F(PlantClockTest, CountsByTheWallWhateverAMachineDelaysAndASensorErrs) {
     EXPECT_EQ(clock.ratio(), 1.0);
     EXPECT_NEAR(clock.at(wall(wall_)), wall_, 1e-6);
   }
+}
+
+TEST_F(PlantClockTest, TakesStepsThatAreAlikeInRealTimeForNoLockStep) {
+  PlantClock clock = estimated();
+  double late = 0.0;
+  for (int i = 0; i < 2000;
+       ++i) {  // messages of a simulator in real time, of which a busy machine delays each
+    const double before = std::exchange(late, chance_.uniform(0.0, 0.1));
+    EXPECT_FALSE(advance(clock, 0.12 + late - before, 0.12));
+  }
+  EXPECT_EQ(clock.lock_step(), 0.0);
+  EXPECT_EQ(clock.ratio(), 1.0);
 }
 
 TEST_F(PlantClockTest, FindsLockStepByItsTimeThatDoesNotDependOnTheWalls) {

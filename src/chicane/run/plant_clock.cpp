@@ -17,6 +17,7 @@ constexpr double kLegWay = 0.5;        // [m] of one leg, for a car in full size
 constexpr double kLeastSpeed = 0.5;    // [m/s] that tells a time, for a car in full size
 constexpr double kLongestStep = 5.0;   // [s] between measurements that say anything of each other
 constexpr std::size_t kLeastLegs = 5;  // that tell a clock
+constexpr double kLeastTold = 0.6;     // [s] of the wall's time that do
 constexpr double kClockAcross = 0.3;   // share of the way that a car may move across its heading
 constexpr double kJump = 0.3;          // [m] and beside it
 constexpr double kSpeedJump = 2.0;     // [m/s] and
@@ -142,6 +143,17 @@ PlantClock::Fit PlantClock::fit(const Base& base) const {
   return fit;
 }
 
+/// Whether all legs together show another ratio. What delays one message shortens the next stretch, so that
+/// a busy machine changes their sum by its last delay only.
+bool PlantClock::differs(double ratio) const {
+  Leg sum;
+  for (std::size_t i = 0; i < std::min(count_, kLegs); ++i) {
+    sum.wall += legs_[i].wall;
+    sum.plant += legs_[i].plant;
+  }
+  return sum.wall > kLeastTold && std::fabs(log(sum.plant / (ratio * sum.wall))) > log(kLeastChange);
+}
+
 /// Whether the pedals gain speed as in the time that the displacement shows: with a speed in another unit
 /// they gain the square of its share.
 bool PlantClock::agrees_with_pedal() const {
@@ -157,15 +169,20 @@ bool PlantClock::take_up() {
   const bool was_in_step = step_ > 0.0;
   const double worse = std::max(by_clock.deviation, by_step.deviation);
   const bool is_told = worse > kLeastDeviation;
-  const bool is_in_step = was_in_step ? !(is_told && by_clock.deviation < kSteadier * by_step.deviation)
-                                      : is_told && by_step.deviation < kSteadier * by_clock.deviation;
+  // In real time, with steps that are alike, a busy machine makes the wall's clock look the worse one; but a
+  // step that waited is longer by it.
+  const bool is_real_time = !was_in_step && ratio_ == 1.0 && !differs(ratio_);
+  const bool is_in_step =
+      was_in_step ? !(is_told && by_clock.deviation < kSteadier * by_step.deviation)
+                  : is_told && !is_real_time && by_step.deviation < kSteadier * by_clock.deviation;
   const double counted = was_in_step ? step_ : ratio_;
   const double found = is_in_step ? by_step.value : by_clock.value;
   const double deviation = is_in_step ? by_step.deviation : by_clock.deviation;
   const double size = static_cast<double>(std::min(count_, kLegs));
   const double off = log(found / counted);
   const bool is_another =
-      is_in_step != was_in_step || std::fabs(off) > log(kLeastChange) + 2.0 * deviation / std::sqrt(size);
+      is_in_step != was_in_step || (std::fabs(off) > log(kLeastChange) + 2.0 * deviation / std::sqrt(size) &&
+                                    (was_in_step || differs(ratio_)));
   if (!is_another) {
     if (count_ >= kLegs) is_speed_known_ = true;
     // What is counted otherwise anyway is followed closely.

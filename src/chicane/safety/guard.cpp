@@ -175,8 +175,9 @@ void Guard::count_with_answer() noexcept {
 }
 
 /// Between two cycles: what was learned is driven with from now on, and what the watch found beyond it is
-/// looked for anew.
+/// looked for anew. Without a guard a controller drives as it is.
 void Guard::take_up_actuators() noexcept {
+  if (options_.mode == GuardMode::kOff) return;
   const double delay = learned_.answer().delay;
   if (!learned_.take_up()) return;
   told_.delay(learned_.answer().delay - delay);
