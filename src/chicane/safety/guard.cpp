@@ -33,6 +33,12 @@ void clamp_sizes(controller::Plan& plan) noexcept {
   plan.reference_size = std::clamp(plan.reference_size, 0, controller::Plan::kCapacity);
 }
 
+/// A controller that knows the car's tyres counts with how its actuators answer. One that bounds its inputs
+/// alone was described without, and its commands are sent as they are.
+bool plans_with_car(const controller::Controller& controller) noexcept {
+  return controller.constraints().size() > controller::kInputConstraintNames.size();
+}
+
 bool is_same(const model::Command& a, const model::Command& b) noexcept {
   return a.steer == b.steer && a.throttle == b.throttle;
 }
@@ -175,9 +181,9 @@ void Guard::count_with_answer() noexcept {
 }
 
 /// Between two cycles: what was learned is driven with from now on, and what the watch found beyond it is
-/// looked for anew. Without a guard a controller drives as it is.
+/// looked for anew. In each mode of the guard: what it observes is what it would drive.
 void Guard::take_up_actuators() noexcept {
-  if (options_.mode == GuardMode::kOff) return;
+  if (!plans_with_car(*controller_)) return;
   const double delay = learned_.answer().delay;
   if (!learned_.take_up()) return;
   told_.delay(learned_.answer().delay - delay);
