@@ -49,7 +49,7 @@ std::optional<int> free_port(int wanted) {
   return is_free ? std::optional<int>(ntohs(address.sin_port)) : std::nullopt;
 }
 
-/// For {chicane}: the shell need not know where it is.
+/// Program that {chicane} stands for, as a word of the shell.
 std::string driving_program() {
   const std::string program = other_program("chicane", false);
   return program.empty() ? "chicane" : sweep::shell_word(program);

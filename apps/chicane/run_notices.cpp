@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
 #include "chicane/controller/guard_words.hpp"
+#include "chicane/safety/supervisor.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -26,10 +28,12 @@ std::string intervention_of(const telemetry::Frame& frame) {
   return controller::sentence_of(controller::describe_driver(frame.guard.rung, frame.guard.reason));
 }
 
-/// What ends a stop that does not end when the sensor agrees again; empty: nothing has to be done.
+/// End of a stop that outlasts its sensor's fault; empty: nothing has to be done.
 std::string_view end_of(controller::GuardReason reason) {
-  using enum controller::GuardReason;
-  const bool is_tried = reason == kSpeedMismatch || reason == kHeadingJump || reason == kPositionJump;
+  const bool is_tried =
+      std::any_of(safety::kConditions.begin(), safety::kConditions.end(), [&](const safety::Condition& each) {
+        return each.reason == reason && each.ends == safety::ConditionEnd::kByTrial;
+      });
   return is_tried ? "; it is tried by half a metre, else ends by a restart, or by driving by hand" : "";
 }
 
