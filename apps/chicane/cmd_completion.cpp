@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "command_text.hpp"
 #include "commands.hpp"
+#include "option_row.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -17,13 +17,13 @@ struct Value {
   bool is_assignment = false;  ///< KEY=VALUE: more is typed behind the word
 };
 
-Value value_of(const OptionText& option) {
+Value value_of(const OptionRow& option) {
   Value value;
-  value.words = fmt::format("{}", fmt::join(option.choices, " "));
-  value.shelf = shelf_of(option);
+  value.words = fmt::format("{}", fmt::join(option.rule.words, " "));
+  value.shelf = option.rule.shelf;
   for (const char* kind : {"FILE", "LOG", "FOLDER", "SCENARIO", "PLAN", "LEAGUE"})
-    value.is_file = value.is_file || option.value.find(kind) != std::string::npos;
-  value.is_assignment = option.value.find('=') != std::string::npos;
+    value.is_file = value.is_file || option.value.find(kind) != std::string_view::npos;
+  value.is_assignment = option.value.find('=') != std::string_view::npos;
   return value;
 }
 
@@ -34,11 +34,12 @@ std::string quoted(std::string_view text, std::string_view quote) {
   return "'" + result + "'";
 }
 
-std::string option_names(const CommandText& command) {
+std::string option_names(const Command& command) {
+  Options scratch;
   std::string names = "--help";
-  for (const OptionText& option : command.options) {
+  for (const OptionRow& option : options_of(command, scratch)) {
     if (option.is_positional()) continue;
-    for (const std::string& name : option.names) names += " " + name;
+    for (const std::string& name : option.typed_names()) names += " " + name;
   }
   return names;
 }
@@ -63,19 +64,20 @@ std::string bash_action(const Value& value) {
   return action;
 }
 
-std::string bash_script(const std::vector<CommandText>& commands) {
+std::string bash_script() {
+  Options scratch;
   std::string script(kBashHead);
   std::string names = "--help --version";
-  for (const CommandText& command : commands) names += " " + command.name;
+  for (const Command& command : commands()) names += fmt::format(" {}", command.name);
   script += fmt::format("  if ((COMP_CWORD == 1)); then _chicane_words '{}'; return; fi\n", names);
   script += "  case ${COMP_WORDS[1]} in\n";
-  for (const CommandText& command : commands) {
+  for (const Command& command : commands()) {
     std::string positional;
     script += fmt::format("    {})\n      case $previous in\n", command.name);
-    for (const OptionText& option : command.options) {
+    for (const OptionRow& option : options_of(command, scratch)) {
       if (option.is_positional()) positional += bash_action(value_of(option));
       if (option.is_positional() || option.value.empty()) continue;
-      script += fmt::format("        {}) {}return ;;\n", fmt::join(option.names, " | "),
+      script += fmt::format("        {}) {}return ;;\n", fmt::join(option.typed_names(), " | "),
                             bash_action(value_of(option)));
     }
     script += fmt::format("      esac\n      if [[ $current == -* ]]; then _chicane_words '{}'; return; fi\n",
@@ -103,31 +105,33 @@ std::string zsh_text(std::string_view text) {
   return result;
 }
 
-std::string zsh_script(const std::vector<CommandText>& commands) {
+std::string zsh_script() {
+  Options scratch;
   const std::string_view quote = R"('\'')";
   std::string script =
       "#compdef chicane\n# zsh completion for chicane, made by `chicane completion zsh`.\n"
       "_chicane_names() { local shelf=$1; shift; compadd \"$@\" -- ${(f)\"$(chicane list $shelf 2>/dev/null "
       "| "
       "cut -d' ' -f1)\"} }\n_chicane() {\n  if (( CURRENT == 2 )); then\n    local -a commands=(\n";
-  for (const CommandText& command : commands)
-    script += fmt::format("      {}\n", quoted(command.name + ":" + zsh_text(command.summary), quote));
+  for (const Command& command : commands())
+    script += fmt::format("      {}\n",
+                          quoted(fmt::format("{}:{}", command.name, zsh_text(command.summary)), quote));
   script +=
       "    )\n    _describe command commands\n    return\n  fi\n  shift words; (( CURRENT-- ))\n  case "
       "$words[1] "
       "in\n";
-  for (const CommandText& command : commands) {
+  for (const Command& command : commands()) {
     script +=
         fmt::format("    {})\n      _arguments '--help[Print this help message and exit]'", command.name);
-    for (const OptionText& option : command.options) {
+    for (const OptionRow& option : options_of(command, scratch)) {
       const std::string action = zsh_action(value_of(option));
       const std::string value = ":" + zsh_text(option.value) + ":" + action;
       if (option.is_positional()) {
         script += " \\\n        " + quoted("*" + value, quote);
         continue;
       }
-      for (const std::string& name : option.names) {
-        script += " \\\n        " + quoted(fmt::format("*{}[{}]{}", name, zsh_text(option.help),
+      for (const std::string& name : option.typed_names()) {
+        script += " \\\n        " + quoted(fmt::format("*{}[{}]{}", name, zsh_text(option.meaning),
                                                        option.value.empty() ? "" : value),
                                            quote);
       }
@@ -150,27 +154,28 @@ std::string fish_values(const Value& value) {
   return words.empty() ? "" : " -a " + quoted(words, R"(\')");
 }
 
-std::string fish_script(const std::vector<CommandText>& commands) {
+std::string fish_script() {
+  Options scratch;
   const std::string_view quote = R"(\')";
   std::string script =
       "# fish completion for chicane, made by `chicane completion fish`.\ncomplete -c chicane -f\n"
       "complete -c chicane -n __fish_use_subcommand -l help\ncomplete -c chicane -n __fish_use_subcommand -l "
       "version\n";
-  for (const CommandText& command : commands) {
+  for (const Command& command : commands()) {
     script += fmt::format("complete -c chicane -n __fish_use_subcommand -a {} -d {}\n", command.name,
                           quoted(command.summary, quote));
     const std::string line =
         fmt::format("complete -c chicane -n '__fish_seen_subcommand_from {}'", command.name);
-    for (const OptionText& option : command.options) {
+    for (const OptionRow& option : options_of(command, scratch)) {
       const Value value = value_of(option);
       script += line;
       if (!option.is_positional()) {
-        for (const std::string& name : option.names)
+        for (const std::string& name : option.typed_names())
           script += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
         if (!option.value.empty()) script += " -r";
       }
       script += fmt::format(" {}{} -d {}\n", value.is_file ? "-F" : "-f", fish_values(value),
-                            quoted(option.help, quote));
+                            quoted(option.meaning, quote));
     }
     script += line + " -l help\n";
   }
@@ -180,10 +185,9 @@ std::string fish_script(const std::vector<CommandText>& commands) {
 }  // namespace
 
 std::string completion_script(std::string_view shell) {
-  const std::vector<CommandText> commands = command_texts();
-  if (shell == "zsh") return zsh_script(commands);
-  if (shell == "fish") return fish_script(commands);
-  return bash_script(commands);
+  if (shell == "zsh") return zsh_script();
+  if (shell == "fish") return fish_script();
+  return bash_script();
 }
 
 ExitCode completion(const Options& options) {

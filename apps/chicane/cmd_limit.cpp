@@ -26,13 +26,9 @@ Result<void> print_limit(const Options& options) {
   if (!options.csv_file.empty()) {
     if (Result<void> writable = check_writable(options.csv_file); !writable) return writable;
   }
-  if (options.is_quick)
-    fmt::print(stderr, "--quick: gives the bound without a witness now; it goes with the next version\n");
-  if (options.spacing)
-    fmt::print(stderr, "--spacing-m: has no effect any more; it goes with the next version\n");
-  LimitRun told{.track = track->name(), .car = scenario->car, .wants_witness = !options.is_quick};
+  LimitRun told{.track = track->name(), .car = scenario->car};
   const Result<lap_time::PlantLimit> limit =
-      limit_of(*scenario, *track, {.wants_witness = told.wants_witness, .budget = options.limit_budget},
+      limit_of(*scenario, *track, {.budget = options.limit_budget},
                wants_stop, told.wall_time);
   if (!limit) return fail(limit.error());
   if (!options.csv_file.empty()) {

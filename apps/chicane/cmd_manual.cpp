@@ -4,8 +4,8 @@
 #include <string>
 
 #include "chicane/version.hpp"
-#include "command_text.hpp"
 #include "commands.hpp"
+#include "option_row.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -25,33 +25,25 @@ std::string plain(std::string_view text) {
   return result.starts_with('.') || result.starts_with('\'') ? "\\&" + result : result;
 }
 
-std::string synopsis(const CommandText& command) {
+std::string synopsis(const Command& command, const Rows& rows) {
   std::string line = fmt::format(".B chicane {}\n", plain(command.name));
+  std::string positionals;
   bool has_options = false;
-  for (const OptionText& option : command.options) has_options = has_options || !option.is_positional();
-  if (has_options) line += "[\\fIOPTION\\fR]...\n";
-  for (const OptionText& option : command.options) {
-    if (!option.is_positional()) continue;
-    const std::string value =
-        fmt::format("\\fI{}\\fR{}", plain(option.value), option.takes_several ? "..." : "");
-    line += option.is_required ? value + "\n" : "[" + value + "]\n";
+  for (const OptionRow& row : rows) {
+    has_options = has_options || !row.is_positional();
+    if (!row.is_positional()) continue;
+    const std::string value = fmt::format("\\fI{}\\fR{}", plain(row.value), row.takes_several() ? "..." : "");
+    positionals += row.rule.is_required ? value + "\n" : "[" + value + "]\n";
   }
-  return line;
+  return line + (has_options ? "[\\fIOPTION\\fR]...\n" : "") + positionals;
 }
 
-std::string entry(const OptionText& option) {
+std::string entry(const OptionRow& row) {
   std::string names;
-  for (const std::string& name : option.names)
+  for (const std::string& name : row.typed_names())
     names += fmt::format("{}\\fB{}\\fR", names.empty() ? "" : ", ", plain(name));
-  if (option.is_positional())
-    names = fmt::format("\\fI{}\\fR", plain(option.value));
-  else if (!option.value.empty())
-    names += fmt::format(" \\fI{}\\fR", plain(option.value));
-  std::string help = plain(option.help);
-  if (!option.choices.empty())
-    help += fmt::format(": {}", plain(fmt::format("{}", fmt::join(option.choices, ", "))));
-  if (!option.default_value.empty()) help += fmt::format("; default {}", plain(option.default_value));
-  return fmt::format(".TP\n{}\n{}.\n", names, help);
+  if (!row.is_flag()) names += fmt::format("{}\\fI{}\\fR", names.empty() ? "" : " ", plain(row.value));
+  return fmt::format(".TP\n{}\n{}.\n", names, plain(row.meaning + notes(row)));
 }
 
 constexpr std::string_view kTail = R"(.SH EXIT STATUS
@@ -91,16 +83,16 @@ std::string manual_page() {
       "by "
       "model predictive control\n.SH SYNOPSIS\n",
       plain(kVersion));
-  const std::vector<CommandText> commands = command_texts();
-  for (const CommandText& command : commands) page += synopsis(command) + ".br\n";
+  Options scratch;
+  for (const Command& command : commands()) page += synopsis(command, options_of(command, scratch)) + ".br\n";
   page +=
       ".SH DESCRIPTION\nController, simulator, recorder and dashboard in one program. Results go to the "
       "standard output, "
       "everything else to the\nstandard error.\n.SH COMMANDS\n";
-  for (const CommandText& command : commands) {
+  for (const Command& command : commands()) {
     page += fmt::format(".SS chicane {}\n{}.\n", plain(command.name), plain(command.summary));
-    for (const OptionText& option : command.options) page += entry(option);
-    if (!command.example.empty()) page += fmt::format(".PP\nExample:\n.B {}\n", plain(command.example));
+    for (const OptionRow& row : options_of(command, scratch)) page += entry(row);
+    page += fmt::format(".PP\nExample:\n.B {}\n", plain(command.example));
   }
   return page.append(kTail);
 }

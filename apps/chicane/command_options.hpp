@@ -1,37 +1,53 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "options.hpp"
+#include <initializer_list>
+#include <utility>
 
-namespace CLI {
-class App;
-}
+#include "option_row.hpp"
 
-/// The options of each command, by its name.
+/// The options of each command as rows whose targets are in `options`.
 namespace chicane::apps {
 
-void add_drive(CLI::App& command, Options& options);
-void add_serve(CLI::App& command, Options& options);
-void add_simulate(CLI::App& command, Options& options);
-void add_ros(CLI::App& command, Options& options);
-void add_limit(CLI::App& command, Options& options);
-void add_replay(CLI::App& command, Options& options);
-void add_report(CLI::App& command, Options& options);
-void add_video(CLI::App& command, Options& options);
-void add_sweep(CLI::App& command, Options& options);
-void add_league(CLI::App& command, Options& options);
-void add_claims(CLI::App& command, Options& options);
-void add_tune(CLI::App& command, Options& options);
-void add_merge(CLI::App& command, Options& options);
-void add_campaign(CLI::App& command, Options& options);
-void add_recover(CLI::App& command, Options& options);
-void add_lane_change(CLI::App& command, Options& options);
-void add_import(CLI::App& command, Options& options);
-void add_identify(CLI::App& command, Options& options);
-void add_check(CLI::App& command, Options& options);
-void add_list(CLI::App& command, Options& options);
-void add_bench(CLI::App& command, Options& options);
-void add_completion(CLI::App& command, Options& options);
-void add_manual(CLI::App& command, Options& options);
+[[nodiscard]] Rows drive_rows(Options& options);
+[[nodiscard]] Rows serve_rows(Options& options);
+[[nodiscard]] Rows simulate_rows(Options& options);
+[[nodiscard]] Rows ros_rows(Options& options);
+[[nodiscard]] Rows limit_rows(Options& options);
+[[nodiscard]] Rows replay_rows(Options& options);
+[[nodiscard]] Rows report_rows(Options& options);
+[[nodiscard]] Rows video_rows(Options& options);
+[[nodiscard]] Rows sweep_rows(Options& options);
+[[nodiscard]] Rows league_rows(Options& options);
+[[nodiscard]] Rows claims_rows(Options& options);
+[[nodiscard]] Rows tune_rows(Options& options);
+[[nodiscard]] Rows merge_rows(Options& options);
+[[nodiscard]] Rows campaign_rows(Options& options);
+[[nodiscard]] Rows recover_rows(Options& options);
+[[nodiscard]] Rows lane_change_rows(Options& options);
+[[nodiscard]] Rows import_rows(Options& options);
+[[nodiscard]] Rows identify_rows(Options& options);
+[[nodiscard]] Rows check_rows(Options& options);
+[[nodiscard]] Rows list_rows(Options& options);
+[[nodiscard]] Rows bench_rows(Options& options);
+[[nodiscard]] Rows completion_rows(Options& options);
+
+/// Rows of several groups, one after the other.
+[[nodiscard]] inline Rows joined(std::initializer_list<Rows> groups) {
+  Rows all;
+  for (const Rows& group : groups) all.insert(all.end(), group.begin(), group.end());
+  return all;
+}
+
+/// Who drives: preset, controller, car and speed.
+[[nodiscard]] Rows controller_rows(Options& options);
+/// Where and how long: track, laps and seed.
+[[nodiscard]] Rows world_rows();
+/// --set, behind all other settings: the last one wins.
+[[nodiscard]] OptionRow set_row(Options& options);
+[[nodiscard]] OptionRow json_row(Options& options);
+[[nodiscard]] OptionRow track_row();
+/// --jobs.
+[[nodiscard]] OptionRow jobs_row(Options& options);
 
 }  // namespace chicane::apps

@@ -7,11 +7,8 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "option_row.hpp"
 #include "options.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace chicane::apps {
 
@@ -19,13 +16,17 @@ struct Command {
   std::string_view name;
   std::string_view group;  ///< heading in the help
   std::string_view summary;
+  std::string_view example;
   ExitCode (*run)(const Options&) = nullptr;
-  void (*add_options)(CLI::App& command, Options& options) = nullptr;
-  bool is_planning = false;  ///< it plans laps or finds limits, which it may keep
+  Rows (*rows)(Options& options) = nullptr;  ///< null: it has no options
+  bool is_planning = false;                  ///< it plans laps or finds limits, which it may keep
 };
 
 /// All commands, in the order of the help, group by group.
 [[nodiscard]] std::span<const Command> commands();
+
+/// The options of a command, with those of all commands that plan; their targets are in `options`.
+[[nodiscard]] Rows options_of(const Command& command, Options& options);
 
 [[nodiscard]] ExitCode drive(const Options& options);
 [[nodiscard]] ExitCode serve(const Options& options);

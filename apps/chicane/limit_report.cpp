@@ -69,13 +69,12 @@ std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
     return fmt::format(
         "{} on {}: {:.3f} s is the best lap so far, no bound: the budget ended the search (--budget-s)\n"
         "speed    {:.1f} mph at least, {:.1f} at most\n"
-        "searched {:.1f} s: {} nodes, {} turns; stationarity {:.1e}, violation {:.1e}\n",
+        "searched {:.1f} s: {} nodes, {} iterations; stationarity {:.1e}, violation {:.1e}\n",
         run.car, run.track, limit.bound.lap, mps_to_mph(extent.least_speed), mps_to_mph(extent.top_speed),
         run.wall_time, limit.nodes, limit.effort.iterations, limit.stationarity, limit.violation);
   std::string text = fmt::format("{} on {}: between {:.3f} s and ", run.car, run.track, limit.bound.lap);
   text += limit.witness
               ? fmt::format("{:.3f} s ({:+.2f} %)\n", limit.witness->lap_time, 100.0 * limit.bracket())
-          : !run.wants_witness ? "what can be driven: --quick does not drive it\n"
           : limit.is_cut_short ? "what could be driven: the budget ended the search for that (--budget-s)\n"
                                : "what could be driven: no plan could\n";
   text += fmt::format(
@@ -89,7 +88,7 @@ std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
   text += fmt::format("speed    {:.1f} mph at least, {:.1f} at most\n", mps_to_mph(extent.least_speed),
                       mps_to_mph(extent.top_speed));
   text +=
-      fmt::format("found in {:.1f} s: {} nodes, {} turns; stationarity {:.1e}, violation {:.1e}\n",
+      fmt::format("found in {:.1f} s: {} nodes, {} iterations; stationarity {:.1e}, violation {:.1e}\n",
                   run.wall_time, limit.nodes, limit.effort.iterations, limit.stationarity, limit.violation);
   return text;
 }

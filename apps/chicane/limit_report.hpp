@@ -25,7 +25,6 @@ struct LimitQuestion {
 /// For whom and what a limit was found, and how long that took.
 struct LimitRun {
   std::string track, car;
-  bool wants_witness = true;
   double wall_time = 0.0;  ///< [s]
 };
 

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <string_view>
 #include <utility>
 
@@ -12,61 +13,11 @@
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/version.hpp"
-#include "command_text.hpp"
 #include "commands.hpp"
-#include "setting_options.hpp"
-#include "usage.hpp"
+#include "option_row.hpp"
 
 namespace chicane::apps {
 namespace {
-
-void add_commands(CLI::App& app, Options& options) {
-  for (const Command& command : commands()) {
-    CLI::App* const sub = app.add_subcommand(std::string(command.name), std::string(command.summary));
-    sub->group(std::string(command.group));
-    sub->footer("Example: chicane " + std::string(command.name));  // of a command without options
-    command.add_options(*sub, options);
-    if (command.is_planning)
-      add_negation(*sub, "--no-cache", options.uses_cache,
-                   "Compute plans and limits anew, and keep none in the cache folder");
-  }
-}
-
-/// "NAME|FILE:{a,b}", as the parser shows it: the value's name, and the words it takes.
-void read_type(const CLI::Option& option, OptionText& text) {
-  const std::string type = option.get_type_name();
-  const std::size_t open = type.find('{');
-  text.value = type.substr(0, type.find(':'));
-  for (std::size_t at = open; at != std::string::npos && at + 1 < type.size();) {
-    const std::size_t end = type.find_first_of(",}", at + 1);
-    text.choices.push_back(type.substr(at + 1, end - at - 1));
-    at = end == std::string::npos || type[end] == '}' ? std::string::npos : end;
-  }
-}
-
-OptionText text_of(const CLI::Option& option) {
-  OptionText text;
-  text.help = option.get_description();
-  text.is_required = option.get_required();
-  text.takes_several = option.get_items_expected_max() > 1;
-  for (const std::string& name : option.get_snames()) text.names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) text.names.push_back("--" + name);
-  text.default_value = option.get_default_str();
-  if (option.get_items_expected_max() > 0) read_type(option, text);
-  return text;
-}
-
-Done explain(const CLI::App& app, const CLI::ParseError& error) {
-  const auto chosen = app.get_subcommands();
-  const CLI::App& at = chosen.empty() ? app : *chosen.front();
-  if (error.get_exit_code() == 0) {  // help or version
-    fmt::print("{}", error.get_name() == "CallForVersion" ? std::string(error.what()) + "\n" : app.help());
-    return {kSuccess};
-  }
-  const std::string name = chosen.empty() ? "chicane" : fmt::format("chicane {}", at.get_name());
-  fmt::print(stderr, "{}: {}\nSee `{} --help`.\n", name, usage_fault(at, error), name);
-  return {kUsage};
-}
 
 /// Six lines for a newcomer, in place of all commands.
 constexpr std::string_view kFirstSteps =
@@ -77,78 +28,154 @@ constexpr std::string_view kFirstSteps =
     "chicane COMMAND --help               options of a command, with an example\n"
     "chicane --help                       all commands\n";
 
+std::string did_you_mean(std::string_view got, const std::vector<std::string_view>& names) {
+  const std::string_view best = protocol::nearest(got, names);
+  return best.empty() ? "" : fmt::format(" (did you mean {}?)", best);
+}
+
 /// The first word must be a command; empty when it is, or an option.
-std::string command_fault(const char* const* words) {
-  const std::string_view word = words[1];
+std::string command_fault(std::string_view word) {
   std::vector<std::string_view> names;
   for (const Command& command : commands()) names.push_back(command.name);
   if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end()) return "";
-  const std::string_view best = protocol::nearest(word, names);
-  return fmt::format("chicane: got the unknown command {}, expected one of {}{}", printable(word),
-                     fmt::join(names, ", "), best.empty() ? "" : fmt::format(" (did you mean {}?)", best));
+  return fmt::format("got the unknown command {}, expected one of {}{}", printable(word),
+                     fmt::join(names, ", "), did_you_mean(word, names));
 }
 
 /// Its second line is there when this program cannot do what a package can.
 std::string version_text() {
   const std::string left_out = instruction_sets_left_out();
-  if (left_out.empty()) return "chicane " CHICANE_VERSION;
-  return fmt::format("chicane {}\ninstruction sets: {} (not built in: {})", CHICANE_VERSION,
+  if (left_out.empty()) return "chicane " CHICANE_VERSION "\n";
+  return fmt::format("chicane {}\ninstruction sets: {} (not built in: {})\n", CHICANE_VERSION,
                      built_instruction_sets(), left_out);
+}
+
+/// The words of a command line, taken apart by the names of its options; what they mean is the rows'.
+class Words {
+ public:
+  explicit Words(const Rows& rows) : rows_(rows) {
+    for (const OptionRow& row : rows) {
+      CLI::Option* const option = row.is_flag() ? app_.add_flag(row.names) : app_.add_option(row.names);
+      option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      if (row.is_positional() && row.takes_several()) option->expected(-1);
+      options_.push_back(option);
+    }
+  }
+
+  /// What is wrong with the words; empty where nothing is. `wants_help`: set by --help.
+  std::string read(int count, const char* const* words, bool& wants_help) {
+    try {
+      app_.parse(count, words);
+    } catch (const CLI::CallForHelp&) {
+      wants_help = true;
+    } catch (const CLI::ExtrasError&) {
+      return unexpected();
+    } catch (const CLI::ArgumentMismatch&) {  // the last word is an option without its value
+      lacks_value_ = true;
+      const std::string_view last = words[count - 1];
+      return without_value(last.substr(0, last.find('=')));
+    }
+    return "";
+  }
+
+  bool lacks_value() const { return lacks_value_; }
+
+  std::vector<std::string> values(std::size_t row) const {
+    std::vector<std::string> given = options_[row]->results();
+    const char* const variable = rows_[row].rule.environment;
+    const char* const text = given.empty() && variable != nullptr ? std::getenv(variable) : nullptr;
+    if (text != nullptr) given.emplace_back(text);
+    return given;
+  }
+
+  bool has(std::string_view name) const {
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (rows_[i].name() == name) return options_[i]->count() > 0;
+    return false;
+  }
+
+ private:
+  /// The first word that is no option, and the one that it may have meant.
+  std::string unexpected() const {
+    const std::vector<std::string> unknown = app_.remaining();
+    const auto flag = std::find_if(unknown.begin(), unknown.end(),
+                                   [](const std::string& word) { return word.starts_with('-'); });
+    const std::string got = flag != unknown.end() ? *flag : unknown.front();
+    std::vector<std::string> names;
+    for (const OptionRow& row : rows_) names.push_back(row.name());
+    return fmt::format("got {}, expected {}{}", printable(got),
+                       got.starts_with('-') ? "one of its options" : "nothing more",
+                       did_you_mean(got.substr(0, got.find('=')), {names.begin(), names.end()}));
+  }
+
+  std::string without_value(std::string_view typed) const {
+    for (const OptionRow& row : rows_)
+      for (const std::string& name : row.typed_names())
+        if (name == typed) return fmt::format("{}: got nothing, expected {}", row.name(), row.expectation());
+    return fmt::format("got {}, expected a value after it", printable(typed));
+  }
+
+  const Rows& rows_;
+  CLI::App app_;
+  std::vector<CLI::Option*> options_;
+  bool lacks_value_ = false;
+};
+
+/// What is wrong with an option among the others; empty where nothing is.
+std::string company_fault(const OptionRow& row, bool is_given, const Words& words) {
+  if (!is_given)
+    return row.rule.is_required ? fmt::format("got nothing, expected {}", row.expectation()) : "";
+  if (!row.rule.needs.empty() && !words.has(row.rule.needs))
+    return fmt::format("got it alone, expected {} with it", row.rule.needs);
+  for (const std::string_view other : row.rule.excludes)
+    if (words.has(other)) return fmt::format("got it with {}, expected one of the two", other);
+  return "";
+}
+
+std::string take_words(const Rows& rows, const Words& words, Options& options) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::vector<std::string> given = words.values(i);
+    std::string fault = given.empty() ? "" : assign(rows[i], given, options.settings);
+    if (fault.empty()) fault = company_fault(rows[i], !given.empty(), words);
+    if (!fault.empty()) return fmt::format("{}: {}", rows[i].name(), fault);
+  }
+  return "";
+}
+
+Done refuse(std::string_view name, std::string_view fault) {
+  fmt::print(stderr, "{}: {}\nSee `{} --help`.\n", name, fault, name);
+  return {kUsage};
 }
 
 }  // namespace
 
 std::variant<Options, Done> parse_command_line(int count, const char* const* words) {
+  if (count < 2) return fmt::print(stderr, "{}", kFirstSteps), Done{kUsage};
+  const std::string_view first = words[1];
+  if (first == "-h" || first == "--help") return fmt::print("{}", program_help()), Done{};
+  if (first == "--version") return fmt::print("{}", version_text()), Done{};
+  if (first.starts_with("-"))
+    return refuse("chicane",
+                  fmt::format("got {}, expected a command or one of --help, --version", printable(first)));
+  if (const std::string fault = command_fault(first); !fault.empty()) return refuse("chicane", fault);
+
+  const auto command = std::find_if(commands().begin(), commands().end(),
+                                    [&](const Command& each) { return each.name == first; });
   Options options;
-  CLI::App app("Drives a car round a track by model predictive control.", "chicane");
-  app.set_version_flag("--version", version_text());
-  app.require_subcommand(1);
-  app.footer("Example: chicane drive");
-  add_commands(app, options);
-  if (count < 2) {
-    fmt::print(stderr, "{}", kFirstSteps);
-    return Done{kUsage};
-  }
-  if (const std::string fault = command_fault(words); !fault.empty()) {
-    fmt::print(stderr, "{}\nSee `chicane --help`.\n", fault);
-    return Done{kUsage};
-  }
-  try {
-    app.parse(count, words);
-  } catch (const CLI::ParseError& error) {
-    return explain(app, error);
-  }
-  options.command = app.get_subcommands().front()->get_name();
+  options.command = first;
   options.words.assign(words + 2, words + count);
+  const Rows rows = options_of(*command, options);
+  Words given(rows);
+  bool wants_help = false;
+  std::string fault = given.read(count - 1, words + 1, wants_help);
+  if (wants_help)
+    return fmt::print("{}", command_help(command->name, command->summary, rows, command->example)), Done{};
+  // A word too many is often the rest of a value with blanks: the value is what is wrong then.
+  if (const std::string value_fault = take_words(rows, given, options);
+      !value_fault.empty() && !given.lacks_value())
+    fault = value_fault;
+  if (!fault.empty()) return refuse(fmt::format("chicane {}", first), fault);
   return options;
-}
-
-std::vector<CommandText> command_texts() {
-  Options options;
-  CLI::App app;
-  add_commands(app, options);
-  std::vector<CommandText> texts;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    CommandText text{command->get_name(), command->get_description(), {}, command->get_footer()};
-    const std::string_view example = "Example: ";
-    if (text.example.starts_with(example)) text.example.erase(0, example.size());
-    for (const CLI::Option* option : command->get_options()) {
-      if (option != command->get_help_ptr()) text.options.push_back(text_of(*option));
-    }
-    std::stable_partition(text.options.begin(), text.options.end(),
-                          [](const OptionText& option) { return option.is_positional(); });
-    texts.push_back(std::move(text));
-  }
-  return texts;
-}
-
-std::string shelf_of(const OptionText& option) {
-  const std::string_view words = "chicane list ";
-  const std::size_t at = option.help.find(words);
-  if (at == std::string::npos) return "";
-  const std::size_t begin = at + words.size();
-  return option.help.substr(begin,
-                            option.help.find_first_not_of("abcdefghijklmnopqrstuvwxyz", begin) - begin);
 }
 
 }  // namespace chicane::apps

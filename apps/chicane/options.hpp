@@ -48,9 +48,7 @@ struct Options {
   bool wants_limit = false;       ///< drive --fast: the gaps of its laps to the limit
   bool wants_causes = false;      ///< drive --fast --limit: what each cause takes of these gaps
   std::string csv_file;           ///< limit: the racing line; empty: not kept
-  bool is_quick = false;          ///< limit: no witness
   double limit_budget = 600.0;    ///< limit: work of the search [s]
-  std::optional<double> spacing;  ///< limit: without effect
 
   std::string connect =
       "ws://127.0.0.1:4567/socket.io/?EIO=4&transport=websocket";  ///< simulate: the controller

@@ -45,7 +45,7 @@ std::vector<std::string> commands() {
   std::vector<std::string> names;
   bool is_list = false;
   for (const std::string& line : lines_of(bash(kQuotedProgram + " --help"))) {
-    if (is_list && line.starts_with("  ")) names.push_back(line.substr(2, line.find(' ', 2) - 2));
+    if (is_list && line.starts_with("  ") && line[2] != ' ') names.push_back(line.substr(2, line.find(' ', 2) - 2));
     is_list = is_list || line == "Drive:";
   }
   return names;
@@ -88,7 +88,7 @@ TEST(CommandText, TheHelpIsInGroups) {
   std::vector<std::string> found;
   for (const std::string& line : lines_of(bash(kQuotedProgram + " --help"))) {
     if (line.ends_with(':') && line != "Options:") found.push_back(line);
-    if (line.starts_with("  ") && !line.starts_with("  -"))
+    if (line.starts_with("  ") && line[2] != '-' && line[2] != ' ')
       found.push_back(line.substr(2, line.find(' ', 2) - 2));
   }
   EXPECT_THAT(found, ElementsAre("Drive:", "drive", "serve", "simulate", "Look:", "replay", "report", "video",

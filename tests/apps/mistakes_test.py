@@ -65,7 +65,7 @@ drive --fast --fault half_grip@-5 | --fault half_grip@-5 | got -5 | expected a n
 drive --fast --report page.txt | --report | got page.txt | expected a name that ends in .html |
 drive --fast --record a.html --report a.html | --report | got a.html | expected another file than --record |
 drive --fast --compress | --compress | got it alone | expected --record with it | {USAGE}
-drive --fast --pace 2 | --fast | got it with --pace | expected one of the two | {USAGE}
+drive --fast --pace 2 | --pace | got it with --fast | expected one of the two | {USAGE}
 drive --pace 100 | --pace | got 100 | expected a number in [0.05, 20] | {USAGE}
 drive --port http | --port | got http | expected a whole number in [0, 65535] | {USAGE}
 serve --address localhost | address | got 'localhost' | expected a numeric address |
@@ -77,7 +77,9 @@ replay {{text.mcap}} | text.mcap: file | got other content | expected an MCAP fi
 report {{text.mcap}} | report | got none of --output, --page and --compare | expected one |
 report {{text.mcap}} -o page.pdf | --output | got page.pdf | expected a name that ends in .html |
 import road.csv --preview road.png | --preview | got road.png | expected a name that ends in .html |
-limit --quick --spacing-m 9 | --spacing-m | got 9 | expected a number in [0.5, 5] | {USAGE}
+limit --budget-s 0 | --budget-s | got 0 | expected a number > 0 | {USAGE}
+drive --fast=yes | --fast | got yes | expected no value | {USAGE}
+limit --car | --car | got nothing | expected NAME|FILE (chicane list cars) | {USAGE}
 list track | what | got track | expected one of presets, tracks | {USAGE}
 completion ksh | shell | got ksh | expected one of bash, zsh, fish | {USAGE}
 check | check | got nothing | expected files or settings |

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "option_row.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+#include "chicane/base/text.hpp"
+
+namespace chicane::apps {
+namespace {
+
+template <class... Kinds>
+bool holds_any(const Target& to) {
+  return (std::holds_alternative<Kinds>(to) || ...);
+}
+
+bool is_whole(const Target& to) {
+  return holds_any<int*, std::uint16_t*, std::uint64_t*, std::vector<int>*>(to);
+}
+
+bool is_number(const Target& to) { return is_whole(to) || holds_any<double*, std::optional<double>*>(to); }
+
+bool is_within(const OptionRow& row, double number) {
+  return !row.rule.within || (number >= row.rule.within->least && number <= row.rule.within->most);
+}
+
+std::string limits(const Interval& within) {
+  if (within.most < kUnbounded)
+    return fmt::format(" in [{}, {}]", number_text(within.least), number_text(within.most));
+  return within.least > 0.0 ? " > 0" : " >= 0";
+}
+
+/// Gives one value to the target; what was expected of it, or nothing.
+struct Assign {
+  const OptionRow& row;
+  const std::string& text;
+  std::vector<std::pair<std::string, std::string>>& settings;
+
+  std::string operator()(bool* to) const { return *to = true, ""; }
+  std::string operator()(Off to) const { return *to.value = false, ""; }
+  std::string operator()(Setting to) const { return settings.emplace_back(to.key, text), ""; }
+  std::string operator()(std::string* to) const { return *to = text, ""; }
+  std::string operator()(std::vector<std::string>* to) const { return to->push_back(text), ""; }
+  std::string operator()(const Take& take) const { return take(text); }
+  std::string operator()(double* to) const { return number(number_in(text), *to); }
+  std::string operator()(std::optional<double>* to) const { return number(number_in(text), *to); }
+  std::string operator()(std::vector<int>* to) const { return number(count_in(text), to->emplace_back()); }
+  template <class Whole>
+  std::string operator()(Whole* to) const {
+    return number(count_in(text), *to);
+  }
+
+ private:
+  template <class Number, class To>
+  std::string number(const std::optional<Number>& read, To& to) const {
+    using Value = std::conditional_t<std::is_integral_v<To>, To, double>;
+    const bool fits = read && is_within(row, static_cast<double>(*read)) &&
+                      static_cast<double>(*read) <= static_cast<double>(std::numeric_limits<Value>::max());
+    if (!fits) return row.expectation();
+    to = static_cast<Value>(*read);
+    return "";
+  }
+};
+
+struct DefaultText {
+  template <class Value>
+  std::string operator()(Value* value) const {
+    if constexpr (std::is_same_v<Value, std::string>)
+      return *value;
+    else if constexpr (std::is_same_v<Value, std::vector<std::string>> ||
+                       std::is_same_v<Value, std::vector<int>>)
+      return fmt::format("{}", fmt::join(*value, ","));
+    else if constexpr (std::is_same_v<Value, std::optional<double>>)
+      return *value ? number_text(**value) : "";
+    else
+      return number_text(static_cast<double>(*value));
+  }
+  template <class Other>
+  std::string operator()(const Other&) const {
+    return "";
+  }
+};
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts{""};
+  for (const char each : text) {
+    if (each == at)
+      parts.emplace_back();
+    else
+      parts.back() += each;
+  }
+  return parts;
+}
+
+std::string joined_values(const std::vector<std::string>& values) {
+  std::vector<std::string> words;
+  for (const std::string& value : values) words.push_back(printable(value));
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+}  // namespace
+
+OptionRule operator|(OptionRule a, const OptionRule& b) {
+  if (b.within) a.within = b.within;
+  if (!b.words.empty()) a.words = b.words;
+  if (!b.shelf.empty()) a.shelf = b.shelf;
+  if (!b.needs.empty()) a.needs = b.needs;
+  if (!b.excludes.empty()) a.excludes = b.excludes;
+  if (b.environment != nullptr) a.environment = b.environment;
+  a.is_required = a.is_required || b.is_required;
+  a.is_once = a.is_once || b.is_once;
+  a.shows_default = a.shows_default || b.shows_default;
+  return a;
+}
+
+bool OptionRow::takes_several() const {
+  return holds_any<std::vector<std::string>*, std::vector<int>*>(to) ||
+         (std::holds_alternative<Take>(to) && !rule.is_once);
+}
+
+std::vector<std::string> OptionRow::typed_names() const {
+  return is_positional() ? std::vector<std::string>{} : split(names, ',');
+}
+
+std::string OptionRow::name() const { return names.substr(names.find(',') + 1); }
+
+std::string OptionRow::expectation() const {
+  if (!rule.words.empty()) return fmt::format("one of {}", fmt::join(rule.words, ", "));
+  if (is_number(to))
+    return std::string(is_whole(to) ? "a whole number" : "a number") +
+           (rule.within ? limits(*rule.within) : "");
+  if (value == "X") return "a number";
+  return std::string(value) + (rule.shelf.empty() ? "" : fmt::format(" (chicane list {})", rule.shelf));
+}
+
+std::string OptionRow::default_text() const {
+  return rule.shows_default ? std::visit(DefaultText{}, to) : "";
+}
+
+std::string assign(const OptionRow& row, const std::vector<std::string>& given,
+                   std::vector<std::pair<std::string, std::string>>& settings) {
+  if (row.is_flag()) {
+    for (const std::string& text : given)
+      if (text != "true") return fmt::format("got {}, expected no value", printable(text));
+    return std::visit(Assign{row, given.front(), settings}, row.to);
+  }
+  if (given.size() > 1 && !row.takes_several())
+    return fmt::format("got it {} times ({}), expected once", given.size(), joined_values(given));
+  if (auto* const* const list = std::get_if<std::vector<std::string>*>(&row.to)) (*list)->clear();
+  if (auto* const* const list = std::get_if<std::vector<int>*>(&row.to)) (*list)->clear();
+  for (const std::string& whole : given) {
+    for (const std::string& text : row.takes_list() ? split(whole, ',') : std::vector{whole}) {
+      const bool is_word = row.rule.words.empty() || std::find(row.rule.words.begin(), row.rule.words.end(),
+                                                               text) != row.rule.words.end();
+      const std::string expected =
+          text.empty() || !is_word ? row.expectation() : std::visit(Assign{row, text, settings}, row.to);
+      if (!expected.empty())
+        return fmt::format("got {}, expected {}", text.empty() ? "nothing" : printable(text), expected);
+    }
+  }
+  return "";
+}
+
+}  // namespace chicane::apps

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "options.hpp"
+
+/// The command line as rows: the parser, the words for mistakes, the help, the manual page and the shells'
+/// completion are made of them.
+namespace chicane::apps {
+
+/// Another name for a setting of `chicane list parameters`.
+struct Setting {
+  std::string_view key;
+};
+/// Variable that a flag clears.
+struct Off {
+  bool* value;
+};
+/// Takes one value. Returns what was expected of it; empty where it was taken.
+using Take = std::function<std::string(const std::string& text)>;
+
+/// Where the values of an option go.
+using Target =
+    std::variant<bool*, Off, Setting, int*, std::uint16_t*, std::uint64_t*, double*, std::optional<double>*,
+                 std::string*, std::vector<std::string>*, std::vector<int>*, Take>;
+
+/// Closed interval of the numbers that an option takes.
+struct Interval {
+  double least, most;
+};
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+/// What an option takes besides its kind of value, and in which company.
+struct OptionRule {
+  std::optional<Interval> within{};          ///< of numbers
+  std::vector<std::string> words{};          ///< the only words that it takes; empty: any
+  std::string_view shelf{};                  ///< of `chicane list`, where its names stand
+  std::string_view needs{};                  ///< option without which it is refused
+  std::vector<std::string_view> excludes{};  ///< options with which it is refused
+  const char* environment = nullptr;         ///< variable with its value where it is not given
+  bool is_required = false;
+  bool is_once = false;        ///< with a Take: refused a second time
+  bool shows_default = false;  ///< the target's value before parsing stands in the help
+};
+
+/// Both rules: where both have a field, it is b's.
+[[nodiscard]] OptionRule operator|(OptionRule a, const OptionRule& b);
+
+[[nodiscard]] inline OptionRule between(double least, double most) {
+  return {.within = Interval{least, most}};
+}
+[[nodiscard]] inline OptionRule one_of(std::vector<std::string> words) { return {.words = std::move(words)}; }
+[[nodiscard]] inline OptionRule from_shelf(std::string_view shelf) { return {.shelf = shelf}; }
+[[nodiscard]] inline OptionRule from_variable(const char* name) { return {.environment = name}; }
+[[nodiscard]] inline OptionRule with(std::string_view other) { return {.needs = other}; }
+[[nodiscard]] inline OptionRule without(std::vector<std::string_view> others) {
+  return {.excludes = std::move(others)};
+}
+inline const OptionRule kPositive = between(std::numeric_limits<double>::denorm_min(), kUnbounded);
+inline const OptionRule kNonNegative = between(0.0, kUnbounded);
+inline const OptionRule kRequired{.is_required = true}, kOnce{.is_once = true}, kShown{.shows_default = true};
+
+/// One option, flag or positional argument of a command.
+struct OptionRow {
+  std::string names;       ///< as typed: "-o,--output"; without dashes: a positional argument
+  std::string_view value;  ///< name of its value, "NAME|FILE"; empty: a flag; with ",...": a list with commas
+  std::string meaning;     ///< what it is or does: starts with a noun or a verb
+  Target to;               ///< std::vector and Take: may be repeated, unless is_once
+  OptionRule rule{};
+
+  [[nodiscard]] bool is_positional() const { return !names.starts_with('-'); }
+  [[nodiscard]] bool is_flag() const { return value.empty(); }
+  [[nodiscard]] bool takes_list() const { return value.ends_with(",..."); }
+  [[nodiscard]] bool takes_several() const;
+  /// "-o" and "--output"; none of a positional argument.
+  [[nodiscard]] std::vector<std::string> typed_names() const;
+  /// The long one, or the positional's.
+  [[nodiscard]] std::string name() const;
+  /// "a number in [0.05, 20]", "one of bash, zsh, fish", "NAME|FILE (chicane list cars)".
+  [[nodiscard]] std::string expectation() const;
+  /// The target's value as text; empty unless rule.shows_default.
+  [[nodiscard]] std::string default_text() const;
+};
+
+using Rows = std::vector<OptionRow>;
+
+/// Gives the values of an option to its target. Returns what is wrong, "got X, expected Y"; empty where
+/// nothing is. `settings`: receives key and text of a Setting.
+[[nodiscard]] std::string assign(const OptionRow& row, const std::vector<std::string>& given,
+                                 std::vector<std::pair<std::string, std::string>>& settings);
+
+/// What a row says besides its meaning: " (0.05 to 20; default 1; with --simulate)"; empty where nothing.
+[[nodiscard]] std::string notes(const OptionRow& row);
+/// The help of a command, at most 80 columns wide.
+[[nodiscard]] std::string command_help(std::string_view name, std::string_view summary, const Rows& rows,
+                                       std::string_view example);
+/// The help of the program: its commands in groups, at most 80 columns wide.
+[[nodiscard]] std::string program_help();
+
+/// The manual page, for man(7).
+[[nodiscard]] std::string manual_page();
+/// A script that completes command lines; shell is bash, zsh or fish.
+[[nodiscard]] std::string completion_script(std::string_view shell);
+
+}  // namespace chicane::apps
