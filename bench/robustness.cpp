@@ -8,10 +8,10 @@
 //   chicane-robustness --closed-loop [-n INSTANCES] [--markdown] [NAME...]     20 cycles of a controller for
 //                      each instance
 //
-// --markdown: the tables as docs/solver_measured.md has them. FIRST: seed of the first instance. IPOPT: it
-// solves so many of each, and what is not solved; all without. NAME: families whose name contains it; all
-// without. FILE keeps what Ipopt finds, which takes minutes; without Ipopt (Debian: coinor-libipopt-dev) FILE
-// alone is compared with.
+// --markdown: the tables as docs/measured/solver_measured.md has them. FIRST: seed of the first instance.
+// IPOPT: it solves so many of each, and what is not solved; all without. NAME: families whose name contains
+// it; all without. FILE keeps what Ipopt finds, which takes minutes; without Ipopt (Debian:
+// coinor-libipopt-dev) FILE alone is compared with.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

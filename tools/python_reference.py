@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes docs/python_reference.md from the docstrings of the Python module and the stubs of its compiled part.
+"""Writes docs/reference/python_reference.md from the docstrings of the Python module and the stubs of its compiled part.
 
     ./run.sh python tools/python_reference.py           writes the page
     ./run.sh python tools/python_reference.py --check   exit code 1 where it is another one"""
@@ -17,7 +17,7 @@ usage.print_if_asked(__doc__)  # before an import that may fail
 import chicane as ch
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs/python_reference.md"
+PAGE = ROOT / "docs/reference/python_reference.md"
 PARTS = (
     ("Runs", ("drive", "read", "verify", "view", "sweep", "limit", "Run", "Frames", "Recording", "Limit")),
     ("Parts of your own", ("Controller", "Measurement", "Command", "Plant", "CarState", "Track", "TrackReader", "use_track_reader")),
@@ -99,7 +99,7 @@ def page() -> str:
     if missing:
         sys.exit(f"python_reference: in no part of the page: {', '.join(sorted(missing))}")
     text = ["# Reference of the Python module", "Made from the docstrings by `./run.sh python tools/python_reference.py`. How to begin: "
-            "[python.md](python.md), [python_problems.md](python_problems.md).", block((ch.__doc__ or "").split("\n\n", 2)[2])]
+            "[python.md](../python.md), [python_problems.md](../python_problems.md).", block((ch.__doc__ or "").split("\n\n", 2)[2])]
     for title, names in PARTS:
         text.append(f"## {title}")
         for name in names:

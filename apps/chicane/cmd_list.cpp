@@ -90,7 +90,7 @@ void print_rows() {
   }
 }
 
-/// docs/configuration.md.
+/// docs/reference/configuration.md.
 void print_page() {
   fmt::print(
       "# Configuration\n\n"

@@ -29,7 +29,7 @@ struct LimitRun {
 };
 
 [[nodiscard]] std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit);
-/// One JSON object (docs/cli.md).
+/// One JSON object (docs/reference/cli.md).
 [[nodiscard]] std::string to_json(const LimitRun& run, const lap_time::PlantLimit& limit);
 /// The line of the witness, which was driven, or else of the bound: the columns of a track first, so that it
 /// can be driven on, then the whole motion of the car (road::RacingLinePoint).

@@ -26,7 +26,7 @@ def scenarios() -> dict[str, str]:
 
 
 def parameters() -> dict[str, tuple[str, str]]:
-    """Every setting by its key: unit and meaning, as docs/configuration.md lists them with their ranges."""
+    """Every setting by its key: unit and meaning, as docs/reference/configuration.md lists them with their ranges."""
     return _chicane.parameters()
 
 

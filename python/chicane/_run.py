@@ -57,7 +57,7 @@ class Frames(Mapping[str, Array]):
 
 
 class Run(Mapping[str, Any]):
-    """A run that was driven. As a mapping it holds the report of `chicane drive --json`, with the keys of docs/cli.md:
+    """A run that was driven. As a mapping it holds the report of `chicane drive --json`, with the keys of docs/reference/cli.md:
     run["off_track_events"], run["state_hash"].
 
     laps: one dict for each completed lap, with lap_time_s, mean_speed_mps, min_edge_distance_m and more.

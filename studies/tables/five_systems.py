@@ -5,7 +5,7 @@
     chicane sweep studies/plans/effects.yaml -o runs.jsonl
     studies/tables/five_systems.py runs.jsonl measured-latency
 
-The laps are those of studies/plans/effects.yaml, the verdicts those of docs/claims.md, which `chicane claims --check` compares."""
+The laps are those of studies/plans/effects.yaml, the verdicts those of docs/measured/claims.md, which `chicane claims --check` compares."""
 import argparse
 import json
 import re
@@ -35,7 +35,7 @@ def laps(runs, preset):
 def verdicts(letter):
     """The ids of the statements, by verdict."""
     found = {}
-    for line in (ROOT / "docs/claims.md").read_text(encoding="utf-8").splitlines():
+    for line in (ROOT / "docs/measured/claims.md").read_text(encoding="utf-8").splitlines():
         row = re.match(rf"\| ({letter}\d+) \| .*? \| ([^|]*) \|", line)
         if row:
             word = next(word for word in ORDER if row[2].strip().strip("*").startswith(word))

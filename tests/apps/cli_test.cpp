@@ -391,9 +391,9 @@ TEST(Cli, ListKnowsWhatShips) {
 }
 
 TEST(Cli, TheReferencePageIsInStepWithTheProgram) {
-  const std::string page = read(fs::path(CHICANE_SOURCE_DIR) / "docs/configuration.md");
+  const std::string page = read(fs::path(CHICANE_SOURCE_DIR) / "docs/reference/configuration.md");
   EXPECT_TRUE(chicane_program("list parameters --markdown").out == page)
-      << "run: chicane list parameters --markdown > docs/configuration.md";
+      << "run: chicane list parameters --markdown > docs/reference/configuration.md";
 }
 
 TEST(Cli, TheListOfFaultsIsInStepWithTheProgram) {

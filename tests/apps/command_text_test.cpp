@@ -76,7 +76,7 @@ std::string without_dashes_of_roff(std::string page) {
 }
 
 TEST(CommandText, EveryCommandHasAnExampleOfItsOwnAndARowInTheDocs) {
-  const std::string page = bash("cat docs/cli.md");
+  const std::string page = bash("cat docs/reference/cli.md");
   for (const std::string& command : commands()) {
     const std::string help = bash(kQuotedProgram + " " + command + " --help");
     EXPECT_TRUE(std::regex_search(help, std::regex("Example: .*chicane " + command + "\\b"))) << command;

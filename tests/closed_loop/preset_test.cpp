@@ -147,7 +147,7 @@ TEST(Presets, MeasuredLatencyWorksToFifty) {
   EXPECT_GE(top_mph(run), 49.0);
 }
 
-/// On the lake that it was written for; on lakeside it leaves the road (docs/claims.md, A6).
+/// On the lake that it was written for; on lakeside it leaves the road (docs/measured/claims.md, A6).
 TEST(Presets, MeasuredLatencyLapsTheOriginalLakeWithBothErrorsAsWritten) {
   for (const char* speed_mps : {"13.4112", "17.8816", "22.352"}) {  // 30, 40, 50 mph
     SCOPED_TRACE(speed_mps);

@@ -25,7 +25,7 @@ class ClaimsOnAClone(unittest.TestCase):
         for name in ("data", "studies/claims"):
             (self.clone / name).symlink_to(ROOT / name)
         self.page = self.clone / "claims.md"
-        shutil.copy(ROOT / "docs/claims.md", self.page)
+        shutil.copy(ROOT / "docs/measured/claims.md", self.page)
 
     def tearDown(self):
         self.folder.cleanup()

@@ -13,8 +13,8 @@
 #include "chicane/base/result.hpp"
 
 /// What can be set: each options struct has a table of its fields with name, unit, range and meaning, beside
-/// the code that uses them. Configuration keys, command line, range checks and docs/configuration.md follow
-/// from these rows.
+/// the code that uses them. Configuration keys, command line, range checks and
+/// docs/reference/configuration.md follow from these rows.
 namespace chicane {
 
 /// Inside C++ all is SI; outside, every number carries its unit in the key's suffix. SI value = value outside

@@ -9,8 +9,8 @@
 
 namespace chicane::protocol {
 
-/// One JSON object for machines, keys as in docs/cli.md; null where nothing was measured. Ends with a line
-/// break.
+/// One JSON object for machines, keys as in docs/reference/cli.md; null where nothing was measured. Ends with
+/// a line break.
 [[nodiscard]] std::string to_json(const telemetry::RunSummary& run);
 
 /// What to_json() wrote, for results of runs in other processes: all but guard, limit, solver and state_hash.

@@ -31,7 +31,7 @@ struct RoadLines {
 /// Samples a track every `spacing` [m]; spacing > 0, raised where a line would get more than 20,000 points.
 [[nodiscard]] RoadLines road_lines(const road::Track& track, double spacing);
 
-/// Names of the frames in messages (docs/viewer_topics.md).
+/// Names of the frames in messages (docs/reference/viewer_topics.md).
 struct FrameNames {
   std::string map = "map";         ///< W
   std::string odom = "odom";       ///< equals it
@@ -84,7 +84,7 @@ enum class Cadence {
 
 /// One stream of messages of a ROS 2 type, encoded as CDR (XCDR1, little endian, with its four-byte header):
 /// the same bytes for a viewer, an MCAP log and a DDS topic. Frames: `map` is W, `odom` equals it,
-/// `base_link` is the middle of the rear axle (docs/viewer_topics.md).
+/// `base_link` is the middle of the rear axle (docs/reference/viewer_topics.md).
 struct RosTopic {
   std::string_view name;  ///< "/odom"
   std::string_view type;  ///< "nav_msgs/msg/Odometry"
