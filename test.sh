@@ -35,6 +35,7 @@ awk "BEGIN { printf \"processor time: %.0f s to configure and build, %.0f s for 
 printf 'size: program %s, page %s compressed\n' "$(kilobytes <"$root/build/release/apps/chicane/chicane")" \
   "$(cat "$root"/build/release/web/dist/assets/* 2>/dev/null | gzip -9 | kilobytes)"
 "$root/tools/code_lines.py" || true
+"$root/tools/check_pages.py" || true
 # What failed, again, below all else.
 [ "$result" -eq 0 ] || grep -E -A 12 '^ *not ok |: Failure$|AssertionError|ERROR:' "$log" | tail -80 || true
 exit "$result"

@@ -56,7 +56,7 @@ check_program() {
 check_library() {
   timed "apt install ./libchicane-dev_*.deb with a compiler" apt install "${deb[libchicane-dev]}" "${deb[chicane-doc]}" g++ pkg-config cmake make
   cp -r "$root/tests/install/consumer" "$bare/check/consumer"
-  timed "README's program by pkg-config" in_bare sh -c \
+  timed "the first example by pkg-config" in_bare sh -c \
     'cd /check && g++ /usr/share/doc/chicane/examples/01_drive_a_lap.cpp -o lap $(pkg-config --cflags --libs chicane)'
   timed "  drives a lap" in_bare sh -c 'cd / && /check/lap'
   timed "a controller and a plant of one's own by CMake" in_bare sh -c 'cmake -S /check/consumer -B /check/built && cmake --build /check/built'
@@ -86,7 +86,7 @@ check_without_proc() {
   umount -l "$bare/proc" 2>/dev/null || true
   [ ! -e "$bare/proc/self" ] || fail "the bare system still has /proc"
   timed "without /proc: chicane drive --fast --laps 1" in_bare chicane drive --fast --laps 1
-  timed "without /proc: README's program" in_bare sh -c 'cd / && /check/lap'
+  timed "without /proc: the first example" in_bare sh -c 'cd / && /check/lap'
   [ -z "${deb[chicane-ros]:-}" ] || timed "without /proc: chicane ros starts" in_bare sh -c \
     'chicane ros --interface none-such; test $? = 3'
 }

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks that pages can be read: no line of text beyond 120 columns.
+"""Checks that pages can be read: no line of text beyond 120 columns, README and guides without riddle words.
 
-    tools/check_pages.py             prints file:line: what is too long; exit code 1 when anything is
-    tools/check_pages.py --lengths   also the words of a sentence of each page: the mean and the most
+    tools/check_pages.py             prints file:line: what is too long, and the words of each group of pages; exit code 1 on a violation
+    tools/check_pages.py --lengths   also, for each page, words, words of a sentence (mean and most), riddle words and you/we per 1,000 words
 
-Code, tables, formulas, pictures and what a program writes between two markers may be wider."""
+Code, tables, formulas, pictures and what a program writes between two markers may be wider. Riddle words stand for an agent or a noun that
+the sentence should name; README and the guides (the pages that docs/index.md lists under Start and Guides) have at most 2 per 1,000 words."""
 import re
 import sys
 from pathlib import Path
@@ -15,6 +16,10 @@ import usage
 COLUMNS = 120
 # Pages of tables that a program writes whole.
 WRITTEN = {"configuration.md", "league_tables.md", "python_reference.md", "stability_cars.md"}
+RIDDLES = re.compile(r"\b(?:told|those of|that of|what is|beside|anew|in the place of)\b", re.IGNORECASE)
+READER = re.compile(r"\b(?:you|your|yours|yourself|we)\b", re.IGNORECASE)
+MOST_RIDDLES, GUARDED = 2.0, ("README",)  # per 1,000 words
+GUIDES = re.compile(r"^## (?:Start|Guides)\n(.*?)(?=^## |\Z)", re.MULTILINE | re.DOTALL)
 BEGIN, END = re.compile(r"<!-- (?:figures|sweep|league)"), re.compile(r"<!-- (?:/figures|end of)")
 
 
@@ -45,6 +50,29 @@ def sentences(page):
                 yield len(words)
 
 
+def counts_of(pages):
+    """Words, and riddle words and you/we per 1,000 of them, of text and hand-written tables; pictures."""
+    lines, pictures = [], 0
+    for page in pages:
+        for (_, text), line in zip(text_lines(page), page.read_text(encoding="utf-8").splitlines()):
+            lines.append(line if text is not None or line.startswith("|") else "")
+            pictures += line.startswith("![")
+    text = re.sub(r"`[^`]*`|\$[^$]*\$|\]\([^)]*\)", " ", " ".join(lines))
+    words = len(re.findall(r"[A-Za-z0-9][\w'/%.-]*", text))
+    return words, *(1000 * len(each.findall(text)) / max(words, 1) for each in (RIDDLES, READER)), pictures
+
+
+def groups_of(root, pages):
+    """README, guides, other pages that somebody wrote, and pages of tables."""
+    listed = "\n".join(GUIDES.findall((root / "docs/index.md").read_text(encoding="utf-8")))
+    guides = {"index.md", *re.findall(r"\]\((\w+\.md)", listed)}
+    groups = {"README": [], "guides": [], "other pages": [], "reference, measured": []}
+    for page in pages:
+        kind = {"reference": "reference, measured", "measured": "reference, measured", root.name: "README"}.get(page.parent.name)
+        groups[kind or ("guides" if page.name in guides else "other pages")].append(page)
+    return groups
+
+
 def violations(root, page):
     where = page.relative_to(root)
     for number, line in text_lines(page):
@@ -57,11 +85,20 @@ def main():
     root = Path(__file__).resolve().parent.parent
     pages = [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
     if "--lengths" in sys.argv[1:]:
+        print("words, of a sentence: mean, most; riddle words and you/we per 1,000 words")
         for page in pages:
             counts = list(sentences(page)) or [0]
-            print(f"{sum(counts) / len(counts):5.1f} {max(counts):4} {page.relative_to(root)}")
+            words, riddles, reader, _ = counts_of([page])
+            print(f"{words:6} {sum(counts) / len(counts):5.1f} {max(counts):4} {riddles:5.1f} {reader:5.1f} {page.relative_to(root)}")
     found = [each for page in pages for each in violations(root, page)]
     print("\n".join([*found, f"{len(found)} places too long"]))
+    print(f"{'':20} pages  words  riddle words  you/we (per 1,000 words)  pictures")
+    for name, group in groups_of(root, pages).items():
+        words, riddles, reader, pictures = counts_of(group)
+        print(f"{name:20} {len(group):5} {words:6} {riddles:13.1f} {reader:7.1f} {pictures:26}")
+        if name in GUARDED and riddles > MOST_RIDDLES:
+            found.append(f"{name}: got {riddles:.1f} riddle words per 1,000 words, expected at most {MOST_RIDDLES}")
+            print(found[-1])
     return 1 if found else 0
 
 

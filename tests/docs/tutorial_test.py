@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs the commands of docs/tutorial.md and of README's first screen word for word, and holds them to what the pages say.
+"""Runs the commands of docs/tutorial.md and of README word for word, and holds them to what the pages say.
 
     tests/docs/tutorial_test.py PROGRAM BUILD          all; some minutes, since some of it drives in real time, on port 4567
     tests/docs/tutorial_test.py --fast PROGRAM BUILD   what runs in virtual time
@@ -28,13 +28,12 @@ for last; do :; done
 """
 SERVERS = ("./run.sh", "./run.sh serve")  # run until Ctrl-C
 REAL_TIME = ("05_any_language.py &", "./run.sh simulate", "./run.sh league", *SERVERS)
-NOT_HERE = ("git clone", "cd chicane", "./test.sh")  # what has happened before a test can run
+NOT_HERE = ("./run.sh python",)  # builds the module; python.first_lines tests it
 
 
-def commands_of(page, heading=None):
-    """The lines of its blocks of shell commands, continued lines joined; of README only what stands before `heading`."""
+def commands_of(page):
+    """The lines of its blocks of shell commands, continued lines joined."""
     text = (ROOT / page).read_text(encoding="utf-8")
-    text = text.split(heading)[0] if heading else text
     lines = []
     for block in re.findall(r"^```bash\n(.*?)^```", text, re.M | re.S):
         lines += [line for line in block.replace("\\\n", " ").splitlines() if line.strip()]
@@ -117,7 +116,7 @@ class Walk:
 def main():
     is_fast = "--fast" in sys.argv
     program, build = (Path(each).resolve() for each in [each for each in sys.argv[1:] if each != "--fast"])
-    lines = commands_of("README.md", "## From Python") + commands_of("docs/tutorial.md")
+    lines = commands_of("README.md") + commands_of("docs/tutorial.md")
     lines = [line for line in lines if not line.startswith(NOT_HERE)]
     if is_fast:
         lines = [line for line in lines if parts_of(line)[0] not in (*SERVERS, "kill %1") and not any(word in line for word in REAL_TIME[:3])]

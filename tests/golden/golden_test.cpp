@@ -2,7 +2,7 @@
 // The same scenario and seed give the same bits in every build and for every instruction set of the same
 // arithmetic (base/instruction_set.hpp): Debug, Release, with sanitizers, from gcc and
 // clang, on every machine. A hash that changes says that the driving changed: look at the laps
-// (tools/check_figures --page README.md) before renewing it with what this test prints.
+// (tools/check_figures --page docs/measured/numbers.md) before renewing it with what this test prints.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

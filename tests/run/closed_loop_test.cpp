@@ -133,7 +133,7 @@ class ShippedTrack : public ::testing::TestWithParam<const char*> {};
 TEST_P(ShippedTrack, IsDrivenCleanlyByBothCarsWithTheSameTuning) {
   for (const char* car : {"udacity", "road-car"}) {
     SCOPED_TRACE(car);
-    // At 55 m/s into a bend the guard refuses a few answers of road-car (README, Numbers).
+    // At 55 m/s into a bend the guard refuses a few answers of road-car (docs/measured/numbers.md).
     const bool is_at_the_edge = std::string(car) == "road-car" && std::string(GetParam()) == "speedway";
     expect_clean(run(scenario_of(car, GetParam(), 2)), is_at_the_edge ? 10 : 0);
   }
