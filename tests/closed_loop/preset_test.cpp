@@ -19,7 +19,7 @@ struct Claim {
   double high_mph;
 };
 
-/// docs/problem.md, table 2: 30 to 40; about 50; 50 to 60; none given; as fast as stays stable.
+/// docs/measured/numbers.md: 30 to 40; about 50; 50 to 60; none given; as fast as stays stable.
 constexpr Claim kClaims[] = {{"measured-latency", 38.0, 42.0}, {"fast-short-step", 48.0, 53.0},
                              {"sixty-mph", 57.0, 62.0},        {"weighted", 45.0, 53.0},
                              {"delay-in-model", 80.0, 92.0},   {"pid", 28.0, 31.0},

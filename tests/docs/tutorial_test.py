@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs the commands of docs/tutorial.md and of README word for word, and holds them to what the pages say.
+"""Runs the commands of README, the tutorial and some guides word for word, and holds them to what the pages say.
 
     tests/docs/tutorial_test.py PROGRAM BUILD          all; some minutes, since some of it drives in real time, on port 4567
     tests/docs/tutorial_test.py --fast PROGRAM BUILD   what runs in virtual time
@@ -18,6 +18,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
+PAGES = ("README.md", "docs/tutorial.md", "docs/effects.md", "docs/the_five_systems.md")
 RUN = """#!/bin/sh
 case "${1:-}" in '' | --laps | --preset) set -- drive "$@" ;; esac
 exec "$PROGRAM" "$@"
@@ -116,7 +117,7 @@ class Walk:
 def main():
     is_fast = "--fast" in sys.argv
     program, build = (Path(each).resolve() for each in [each for each in sys.argv[1:] if each != "--fast"])
-    lines = commands_of("README.md") + commands_of("docs/tutorial.md")
+    lines = [line for page in PAGES for line in commands_of(page)]
     lines = [line for line in lines if not line.startswith(NOT_HERE)]
     if is_fast:
         lines = [line for line in lines if parts_of(line)[0] not in (*SERVERS, "kill %1") and not any(word in line for word in REAL_TIME[:3])]
