@@ -18,8 +18,9 @@ COLUMNS = 120
 WRITTEN = {"configuration.md", "league_tables.md", "python_reference.md", "stability_cars.md"}
 RIDDLES = re.compile(r"\b(?:told|those of|that of|what is|beside|anew|in the place of)\b", re.IGNORECASE)
 READER = re.compile(r"\b(?:you|your|yours|yourself|we)\b", re.IGNORECASE)
-MOST_RIDDLES, GUARDED = 2.0, ("README",)  # per 1,000 words
+MOST_RIDDLES, GUARDED = 2.0, ("README", "guides")  # per 1,000 words
 GUIDES = re.compile(r"^## (?:Start|Guides)\n(.*?)(?=^## |\Z)", re.MULTILINE | re.DOTALL)
+WORD = re.compile(r"[A-Za-z0-9][\w'/%.-]*")
 BEGIN, END = re.compile(r"<!-- (?:figures|sweep|league)"), re.compile(r"<!-- (?:/figures|end of)")
 
 
@@ -37,29 +38,25 @@ def text_lines(page):
         yield number, None if is_other else line
 
 
+def prose(page):
+    """Text and hand-written tables of a page, without code, formulas and targets of links."""
+    lines = page.read_text(encoding="utf-8").splitlines()
+    text = "\n".join(line if kept is not None or line.startswith("|") else "" for (_, kept), line in zip(text_lines(page), lines))
+    return re.sub(r"`[^`]*`|\$[^$]*\$", "X", re.sub(r"\]\([^)]*\)", "]", text))
+
+
 def sentences(page):
-    """The number of words of each sentence."""
-    text = "\n".join(line or "" for _, line in text_lines(page))
-    text = re.sub(r"^\s*(?:[-*]|\d+\.)\s+", "\n", text, flags=re.MULTILINE)
-    for pattern, by in ((r"\$[^$]*\$", "X"), (r"`[^`]*`", "X"), (r"\[([^\]]*)\]\([^)]*\)", r"\1"), (r"\beq\.", "eq")):
-        text = re.sub(pattern, by, text)
-    for paragraph in re.split(r"\n\s*\n", text):
-        for sentence in re.split(r"(?<=[.!?])[*)]*\s+(?=[A-Z(\"*])", " ".join(paragraph.split())):
-            words = re.findall(r"[A-Za-z0-9][\w'/%.-]*", sentence)
-            if len(words) > 2:
-                yield len(words)
+    """The number of words of each sentence, list item and row of a table."""
+    parts = re.split(r"\n\s*\n|\n\s*(?:[-*|]|\d+\.)|(?<=[.!?])[*)]*\s+(?=[A-Z(\"*])", prose(page))
+    return [count for count in (len(WORD.findall(part)) for part in parts) if count > 2] or [0]
 
 
 def counts_of(pages):
-    """Words, and riddle words and you/we per 1,000 of them, of text and hand-written tables; pictures."""
-    lines, pictures = [], 0
-    for page in pages:
-        for (_, text), line in zip(text_lines(page), page.read_text(encoding="utf-8").splitlines()):
-            lines.append(line if text is not None or line.startswith("|") else "")
-            pictures += line.startswith("![")
-    text = re.sub(r"`[^`]*`|\$[^$]*\$|\]\([^)]*\)", " ", " ".join(lines))
-    words = len(re.findall(r"[A-Za-z0-9][\w'/%.-]*", text))
-    return words, *(1000 * len(each.findall(text)) / max(words, 1) for each in (RIDDLES, READER)), pictures
+    """Words, and riddle words and you/we per 1,000 of them; pictures."""
+    text = "\n".join(map(prose, pages))
+    words = max(len(WORD.findall(text)), 1)
+    pictures = sum(page.read_text(encoding="utf-8").count("\n![") for page in pages)
+    return words, *(1000 * len(each.findall(text)) / words for each in (RIDDLES, READER)), pictures
 
 
 def groups_of(root, pages):
@@ -87,7 +84,7 @@ def main():
     if "--lengths" in sys.argv[1:]:
         print("words, of a sentence: mean, most; riddle words and you/we per 1,000 words")
         for page in pages:
-            counts = list(sentences(page)) or [0]
+            counts = sentences(page)
             words, riddles, reader, _ = counts_of([page])
             print(f"{words:6} {sum(counts) / len(counts):5.1f} {max(counts):4} {riddles:5.1f} {reader:5.1f} {page.relative_to(root)}")
     found = [each for page in pages for each in violations(root, page)]

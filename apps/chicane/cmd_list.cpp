@@ -31,7 +31,7 @@ void print_shelf(bool /*is_markdown*/) {
   for (const protocol::Entry& entry : protocol::entries(shelf)) print_entry(entry.name, entry.description);
 }
 
-/// docs/cars.md, Table 1.
+/// docs/cars.md.
 void print_cars(bool is_markdown) {
   if (!is_markdown) return print_shelf<Shelf::kCar>(false);
   fmt::print(

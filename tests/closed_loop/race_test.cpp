@@ -91,7 +91,7 @@ TEST(Race, SlidesOnlyWhereThatIsSure) {
 
 #ifdef CHICANE_SLOW_TESTS
 // Braking makes these cars unstable: plans that did not know it left the guard no stop in fast bends, and
-// those that it drove instead spun them (docs/racing.md, "The other cars").
+// those that it drove instead spun them (docs/measured/racing.md).
 TEST(Race, IsCleanForCarsThatBrakingMakesUnstable) {
   const std::pair<const char*, const char*> races[] = {{"bmw-320i", "oval"}, {"vw-vanagon", "lakeside"}};
   for (const auto& [car, track] : races) {
@@ -179,7 +179,7 @@ TEST(Race, CountsOnTheFrictionThatIsKnown) {
     EXPECT_TRUE(run.completed && run.off_track_events == 0) << low << ": " << run.end_reason;
     return run.laps.back().lap_time;
   };
-  constexpr double kKnown = 22.3;  // docs/racing.md, Table 1: with all 1.2 of it
+  constexpr double kKnown = 22.3;  // docs/measured/racing.md: with all 1.2 of it
   const double careful = second_lap("0.84", "false");
   const double shown = second_lap("0.84", "true");
   EXPECT_GT(careful, 1.05 * kKnown);

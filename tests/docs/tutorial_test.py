@@ -18,7 +18,8 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-PAGES = ("README.md", "docs/tutorial.md", "docs/effects.md", "docs/the_five_systems.md")
+FAST_PAGES = ("README.md", "docs/tutorial.md", "docs/effects.md", "docs/the_five_systems.md")
+PAGES = (*FAST_PAGES, *(f"docs/{name}.md" for name in ("tracks", "import", "identification", "racing", "sweep", "league", "faults")))
 RUN = """#!/bin/sh
 case "${1:-}" in '' | --laps | --preset) set -- drive "$@" ;; esac
 exec "$PROGRAM" "$@"
@@ -117,7 +118,7 @@ class Walk:
 def main():
     is_fast = "--fast" in sys.argv
     program, build = (Path(each).resolve() for each in [each for each in sys.argv[1:] if each != "--fast"])
-    lines = [line for page in PAGES for line in commands_of(page)]
+    lines = [line for page in (FAST_PAGES if is_fast else PAGES) for line in commands_of(page)]
     lines = [line for line in lines if not line.startswith(NOT_HERE)]
     if is_fast:
         lines = [line for line in lines if parts_of(line)[0] not in (*SERVERS, "kill %1") and not any(word in line for word in REAL_TIME[:3])]

@@ -31,7 +31,7 @@ struct RacingPlanOptions {
 };
 
 /// The fastest lap of a car as a controller believes it to be (model::PredictionModel), with its yaw motion,
-/// sideslip, lags and rates: a plan that such a controller can follow (docs/racing.md, section 1). Takes 0.2
+/// sideslip, lags and rates: a plan that such a controller can follow (docs/racing.md, eq. 1). Takes 0.2
 /// to 30 s and some 10 MB. Deterministic. Keeps nothing between calls.
 ///
 /// An open road's plan enters as it leaves: the same speed and place across the road at both ends.

@@ -8,7 +8,7 @@
 
 namespace chicane::model {
 
-/// A model car and the same car in full size (docs/cars.md, section 3). With lengths by λ = 1 / scale and
+/// A model car and the same car in full size (docs/cars.md, "Model cars"). With lengths by λ = 1 / scale and
 /// times by √λ, speeds are by √λ, accelerations stay, and with forces by λ³ so do friction and gravity: the
 /// two move alike. What controllers and guard hold in metres and seconds is stated for the car in full size;
 /// a model car is seen by them as that. Factors are exactly 1 where the scale is.

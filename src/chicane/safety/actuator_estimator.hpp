@@ -15,10 +15,10 @@
 namespace chicane::safety {
 
 /// How late and by how much the wheels answer, beyond what was told, by which answer predicts the next
-/// measurement better (docs/identification.md, eq. 13 to 15). It is the method of tracking::GripEstimator
-/// for four unknowns at once: one state estimator counts with the estimate, four have one unknown changed
-/// each, and least squares over the last kMemory of driving finds the unknowns with their deviations. The
-/// grip is among them, so that tyres that give less do not pass for another steering.
+/// measurement better (docs/identification_method.md, eq. 13 to 15). It is the method of
+/// tracking::GripEstimator for four unknowns at once: one state estimator counts with the estimate, four have
+/// one unknown changed each, and least squares over the last kMemory of driving finds the unknowns with their
+/// deviations. The grip is among them, so that tyres that give less do not pass for another steering.
 ///
 /// What is driven with, answer(), follows the estimate in steps, where delay, gain and offset are certain
 /// enough together, and one differs by more than a step and three deviations of both. One thread; allocates

@@ -11,7 +11,7 @@
 
 namespace chicane::wire {
 
-/// What the actuators do at the simulator's end of the connection (docs/protocol_behaviour.md §5): the
+/// What the actuators do at the simulator's end of the connection (docs/protocol.md §5): the
 /// answers are picked up one telemetry later, and when they cease the car is stopped (safety/stop_player.hpp)
 /// by what came with the last one. All times are the simulated world's [s]; they do not decrease. One thread.
 ///

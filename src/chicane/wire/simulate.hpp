@@ -52,7 +52,7 @@ struct SimulateReport {
 };
 
 /// `chicane simulate`: our car and track as the original simulator's client, in real time
-/// (docs/protocol_behaviour.md §5). Physics never waits; each answer is picked up `scenario.turn_around`
+/// (docs/protocol.md §5). Physics never waits; each answer is picked up `scenario.turn_around`
 /// after it came, when the next telemetry is sampled, and acts from there until the next one. A broken answer
 /// is named, counted, and driven past with the command that was. When commands cease the car is stopped as
 /// `scenario.guard.receiver` says (command_receiver.hpp); when they come again it drives on.
