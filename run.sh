@@ -9,6 +9,7 @@
 #   ./run.sh ros --car f1tenth                    a ROS 2 node; installs Cyclone DDS, too (docs/ros.md)
 #   ./run.sh package [--page]                     makes Debian packages and a tarball in build/release/packages (docs/packages.md)
 #   ./run.sh python [ARGUMENT...]                 Python with `import chicane` (docs/python.md): a prompt, or a script and its arguments
+#   ./run.sh docs                                 writes the documentation as a site, build/docs/index.html
 #   ./run.sh page --out DIR                       writes a page that drives without a program, in the browser alone (WebAssembly)
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
@@ -40,6 +41,15 @@ if [ "${1:-}" = package ] && { [ $# -eq 1 ] || { [ $# -eq 2 ] && [ "$2" = --page
     rm -r "$page"
   fi
   printf '%s\n' "$root"/build/release/packages/*
+  exit 0
+fi
+
+if [ "${1:-}" = docs ] && [ $# -eq 1 ]; then
+  install_packages "${docs_packages[@]}"
+  mkdocs build --quiet --config-file "$root/mkdocs.yml"
+  cp -r /usr/share/javascript/katex "$root/build/docs/katex"
+  echo 'renderMathInElement(document.body)' >"$root/build/docs/katex/start.js"
+  say "chicane: $root/build/docs/index.html"
   exit 0
 fi
 

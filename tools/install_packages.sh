@@ -22,6 +22,8 @@ package_packages=(dpkg-dev "${lab_packages[@]}" "${tune_packages[@]}" "${ros_pac
 test_packages=("${bench_packages[@]}" "${package_packages[@]}" libgtest-dev libgmock-dev libfastcdr-dev locales python3-pandas mypy groff fish parallel)
 # For a page that drives without a program, on top of the first: 1 GB.
 page_packages=(emscripten)
+# For the documentation as a site.
+docs_packages=(mkdocs mkdocs-material libjs-katex)
 # For the slow tests, on top of all of those.
 slow_test_packages=(jupyter-nbconvert python3-ipykernel python3-matplotlib python3-torch openmpi-bin slurm-wlm munge mmdebstrap lintian libfastrtps-dev cyclonedds-tools "${page_packages[@]}")
 # To run tools/check.sh, on top of those.
