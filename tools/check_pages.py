@@ -70,13 +70,6 @@ def groups_of(root, pages):
     return groups
 
 
-def violations(root, page):
-    where = page.relative_to(root)
-    for number, line in text_lines(page):
-        if line is not None and len(line) > COLUMNS and page.name not in WRITTEN:
-            yield f"{where}:{number}: got {len(line)} columns, expected at most {COLUMNS}"
-
-
 def main():
     usage.print_if_asked(__doc__)
     root = Path(__file__).resolve().parent.parent
@@ -87,7 +80,8 @@ def main():
             counts = sentences(page)
             words, riddles, reader, _ = counts_of([page])
             print(f"{words:6} {sum(counts) / len(counts):5.1f} {max(counts):4} {riddles:5.1f} {reader:5.1f} {page.relative_to(root)}")
-    found = [each for page in pages for each in violations(root, page)]
+    found = [f"{page.relative_to(root)}:{number}: got {len(line)} columns, expected at most {COLUMNS}" for page in pages
+             if page.name not in WRITTEN for number, line in text_lines(page) if line is not None and len(line) > COLUMNS]
     print("\n".join([*found, f"{len(found)} places too long"]))
     print(f"{'':20} pages  words  riddle words  you/we (per 1,000 words)  pictures")
     for name, group in groups_of(root, pages).items():

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Tables and figures of docs/problem.md, docs/effects.md and docs/measured/friction.md from the results of studies/plans/effects.yaml, whose runs are
+"""Tables in docs/measured/ and figures of docs/effects.md from the results of studies/plans/effects.yaml, whose runs are
 named TABLE: ROW.
 
     chicane sweep studies/plans/effects.yaml -o runs.jsonl

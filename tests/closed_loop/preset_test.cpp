@@ -76,7 +76,7 @@ TEST(Presets, AreNotStoppedByAGuardThatKnowsWaypointsAlone) {
 }
 
 /// With latencies of 80 to 180 ms and up to 60 ms of jitter: a preset that keeps off kerbs and on the road
-/// drives the same laps with the guard (docs/safety.md has the whole matrix).
+/// drives the same laps with the guard (docs/measured/safety.md has the whole matrix).
 TEST(Presets, AreNeverTouchedByTheGuard) {
   constexpr int kDraws = kDrivesAll ? 100 : 4;
   constexpr const char* kTracks[] = {"lakeside", "original-lake", "oval", "hairpins"};
