@@ -118,7 +118,7 @@ class Walk:
 def main():
     is_fast = "--fast" in sys.argv
     program, build = (Path(each).resolve() for each in [each for each in sys.argv[1:] if each != "--fast"])
-    lines = [line for page in (FAST_PAGES if is_fast else PAGES) for line in commands_of(page)]
+    lines = {parts_of(line)[0]: line for page in (FAST_PAGES if is_fast else PAGES) for line in commands_of(page)}.values()
     lines = [line for line in lines if not line.startswith(NOT_HERE)]
     if is_fast:
         lines = [line for line in lines if parts_of(line)[0] not in (*SERVERS, "kill %1") and not any(word in line for word in REAL_TIME[:3])]
