@@ -69,7 +69,7 @@ struct LinePoint {
 };
 
 /// A road, and how it may be driven, as plain data: what modules that do not know each other hand over
-/// (docs/decisions/0013-road-data-lives-in-path.md).
+/// (docs/decisions/0014-modules-of-a-run.md).
 struct RoadData {
   bool is_closed = false;
   double length = 0.0;            ///< of the centre line [m]
