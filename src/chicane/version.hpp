@@ -6,7 +6,7 @@
 /// The version of the headers that a program is compiled with, for #if; CMakeLists.txt reads it here. Numbers
 /// follow SemVer: before 1.0 a new minor version may change any interface.
 #define CHICANE_VERSION_MAJOR 0
-#define CHICANE_VERSION_MINOR 2
+#define CHICANE_VERSION_MINOR 3
 #define CHICANE_VERSION_PATCH 0
 
 #define CHICANE_DETAIL_TEXT(number) #number
@@ -21,6 +21,6 @@ namespace chicane {
 inline constexpr int kVersionMajor = CHICANE_VERSION_MAJOR;
 inline constexpr int kVersionMinor = CHICANE_VERSION_MINOR;
 inline constexpr int kVersionPatch = CHICANE_VERSION_PATCH;
-inline constexpr std::string_view kVersion = CHICANE_VERSION;  ///< "0.2.0"
+inline constexpr std::string_view kVersion = CHICANE_VERSION;  ///< "0.3.0"
 
 }  // namespace chicane

@@ -39,7 +39,7 @@ done
 # components WORDS OPTION...: what find_package(chicane WORDS) says.
 mkdir "$work/components"
 components() {
-  printf 'cmake_minimum_required(VERSION 3.25)\nproject(components LANGUAGES CXX)\nfind_package(chicane 0.2 REQUIRED %s)\n' \
+  printf 'cmake_minimum_required(VERSION 3.25)\nproject(components LANGUAGES CXX)\nfind_package(chicane 0.3 REQUIRED %s)\n' \
     "$1" >"$work/components/CMakeLists.txt"
   rm -rf "$work/components/build"
   cmake -G Ninja -S "$work/components" -B "$work/components/build" -DCMAKE_PREFIX_PATH="$prefix" \

@@ -17,7 +17,7 @@
 /// one run, `{"run":17,…}`, in the order in which they ended.
 namespace chicane::sweep {
 
-/// "chicane 0.2.0 (1f0c5e8a9b27)": the version, and a digest of the sources that runs can depend on.
+/// "chicane 0.3.0 (1f0c5e8a9b27)": the version, and a digest of the sources that runs can depend on.
 [[nodiscard]] std::string program_name();
 
 /// The first line, without its line break: what has to agree for results to belong together.
