@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""Checks rules that the compiler does not check, line by line: which module may do what, and how files begin.
+"""Checks rules that the compiler does not check, line by line: which module may do what, how files begin, which names are refused.
 
-    tools/check_sources.py [ROOT]            prints file:line: what is wrong; exit code 1 when anything is
-    tools/check_sources.py --lengths [ROOT]  lists the longest files instead
+    tools/check_sources.py [ROOT]   prints file:line: what is wrong; exit code 1 when anything is
 """
 import os
 import re
@@ -46,7 +45,8 @@ RULES = (
 )
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 PUBLIC_THIRD_PARTY = re.compile(r"tl/expected\.hpp")
-LIMITS = {".hpp": 250, ".cpp": 500}
+KINDS = {"C++": (".hpp", ".cpp"), "YAML": (".yaml",), "Python": (".py", ".pyi"), "TypeScript": (".ts", ".tsx"), "docs": (".md",)}
+HASHED = (".yaml", ".py", ".pyi")  # comments begin with #
 
 
 def without_comments(text):
@@ -109,6 +109,21 @@ def check_web_file(path, lines):
             yield f"{path}:{number}: got {len(line)} characters, expected at most 120"
 
 
+def check_names(root):
+    """Names that the last table of docs/notation.md refuses; comments of code are free."""
+    law = root / "docs/notation.md"
+    rows = re.findall(r"^\| `(\w+)` \| (.+) \| ([^|]+) \|$", law.read_text(encoding="utf-8"), re.MULTILINE) if law.exists() else []
+    for folder, inner, names in os.walk(root):
+        inner[:] = sorted(set(inner) - {"build", "corpus", "decisions", "dist", "node_modules", ".git"})
+        for path in (Path(folder) / name for name in sorted(names) if name not in ("notation.md", "CHANGELOG.md")):
+            refused = {old: new for old, new, kinds in rows if any(path.suffix in KINDS[kind] for kind in kinds.split(", "))}
+            text = path.read_text(encoding="utf-8", errors="replace") if refused else ""
+            code = text if path.suffix == ".md" else re.sub("#.*", "", text) if path.suffix in HASHED else without_comments(text)
+            for match in re.finditer(rf"\b(?:{'|'.join(refused)})\b", code) if refused else ():
+                yield (f"{path.relative_to(root)}:{code.count(chr(10), 0, match.start()) + 1}: got {match[0]}, "
+                       f"expected {refused[match[0]]} (docs/notation.md)")
+
+
 def check(root):
     for source in sources(root):
         path = source.relative_to(root)
@@ -119,25 +134,14 @@ def check(root):
             yield f"{path}:1: got {len(lines)} lines, expected at most 500: it is two files"
         if path.parts[0] == "src":
             yield from check_library_file(root, source)
+    yield from check_names(root)
     for source in web_sources(root):
         yield from check_web_file(source.relative_to(root), source.read_text(encoding="utf-8").splitlines())
 
 
-def lengths(root):
-    """Files above the budget for their kind, longest first."""
-    counted = [(len(p.read_text(encoding="utf-8").splitlines()), p) for p in sources(root)]
-    for count, path in sorted(counted, reverse=True):
-        if count > (400 if path.is_relative_to(root / "tests") else LIMITS[path.suffix]):
-            yield f"{path.relative_to(root)}: {count} lines"
-
-
 def main():
     usage.print_if_asked(__doc__)
-    arguments = [a for a in sys.argv[1:] if a != "--lengths"]
-    root = Path(arguments[0] if arguments else Path(__file__).parent.parent).resolve()
-    if "--lengths" in sys.argv[1:]:
-        print("\n".join(lengths(root)))
-        return 0
+    root = Path(sys.argv[1] if sys.argv[1:] else Path(__file__).parent.parent).resolve()
     violations = list(check(root))
     for violation in violations:
         print(violation)

@@ -23,6 +23,7 @@ CLEAN = {
     "bench/CMakeLists.txt": "add_executable(bench main.cpp)\ntarget_link_libraries(bench PRIVATE chicane_solver)\n",
     "bench/main.cpp": SPDX + '#include "problems/hard.hpp"\n#include "chicane/solver/solve.hpp"\n',
     "bench/problems/hard.hpp": SPDX + "#pragma once\n",
+    "docs/notation.md": "| `old_name` | `new_name` | C++ |\n| `old_key` | a state | docs |\n",
     "tests/solver/solve_test.cpp": SPDX + '#include "problems/hard.hpp"\n',
     "tests/solver/CMakeLists.txt": "chicane_test(solver SOURCES solve_test.cpp PRIVATE chicane_cli)\n",
 }
@@ -88,6 +89,8 @@ class Checks(unittest.TestCase):
             (source, "void f() { throw 1; }\n", "throws nothing"),
             (source, 'void f() { std::printf("x"); }\n', "only live, wire and apps print"),
             (source, "auto t = std::chrono::steady_clock::now();\n", "a Deadline"),
+            (source, "run::old_name queue;\n", "got old_name, expected `new_name`"),
+            ("docs/solver.md", ("`old_key` bounds changes.\n",), "got old_key, expected a state"),
             (source, "std::mutex m;\n", "threads and locks"),
             (source, "int f() { static int calls = 0; return ++calls; }\n", "objects share nothing"),
             (source, "boost::asio::io_context c;\n", "sockets live in net"),
@@ -136,7 +139,7 @@ class Checks(unittest.TestCase):
                     self.assertRegex(violation, r"^[\w/.]+:\d+: ")
 
     def test_comments_strings_and_other_names_are_no_violation(self):
-        text = '// std::sin(x), the car\n/* throw */ const char* s = "throw std::mutex"; int scar; char c = \'"\'; // throw\n'
+        text = '// std::sin(x), the car, a old_name\n/* throw */ const char* s = "throw std::mutex"; int scar; char c = \'"\'; // throw\n'
         files = {"src/chicane/solver/solve.cpp": text, "web/src/main.ts": (f"// {'ä' * 117}\n",), "web/node_modules/a/b.ts": " " * 999}
         self.assertEqual(self.violations(check_sources.check, files=files), [])
 
