@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Prints the table of docs/racing_gap.md in Markdown: what takes how much of the gap between `race` and the limit, for each corner.
+"""Prints the table of docs/measured/limit.md in Markdown: what takes how much of the gap between `race` and the limit, for each corner.
 
     studies/tables/gap_table.py --compute hairpins berlin.csv > gaps.jsonl    drives each track with udacity (10 to 60 s)
     studies/tables/gap_table.py gaps.jsonl                                    the table

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Prints the tables of docs/limit.md in Markdown: bound and witness of two cars on four tracks, and the laps of `race` and `default`.
+"""Prints the tables of docs/measured/limit.md in Markdown: bound and witness of two cars on four tracks, and the laps of `race` and `default`.
 
     studies/tables/limit_tables.py --compute > limits.jsonl          drives `chicane limit` for each (two minutes)
     studies/tables/limit_tables.py limits.jsonl                      table 1

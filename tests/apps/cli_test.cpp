@@ -111,7 +111,7 @@ TEST(Cli, TheLimitIsPrintedAndItsLineIsATrack) {
       chicane_program("limit --track oval --car road-car --json --csv '" + line.string() + "'");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Json limit = Json::parse(outcome.out);
-  EXPECT_NEAR(limit["lap_time_s"].get<double>(), 21.92, 0.1);  // docs/limit.md, table 1
+  EXPECT_NEAR(limit["lap_time_s"].get<double>(), 21.92, 0.1);  // docs/measured/limit.md, table 1
   EXPECT_LT(limit["violation"].get<double>(), 0.05);
   EXPECT_EQ(chicane_program("check '" + line.string() + "'").code, 0);
   EXPECT_THAT(read(line), HasSubstr("x_m,y_m,w_tr_right_m,w_tr_left_m,s_m,"));
@@ -133,7 +133,7 @@ TEST(Cli, LapsAreComparedWithTheLimitAndDriveTheSame) {
               100.0 * (lap["lap_time_s"].get<double>() / limit - 1.0), 1e-9);
   EXPECT_GT(lap["gap_to_limit_percent"].get<double>(), 0.0);  // nothing that drives is faster
   EXPECT_GT(lap["sector_gaps_to_limit_percent"][0].get<double>(), 0.0);
-  EXPECT_NEAR(limit, 21.92, 0.02);  // docs/limit.md, table 1
+  EXPECT_NEAR(limit, 21.92, 0.02);  // docs/measured/limit.md, table 1
 }
 
 TEST(Cli, AFastRunShowsPeopleALimitThatTheCacheKnows) {

@@ -63,9 +63,9 @@ TEST_P(EveryCar, TurnsAsItsModelBelieves) {
   for (const double equivalent : {12.0, 20.0}) {
     const double v = equivalent * std::sqrt(scenario_.vehicle.scale);
     const auto mismatch = sim::experiment::compare(*plant_, scenario_.vehicle, v, 2.5);
-    // docs/plants_model.md has 3 to 9 % for the first two cars. This single track stands beside the car as it
-    // is, and its slip angles have a floor of 1 m/s, which is much for a model car; controllers see those in
-    // full size.
+    // docs/measured/plants.md has 3 to 9 % for the first two cars. This single track stands beside the car as
+    // it is, and its slip angles have a floor of 1 m/s, which is much for a model car; controllers see those
+    // in full size.
     EXPECT_LT(mismatch.yaw_rate, scenario_.vehicle.scale < 1.0 ? 0.25 : 0.12) << v;
   }
 }

@@ -56,7 +56,7 @@ TEST(Race, IsSureOfTheCarInFastBends) {
 }
 
 // Iterations that ended before the problem of a slide was solved steered cars with a little less grip off the
-// road: 1 of 3 laps with 0.96 of it, -47 m (docs/racing_gap.md, "The solver").
+// road: 1 of 3 laps with 0.96 of it, -47 m (docs/limit.md, "The solver").
 TEST(Race, SolvesItsSlidesInAFastChicane) {
   const std::filesystem::path circuit = std::filesystem::path(CHICANE_CIRCUITS) / "Monza.csv";
   if (!std::filesystem::exists(circuit))
@@ -71,7 +71,7 @@ TEST(Race, SolvesItsSlidesInAFastChicane) {
   EXPECT_GT(run.total.min_edge_distance, 0.1);
 }
 
-// docs/racing_gap.md: a lap slides where the car is as it was told, and answered surely; else it is slower.
+// docs/limit.md: a lap slides where the car is as it was told, and answered surely; else it is slower.
 TEST(Race, SlidesOnlyWhereThatIsSure) {
   const auto race = [](const char* key, const char* value) {
     const auto run =
@@ -186,7 +186,7 @@ TEST(Race, CountsOnTheFrictionThatIsKnown) {
   EXPECT_LT(shown, 0.5 * (careful + kKnown));
 }
 
-// docs/tracking_problem.md, eq. 18a: more speed where there is grip and room, less in neither.
+// docs/controller.md, eq. 18a: more speed where there is grip and room, less in neither.
 TEST(Race, IsFasterWhereSpeedHasAPrice) {
   const auto race = [](const char* progress) {
     return drive({{"preset", "race"},

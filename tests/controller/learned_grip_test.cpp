@@ -73,7 +73,7 @@ TEST(LearnedGrip, TakesALittleMoreForWhatWasTold) {
   EXPECT_GT(driven_with(1.12, 20.0).for_plan(0.6), 1.07);
 }
 
-// docs/racing_gap.md, eq. 9.
+// docs/limit.md, eq. 19.
 TEST(LearnedGrip, LetsACarSlideThatIsAsToldAndAnsweredSoon) {
   LearnedGrip learned = driven_with(1.0, 20.0);
   learned.tell(model::udacity_params());

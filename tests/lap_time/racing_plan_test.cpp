@@ -145,7 +145,7 @@ road::Track two_hairpins() {
   return *road::Track::create("two hairpins", points, true);
 }
 
-/// docs/racing_gap.md: the rear slides as far as the closed loop is stable, the front keeps its slope.
+/// docs/limit.md: the rear slides as far as the closed loop is stable, the front keeps its slope.
 TEST(RacingPlan, SlidesWhereThatIsFasterAndStable) {
   const model::VehicleParams car = model::udacity_params();
   const road::Track tight = two_hairpins();

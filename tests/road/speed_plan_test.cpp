@@ -64,7 +64,7 @@ TEST(SpeedPlan, IsNoFasterThanTheCarsParametersHold) {
   EXPECT_EQ(line.samples()[10].limiter, SpeedLimiter::kAsked);
 }
 
-// To turn in, the front axle needs more than the bend; to turn out, the rear one (docs/tracking_line.md, eq.
+// To turn in, the front axle needs more than the bend; to turn out, the rear one (docs/controller.md, eq.
 // 11).
 TEST(SpeedPlan, HoldsTheAxleThatNeedsMoreWhereTheCurvatureChanges) {
   ReferenceLine line = with_a_bend(40.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Acceptance of the plant `udacity`: numbers measured from the original or derived from its constants, each
-// with its source in docs/plants_udacity.md.
+// with its source in docs/measured/plants.md.
 #include "chicane/sim/udacity_car.hpp"
 
 #include <gtest/gtest.h>
@@ -117,7 +117,7 @@ TEST(UdacityCar, YawModesSlowDownWithSpeedAsIdentifiedFromTheOriginal) {
     EXPECT_NEAR(slow.real(), row.slow, 0.4) << row.v;
     EXPECT_NEAR(fast.real(), row.fast, 0.4) << row.v;
     // The plant's own free response: the sum is fixed by tyres, mass and inertia alone; the spread is not
-    // (docs/plants_udacity.md).
+    // (docs/measured/plants.md).
     const auto [a, b] = experiment::yaw_modes(car, row.v);
     EXPECT_NEAR(a.imag(), 0.0, 0.2) << row.v;
     EXPECT_NEAR(a.real() + b.real(), row.slow + row.fast, 0.09 * std::fabs(row.slow + row.fast)) << row.v;

@@ -169,7 +169,7 @@ TEST(GripEstimator, SaysWhenItDiffersFromWhatIsBelieved) {
   EXPECT_FALSE(less.estimator.differs(0.3));
 }
 
-/// docs/racing_gap.md, eq. 8. Evenly distributed jitter has a root mean square of 0.58 of the most.
+/// docs/limit.md, eq. 18. Evenly distributed jitter has a root mean square of 0.58 of the most.
 TEST(GripEstimator, SaysHowSureTheTimeOfCommandsIs) {
   const auto unsure_time = [](double jitter, const Noise& noise) {
     Weaving car(1.0, noise, 0.2);

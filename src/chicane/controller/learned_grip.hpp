@@ -62,7 +62,7 @@ class LearnedGrip {
   /// Whether the tyres have shown anything yet.
   [[nodiscard]] bool is_shown() const noexcept { return is_shown_; }
   /// Whether the car is so much what was told, and answered so soon and surely, that a lap planned for `grip`
-  /// may slide (docs/racing_gap.md, eq. 9). `delay`: that is told, from a measurement to its command's
+  /// may slide (docs/limit.md, eq. 19). `delay`: that is told, from a measurement to its command's
   /// effect [s]; `slides`: it does already.
   [[nodiscard]] bool may_slide(double grip, double delay, bool slides) const noexcept {
     const double answered = delay + estimator_.interval() + estimator_.unsure_time();
@@ -89,7 +89,7 @@ class LearnedGrip {
   }
   /// In hundredths. Nearly what was told is what was told: a car that is as believed ends with the plan that
   /// it would have had without learning. A little more may be the model's error: `udacity`, which is as told,
-  /// shows 1.06 on circuits of 48 m/s (docs/racing_gap.md).
+  /// shows 1.06 on circuits of 48 m/s (docs/measured/limit.md).
   [[nodiscard]] static double rounded(double share) noexcept {
     constexpr double kLittleLess = 0.02, kLittleMore = 0.075;
     const bool is_told = share >= 1.0 - kLittleLess && share <= 1.0 + kLittleMore;

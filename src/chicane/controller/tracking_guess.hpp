@@ -36,7 +36,7 @@ inline void keep_sane(tracking::TrackingProblem::State& x) noexcept {
 
 /// Adds what the steer helper leaves out along the guess `along` to what disturbs the stages of `problem`: a
 /// change of v_y where the heading passes the gap, divided between the ends of the stages around it
-/// (docs/racing_gap.md, eq. 2). `s`: of the car on `line` [m].
+/// (docs/limit.md, eq. 12). `s`: of the car on `line` [m].
 inline void mind_helper_gap(tracking::TrackingProblem& problem, const tracking::TrackingTrajectory& along,
                             const road::ReferenceLine& line, double s) noexcept {
   using Problem = tracking::TrackingProblem;

@@ -28,7 +28,7 @@ using StageState = std::array<double, Problem::kNx>;
 using StageInput = std::array<double, Problem::kNu>;
 
 constexpr int kMostTurns = TrackingMpcOptions::kMostTurns;  // from a new guess, or with more time
-constexpr int kRacingTurns = 30;  // original curve of tyres, in a race (docs/racing_gap.md, "The solver")
+constexpr int kRacingTurns = 30;       // original curve of tyres, in a race (docs/limit.md, "The solver")
 constexpr double kTimePerTurn = 0.04;  // [s] that a step must come later for one turn more
 constexpr double kFarFromLine = 15.0;  // [m] further away it returns to the road
 constexpr double kLost = 100.0;        // [m] further away it does not return by itself

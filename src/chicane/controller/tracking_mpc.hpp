@@ -44,7 +44,7 @@ struct TrackingMpcOptions {
   bool remember_waypoints = true;  ///< close the waypoints seen into a map
 
   /// By how much the speed that is asked for is above the planned one where that changes by `acceleration`
-  /// [m/s²], for weight_progress (docs/tracking_problem.md, eq. 18a) [m/s].
+  /// [m/s²], for weight_progress (docs/controller.md, eq. 18a) [m/s].
   [[nodiscard]] double haste(double acceleration) const noexcept {
     constexpr double kBraking = 3.0;  // [m/s²] from which on there is none
     if (!(weight_speed > 0.0)) return 0.0;

@@ -13,7 +13,7 @@ namespace chicane::model {
 
 /// How hard a car may brake in a bend before it turns away from its path faster than a controller with delay
 /// can catch: braking unloads the rear axle, whose tyres then use more of their curve than the front ones and
-/// answer less to more slip (docs/tracking_line.md, eq. 14a–14c).
+/// answer less to more slip (docs/controller.md, eq. 14a–14c).
 class BrakingStability {
  public:
   /// The unstable pole that is left to the controller: in 100 ms an error grows by a tenth [1/s].

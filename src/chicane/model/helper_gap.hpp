@@ -6,7 +6,7 @@
 #include "chicane/model/vehicle.hpp"
 
 /// What a steer helper leaves out: the original simulator's does nothing for one step of physics when the
-/// heading passes +y, where its yaw angle wraps (docs/racing_gap.md, eq. 1 and 2).
+/// heading passes +y, where its yaw angle wraps (docs/limit.md, eq. 11 and 12).
 namespace chicane::model {
 
 inline constexpr double kHelperGapHeading = 0.5 * kPi;  ///< in W [rad]

@@ -20,7 +20,7 @@ struct BodyMotion {
 };
 
 /// The car model of a tracking controller: a single track with saturating tyres, steering and drive lag,
-/// and the share h by which some cars turn their velocity with the body (docs/tracking_model.md, eq. 1–5).
+/// and the share h by which some cars turn their velocity with the body (docs/controller.md, eq. 1–5).
 ///
 ///     v_y' = k_f α_f + k_r α_r + φ a_x δ − (1 − h) r v_x    α_f = δ − (v_y + a r)/v_x
 ///     r'   = (m / I)(a (k_f α_f + φ a_x δ) − b k_r α_r)     α_r =   − (v_y − b r)/v_x

@@ -12,7 +12,7 @@ namespace chicane::model {
 
 /// How far beyond the peak of their curve the rear tyres may slip so that a controller with delay still holds
 /// the car: yaw and sideslip have a pole to the right there, and an error grows by it until a command acts
-/// (docs/racing_gap.md, eq. 3 to 7). Slips are over that of the peak.
+/// (docs/limit.md, eq. 13 to 17). Slips are over that of the peak.
 class SlidingBound {
  public:
   static constexpr double kMostGrowth = 1.5;  ///< of an error within the delay

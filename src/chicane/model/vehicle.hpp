@@ -22,7 +22,7 @@ struct Axle {
 };
 
 /// Parameters that plants and controllers' models of a car share. Defaults are those of an ordinary car, the
-/// plant `road-car`; origin of each number: docs/plants.md, table 4.
+/// plant `road-car`; origin of each number: docs/model.md, table 2.
 struct CarBody {
   double front_axle = 1.25;         ///< centre of mass to front axle [m]
   double rear_axle = 1.45;          ///< centre of mass to rear axle [m]
@@ -88,7 +88,7 @@ struct VehicleParams : CarBody {
   double kinematic_length = 2.67;  ///< L_f of the described model: ψ' = v δ / L_f [m]
 
   // Tyres: force = load · friction · curve(cornering · slip / friction), load = mass · (load_0 + load_v · v +
-  // load_vv · v²) by axle (docs/tracking_model.md, eq. 4a–4c).
+  // load_vv · v²) by axle (docs/controller.md, eq. 4a–4c).
   double cornering_front = 5.0;  ///< normalised cornering stiffness [1/rad]
   double cornering_rear = 4.92;  ///< [1/rad]
   double tire_shape = 0.0;       ///< C of the magic formula; 0: the original simulator's curve
@@ -135,7 +135,7 @@ struct VehicleParams : CarBody {
   /// Whether brakes that stopped the car have to be released before it drives off.
   [[nodiscard]] bool latches_brakes() const noexcept { return brake_latch_speed > 0.0; }
   /// Peak lateral force over load of the whole car: what load transfer to the outer wheels leaves of the
-  /// friction (docs/tracking_model.md, eq. 4f).
+  /// friction (docs/controller.md, eq. 4f).
   [[nodiscard]] double cornering_friction() const noexcept;
 
   friend bool operator==(const VehicleParams&, const VehicleParams&) = default;
@@ -165,7 +165,7 @@ struct VehicleParams : CarBody {
 [[nodiscard]] double throttle_to_rest(const VehicleParams& params, double acceleration, double v) noexcept;
 inline constexpr double kRestTime = 0.4;  ///< [s]
 
-/// Models of the shipped plants, fitted to them by `chicane_plant_report` (docs/plants_model.md). The
+/// Models of the shipped plants, fitted to them by `chicane_plant_report` (docs/model.md). The
 /// original simulator's car: the defaults above, and the gap of its helper.
 [[nodiscard]] VehicleParams udacity_params();
 /// An ordinary car: 1300 kg, about 1.2 g, proportional brakes, 90°/s steering.

@@ -9,7 +9,7 @@
 
 namespace chicane::road {
 
-/// The line of least bending within a strip around a given one (docs/tracking_line.md, eq. 6–9): minimises,
+/// The line of least bending within a strip around a given one (docs/controller.md, eq. 6–9): minimises,
 /// over the offsets n to the left at equally spaced knots,
 ///
 ///     Σ κ_new² + ℓ² (Δκ_new/h)² + w n²,      κ_new = κ (1 + κ n) + (n₋ − 2 n + n₊)/h²

@@ -30,7 +30,7 @@ struct RoadOptions {
 /// planned anew with each new one. When the loop closes, the lap is planned beside the driving, kLapWork for
 /// each kShare that has passed, and takes over when it is ready: 3 to 5 s for a lap of 1.3 km, however rarely
 /// measurements come. So add() is bounded, by about 30 µs when it is called every kShare
-/// (docs/tracking_line.md), and does the same work for the same measurements.
+/// (docs/controller.md), and does the same work for the same measurements.
 class Road {
  public:
   Road(const RoadOptions& options, const model::VehicleParams& vehicle);

@@ -23,7 +23,7 @@ struct SpeedPlanOptions {
 
 /// Fastest speed along a line within the modelled grip: a limit for each place from curvature and its slope,
 /// then a forward pass for the drive and a backward pass for the brakes, which leaves the car stable
-/// (docs/tracking_line.md, eq. 10–14c). A point mass cannot do better; a car whose yaw lags must not either,
+/// (docs/controller.md, eq. 10–14c). A point mass cannot do better; a car whose yaw lags must not either,
 /// hence the curvature slope: turning the body takes tyre force, too,
 ///
 ///     v² |(1 − h) κ + i κ'| <= grip · friction · load(v),   i = I/(m b) at the front axle, −I/(m a) at the

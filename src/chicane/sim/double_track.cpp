@@ -229,7 +229,7 @@ void DoubleTrack::load_wheels() noexcept {
 }
 
 model::Planar<double> DoubleTrack::tire_force(Wheel& wheel, const model::Planar<double>& v) const noexcept {
-  // Relaxed slips (docs/plants.md, eq. 5), implicit in the slip: stable at any speed.
+  // Relaxed slips (docs/model.md, eq. 19), implicit in the slip: stable at any speed.
   const double rolling = std::fabs(v.x);
   const double slide = wheel.speed * params_.wheel_radius - v.x;
   const double gain_along = dt_ / params_.relaxation_along;
@@ -244,7 +244,7 @@ model::Planar<double> DoubleTrack::tire_force(Wheel& wheel, const model::Planar<
   const double along = wheel.slip_along + damping * slide;
   const double across = wheel.slip_across - damping * v.y;
 
-  // Combined slip by similarity (eq. 6).
+  // Combined slip by similarity (eq. 20).
   const double size = hypot(along, across);
   wheel.use = 0.0;
   if (size < 1e-9 || wheel.load <= 0.0) return {};

@@ -18,7 +18,7 @@
 namespace chicane::sim {
 
 /// A car with four wheels on a plane, as data. The defaults are those of the plant `road-car`, an ordinary
-/// car of 1300 kg and 200 kW on summer tyres; origin of each number: docs/plants.md, table 4. Other cars:
+/// car of 1300 kg and 200 kW on summer tyres; origin of each number: docs/model.md, table 2. Other cars:
 /// data/cars/*.yaml.
 struct DoubleTrackParams : model::CarBody {
   double load_lag = 0.06;  ///< time constant of the load transfer: the body rolls and pitches [s]
@@ -70,7 +70,7 @@ struct DoubleTrackParams : model::CarBody {
     return {mass * height * ax / wheelbase(), mass * height * ay / (2.0 * half_track()), pressure};
   }
   /// Load of wheel `i` of wheel_forces() [N], negative where it would lift; `rest` is its static load
-  /// (docs/plants.md, eq. 2).
+  /// (docs/model.md, eq. 16).
   template <class T>
   [[nodiscard]] T wheel_load(std::size_t i, double rest, const LoadShift<T>& shift) const {
     const double share = i < 2 ? roll_share_front : 1.0 - roll_share_front;
@@ -79,7 +79,7 @@ struct DoubleTrackParams : model::CarBody {
     if (downforce == 0.0) return rest + change;
     return rest + change + shift.pressure * downforce;
   }
-  /// Peak force over load (eq. 3).
+  /// Peak force over load (eq. 17).
   template <class T>
   [[nodiscard]] T grip(const T& load, double rest) const {
     return friction * (1.0 - load_sensitivity * (load / rest - 1.0));
@@ -98,7 +98,7 @@ struct DoubleTrackParams : model::CarBody {
 [[nodiscard]] std::span<const Option> double_track_options() noexcept;
 
 /// A controller's model of that car: what it is built of, and what follows from it, as the inertia of its
-/// wheels and the friction that its tyres lose under downforce (docs/plants_model.md, eq. 9–13). `name`,
+/// wheels and the friction that its tyres lose under downforce (docs/model.md, eq. 23–27). `name`,
 /// `length` and `width` are not the plant's: they stay as in `body`.
 [[nodiscard]] model::VehicleParams model_of(const DoubleTrackParams& plant, model::VehicleParams body = {});
 
@@ -110,7 +110,7 @@ struct DoubleTrackParams : model::CarBody {
 /// The plants `double-track` and `road-car`: planar with quasi-static load transfer and downforce,
 /// magic-formula tyres with combined slip and relaxation lengths, proportional brakes with anti-lock, lagging
 /// and rate-limited steering, 1 kHz; small cars, whose wheels answer faster, move in several parts of a step.
-/// Equations: docs/plants.md, eq. 2–8. Valid from standstill (also in reverse rolling) to its top speed; its
+/// Equations: docs/model.md, eq. 16–22. Valid from standstill (also in reverse rolling) to its top speed; its
 /// throttle never reverses.
 class DoubleTrack final : public Plant {
  public:

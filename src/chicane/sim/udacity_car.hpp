@@ -11,7 +11,7 @@
 namespace chicane::sim {
 
 /// The original simulator's car as its scene and scripts define it (udacity/self-driving-car-sim v1.45:
-/// Car.prefab, CarController.cs; PhysX 3 vehicle defaults). Origin of all: docs/plants_udacity.md, table 1.
+/// Car.prefab, CarController.cs; PhysX 3 vehicle defaults). Origin of all: docs/model.md, table 1.
 struct UdacityCarParams {
   double mass = 1000.0;         ///< rigid body without wheels [kg]
   double yaw_inertia = 1600.0;  ///< [kg m²]
@@ -57,8 +57,8 @@ struct UdacityCarParams {
 /// for at once; steer helper (velocity turned by 0.774 of the last yaw change, skipped when the original's
 /// yaw angle wraps); drive torque, brake or reverse with the original's quirk that a brake held down to 5 mph
 /// stays on until the throttle goes negative; speed cap; downforce; traction control; tyres. Tyre forces and
-/// wheel speeds advance in four parts of 5 ms, the force implicit in the wheel speed (docs/plants_udacity.md,
-/// eq. 1), because one explicit step of 20 ms is unstable below 8 m/s. No roll, pitch or load transfer: the
+/// wheel speeds advance in four parts of 5 ms, the force implicit in the wheel speed (docs/model.md,
+/// eq. 15), because one explicit step of 20 ms is unstable below 8 m/s. No roll, pitch or load transfer: the
 /// centre of mass lies 0.06 m above the road.
 class UdacityCar final : public Plant {
  public:

@@ -18,7 +18,7 @@ namespace chicane::tracking {
 /// Another mass, a side wind or steering that answers otherwise pass for grip.
 ///
 /// A third estimator sees the commands act a little later. What the headings are off by, beside what that
-/// makes of them, says how much another time than told explains (docs/racing_gap.md, eq. 8). One thread;
+/// makes of them, says how much another time than told explains (docs/limit.md, eq. 18). One thread;
 /// allocates nothing.
 class GripEstimator {
  public:

@@ -164,7 +164,7 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
   is_started_ = true;
 }
 
-/// The innovation of a measurement, docs/tracking_problem.md, eq. 21: of what there is of it. Where the speed
+/// The innovation of a measurement, docs/controller.md, eq. 21: of what there is of it. Where the speed
 /// is missing, the place says how fast the car is.
 void StateEstimator::take_over(const model::Measurement& now, double dx, double dy, double dpsi) noexcept {
   const double before = std::exchange(time_, now.time);

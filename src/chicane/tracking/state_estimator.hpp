@@ -11,7 +11,7 @@
 
 namespace chicane::tracking {
 
-/// How much of an innovation, measured minus predicted, is taken over (docs/tracking_problem.md, eq. 22 and
+/// How much of an innovation, measured minus predicted, is taken over (docs/controller.md, eq. 22 and
 /// 23): as much as a model that is a little wrong asks for, less the noisier the sensor is. That shows in the
 /// innovations themselves: a wrong model's agree from one to the next, noise does not.
 class InnovationGains {

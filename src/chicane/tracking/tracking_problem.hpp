@@ -16,7 +16,7 @@
 
 namespace chicane::tracking {
 
-/// The optimal control problem of the default controller (docs/tracking_problem.md, eq. 15–20): the
+/// The optimal control problem of the default controller (docs/controller.md, eq. 15–20): the
 /// prediction model in coordinates along a reference line, squares of what should be small, one-sided squares
 /// of what must not be exceeded. In the solver's structured form (solver/problem.hpp).
 ///

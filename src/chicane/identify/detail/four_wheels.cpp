@@ -14,7 +14,7 @@ constexpr double kGravity = 9.81;      // [m/s²]
 constexpr double kLeastLoad = 0.1;     // of the load at rest, as model::PredictionModel
 constexpr double kLeastSpeed = 0.3;    // [m/s] of a wheel
 constexpr double kLeastSquare = 1e-8;  // of a slip: the secant is 1 there
-// A standing tyre springs; what damps it (docs/plants.md, eq. 5).
+// A standing tyre springs; what damps it (docs/model.md, eq. 19).
 constexpr double kCreepSpeed = 3.0, kCreepDamping = 0.12;  // [m/s], [s/m]
 
 /// The slip x with `sign` · torque · b(x) + rest = stiffness · x. b is 1 up to the slip at which a controller
