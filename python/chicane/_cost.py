@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A cost as a sum of squares as far as it is one (docs/python_interpreter.md, eq. 3 and 4)."""
+"""A cost as a sum of squares as far as it is one (docs/python_problems.md, eq. 3 and 4)."""
 from __future__ import annotations
 
 import numpy as np

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Derivatives of a solution by the conditions of optimality, the active set fixed (docs/python_interpreter.md, eq. 5)."""
+"""Derivatives of a solution by the conditions of optimality, the active set fixed (docs/python_problems.md, eq. 5)."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Optimal control problems of many kinds, written in Python: for tests and for the tables of docs/python_interpreter.md.
+"""Optimal control problems of many kinds, written in Python: for tests and for the tables of docs/measured/python.md.
 
 cart_pole() is the one of bench/families/cart_pole.hpp, with its equations, costs and bounds. Others with names of bench/families are of
 the same kind, but not the same: models, costs and bounds are other ones. swimmer, race_car, satellite and pendulum_by_energy are new."""

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Problems written in Python, interpreted and compiled, side by side: the tables of docs/python_interpreter.md.
+"""Problems written in Python, interpreted and compiled, side by side: the tables of docs/measured/python.md.
 
     ./run.sh python python/tests/problem_table.py [NAME...]   a row for each family
     ./run.sh python python/tests/problem_table.py --many      10,000 cart-poles at once

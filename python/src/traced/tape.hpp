@@ -58,7 +58,7 @@ struct Node {
 
 /// A graph of scalar operations in which equal ones exist once, with their derivatives as nodes of the same
 /// graph: what is zero or one is never computed. Derivatives go forwards, value by value
-/// (docs/python_interpreter.md, eq. 1 and 2).
+/// (docs/python_problems.md, eq. 1 and 2).
 class Tape {
  public:
   using First = std::vector<std::pair<std::int32_t, std::int32_t>>;   ///< variable, node; ascending
