@@ -59,7 +59,8 @@ TEST(DescribedModel, NextLateralErrorIsOfTheLineBesideTheCar) {
 }
 
 TEST(DescribedModel, WithTheErrorToTheLeftACarThatHeadsForTheLineGetsNearer) {
-  // Write-up 1: cte = y − f(x), cte⁺ = cte + v sin eψ dt; here with the other sign of the whole.
+  // Write-up of `measured-latency`: cte = y − f(x), cte⁺ = cte + v sin eψ dt; here with the other sign of the
+  // whole.
   const double line = 0.5 + 0.1 * 2.0 - 0.02 * 4.0 + 0.001 * 8.0;
   DescribedModel<Cubic> theirs = model();
   theirs.error_sign = -1.0;
@@ -71,7 +72,8 @@ TEST(DescribedModel, WithTheErrorToTheLeftACarThatHeadsForTheLineGetsNearer) {
 }
 
 TEST(DescribedModel, AnIntegratedHeadingErrorIsTheOneBeforePlusTheTurn) {
-  // Write-up 1: eψ⁺ = eψ + v δ dt / L_f, from ψ = 0 and eψ = −arctan f′(0) on, whatever the line does.
+  // Write-up of `measured-latency`: eψ⁺ = eψ + v δ dt / L_f, from ψ = 0 and eψ = −arctan f′(0) on, whatever
+  // the line does.
   DescribedModel<Cubic> theirs = model();
   theirs.heading_reach = 0.0;
   std::array<double, 7> state{0.0, 0.0, 0.0, 12.0, -std::atan(theirs.line.slope(0.0)), 0.0, 0.0};
@@ -87,7 +89,8 @@ TEST(DescribedModel, AnIntegratedHeadingErrorIsTheOneBeforePlusTheTurn) {
 }
 
 TEST(DescribedModel, ARecursiveLateralErrorIsTheOneBeforePlusItsStep) {
-  // Write-up 1: cte = y − f(x) at the beginning, then cte⁺ = cte + v sin eψ dt, whatever the line does.
+  // Write-up of `measured-latency`: cte = y − f(x) at the beginning, then cte⁺ = cte + v sin eψ dt, whatever
+  // the line does.
   const double slope = kLine.slope(0.0);
   DescribedModel<Cubic> theirs = model();
   theirs.error_sign = -1.0;
