@@ -28,8 +28,7 @@ Result<void> print_limit(const Options& options) {
   }
   LimitRun told{.track = track->name(), .car = scenario->car};
   const Result<lap_time::PlantLimit> limit =
-      limit_of(*scenario, *track, {.budget = options.limit_budget},
-               wants_stop, told.wall_time);
+      limit_of(*scenario, *track, {.budget = options.limit_budget}, wants_stop, told.wall_time);
   if (!limit) return fail(limit.error());
   if (!options.csv_file.empty()) {
     if (Result<void> kept = write_file(options.csv_file, to_csv(told, *track, *limit)); !kept) return kept;

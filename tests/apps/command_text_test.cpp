@@ -45,7 +45,8 @@ std::vector<std::string> commands() {
   std::vector<std::string> names;
   bool is_list = false;
   for (const std::string& line : lines_of(bash(kQuotedProgram + " --help"))) {
-    if (is_list && line.starts_with("  ") && line[2] != ' ') names.push_back(line.substr(2, line.find(' ', 2) - 2));
+    if (is_list && line.starts_with("  ") && line[2] != ' ')
+      names.push_back(line.substr(2, line.find(' ', 2) - 2));
     is_list = is_list || line == "Drive:";
   }
   return names;
