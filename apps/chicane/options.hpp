@@ -45,10 +45,10 @@ struct Options {
   std::vector<std::string> allowed_hosts{};    ///< names by which the port may be asked for
   std::vector<std::string> allowed_origins{};  ///< pages that may connect, beside our own
 
-  bool wants_limit = false;       ///< drive --fast: the gaps of its laps to the limit
-  bool wants_causes = false;      ///< drive --fast --limit: what each cause takes of these gaps
-  std::string csv_file;           ///< limit: the racing line; empty: not kept
-  double limit_budget = 600.0;    ///< limit: work of the search [s]
+  bool wants_limit = false;     ///< drive --fast: the gaps of its laps to the limit
+  bool wants_causes = false;    ///< drive --fast --limit: what each cause takes of these gaps
+  std::string csv_file;         ///< limit: the racing line; empty: not kept
+  double limit_budget = 600.0;  ///< limit: work of the search [s]
 
   std::string connect =
       "ws://127.0.0.1:4567/socket.io/?EIO=4&transport=websocket";  ///< simulate: the controller
