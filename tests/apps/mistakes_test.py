@@ -80,6 +80,8 @@ import road.csv --preview road.png | --preview | got road.png | expected a name 
 limit --budget-s 0 | --budget-s | got 0 | expected a number > 0 | {USAGE}
 drive --fast=yes | --fast | got yes | expected no value | {USAGE}
 limit --car | --car | got nothing | expected NAME|FILE (chicane list cars) | {USAGE}
+limit --car f1tenth | limit | got the model car f1tenth | expected one in full size |
+drive --limit | --limit | got it alone | expected --fast with it |
 list track | what | got track | expected one of presets, tracks | {USAGE}
 completion ksh | shell | got ksh | expected one of bash, zsh, fish | {USAGE}
 check | check | got nothing | expected files or settings |
@@ -118,6 +120,7 @@ class Mistakes(unittest.TestCase):
         words = [word.strip("{}") if word.startswith("{") else word for word in shlex.split(command)]
         done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, text=True, timeout=60,
                               env={**os.environ, "CHICANE_DATA_DIR": str(ROOT / "data")})
+        self.assertEqual(done.stdout if done.returncode == 2 else "", "")
         return done.returncode, done.stderr
 
     def test_each_is_named_with_its_remedy(self):
