@@ -336,7 +336,7 @@ class Derivatives(unittest.TestCase):
         ocp.bounds(u=(-1, 1.5))
         random = np.random.default_rng(4)
         count = compared = 0
-        for _ in range(30):
+        for _ in range(12):
             x0, p = np.array([-0.5, 0.0]) + 0.3 * random.standard_normal(2), np.array([1.0, 0.2]) + 0.2 * random.standard_normal(2)
             count += 1
             solution = ocp.solve(x0, p, tolerance=1e-11)

@@ -13,9 +13,7 @@ PROGRAM = sys.argv.pop(1)
 ROOT = Path(__file__).resolve().parent.parent.parent
 TRACKS, MAPS = ROOT / "tests/data/tracks", ROOT / "tests/data/maps"
 LENGTH = 245.664  # of the stadium that tests/data/make_foreign_tracks.py writes [m]
-FILES = {"tum_centre_line.csv": 0.02, "decimal_commas.csv": 0.005, "utm.csv": 0.005, "cones.csv": 0.01, "fssim.yaml": 0.01, "cones.sdf": 0.01,
-         "three_laps.gpx": 0.015, "course.kml": 0.005, "course.osm": 0.005, "course.geojson": 0.005, "course.xodr": 0.005,
-         "course.commonroad.xml": 0.005}
+FILES = {"tum_centre_line.csv": 0.02, "cones.sdf": 0.01, "course.osm": 0.005, "course.xodr": 0.005}  # all: protocol/foreign_tracks_test.cpp
 
 
 def run(*words):
@@ -55,7 +53,7 @@ class Import(unittest.TestCase):
 
     # Its steering lags by 0.16 s: prices and limits that took what is asked for the wheel drove it off eight maps of ten.
     def test_a_model_car_races_on_maps_with_the_settings_of_the_preset(self):
-        for name in ("chicane", "long"):
+        for name in ("chicane", "long") if os.environ.get("CHICANE_SLOW_TESTS") else ("chicane",):
             with self.subTest(name):
                 code, out, err = run("drive", "--fast", "--laps", "1", "--preset", "race", "--car", "f1tenth", "--track", MAPS / f"{name}.yaml",
                                      "--set", "time_limit_s=30", "--no-cache")

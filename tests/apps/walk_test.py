@@ -20,7 +20,7 @@ PROGRAM = sys.argv.pop(1)
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 PAGE = ROOT / "docs/import.md"
-MODEL = {"car": "team-1-10", "start": "f1tenth", "cell": 0.05, "width": 1.9, "laps": "4", "grip_share": "1",
+MODEL = {"car": "team-1-10", "start": "f1tenth", "cell": 0.05, "width": 1.9, "laps": "3", "grip_share": "1",
          "corners": [(0, 0), (5, 0), (9, 2), (9, 6), (6, 8), (3, 6.2), (0, 6.2), (-3, 8), (-6, 6), (-6, 2), (-3, 0)],
          "noise": ("--position-noise-m", "0.005", "--heading-noise-deg", "0.2", "--speed-noise-mps", "0.02")}
 FULL = {"car": "team-coupe", "start": "road-car", "cell": 0.25, "width": 9.0, "laps": "2", "grip_share": "1",

@@ -14,8 +14,8 @@ import { promisify } from 'node:util';
 import { McapStreamReader } from '@mcap/core';
 import { listen } from './live_time.mjs';
 
-const KILLS = Number(process.env.CHICANE_KILLS ?? 15);
-const AT_ONCE = 5;
+const KILLS = Number(process.env.CHICANE_KILLS ?? 6);
+const AT_ONCE = 3;
 const MOST_LOST_S = 0.1;
 const { CHICANE } = process.env;
 const options = { cwd: process.env.CHICANE_SOURCE_DIR };
