@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "chicane/base/random.hpp"
-#include "sim/single_track.hpp"
 
 namespace chicane::sim::experiment {
 
@@ -43,13 +42,49 @@ Log record(Plant& plant, const model::VehicleParams& params, double speed, doubl
   return log;
 }
 
+/// Velocity of a car along and across its own axes [m/s], and yaw rate [rad/s]; or how fast they change.
+struct Motion {
+  double vx = 0.0, vy = 0.0, r = 0.0;
+};
+
+/// The textbook single track by which the plants are judged (docs/model.md, eq. 2–6): front and rear wheel
+/// with saturating tyres, without drive, roll, load transfer and coupling of longitudinal to lateral force.
+Motion derivative(const model::VehicleParams& p, const Motion& now, double steer) {
+  constexpr double kSlipSpeed = 3.0;  // [m/s]: lateral stiffness is that of at least this speed
+  const double reciprocal = 1.0 / std::sqrt(now.vx * now.vx + kSlipSpeed * kSlipSpeed);
+  const double slip_front =
+      (now.vx * std::sin(steer) - (now.vy + p.front_axle * now.r) * std::cos(steer)) * reciprocal;
+  const double slip_rear = (p.rear_axle * now.r - now.vy) * reciprocal;
+  const double pressed = (p.load_constant + p.load_per_speed * now.vx) * (p.friction / p.wheelbase());
+  const double front = pressed * p.rear_axle * std::tanh(slip_front * (p.cornering_front / p.friction));
+  const double rear = pressed * p.front_axle * std::tanh(slip_rear * (p.cornering_rear / p.friction));
+  const double turning = (1.0 - p.steer_helper) * now.r;
+  const double front_across = front * std::cos(steer);
+  return {.vx = turning * now.vy - front * std::sin(steer),
+          .vy = front_across + rear - turning * now.vx,
+          .r = (p.front_axle * front_across - p.rear_axle * rear) * (p.mass / p.yaw_inertia)};
+}
+
+/// One classical Runge–Kutta step.
+Motion advanced(const model::VehicleParams& params, const Motion& now, double steer, double dt) {
+  const auto moved = [&now](const Motion& rate, double time) {
+    return Motion{now.vx + time * rate.vx, now.vy + time * rate.vy, now.r + time * rate.r};
+  };
+  const Motion k1 = derivative(params, now, steer);
+  const Motion k2 = derivative(params, moved(k1, 0.5 * dt), steer);
+  const Motion k3 = derivative(params, moved(k2, 0.5 * dt), steer);
+  const Motion k4 = derivative(params, moved(k3, dt), steer);
+  const auto mean = [](double a, double b, double c, double d) { return (a + 2.0 * b + 2.0 * c + d) / 6.0; };
+  return moved(
+      {mean(k1.vx, k2.vx, k3.vx, k4.vx), mean(k1.vy, k2.vy, k3.vy, k4.vy), mean(k1.r, k2.r, k3.r, k4.r)}, dt);
+}
+
 /// The single track with the log's steering angle and speed against the log.
 Mismatch compare_with(const Log& log, const model::VehicleParams& params) {
-  const SingleTrack model{params};
-  BodyMotion<double> motion{log.states.front().vx, 0.0, 0.0};
+  Motion motion{.vx = log.states.front().vx};
   double r_error = 0.0, r_size = 0.0, v_error = 0.0, v_size = 0.0;
   for (const model::State& truth : log.states) {
-    motion = advance(model, motion, truth.steer, 0.0, log.dt);
+    motion = advanced(params, motion, truth.steer, log.dt);
     motion.vx = truth.vx;
     r_error += std::pow(motion.r - truth.r, 2);
     r_size += std::pow(truth.r, 2);
