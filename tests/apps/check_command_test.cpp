@@ -2,17 +2,15 @@
 // `chicane check` from outside: it judges what `chicane drive` judges.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
+
+#include "apps/program_outcome.hpp"
 
 namespace chicane {
 namespace {
@@ -21,22 +19,8 @@ namespace fs = std::filesystem;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 
-struct Answer {
-  int exit_code = 0;
-  std::string text;  ///< of both outputs
-};
-
-Answer chicane(const std::string& arguments) {
-  Answer answer;
-  FILE* pipe =
-      ::popen(("cd '" CHICANE_SOURCE_DIR "' && '" CHICANE_PROGRAM "' " + arguments + " 2>&1").c_str(), "r");
-  std::array<char, 4096> piece{};
-  while (std::size_t count = std::fread(piece.data(), 1, piece.size(), pipe))
-    answer.text.append(piece.data(), count);
-  const int status = ::pclose(pipe);
-  answer.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
-  return answer;
-}
+/// Words of both outputs.
+test::Outcome chicane(const std::string& arguments) { return test::chicane_program(arguments + " 2>&1"); }
 
 class CheckCommand : public ::testing::Test {
  protected:
@@ -81,11 +65,11 @@ TEST_F(CheckCommand, RefusesTheSettingsThatDriveRefusesInTheSameWords) {
       "--fault half_grip@x"};
   for (const std::string& settings : refused) {
     SCOPED_TRACE(settings);
-    const Answer driven = chicane("drive --fast --laps 1 --set time_limit_s=0.2 " + settings);
-    ASSERT_EQ(driven.exit_code, 2) << driven.text;
-    const Answer checked = chicane("check " + settings);
-    EXPECT_EQ(checked.exit_code, 2);
-    EXPECT_EQ(checked.text, driven.text);
+    const test::Outcome driven = chicane("drive --fast --laps 1 --set time_limit_s=0.2 " + settings);
+    ASSERT_EQ(driven.code, 2) << driven.out;
+    const test::Outcome checked = chicane("check " + settings);
+    EXPECT_EQ(checked.code, 2);
+    EXPECT_EQ(checked.out, driven.out);
   }
 }
 
@@ -94,19 +78,19 @@ TEST_F(CheckCommand, JudgesFilesAsDriveWouldTakeThem) {
   const std::string narrow = write("narrow.csv", circle(60.0, 0.5));
   const std::string scenario = write("wide_run.yaml", "track: hairpins\nvehicle:\n  track_width_m: 10\n");
   for (const std::string& file : {wide, narrow, scenario}) {
-    const Answer checked = chicane("check " + file);
-    EXPECT_EQ(checked.exit_code, 2) << file;
-    EXPECT_THAT(checked.text, HasSubstr(file + ": track: ")) << file;
-    EXPECT_THAT(checked.text, HasSubstr("is not for the car")) << file;
+    const test::Outcome checked = chicane("check " + file);
+    EXPECT_EQ(checked.code, 2) << file;
+    EXPECT_THAT(checked.out, HasSubstr(file + ": track: ")) << file;
+    EXPECT_THAT(checked.out, HasSubstr("is not for the car")) << file;
   }
-  EXPECT_EQ(chicane("check " + narrow + " --car orca-1-43 --set track_scale=1").exit_code, 0);
+  EXPECT_EQ(chicane("check " + narrow + " --car orca-1-43 --set track_scale=1").code, 0);
 }
 
 TEST_F(CheckCommand, PassesWhatShips) {
-  const Answer checked =
+  const test::Outcome checked =
       chicane("check data/presets/*.yaml data/scenarios/*.yaml data/cars/*.yaml data/tracks/*.csv");
-  EXPECT_EQ(checked.exit_code, 0) << checked.text;
-  EXPECT_THAT(chicane("check --preset race --car road-car --track oval").text,
+  EXPECT_EQ(checked.code, 0) << checked.out;
+  EXPECT_THAT(chicane("check --preset race --car road-car --track oval").out,
               EndsWith("ok, race (tracking-mpc) drives road-car on oval\n"));
 }
 

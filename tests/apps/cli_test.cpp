@@ -24,20 +24,7 @@ namespace chicane::test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using Json = nlohmann::json;
-
-TEST(Cli, HelpNamesEveryCommandAndGivesAnExample) {
-  const Outcome help = chicane_program("--help");
-  EXPECT_EQ(help.code, 0);
-  EXPECT_THAT(help.err, IsEmpty());
-  for (const char* command : {"drive", "serve", "simulate", "replay", "check", "list"}) {
-    EXPECT_THAT(help.out, HasSubstr(command));
-    const Outcome detail = chicane_program(std::string(command) + " --help");
-    EXPECT_EQ(detail.code, 0) << command;
-    EXPECT_THAT(detail.out, HasSubstr(std::string("Example: chicane ") + command));
-  }
-}
 
 TEST(Cli, SaysItsVersion) {
   const Outcome version = chicane_program("--version");
@@ -48,41 +35,6 @@ TEST(Cli, SaysItsVersion) {
     EXPECT_EQ(version.out, "chicane " CHICANE_VERSION "\n");
   } else {
     EXPECT_THAT(version.out, HasSubstr("not built in: " + left_out));
-  }
-}
-
-TEST(Cli, WrongUsageIsExplainedWithExitCodeTwo) {
-  struct Case {
-    const char *arguments, *expected;
-  };
-  const Case cases[] = {
-      {"", "chicane --help "},
-      {"drvie", "(did you mean drive?)"},
-      {"drive --pressets x", "(did you mean --preset?)"},
-      {"drive --laps", "--laps"},
-      {"drive --fast --laps many", "laps: got many, expected an integer in [0, 10000]"},
-      {"drive --fast --latency-ms 900", "latency_ms: got 900, expected a number in [0, 500] ms"},
-      {"drive --fast --preset sixty_mph", "(did you mean sixty-mph?)"},
-      {"drive --fast --track nowhere", "track: got \"nowhere\", expected a file or one of"},
-      {"drive --fast --controller mpc", "controller: got mpc, expected one of tracking-mpc"},
-      {"drive --port 99999", "--port: got 99999, expected a whole number in [0, 65535]"},
-      {"drive --fast --set laps", "got laps, expected key=value"},
-      {"drive --fast --set latenzy_ms=3", "(did you mean latency_ms?)"},
-      {"drive --fast --speed-mps 999", "speed_limit_mps: got 999"},
-      {"drive --fast no/such.yaml", "expected a file that exists"},
-      {"list flavours", "flavours"},
-      {"check", "expected files or settings"},
-      {"limit --track nowhere", "track: got \"nowhere\", expected a file or one of"},
-      {"limit --car moped", "car: got \"moped\", expected a file or one of"},
-      {"limit --budget-s 0", "--budget-s: got 0, expected a number > 0"},
-      {"limit --car f1tenth", "limit: got the model car f1tenth, expected one in full size"},
-      {"drive --limit", "--limit: got it alone, expected --fast with it"},
-  };
-  for (const Case& one : cases) {
-    const Outcome outcome = chicane_program(one.arguments);
-    EXPECT_EQ(outcome.code, 2) << one.arguments << "\n" << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr(one.expected)) << one.arguments;
-    EXPECT_THAT(outcome.out, IsEmpty()) << one.arguments;
   }
 }
 
@@ -225,16 +177,6 @@ TEST(Cli, ARecordingOfServeSaysThatTheRoadIsKnownFromWaypointsAndReplays) {
   fs::remove_all(folder);
 }
 
-TEST(Cli, TheSameSeedGivesTheSameRun) {
-  const std::string arguments =
-      "drive --fast --json --laps 1 --set time_limit_s=8 --set sensor.position_noise_m=0.05 --seed ";
-  const auto hash = [&](const char* seed) {
-    return Json::parse(chicane_program(arguments + seed).out)["state_hash"];
-  };
-  EXPECT_EQ(hash("5"), hash("5"));
-  EXPECT_NE(hash("5"), hash("6"));
-}
-
 TEST(Cli, ARecordedRunIsVerifiedBitForBit) {
   const std::string log = ::testing::TempDir() + "chicane_cli_" + std::to_string(::getpid()) + ".mcap";
   fs::remove(log);
@@ -355,39 +297,11 @@ TEST(Cli, ACampaignRefusesWhatIsNoFault) {
   EXPECT_EQ(chicane_program("campaign --tracks nowhere").code, 2);
 }
 
-TEST(Cli, CheckAcceptsWhatShips) {
-  const Outcome outcome =
-      chicane_program("check data/presets/*.yaml data/cars/*.yaml data/scenarios/*.yaml data/tracks/*.csv");
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("data/cars/road-car.yaml: ok, car"));
-  EXPECT_THAT(outcome.out, HasSubstr("data/tracks/lakeside.csv: ok, closed track"));
-}
-
 TEST(Cli, FindsAFileByItsPathOfTheLastVersion) {
   const Outcome outcome = chicane_program("check presets/weighted.yaml");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("presets/weighted.yaml lies in data/ now: reading data/presets/"));
   EXPECT_EQ(chicane_program("check presets/none.yaml").code, 2);
-}
-
-TEST(Cli, CheckExplainsEveryFaultWithFileAndLine) {
-  const Outcome outcome =
-      chicane_program("check tests/protocol/fixtures/broken/several_faults.yaml data/presets/pid.yaml");
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(
-      outcome.err,
-      HasSubstr("broken/several_faults.yaml:1: latency_ms: got 900, expected a number in [0, 500] ms"));
-  EXPECT_THAT(outcome.err, HasSubstr("broken/several_faults.yaml:5: vehicle.colour: got an unknown key"));
-  EXPECT_THAT(outcome.out, HasSubstr("data/presets/pid.yaml: ok"));
-}
-
-TEST(Cli, ListKnowsWhatShips) {
-  EXPECT_THAT(chicane_program("list presets").out, HasSubstr("measured-latency"));
-  EXPECT_THAT(chicane_program("list tracks").out, HasSubstr("lakeside"));
-  EXPECT_THAT(chicane_program("list cars").out, HasSubstr("road-car"));
-  EXPECT_THAT(chicane_program("list controllers").out, HasSubstr("stanley"));
-  EXPECT_THAT(chicane_program("list plants").out, HasSubstr("road-car"));
-  EXPECT_THAT(chicane_program("list parameters").out, HasSubstr("cubic_mpc.horizon_steps"));
 }
 
 TEST(Cli, TheReferencePageIsInStepWithTheProgram) {
@@ -418,13 +332,6 @@ TEST(Cli, APortThatIsTakenIsTheEnvironmentsFault) {
     EXPECT_THAT(outcome.err, HasSubstr(port));
   }
   ::close(taken);
-}
-
-TEST(Cli, WithoutATokenItListensOnThisMachineOnly) {
-  const Outcome outcome = chicane_program("drive --port 0 --laps 1 --address 0.0.0.0 --no-token");
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err,
-              HasSubstr("address: got 0.0.0.0 without a token, expected one of this machine or a token"));
 }
 
 TEST(Cli, PrintsALinkWithItsToken) {

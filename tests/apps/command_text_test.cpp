@@ -3,13 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cstdio>
 #include <regex>
 #include <set>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "apps/program_outcome.hpp"
 
 namespace chicane {
 namespace {
@@ -20,18 +20,11 @@ using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 using ::testing::UnorderedElementsAre;
 
-const std::string kQuotedProgram = std::string("'") + CHICANE_PROGRAM + "'";
+const std::string& kQuotedProgram = test::kProgram;
 
 /// What bash says in the root of the source tree.
 std::string bash(const std::string& words) {
-  const std::string line = "bash 2>&1 <<'END'\ncd '" CHICANE_SOURCE_DIR "'\n" + words + "\nEND";
-  FILE* pipe = ::popen(line.c_str(), "r");
-  std::string text;
-  std::array<char, 4096> part{};
-  for (std::size_t n = 0; (n = std::fread(part.data(), 1, part.size(), pipe)) > 0;)
-    text.append(part.data(), n);
-  ::pclose(pipe);
-  return text;
+  return test::shell("bash 2>&1 <<'END'\n" + words + "\nEND\ntrue").out;
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cstdio>
 #include <string>
+
+#include "apps/program_outcome.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -17,16 +17,7 @@ using ::testing::StartsWith;
 
 /// Text of a short run on stderr.
 std::string said_by_drive(const std::string& options) {
-  const std::string command = "cd '" CHICANE_SOURCE_DIR "' && '" CHICANE_PROGRAM
-                              "' drive --fast --laps 1 --set time_limit_s=0.2 " +
-                              options + " 2>&1 >/dev/null";
-  FILE* const pipe = ::popen(command.c_str(), "r");
-  std::string text;
-  std::array<char, 4096> piece{};
-  while (const std::size_t count = std::fread(piece.data(), 1, piece.size(), pipe))
-    text.append(piece.data(), count);
-  ::pclose(pipe);
-  return text;
+  return test::chicane_program("drive --fast --laps 1 --set time_limit_s=0.2 " + options).err;
 }
 
 TEST(GuardNotice, SaysWhatTheOptionsLeaveOpen) {

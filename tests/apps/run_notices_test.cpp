@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/program_outcome.hpp"
+#include "plan_wait.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -146,6 +147,13 @@ TEST(RunNotices, BeginAnewWithAnotherRun) {
   run.time = 0.0;
   run.see(standing(0.0), 1.5);
   EXPECT_THAT(run.said, IsEmpty());
+}
+
+TEST(PlanLine, SaysHowFarItIsAndWhatIsLeft) {
+  const lap_time::PlanProgress half{.work = 5.0, .expected = 10.0};
+  EXPECT_EQ(plan_line(half, 8.0, 90.0), "planning the lap: 50 %, about 8 s left");
+  const lap_time::PlanProgress late{.work = 60.0, .expected = 10.0};
+  EXPECT_EQ(plan_line(late, 120.0, 90.0), "planning the lap: 120 s so far, at most 60 s left");
 }
 
 TEST(RunNotices, ComeWhenItHappensAndBesideTheResults) {

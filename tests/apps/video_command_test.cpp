@@ -2,14 +2,14 @@
 // A film from outside, with a shell script in ffmpeg's place: the package is optional.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
+
+#include "apps/program_outcome.hpp"
 
 namespace chicane {
 namespace {
@@ -31,14 +31,10 @@ class VideoCommand : public ::testing::Test {
 
   /// Its exit code; what it says on stderr is in said_. `path`: where programs are looked for.
   int program(const std::string& arguments, const std::string& path) {
-    const fs::path errors = folder_ / "err";
-    const std::string words = "cd '" CHICANE_SOURCE_DIR "' && PATH='" + path + "' '" CHICANE_PROGRAM "' " +
-                              arguments + " > /dev/null 2> '" + errors.string() + "'";
-    const int status = std::system(words.c_str());
-    std::ostringstream text;
-    text << std::ifstream(errors).rdbuf();
-    said_ = text.str();
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+    const test::Outcome outcome =
+        test::shell("PATH='" + path + "' " + test::kProgram + arguments + " > /dev/null");
+    said_ = outcome.err;
+    return outcome.code;
   }
   [[nodiscard]] std::string quoted(const std::string& name) const {
     return "'" + (folder_ / name).string() + "'";
