@@ -87,7 +87,8 @@ function(chicane_test_options target)
   # Without forced inlining, which would take the compiler minutes, GCC takes the empty second argument of a chain of jets for a value.
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Og> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_libraries(${target} PRIVATE chicane_options chicane_test_support)
-  target_compile_definitions(${target} PRIVATE CHICANE_ENABLE_ASSERT CHICANE_NO_FORCED_INLINE CHICANE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_compile_definitions(${target} PRIVATE CHICANE_ENABLE_ASSERT CHICANE_NO_FORCED_INLINE CHICANE_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+    $<$<BOOL:${CHICANE_SLOW_TESTS}>:CHICANE_SLOW_TESTS>)
 endfunction()
 
 function(chicane_test name)

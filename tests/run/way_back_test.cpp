@@ -10,6 +10,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/parallel.hpp"
+#include "support/slow_tests.hpp"
 
 namespace chicane::run {
 namespace {
@@ -53,7 +54,7 @@ TEST(WayBack, StartsAreAllKindsWithinReachOfTheRoadAndTheSameForTheSameSeed) {
 
 TEST(WayBack, OutcomesDoNotDependOnTheNumberOfThreads) {
   const scenario::Scenario scenario = scenario_of("oval", "road-car");
-  const auto starts = start_poses(make_track(scenario).value(), 6, 1);
+  const auto starts = start_poses(make_track(scenario).value(), 3, 1);
   const auto one = drive_all_back(scenario, starts, 1);
   const auto two = drive_all_back(scenario, starts, 2);
   for (std::size_t i = 0; i < starts.size(); ++i) {
@@ -87,13 +88,16 @@ TEST(WayBack, IsFoundFromWhereItWasMissed) {
 }
 
 TEST(WayBack, IsFoundFromAnywhere) {
+  constexpr std::size_t kStarts = kDrivesAll ? 20 : 5;
   for (const char* track : {"lakeside", "oval"}) {
     for (const char* car : {"udacity", "road-car"}) {
       const scenario::Scenario scenario = scenario_of(track, car);
-      const auto outcomes = drive_all_back(scenario, start_poses(make_track(scenario).value(), 10, 2), 2);
+      const auto starts = start_poses(make_track(scenario).value(), kStarts, 2);  // each kind in turn
+      const auto outcomes = drive_all_back(scenario, starts, 2);
       for (std::size_t i = 0; i < outcomes.size(); ++i) {
-        EXPECT_TRUE(outcomes[i].has_come_back()) << "chicane recover --starts 10 --seed 2 --tracks " << track
-                                                 << " --cars " << car << " --only " << i + 1;
+        EXPECT_TRUE(outcomes[i].has_come_back())
+            << "chicane recover --starts " << kStarts << " --seed 2 --tracks " << track << " --cars " << car
+            << " --only " << i + 1;
       }
     }
   }
