@@ -50,7 +50,8 @@ TEST(CrossingRoad, IsDrivenFromTheTrackAndFromWaypoints) {
         for (const char* road : {"track", "waypoints"}) {
           const bool is_mirrored = height < 0.0;
           const bool is_offset = start > 0.0;
-          const bool is_turn = (car == "road-car") == is_offset && is_mirrored == (road[0] == 't');
+          const bool is_turn =
+              (car == "road-car") == is_offset && is_mirrored == (road[0] == 't') && is_mirrored == is_offset;
           if (!kDrivesAll && !is_turn) continue;
           const std::string what =
               std::to_string(height) + ' ' + std::to_string(start) + ' ' + car + ' ' + road;

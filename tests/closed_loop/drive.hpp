@@ -10,6 +10,7 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/slow_tests.hpp"
 
 namespace chicane::run {
 
@@ -29,13 +30,6 @@ inline telemetry::RunSummary drive(const Settings& settings) {
   }
   return run::run_closed_loop(**loop);
 }
-
-#ifdef CHICANE_SLOW_TESTS
-inline constexpr bool kDrivesAll = true;
-#else
-inline constexpr bool kDrivesAll =
-    false;  ///< tests drive a sample of their cases, `./test.sh --all` drives all
-#endif
 
 inline double top_mph(const telemetry::RunSummary& run) { return mps_to_mph(run.total.top_speed); }
 
