@@ -130,7 +130,13 @@ void yaml(std::string_view bytes) {
 
 void track(std::string_view bytes) {
   const auto file = protocol::parse_track(bytes, "f.csv");
-  if (!file) return check(file.error());
+  if (!file) {
+    promise(file.error().message.starts_with("f.csv:") &&
+            file.error().message.find("got ") != std::string::npos);
+    return check(file.error());
+  }
+  for (const road::TrackPoint& point : file->points)
+    promise(point.position.is_finite() && std::isfinite(point.left + point.right));
   constexpr std::size_t kQuick = 200;  // points; more take longer and say nothing new
   if (file->points.size() > kQuick) return;
   const auto made = protocol::make_track(*file);

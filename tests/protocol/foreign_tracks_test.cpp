@@ -16,7 +16,6 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/base/random.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/road/point_fit.hpp"
 #include "support/stadium.hpp"
@@ -321,35 +320,6 @@ TEST(OccupancyMaps, TakeDirectionAndStartFromTheOptions) {
   EXPECT_LT(turned(*right), -6.0);
   EXPECT_NEAR((right->centre().at(0.0).position - Vec2{7.2, 4.5}).norm(), 0.0, 0.5);
   EXPECT_THAT(parse_track(text, file, {.least_width = 3.0}).error().message, HasSubstr("m wide at ("));
-}
-
-TEST(ForeignTracks, SurviveMutilatedFiles) {
-  Random random{35};
-  const auto below = [&](std::size_t count) {
-    return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
-  };
-  for (const char* name : {"global_waypoints.json", "course.osm", "course.xodr", "course.commonroad.xml",
-                           "course.geojson", "course.kml", "fssim.yaml"}) {
-    const std::string good = read_file(kData + "tracks/" + name).value();
-    for (int round = 0; round < 60; ++round) {
-      std::string text = good;
-      for (std::size_t change = 0; change <= below(4); ++change) {
-        const std::size_t at = below(text.size());
-        if (below(2) == 0) {
-          text[at] = "0123456789-.<>\"{}[]e"[below(20)];
-        } else {
-          text.erase(at, 1 + below(60));
-        }
-      }
-      const auto content = parse_track(text, "f");
-      if (!content) {
-        EXPECT_THAT(content.error().message, AllOf(::testing::StartsWith("f:"), HasSubstr("got ")));
-        continue;
-      }
-      for (const road::TrackPoint& point : content->points)
-        EXPECT_TRUE(point.position.is_finite() && std::isfinite(point.left + point.right));
-    }
-  }
 }
 
 }  // namespace

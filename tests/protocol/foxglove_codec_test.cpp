@@ -6,8 +6,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "chicane/base/random.hpp"
-
 namespace chicane::protocol::foxglove {
 namespace {
 
@@ -112,23 +110,6 @@ TEST(FoxgloveCodec, RefusesHostileTextWithoutHarm) {
   std::string many = R"({"op":"unsubscribe","subscriptionIds":[0)";
   for (std::size_t i = 0; i < kMaxEntries; ++i) many += ",0";
   EXPECT_EQ(refusal(many + "]}"), "subscriptionIds: got 1025 entries, expected at most 1024");
-}
-
-TEST(FoxgloveCodec, SurvivesMutilatedMessages) {
-  const std::string text =
-      R"({"op":"setParameters","id":"r1","parameters":[{"name":"a","value":3},{"name":"d","value":[1,2.5]}]})";
-  const std::string call = "\x02\x05\0\0\0\x01\x02\0\0\x03\0\0\0cdr\0\1\0\0x"s;
-  Random random{7};
-  for (int i = 0; i < 20'000; ++i) {
-    std::string bytes = i % 2 == 0 ? text : call;
-    const auto pick = [&](std::size_t n) {
-      return static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
-    };
-    for (std::size_t changes = 1 + pick(4); changes > 0; --changes)
-      bytes[pick(bytes.size())] = static_cast<char>(pick(256));
-    if (i % 3 == 0) bytes.resize(pick(bytes.size()));
-    static_cast<void>(parse(bytes, i % 2 == 1));
-  }
 }
 
 TEST(FoxgloveCodec, DescribesItselfItsChannelsAndServices) {

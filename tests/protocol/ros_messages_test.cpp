@@ -35,60 +35,6 @@ std::string encode(std::string_view name, const telemetry::Frame& frame = sample
   return encode != nullptr ? encode(frame, run) : samples::change();
 }
 
-/// The end of a run: where car and road come from.
-void expect_origin(CdrReader& reader) {
-  const Run run = samples::run();
-  ASSERT_EQ(reader.get<std::uint32_t>(), 1U);
-  EXPECT_EQ(reader.text(), run.origin.car_notes[0]);
-  ASSERT_EQ(reader.get<std::uint32_t>(), 2U);
-  for (const IdentifiedValue& each : run.origin.identified) EXPECT_EQ(reader.text(), each.key);
-  for (const auto column : {&IdentifiedValue::value, &IdentifiedValue::low, &IdentifiedValue::high}) {
-    ASSERT_EQ(reader.get<std::uint32_t>(), 2U);
-    for (const IdentifiedValue& each : run.origin.identified) EXPECT_EQ(reader.number(), each.*column);
-  }
-  EXPECT_EQ(reader.text(), "GPX");
-  ASSERT_EQ(reader.get<std::uint32_t>(), 1U);
-  EXPECT_EQ(reader.text(), "width: assumed");
-  EXPECT_EQ(reader.number(), 0.125);
-  EXPECT_EQ(reader.get<std::uint32_t>(), 321U);
-  EXPECT_EQ(reader.number(), 0.0625);
-  EXPECT_EQ(reader.number(), 0.1875);
-}
-
-TEST(RosMessages, RunSaysWhatTheBitsAndTermsOfAFrameMean) {
-  const std::string bytes = encode("/chicane/run");
-  CdrReader reader{bytes};
-  EXPECT_EQ(reader.text(), "lakeside");
-  EXPECT_EQ(reader.number(), 1350.5);
-  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
-  EXPECT_EQ(reader.text(), "tracking-mpc");
-  EXPECT_EQ(reader.text(), "default");
-  EXPECT_EQ(reader.number(), 0.1);
-  EXPECT_EQ(reader.number(), 0.04);
-  EXPECT_EQ(reader.get<std::uint8_t>(), 0);
-  EXPECT_EQ(reader.text(), "udacity");
-  for (int i = 0; i < 7; ++i) EXPECT_GT(reader.number(), 0.0);
-  EXPECT_EQ(reader.text(), "serve");
-  const std::vector<std::vector<std::string>> lists{
-      {"lateral", "heading", "speed"}, {"steer_limit", "throttle_max"}, {"link_lost", "half_grip"}};
-  for (const std::vector<std::string>& names : lists) {
-    ASSERT_EQ(reader.get<std::uint32_t>(), names.size());
-    for (const std::string& name : names) EXPECT_EQ(reader.text(), name);
-  }
-  EXPECT_EQ(reader.number(), 0.75);
-  EXPECT_EQ(reader.text(), "track = oval");
-  EXPECT_EQ(reader.text(), "failed");
-  EXPECT_EQ(reader.text(), "time limit reached");
-  EXPECT_EQ(reader.text(), "observe");
-  EXPECT_EQ(reader.text(), "waypoints");
-  EXPECT_EQ(reader.get<std::uint32_t>(), 7U);
-  EXPECT_EQ(reader.number(), samples::run().vehicle.brake_throttle_limit);
-  EXPECT_EQ(reader.get<std::uint32_t>(), 1U);
-  EXPECT_EQ(reader.text(), "pid.speed_reference_mps: has no effect");
-  expect_origin(reader);
-  EXPECT_TRUE(reader.is_at_end());
-}
-
 /// The gap of the last third to the limit, as a lap tells it.
 double last_gap(const std::string& bytes) {
   CdrReader reader{bytes};
@@ -99,55 +45,13 @@ double last_gap(const std::string& bytes) {
   return reader.number();
 }
 
-TEST(RosMessages, LapIsTheLastCompletedOne) {
-  const std::string bytes = encode("/chicane/lap");
-  CdrReader reader{bytes};
-  EXPECT_EQ(reader.get<std::uint32_t>(), 2U);
-  for (const double expected : {28.125, 9.25, 9.5, 9.375}) EXPECT_EQ(reader.number(), expected);
-  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
-  for (const double expected : {47.5, 49.25, 1.625, 0.1875}) EXPECT_EQ(reader.number(), expected);
-  // 28.125 s over 25 s, and the thirds over 8, 9.5 and 7.5 s.
-  for (const double expected : {12.5, 15.625, 0.0, 25.0}) EXPECT_NEAR(reader.number(), expected, 1e-12);
-  for (const std::string_view expected : {"latency_ms", "60"}) {
-    ASSERT_EQ(reader.get<std::uint32_t>(), 1U);
-    EXPECT_EQ(reader.text(), expected);
-  }
-  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
-  EXPECT_EQ(reader.number(), 0.25);
-  ASSERT_EQ(reader.get<std::uint32_t>(), 1U);
-  EXPECT_EQ(reader.text(), "half_grip");
-  EXPECT_TRUE(reader.is_at_end());
-}
-
-TEST(RosMessages, LimitHasItsLineInColumnsOfTheSameLength) {
-  const std::string bytes = encode("/chicane/limit");
-  CdrReader reader{bytes};
-  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
-  for (const double expected : {25.0, 8.0, 9.5, 7.5}) EXPECT_EQ(reader.number(), expected);
-  const std::vector<std::pair<double, double>> columns{{258.0, 260.0}, {1.0, 3.0},   {2.0, 2.25},
-                                                       {0.5, 0.75},    {40.0, 40.5}, {0.0, 4.5},
-                                                       {-3.0, 0.0},    {0.0, 0.0625}};
-  for (const auto& [first, second] : columns) {
-    ASSERT_EQ(reader.get<std::uint32_t>(), 2U);
-    EXPECT_EQ(reader.number(), first);
-    EXPECT_EQ(reader.number(), second);
-  }
-  EXPECT_EQ(reader.text(), "");
-  EXPECT_EQ(reader.get<std::uint32_t>(), 1U);
-  for (int i = 0; i < 4; ++i) EXPECT_EQ(reader.get<std::uint32_t>(), 0U) << "no corners, no causes";
-  EXPECT_TRUE(reader.is_at_end());
-}
-
 TEST(RosMessages, ALimitHasItsCornersAndTheLapsThatExplainTheGap) {
   protocol::Run run = samples::run();
   lap_time::Limit limit = *run.limit.found;
   limit.times.corners = {9.0, 16.0};
   run.limit.found = std::make_shared<const lap_time::Limit>(limit);
   run.limit.without = {{.cause = "latency", .lap_time = 27.5, .corners = {10.25, 17.25}}, {.cause = "guard"}};
-  const auto& topics = ros_topics();
-  const auto topic = std::find_if(topics.begin(), topics.end(),
-                                  [](const RosTopic& each) { return each.name == "/chicane/limit"; });
-  const std::string bytes = topic->encode(samples::frame(), run);
+  const std::string bytes = encode("/chicane/limit", samples::frame(), run);
   CdrReader reader{bytes};
   reader.get<std::uint8_t>();
   for (int i = 0; i < 4; ++i) reader.number();
@@ -168,69 +72,29 @@ TEST(RosMessages, ALimitHasItsCornersAndTheLapsThatExplainTheGap) {
   EXPECT_TRUE(reader.is_at_end());
 }
 
-TEST(RosMessages, TheSceneHasARoadInTheWorldAndACarThatMovesWithItsFrame) {
-  const protocol::Run run = samples::run();
-  const auto& topics = ros_topics();
-  const auto scene =
-      std::find_if(topics.begin(), topics.end(), [](const RosTopic& each) { return each.name == "/scene"; });
-  ASSERT_NE(scene, topics.end());
-  EXPECT_EQ(scene->cadence, Cadence::kRoad);
-  EXPECT_NE(scene->schema.find("MSG: foxglove_msgs/ModelPrimitive"), std::string::npos);
-  const std::string bytes = scene->encode(samples::frame(), run);
-  CdrReader reader{bytes};
-  EXPECT_EQ(reader.get<std::uint32_t>(), 0U);  // deletions
-  EXPECT_EQ(reader.get<std::uint32_t>(), 2U);
-  EXPECT_EQ(reader.get<std::int32_t>(), 0);
-  EXPECT_EQ(reader.get<std::uint32_t>(), 0U);
-  EXPECT_EQ(reader.text(), "map");
-  EXPECT_EQ(reader.text(), "road");
-  EXPECT_EQ(scene->encode(samples::frame(), run), bytes) << "nothing of it depends on the frame";
-}
-
 TEST(RosMessages, ALimitThatIsNotKnownSaysWhyAndLapsHaveNoGap) {
   protocol::Run run = samples::run();
   run.limit = {.why_not = "the road is open", .first_lap = 4};
-  for (const RosTopic& each : ros_topics()) {
-    if (each.name == "/chicane/limit") {
-      const std::string bytes = each.encode(samples::frame(), run);
-      CdrReader reader{bytes};
-      EXPECT_EQ(reader.get<std::uint8_t>(), 0);
-      for (int i = 0; i < 4; ++i) EXPECT_TRUE(std::isnan(reader.number()));
-      for (int i = 0; i < 8; ++i) EXPECT_EQ(reader.get<std::uint32_t>(), 0U);
-      EXPECT_EQ(reader.text(), "the road is open");
-      EXPECT_EQ(reader.get<std::uint32_t>(), 4U);
-      for (int i = 0; i < 4; ++i) EXPECT_EQ(reader.get<std::uint32_t>(), 0U) << "no corners, no causes";
-      EXPECT_TRUE(reader.is_at_end());
-    }
-    if (each.name == "/chicane/lap") {
-      EXPECT_TRUE(std::isnan(last_gap(each.encode(samples::frame(), run))));
-    }
-  }
+  const std::string bytes = encode("/chicane/limit", samples::frame(), run);
+  CdrReader reader{bytes};
+  EXPECT_EQ(reader.get<std::uint8_t>(), 0);
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(std::isnan(reader.number()));
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(reader.get<std::uint32_t>(), 0U);
+  EXPECT_EQ(reader.text(), "the road is open");
+  EXPECT_EQ(reader.get<std::uint32_t>(), 4U);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(reader.get<std::uint32_t>(), 0U) << "no corners, no causes";
+  EXPECT_TRUE(reader.is_at_end());
+  EXPECT_TRUE(std::isnan(last_gap(encode("/chicane/lap", samples::frame(), run))));
 }
 
 TEST(RosMessages, ALapBegunWithAnotherCarHasNoGap) {
   protocol::Run run = samples::run();
   ASSERT_TRUE(run.limit.found);
-  const auto gap = [&] {
-    const auto& topics = ros_topics();
-    const auto lap = std::find_if(topics.begin(), topics.end(),
-                                  [](const RosTopic& each) { return each.name == "/chicane/lap"; });
-    return last_gap(lap->encode(samples::frame(), run));
-  };
+  const auto gap = [&] { return last_gap(encode("/chicane/lap", samples::frame(), run)); };
   run.limit.first_lap = samples::frame().completed_lap.lap;
   EXPECT_TRUE(std::isfinite(gap()));
   ++run.limit.first_lap;
   EXPECT_TRUE(std::isnan(gap()));
-}
-
-TEST(RosMessages, ChangeNamesWhatGotWhichValue) {
-  const std::string bytes = samples::change();
-  CdrReader reader{bytes};
-  EXPECT_EQ(reader.seconds(), 12.25);
-  EXPECT_EQ(reader.get<std::uint64_t>(), 306U);
-  EXPECT_EQ(reader.text(), "latency_ms");
-  EXPECT_EQ(reader.text(), "150");
-  EXPECT_TRUE(reader.is_at_end());
 }
 
 TEST(RosMessages, OdometryStandsAtTheRearAxleAndMovesWithIt) {
@@ -254,20 +118,6 @@ TEST(RosMessages, OdometryStandsAtTheRearAxleAndMovesWithIt) {
   EXPECT_TRUE(reader.is_at_end());
 }
 
-TEST(RosMessages, PlanHasOneColumnForEachQuantity) {
-  const std::string bytes = encode("/chicane/plan");
-  CdrReader reader{bytes};
-  reader.seconds();
-  for (const std::array<double, 3>& column :
-       {std::array{12.375, 12.4375, 12.5}, std::array{11.0, 12.0, 13.0}, std::array{-19.0, -18.5, -18.0},
-        std::array{0.5, 0.625, 0.75}, std::array{31.0, 30.0, 29.0}, std::array{0.01, 0.02, 0.03},
-        std::array{0.5, 0.25, 0.0}}) {
-    ASSERT_EQ(reader.get<std::uint32_t>(), 3U);
-    for (const double expected : column) EXPECT_DOUBLE_EQ(reader.number(), expected);
-  }
-  EXPECT_TRUE(reader.is_at_end());
-}
-
 TEST(RosMessages, PlanOfAnySizeStaysInsideItsArrays) {
   telemetry::Frame frame = samples::frame();
   for (const int size : {-5, 0, controller::Plan::kCapacity, 100'000}) {
@@ -278,24 +128,6 @@ TEST(RosMessages, PlanOfAnySizeStaysInsideItsArrays) {
     EXPECT_EQ(reader.get<std::uint32_t>(),
               static_cast<std::uint32_t>(std::clamp(size, 0, controller::Plan::kCapacity)));
   }
-}
-
-TEST(RosMessages, ReferenceLooksAlongTheLine) {
-  const std::string bytes = encode("/reference");
-  CdrReader reader{bytes};
-  reader.seconds();
-  EXPECT_EQ(reader.text(), "map");
-  ASSERT_EQ(reader.get<std::uint32_t>(), 2U);
-  for (const double y : {2.0, 5.0}) {
-    reader.seconds();
-    EXPECT_EQ(reader.text(), "map");
-    EXPECT_EQ(reader.number(), 1.0);
-    EXPECT_EQ(reader.number(), y);
-    reader.skip_numbers(3);
-    EXPECT_NEAR(reader.number(), std::sqrt(0.5), 1e-15);  // yaw 90°
-    EXPECT_NEAR(reader.number(), std::sqrt(0.5), 1e-15);
-  }
-  EXPECT_TRUE(reader.is_at_end());
 }
 
 TEST(RosMessages, DriveIsLeftPositiveAndInSingles) {

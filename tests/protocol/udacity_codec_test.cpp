@@ -7,7 +7,6 @@
 #include <array>
 #include <clocale>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -151,22 +150,6 @@ TEST(UdacityTelemetry, NoPrefixOfARealMessageIsTakenForAMeasurement) {
   const std::string text = kRealTelemetry;
   for (std::size_t size = 0; size < text.size(); ++size) {
     EXPECT_FALSE(std::holds_alternative<model::Measurement>(parse_telemetry(text.substr(0, size)))) << size;
-  }
-}
-
-TEST(UdacityTelemetry, AnyOneChangedByteIsSafe) {
-  const std::string text = kRealTelemetry;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    for (const char byte : {'\0', '"', ',', '9', '-', 'e', '[', '}', '\xff'}) {
-      std::string changed = text;
-      changed[i] = byte;
-      const auto message = parse_telemetry(changed);
-      const auto* measurement = std::get_if<model::Measurement>(&message);
-      if (measurement == nullptr) continue;
-      const bool is_sane = std::abs(measurement->x) <= 1e6 && std::abs(measurement->psi) <= 1e3 &&
-                           measurement->speed >= 0.0 && measurement->speed < 500.0;
-      EXPECT_TRUE(is_sane) << changed;
-    }
   }
 }
 
@@ -421,11 +404,6 @@ TEST(UdacityReplyFromController, WhatStallsTheOriginalIsSaidInWords) {
       {R"(42["steer",{"steering_angle":0,)" + rest + "}]", "throttle: missing"},
       {R"(42["steer",{"steering_angle":null,"throttle":0,)" + rest + "}]", "steering_angle: got null"},
       {R"(42["steer",{"steering_angle":"0.1","throttle":0,)" + rest + "}]", "steering_angle: got \"0.1\""},
-      {R"(42["steer",{"steering_angle":0,"throttle":0}])", "next_x: missing"},
-      {R"(42["steer",{"steering_angle":0,"throttle":0,"next_x":[1,2],"next_y":[1],"mpc_x":[],"mpc_y":[]}])",
-       "next_x has 2 points, next_y only 1"},
-      {R"(42["steer",{"steering_angle":0,"throttle":0,"next_x":[],"next_y":[],"mpc_x":[null],"mpc_y":[1]}])",
-       "mpc_x[0]: got null"},
       {R"(42["steer"])", "steer: got nothing, expected an object"},
       {R"(42["steer",{},1])", "name and one value"},
       {R"(42["Steer",{}])", "got \"Steer\", expected \"steer\""},
