@@ -76,12 +76,6 @@ class CheckFigures(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("README.md:18: got lap 25.98\nREADME.md:18: expected lap 25.97", text)
 
-    def test_a_time_may_differ_within_its_tolerance_and_no_more(self):
-        self.write(README.replace("it took 100 s", "it took 80 s"), SETTINGS)
-        code, text = self.check()
-        self.assertEqual(code, 1)
-        self.assertIn("got it took 80 s", text)
-
     def test_write_mends_what_differs(self):
         self.write(README.replace("| 1 | 2.50 |\n<!--", "| 7 | 2.51 |\n<!--").replace("25.97", "25.98"), SETTINGS)
         code, text = self.check("--write")
@@ -99,15 +93,6 @@ class CheckFigures(unittest.TestCase):
         (self.root / "docs/measured/page.md").write_text("| a | b | c |\n|---|---|---|\n| 1 | 2 | 3 |\n| 4 | 5 | 6 |\n", encoding="utf-8")
         self.assertIn("docs/measured/page.md: got 1 tables of numbers", self.check()[1])
 
-    def test_a_whole_file_is_compared(self):
-        self.write(README, SETTINGS + '[[file]]\nfiles = ["docs/x.txt"]\noptions = "fast"\ncommand = "echo 12 > FOLDER/x.txt"\n')
-        (self.root / "docs/x.txt").write_text("13\n", encoding="utf-8")
-        code, text = self.check("--fast")
-        self.assertEqual(code, 1)
-        self.assertIn("docs/x.txt:1: got 13\ndocs/x.txt:1: expected 12", text)
-        self.assertEqual(self.check("--fast", "--write")[0], 0)
-        self.assertEqual((self.root / "docs/x.txt").read_text(encoding="utf-8"), "12\n")
-
     def test_mistakes_name_place_and_expectation(self):
         self.write(README.replace("(fast)", "(quick)"), SETTINGS)
         code, text = self.check()
@@ -119,13 +104,6 @@ class CheckFigures(unittest.TestCase):
         code, text = self.check()
         self.assertEqual(code, 2)
         self.assertIn("begins in the one of line 3", text)
-
-    def test_a_command_that_fails_is_named(self):
-        self.write(README.replace("echo it took 110 s", "echo why >&2; exit 3"), SETTINGS)
-        code, text = self.check()
-        self.assertEqual(code, 1)
-        self.assertIn("exit code 3", text)
-        self.assertIn("why", text)
 
 
 if __name__ == "__main__":
