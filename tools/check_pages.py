@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks that pages can be read: no line of text beyond 120 columns, README and guides without riddle words.
+"""Checks that pages can be read: no line of text beyond 120 columns, each formula a paragraph, README and guides without riddle words.
 
-    tools/check_pages.py             prints file:line: what is too long, and the words of each group of pages; exit code 1 on a violation
+    tools/check_pages.py             prints what is too long or not rendered, and the words of each group of pages; exit code 1 on a violation
     tools/check_pages.py --lengths   also, for each page, words, words of a sentence (mean and most), riddle words and you/we per 1,000 words
 
 Code, tables, formulas, pictures and what a program writes between two markers may be wider. Riddle words stand for an agent or a noun that
@@ -82,7 +82,9 @@ def main():
             print(f"{words:6} {sum(counts) / len(counts):5.1f} {max(counts):4} {riddles:5.1f} {reader:5.1f} {page.relative_to(root)}")
     found = [f"{page.relative_to(root)}:{number}: got {len(line)} columns, expected at most {COLUMNS}" for page in pages
              if page.name not in WRITTEN for number, line in text_lines(page) if line is not None and len(line) > COLUMNS]
-    print("\n".join([*found, f"{len(found)} places too long"]))
+    found += [f"{page.relative_to(root)}: got two formulas in one paragraph, expected an empty line between them: the site renders neither"
+              for page in pages if re.search(r"\$\$[ \t]*\n\$\$", page.read_text(encoding="utf-8"))]
+    print("\n".join([*found, f"{len(found)} violations"]))
     print(f"{'':20} pages  words  riddle words  you/we (per 1,000 words)  pictures")
     for name, group in groups_of(root, pages).items():
         words, riddles, reader, pictures = counts_of(group)
