@@ -72,12 +72,13 @@ class Problem:
 
     def dynamics(self, function: Function) -> Function:
         """The next state, nx values. Also as a decorator. ch.rk4, ch.implicit_euler and ch.gauss_legendre make it from ẋ = f(x, u)."""
+        if self.rows["dynamics"]:
+            raise ValueError("dynamics: got a second function, expected one: a problem has one next state")
         if isinstance(function, Implicit):
             return self._add_implicit(function)
         rows = self._trace(function, "dynamics")
         if len(rows) != self.nx:
             raise ValueError(f"dynamics: got {len(rows)} values, expected {self.nx}, one for each state")
-        self._remove_unknowns()
         self.rows["dynamics"] = rows
         self._change()
         return function
@@ -288,7 +289,6 @@ class Problem:
         if self.nu + count > 8:
             raise ValueError(f"dynamics: got {count} unknowns inside the interval beside {self.nu} inputs, expected at most 8 together: fewer "
                              "steps or stages, or ch.rk4 with more steps")
-        self._remove_unknowns()
         unknowns = self._symbols("variable", range(self.nx + self.nu, self.nx + self.nu + count)).reshape(-1, self.nx)
         zeros: list[Symbol] = []
 
@@ -303,11 +303,6 @@ class Problem:
         self.names["equality"][:0] = [_INSIDE] * count
         self._change()
         return method.__wrapped__
-
-    def _remove_unknowns(self) -> None:
-        """Those of earlier dynamics."""
-        del self.rows["equality"][:self.unknowns], self.names["equality"][:self.unknowns]
-        self.unknowns = 0
 
     def _guess_unknowns(self, x0: Array, states: Array | None) -> Array:
         """States inside intervals, as the ones at their ends, or all as the first one."""

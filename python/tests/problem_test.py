@@ -290,8 +290,9 @@ class Implicit(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "gauss_legendre: got 3 stages, expected 1 or 2"):
             ch.gauss_legendre(lambda x, u: x, 0.1, stages=3)
         ocp.dynamics(ch.implicit_euler(lambda x, u: -1.0 * x, 0.1))
-        ocp.dynamics(lambda x, u: x)                            # takes its place
-        self.assertEqual((ocp.unknowns, len(ocp.rows["equality"])), (0, 0))
+        with self.assertRaisesRegex(ValueError, "dynamics: got a second function, expected one"):
+            ocp.dynamics(lambda x, u: x)
+        self.assertEqual((ocp.unknowns, len(ocp.rows["equality"])), (4, 4))
 
 
 class Derivatives(unittest.TestCase):
@@ -444,6 +445,7 @@ class Misuses(unittest.TestCase):
         self.refuse("dynamics: got a function that returns nothing", lambda: ocp.dynamics(lambda x, u: None))
         self.refuse("cost: .*expected x of 2 entries|residual: .*expected x of 2 entries", lambda: ocp.cost(lambda x, u: x[2]))
         ocp.dynamics(lambda x, u: x)
+        self.refuse("dynamics: got a second function, expected one", lambda: ocp.dynamics(lambda x, u: 2.0 * x))
         self.refuse("constraint: got a comparison, expected what has to be <= 0: a - b for a <= b", lambda: ocp.subject_to(lambda x, u: x[0] <= 1))
         self.refuse("constraint: got a comparison", lambda: ocp.subject_to(lambda x, u: x < np.ones(2), at_end=False))
         self.refuse("residual: got a comparison, expected a value: ch.where", lambda: ocp.cost(lambda x, u: x[0] > u[0]))
