@@ -72,6 +72,7 @@ class Account {
   [[nodiscard]] const telemetry::CompletedLap& completed_lap() const noexcept { return completed_lap_; }
   /// The same, once for each lap; none when it was taken already.
   [[nodiscard]] std::optional<telemetry::CompletedLap> take_lap() noexcept;
+  [[nodiscard]] std::span<const road::Corner> corners() const noexcept { return terms_.corners; }
   [[nodiscard]] int laps_completed() const noexcept { return metrics_.laps_completed(); }
 
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }

@@ -58,6 +58,10 @@ void Roadside::judge(telemetry::Frame& frame) noexcept {
     learn(frame);
   }
   frame.completed_lap = account_.completed_lap();
+  frame.situation = telemetry::situation_of(frame, frame.situation,
+                                            {.full_brake = scenario_.vehicle.brake_throttle_limit,
+                                             .corners = account_.corners(),
+                                             .remedy = telemetry::kSimulatorRemedy});
 }
 
 void Roadside::look(telemetry::Frame& frame) noexcept {

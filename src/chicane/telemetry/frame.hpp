@@ -9,6 +9,7 @@
 #include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/safety/guard_report.hpp"
+#include "chicane/telemetry/situation.hpp"
 
 namespace chicane::telemetry {
 
@@ -62,6 +63,7 @@ struct Frame {
   double last_lap_time = 0.0;  ///< 0 before the first completed lap [s]
   int off_track_events = 0;
   CompletedLap completed_lap;  ///< the last one
+  Situation situation;         ///< of the cycle, for people
 
   // What else decided the command: with the settings and the measurement, enough to compute it again.
   bool begins = false;                  ///< controller and gate had forgotten everything

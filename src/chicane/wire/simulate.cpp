@@ -65,6 +65,7 @@ class Scene {
   Scene(const scenario::Scenario& scenario, road::Track track, road::Track waypoints,
         std::unique_ptr<sim::Plant> plant)
       : waypoints_sent_{scenario.waypoints_sent},
+        full_brake_{scenario.vehicle.brake_throttle_limit},
         track_{std::move(track)},
         waypoints_{std::move(waypoints)},
         plant_{std::move(plant)},
@@ -100,6 +101,13 @@ class Scene {
     return receiver_.sampled(now.time);
   }
 
+  /// Writes the situation of an answered frame into it.
+  void judge(telemetry::Frame& frame) const {
+    frame.situation = telemetry::situation_of(
+        frame, frame.situation,
+        {.full_brake = full_brake_, .corners = account_.corners(), .remedy = telemetry::kControllerRemedy});
+  }
+
   [[nodiscard]] telemetry::RunSummary summary() const { return account_.summary(world_.time()); }
   [[nodiscard]] run::Account& account() { return account_; }
   [[nodiscard]] double next_step() const { return world_.time() + plant_->step_length(); }
@@ -110,6 +118,7 @@ class Scene {
 
  private:
   int waypoints_sent_;
+  double full_brake_;
   road::Track track_;
   road::Track waypoints_;
   std::unique_ptr<sim::Plant> plant_;
@@ -322,6 +331,7 @@ class Simulation {
     frame_.result.report.solve.status =
         solver::SolveStatus::kOptimal;  // of an external solver nothing is known
     place_lines(steer, scene_.car(), frame_.result.plan);
+    scene_.judge(frame_);
     scene_.account().add(frame_);
     if (hooks_.on_frame) hooks_.on_frame(frame_);
   }
