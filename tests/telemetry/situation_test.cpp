@@ -107,6 +107,9 @@ TEST(Situation, TakesWhatTheGuardFoundForANotice) {
   frame.is_off_track = true;
   frame.edge_distance = -1.23;
   EXPECT_EQ(sentence_of(next(frame)), "Off the road by 1.2 m");
+  frame.is_manual = true;
+  EXPECT_EQ(sentence_of(next(frame)), "Off the road by 1.2 m");
+  EXPECT_EQ(next(frame).driver, Situation::Driver::kPerson);
 }
 
 }  // namespace

@@ -221,6 +221,7 @@ TEST(Simulate, StopsTheCarOfAControllerThatFallsSilent) {
   EXPECT_GE(outcome.report->stops, 1U);
   EXPECT_THAT(outcome.log, HasSubstr("no command in time: the car is stopped from "));
   EXPECT_THAT(outcome.log, HasSubstr("the car stands, its outermost wheel "));
+  EXPECT_THAT(outcome.log, HasSubstr("the road's edge: the controller has not answered for "));
 }
 
 TEST(Simulate, HoldsTheLastCommandOfAControllerThatFallsSilentWhereItIsTold) {

@@ -77,6 +77,12 @@ it('all state that outlives a view is in the store', () => {
 });
 
 it('sees the imports', () => {
-  expect(imports.get('state/shown.ts')).toEqual(['lib/store.ts', 'state/link.ts', 'state/live.ts', 'state/run.ts']);
+  expect(imports.get('state/shown.ts')).toEqual([
+    'lib/store.ts',
+    'state/link.ts',
+    'state/live.ts',
+    'state/run.ts',
+    'state/situation.ts',
+  ]);
   expect(imports.get('main.tsx')?.length).toBeGreaterThan(25);
 });

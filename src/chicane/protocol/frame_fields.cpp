@@ -204,17 +204,6 @@ constexpr std::array kSent{
     field<bool>("is_manual", "a person drives", [](const Frame& f) { return f.is_manual; }),
 };
 
-/// What limits the speed, as it stands beside the command that was sent: a drive that is not asked for all it
-/// has is no limit, and full throttle is not part of it.
-road::SpeedLimiter limiter_beside_pedal(const Frame& frame) {
-  constexpr double kFull = 0.995;  // less is shown as less than 100 %
-  const road::SpeedLimiter limiter = why(frame).speed_limiter;
-  const bool is_full = frame.result.command.throttle >= kFull;
-  if (limiter == road::SpeedLimiter::kPower && !is_full) return road::SpeedLimiter::kPartThrottle;
-  if (limiter == road::SpeedLimiter::kPartThrottle && is_full) return road::SpeedLimiter::kPower;
-  return limiter;
-}
-
 constexpr auto kLimiterNames = capital_names("SPEED_LIMITER_", road::kSpeedLimiterWords);
 constexpr auto kSpeedLimiters = constants(kLimiterNames, road::kSpeedLimiterWords);
 
@@ -222,7 +211,8 @@ constexpr std::array kReasons{
     field<Numbers>("cost_terms", "of the plan, summed over its stages (names: Run.cost_term_names)",
                    [](const Frame& f) { return cost_terms(f); }),
     field<std::uint8_t>(
-        "speed_limiter", "", [](const Frame& f) { return limiter_beside_pedal(f); }, kSpeedLimiters),
+        "speed_limiter", "what limits the speed of the plan where the command acts",
+        [](const Frame& f) { return why(f).speed_limiter; }, kSpeedLimiters),
     field<double>("speed_limit_mps", "what the speed plan allows where the command acts",
                   [](const Frame& f) { return why(f).speed_limit; }),
     field<std::uint32_t>("active_now", "constraints (bits: Run.constraint_names) in the plan's first stage",

@@ -104,6 +104,22 @@ constexpr auto kPlan = [](auto& row, const Frame& frame, const Run& /*run*/) {
   row("throttle", "", column(points, [](const auto& point) { return point.command.throttle; }));
 };
 
+constexpr auto kSituation = [](auto& row, const Frame& frame, const Run& /*run*/) {
+  const telemetry::Situation& now = frame.situation;
+  row("stamp", "", Stamp{frame.time});
+  row("severity", "\"normal\"; \"notice\": driven otherwise; \"alarm\": a person has to know or act",
+      telemetry::name_of(severity_of(now)));
+  row("sentence", "at most six words: \"Grip: 97 % in T4\"", sentence_of(now));
+  row("reason", "why, in a clause; empty where the sentence says it", reason_of(now));
+  row("ends_it", "what ends an alarm, by itself and by a person: two sentences", what_ends(now));
+  row("driver", "\"controller\", \"guard\", \"person\"", name_of(now.driver));
+  row("kind", "the sentence without its numbers: \"part_throttle\"", name_of(now.kind));
+  row("since_s", "time of the run at which it began; of an alarm: the event", now.since);
+  row("stands_since_s", "time of the run since which the car stands; not-a-number: it moves",
+      now.stands_since < 0.0 ? kNaN : now.stands_since);
+  row("alarms", "events of the run so far that a person has to know of", now.alarms);
+};
+
 constexpr auto kRun = [](auto& row, const Frame& /*frame*/, const Run& run) {
   const model::VehicleParams& car = run.vehicle;
   row("track", "", run.track);
@@ -343,6 +359,10 @@ const std::vector<OwnMessage>& own_messages() {
           "What the controller intends: predicted motion of the centre of mass with\n"
           "# its commands, all arrays of the same length; element 0 is where the first command acts."),
       message_of_frame<kRun>("chicane_msgs/Run", "What is running: constant until something is chosen anew."),
+      message_of_frame<kSituation>(
+          "chicane_msgs/Situation",
+          "State of the run in a control cycle, for people: who drives, what limits or\n"
+          "# stops the car, what ends a stop. Computed from the applied command and the motion."),
       message_of_frame<kLap>("chicane_msgs/Lap", "One completed lap, sent when it is."),
       message_of_frame<kLimit>(
           "chicane_msgs/Limit",

@@ -219,6 +219,7 @@ const std::vector<RosTopic>& ros_topics() {
       topic("/chicane/limit", "chicane_msgs/msg/Limit", Cadence::kLimit),
       topic("/track/racing_line", "nav_msgs/msg/Path", Cadence::kLimit, encode_racing_line),
       topic("/scene", "foxglove_msgs/msg/SceneUpdate", Cadence::kRoad, encode_scene),
+      topic("/chicane/situation", "chicane_msgs/msg/Situation", Cadence::kFrame),
   };
   return topics;
 }

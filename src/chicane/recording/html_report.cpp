@@ -25,9 +25,9 @@ using protocol::Json;
 using namespace std::string_view_literals;
 
 // What the dashboard draws of a log. The standard messages beside them say the same to other viewers.
-const std::vector<std::string> kTopics{"/chicane/frame", "/chicane/plan",   "/chicane/run",
-                                       "/chicane/lap",   "/chicane/change", "/chicane/limit",
-                                       "/track/left",    "/track/right",    "/track/centre"};
+const std::vector<std::string> kTopics{"/chicane/frame",  "/chicane/plan",     "/chicane/run", "/chicane/lap",
+                                       "/chicane/change", "/chicane/limit",    "/track/left",  "/track/right",
+                                       "/track/centre",   "/chicane/situation"};
 constexpr std::array kRates{10.0, 5.0, 2.0, 1.0};  // [Hz]
 
 // The dashboard's files are gzip-compressed in the program, and stay so in the page: every browser unpacks

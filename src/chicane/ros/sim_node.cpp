@@ -53,6 +53,7 @@ run::AccountTerms terms(const scenario::Scenario& scenario, const road::Track& t
   run::AccountTerms terms = run::terms_of(scenario, &track);
   terms.controller = terms.preset = "external";
   terms.guard.reset();
+  terms.remedy = telemetry::kControllerRemedy;
   terms.step_deadline = std::numeric_limits<double>::infinity();  // there is none
   return terms;
 }
@@ -380,10 +381,6 @@ class SimNode {
     frame_.asked = frame_.result.command;
     frame_.result.report.solve.status =
         solver::SolveStatus::kOptimal;  // of an external solver nothing is known
-    frame_.situation = telemetry::situation_of(frame_, frame_.situation,
-                                               {.full_brake = scenario_.vehicle.brake_throttle_limit,
-                                                .corners = account_.corners(),
-                                                .remedy = telemetry::kControllerRemedy});
     account_.add(frame_);
     if (hooks_.on_frame) hooks_.on_frame(frame_);
   }

@@ -42,6 +42,7 @@ AccountTerms terms_of(const scenario::Scenario& scenario, const road::Track* tra
           .latency = scenario.latency,
           .laps = scenario.laps,
           .time_limit = scenario.time_limit,
+          .full_brake = scenario.vehicle.brake_throttle_limit,
           .step_deadline = scenario.control_period};
 }
 
@@ -78,6 +79,13 @@ void Account::add_physics(const sim::World& world, bool is_manual) noexcept {
   stood_for_ = stands ? stood_for_ + world.plant().step_length() : 0.0;
   count_laps(world.state(), world.judge().last_corner_times());
   look_for_end(world.state(), world.time(), world.plant().step_length(), is_manual);
+}
+
+void Account::add(telemetry::Frame& frame) noexcept {
+  metrics_.add(frame);
+  frame.situation = telemetry::situation_of(
+      frame, frame.situation,
+      {.full_brake = terms_.full_brake, .corners = terms_.corners, .remedy = terms_.remedy});
 }
 
 void Account::add_sighting(const sim::WorldState& car, std::span<const double> corner_times) noexcept {
@@ -157,7 +165,7 @@ telemetry::RunSummary Account::summary(std::optional<double> duration) const {
   run.completed = terms_.laps > 0 && run.laps_completed >= run.laps_wanted;
   run.end_reason = end_reason_;
   if (end_reason_ == kTimeLimit && stood_for_ > kStoodTime) {
-    const std::string edge = number_text(0.01 * std::round(100.0 * std::fabs(edge_distance_)));
+    const std::string edge = number_text(std::round(100.0 * std::fabs(edge_distance_)) / 100.0);
     run.end_reason += ": the car stood for the last " + number_text(std::round(stood_for_)) +
                       " s, its outermost tyre " + edge + " m " +
                       (edge_distance_ < 0.0 ? "beyond" : "inside") + " the edge";

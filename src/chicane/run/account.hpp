@@ -26,7 +26,9 @@ struct AccountTerms {
   double latency = 0.0;                         ///< [s]
   int laps = 0;                                 ///< wanted; 0: until stopped, whatever happens to the car
   double time_limit = 0.0;                      ///< [s]; 0: 10 min per lap, none without a number of laps
-  double step_deadline = 0.0;                   ///< control steps that take longer are counted as misses [s]
+  double full_brake = 1.0;                      ///< VehicleParams::brake_throttle_limit
+  std::string_view remedy = telemetry::kKeysRemedy;  ///< SituationTerms::remedy
+  double step_deadline = 0.0;  ///< control steps that take longer are counted as misses [s]
 };
 /// Those of a run in which `scenario.controller` drives on a track; null where the road is not known.
 [[nodiscard]] AccountTerms terms_of(const scenario::Scenario& scenario, const road::Track* track);
@@ -65,14 +67,14 @@ class Account {
   void add_physics(const sim::World& world, bool is_manual) noexcept;
   /// After each sighting of a car that others simulate. `corner_times`: Judge::last_corner_times().
   void add_sighting(const sim::WorldState& car, std::span<const double> corner_times = {}) noexcept;
-  /// Each control cycle.
-  void add(const telemetry::Frame& frame) noexcept { metrics_.add(frame); }
+  /// Each control cycle: counts it, and writes its situation into the frame, which holds that of the cycle
+  /// before.
+  void add(telemetry::Frame& frame) noexcept;
 
   /// The lap that was completed last; lap 0: none yet.
   [[nodiscard]] const telemetry::CompletedLap& completed_lap() const noexcept { return completed_lap_; }
   /// The same, once for each lap; none when it was taken already.
   [[nodiscard]] std::optional<telemetry::CompletedLap> take_lap() noexcept;
-  [[nodiscard]] std::span<const road::Corner> corners() const noexcept { return terms_.corners; }
   [[nodiscard]] int laps_completed() const noexcept { return metrics_.laps_completed(); }
 
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }

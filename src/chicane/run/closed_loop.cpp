@@ -229,9 +229,6 @@ void ClosedLoop::control(double budget, const GivenStep* given, const model::Com
   if (budget > 0.0)
     input.deadline = Deadline::after(std::chrono::nanoseconds(static_cast<long long>(budget * 1e9)));
   cycle_.step(input, frame_);
-  frame_.situation = telemetry::situation_of(
-      frame_, frame_.situation,
-      {.full_brake = scenario_.vehicle.brake_throttle_limit, .corners = account_.corners()});
   if (budget > 0.0) step_time_ += 0.1 * (std::min(frame_.step_time, budget) - step_time_);
   if (faults_.is_delivered()) {
     told_act_time_ = frame_.measurement.time + frame_.measurement.delay;

@@ -14,6 +14,7 @@ AccountTerms terms(const road::Track* track, const scenario::Scenario& scenario)
   terms.car = scenario.vehicle.name;
   terms.laps = 0;
   terms.time_limit = 0.0;
+  terms.remedy = telemetry::kSimulatorRemedy;
   return terms;
 }
 
@@ -58,10 +59,6 @@ void Roadside::judge(telemetry::Frame& frame) noexcept {
     learn(frame);
   }
   frame.completed_lap = account_.completed_lap();
-  frame.situation = telemetry::situation_of(frame, frame.situation,
-                                            {.full_brake = scenario_.vehicle.brake_throttle_limit,
-                                             .corners = account_.corners(),
-                                             .remedy = telemetry::kSimulatorRemedy});
 }
 
 void Roadside::look(telemetry::Frame& frame) noexcept {

@@ -140,12 +140,13 @@ Kind replaced_by(Rung rung, bool stands) noexcept {
 
 /// The weightiest row that holds.
 Kind kind_of(const Frame& frame, const Situation& now, double grip) noexcept {
-  if (frame.is_manual) return Kind::kPersonDrives;
+  const bool is_off_road = frame.is_judged && frame.is_off_track;
+  if (frame.is_manual) return is_off_road ? Kind::kOffRoad : Kind::kPersonDrives;
   const bool stands = now.stands_since >= 0.0;
   const bool is_stuck = stands && frame.time - now.stands_since >= kStuckAfter;
   if (is_stuck) return now.rung == Rung::kGuardStop ? Kind::kGuardHolds : Kind::kStuck;
   if (now.rung != Rung::kController) return replaced_by(now.rung, stands);
-  if (frame.is_judged && frame.is_off_track) return Kind::kOffRoad;
+  if (is_off_road) return Kind::kOffRoad;
   const Kind warning = warning_of(now.reason);
   if (warning != Kind::kStands || stands) return warning;
   return motion_of(grip, now.pedal);

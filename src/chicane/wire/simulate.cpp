@@ -55,6 +55,7 @@ run::AccountTerms terms(const scenario::Scenario& scenario, const road::Track& t
   terms.controller = terms.preset = "external";
   terms.guard.reset();
   terms.latency = 0.0;
+  terms.remedy = telemetry::kControllerRemedy;
   terms.step_deadline = std::numeric_limits<double>::infinity();  // there is none
   return terms;
 }
@@ -65,7 +66,6 @@ class Scene {
   Scene(const scenario::Scenario& scenario, road::Track track, road::Track waypoints,
         std::unique_ptr<sim::Plant> plant)
       : waypoints_sent_{scenario.waypoints_sent},
-        full_brake_{scenario.vehicle.brake_throttle_limit},
         track_{std::move(track)},
         waypoints_{std::move(waypoints)},
         plant_{std::move(plant)},
@@ -101,13 +101,6 @@ class Scene {
     return receiver_.sampled(now.time);
   }
 
-  /// Writes the situation of an answered frame into it.
-  void judge(telemetry::Frame& frame) const {
-    frame.situation = telemetry::situation_of(
-        frame, frame.situation,
-        {.full_brake = full_brake_, .corners = account_.corners(), .remedy = telemetry::kControllerRemedy});
-  }
-
   [[nodiscard]] telemetry::RunSummary summary() const { return account_.summary(world_.time()); }
   [[nodiscard]] run::Account& account() { return account_; }
   [[nodiscard]] double next_step() const { return world_.time() + plant_->step_length(); }
@@ -118,7 +111,6 @@ class Scene {
 
  private:
   int waypoints_sent_;
-  double full_brake_;
   road::Track track_;
   road::Track waypoints_;
   std::unique_ptr<sim::Plant> plant_;
@@ -194,7 +186,8 @@ class Simulation {
     const bool is_forsaken = scene_.receiver().is_forsaken();
     if (is_forsaken && !is_forsaken_ && speed > kStanding) {
       ++report_.stops;
-      log_.say(fmt::format("no command in time: the car is stopped from {:.1f} m/s", speed));
+      log_.say(
+          fmt::format("no command in time: the car is stopped from {:.1f} m/s: {}", speed, silence(now)));
       is_told_standing_ = false;
     }
     if (!is_forsaken && is_forsaken_ && !is_told_standing_) {
@@ -204,8 +197,15 @@ class Simulation {
     is_forsaken_ = is_forsaken;
     if (!is_forsaken || is_told_standing_ || scene_.speed() >= kStanding) return;
     is_told_standing_ = true;
-    log_.say(fmt::format("the car stands, its outermost wheel {:.2f} m {} the road's edge",
-                         std::fabs(scene_.edge()), scene_.edge() < 0.0 ? "beyond" : "inside"));
+    log_.say(fmt::format("the car stands, its outermost wheel {:.2f} m {} the road's edge: {}",
+                         std::fabs(scene_.edge()), scene_.edge() < 0.0 ? "beyond" : "inside", silence(now)));
+  }
+
+  /// Why no command acts.
+  [[nodiscard]] std::string silence(Clock::time_point now) const {
+    if (client_ == nullptr) return "no controller is connected";
+    if (!asked_) return "the answers come too late";
+    return fmt::format("the controller has not answered for {:.1f} s", seconds(now - *asked_));
   }
 
   void lose_hope(Clock::time_point now) {
@@ -331,7 +331,6 @@ class Simulation {
     frame_.result.report.solve.status =
         solver::SolveStatus::kOptimal;  // of an external solver nothing is known
     place_lines(steer, scene_.car(), frame_.result.plan);
-    scene_.judge(frame_);
     scene_.account().add(frame_);
     if (hooks_.on_frame) hooks_.on_frame(frame_);
   }

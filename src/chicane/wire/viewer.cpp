@@ -333,7 +333,7 @@ void ViewerEndpoint::send_newest(net::ConnectionId id, Client& client) {
   const auto& topics = protocol::ros_topics();
   for (const auto& [channel, subscription] : client.subscriptions) {
     if (channel >= topics.size() || topics[channel].cadence != Cadence::kFrame) continue;
-    if (!is_whole && channel != frame_channel()) continue;
+    if (!is_whole && !detail::goes_with_frame(topics[channel].name)) continue;
     deliver(id, client, data_of(subscription, frame_.time, topics[channel].encode(frame_, options_.run)));
   }
 }

@@ -3,7 +3,6 @@ import { REASON, RUNG, SPEED_LIMITER, STATUS } from '../protocol/messages';
 import {
   gateInWords,
   LIMITERS,
-  limiterInWords,
   nameInWords,
   reasonInWords,
   roadInWords,
@@ -47,8 +46,9 @@ describe('words', () => {
   });
 
   it('describes the gate', () => {
-    expect(gateInWords(false).severity).toBe('good');
-    expect(gateInWords(true).severity).toBe('warning');
+    expect(gateInWords({ rung: RUNG.CONTROLLER, is_gated: false }).severity).toBe('good');
+    expect(gateInWords({ rung: RUNG.CONTROLLER, is_gated: true }).text).toBe('Changed the command');
+    expect(gateInWords({ rung: RUNG.GUARD_STOP, is_gated: false }).text).toBe('Sent another command');
   });
 
   it('describes how much road is known', () => {
@@ -68,9 +68,8 @@ describe('words', () => {
 
   it('has words for whatever limits the speed', () => {
     expect(LIMITERS).toHaveLength(Object.keys(SPEED_LIMITER).length);
-    expect(limiterInWords(SPEED_LIMITER.CURVATURE).short).toBe('grip');
-    expect(limiterInWords(SPEED_LIMITER.POWER).short).toBe('power');
-    expect(limiterInWords(17).title).toContain('17');
+    expect(LIMITERS[SPEED_LIMITER.CURVATURE]?.short).toBe('grip');
+    expect(LIMITERS[SPEED_LIMITER.POWER]?.short).toBe('power');
   });
 
   it('names the worst constraint only when one is violated', () => {

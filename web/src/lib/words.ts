@@ -21,15 +21,6 @@ const capital = (text: string): string => text.charAt(0).toUpperCase() + text.sl
 /** What the guard found, by Frame.guard_reason. */
 export const reasonInWords = (reason: number): string => REASON_WORDS[reason]?.text ?? `unknown reason ${reason}`;
 
-/** Who drives: a person, or what Frame.rung says. */
-export const driverInWords = (frame: Pick<Frame, 'is_manual' | 'rung' | 'guard_reason'>): Sentence =>
-  frame.is_manual
-    ? {
-        severity: 'good',
-        text: `A person drives: the controller ${frame.rung === RUNG.CONTROLLER ? 'plans beside' : 'has no plan here'}`,
-      }
-    : rungInWords(frame.rung, frame.guard_reason);
-
 /**
  * The source of the command, by Frame.rung, and why. A reason explains every source but the controller, and that one
  * where it holds the car back (controller/guard_words.hpp has the same rule).
@@ -53,10 +44,13 @@ export function statusInWords(status: number): Sentence {
     : { severity: 'bad', text: `Unknown status ${status}` };
 }
 
-export const gateInWords = (isGated: boolean): Sentence =>
-  isGated
+/** What became of the controller's command, by Frame.rung and Frame.is_gated. */
+export function gateInWords({ rung, is_gated }: Pick<Frame, 'rung' | 'is_gated'>): Sentence {
+  if (rung !== RUNG.CONTROLLER) return { severity: 'warning', text: 'Sent another command' };
+  return is_gated
     ? { severity: 'warning', text: 'Changed the command' }
     : { severity: 'good', text: 'Passed the command unchanged' };
+}
 
 /** Where the car is relative to the road. An external simulator does not report it: the distance is unknown. */
 export function roadInWords(frame: Pick<Frame, 'is_off_track' | 'edge_distance_m' | 'off_track_events'>): Sentence {
@@ -102,13 +96,6 @@ export const LIMITERS: readonly LimiterWords[] = Object.entries(LIMITER_NAMES).m
   short,
   why: `${capital(SPEED_LIMITER_WORDS[SPEED_LIMITER[name as keyof typeof SPEED_LIMITER]]?.text ?? '')}.`,
 }));
-
-export const limiterInWords = (limiter: number): LimiterWords =>
-  LIMITERS[limiter] ?? {
-    title: `Limit ${limiter}`,
-    why: 'This page does not know this limit.',
-    short: `${limiter}`,
-  };
 
 /** snake_case to words, with abbreviations in capitals. */
 export const nameInWords = (name: string): string =>

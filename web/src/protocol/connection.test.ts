@@ -86,6 +86,7 @@ describe('connection', () => {
       '/chicane/limit',
       '/chicane/plan',
       '/chicane/run',
+      '/chicane/situation',
       '/reference',
       '/track/centre',
       '/track/left',

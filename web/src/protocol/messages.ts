@@ -116,6 +116,7 @@ export interface Frame {
   // Why the controller chose this command
   /** of the plan, summed over its stages (names: Run.cost_term_names) */
   cost_terms: Float64Array;
+  /** what limits the speed of the plan where the command acts */
   speed_limiter: number;
   /** what the speed plan allows where the command acts */
   speed_limit_mps: number;
@@ -836,4 +837,44 @@ export const UNKNOWN_LIMIT: Limit = {
   without: [],
   without_lap_times_s: new Float64Array(),
   without_corner_times_s: new Float64Array(),
+};
+
+/**
+ * chicane_msgs/msg/Situation. State of the run in a control cycle, for people: who drives, what limits or stops the
+ * car, what ends a stop. Computed from the applied command and the motion.
+ */
+export interface Situation {
+  stamp: Stamp;
+  /** "normal"; "notice": driven otherwise; "alarm": a person has to know or act */
+  severity: string;
+  /** at most six words: "Grip: 97 % in T4" */
+  sentence: string;
+  /** why, in a clause; empty where the sentence says it */
+  reason: string;
+  /** what ends an alarm, by itself and by a person: two sentences */
+  ends_it: string;
+  /** "controller", "guard", "person" */
+  driver: string;
+  /** the sentence without its numbers: "part_throttle" */
+  kind: string;
+  /** time of the run at which it began; of an alarm: the event */
+  since_s: number;
+  /** time of the run since which the car stands; not-a-number: it moves */
+  stands_since_s: number;
+  /** events of the run so far that a person has to know of */
+  alarms: number;
+}
+
+/** What a Situation says when nothing is known. */
+export const UNKNOWN_SITUATION: Situation = {
+  stamp: { sec: 0, nsec: 0 },
+  severity: '',
+  sentence: '',
+  reason: '',
+  ends_it: '',
+  driver: '',
+  kind: '',
+  since_s: NaN,
+  stands_since_s: NaN,
+  alarms: 0,
 };

@@ -1,8 +1,8 @@
-import type { Change, Frame, Lap, Limit, Plan, Run } from './messages';
+import type { Change, Frame, Lap, Limit, Plan, Run, Situation } from './messages';
 
 // What this page subscribes to. Messages of our own are made from their definitions (messages.ts).
 
-export type { Change, Frame, Lap, Limit, Plan, Run, Stamp } from './messages';
+export type { Change, Frame, Lap, Limit, Plan, Run, Situation, Stamp } from './messages';
 
 /** The part of nav_msgs/msg/Path this page draws. */
 export interface Path {
@@ -12,6 +12,7 @@ export interface Path {
 /** The topics this page subscribes to, with their message types. */
 export interface Topics {
   '/chicane/frame': Frame;
+  '/chicane/situation': Situation;
   '/chicane/plan': Plan;
   '/chicane/run': Run;
   '/reference': Path;
@@ -29,6 +30,7 @@ export type TopicName = keyof Topics;
 
 export const TOPIC_NAMES: readonly TopicName[] = [
   '/chicane/frame',
+  '/chicane/situation',
   '/chicane/plan',
   '/chicane/run',
   '/reference',

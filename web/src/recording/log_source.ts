@@ -26,8 +26,14 @@ const STATIC: readonly TopicName[] = [
   '/chicane/lap',
   '/chicane/limit',
 ];
-const MOVING: readonly TopicName[] = ['/chicane/frame', '/chicane/plan', '/reference', '/chicane/change'];
-const SHORT: readonly TopicName[] = ['/chicane/plan', '/reference'];
+const MOVING: readonly TopicName[] = [
+  '/chicane/frame',
+  '/chicane/situation',
+  '/chicane/plan',
+  '/reference',
+  '/chicane/change',
+];
+const SHORT: readonly TopicName[] = ['/chicane/situation', '/chicane/plan', '/reference'];
 /** How far back frames are sent after a jump: the reach of the plots [s]. */
 const LOOK_BACK_S = 60;
 /** How far back plans are sent: the page compares with the plan of a second ago [s]. */

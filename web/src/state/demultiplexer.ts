@@ -1,5 +1,5 @@
 import { store } from '../lib/store';
-import type { Change, Frame, Lap, Limit, Path, Plan, Run, TopicName, Topics } from '../protocol/topics';
+import type { Change, Frame, Lap, Limit, Path, Plan, Run, Situation, TopicName, Topics } from '../protocol/topics';
 import { forgetFrameEvents, noteChange, noteEvents, noteNotices, setFaultNames } from './event_log';
 import { forgetFaultMarks, noteFaultChange, noteFaultMarks } from './faults';
 import { forgetSamples, noteLap, receiveLap } from './laps';
@@ -11,6 +11,7 @@ import { Past } from './past';
 import { isReplaying, keepRecent } from './replay';
 import { type RoadLines, receiveReference, receiveRoadLine } from './road';
 import { receiveRun, run } from './run';
+import { receiveSituation } from './situation';
 
 // Distributes messages, by topic, to the modules that hold their content; and clears these when the run changes or a
 // recording jumps to another time.
@@ -33,6 +34,9 @@ export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: num
       break;
     case '/chicane/past':
       past.keepBefore(message as Frame);
+      break;
+    case '/chicane/situation':
+      receiveSituation(message as Situation);
       break;
     case '/chicane/plan':
       last.plan = message as Plan;

@@ -1,6 +1,7 @@
 import { hasBit } from '../lib/bits';
 import { store } from '../lib/store';
 import type { Change, Frame } from '../protocol/topics';
+import { faultInWords } from './event_log';
 import { entryOf } from './settings';
 
 // Faults of the run: until when each lasts, and where on the road they began.
@@ -49,4 +50,13 @@ export function noteFaultMarks(frame: Frame, before: Frame | null, names: readon
 export function secondsLeft(key: string, now: number): number {
   const left = (untils.get(key) ?? NaN) - now;
   return left >= 0 ? left : NaN;
+}
+
+/** The faults that are on, in words: "Fault: half grip, 2 s left". */
+export function faultsInWords({ active_faults, time_s }: Frame, names: readonly string[]): string[] {
+  return names.flatMap((name, bit) => {
+    if (!hasBit(active_faults, bit)) return [];
+    const left = secondsLeft(`fault.${name.replace(/^fault\./, '')}`, time_s);
+    return [`Fault: ${faultInWords(name)}${Number.isFinite(left) ? `, ${Math.ceil(left)} s left` : ''}`];
+  });
 }

@@ -5,6 +5,7 @@ import {
   UNKNOWN_LIMIT,
   UNKNOWN_PLAN,
   UNKNOWN_RUN,
+  UNKNOWN_SITUATION,
 } from '../protocol/messages';
 import type { TopicName, Topics } from '../protocol/topics';
 
@@ -17,6 +18,7 @@ const UNKNOWN: { readonly [T in TopicName]?: Topics[T] } = {
   '/chicane/lap': UNKNOWN_LAP,
   '/chicane/limit': UNKNOWN_LIMIT,
   '/chicane/change': UNKNOWN_CHANGE,
+  '/chicane/situation': UNKNOWN_SITUATION,
 };
 
 /** A message with every field; unknown where an older program or its recording leaves it out. */

@@ -1,7 +1,8 @@
 import { plural, UNKNOWN } from '../lib/format';
-import { driverInWords, gateInWords, roadInWords, type Sentence, sightInWords, statusInWords } from '../lib/words';
+import { gateInWords, roadInWords, type Sentence, sightInWords, statusInWords } from '../lib/words';
 import { run } from '../state/run';
 import { shown } from '../state/shown';
+import { situation, situationInWords } from '../state/situation';
 
 function Row({ label, sentence, id }: { label: string; sentence: Sentence | null; id: string }) {
   return (
@@ -24,9 +25,9 @@ export function ControllerView() {
     <section class="block" aria-label="Controller">
       <h2>{run.value?.controller ?? 'Controller'}</h2>
       <dl class="rows">
-        <Row id="rung" label="Driving" sentence={frame ? driverInWords(frame) : null} />
+        <Row id="rung" label="Driving" sentence={situation.value && situationInWords(situation.value)} />
         <Row id="status" label="Solver" sentence={solve ? { ...solve, text: solve.text + turns } : null} />
-        <Row id="gate" label="Gate" sentence={frame ? gateInWords(frame.is_gated) : null} />
+        <Row id="gate" label="Gate" sentence={frame ? gateInWords(frame) : null} />
         <Row id="road" label="Road" sentence={frame ? roadInWords(frame) : null} />
         <Row id="sight" label="Sight" sentence={frame ? sightInWords(frame.has_map, frame.sight_m) : null} />
       </dl>

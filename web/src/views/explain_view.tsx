@@ -1,25 +1,16 @@
 import { hasBit } from '../lib/bits';
 import { fixed, plural } from '../lib/format';
 import { inSpeedUnit, speedUnit } from '../lib/units';
-import {
-  driverInWords,
-  gateInWords,
-  LIMITERS,
-  nameInWords,
-  type Sentence,
-  sightInWords,
-  worstInWords,
-} from '../lib/words';
-import { circumstancesOf } from '../state/alerts';
+import { gateInWords, LIMITERS, nameInWords, type Sentence, sightInWords, worstInWords } from '../lib/words';
 import { Column } from '../state/columns';
 import { bitSharesOf, rmsOf, sharesOf } from '../state/explain';
 import { learnedOf } from '../state/learned';
 import { live } from '../state/live';
-import { can } from '../state/operate';
 import { cursorTime } from '../state/plot_view';
 import { run } from '../state/run';
-import { plannedOf, solverInWords, stateSentence } from '../state/sentence';
+import { plannedOf, solverInWords } from '../state/sentence';
 import { shown } from '../state/shown';
+import { situation, situationInWords } from '../state/situation';
 import { CanvasView } from './canvas_view';
 import { EventsView } from './events_view';
 import { paintLimiterStrip } from './limiter_strip';
@@ -29,9 +20,9 @@ const WINDOW_S = 20;
 
 function Limiter() {
   const frame = shown.value;
-  const now = frame ? circumstancesOf(frame, live.plots, run.value?.mode !== 'replay' && can('/reset')) : null;
-  const sentence = frame && now ? stateSentence(frame, now) : null;
-  const planned = frame && now ? plannedOf(frame, now) : NaN;
+  const sentence = situation.value && situationInWords(situation.value);
+  const limiter = frame ? LIMITERS[frame.speed_limiter] : undefined;
+  const planned = frame ? plannedOf(frame) : NaN;
   const shares = sharesOf(live.plots, Column.speed_limiter, LIMITERS.length, WINDOW_S);
   return (
     <section class="block limiter" aria-label="What limits the speed">
@@ -39,14 +30,14 @@ function Limiter() {
       <div class="limiter-now">
         <span
           class="limiter-colour"
-          style={{ background: `var(--limiter-${sentence?.limiter ?? 0})` }}
+          style={{ background: `var(--limiter-${frame?.speed_limiter ?? 0})` }}
           aria-hidden="true"
         />
         <div>
           <p class="headline" data-testid="limiter">
-            {sentence?.title ?? 'Waiting for a run'}
+            {sentence?.text ?? 'Waiting for a run'}
           </p>
-          <p class="soft">{sentence?.text}</p>
+          <p class="soft">{limiter && `The plan: ${limiter.why}`}</p>
         </div>
         <p class="allowed">
           {Number.isFinite(planned) && (
@@ -163,8 +154,8 @@ function Answer() {
               : null
           }
         />
-        <Row label="Driving" sentence={frame ? driverInWords(frame) : null} />
-        <Row label="Gate" sentence={frame ? gateInWords(frame.is_gated) : null} />
+        <Row label="Driving" sentence={situation.value && situationInWords(situation.value)} />
+        <Row label="Gate" sentence={frame ? gateInWords(frame) : null} />
         <Row label="Sight" sentence={frame ? sightInWords(frame.has_map, frame.sight_m) : null} />
       </dl>
       <p class="soft">{numbers.filter(Boolean).join(' · ')}</p>

@@ -4,7 +4,6 @@ import { fixed } from '../lib/format';
 import { clamp } from '../lib/math';
 import { tidy } from '../lib/scale';
 import { store } from '../lib/store';
-import { driverInWords } from '../lib/words';
 import type { FaultEntry } from '../protocol/schema';
 import { faultInWords } from '../state/event_log';
 import { secondsLeft } from '../state/faults';
@@ -12,6 +11,7 @@ import { canSet, set } from '../state/operate';
 import { run } from '../state/run';
 import { schema, settings } from '../state/settings';
 import { shown } from '../state/shown';
+import { situation, situationInWords } from '../state/situation';
 import { DraftBox } from './draft_box';
 import { EventsView } from './events_view';
 import { typed } from './setting_row';
@@ -153,16 +153,16 @@ function FaultCard({ fault }: { fault: Fault }) {
 export function FaultsView() {
   const all = faults.value;
   const active = all.filter(({ isActive }) => isActive);
-  const frame = shown.value;
+  const answer = situation.value && situationInWords(situation.value);
   if (all.length === 0) return <p class="empty">This run has no faults to inject.</p>;
   return (
     <div class="blocks">
       <div class="toolbar">
         {/* In one place, so that no card moves when a fault begins. */}
-        {active.length > 0 && frame ? (
-          <p class={`fault-answer ${driverInWords(frame).severity}`} role="status" data-testid="fault-answer">
+        {active.length > 0 && answer ? (
+          <p class={`fault-answer ${answer.severity}`} role="status" data-testid="fault-answer">
             <span>
-              What is done about it: <b>{driverInWords(frame).text}</b>
+              What is done about it: <b>{answer.text}</b>
             </span>
           </p>
         ) : (

@@ -1,20 +1,15 @@
 import { fixed } from '../lib/format';
 import { inSpeedUnit, nextSpeedUnit, speedUnit } from '../lib/units';
-import { alertsOf, circumstancesOf } from '../state/alerts';
+import { faultsInWords } from '../state/faults';
 import { lapSamples } from '../state/laps';
 import { limit, limitTimeAt } from '../state/limit';
-import { live } from '../state/live';
-import { can } from '../state/operate';
 import { run } from '../state/run';
-import { aimOf, stateSentence } from '../state/sentence';
 import { shown } from '../state/shown';
-
-const canReset = (): boolean => run.value?.mode !== 'replay' && can('/reset');
+import { situation } from '../state/situation';
+import { SentenceView, situationNow } from './sentence_view';
 
 function Speed() {
   const unit = speedUnit();
-  const frame = shown.value;
-  const aim = frame ? aimOf(frame, circumstancesOf(frame, live.plots, canReset())) : NaN;
   return (
     <p class="big">
       <span class="value" data-testid="speed">
@@ -30,11 +25,6 @@ function Speed() {
       >
         {unit.name}
       </button>
-      {Number.isFinite(aim) && (
-        <span class="wanted">
-          aims at <b>{fixed(inSpeedUnit(aim), 0)}</b>
-        </span>
-      )}
     </p>
   );
 }
@@ -71,17 +61,9 @@ function Deltas() {
   );
 }
 
-/** The one sentence of this state: who drives, what is stuck, or why the car is not faster. */
 function Why() {
-  const frame = shown.value;
-  if (!frame) return null;
-  const { title, text, limiter } = stateSentence(frame, circumstancesOf(frame, live.plots, canReset()));
-  return (
-    <p class="why" data-testid="why">
-      {limiter !== null && <span class="dot" style={{ background: `var(--limiter-${limiter})` }} aria-hidden="true" />}
-      <b>{title}.</b> <span class="why-long">{text}</span>
-    </p>
-  );
+  const now = situationNow();
+  return now && <SentenceView of={now} />;
 }
 
 /** On the picture: speed, time lost, why this speed. */
@@ -95,14 +77,14 @@ export function HudView() {
   );
 }
 
-/** On the picture, when something matters: off the road, near an edge, sliding, faults, and who drives. */
+/** On the picture: the faults that are on. */
 export function AlertsView() {
   const frame = shown.value;
-  const alerts = frame ? alertsOf(frame, live.plots, run.value?.fault_names ?? [], canReset()) : [];
+  const faults = frame ? faultsInWords(frame, run.value?.fault_names ?? []) : [];
   return (
     <div class="alerts" role="status" data-testid="alerts">
-      {alerts.map(({ name, severity, text }) => (
-        <p key={`${name} ${name === 'fault' ? text.split(',')[0] : ''}`} class={`alert ${severity}`}>
+      {faults.map((text) => (
+        <p key={text.split(',')[0]} class="alert bad">
           {text}
         </p>
       ))}
@@ -110,10 +92,5 @@ export function AlertsView() {
   );
 }
 
-/** The worst of what is told on the picture: colours its frame. */
-export function dangerNow(): '' | 'danger-bad' | 'danger-warning' {
-  const frame = shown.value;
-  const alerts = frame ? alertsOf(frame, live.plots, []) : [];
-  if (alerts.some(({ severity }) => severity === 'bad')) return 'danger-bad';
-  return alerts.some(({ severity }) => severity === 'warning') ? 'danger-warning' : '';
-}
+/** Colours the frame of the picture. */
+export const dangerNow = (): '' | 'danger-bad' => (situation.value?.severity === 'alarm' ? 'danger-bad' : '');

@@ -1,6 +1,5 @@
 import { duration, fixed, lapTime, side, UNKNOWN } from '../lib/format';
 import { clamp, degrees } from '../lib/math';
-import { closeToEdge } from '../state/alerts';
 import { bestLap, laps } from '../state/laps';
 import { run } from '../state/run';
 import { brakeShare, pedalInWords } from '../state/sentence';
@@ -154,7 +153,7 @@ export function InstrumentsView() {
           value={fixed(edge, 2)}
           unit="m"
           note={edge < 0 ? 'off' : ''}
-          severity={edge < 0 ? 'bad' : edge < closeToEdge() ? 'warning' : ''}
+          severity={edge < 0 ? 'bad' : ''}
         />
         <Reading id="step-time" label="Control step" value={step.value} unit={step.unit} />
         <Reading id="delay" label="Delay expected" value={fixed((frame?.delay_s ?? NaN) * 1000, 0)} unit="ms" />

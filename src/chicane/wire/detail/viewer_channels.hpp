@@ -42,6 +42,11 @@ inline constexpr std::string_view kPastTopic = "/chicane/past";
   return channel;
 }
 
+/// Whether the messages of a topic go with each frame also while a slow line carries the past.
+[[nodiscard]] inline bool goes_with_frame(std::string_view topic) {
+  return topic == "/chicane/frame" || topic == "/chicane/situation";
+}
+
 /// One message of a channel.
 [[nodiscard]] inline net::Bytes data_of(std::uint32_t subscription, double time, std::string_view payload) {
   return std::make_shared<const std::string>(

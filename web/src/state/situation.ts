@@ -1,0 +1,39 @@
+import { store } from '../lib/store';
+import type { Sentence } from '../lib/words';
+import type { Frame, Situation } from '../protocol/topics';
+import { REPLAY_S } from './replay';
+
+// What the program says of the run in each control cycle. The page shows it, and decides nothing.
+
+/** Of the frame that the page's text shows; null before the program has said anything. */
+export const situation = store.signal<Situation | null>('run', null);
+
+const MOST_KEPT = 1200;
+const kept = store.data('moment', () => ({ recent: [] as Situation[] }));
+
+const timeOf = ({ stamp }: Situation): number => stamp.sec + stamp.nsec / 1e9;
+
+/** Keeps those of the last seconds, which may be shown again. */
+export function receiveSituation(message: Situation): void {
+  const last = kept.recent.at(-1);
+  if (last && timeOf(message) < timeOf(last)) kept.recent = [];
+  kept.recent.push(message);
+  const isOld = timeOf(message) - timeOf(kept.recent[0] ?? message) > 2 * REPLAY_S;
+  if (isOld || kept.recent.length > MOST_KEPT) kept.recent.splice(0, kept.recent.length / 2);
+}
+
+/** Shows the one of a frame; without one yet, the newest before it. */
+export function showSituation(frame: Frame | null): void {
+  const isOf = (each: Situation): boolean => timeOf(each) <= (frame?.time_s ?? NaN) + 1e-6;
+  let last = kept.recent.length - 1;
+  while (last >= 0 && !isOf(kept.recent[last] as Situation)) --last;
+  situation.value = kept.recent[last] ?? null;
+}
+
+const SEVERITY = { normal: 'good', notice: 'warning', alarm: 'bad' } as const;
+
+/** "The guard stops the car: the controller has no answer" */
+export const situationInWords = ({ severity, sentence, reason }: Situation): Sentence => ({
+  severity: SEVERITY[severity as keyof typeof SEVERITY] ?? 'unknown',
+  text: reason === '' ? sentence : `${sentence}: ${reason}`,
+});
