@@ -8,7 +8,6 @@
 #include <string>
 
 #include "chicane/base/angle.hpp"
-#include "chicane/controller/guard_words.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -16,23 +15,16 @@ namespace {
 constexpr std::chrono::milliseconds kTerminalPeriod{100};
 constexpr double kLinePeriod = 10.0;  // [s] of the run
 
-/// Who drives and why, where it is not the controller alone.
-std::string exception(const safety::GuardReport& report) {
-  const controller::DriverWords words = controller::describe_driver(report.rung, report.reason);
-  return words.severity == Severity::kOk ? "" : "  " + controller::sentence_of(words);
-}
-
 std::string line(const telemetry::Frame& frame) {
   const double speed = frame.measurement.speed;
   const double error = frame.has_truth ? frame.lateral_error : frame.result.report.lateral_error;
   const std::string place =
       frame.has_truth ? fmt::format("lap {:<3} {:6.0f} m ", frame.lap + 1, frame.s) : "";
-  const std::string off = frame.is_off_track ? "  OFF TRACK" : "";
   const std::string solve =
       frame.solve_time > 0.0 ? fmt::format("  solve {:5.0f} µs", 1e6 * frame.solve_time) : "";
   const std::string beside = std::isfinite(error) ? fmt::format("error {:+6.2f} m", error) : "error unknown";
-  return fmt::format("{:7.1f} s  {}{:6.1f} mph  {}{}{}{}", frame.time, place, mps_to_mph(speed), beside,
-                     solve, off, exception(frame.guard));
+  return fmt::format("{:7.1f} s  {}{:6.1f} mph  {}{}  {}", frame.time, place, mps_to_mph(speed), beside,
+                     solve, sentence_of(frame.situation));
 }
 
 }  // namespace

@@ -9,36 +9,25 @@
 
 namespace chicane::apps {
 
-/// Finds in the frames of a run what its operator has to know at once: that the guard replaces the
-/// controller's commands, and why; that the car stands, and why. At most two lines for each second of the
-/// run.
+/// Finds in the situations of a run what its operator has to know at once: that the controller's commands are
+/// replaced or the car is stuck, why, what ends it, and that it has ended. At most two lines for each second
+/// of the run.
 class RunNotices {
  public:
-  static constexpr double kPause = 1.0;          ///< without intervention: it has ended [s]
-  static constexpr double kStoodTime = 2.0;      ///< standstill before it is reported [s]
-  static constexpr double kStandingSpeed = 0.1;  ///< slower: the car stands [m/s]
-  static constexpr double kMovingSpeed = 0.5;    ///< faster: it moves again [m/s]
-
   /// The lines that a frame gives rise to; mostly none.
   [[nodiscard]] std::vector<std::string> look_at(const telemetry::Frame& frame);
 
  private:
-  using Lines = std::vector<std::string>;
-  void watch_guard(const telemetry::Frame& frame, Lines& lines);
-  void watch_standing(const telemetry::Frame& frame, Lines& lines);
+  [[nodiscard]] std::string ended(double time);
 
   double last_time_ = 0.0;
-  // The intervention that goes on, or ended less than kPause ago.
-  std::string intervention_;  ///< sentence printed last; empty: none
-  std::uint64_t steps_ = 0;   ///< count of replaced commands
-  double began_ = 0.0;        ///< [s]
-  double ended_ = 0.0;        ///< first step of the controller after the last replaced command [s]
-  double said_ = 0.0;         ///< when the sentence was printed [s]
-  bool is_replaced_ = false;  ///< command of the last step
-  // Standstill.
-  bool stands_ = false;
-  bool is_reported_ = false;
-  double stood_since_ = 0.0;  ///< [s]
+  // The event that goes on, or ended less than telemetry::kAlarmPause ago.
+  std::string said_;            ///< printed last; empty: none
+  double said_at_ = 0.0;        ///< [s]
+  double began_ = 0.0;          ///< [s]
+  double ended_ = 0.0;          ///< first step after it [s]
+  bool goes_on_ = false;        ///< in the last step
+  std::uint64_t replaced_ = 0;  ///< count of commands
 };
 
 }  // namespace chicane::apps

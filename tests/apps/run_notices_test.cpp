@@ -46,6 +46,7 @@ telemetry::Frame standing(double throttle) {
 /// A run and what is said of it.
 struct Watched {
   RunNotices notices;
+  telemetry::Situation situation;
   double time = 0.0;  ///< [s]
   std::vector<std::string> said;
 
@@ -53,6 +54,7 @@ struct Watched {
   void see(telemetry::Frame frame, double seconds) {
     for (const double end = time + seconds - 0.5 * kPeriod; time < end; time += kPeriod) {
       frame.time = time;
+      frame.situation = situation = telemetry::situation_of(frame, situation, {});
       for (std::string& line : notices.look_at(frame)) said.push_back(std::move(line));
     }
   }
@@ -63,9 +65,8 @@ TEST(RunNotices, SayWhenAnInterventionBeginsWhyAndHowLongItWas) {
   run.see(driving(), 4.0);
   EXPECT_THAT(run.said, IsEmpty());
   run.see(stopped_by_guard(), kPeriod);
-  EXPECT_THAT(run.said,
-              ElementsAre("4.0 s: the guard stops the car on the known road: the controller's command "
-                          "would leave no way to stop on the road"));
+  EXPECT_THAT(run.said, ElementsAre("4.0 s: The guard stops the car: the controller's command "
+                                    "would leave no way to stop on the road"));
   run.see(stopped_by_guard(), 0.4 - kPeriod);
   run.see(driving(), 2.0);
   ASSERT_EQ(run.said.size(), 2U);
@@ -98,54 +99,43 @@ TEST(RunNotices, SayAnotherReasonOnceASecond) {
 TEST(RunNotices, SayOnceThatTheCarStandsAndThatItMovesAgain) {
   Watched run;
   run.see(driving(), 1.0);
-  run.see(standing(0.0), 1.9);
+  run.see(standing(0.0), 2.9);
   EXPECT_THAT(run.said, IsEmpty());
-  run.see(standing(0.0), 10.0);
-  EXPECT_THAT(run.said, ElementsAre("3.0 s: the car has stood for 2 s: the controller gives no throttle"));
+  run.see(standing(0.0), 9.0);
+  EXPECT_THAT(run.said,
+              ElementsAre("4.0 s: The car stands and should drive: the controller gives no throttle. It ends "
+                          "when the car moves. On the dashboard, M takes the wheel and R starts again."));
   run.see(driving(), 5.0);
   ASSERT_EQ(run.said.size(), 2U);
-  EXPECT_THAT(run.said[1], HasSubstr("the car moves again, after 11.9 s"));
+  EXPECT_THAT(run.said[1], HasSubstr("the car moves again, after 8.9 s"));
 }
 
-TEST(RunNotices, SayWhatEndsAStopForAPlaceInDoubt) {
+TEST(RunNotices, SayOneSentenceOnceOfAStopAndWhatEndsIt) {
   Watched run;
   telemetry::Frame frame = stopped_by_guard();
   frame.guard.reason = GuardReason::kPositionJump;
+  run.see(frame, 2.0);
   frame.measurement.speed = 0.0;
-  run.see(frame, 3.0);
-  ASSERT_FALSE(run.said.empty());
-  EXPECT_THAT(run.said.back(), HasSubstr("tried by half a metre, else ends by a restart"));
+  run.see(frame, 20.0);
+  EXPECT_THAT(run.said,
+              ElementsAre(HasSubstr("The guard stops the car: the measured position changed"),
+                          HasSubstr("The guard holds the car. It ends when the measurements agree, or "
+                                    "answer a trial of half a metre. On the dashboard, M takes")));
 }
 
-TEST(RunNotices, SayWhyTheCarStands) {
-  const auto reason = [](const telemetry::Frame& frame) {
-    Watched run;
-    run.see(frame, 3.0);
-    return run.said.empty() ? "" : run.said.back();
-  };
-  EXPECT_THAT(reason(standing(0.5)), HasSubstr("a throttle of 0.50 does not move it"));
-  EXPECT_THAT(reason(standing(-0.5)), HasSubstr("the controller brakes with 0.50"));
-  telemetry::Frame guarded = standing(-0.5);
-  guarded.guard = stopped_by_guard().guard;
-  EXPECT_THAT(reason(guarded),
-              HasSubstr("the car has stood for 2 s: the guard stops the car on the known road"));
-  telemetry::Frame off = standing(0.0);
-  off.is_off_track = true;
-  EXPECT_THAT(reason(off), HasSubstr("a tyre is off the road"));
+TEST(RunNotices, SayNothingOfACarThatAPersonLetsStand) {
+  Watched run;
   telemetry::Frame manual = standing(0.0);
   manual.is_manual = true;
-  EXPECT_EQ(reason(manual), "") << "a person lets it stand";
-  telemetry::Frame simulated = standing(0.0);
-  simulated.has_truth = true;
-  simulated.truth.vx = 5.0;
-  EXPECT_EQ(reason(simulated), "") << "a speed sensor that shows zero is no standstill";
+  run.see(manual, 9.0);
+  EXPECT_THAT(run.said, IsEmpty());
 }
 
 TEST(RunNotices, BeginAnewWithAnotherRun) {
   Watched run;
-  run.see(standing(0.0), 1.5);
+  run.see(standing(0.0), 2.0);
   run.time = 0.0;
-  run.see(standing(0.0), 1.5);
+  run.see(standing(0.0), 2.0);
   EXPECT_THAT(run.said, IsEmpty());
 }
 
@@ -160,11 +150,11 @@ TEST(RunNotices, ComeWhenItHappensAndBesideTheResults) {
   const test::Outcome lost = test::chicane_program(
       "drive --fast --json --laps 1 --set time_limit_s=20 --set guard.blind_time_s=1 --fault link_lost@8+9");
   EXPECT_THAT(lost.out, testing::StartsWith("{"));
-  EXPECT_THAT(lost.out, Not(HasSubstr("the guard stops")));
+  EXPECT_THAT(lost.out, Not(HasSubstr("The guard stops")));
   EXPECT_THAT(lost.err, HasSubstr("position, yaw or speed has not been measured for too long"));
-  EXPECT_THAT(lost.err, HasSubstr("the car has stood for 2 s: the guard stops the car"));
+  EXPECT_THAT(lost.err,
+              HasSubstr("The guard holds the car. It ends when the measurements are right again. "));
   EXPECT_THAT(lost.err, HasSubstr("the controller drives again, after "));
-  EXPECT_THAT(lost.err, HasSubstr("the car moves again, after "));
 }
 
 }  // namespace
