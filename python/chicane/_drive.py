@@ -48,7 +48,8 @@ def drive(track: AnyTrack | None = None, *, car: str | None = None, preset: str 
               end="", file=sys.stderr)
     again = None if own is not None or own_plant is not None else dict(named=named, settings=dict(settings), faults=_listed(faults), scenario=scenario,
                                               speed_mps=speed_mps)
-    return Run(json.loads(told["report"]), told["table"], Frames(told["frames"]), told["road"], error, os.fspath(record), again)
+    return Run(json.loads(told["report"]), told["table"], Frames(told["frames"]), told["situations"], told["road"], error,
+               os.fspath(record), again)
 
 
 def _refuse_classes(**given: object) -> None:

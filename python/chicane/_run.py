@@ -62,17 +62,21 @@ class Run(Mapping[str, Any]):
 
     laps: one dict for each completed lap, with lap_time_s, mean_speed_mps, min_edge_distance_m and more.
     frames: what happened in each control cycle (Frames).
+    situations: what the car did and what limited or stopped it, one dict for each change: time_s of the run at which it
+        began, severity ("normal", "notice", "alarm"), sentence of at most six words, reason, ends_it, driver. Empty with
+        frames=False.
     road: "centre", "left" and "right" as arrays of shape (n, 2) [m].
     error: the traceback of a Controller of your own that failed, or None.
 
     It can be pickled."""
 
-    def __init__(self, report: dict[str, Any], table: str, frames: Frames, road: dict[str, Array], error: str | None, file: str,
-                 request: dict[str, Any] | None) -> None:
+    def __init__(self, report: dict[str, Any], table: str, frames: Frames, situations: list[dict[str, Any]], road: dict[str, Array],
+                 error: str | None, file: str, request: dict[str, Any] | None) -> None:
         self._report = report
         self._table = table
         self._request = request
         self.frames = frames
+        self.situations = situations
         self.road = road
         self.error = error
         self.file = file

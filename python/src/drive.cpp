@@ -49,7 +49,23 @@ struct Driven {
   telemetry::RunSummary summary;
   protocol::RoadLines road;
   FrameColumns frames;
+  std::vector<telemetry::Situation> situations;  ///< each once, in the order of time
 };
+
+py::list to_list(const std::vector<telemetry::Situation>& situations) {
+  py::list list;
+  for (const telemetry::Situation& each : situations) {
+    py::dict row;
+    row["time_s"] = each.since;
+    row["severity"] = telemetry::name_of(severity_of(each));
+    row["sentence"] = sentence_of(each);
+    row["reason"] = reason_of(each);
+    row["ends_it"] = what_ends(each);
+    row["driver"] = name_of(each.driver);
+    list.append(row);
+  }
+  return list;
+}
 
 /// Makes an instance that calls the Python object, or the scenario's own controller for None. Called without
 /// the interpreter's lock, copied and destroyed with it.
@@ -95,7 +111,11 @@ run::RunHooks hooks_of(Driven& driven, recording::Recorder* recorder, bool wants
   run::RunHooks hooks;
   hooks.on_frame = [=, &driven](const telemetry::Frame& frame) {
     if (recorder != nullptr) recorder->record(frame);
-    if (wants_frames) driven.frames.add(frame);
+    if (!wants_frames) return;
+    driven.frames.add(frame);
+    const auto& seen = driven.situations;
+    if (seen.empty() || seen.back().kind != frame.situation.kind)
+      driven.situations.push_back(frame.situation);
   };
   if (recorder == nullptr) return hooks;
   hooks.on_lap = [=](const telemetry::CompletedLap& lap) { recorder->record(lap); };
@@ -159,6 +179,7 @@ py::dict drive(const protocol::Request& request, const py::object& controller, c
   told["table"] = protocol::to_table(driven.summary);
   told["road"] = to_dict(driven.road);
   told["frames"] = wants_frames ? driven.frames.take() : py::dict();
+  told["situations"] = to_list(driven.situations);
   told["error"] = failure->text.empty() ? py::object(py::none()) : py::str(failure->text);
   told["error_time"] = failure->time;
   return told;

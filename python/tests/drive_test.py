@@ -52,6 +52,10 @@ class Drive(unittest.TestCase):
         table = frames.to_pandas()
         self.assertEqual(table.index.name, "time_s")
         self.assertEqual(len(table), frames.cycles)
+        sentences = [each["sentence"] for each in self.driven.situations]
+        self.assertEqual(sentences[0], "The car stands")
+        self.assertTrue(any(text.startswith("Grip: ") for text in sentences), sentences)
+        self.assertTrue(all(len(text.split()) <= 6 for text in sentences))
         with self.assertRaisesRegex(KeyError, "got 'speed', expected one of cycle, "):
             frames["speed"]
 
