@@ -95,6 +95,7 @@ TEST_F(CampaignTest, TriesFaultsAndPairsForEachDuration) {
 }
 
 TEST_F(CampaignTest, WritesTheSameFileWhenItIsStoppedAndGoesOn) {
+  campaign_.presets = {"pid"};
   ASSERT_TRUE(drive("whole.jsonl"));
   const auto part = drive("parts.jsonl", 3, 1);
   ASSERT_TRUE(part);

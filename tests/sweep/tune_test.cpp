@@ -68,7 +68,7 @@ std::string text_of(const std::string& file) {
 TEST(Tune, ASearchThatWasEndedGoesOnWithItsLogAndFindsTheSame) {
   std::atomic<bool> stop{false};
   TuneTask whole = task();
-  whole.evaluations = 12;
+  whole.evaluations = 6;
   whole.log = file_of("whole.jsonl");
   const auto expected = tune(whole, stop);
   if (is_without_nlopt(expected)) GTEST_SKIP() << expected.error().message;
@@ -76,10 +76,10 @@ TEST(Tune, ASearchThatWasEndedGoesOnWithItsLogAndFindsTheSame) {
 
   TuneTask parts = whole;
   parts.log = file_of("parts.jsonl");
-  parts.evaluations = 5;
+  parts.evaluations = 3;
   ASSERT_TRUE(tune(parts, stop));
   std::ofstream(parts.log, std::ios::app) << R"({"values":{"pure_purs)";  // a process was killed there
-  parts.evaluations = 12;
+  parts.evaluations = 6;
   const auto found = tune(parts, stop);
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_EQ(found->values, expected->values);
