@@ -11,6 +11,7 @@
 #include "chicane/solver/ocp_solver.hpp"
 #include "problems/described_problem.hpp"
 #include "problems/optimality.hpp"
+#include "support/slow_tests.hpp"
 
 namespace chicane {
 namespace {
@@ -42,13 +43,15 @@ struct GoldenSet {
 
 struct Golden : testing::TestWithParam<GoldenSet> {};
 
-/// Calls visit(i, instance, optimum's row) for the problems of a set that Ipopt solved; false without any.
+/// Calls visit(i, instance, optimum's row) for the problems of a set that Ipopt solved, in the normal run for
+/// each third; false without any.
 template <class Visit>
 bool each_problem(const GoldenSet& set, const Visit& visit) {
   const std::string lap = set.lap;
   const auto cycles = read_table(kFolder + "lap_" + lap + ".csv");
   const auto optima = read_table(kFolder + "golden_" + lap + "_N" + std::to_string(set.nodes) + ".csv");
-  for (std::size_t i = 0; i < optima.size() && !cycles.empty(); ++i) {
+  constexpr std::size_t kStride = kDrivesAll ? 1 : 3;
+  for (std::size_t i = 0; i < optima.size() && !cycles.empty(); i += kStride) {
     if (optima[i][1] != 1.0) continue;
     const auto& row = cycles[static_cast<std::size_t>(optima[i][0])];
     bench::DescribedInstance instance;
