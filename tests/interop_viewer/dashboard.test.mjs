@@ -202,30 +202,6 @@ describe('the dashboard', () => {
     await dashboard.resume();
   });
 
-  it('plots a formula of the reader, says what is wrong with one, and keeps it', async () => {
-    await dashboard.show('plots');
-    const field = page.getByLabel('Plot a formula');
-    await field.fill('sped_mps * 2');
-    await field.press('Enter');
-    await page.getByRole('alert').filter({ hasText: 'did you mean speed_mps?' }).waitFor();
-    await field.fill('speed_mps * yaw_rate_radps');
-    await field.press('Enter');
-    const plot = page.locator('.plot[aria-label="Your own"]');
-    await plot.scrollIntoViewIfNeeded();
-    await dashboard.until(
-      () => dashboard.colours('.plot[aria-label="Your own"] canvas'),
-      (count) => count > 5,
-      'its line',
-    );
-    assert.match(await plot.locator('.key b').innerText(), /\d\.\d{3}/);
-    assert.deepEqual(await dashboard.accessibilityFindings('.side'), []);
-    await page.reload();
-    await plot.waitFor();
-    await field.fill('');
-    await field.press('Enter');
-    await plot.waitFor({ state: 'detached' });
-  });
-
   it('can be used without a mouse', async () => {
     const chosen = () => page.locator('[role="tab"][aria-selected="true"]').innerText();
     for (const [i, tab] of TABS.entries()) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// With what laps were driven: told by the program with each lap, in the table, in comparison, in a recording; people
-// against controllers, with a gamepad; and a film of it.
+// With what laps were driven: told by the program with each lap, in the table, in comparison, in a recording; and
+// driving with a gamepad.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
@@ -118,51 +118,4 @@ describe('a gamepad', () => {
     other.close();
     await dashboard.close();
   });
-});
-
-it('sets people against controllers, on one track', async (t) => {
-  const drive = await startDrive(['--track', 'oval', '--pace', '20']);
-  t.after(() => drive.stop());
-  const dashboard = await DashboardPage.open(here.browser, drive.url, { tab: 'laps' });
-  const { page } = dashboard;
-  await laps(dashboard, 1);
-  assert.equal(await page.getByTestId('leaderboard').count(), 0, 'one alone is no race');
-  await dashboard.show('drive');
-  await page.locator('.choices').getByLabel('Controller', { exact: true }).selectOption('stanley');
-  await page.getByRole('dialog').getByText('Restart', { exact: true }).click();
-  await dashboard.until(
-    () => page.locator('.summary').innerText(),
-    (text) => /stanley/.test(text),
-    'the other controller',
-  );
-  await dashboard.show('laps');
-  const board = page.getByTestId('leaderboard');
-  await board.waitFor();
-  const [first, second] = await board.locator('li').allInnerTexts();
-  assert.match(first, /^tracking-mpc, default\n/);
-  assert.match(second, /stanley.*\+/s);
-  await page.reload();
-  await board.waitFor();
-  await board.getByText('Forget').click();
-  await board.waitFor({ state: 'detached' });
-  await dashboard.close();
-});
-
-it('makes a film of the last seconds', async (t) => {
-  const drive = await startDrive(['--track', 'oval']);
-  t.after(() => drive.stop());
-  const dashboard = await DashboardPage.open(here.browser, drive.url, { tab: 'laps' });
-  const { page } = dashboard;
-  await dashboard.until(
-    () => dashboard.seconds(),
-    (now) => now > 2,
-    'something to show',
-  );
-  const [file] = await Promise.all([page.waitForEvent('download'), dashboard.button('Last 10 s as video').click()]);
-  assert.equal(file.suggestedFilename(), 'oval_last-seconds.webm');
-  const bytes = readFileSync(await file.path());
-  assert.equal(bytes.subarray(0, 4).toString('hex'), '1a45dfa3', 'a WebM file');
-  assert.ok(bytes.length > 10_000, `${bytes.length} bytes`);
-  await page.getByText('Live', { exact: true }).waitFor();
-  await dashboard.close();
 });

@@ -109,29 +109,6 @@ const LIVE = [
     leave: (dashboard) => dashboard.button('Leave the tour').click(),
   },
   overlay('help', '?', 'dialog[open]'),
-  {
-    name: 'layout',
-    part: 'dialog[open]',
-    async show(dashboard) {
-      await dashboard.button('Layout').click();
-      await dashboard.page.getByRole('dialog', { name: 'Layout' }).waitFor();
-    },
-    leave: (dashboard) => dashboard.button('Close').click(),
-  },
-  {
-    name: 'two panels',
-    part: '.panel-body.second',
-    async show({ page }) {
-      await page.evaluate(() => {
-        location.hash = '#layout?tab=plots&beside=laps&plots=speed.own';
-      });
-      await page.locator('.panel-body.second .laps').waitFor();
-    },
-    leave: ({ page }) =>
-      page.evaluate(() => {
-        location.hash = '#layout?beside=';
-      }),
-  },
   overlay('presentation', 'g', '.workbench.stage-alone'),
 ];
 

@@ -389,64 +389,12 @@ describe('the workbench', () => {
   it('draws plots that are scrolled away for their picture', async () => {
     await page.setViewportSize({ width: 1366, height: 420 });
     await dashboard.show('plots');
-    const last = '.plot[aria-label="Step times"] canvas';
+    const last = '.plot[aria-label="Control step"] canvas';
     assert.equal(await dashboard.colours(last), 1, 'not drawn yet');
     const picture = await download('PNG');
     assert.match(picture.name, /plots\.png/);
     assert.ok((await dashboard.colours(last)) > 2);
     await page.setViewportSize(LAPTOP.viewport);
-  });
-
-  it('is arranged as its reader likes, by name and by link', async () => {
-    const tabs = () => page.getByRole('tab').allInnerTexts();
-    const plots = () =>
-      page.locator('.plots .plot h2').evaluateAll((all) => all.map((each) => each.firstChild.data.trim()));
-    await dashboard.show('plots');
-    const [allTabs, allPlots] = [await tabs(), await plots()];
-    await dashboard.button('Layout').click();
-    const dialog = page.getByRole('dialog', { name: 'Layout' });
-    await dialog.getByLabel('Tune', { exact: true }).uncheck();
-    await dialog.getByLabel('Cost', { exact: true }).uncheck();
-    await dialog.getByRole('button', { name: 'Move Speed down' }).click();
-    await dialog.getByLabel('Second panel').selectOption('laps');
-    await dialog.getByLabel('Instruments with the picture').uncheck();
-    await dialog.getByLabel('Name').fill('mine');
-    await dialog.getByRole('button', { name: 'Save' }).click();
-    const link = await dialog.getByLabel('Link', { exact: true }).inputValue();
-    assert.deepEqual(await dashboard.accessibilityFindings('dialog[open]'), []);
-    await dialog.getByRole('button', { name: 'Close' }).click();
-    const check = async () => {
-      assert.deepEqual(
-        await tabs(),
-        allTabs.filter((name) => name !== 'Tune'),
-      );
-      const now = await plots();
-      assert.deepEqual(now.slice(0, 2), [allPlots[1], allPlots[0]]);
-      assert.ok(!now.includes('Cost') && allPlots.includes('Cost'), `${now}`);
-      await page.locator('.panel-body.second .laps').waitFor();
-      assert.equal(await page.locator('.instruments').count(), 0);
-    };
-    await check();
-    assert.ok((await dashboard.overflow()).across <= 0);
-    await dashboard.button('Layout').click();
-    await dialog.getByRole('button', { name: 'As at first' }).click();
-    await dialog.getByRole('button', { name: 'Close' }).click();
-    assert.deepEqual([await tabs(), await plots()], [allTabs, allPlots]);
-    await page.evaluate((hash) => {
-      location.hash = hash;
-    }, new URL(link).hash);
-    await page.locator('.panel-body.second').waitFor();
-    await check();
-    await dashboard.button('Layout').click();
-    await dialog.getByRole('button', { name: 'As at first' }).click();
-    await dialog.getByRole('button', { name: 'Use the layout mine' }).click();
-    await dialog.getByRole('button', { name: 'Delete the layout mine' }).click();
-    await dialog.getByRole('button', { name: 'Close' }).click();
-    await check();
-    await dashboard.button('Layout').click();
-    await dialog.getByRole('button', { name: 'As at first' }).click();
-    await dialog.getByRole('button', { name: 'Close' }).click();
-    await page.locator('.instruments').waitFor();
   });
 });
 

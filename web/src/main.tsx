@@ -14,7 +14,7 @@ import { begin, isReading, summary, timeline } from './recording/begin';
 import { isReport } from './recording/mode';
 import { beginSession, receive, receivePastLeft } from './state/demultiplexer';
 import { toggleLayer } from './state/layers';
-import { listenForLayouts, toggleDock } from './state/layout';
+import { toggleDock } from './state/layout';
 import { ageAtArrival, attempt, link, notice, pastLeft, services } from './state/link';
 import { call, can, refresh } from './state/operate';
 import { rememberRun } from './state/other_run';
@@ -98,7 +98,6 @@ void begin(live);
 refreshOnNewChoice(refresh);
 listenToDriver();
 listenForLinks();
-listenForLayouts();
 // A report may lie in a frame, where browsers refuse to write the address.
 if (isReport()) readAddress();
 else followAddress();

@@ -3,7 +3,6 @@ import type { Change, Frame, Lap, Limit, Path, Plan, Run, Situation, TopicName, 
 import { forgetFrameEvents, noteChange, noteEvents, noteNotices, setFaultNames } from './event_log';
 import { forgetFaultMarks, noteFaultChange, noteFaultMarks } from './faults';
 import { forgetSamples, noteLap, receiveLap } from './laps';
-import { noteScore } from './leaderboard';
 import { receiveLimit } from './limit';
 import { forgetRows, keepFrame, keepPlan, live } from './live';
 import { complete } from './message_fields';
@@ -49,7 +48,6 @@ export function receive<T extends TopicName>(topic: T, sent: Topics[T], now: num
       break;
     case '/chicane/lap':
       receiveLap(message as Lap);
-      noteScore(message as Lap);
       break;
     case '/chicane/limit':
       receiveLimit(message as Limit);

@@ -2,7 +2,6 @@ import { paintSize } from '../lib/paint_size';
 import { store } from '../lib/store';
 import type { Frame, Plan } from '../protocol/topics';
 import { COLUMN_COUNT, plotRow } from './columns';
-import { Histogram } from './histogram';
 import { History } from './history';
 import { run } from './run';
 
@@ -22,7 +21,6 @@ export const live = {
   pastPlans: [] as Plan[], // oldest first
   plots: new History(COLUMN_COUNT, LONGEST_WINDOW_S * FRAMES_PER_SECOND),
   trace: new History(2, 4000),
-  stepTimes: new Histogram(1, 6), // [µs], to 1 s
 };
 
 const row: number[] = new Array<number>(COLUMN_COUNT).fill(NaN);
@@ -37,7 +35,6 @@ store.onReset('moment', () => {
 export function forgetRows(): void {
   live.plots.clear();
   live.trace.clear();
-  live.stepTimes.clear();
 }
 
 /**
@@ -51,7 +48,6 @@ export function keepFrame(frame: Frame, now: number, isNew: boolean, isShown = t
   }
   if (!isNew) return;
   live.plots.push(plotRow(frame, row));
-  live.stepTimes.push(frame.step_time_us);
   const [x, y] = [live.trace.newest(0), live.trace.newest(1)];
   const spacing = TRACE_SPACING_M * (run.value ? paintSize(run.value) : 1);
   if (!(Math.hypot(frame.x_m - x, frame.y_m - y) < spacing)) live.trace.push([frame.x_m, frame.y_m]);

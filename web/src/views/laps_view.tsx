@@ -8,14 +8,11 @@ import { differences, setupInWords } from '../state/lap_setup';
 import { bestsOf, type LapBests, lapSamplesCsv, lapsCsv } from '../state/lap_table';
 import { bestLap, lapSamples, laps, sampledLaps } from '../state/laps';
 import { gapsToLimit, limit, whyNoLimit } from '../state/limit';
-import { REPLAY_S } from '../state/replay';
 import { run } from '../state/run';
 import { startSettings } from '../state/settings';
 import { everyFrame } from '../state/ticker';
-import { canFilm, film, isFilming } from './clip';
 import { LapCompareView } from './lap_compare_view';
 import { Picks } from './lap_picks';
-import { LeaderboardView } from './leaderboard_view';
 import { OtherLapsView } from './other_laps_view';
 import { TimeWonView } from './time_won_view';
 
@@ -175,9 +172,6 @@ function Toolbar({ pair }: { pair: readonly [number, number] }) {
       <button type="button" onClick={savePicture}>
         Map as PNG
       </button>
-      <button type="button" disabled={!canFilm()} title="Shows them once more, and records the picture" onClick={film}>
-        {isFilming.value ? 'Filming …' : `Last ${REPLAY_S} s as video`}
-      </button>
     </div>
   );
 }
@@ -253,7 +247,6 @@ export function LapsView() {
         </div>
       )}
       <OtherLapsView pair={pair} />
-      <LeaderboardView />
       <Differences all={all} pair={pair} />
       <TimeWonView />
       {pair[0] !== pair[1] && <LapCompareView numbers={drawn.value} />}

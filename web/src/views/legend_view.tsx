@@ -5,8 +5,8 @@ import { inSpeedUnit, speedUnit } from '../lib/units';
 import { dimension, isSpared, obstacle, shows3d } from '../scene3d/view_state';
 import { lossesNow } from '../state/compared';
 import { type Layer, layers, toggleLayer } from '../state/layers';
-import { isSeen } from '../state/layout';
 import { limit } from '../state/limit';
+import { tab } from '../state/tab';
 
 function Swatch({ name, label, isMinor = false }: { name: string; label: string; isMinor?: boolean }) {
   return (
@@ -71,7 +71,7 @@ export function LegendView({ bar, scaleTop, ghostLabel }: Drawn) {
         label="plan 1 s ago"
         title="The plan of a second ago and the path driven since; the outline is the position it predicted for now (O)"
       />
-      {!shows3d.value && isSeen('laps') && lossesNow.value && (
+      {!shows3d.value && tab.value === 'laps' && lossesNow.value && (
         <Switch
           layer="timeLost"
           label="time lost"

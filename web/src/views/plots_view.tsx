@@ -6,7 +6,6 @@ import { persisted } from '../lib/persisted';
 import { type SpeedUnit, speedUnit } from '../lib/units';
 import { nameInWords } from '../lib/words';
 import { COST_TERMS, Column, costColumn } from '../state/columns';
-import { type Plot, plots } from '../state/layout';
 import {
   cursorTime,
   isFrozen,
@@ -20,8 +19,6 @@ import {
 } from '../state/plot_view';
 import { run } from '../state/run';
 import { GgView } from './gg_view';
-import { HistogramView } from './histogram_view';
-import { OwnPlot } from './own_plot';
 import { pictureOfPlots } from './plot_picture';
 import { drawStatusStrip } from './status_strip';
 import { type PlotSpec, TimePlot } from './time_plot';
@@ -198,21 +195,6 @@ function Mark() {
   );
 }
 
-const SPECS = new Map(
-  (['lateral', 'heading', 'steering', 'drive', 'grip', 'iterations', 'step'] as const).map((name, i) => [
-    name as Plot,
-    [...BEFORE_COST, ...AFTER_COST][i],
-  ]),
-);
-
-function OnePlot({ name, speed, cost }: { name: Plot; speed: PlotSpec; cost: PlotSpec }) {
-  if (name === 'accelerations') return <GgView />;
-  if (name === 'histogram') return <HistogramView />;
-  if (name === 'own') return <OwnPlot />;
-  const spec = name === 'speed' ? speed : name === 'cost' ? cost : SPECS.get(name);
-  return spec ? <TimePlot spec={spec} /> : null;
-}
-
 export function PlotsView() {
   const names = useComputed(() => run.value?.cost_term_names.join('\n') ?? '');
   const speed = useComputed(() => speedSpec(speedUnit()));
@@ -222,10 +204,15 @@ export function PlotsView() {
       <Toolbar />
       {axis.value === 'track' && <TrackPlots />}
       <div class="plots" hidden={axis.value === 'track'}>
-        {plots.value.map((name) => (
-          <OnePlot key={name} name={name} speed={speed.value} cost={cost.value} />
+        <TimePlot spec={speed.value} />
+        {BEFORE_COST.map((spec) => (
+          <TimePlot key={spec.title} spec={spec} />
         ))}
-        {plots.value.length === 0 && <p class="empty">All plots are hidden: Layout shows them.</p>}
+        <GgView />
+        <TimePlot spec={cost.value} />
+        {AFTER_COST.map((spec) => (
+          <TimePlot key={spec.title} spec={spec} />
+        ))}
       </div>
       <Mark />
     </div>

@@ -40,7 +40,7 @@ import { cursorMark, pointAt, timeNear } from '../state/cursor';
 import { faultMarks } from '../state/faults';
 import { hindsight } from '../state/hindsight';
 import { layers } from '../state/layers';
-import { hasInstruments, isRoomy, isSeen } from '../state/layout';
+import { isRoomy } from '../state/layout';
 import { limit } from '../state/limit';
 import { link } from '../state/link';
 import { live } from '../state/live';
@@ -49,6 +49,7 @@ import { road } from '../state/road';
 import { isPaused, run } from '../state/run';
 import { seekTo } from '../state/seek';
 import { shown } from '../state/shown';
+import { tab } from '../state/tab';
 import { everyFrame } from '../state/ticker';
 import { AlertsView, dangerNow, HudView } from './hud_view';
 import { InstrumentsView } from './instruments_view';
@@ -133,7 +134,7 @@ class Painter {
     if (bar.value.metres !== length.metres || Math.abs(bar.value.pixels - length.pixels) > 0.5) bar.value = length;
 
     // The way driven would lie on the line of the lap that is coloured.
-    const losses = layers.timeLost.value && isSeen('laps') && !isInset ? lossesNow.value : null;
+    const losses = layers.timeLost.value && tab.value === 'laps' && !isInset ? lossesNow.value : null;
     const scene: Scene = {
       road: this.#road,
       racingLine: layers.racingLine.value ? limit.value : null,
@@ -295,7 +296,7 @@ class Painter {
     const share = Number.isNaN(this.#heading) ? 1 : 1 - Math.exp(-elapsed / 250);
     const from = Number.isNaN(this.#heading) ? car.yaw : this.#heading;
     this.#heading = from + wrapAngle(car.yaw - from) * share;
-    const foot = hasInstruments.value && isRoomy.value ? NUMBERS_PX : LEGEND_PX;
+    const foot = isRoomy.value ? NUMBERS_PX : LEGEND_PX;
     return behind(car, this.#heading, width, height, across, foot);
   }
 }
@@ -433,7 +434,7 @@ export function TrackView() {
       <AlertsView />
       <div class="map-foot">
         <HudView />
-        {hasInstruments.value && isRoomy.value && <InstrumentsView />}
+        {isRoomy.value && <InstrumentsView />}
         <LegendView bar={bar} scaleTop={scaleTop} ghostLabel={ghostLabel} />
       </div>
     </section>

@@ -1,7 +1,7 @@
 import type { ComponentType } from 'preact';
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import { store } from '../lib/store';
-import { beside, dock, hasInstruments, isRoomy, panelShare, panels, setPanelShare, toggleDock } from '../state/layout';
+import { dock, isRoomy, panelShare, setPanelShare, toggleDock } from '../state/layout';
 import { link } from '../state/link';
 import { isStageAlone } from '../state/presentation';
 import { TABS, type Tab, tab } from '../state/tab';
@@ -11,7 +11,6 @@ import { ExplainView } from './explain_view';
 import { FaultsView } from './faults_view';
 import { InstrumentsView } from './instruments_view';
 import { LapsView } from './laps_view';
-import { LayoutView, openLayout } from './layout_view';
 import { PlotsView } from './plots_view';
 import { TourView } from './tour_view';
 import { TrackView } from './track_view';
@@ -69,18 +68,17 @@ function Splitter() {
 
 function Tabs() {
   const key = (event: KeyboardEvent): void => {
-    const shown = panels.value;
-    const at = shown.indexOf(tab.value);
-    const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: shown.length - 1 }[event.key];
+    const at = TABS.indexOf(tab.value);
+    const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: TABS.length - 1 }[event.key];
     if (to === undefined) return;
     event.preventDefault();
-    tab.value = shown[(to + shown.length) % shown.length] as Tab;
+    tab.value = TABS[(to + TABS.length) % TABS.length] as Tab;
     document.getElementById(`tab-${tab.value}`)?.focus();
   };
   return (
     <div class="tab-row">
       <div class="tabs" role="tablist" aria-label="Panels" onKeyDown={key}>
-        {panels.value.map((name) => (
+        {TABS.map((name) => (
           <button
             key={name}
             id={`tab-${name}`}
@@ -96,11 +94,6 @@ function Tabs() {
           </button>
         ))}
       </div>
-      <button type="button" class="icon" aria-label="Layout" title="Layout: panels, plots, links" onClick={openLayout}>
-        <svg viewBox="0 0 16 16" width="16" height="16" aria-hidden="true">
-          <path d="M2 2.5h5v5H2zM9 2.5h5v5H9zM2 9.5h5v4H2zM9 9.5h5v4H9z" fill="none" stroke="currentColor" />
-        </svg>
-      </button>
       <button
         type="button"
         class="icon dock-button"
@@ -160,7 +153,6 @@ function useScrollOf(name: Tab) {
 export function WorkbenchView() {
   const body = useScrollOf(tab.value);
   const View: ComponentType = PANELS[TABS.indexOf(tab.value)]?.View ?? PlotsView;
-  const second = PANELS.find(({ name }) => name === beside.value);
   const classes = [
     'workbench',
     `dock-${dock.value}`,
@@ -175,7 +167,7 @@ export function WorkbenchView() {
       {hasStage && (
         <div class="stage">
           <TrackView />
-          {hasInstruments.value && !isRoomy.value && <InstrumentsView />}
+          {!isRoomy.value && <InstrumentsView />}
         </div>
       )}
       {!isPanelAlone.value && !isStageAlone.value && <Splitter />}
@@ -193,18 +185,8 @@ export function WorkbenchView() {
           >
             <View key={tab.value} />
           </div>
-          {second && (
-            <section
-              class={`panel-body second show-${second.name}`}
-              aria-label={`Second panel: ${second.title}`}
-              tabIndex={0}
-            >
-              <second.View key={second.name} />
-            </section>
-          )}
         </div>
       </div>
-      <LayoutView titleOf={titleOf} />
     </main>
   );
 }
