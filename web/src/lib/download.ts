@@ -8,11 +8,6 @@ export function download(name: string, content: Blob | string, type = 'text/plai
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** Offers a canvas as a PNG file. */
-export function downloadPng(name: string, canvas: HTMLCanvasElement): void {
-  canvas.toBlob((blob) => blob && download(name, blob), 'image/png');
-}
-
 /** A name for files of a run: "lakeside_tracking-mpc_laps.csv". */
 export const fileName = (parts: readonly string[], ending: string): string =>
   `${parts

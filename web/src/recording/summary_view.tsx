@@ -10,7 +10,6 @@ import { TableView } from '../parts/table_view';
 import { setupInWords } from '../state/lap_setup';
 import { bestsOf } from '../state/lap_table';
 import { gapsToLimit } from '../state/limit';
-import { BestLapLosses, LapsOfRuns } from './compare_runs';
 import { type RunReport, type Trace, verdictOf } from './summary';
 
 /** The runs that are reported; empty while they are read. */
@@ -152,7 +151,6 @@ function RunSection({ report }: { report: RunReport }) {
       </p>
       <SpeedMap report={report} />
       <LapTable report={report} />
-      <BestLapLosses report={report} />
       <Curve
         title={`Speed [${unit.name}] over the whole run`}
         trace={trace}
@@ -235,7 +233,6 @@ export function SummaryView() {
       <div class="summary-sheet">
         {all.length === 0 && <p class="empty">Reading the recording …</p>}
         <Comparison />
-        <LapsOfRuns reports={all} />
         {all.map((report) => (
           <RunSection key={report.name} report={report} />
         ))}

@@ -1,122 +1,109 @@
 import { computed } from '@preact/signals';
 import { store } from '../lib/store';
-import type { Lap } from '../protocol/topics';
+import type { Lap, Limit } from '../protocol/topics';
+import {
+  byCost,
+  type ComparedRoad,
+  type Comparison,
+  type Course,
+  compare,
+  numbered,
+  scaleOf,
+  stretches,
+} from './comparison';
 import { type Corner, cornersOf } from './corners';
-import type { LapChannel, LapSamples } from './lap_samples';
-import { bestsOf, type LapBests } from './lap_table';
+import type { LapSamples } from './lap_samples';
+import { bestsOf } from './lap_table';
 import { lapSamples, laps, sampledLaps } from './laps';
 import { limit, limitChannel } from './limit';
-import { channelOnto, isSameRoad, type OtherLap, otherLaps } from './other_laps';
+import { channelOnto, isSameRoad, otherLaps } from './other_laps';
+import { cursorPlace } from './plot_view';
+import { raceCourses } from './rival';
 import { road } from './road';
 import type { Losses, MarkedCorner } from './road_marks';
 import { run } from './run';
-import { miniSectors, numbered, type Stretch, type TwoLaps } from './time_won';
+import { answer, futureNames } from './what_if';
+import { type FutureGrid, futureCourses } from './what_if_answer';
 
-// The laps that are compared, and what is known of them along the road. Each has a number: laps of the run count from
-// 1, the limit is 0, laps of other recordings are below 0.
+// What is compared on the page: A and B, chosen among everything that has a course along this road.
 
-/** Number of the limit, the fastest possible lap, beside those of laps, which count from 1. */
-export const LIMIT = 0;
+/** The courses chosen as A and B, by id; null: the newest lap, and the limit. */
+export const chosen = store.signal<readonly [string | null, string | null]>('run', [null, null]);
 
-/** The laps to compare, by number; null for the default: the newest against the best. */
-export const chosen = store.signal<readonly [number | null, number | null]>('run', [null, null]);
+const LIMIT = 'limit';
+/** A lap whose speed at the line is less began at standstill [m/s]. */
+const STANDING_MPS = 3;
 
-/** Laps that are drawn beside these two, by number. */
-export const overlaid = store.signal<readonly number[]>('run', []);
-
-export function toggleOverlaid(number: number): void {
-  const all = overlaid.value;
-  overlaid.value = all.includes(number) ? all.filter((each) => each !== number) : [...all, number];
-}
-
-const otherOf = (number: number): OtherLap | undefined => otherLaps.value.find((each) => each.number === number);
-
-/** "lap 3", "limit", "lap 2 of wet.mcap" */
-export function lapName(number: number): string {
-  if (number === LIMIT) return 'limit';
-  const other = number < 0 ? otherOf(number) : undefined;
-  return other ? `lap ${other.lap} of ${other.recording}` : `lap ${number}`;
-}
-
-/** The pair shown: the laps chosen, else the newest complete lap against the best, or against the one before it. */
-function pairOf(all: readonly Lap[], bests: LapBests): [number, number] {
-  const seen = all.filter(({ lap }) => lapSamples.laps.includes(lap - 1)).map(({ lap }) => lap);
-  const newest = seen.at(-1) ?? all.at(-1)?.lap ?? -1;
-  const isOther = ({ lap }: Lap): boolean => lap !== newest;
-  const other =
-    bests.lap !== newest && seen.includes(bests.lap)
-      ? bests.lap
-      : (seen.at(-2) ?? all.filter(isOther).at(-1)?.lap ?? newest);
-  const isKnown = (lap: number | null): lap is number =>
-    (lap === LIMIT && limit.value !== null) ||
-    all.some((each) => each.lap === lap) ||
-    otherLaps.value.some(({ number, samples }) => number === lap && isSameRoad(samples, lapSamples));
-  return [isKnown(chosen.value[0]) ? chosen.value[0] : newest, isKnown(chosen.value[1]) ? chosen.value[1] : other];
-}
-
-export const pair = computed<readonly [number, number]>(() => {
-  void sampledLaps.value;
-  return pairOf(laps.value, bestsOf(laps.value));
-});
-
-/** A channel of a lap from the start line on; null where this page has not seen it. */
-export function samplesOf(number: number, name: LapChannel): Float64Array | null {
-  if (number > 0) return lapSamples.channel(number - 1, name);
-  if (number === LIMIT) return limit.value && limitChannel(limit.value, lapSamples, name);
-  const other = otherOf(number);
-  return other ? channelOnto(other, name, lapSamples) : null;
-}
-
-function timeOf(number: number): number {
-  if (number === LIMIT) return limit.value?.lap_time_s ?? NaN;
-  if (number < 0) return otherOf(number)?.time ?? NaN;
-  return laps.value.find(({ lap }) => lap === number)?.lap_time_s ?? NaN;
-}
-
-/** All laps that are drawn along the road: A, B, and those beside them. */
-export const drawn = computed<readonly number[]>(() => {
-  void sampledLaps.value;
-  const beside = overlaid.value.filter((number) => !pair.value.includes(number) && samplesOf(number, 'time_s'));
-  return [...pair.value, ...beside];
-});
-
-/** A lap along the road. */
-export interface DrivenLap {
-  readonly total: number; // [s]
-  readonly time: Float64Array | null;
-  readonly speed: Float64Array | null;
-}
-
-const drivenLap = (number: number): DrivenLap => ({
-  total: timeOf(number),
-  time: samplesOf(number, 'time_s'),
-  speed: samplesOf(number, 'speed_mps'),
-});
-
-/** Two laps at the points of `samples`; null where one of them is not known. */
-export function along(samples: LapSamples, [a, b]: readonly [DrivenLap, DrivenLap]): TwoLaps | null {
-  if (!a.time || !b.time || !a.speed || !b.speed) return null;
+/** A lap of a run as a course at the points of `samples`. */
+export function lapCourse({ lap, lap_time_s: total }: Lap, samples: LapSamples): Course {
+  const speed = lap === 1 ? samples.channel(0, 'speed_mps') : null;
   return {
-    s: Float64Array.from({ length: samples.points }, (_, point) => samples.s(point)),
-    length: samples.length,
-    time: [a.time, b.time],
-    speed: [a.speed, b.speed],
-    total: a.total - b.total,
+    id: `lap ${lap}`,
+    name: `lap ${lap}`,
+    total,
+    isStanding: (speed?.find(Number.isFinite) ?? Infinity) < STANDING_MPS,
+    channel: (name) => samples.channel(lap - 1, name),
   };
 }
 
-/** Both laps along the road; null where one of them is not known, or both are the same. */
-export const twoLaps = computed<TwoLaps | null>(() => {
-  void sampledLaps.value;
-  const [a, b] = pair.value;
-  return a === b ? null : along(lapSamples, [drivenLap(a), drivenLap(b)]);
+/** The limit as a course at the points of `samples`. */
+export const limitCourse = (of: Limit, samples: LapSamples): Course => ({
+  id: LIMIT,
+  name: 'the limit',
+  total: of.lap_time_s,
+  isStanding: false,
+  channel: (name) => limitChannel(of, samples, name),
 });
 
-/** Names of the compared laps whose course this page does not have. */
-export const forgotten = computed<readonly string[]>(() => {
+/** The points of this road: those of the laps, or, before the start line is known, from where the first lap begins. */
+function gridNow(): FutureGrid {
+  const isLineKnown = Number.isFinite(lapSamples.s(0));
+  const { points } = lapSamples;
+  const length = run.value?.track_length_m ?? NaN;
+  return {
+    length,
+    points,
+    s: (point) => (isLineKnown ? lapSamples.s(point) : (point * length) / points),
+    driven: (lap, name) => lapSamples.channel(lap - 1, name) ?? (isLineKnown ? lapSamples.present(name) : null),
+  };
+}
+
+const futuresNow = (): Course[] => (answer.value ? futureCourses(answer.value, gridNow(), futureNames()) : []);
+
+/** Both futures of the newest question, the run as it is against the changed one; null without an answer. */
+export const futures = computed<Comparison | null>(() => {
+  const [was, branch] = futuresNow();
+  return was && branch ? compare(was, branch, roadNow()) : null;
+});
+
+/** Everything that can be compared here: laps of the run, the newest first, other futures, recordings, the limit. */
+export const courses = computed<readonly Course[]>(() => {
   void sampledLaps.value;
-  const [a, b] = pair.value;
-  return a === b ? [] : [a, b].filter((each) => each > 0 && samplesOf(each, 'time_s') === null).map(lapName);
+  const known = new Set(lapSamples.laps);
+  const own = laps.value.filter(({ lap }) => known.has(lap - 1)).map((lap) => lapCourse(lap, lapSamples));
+  const recorded = otherLaps.value
+    .filter(({ samples }) => isSameRoad(samples, lapSamples))
+    .map((each): Course => {
+      const { lap, recording, time, samples } = each;
+      const name = `lap ${lap} of ${recording}`;
+      const isStanding = lapCourse({ lap, lap_time_s: time } as Lap, samples).isStanding;
+      return { id: name, name, total: time, isStanding, channel: (which) => channelOnto(each, which, lapSamples) };
+    });
+  const fastest = limit.value && lapSamples.length > 0 ? [limitCourse(limit.value, lapSamples)] : [];
+  return [...own.reverse(), ...futuresNow(), ...raceCourses(lapSamples), ...recorded, ...fastest];
+});
+
+/** A by default is the newest lap; B the limit, where it holds for A, else the best other lap. */
+export const pair = computed<readonly [Course | null, Course | null]>(() => {
+  const all = courses.value;
+  const find = (id: string | null): Course | undefined => all.find((each) => each.id === id);
+  const a = find(chosen.value[0]) ?? all.find(({ id }) => id.startsWith('lap ')) ?? null;
+  const chosenB = find(chosen.value[1]);
+  if (chosenB || !a) return [a, chosenB ?? null];
+  const lap = laps.value.find((each) => `lap ${each.lap}` === a.id)?.lap ?? Infinity;
+  const fastest = lap >= (limit.value?.first_lap ?? Infinity) ? find(LIMIT) : undefined;
+  const best = bestsOf(laps.value.filter((each) => each.lap !== lap && find(`lap ${each.lap}`))).lap;
+  return [a, fastest ?? find(`lap ${best}`) ?? find(LIMIT) ?? null];
 });
 
 const known = store.data('page', () => ({ of: null as object | null, corners: [] as readonly Corner[] }));
@@ -133,6 +120,15 @@ export function startLine(samples: LapSamples = lapSamples): number {
   const place = samples.place(0) - samples.s(0);
   return Number.isFinite(place) ? place : 0;
 }
+
+const roadNow = (): ComparedRoad => ({ samples: gridNow(), corners: roadCorners(), line: startLine() });
+
+/** A against B along the road; null where one of them is not known, or both are the same. */
+export const comparison = computed<Comparison | null>(() => {
+  void sampledLaps.value;
+  const [a, b] = pair.value;
+  return a && b && a.id !== b.id ? compare(a, b, roadNow()) : null;
+});
 
 const marked = store.data('page', () => ({
   of: null as readonly Corner[] | null,
@@ -151,23 +147,37 @@ export function markedCorners(): readonly MarkedCorner[] {
   return marked.corners;
 }
 
-/** The end of the colour scale: what nine of ten pieces do not reach [s]. */
-export function scaleOf(pieces: readonly Stretch[]): number {
-  const sizes = pieces.map(({ lost }) => Math.abs(lost)).filter(Number.isFinite);
-  sizes.sort((a, b) => a - b);
-  return Math.max(0.01, sizes[Math.floor(0.9 * sizes.length)] ?? 0);
-}
+const PIECE_M = 25;
 
-/** The line of the first lap by what it loses on it; null where the laps are not known. */
+/** The line of A by what it loses to B on each piece; null where they are not known. */
 export const lossesNow = computed<Losses | null>(() => {
-  const two = twoLaps.value;
-  const [x, y] = (['x_m', 'y_m'] as const).map((name) => samplesOf(pair.value[0], name));
-  if (!two || !x || !y) return null;
-  const pieces = miniSectors(two);
-  const indexOf = (place: number): number => Math.round((place / two.length) * x.length);
+  const both = comparison.value;
+  const [x, y] = (['x_m', 'y_m'] as const).map((name) => both?.a.channel(name));
+  if (!both || !x || !y) return null;
+  const pieces = stretches(both, PIECE_M);
+  const indexOf = (place: number): number => Math.round((place / both.length) * x.length);
   return {
     line: { x, y },
     pieces: pieces.map(({ from, to, lost }) => ({ first: indexOf(from), end: indexOf(to), lost })),
     most: scaleOf(pieces),
   };
 });
+
+/** Where the cursor was put, from the start line [m]; null: nowhere yet. */
+const placed = store.signal<number | null>('run', null);
+
+/** Where the cursor of the comparison stands, from the start line [m]: at first in the corner that decides it. */
+export const cursorAlong = computed<number>(() => {
+  const both = comparison.value;
+  return placed.value ?? (both && byCost(both)[0]?.apex) ?? 0;
+});
+
+/** Puts the cursor on a place of the lap; the pictures mark where A was there. */
+export function moveCursor(along: number): void {
+  const both = comparison.value;
+  if (!both) return;
+  placed.value = Math.min(both.length, Math.max(0, along));
+  const lap = Number(/^lap (\d+)$/.exec(both.a.id)?.[1] ?? NaN);
+  const place = (startLine() + placed.value) % both.length;
+  cursorPlace.value = Number.isFinite(lap) ? { lap: lap - 1, place } : null;
+}

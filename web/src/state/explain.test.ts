@@ -1,18 +1,18 @@
 import { describe, expect, it } from 'vitest';
-import { hasBit, namesOf } from '../lib/bits';
+import { hasBit } from '../lib/bits';
 import type { Plan } from '../protocol/topics';
 import { COLUMN_COUNT, Column } from './columns';
-import { bitSharesOf, planOf, rmsOf, sharesOf, toLocal } from './explain';
+import { bitSharesOf, planOf, sharesOf } from './explain';
 import { History } from './history';
 
-function history(rows: { time: number; limiter?: number; activeNow?: number; predictionError?: number }[]): History {
+function history(rows: { time: number; limiter?: number; activeNow?: number }[]): History {
   const all = new History(COLUMN_COUNT, 100);
   for (const each of rows) {
     const row = new Array<number>(COLUMN_COUNT).fill(NaN);
     row[Column.time_s] = each.time;
     row[Column.speed_limiter] = each.limiter ?? 0;
     row[Column.active_now] = each.activeNow ?? 0;
-    row[Column.prediction_error_m] = each.predictionError ?? NaN;
+    row[Column.prediction_error_m] = NaN;
     all.push(row);
   }
   return all;
@@ -45,17 +45,6 @@ describe('explaining', () => {
     expect(shares).toEqual([1, 0, 0.5]);
   });
 
-  it('takes the mean of what is known', () => {
-    expect(
-      rmsOf(
-        history([{ time: 0, predictionError: 3 }, { time: 1 }, { time: 2, predictionError: 4 }]),
-        Column.prediction_error_m,
-        10,
-      ),
-    ).toBeCloseTo(Math.sqrt(12.5), 12);
-    expect(rmsOf(history([{ time: 0 }]), Column.prediction_error_m, 10)).toBeNaN();
-  });
-
   it('finds the plan of a second ago', () => {
     const plans = [1, 1.5, 2, 2.5].map(
       (time) => ({ stamp: { sec: Math.floor(time), nsec: (time % 1) * 1e9 } }) as Plan,
@@ -66,14 +55,7 @@ describe('explaining', () => {
     expect(planOf([], 1, 1)).toBeNull();
   });
 
-  it('sees the world from the car', () => {
-    const line = toLocal([0, 10], [5, 7], { x: 0, y: 5, yaw: Math.PI / 2 });
-    expect(line.ahead).toEqual([0, expect.closeTo(2, 12)]);
-    expect(line.left).toEqual([0, expect.closeTo(-10, 12)]);
-  });
-
   it('reads sets of 32 bits', () => {
-    expect(namesOf(0b1001, ['a', 'b', 'c'])).toEqual(['a', '#4']);
     expect(hasBit(0x80000000, 31)).toBe(true);
     expect(hasBit(0xffffffff, 32)).toBe(false);
   });

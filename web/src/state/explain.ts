@@ -35,21 +35,6 @@ export function bitSharesOf(history: History, column: number, bits: number, seco
   return shares;
 }
 
-/**
- * Root mean square of the finite values of a column over the last `seconds`; NaN without any.
- */
-export function rmsOf(history: History, column: number, seconds: number): number {
-  const values = history.column(column);
-  let [sum, count] = [0, 0];
-  for (let i = rowsSince(history, seconds); i < values.length; ++i) {
-    const value = values[i] ?? NaN;
-    if (!Number.isFinite(value)) continue;
-    sum += value * value;
-    ++count;
-  }
-  return count === 0 ? NaN : Math.sqrt(sum / count);
-}
-
 const timeOf = ({ stamp }: Plan): number => stamp.sec + stamp.nsec / 1e9;
 
 /**
@@ -57,25 +42,4 @@ const timeOf = ({ stamp }: Plan): number => stamp.sec + stamp.nsec / 1e9;
  */
 export function planOf(plans: readonly Plan[], now: number, age: number): Plan | null {
   return plans.filter((plan) => timeOf(plan) <= now - age + 1e-9).at(-1) ?? plans[0] ?? null;
-}
-
-/** A line in a car's axes: metres ahead and to the left of a pose. */
-export interface LocalLine {
-  readonly ahead: number[];
-  readonly left: number[];
-}
-
-export function toLocal(
-  xs: ArrayLike<number>,
-  ys: ArrayLike<number>,
-  pose: { x: number; y: number; yaw: number },
-): LocalLine {
-  const [cos, sin] = [Math.cos(pose.yaw), Math.sin(pose.yaw)];
-  const line: LocalLine = { ahead: [], left: [] };
-  for (let i = 0; i < xs.length; ++i) {
-    const [dx, dy] = [(xs[i] ?? NaN) - pose.x, (ys[i] ?? NaN) - pose.y];
-    line.ahead.push(cos * dx + sin * dy);
-    line.left.push(-sin * dx + cos * dy);
-  }
-  return line;
 }

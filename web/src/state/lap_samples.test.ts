@@ -1,10 +1,12 @@
 import { describe, expect, it } from 'vitest';
-import { type LapMoment, LapSamples, timeGap } from './lap_samples';
+import { timeGap } from './comparison';
+import { type LapMoment, LapSamples, UNKNOWN_MOMENT } from './lap_samples';
 
 const LENGTH = 1000;
 const LINE = 270.4; // where laps begin along the road's line [m]
 
 const moment = (distance: number, time: number, speed = 20): LapMoment => ({
+  ...UNKNOWN_MOMENT,
   s_m: (LINE + distance) % LENGTH,
   time_s: time,
   speed_mps: speed,

@@ -3,11 +3,28 @@ import type { Frame } from '../protocol/topics';
 import { LONGEST_SILENCE_S } from './silence';
 
 /** The channels kept of a lap, at equal distances along the road. */
-export const LAP_CHANNELS = ['time_s', 'speed_mps', 'lateral_error_m', 'steer_rad', 'throttle', 'x_m', 'y_m'] as const;
+export const LAP_CHANNELS = [
+  'time_s',
+  'speed_mps',
+  'lateral_error_m',
+  'steer_rad',
+  'throttle',
+  'x_m',
+  'y_m',
+  'grip',
+  'step_time_us',
+  'iterations',
+  'cost',
+  'delay_s',
+  'prediction_error_m',
+] as const;
 export type LapChannel = (typeof LAP_CHANNELS)[number];
 
 /** A sample of a lap; `s_m` is measured along the centre line, whose origin need not be the start line. */
 export type LapMoment = Readonly<Record<LapChannel, number>> & { readonly s_m: number };
+
+/** A sample of which nothing is known. */
+export const UNKNOWN_MOMENT = Object.fromEntries(['s_m', ...LAP_CHANNELS].map((name) => [name, NaN])) as LapMoment;
 
 /** What a frame says of its lap. */
 export const momentOf = (frame: Frame): LapMoment => ({
@@ -19,6 +36,12 @@ export const momentOf = (frame: Frame): LapMoment => ({
   throttle: frame.throttle_applied,
   x_m: frame.x_m,
   y_m: frame.y_m,
+  grip: Math.max(frame.front_tire_use, frame.rear_tire_use),
+  step_time_us: frame.step_time_us,
+  iterations: frame.iterations,
+  cost: frame.cost,
+  delay_s: frame.delay_s,
+  prediction_error_m: frame.prediction_error_m,
 });
 
 const POINTS = 1000;
@@ -248,6 +271,3 @@ function rotated(values: Float64Array, first: number): Float64Array {
   turned.set(values.subarray(0, first), POINTS - first);
   return turned;
 }
-
-/** Time that lap `a` has lost to lap `b` at each point [s]; it rises where `a` is slower. */
-export const timeGap = (a: Float64Array, b: Float64Array): Float64Array => a.map((time, i) => time - (b[i] ?? NaN));

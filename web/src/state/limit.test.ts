@@ -3,7 +3,8 @@ import { describe, expect, it } from 'vitest';
 import { store } from '../lib/store';
 import { UNKNOWN_LIMIT } from '../protocol/messages';
 import type { Limit } from '../protocol/topics';
-import { LapSamples, timeGap } from './lap_samples';
+import { timeGap } from './comparison';
+import { LapSamples, UNKNOWN_MOMENT } from './lap_samples';
 import { gapsToLimit, limitChannel, limit as limitOfThePage, limitTimeAt, receiveLimit, whyNoLimit } from './limit';
 import { lapWith } from './test_messages';
 
@@ -28,6 +29,7 @@ function samples(): LapSamples {
     all.push(
       i < 0 ? 0 : i < 100 ? 1 : 2,
       {
+        ...UNKNOWN_MOMENT,
         s_m: (500 + 10 * (i + 100)) % 1000,
         time_s: since,
         speed_mps: 50,
@@ -160,6 +162,7 @@ describe('a lap against itself as the limit', () => {
         all.push(
           lap,
           {
+            ...UNKNOWN_MOMENT,
             s_m: s[i] ?? NaN,
             time_s: since,
             speed_mps: speed[i] ?? NaN,

@@ -7,23 +7,11 @@ import type { LapChannel, LapSamples } from './lap_samples';
 
 /** A lap of another recording. */
 export interface OtherLap {
-  /** Below 0, so that it is no lap of the run, and used once. */
-  readonly number: number;
   readonly recording: string;
   /** As the recording counts. */
   readonly lap: number;
   readonly time: number; // [s]
   readonly samples: LapSamples;
-}
-
-/** The numbers given so far, by recording, lap and time: no other lap gets one of them. */
-const numbers = new Map<string, number>();
-
-function numberOf(recording: string, { lap, lap_time_s: time }: Lap): number {
-  const key = `${recording} ${lap} ${time}`;
-  const number = numbers.get(key) ?? -1 - numbers.size;
-  numbers.set(key, number);
-  return number;
 }
 
 export const otherLaps = store.signal<readonly OtherLap[]>('page', []);
@@ -37,20 +25,11 @@ export const isSameRoad = (a: LapSamples, b: LapSamples): boolean => Math.abs(a.
 export function addOtherLaps(recording: string, laps: readonly Lap[], samples: LapSamples): void {
   const kept = otherLaps.value.filter((each) => each.recording !== recording);
   const known = laps.filter(({ lap }) => samples.laps.includes(lap - 1));
-  otherLaps.value = [
-    ...kept,
-    ...known.map((each) => ({
-      number: numberOf(recording, each),
-      recording,
-      lap: each.lap,
-      time: each.lap_time_s,
-      samples,
-    })),
-  ];
+  otherLaps.value = [...kept, ...known.map(({ lap, lap_time_s: time }) => ({ recording, lap, time, samples }))];
 }
 
-export function removeOtherLaps(recording?: string): void {
-  otherLaps.value = recording === undefined ? [] : otherLaps.value.filter((each) => each.recording !== recording);
+export function removeOtherLaps(): void {
+  otherLaps.value = [];
 }
 
 /** Lines that were found from frames lie up to so many points apart though they are the same. */

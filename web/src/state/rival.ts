@@ -2,13 +2,18 @@ import { effect } from '@preact/signals';
 import { wrapAngle } from '../lib/math';
 import { store } from '../lib/store';
 import type { GhostPose, GhostSource } from '../scene3d/ghost';
+import type { Course } from './comparison';
 import { restartListeners } from './demultiplexer';
 import { ghostShown } from './ghost_shown';
+import { type LapChannel, LapSamples } from './lap_samples';
+import { lapSamples } from './laps';
 import { link, notice } from './link';
 import { live } from './live';
 import { askRival, can, canSet, requests } from './operate';
+import { channelOnto } from './other_laps';
 import { programPage } from './program_page';
-import { type Poses, type Race, readRace } from './rival_answer';
+import { type Poses, type Race, readRace, sampleRace } from './rival_answer';
+import { run } from './run';
 import { entryOf } from './settings';
 import type { Wish } from './what_if';
 
@@ -68,6 +73,43 @@ effect(() => {
   }
 });
 
+/** B's laps as functions of the distance, sampled from its poses. */
+const driven = { samples: new LapSamples(), id: NaN };
+const sampled = store.signal('page', 0);
+const known = store.data('page', () => ({ since: -1 }));
+
+function sample(now: Race): void {
+  const length = run.value?.track_length_m ?? NaN;
+  if (now.id !== driven.id || driven.samples.length !== length || (now.poses.time_s.at(-1) ?? 0) < known.since) {
+    driven.samples.clear();
+    driven.samples.setLength(length);
+    [driven.id, known.since] = [now.id, -1];
+  }
+  const line = lapSamples.place(0) - lapSamples.s(0);
+  known.since = sampleRace(driven.samples, now, Number.isFinite(line) ? line : 0, known.since);
+  sampled.value = driven.samples.completed;
+}
+
+/** The laps of B at the points of `onto`, the newest first. */
+export function raceCourses(onto: LapSamples): Course[] {
+  void sampled.value;
+  const { samples } = driven;
+  return (race.value?.b ?? [])
+    .filter(({ lap }) => samples.laps.includes(lap - 1))
+    .map(({ lap, time }) => {
+      const other = { recording: 'B', lap, time, samples };
+      const name = `lap ${lap} of B, the ghost`;
+      return {
+        id: name,
+        name,
+        total: time,
+        isStanding: lap === 1,
+        channel: (which: LapChannel) => channelOnto(other, which, onto),
+      };
+    })
+    .reverse();
+}
+
 const POLL_MS = 200;
 const next = store.data('page', () => ({ look: undefined as ReturnType<typeof setTimeout> | undefined }));
 
@@ -78,6 +120,7 @@ async function look(): Promise<void> {
   const text = await programPage('rival.json').catch(() => null);
   const now = text === null ? null : readRace(JSON.parse(text));
   race.value = now === null || now.state === 'none' ? null : now;
+  if (race.value) sample(race.value);
   if (now && (now.state === 'racing' || now.state === 'building')) next.look = setTimeout(() => void look(), POLL_MS);
 }
 

@@ -1,47 +1,38 @@
 import { describe, expect, it } from 'vitest';
+import { LapSamples } from './lap_samples';
 import { poseOf } from './rival';
-import { gapsOf, type RaceLap, readRace, verdictOf } from './rival_answer';
+import { type RaceLap, readRace, sampleRace, standingOf } from './rival_answer';
 
-const lap = (number: number, sectors: number[], more: Partial<RaceLap> = {}): RaceLap => ({
-  lap: number,
-  time: sectors.reduce((a, b) => a + b, 0),
-  sectors,
-  isClean: true,
-  slowest: [20, 20, 20],
-  fastest: [40, 40, 40],
-  errors: [1, 1, 1],
-  ...more,
-});
+const lap = (number: number, time: number, isClean = true): RaceLap => ({ lap: number, time, isClean });
 const none = readRace({ state: 'racing' });
 
-describe('the gap between two cars', () => {
-  it('is told third by third, with what the other did otherwise, the newest lap first', () => {
-    const race = {
-      ...none,
-      a: [lap(1, [10, 10, 10]), lap(2, [8, 8, 8]), lap(3, [8, 8, 8])],
-      b: [
-        lap(1, [10, 10, 10]),
-        lap(2, [7.5, 8.002, 8.4], { slowest: [22, 20, 20], fastest: [40, 40, 38], errors: [1, 1.5, 1] }),
-      ],
-    };
-    const [newest, first] = gapsOf(race);
-    expect(newest?.lap).toBe(2);
-    expect(newest?.thirds.map(({ gap }) => gap.toFixed(3))).toEqual(['-0.500', '0.002', '0.400']);
-    expect(newest?.thirds.map(({ cause }) => cause)).toEqual([
-      '4.5 mph more where it is slowest',
-      '0.5 m farther from the line',
-      '4.5 mph less at the top',
-    ]);
-    expect(first?.thirds[0]?.cause).toBe('the same');
-    expect(verdictOf(race)).toEqual({ winner: 'B', text: 'Lap 2: B is 0.098 s faster.' });
+describe('the standing of a race', () => {
+  it('is who drove the newest lap of both faster', () => {
+    const race = { ...none, a: [lap(1, 30), lap(2, 24), lap(3, 24)], b: [lap(1, 30), lap(2, 23.902)] };
+    expect(standingOf(race)).toEqual({ winner: 'B', text: 'Lap 2: B is 0.098 s faster.' });
+    expect(standingOf({ ...race, b: [lap(1, 29, false)] }).text).toBe('Lap 1: B is 1.000 s faster, off the road.');
+    expect(standingOf(none)).toEqual({ winner: null, text: 'No lap is driven by both yet.' });
+    expect(standingOf({ ...race, b: race.a }).winner).toBe(null);
   });
+});
 
-  it('is no victory of one that left the road without saying so', () => {
-    const race = { ...none, a: [lap(1, [10, 10, 10])], b: [lap(1, [9, 10, 10], { isClean: false })] };
-    expect(verdictOf(race).text).toBe('Lap 1: B is 1.000 s faster, off the road.');
-    expect(verdictOf(none)).toEqual({ winner: null, text: 'No lap is driven by both yet.' });
-    expect(verdictOf({ ...race, b: race.a }).winner).toBe(null);
-  });
+it('the other car has laps along the road, from its poses', () => {
+  const samples = new LapSamples();
+  samples.setLength(100);
+  const times = Array.from({ length: 221 }, (_, i) => i / 10);
+  const poses = {
+    ...none.poses,
+    time_s: times,
+    distance_m: times.map((time) => 10 * time),
+    speed_mps: times.map(() => 10),
+    x_m: times,
+  };
+  const newest = sampleRace(samples, { ...none, b: [lap(1, 10), lap(2, 10)], poses }, 40, -1);
+  expect(newest).toBe(22);
+  expect(samples.laps).toEqual([0, 1]);
+  expect(samples.channel(1, 'time_s')?.[500]).toBeCloseTo(5, 1);
+  expect(samples.place(0)).toBeCloseTo(40, 0);
+  expect(sampleRace(samples, { ...none, b: [lap(7, 10)], poses }, 40, 0)).toBe(0); // the first laps are not known
 });
 
 it('reads what the program tells, whatever is missing', () => {
@@ -53,7 +44,7 @@ it('reads what the program tells, whatever is missing', () => {
     trace: { time_s: [1, 2] },
   });
   expect([read.id, read.state, read.why, read.a]).toEqual([3, 'ended', 'lost', []]);
-  expect(read.b[0]).toMatchObject({ lap: 2, time: 26.5, sectors: [8, 9, NaN], isClean: true, slowest: [] });
+  expect(read.b[0]).toEqual({ lap: 2, time: 26.5, isClean: true });
   expect(read.poses.x_m).toEqual([]);
   expect(readRace(null).state).toBe('none');
 });

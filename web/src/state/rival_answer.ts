@@ -1,16 +1,16 @@
-import { inSpeedUnit, speedUnit } from '../lib/units';
+import { fixed } from '../lib/format';
+import { mod } from '../lib/math';
+import { type LapSamples, UNKNOWN_MOMENT } from './lap_samples';
 
 // A race of two settings, as GET /rival.json gives it (docs/viewer_laps.md): A is the run's own car, B the rival.
 
-/** A lap of one car; each list has three values, one for each third. */
+const SAME_S = 0.005;
+
+/** A lap of one car. */
 export interface RaceLap {
   readonly lap: number;
   readonly time: number; // [s]
-  readonly sectors: readonly number[]; // [s]
   readonly isClean: boolean;
-  readonly slowest: readonly number[]; // [m/s]
-  readonly fastest: readonly number[]; // [m/s]
-  readonly errors: readonly number[]; // largest, from the track's line [m]
 }
 
 export const POSE_COLUMNS = ['time_s', 'x_m', 'y_m', 'yaw_rad', 'steer_rad', 'speed_mps', 'distance_m'] as const;
@@ -38,11 +38,7 @@ const readLaps = (value: unknown): RaceLap[] =>
     .map((each) => ({
       lap: number(each.lap),
       time: number(each.lap_time_s),
-      sectors: numbers(each.sector_times_s),
       isClean: each.is_clean === true,
-      slowest: numbers(each.slowest_mps),
-      fastest: numbers(each.fastest_mps),
-      errors: numbers(each.largest_error_m),
     }));
 
 const STATES: readonly Race['state'][] = ['none', 'building', 'racing', 'ended', 'failed'];
@@ -61,72 +57,40 @@ export function readRace(json: unknown): Race {
   };
 }
 
-/** One third of a lap that both have driven. */
-export interface Third {
-  readonly sector: number;
-  /** How much later B was at its end than at its beginning, against A [s]; negative: B gained. */
-  readonly gap: number;
-  /** Why, in words. */
-  readonly cause: string;
+/** The poses of B along the road that have not been sampled yet, as laps; `line`: where laps begin [m]. */
+export function sampleRace(samples: LapSamples, { b, poses }: Race, line: number, since: number): number {
+  const ends: number[] = [0];
+  for (const { time } of b) ends.push((ends.at(-1) ?? 0) + time);
+  if (b.length > 0 && b[0]?.lap !== 1) return since; // the first laps are forgotten: when this one began is not known
+  let newest = since;
+  poses.time_s.forEach((time, row) => {
+    if (!(time > newest)) return;
+    newest = time;
+    let lap = 0;
+    while (lap + 1 < ends.length && time >= (ends[lap + 1] ?? Infinity)) ++lap;
+    const at = (name: keyof Poses): number => poses[name][row] ?? NaN;
+    const moment = {
+      ...UNKNOWN_MOMENT,
+      s_m: mod(line + at('distance_m'), samples.length),
+      time_s: time - (ends[lap] ?? 0),
+      speed_mps: at('speed_mps'),
+      steer_rad: at('steer_rad'),
+      x_m: at('x_m'),
+      y_m: at('y_m'),
+    };
+    samples.push(lap, moment, b[lap - 1]?.time ?? 0);
+  });
+  return newest;
 }
 
-export interface LapGap {
-  readonly lap: number;
-  readonly a: number; // [s]
-  readonly b: number; // [s]
-  readonly thirds: readonly Third[];
-}
-
-const MENTIONED_MPS = 0.25;
-const MENTIONED_M = 0.2;
-const SAME_S = 0.005;
-
-/** What B did otherwise in a third of a lap: where it was slowest and fastest, and how far from the line. */
-export function causeOf(a: RaceLap, b: RaceLap, third: number): string {
-  const unit = speedUnit();
-  const difference = (name: 'slowest' | 'fastest' | 'errors'): number =>
-    (b[name][third] ?? NaN) - (a[name][third] ?? NaN);
-  const [slowest, fastest, errors] = [difference('slowest'), difference('fastest'), difference('errors')];
-  const speed = (mps: number): string =>
-    `${Math.abs(inSpeedUnit(mps)).toFixed(1)} ${unit.name} ${mps > 0 ? 'more' : 'less'}`;
-  const parts = [
-    Math.abs(slowest) >= MENTIONED_MPS ? `${speed(slowest)} where it is slowest` : '',
-    Math.abs(fastest) >= MENTIONED_MPS ? `${speed(fastest)} at the top` : '',
-    Math.abs(errors) >= MENTIONED_M
-      ? `${Math.abs(errors).toFixed(1)} m ${errors > 0 ? 'farther from' : 'nearer to'} the line`
-      : '',
-  ].filter((part) => part !== '');
-  const gap = (b.sectors[third] ?? NaN) - (a.sectors[third] ?? NaN);
-  if (parts.length > 0) return parts.join(', ');
-  return Math.abs(gap) < SAME_S ? 'the same' : 'another way at nearly the same speeds';
-}
-
-/** The laps that both have driven, the newest first. */
-export function gapsOf({ a, b }: Race): LapGap[] {
-  return b
-    .flatMap((other) => {
-      const own = a.find(({ lap }) => lap === other.lap);
-      if (!own) return [];
-      const thirds = [0, 1, 2].map((i) => ({
-        sector: i + 1,
-        gap: (other.sectors[i] ?? NaN) - (own.sectors[i] ?? NaN),
-        cause: causeOf(own, other, i),
-      }));
-      return [{ lap: own.lap, a: own.time, b: other.time, thirds }];
-    })
-    .reverse();
-}
-
-/** Who is ahead, by the laps that both have driven and that are no standing start where there is another. */
-export function verdictOf(race: Race): { readonly winner: 'A' | 'B' | null; readonly text: string } {
-  const gaps = gapsOf(race);
-  const newest = gaps[0];
-  if (!newest) return { winner: null, text: 'No lap is driven by both yet.' };
-  const gap = newest.b - newest.a;
-  const isB = gap < 0;
-  if (Math.abs(gap) < SAME_S) return { winner: null, text: `Lap ${newest.lap}: as fast as each other.` };
-  const unclean = (isB ? race.b : race.a).find(({ lap }) => lap === newest.lap)?.isClean === false;
-  const winner = isB ? 'B' : 'A';
-  const how = unclean ? ', off the road' : '';
-  return { winner, text: `Lap ${newest.lap}: ${winner} is ${Math.abs(gap).toFixed(3)} s faster${how}.` };
+/** The newest lap that both have driven: how much slower B was [s], and what that means; no winner within 5 ms. */
+export function standingOf({ a, b }: Race): { readonly winner: 'A' | 'B' | null; readonly text: string } {
+  const other = [...b].reverse().find(({ lap }) => a.some((own) => own.lap === lap));
+  const own = a.find(({ lap }) => lap === other?.lap);
+  if (!own || !other) return { winner: null, text: 'No lap is driven by both yet.' };
+  const gap = other.time - own.time;
+  if (Math.abs(gap) < SAME_S) return { winner: null, text: `Lap ${own.lap}: as fast as each other.` };
+  const [winner, best] = gap < 0 ? (['B', other] as const) : (['A', own] as const);
+  const text = `Lap ${own.lap}: ${winner} is ${fixed(Math.abs(gap), 3)} s faster${best.isClean ? '' : ', off the road'}.`;
+  return { winner, text };
 }

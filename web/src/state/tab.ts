@@ -2,13 +2,13 @@ import { effect } from '@preact/signals';
 import { persisted } from '../lib/persisted';
 
 /** The panels, in the order of their tabs and of the keys 1, 2, … */
-export const TABS = ['drive', 'plots', 'explain', 'tune', 'laps', 'faults', 'whatif'] as const;
+export const TABS = ['drive', 'tune', 'laps', 'faults', 'whatif'] as const;
 export type Tab = (typeof TABS)[number];
 
 const isTab = (value: unknown): value is Tab => (TABS as readonly unknown[]).includes(value);
 
 /** The panel that is shown. */
-export const tab = persisted<Tab>('tab', 'plots', isTab);
+export const tab = persisted<Tab>('tab', 'laps', isTab);
 
 /** The tab that an address names; null without one. */
 export function tabIn(hash: string): Tab | null {

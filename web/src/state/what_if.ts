@@ -1,6 +1,8 @@
 import { effect } from '@preact/signals';
 import { refusalInWords } from '../lib/refusal';
+import { tidy } from '../lib/scale';
 import { store } from '../lib/store';
+import { nameInWords } from '../lib/words';
 import type { SchemaEntry } from '../protocol/schema';
 import type { AskAnswer, Setting } from '../protocol/source';
 import { restartListeners } from './demultiplexer';
@@ -121,6 +123,14 @@ export async function ask(): Promise<void> {
   } finally {
     if (mine === asking.newest) progress.value = null;
   }
+}
+
+/** What both futures are called: "as it is", and what was changed. */
+export function futureNames(): readonly [string, string] {
+  const [first, ...others] = asked.value;
+  if (!first) return ['as it is', 'what if'];
+  const name = `${nameInWords(first.key.split('.').at(-1) ?? first.key)} ${typeof first.value === 'number' ? tidy(first.value) : first.value}`;
+  return ['as it is', others.length === 0 ? `with ${name}` : `with ${others.length + 1} changes`];
 }
 
 /** Forgets the answer, and one that is being computed. */

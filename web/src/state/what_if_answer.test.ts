@@ -1,16 +1,24 @@
 import { describe, expect, it } from 'vitest';
+import { compare } from './comparison';
 import {
-  atDistance,
-  finalGap,
-  gapAt,
-  placesOf,
+  type FutureGrid,
+  futureCourses,
   readWhatIf,
-  stretchesOf,
   TRACE_COLUMNS,
   trustOf,
   verdictOf,
   type WhatIfAnswer,
 } from './what_if_answer';
+
+const NAMES = ['as it is', 'with latency 60'] as const;
+/** A lap of 200 m, of which 100 m were driven at 20 m/s. */
+const GRID: FutureGrid = {
+  length: 200,
+  points: 200,
+  s: (point) => point,
+  driven: (_lap, name) =>
+    name === 'time_s' ? Float64Array.from({ length: 200 }, (_, i) => (i < 100 ? i / 20 : NaN)) : null,
+};
 
 /** A future at a steady speed from 100 m on, as the program tells it. */
 function steady(speed: number, seconds: number, more: object = {}): object {
@@ -26,7 +34,12 @@ function steady(speed: number, seconds: number, more: object = {}): object {
     off_track_events: 0,
     interventions: 0,
     passages: [],
-    trace: { ...trace, time_s: times, distance_m: times.map((time) => 100 + (time - 10) * speed) },
+    trace: {
+      ...trace,
+      speed_mps: times.map(() => speed),
+      time_s: times,
+      distance_m: times.map((time) => 100 + (time - 10) * speed),
+    },
     ...more,
   };
 }
@@ -70,48 +83,37 @@ describe('an answer', () => {
   it('of another program has numbers that are not known, and no failure', () => {
     const answer = answerOf({}, { trace: 7 });
     expect(answer.was.leastEdge).toBeNaN();
-    expect(stretchesOf(answer)).toEqual([]);
-    expect(finalGap(answer)).toBeNaN();
+    expect(futureCourses(answer, GRID, NAMES)).toEqual([]);
   });
 
-  it('compares the futures at the same place, as far as both have come', () => {
-    const answer = answerOf(steady(20, 5), steady(25, 5));
-    expect(atDistance(answer.was.trace, 'time_s', 130)).toBeCloseTo(11.5, 12);
-    expect(atDistance(answer.was.trace, 'time_s', 200)).toBe(15);
-    expect(atDistance(answer.was.trace, 'time_s', 99)).toBeNaN();
-    expect(atDistance(answer.was.trace, 'time_s', 201)).toBeNaN();
-    expect(gapAt(answer, 200)).toBeCloseTo(-1, 12);
-    expect(finalGap(answer)).toBeCloseTo(-1, 12);
-    const places = placesOf(answer, 11);
-    expect(places[0]).toBe(100);
-    expect(places.at(-1)).toBe(225);
-    expect(places).toHaveLength(11);
-  });
-
-  it('tells sectors by the time spent in them, unknown where one future did not come', () => {
-    const passages = [
-      { lap: 1, sector: 3, time_s: 2 },
-      { lap: 2, sector: 1, time_s: 5 },
-    ];
-    const answer = answerOf(
-      steady(20, 5, { passages }),
-      steady(15, 5, { passages: [{ lap: 1, sector: 3, time_s: 2.5 }] }),
-    );
-    expect(stretchesOf(answer)).toEqual([
-      { lap: 1, sector: 3, isWhole: false, was: 2, branch: 2.5 },
-      { lap: 2, sector: 1, isWhole: true, was: 3, branch: NaN },
-    ]);
+  it('compares both futures behind what was driven of the lap, up to its end or to the end of the shorter', () => {
+    const whole = (seconds: number) => ({ passages: [{ lap: 3, sector: 3, time_s: seconds }] });
+    const [was, branch] = futureCourses(answerOf(steady(20, 5, whole(5)), steady(25, 4, whole(4))), GRID, NAMES);
+    if (!was || !branch) throw new Error('no futures');
+    expect([was.name, branch.name]).toEqual(['lap 3 as it is', 'lap 3 with latency 60']);
+    // 100 m were driven in 5 s; then 20 or 25 m/s to the end at 200 m.
+    expect([was.total, branch.total].map((time) => time.toFixed(3))).toEqual(['10.000', '9.000']);
+    expect(was.channel('time_s')?.[60]).toBeCloseTo(3);
+    expect(branch.channel('time_s')?.[150]).toBeCloseTo(7);
+    const found = compare(was, branch, { samples: GRID, corners: [], line: 0 });
+    expect(found?.gap[90]).toBeCloseTo(0);
+    expect(found?.gap[150]).toBeCloseTo(0.5);
+    expect(found?.total).toBeCloseTo(1);
+    const [first, second] = futureCourses(answerOf(steady(20, 5), steady(25, 2)), GRID, NAMES);
+    const short = first && second && compare(first, second, { samples: GRID, corners: [], line: 0 });
+    expect(short?.total).toBeCloseTo(0.5); // at 150 m
+    expect(second?.channel('time_s')?.[151]).toBeNaN();
   });
 
   it('has a verdict in words', () => {
-    expect(verdictOf(answerOf(steady(20, 5), steady(25, 5, { min_edge_distance_m: 0.8, interventions: 2 })))).toBe(
+    expect(verdictOf(answerOf(steady(20, 5), steady(25, 5, { min_edge_distance_m: 0.8, interventions: 2 })), -1)).toBe(
       '1.00 s faster to the same place, with 0.20 m less room to the edge' +
         '; 2 more control steps were changed by the guard.',
     );
-    expect(verdictOf(answerOf(steady(20, 5), steady(20, 5)))).toBe(
+    expect(verdictOf(answerOf(steady(20, 5), steady(20, 5)), 0)).toBe(
       'As fast as before, with the same room to the edge.',
     );
-    expect(verdictOf(answerOf(steady(20, 5), steady(16, 5, { min_edge_distance_m: -0.5 })))).toBe(
+    expect(verdictOf(answerOf(steady(20, 5), steady(16, 5, { min_edge_distance_m: -0.5 })), 1)).toBe(
       '1.00 s slower to the same place, 0.50 m off the road.',
     );
   });

@@ -1,4 +1,6 @@
 import { mix } from '../lib/math';
+import type { Course } from './comparison';
+import type { LapChannel } from './lap_samples';
 
 // Two futures of a run from one moment on, as GET /what_if.json gives them (docs/viewer_laps.md).
 
@@ -14,7 +16,7 @@ export const TRACE_COLUMNS = [
   'lateral_error_m',
   'edge_distance_m',
 ] as const;
-export type TraceColumn = (typeof TRACE_COLUMNS)[number];
+type TraceColumn = (typeof TRACE_COLUMNS)[number];
 export type Trace = Readonly<Record<TraceColumn, readonly number[]>>;
 
 /** The end of a third of a lap. */
@@ -129,7 +131,7 @@ function rowAt(column: readonly number[], value: number): number {
 }
 
 /** A column of a trace at a distance along the road; not-a-number where it was not driven. */
-export function atDistance(trace: Trace, name: TraceColumn, distance: number): number {
+function atDistance(trace: Trace, name: TraceColumn, distance: number): number {
   const places = trace.distance_m;
   const row = rowAt(places, distance);
   const [here, next] = [places[row] ?? NaN, places[row + 1] ?? NaN];
@@ -138,45 +140,67 @@ export function atDistance(trace: Trace, name: TraceColumn, distance: number): n
   return next > here ? mix(values[row] ?? NaN, values[row + 1] ?? NaN, (distance - here) / (next - here)) : NaN;
 }
 
-/** Distances at which both futures are drawn [m]. */
-export function placesOf({ was, branch }: WhatIfAnswer, count = 600): number[] {
-  const first = was.trace.distance_m[0] ?? 0;
-  const last = Math.max(was.trace.distance_m.at(-1) ?? first, branch.trace.distance_m.at(-1) ?? first);
-  return Array.from({ length: count }, (_, i) => first + ((last - first) * i) / (count - 1));
+/** The points at which futures are compared; `driven`: a lap of the run, as far as it is known. */
+export interface FutureGrid {
+  readonly length: number; // of the lap [m]
+  readonly points: number;
+  s(point: number): number;
+  driven(lap: number, name: LapChannel): Float64Array | null;
 }
 
-/** How much later the second future is at the same place [s]; negative where it is ahead. */
-export const gapAt = ({ was, branch }: WhatIfAnswer, distance: number): number =>
-  atDistance(branch.trace, 'time_s', distance) - atDistance(was.trace, 'time_s', distance);
+const isColumn = (name: string): name is TraceColumn & LapChannel =>
+  (TRACE_COLUMNS as readonly string[]).includes(name);
 
-/** A stretch between two passages, or from the branch on; not-a-number where a future did not drive it whole. */
-export interface Stretch {
-  readonly lap: number;
-  readonly sector: number;
-  /** Whether it is a whole third of the lap. */
-  readonly isWhole: boolean;
-  readonly was: number; // [s]
-  readonly branch: number; // [s]
-}
+/** When a future comes to the end of its n-th lap, since the branch [s]; 0: the branch. */
+const endOf = ({ passages }: Future, lap: number): number =>
+  passages.find((each) => each.lap === lap && each.sector === 3)?.time ?? NaN;
 
-/** The thirds of laps that either future has driven, in order. */
-export function stretchesOf({ was, branch }: WhatIfAnswer): Stretch[] {
-  const longer = was.passages.length >= branch.passages.length ? was : branch;
-  const spent = (future: Future, i: number): number =>
-    (future.passages[i]?.time ?? NaN) - (i > 0 ? (future.passages[i - 1]?.time ?? NaN) : 0);
-  return longer.passages.map(({ lap, sector }, i) => ({
-    lap,
-    sector,
-    isWhole: i > 0,
-    was: spent(was, i),
-    branch: spent(branch, i),
-  }));
-}
-
-/** The gap at the last place that both have come to [s]. */
-export function finalGap(answer: WhatIfAnswer): number {
-  const end = Math.min(answer.was.trace.distance_m.at(-1) ?? NaN, answer.branch.trace.distance_m.at(-1) ?? NaN);
-  return gapAt(answer, end);
+/**
+ * One lap of both futures: the one they branch in, behind what was driven of it, or the next where both come to its end
+ * and only there. `names`: of both in a sentence.
+ */
+export function futureCourses(
+  { was, branch, at }: WhatIfAnswer,
+  grid: FutureGrid,
+  names: readonly [string, string],
+): Course[] {
+  const begin = was.trace.distance_m[0] ?? NaN;
+  if (!(grid.length > 0) || !Number.isFinite(begin)) return [];
+  const first = was.passages[0]?.lap ?? branch.passages[0]?.lap ?? 1;
+  const isWhole = (lap: number): boolean => [was, branch].every((each) => Number.isFinite(endOf(each, lap)));
+  const driven = grid.driven(first, 'time_s');
+  const firstPoint = Math.ceil((begin / grid.length) * grid.points);
+  const isSeen = firstPoint < 2 || Number.isFinite(driven?.[Math.min(firstPoint, grid.points) - 1] ?? NaN);
+  const lap = !(isSeen && isWhole(first)) && isWhole(first + 1) ? first + 1 : first;
+  const ahead = (lap - first) * grid.length;
+  return [was, branch].map((future, which): Course => {
+    const { trace } = future;
+    // The lap begins here, on the time line of the run [s].
+    const line =
+      lap > first
+        ? at + endOf(future, first)
+        : firstPoint < 2 || !isSeen
+          ? at
+          : at -
+            (driven?.[firstPoint - 1] ?? NaN) -
+            (begin - grid.s(firstPoint - 1)) / (was.trace.speed_mps[0] || Infinity);
+    const name = `lap ${lap} ${names[which]}`;
+    return {
+      id: which === 0 ? 'as it is' : 'what if',
+      name,
+      total: at + endOf(future, lap) - line,
+      isStanding: false,
+      channel(channel) {
+        if (!isColumn(channel)) return null;
+        const before = lap === first ? grid.driven(first, channel) : null;
+        return Float64Array.from({ length: grid.points }, (_, point) => {
+          const place = grid.s(point) + ahead;
+          if (place < begin) return before?.[point] ?? NaN;
+          return atDistance(trace, channel, place) - (channel === 'time_s' ? line : 0);
+        });
+      },
+    };
+  });
 }
 
 /** Whose car drove both futures, and how far it is to be trusted, for a car that another program simulates. */
@@ -187,10 +211,8 @@ export function trustOf({ plant, compared, apart }: StandIn): string {
   return `${whose} ${over}, it came up to ${apart.toFixed(2)} m from yours.`;
 }
 
-/** What the change comes to, in one sentence. */
-export function verdictOf(answer: WhatIfAnswer): string {
-  const { was, branch } = answer;
-  const gap = finalGap(answer);
+/** What the change comes to, in one sentence; `gap`: how much later the second future is at the end [s]. */
+export function verdictOf({ was, branch }: WhatIfAnswer, gap: number): string {
   const pace =
     Math.abs(gap) < 0.005
       ? 'As fast as before'

@@ -2,7 +2,6 @@ import { useEffect, useRef } from 'preact/hooks';
 import { onThemeChange } from '../draw/theme';
 import { onScreen } from '../lib/on_screen';
 import { everyFrame } from '../state/ticker';
-import { registerDrawing } from './picture_drawings';
 import { fitCanvas } from './plot_colours';
 
 export type Paint = (context: CanvasRenderingContext2D, width: number, height: number) => void;
@@ -42,10 +41,8 @@ export function CanvasView({
       latest.current.paint(context, box.width, box.height);
     };
     const stop = everyFrame(() => box.isSeen && draw(), interval);
-    const forget = registerDrawing(draw);
     return () => {
       stop();
-      forget();
       unwatch();
       box.end();
     };

@@ -1,8 +1,6 @@
 import { useComputed } from '@preact/signals';
 import { rangeAboutZero, rangeFromZero, rangeInSteps } from '../draw/axis';
-import { downloadPng, fileName } from '../lib/download';
 import { fixed } from '../lib/format';
-import { persisted } from '../lib/persisted';
 import { type SpeedUnit, speedUnit } from '../lib/units';
 import { nameInWords } from '../lib/words';
 import { COST_TERMS, Column, costColumn } from '../state/columns';
@@ -19,13 +17,8 @@ import {
 } from '../state/plot_view';
 import { run } from '../state/run';
 import { GgView } from './gg_view';
-import { pictureOfPlots } from './plot_picture';
 import { drawStatusStrip } from './status_strip';
 import { type PlotSpec, TimePlot } from './time_plot';
-import { TrackPlots } from './track_plots';
-
-/** Whether plots run over time, or over the distance along the track with the best lap and the limit behind. */
-const axis = persisted<'time' | 'track'>('plots.axis', 'time', (value) => value === 'time' || value === 'track');
 
 /** Colours with the same meaning in all plots: applied blue, requested orange, sent green. */
 const [APPLIED, ASKED, SENT, LIMIT] = [0, 1, 2, 4];
@@ -131,9 +124,6 @@ function costSpec(names: readonly string[]): PlotSpec {
   };
 }
 
-const savePicture = async (): Promise<void> =>
-  downloadPng(fileName([run.value?.track ?? '', 'plots'], 'png'), await pictureOfPlots());
-
 function Toolbar() {
   return (
     <div class="toolbar" role="group" aria-label="Plots">
@@ -161,13 +151,6 @@ function Toolbar() {
           </button>
         ))}
       </div>
-      <div class="segments" role="group" aria-label="Plots over">
-        {(['time', 'track'] as const).map((each) => (
-          <button key={each} type="button" aria-pressed={axis.value === each} onClick={() => (axis.value = each)}>
-            {each === 'time' ? 'Time' : 'Track'}
-          </button>
-        ))}
-      </div>
       {zoomed.value ? (
         <button type="button" onClick={thaw}>
           Reset zoom
@@ -175,10 +158,6 @@ function Toolbar() {
       ) : (
         <span class="hint wide-only">Drag to zoom</span>
       )}
-      <span class="spring" />
-      <button type="button" title="All plots as a picture" onClick={() => void savePicture()}>
-        PNG
-      </button>
     </div>
   );
 }
@@ -202,8 +181,7 @@ export function PlotsView() {
   return (
     <div class="plots-view">
       <Toolbar />
-      {axis.value === 'track' && <TrackPlots />}
-      <div class="plots" hidden={axis.value === 'track'}>
+      <div class="plots">
         <TimePlot spec={speed.value} />
         {BEFORE_COST.map((spec) => (
           <TimePlot key={spec.title} spec={spec} />

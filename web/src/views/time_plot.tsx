@@ -24,7 +24,6 @@ import { shown } from '../state/shown';
 import { LONGEST_SILENCE_S } from '../state/silence';
 import { everyFrame } from '../state/ticker';
 import { drawFaultBands } from './fault_bands';
-import { registerDrawing } from './picture_drawings';
 import { type ChartColours, chartColours } from './plot_colours';
 
 export interface Series {
@@ -258,7 +257,6 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
       last = now;
       redraw();
     });
-    const forget = registerDrawing(redraw);
     const unwatch = onThemeChange(() => {
       plot.destroy();
       plot = create();
@@ -276,7 +274,6 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
     });
     return () => {
       stop();
-      forget();
       unwatch();
       unfollow();
       point();

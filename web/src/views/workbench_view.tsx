@@ -7,23 +7,19 @@ import { isStageAlone } from '../state/presentation';
 import { TABS, type Tab, tab } from '../state/tab';
 import { DriveView } from './drive_view';
 import { EndView } from './end_view';
-import { ExplainView } from './explain_view';
 import { FaultsView } from './faults_view';
 import { InstrumentsView } from './instruments_view';
-import { LapsView } from './laps_view';
-import { PlotsView } from './plots_view';
 import { TourView } from './tour_view';
 import { TrackView } from './track_view';
 import { TuneView } from './tune_view';
+import { UnderstandView } from './understand_view';
 import { WhatIfView } from './what_if_view';
 
 /** A panel is a view of its own, one row here, and its name in TABS. */
 const PANELS = [
   { name: 'drive', title: 'Drive', View: DriveView },
-  { name: 'plots', title: 'Plots', View: PlotsView },
-  { name: 'explain', title: 'Explain', View: ExplainView },
   { name: 'tune', title: 'Tune', View: TuneView },
-  { name: 'laps', title: 'Laps', View: LapsView },
+  { name: 'laps', title: 'Understand', View: UnderstandView },
   { name: 'faults', title: 'Faults', View: FaultsView },
   { name: 'whatif', title: 'What if', View: WhatIfView },
 ] as const satisfies readonly { name: Tab; title: string; View: ComponentType }[];
@@ -152,7 +148,7 @@ function useScrollOf(name: Tab) {
 
 export function WorkbenchView() {
   const body = useScrollOf(tab.value);
-  const View: ComponentType = PANELS[TABS.indexOf(tab.value)]?.View ?? PlotsView;
+  const View: ComponentType = PANELS[TABS.indexOf(tab.value)]?.View ?? UnderstandView;
   const classes = [
     'workbench',
     `dock-${dock.value}`,

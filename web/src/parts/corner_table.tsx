@@ -1,0 +1,51 @@
+import { byCost, type Comparison, signed, toneOf, whyOf } from '../state/comparison';
+
+interface Options {
+  readonly comparison: Comparison;
+  /** The corner at this place is marked [m]. */
+  readonly at?: number;
+  readonly pick?: (apex: number) => void;
+}
+
+/** The corners by what they cost, or bring, with the reason. */
+export function CornerTable({ comparison, at, pick }: Options) {
+  const corners = byCost(comparison);
+  const most = Math.max(0.01, ...corners.map(({ lost }) => Math.abs(lost)));
+  if (corners.length === 0) return null;
+  return (
+    <table class="corner-costs" data-testid="corner-costs">
+      <caption class="sr-only">Corners by cost</caption>
+      <thead class="sr-only">
+        <tr>
+          <th scope="col">Corner</th>
+          <th scope="col">Share</th>
+          <th scope="col">Lost, s</th>
+          <th scope="col">Because</th>
+        </tr>
+      </thead>
+      <tbody>
+        {corners.map((corner) => {
+          const { name, lost, from, to, apex } = corner;
+          return (
+            <tr key={name} class={at !== undefined && at >= from && at < to ? 'at' : ''} onClick={() => pick?.(apex)}>
+              <th scope="row">
+                {pick ? (
+                  <button type="button" title={`Put the cursor on ${name}`}>
+                    {name}
+                  </button>
+                ) : (
+                  name
+                )}
+              </th>
+              <td>
+                <i class={toneOf(lost)} style={{ width: `${(100 * Math.abs(lost)) / most}%` }} />
+              </td>
+              <td>{signed(lost)}</td>
+              <td class="why">{whyOf(corner)}</td>
+            </tr>
+          );
+        })}
+      </tbody>
+    </table>
+  );
+}

@@ -1,0 +1,62 @@
+import { lapTime } from '../lib/format';
+import { atStart, type Comparison, type Course, headlineOf } from '../state/comparison';
+
+interface WordOptions {
+  readonly label: string;
+  readonly name: string;
+  readonly course: Course;
+  readonly courses: readonly Course[];
+  readonly choose: (id: string) => void;
+}
+
+/** A word of the sentence that can be chosen: a native select lies on it. */
+function Word({ label, name, course, courses, choose }: WordOptions) {
+  return (
+    <span class={label === 'B' ? 'word other' : 'word'}>
+      <span aria-hidden="true">{name}</span>
+      <select aria-label={label} value={course.id} onChange={({ currentTarget }) => choose(currentTarget.value)}>
+        {courses.map(({ id, name: each, total }) => (
+          <option key={id} value={id}>
+            {Number.isFinite(total) ? `${atStart(each)}, ${lapTime(total, 3)}` : atStart(each)}
+          </option>
+        ))}
+      </select>
+    </span>
+  );
+}
+
+interface Options {
+  readonly comparison: Comparison;
+  readonly courses: readonly Course[];
+  readonly choose: (which: 0 | 1, id: string) => void;
+}
+
+/** "Lap 3 lost 3.45 s to the limit; T4 cost most, 1.08 s.": A and B can be chosen. */
+export function Headline({ comparison, courses, choose }: Options) {
+  const { a, b } = comparison;
+  const { verb, amount, tone, to, rest } = headlineOf(comparison);
+  const isFromStandstill = a.isStanding && !b.isStanding;
+  return (
+    <h1 class="verdict" data-testid="headline">
+      <Word
+        label="A"
+        name={atStart(a.name)}
+        course={a}
+        courses={courses.filter(({ id }) => id !== b.id && id !== 'limit')}
+        choose={(id) => choose(0, id)}
+      />
+      {isFromStandstill && ', from standstill,'}
+      {verb}
+      {amount !== '' && <b class={tone}>{amount}</b>}
+      {to}
+      <Word
+        label="B"
+        name={b.name}
+        course={b}
+        courses={courses.filter(({ id }) => id !== a.id)}
+        choose={(id) => choose(1, id)}
+      />
+      {rest}
+    </h1>
+  );
+}
