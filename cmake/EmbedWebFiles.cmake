@@ -2,10 +2,10 @@
 
 include(${CMAKE_CURRENT_LIST_DIR}/NpmCi.cmake)
 
-# The dashboard, and in one script and one style each the pages of `chicane report`: of recordings and of results.
-set(bundles report document)
+# The dashboard, and in one script and one style the page of `chicane report`.
+set(bundles document)
 function(build_pages)
-  execute_process(COMMAND ${NODE} build.mjs ${BUILD}/dist ${BUILD}/report ${BUILD}/document WORKING_DIRECTORY ${SOURCE}
+  execute_process(COMMAND ${NODE} build.mjs ${BUILD}/dist ${BUILD}/document WORKING_DIRECTORY ${SOURCE}
                   RESULT_VARIABLE failed)
   foreach(bundle ${bundles})
     file(GLOB scripts ${BUILD}/${bundle}/assets/*.js)

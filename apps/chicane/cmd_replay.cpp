@@ -18,7 +18,7 @@
 #include "chicane/live/pages.hpp"
 #include "chicane/live/what_if.hpp"
 #include "chicane/protocol/schema_json.hpp"
-#include "chicane/recording/excerpt.hpp"
+#include "chicane/recording/indexed_copy.hpp"
 #include "chicane/recording/reader.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/recording/temporary_file.hpp"
@@ -51,7 +51,7 @@ class Shown {
     if (!read->is_complete || read->is_compressed || read->damaged > 0) {
       copies_.emplace_back(".mcap");
       served = copies_.back().path();
-      if (const auto copied = recording::excerpt(file, served, {}); !copied) return fail(copied.error());
+      if (const auto copied = recording::indexed_copy(file, served); !copied) return fail(copied.error());
     }
     std::string settings;
     if (const auto scenario = recording::recorded_scenario(served)) {

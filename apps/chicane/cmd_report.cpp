@@ -71,7 +71,7 @@ ExitCode report_logs(const Options& options) {
   if (!options.maps_page.empty())
     return report(Error{ErrorCode::kInvalidArgument, "--page: got recordings, expected results of a sweep"});
   recording::ReportOptions reporting{
-      .output = options.output_file, .logs = {}, .bundle = live::report_bundle()};
+      .output = options.output_file, .logs = {}, .bundle = live::document_bundle()};
   std::list<recording::TemporaryFile> copies;
   for (const std::string& file : options.log_files) {
     std::error_code error;  // of a file that is not there: no reason to stop
@@ -92,7 +92,7 @@ ExitCode report_logs(const Options& options) {
   if (!named) return report(named.error());
   const Result<recording::ReportSummary> written = recording::write_report(reporting);
   if (!written) return report(written.error());
-  fmt::print("{}: {:.1f} MB, {:g} messages a second; open it in a browser\n", options.output_file,
+  fmt::print("{}: {:.1f} MB, {:g} control steps a second; open it in a browser\n", options.output_file,
              1e-6 * static_cast<double>(written->bytes), written->rate);
   return kSuccess;
 }

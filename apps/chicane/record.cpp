@@ -19,7 +19,7 @@ namespace {
 
 /// Better told before the run than after it.
 Result<void> can_be_reported(const std::string& file) {
-  if (live::report_bundle().script.empty()) {
+  if (live::document_bundle().script.empty()) {
     return fail(
         ErrorCode::kNotFound,
         "--report: this program was built without its dashboard: install Node.js and npm, and build again");
@@ -98,9 +98,9 @@ Result<void> KeptRun::write_report() const {
   const std::string& log = temporary_ ? temporary_->path() : record_file_;
   const std::string name = std::filesystem::path(temporary_ ? report_file_ : record_file_).filename();
   const Result<recording::ReportSummary> written = recording::write_report(
-      {.output = report_file_, .logs = {{name, log}}, .bundle = live::report_bundle()});
+      {.output = report_file_, .logs = {{name, log}}, .bundle = live::document_bundle()});
   if (!written) return fail(written.error());
-  fmt::print(stderr, "{}: {:.1f} MB, {:g} messages a second; open it in a browser\n", report_file_,
+  fmt::print(stderr, "{}: {:.1f} MB, {:g} control steps a second; open it in a browser\n", report_file_,
              1e-6 * static_cast<double>(written->bytes), written->rate);
   return {};
 }

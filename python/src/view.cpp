@@ -12,7 +12,7 @@ namespace {
 /// The dashboard with a recording, as one page. Returns its size in bytes.
 std::size_t write_page(const std::string& recording, const std::string& name, const std::string& page) {
   const recording::ReportOptions options{
-      .output = page, .logs = {{name, recording}}, .bundle = live::report_bundle()};
+      .output = page, .logs = {{name, recording}}, .bundle = live::document_bundle()};
   return value_of(unlocked([&] { return recording::write_report(options); })).bytes;
 }
 

@@ -7,7 +7,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "chicane/recording/excerpt.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/recording/indexed_copy.hpp"
+#include "chicane/recording/recorder.hpp"
+#include "chicane/run/closed_loop.hpp"
 #include "chicane/telemetry/mcap_reader.hpp"
 #include "telemetry/sample_mcap.hpp"
 
@@ -20,17 +23,26 @@ using testing::HasSubstr;
 
 constexpr std::uint64_t kSecond = 1'000'000'000;
 
+constexpr const char* kStep = "float64 time_s\nint32 rung\n";
+
+/// A control step in CDR.
+std::string step(double time, std::int32_t rung) {
+  std::string bytes{"\0\1\0\0", 4};
+  bytes.append(reinterpret_cast<const char*>(&time), sizeof time);
+  return bytes.append(reinterpret_cast<const char*>(&rung), sizeof rung);
+}
+
 /// Ten seconds of two topics, one of them not drawn; `is_closed`: as it should be.
-void write_log(const std::string& path, bool is_closed = true, std::size_t size = 100) {
+void write_log(const std::string& path, bool is_closed = true) {
   auto writer = telemetry::McapWriter::create(path, "test");
   ASSERT_TRUE(writer);
   ASSERT_TRUE((*writer)->add_metadata("run", {{"track", "lakeside"}}));
-  const std::uint16_t frame = (*writer)->add_channel("/chicane/frame", "chicane_msgs/msg/Frame", "bool a\n");
+  const std::uint16_t frame = (*writer)->add_channel("/chicane/frame", "chicane_msgs/msg/Frame", kStep);
   const std::uint16_t other = (*writer)->add_channel("/odom", "nav_msgs/msg/Odometry", "bool a\n");
   for (std::uint64_t i = 0; i < 250; ++i) {
     const std::uint64_t time = i * kSecond / 25;
-    ASSERT_TRUE((*writer)->write(frame, time, time, std::string(size, 'f')));
-    ASSERT_TRUE((*writer)->write(other, time, time, std::string(size, 'o')));
+    ASSERT_TRUE((*writer)->write(frame, time, time, step(0.04 * static_cast<double>(i), i == 101 ? 1 : 0)));
+    ASSERT_TRUE((*writer)->write(other, time, time, std::string(100, 'o')));
   }
   if (is_closed) return;
   ASSERT_TRUE((*writer)->flush());
@@ -81,33 +93,26 @@ TEST(Base64, IsThatOfTheStandard) {
   EXPECT_EQ(base64("\xff\xfe\xfd"), "//79");
 }
 
-TEST_F(ReportTest, ExcerptThinsTopicsAndKeepsTheRest) {
+TEST_F(ReportTest, IndexedCopyHoldsEverything) {
   write_log(log_.path());
-  ASSERT_TRUE(excerpt(log_.path(), copy_, {.topics = {"/chicane/frame"}, .rate = 10.0}));
+  ASSERT_TRUE(indexed_copy(log_.path(), copy_));
   std::map<std::string, int> counts;
-  std::uint64_t last = 0;
   std::string track;
   const auto read = telemetry::read_mcap(
-      copy_, {.on_message =
-                  [&](const telemetry::McapMessage& message) {
-                    const bool is_first = counts[message.channel.topic]++ == 0;
-                    EXPECT_TRUE(is_first || message.log_time - last >= kSecond / 25);
-                    last = message.log_time;
-                  },
+      copy_, {.on_message = [&](const telemetry::McapMessage& message) { ++counts[message.channel.topic]; },
               .on_metadata = [&](std::string_view, const auto& entries) { track = entries.at("track"); }});
   ASSERT_TRUE(read);
   EXPECT_TRUE(read->is_complete);
-  EXPECT_EQ(counts.size(), 1U);
-  EXPECT_NEAR(counts["/chicane/frame"], 100, 2);
+  EXPECT_EQ(counts, (std::map<std::string, int>{{"/chicane/frame", 250}, {"/odom", 250}}));
   EXPECT_EQ(track, "lakeside");
 }
 
-TEST_F(ReportTest, ExcerptGivesARecordingThatWasNotClosedAnEnd) {
+TEST_F(ReportTest, IndexedCopyGivesARecordingThatWasNotClosedAnEnd) {
   write_log(log_.path(), false);
   const auto before = telemetry::read_mcap(log_.path(), {});
   ASSERT_TRUE(before);
   EXPECT_FALSE(before->is_complete);
-  ASSERT_TRUE(excerpt(log_.path(), copy_, {}));
+  ASSERT_TRUE(indexed_copy(log_.path(), copy_));
   const auto after = telemetry::read_mcap(copy_, {});
   ASSERT_TRUE(after);
   EXPECT_TRUE(after->is_complete);
@@ -118,15 +123,63 @@ TEST_F(ReportTest, IsOnePageThatAsksForNothing) {
   write_log(log_.path());
   const auto written = write("run.mcap");
   ASSERT_TRUE(written) << written.error().message;
-  EXPECT_EQ(written->rate, 10.0);
+  EXPECT_EQ(written->rate, 20.0);
   EXPECT_NEAR(static_cast<double>(written->bytes), static_cast<double>(page().size()), 300.0);
-  EXPECT_EQ(data()["logs"][0]["name"], "run.mcap");
-  EXPECT_GT(data()["logs"][0]["mcap_base64"].get<std::string>().size(), 10'000U);
+  const json document = data();
+  EXPECT_EQ(document["kind"], "runs");
+  EXPECT_EQ(document["logs"][0]["name"], "run.mcap");
+  const json& run = document["logs"][0]["runs"].at(0);
+  EXPECT_EQ(run["steps"]["count"], 250);
+  const std::vector<double> times = run["frames"]["time_s"];
+  EXPECT_NEAR(static_cast<double>(times.size()), 190.0, 15.0);
+  // Where something changes, every step is kept.
+  for (const double time : {4.04, 4.08}) EXPECT_THAT(times, testing::Contains(time));
   EXPECT_THAT(page(), HasSubstr(base64("script")));
   EXPECT_THAT(page(), HasSubstr("default-src 'none'"));
   for (const char* outside : {"http:", "https:", "src=", "<link rel=\"stylesheet\""}) {
     EXPECT_THAT(page(), testing::Not(HasSubstr(outside)));
   }
+}
+
+/// Three laps of lakeside, about 87 s.
+void record_lakeside(const std::string& path) {
+  const auto scenario =
+      protocol::compose({.scenario_file = {}, .settings = {{"track", "lakeside"}, {"laps", "3"}}});
+  ASSERT_TRUE(scenario);
+  const auto loop = run::ClosedLoop::create(*scenario);
+  ASSERT_TRUE(loop);
+  RecorderOptions options;
+  options.path = path;
+  options.run.track = "lakeside";
+  options.run.track_length = (*loop)->track().length();
+  options.run.vehicle = scenario->vehicle;
+  options.run.road = protocol::road_lines((*loop)->track(), 2.0);
+  options.scenario = *scenario;
+  options.may_wait = true;
+  const auto recorder = Recorder::create(options);
+  ASSERT_TRUE(recorder);
+  static_cast<void>(run::run_closed_loop(
+      **loop, {.on_frame = [&](const telemetry::Frame& frame) { (*recorder)->record(frame); },
+               .on_lap = [&](const telemetry::CompletedLap& lap) { (*recorder)->record(lap); }}));
+  ASSERT_TRUE((*recorder)->finish());
+}
+
+TEST_F(ReportTest, OfThreeLapsIsSmallAndHasTheirTimes) {
+  record_lakeside(log_.path());
+  const auto written = write("run.mcap");
+  ASSERT_TRUE(written) << written.error().message;
+  // The page's own script and style come to less than 100 kB more: together at most 800 kB.
+  EXPECT_LE(written->bytes, 700'000U);
+  const json document = data();
+  const json& run = document["logs"][0]["runs"].at(0);
+  EXPECT_EQ(run["run"]["track"], json({"lakeside"}));
+  ASSERT_EQ(run["laps"].size(), 3U);
+  const double lap_time = run["laps"][2]["lap_time_s"][0];
+  EXPECT_NEAR(lap_time, 26.0, 2.0);
+  EXPECT_GT(document["logs"][0]["settings"].get<std::string>().size(), 100U);
+  EXPECT_GT(run["centre"]["x_m"].size(), 100U);
+  for (const char* drawn : {"s_m", "speed_mps", "throttle_applied", "front_tire_use"})
+    EXPECT_GT(run["frames"][drawn].size(), 1500U) << drawn;
 }
 
 TEST_F(ReportTest, NamesCannotBreakOutOfTheScript) {
@@ -148,13 +201,13 @@ TEST_F(ReportTest, DocumentsAreInThePageAsTheyAre) {
 }
 
 TEST_F(ReportTest, KeepsLessWhereThereIsMuchAndRefusesTooMuch) {
-  write_log(log_.path(), true, 1000);
-  const auto less = write("run.mcap", 60'000);
+  write_log(log_.path());
+  const auto less = write("run.mcap", 15'000);
   ASSERT_TRUE(less) << less.error().message;
-  EXPECT_EQ(less->rate, 5.0);
-  const auto none = write("run.mcap", 5'000);
+  EXPECT_EQ(less->rate, 10.0);
+  const auto none = write("run.mcap", 1'000);
   ASSERT_FALSE(none);
-  EXPECT_THAT(none.error().message, HasSubstr("at one message a second, expected shorter or fewer"));
+  EXPECT_THAT(none.error().message, HasSubstr("at one control step a second, expected shorter or fewer"));
 }
 
 TEST_F(ReportTest, SaysWhatIsMissing) {

@@ -1,21 +1,41 @@
 import { render } from 'preact';
 import { DocumentView } from './document/document_view';
 import type { ReportDocument } from './document/model';
+import { type RunsDocument, readRuns, verdictOf } from './document/runs';
+import { RunsView } from './document/runs_view';
 import { scheme } from './lib/appearance';
 
-// The page of a sweep, a league, an identification or an import: what the program wrote into it, drawn.
+// The page of a recording, a sweep, a league, an identification or an import: what the program wrote into it, drawn.
 
 const root = document.getElementById('app');
 const text = document.getElementById('chicane-report')?.textContent;
 if (root && text) {
-  const shown = JSON.parse(text) as ReportDocument;
-  document.title = shown.title;
-  render(<DocumentView shown={shown} />, root);
+  const shown = JSON.parse(text) as ReportDocument | RunsDocument;
+  if (shown.kind === 'runs') {
+    const runs = readRuns(shown);
+    const first = runs[0] && verdictOf(runs[0]);
+    document.title = first ? `${first.text}${first.time} – chicane` : 'chicane report';
+    render(<RunsView runs={runs} />, root);
+  } else {
+    document.title = shown.title;
+    render(<DocumentView shown={shown} />, root);
+  }
 }
 
-// Paper is light.
+// Paper is light, and nothing can be opened on it.
 const dress = (theme: 'light' | 'dark'): void => {
   document.documentElement.dataset.theme = theme;
 };
-addEventListener('beforeprint', () => dress('light'));
-addEventListener('afterprint', () => dress(scheme.value));
+const opened = new Set<HTMLDetailsElement>();
+addEventListener('beforeprint', () => {
+  dress('light');
+  for (const each of document.querySelectorAll<HTMLDetailsElement>('details:not([open])')) {
+    each.open = true;
+    opened.add(each);
+  }
+});
+addEventListener('afterprint', () => {
+  dress(scheme.value);
+  for (const each of opened) each.open = false;
+  opened.clear();
+});

@@ -13,7 +13,7 @@ const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   state: ['protocol', 'lib', 'draw'],
   scene3d: ['draw', 'state', 'protocol', 'lib'],
   parts: ['state', 'draw', 'protocol', 'lib'],
-  document: ['parts', 'lib'],
+  document: ['parts', 'state', 'protocol', 'lib'],
   recording: ['parts', 'scene3d', 'draw', 'state', 'protocol', 'lib', 'page'],
   views: ['parts', 'recording', 'scene3d', 'draw', 'state', 'protocol', 'lib', 'page'],
 };

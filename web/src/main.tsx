@@ -10,8 +10,7 @@ import { Connection, SUBPROTOCOLS } from './protocol/connection';
 import { ReadingSocket } from './protocol/reading';
 import { readSchema } from './protocol/schema';
 import type { Source } from './protocol/source';
-import { begin, isReading, summary, timeline } from './recording/begin';
-import { isReport } from './recording/mode';
+import { begin, timeline } from './recording/begin';
 import { beginSession, receive, receivePastLeft } from './state/demultiplexer';
 import { toggleLayer } from './state/layers';
 import { toggleDock } from './state/layout';
@@ -25,7 +24,7 @@ import { isPaused } from './state/run';
 import { schema } from './state/settings';
 import { refreshOnNewChoice, takeSettings } from './state/settings_session';
 import { refreshText } from './state/shown';
-import { followAddress, readAddress, TABS, tab } from './state/tab';
+import { followAddress, TABS, tab } from './state/tab';
 import { everyFrame } from './state/ticker';
 import { changePace } from './views/drive_view';
 import { HeaderView } from './views/header_view';
@@ -98,9 +97,7 @@ void begin(live);
 refreshOnNewChoice(refresh);
 listenToDriver();
 listenForLinks();
-// A report may lie in a frame, where browsers refuse to write the address.
-if (isReport()) readAddress();
-else followAddress();
+followAddress();
 
 addShortcuts(
   {
@@ -212,13 +209,11 @@ addEventListener('keyup', (event) => {
 
 function App() {
   const TimelineView = timeline.value;
-  const SummaryView = summary.value;
   return (
     <>
       <HeaderView />
       {TimelineView && <TimelineView />}
-      {SummaryView && <SummaryView />}
-      {!isReading.value() && <WorkbenchView />}
+      <WorkbenchView />
       <HelpView />
       <RestartView />
       <ShareView />

@@ -12,10 +12,8 @@ namespace chicane::live {
 /// cmake/EmbedWeb.cmake). A program built without Node holds one plain page that says so.
 [[nodiscard]] std::vector<net::Asset> embedded_assets();
 
-/// The dashboard once more, for reports of recordings.
-[[nodiscard]] recording::ReportBundle report_bundle();
-
-/// The page that draws documents (protocol/report_document.hpp).
+/// The page that draws reports of recordings (recording/html_report.hpp) and documents
+/// (protocol/report_document.hpp).
 [[nodiscard]] recording::ReportBundle document_bundle();
 
 }  // namespace chicane::live

@@ -3,20 +3,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <sstream>
+#include <cmath>
+#include <map>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
-#include "chicane/recording/excerpt.hpp"
+#include "chicane/recording/detail/ros_message.hpp"
 #include "chicane/recording/reader.hpp"
-#include "chicane/recording/temporary_file.hpp"
+#include "chicane/telemetry/mcap_reader.hpp"
 
 namespace chicane::recording {
 namespace {
@@ -24,11 +24,36 @@ namespace {
 using protocol::Json;
 using namespace std::string_view_literals;
 
-// What the dashboard draws of a log. The standard messages beside them say the same to other viewers.
-const std::vector<std::string> kTopics{"/chicane/frame",  "/chicane/plan",     "/chicane/run", "/chicane/lap",
-                                       "/chicane/change", "/chicane/limit",    "/track/left",  "/track/right",
-                                       "/track/centre",   "/chicane/situation"};
-constexpr std::array kRates{10.0, 5.0, 2.0, 1.0};  // [Hz]
+constexpr std::array kRates{20.0, 10.0, 5.0, 2.0, 1.0};  // [Hz]
+// Significant digits: of whole messages, whose lap times are rounded again to be read, and of what is drawn.
+constexpr int kExact = 9, kDrawn = 6;
+
+// Messages that are in the page as they are.
+constexpr std::array kWhole{"/chicane/run"sv, "/chicane/lap"sv, "/chicane/change"sv, "/chicane/limit"sv};
+// Of control steps: what is drawn along a lap, and what ends a stretch that may be thinned.
+constexpr std::array<const char*, 22> kColumns{"time_s",
+                                               "lap",
+                                               "lap_time_s",
+                                               "last_lap_time_s",
+                                               "s_m",
+                                               "x_m",
+                                               "y_m",
+                                               "speed_mps",
+                                               "lateral_error_m",
+                                               "steer_applied_rad",
+                                               "throttle_applied",
+                                               "front_tire_use",
+                                               "rear_tire_use",
+                                               "step_time_us",
+                                               "iterations",
+                                               "cost",
+                                               "delay_s",
+                                               "prediction_error_m",
+                                               "off_track_events",
+                                               "rung",
+                                               "is_gated",
+                                               "active_faults"};
+constexpr std::array kKept{"lap"sv, "rung"sv, "is_gated"sv, "active_faults"sv, "off_track_events"sv};
 
 // The dashboard's files are gzip-compressed in the program, and stay so in the page: every browser unpacks
 // them. Base64 has no character that means anything in HTML.
@@ -72,29 +97,146 @@ constexpr std::string_view kStart = R"(<script>
 </html>
 )";
 
-Result<std::string> read_all(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << stream.rdbuf();
-  if (!stream) return fail(ErrorCode::kIo, file + ": cannot be read: " + std::strerror(errno));
-  return std::move(bytes).str();
+Json json_of(double value, int digits) {
+  return std::isfinite(value) ? Json(std::stod(fmt::format("{:.{}g}", value, digits))) : Json(nullptr);
 }
 
-/// {"logs":[{"name":…,"mcap_base64":…}]}; empty where they are too large.
-Result<std::string> logs_json(const ReportOptions& options, double rate) {
-  Json logs = Json::array();
-  std::size_t bytes = 0;
-  for (const ReportedLog& log : options.logs) {
-    const TemporaryFile thinned(".mcap");
-    const auto read = excerpt(log.file, thinned.path(), {.topics = kTopics, .rate = rate});
-    if (!read) return fail(read.error());
-    const Result<std::string> content = read_all(thinned.path());
-    if (!content) return fail(content.error());
-    bytes += content->size();
-    if (bytes > options.most_bytes) return std::string{};
-    logs.push_back({{"name", log.name}, {"mcap_base64", base64(*content)}});
+Json json_of(const std::vector<double>& values, int digits) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(json_of(value, digits));
+  return list;
+}
+
+/// A message as lists, one for each field.
+Json json_of(const RosContent& content) {
+  Json fields = Json::object();
+  for (const auto& [name, values] : content.numbers) fields[name] = json_of(values, kExact);
+  for (const auto& [name, values] : content.texts) fields[name] = values;
+  return fields;
+}
+
+/// The runs of a recording, thinned, as the page reads them (web/src/document/runs.ts).
+class ReportedRuns {
+ public:
+  explicit ReportedRuns(double rate) : period_{1.0 / rate} {}
+
+  Result<void> add(const telemetry::McapMessage& message) {
+    const std::string& topic = message.channel.topic;
+    const bool is_whole = std::find(kWhole.begin(), kWhole.end(), topic) != kWhole.end();
+    if (!is_whole && topic != "/chicane/frame" && topic != "/track/centre") return {};
+    auto reader = readers_.find(message.channel.id);
+    if (reader == readers_.end()) {
+      Result<RosReader> made = RosReader::create(message.channel.schema);
+      if (!made) return fail(made.error());
+      reader = readers_.emplace(message.channel.id, std::move(*made)).first;
+    }
+    const Result<RosContent> content = reader->second.read(message.bytes);
+    if (!content) return fail(content.error().code, fmt::format("{}: {}", topic, content.error().message));
+    if (topic == "/chicane/frame") {
+      add_frame(*content);
+    } else if (topic == "/track/centre") {
+      centre_ = {{"x_m", json_of(content->list("poses.pose.position.x"), kDrawn)},
+                 {"y_m", json_of(content->list("poses.pose.position.y"), kDrawn)}};
+      if (!runs_.empty() && last_) runs_.back()["centre"] = centre_;
+    } else if (topic == "/chicane/run") {
+      run_ = json_of(*content);
+      if (last_) limit_ = nullptr;
+      last_.reset();
+    } else if (topic == "/chicane/limit") {
+      limit_ = content->number("is_known") != 0.0 ? json_of(*content) : Json(nullptr);
+      if (!runs_.empty() && last_) runs_.back()["limit"] = limit_;
+    } else if (!runs_.empty()) {
+      runs_.back()[topic == "/chicane/lap" ? "laps" : "changes"].push_back(json_of(*content));
+    }
+    return {};
   }
-  return protocol::json_text(Json{{"logs", std::move(logs)}});
+
+  [[nodiscard]] Json take() {
+    end_run();
+    return std::move(runs_);
+  }
+
+ private:
+  void add_frame(const RosContent& frame) {
+    const double time = frame.number("time_s");
+    if (!last_ || time < last_->number("time_s")) begin_run();
+    Json& columns = runs_.back()["frames"];
+    const bool has_changed = !last_ || std::any_of(kKept.begin(), kKept.end(), [&](std::string_view name) {
+      return frame.number(name) != last_->number(name);
+    });
+    if (const double taken = frame.number("step_time_us"); std::isfinite(taken)) step_times_.push_back(taken);
+    iterations_ += frame.number("iterations");
+    last_ = frame;
+    if (!has_changed && time < next_) return;
+    next_ = std::max(next_ + period_, time + 0.5 * period_);
+    for (const char* name : kColumns)
+      columns[name].push_back(json_of(frame.number(name, std::nan("")), kDrawn));
+  }
+
+  void begin_run() {
+    end_run();
+    runs_.push_back({{"run", run_},
+                     {"centre", centre_},
+                     {"limit", limit_},
+                     {"laps", Json::array()},
+                     {"changes", Json::array()},
+                     {"frames", Json::object()}});
+    last_.reset();
+    next_ = 0.0;
+    step_times_.clear();
+    iterations_ = 0.0;
+  }
+
+  /// The control steps of the run that ends: of all of them, not of those that are kept.
+  void end_run() {
+    if (runs_.empty() || step_times_.empty()) return;
+    std::sort(step_times_.begin(), step_times_.end());
+    const auto count = static_cast<double>(step_times_.size());
+    const auto quantile = [&](double share) {
+      return json_of(step_times_[static_cast<std::size_t>(share * (count - 1.0))], kDrawn);
+    };
+    runs_.back()["steps"] = {{"count", step_times_.size()},
+                             {"p50_us", quantile(0.5)},
+                             {"p99_us", quantile(0.99)},
+                             {"longest_us", quantile(1.0)},
+                             {"mean_iterations", json_of(iterations_ / count, kDrawn)}};
+  }
+
+  double period_, next_ = 0.0, iterations_ = 0.0;
+  Json runs_ = Json::array(), run_ = nullptr, centre_ = nullptr, limit_ = nullptr;
+  std::optional<RosContent> last_;
+  std::vector<double> step_times_;
+  std::map<std::uint16_t, RosReader> readers_;
+};
+
+/// A recording with its settings.
+Result<Json> json_of(const ReportedLog& log, double rate) {
+  ReportedRuns runs(rate);
+  std::string settings;
+  std::optional<Error> failure;
+  telemetry::McapVisitor visitor;
+  visitor.on_message = [&](const telemetry::McapMessage& message) {
+    if (failure) return;
+    if (const Result<void> added = runs.add(message); !added) failure = added.error();
+  };
+  visitor.on_attachment = [&](std::string_view, std::string_view bytes) {
+    if (settings.empty()) settings = bytes;
+  };
+  if (const auto read = telemetry::read_mcap(log.file, visitor); !read) return fail(read.error());
+  if (failure) return fail(failure->code, fmt::format("{}: {}", log.file, failure->message));
+  return Json{{"name", log.name}, {"settings", settings}, {"runs", runs.take()}};
+}
+
+/// What the page reads; empty where it is too large.
+Result<std::string> document_of(const ReportOptions& options, double rate) {
+  Json logs = Json::array();
+  for (const ReportedLog& log : options.logs) {
+    Result<Json> json = json_of(log, rate);
+    if (!json) return fail(json.error());
+    logs.push_back(std::move(*json));
+  }
+  std::string text = protocol::json_text(Json{{"kind", "runs"}, {"logs", std::move(logs)}});
+  return text.size() > options.most_bytes ? std::string{} : text;
 }
 
 }  // namespace
@@ -128,17 +270,18 @@ Result<ReportSummary> write_report(const ReportOptions& options) {
     if (const auto read = check_recording(log.file); !read) return fail(read.error());
   }
   for (const double rate : kRates) {
-    Result<std::string> logs = logs_json(options, rate);
-    if (!logs) return fail(logs.error());
-    if (logs->empty()) continue;
-    const Result<std::size_t> bytes = write_document(options.output, std::move(*logs), options.bundle);
+    Result<std::string> document = document_of(options, rate);
+    if (!document) return fail(document.error());
+    if (document->empty()) continue;
+    const Result<std::size_t> bytes = write_document(options.output, std::move(*document), options.bundle);
     if (!bytes) return fail(bytes.error());
     return ReportSummary{.bytes = *bytes, .rate = rate};
   }
-  return fail(ErrorCode::kInvalidArgument,
-              fmt::format("report: got more than {} MiB of logs at one message a second, expected shorter or "
-                          "fewer recordings",
-                          options.most_bytes >> 20U));
+  return fail(
+      ErrorCode::kInvalidArgument,
+      fmt::format("report: got more than {} MiB at one control step a second, expected shorter or fewer "
+                  "recordings",
+                  options.most_bytes >> 20U));
 }
 
 }  // namespace chicane::recording

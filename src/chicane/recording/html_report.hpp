@@ -26,13 +26,13 @@ struct ReportBundle {
 struct ReportOptions {
   std::string output;  ///< written anew; an older file of that name is replaced when all is done
   std::vector<ReportedLog> logs;
-  ReportBundle bundle;                              ///< live::report_bundle()
-  std::size_t most_bytes = std::size_t{48} << 20U;  ///< of all logs in the page
+  ReportBundle bundle;                              ///< live::document_bundle()
+  std::size_t most_bytes = std::size_t{16} << 20U;  ///< of all recordings in the page
 };
 
 struct ReportSummary {
   std::size_t bytes = 0;  ///< of the file
-  double rate = 0.0;      ///< messages of one topic per second that were kept [Hz]
+  double rate = 0.0;  ///< control steps per second that were kept, beside those where something changes [Hz]
 };
 
 /// Writes a document (protocol/report_document.hpp) as one HTML file that needs no network and no program.
@@ -41,11 +41,13 @@ struct ReportSummary {
 [[nodiscard]] Result<std::size_t> write_document(const std::string& file, std::string document,
                                                  const ReportBundle& bundle);
 
-/// Writes the dashboard with its recordings as one HTML file that needs no network and no program. Recordings
-/// are thinned to 10 messages a second and topic, or fewer, down to 1, so that they fit.
+/// Writes what recordings show of their laps as one HTML file that needs no network and no program. Control
+/// steps are thinned to 20 a second, or fewer, down to 1, so that they fit; plans are left out. The recording
+/// stays the source.
 ///
 /// kInvalidArgument when they do not fit even so, kNotFound when this program was built without its
-/// dashboard; otherwise as excerpt() fails.
+/// dashboard, kParse for a message whose definition does not describe it; otherwise as check_recording()
+/// fails.
 [[nodiscard]] Result<ReportSummary> write_report(const ReportOptions& options);
 
 }  // namespace chicane::recording

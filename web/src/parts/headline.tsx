@@ -12,7 +12,7 @@ interface WordOptions {
 /** A word of the sentence that can be chosen: a native select lies on it. */
 function Word({ label, name, course, courses, choose }: WordOptions) {
   return (
-    <span class={label === 'B' ? 'word other' : 'word'}>
+    <span class={label === 'B' ? 'chosen other' : 'chosen'}>
       <span aria-hidden="true">{name}</span>
       <select aria-label={label} value={course.id} onChange={({ currentTarget }) => choose(currentTarget.value)}>
         {courses.map(({ id, name: each, total }) => (
@@ -29,15 +29,18 @@ interface Options {
   readonly comparison: Comparison;
   readonly courses: readonly Course[];
   readonly choose: (which: 0 | 1, id: string) => void;
+  /** Of the heading; 1 without it. */
+  readonly level?: 1 | 2;
 }
 
 /** "Lap 3 lost 3.45 s to the limit; T4 cost most, 1.08 s.": A and B can be chosen. */
-export function Headline({ comparison, courses, choose }: Options) {
+export function Headline({ comparison, courses, choose, level = 1 }: Options) {
+  const Heading = `h${level}` as const;
   const { a, b } = comparison;
   const { verb, amount, tone, to, rest } = headlineOf(comparison);
   const isFromStandstill = a.isStanding && !b.isStanding;
   return (
-    <h1 class="verdict" data-testid="headline">
+    <Heading class="verdict" data-testid="headline">
       <Word
         label="A"
         name={atStart(a.name)}
@@ -57,6 +60,6 @@ export function Headline({ comparison, courses, choose }: Options) {
         choose={(id) => choose(1, id)}
       />
       {rest}
-    </h1>
+    </Heading>
   );
 }

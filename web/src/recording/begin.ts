@@ -6,11 +6,8 @@ import { attach } from '../state/operate';
 import { askedLog } from '../state/what_if';
 import { findMode } from './mode';
 
-/** The views of recordings; their code is loaded with the first one. */
+/** The view of recordings; its code is loaded with the first one. */
 export const timeline = store.signal<FunctionComponent | null>('page', null);
-export const summary = store.signal<FunctionComponent | null>('page', null);
-/** Whether the report is shown instead of the workbench. */
-export const isReading = store.signal<() => boolean>('page', () => false);
 
 const current = store.data('page', () => ({ source: null as Source | null }));
 
@@ -37,17 +34,11 @@ export async function begin(live: () => Source): Promise<void> {
   const mode = await findMode();
   if (mode.name === 'live') return take(live());
   await show((player) => player.playMode(mode)).catch((error: unknown) => (notice.value = sentence(error)));
-  if (mode.name === 'replay') (await import('./ask_server')).offerWhatIf();
+  (await import('./ask_server')).offerWhatIf();
 }
 
 async function show(open: (player: typeof import('./player')) => Promise<Source>): Promise<void> {
-  const [player, view, report] = await Promise.all([
-    import('./player'),
-    import('./timeline_view'),
-    import('./summary_view'),
-  ]);
+  const [player, view] = await Promise.all([import('./player'), import('./timeline_view')]);
   take(await open(player));
   timeline.value = view.TimelineView;
-  summary.value = report.SummaryView;
-  isReading.value = () => report.isSummaryShown.value;
 }

@@ -1,10 +1,9 @@
 /**
- * What the page shows: a live run, recordings served by `chicane replay`, or the recordings inside a report.
+ * What the page shows: a live run, or recordings served by `chicane replay`.
  */
 export type Mode =
   | { readonly name: 'live' }
-  | { readonly name: 'replay'; readonly logs: readonly ListedLog[]; readonly start: number }
-  | { readonly name: 'report'; readonly text: string };
+  | { readonly name: 'replay'; readonly logs: readonly ListedLog[]; readonly start: number };
 
 export interface ListedLog {
   readonly name: string;
@@ -22,14 +21,7 @@ export function modeOf(answer: unknown): Mode {
   return { name: 'replay', logs, start: typeof answer.start_s === 'number' ? answer.start_s : 0 };
 }
 
-const reportText = (): string => document.getElementById('chicane-report')?.textContent ?? '';
-
-/** Whether the page is that of `chicane report`. */
-export const isReport = (): boolean => reportText() !== '';
-
 export async function findMode(): Promise<Mode> {
-  const text = reportText();
-  if (text) return { name: 'report', text };
   if (__PAGE__ || location.protocol === 'file:') return { name: 'live' };
   const answer = await fetch('mode.json').catch(() => null);
   return answer?.ok ? modeOf(await answer.json().catch(() => null)) : { name: 'live' };

@@ -19,8 +19,7 @@ import type { McapLog } from './mcap_log';
 import type { Mode } from './mode';
 import { openFiles, openRecordings, type Recordings } from './open';
 import { RecordedDrive } from './recorded_drive';
-import { reportsOf } from './summary';
-import { isSummaryShown, reports } from './summary_view';
+import { type LoggedRun, runsOf } from './runs_of_log';
 
 // State of the time line.
 
@@ -114,24 +113,25 @@ async function trackOf(log: McapLog): Promise<string> {
   return `${told.track} ${told.track_length_m.toFixed(1)}`;
 }
 
-export async function playMode(mode: Exclude<Mode, { name: 'live' }>): Promise<LogSource> {
+export async function playMode(mode: Extract<Mode, { name: 'replay' }>): Promise<LogSource> {
   const recordings = await openRecordings(mode);
-  isSummaryShown.value = mode.name === 'report';
-  void readReports(recordings);
+  void readRuns(recordings);
   return play(recordings);
 }
 
 export async function playFiles(files: readonly File[]): Promise<LogSource> {
   const recordings = await openFiles(files);
-  void readReports(recordings);
+  void readRuns(recordings);
   return play(recordings);
 }
 
-/** Reads all recordings for the report, one after another. */
-async function readReports(recordings: Recordings): Promise<void> {
-  reports.value = [];
+const others = store.data('page', () => ({ runs: [] as readonly LoggedRun[] }));
+
+/** Reads the laps of several recordings, one after another. */
+async function readRuns({ logs: all }: Recordings): Promise<void> {
+  others.runs = [];
   try {
-    for (const log of recordings.logs) reports.value = [...reports.value, ...(await reportsOf(log))];
+    if (all.length > 1) for (const log of all) others.runs = [...others.runs, ...(await runsOf(log))];
     offerOthers();
   } catch (error) {
     notice.value = error instanceof Error ? error.message : String(error);
@@ -142,7 +142,7 @@ async function readReports(recordings: Recordings): Promise<void> {
 function offerOthers(): void {
   removeOtherLaps();
   const log = logs.value[played.value];
-  offerLaps(reports.value.filter(({ recording }) => recording !== log?.name));
+  offerLaps(others.runs.filter(({ recording }) => recording !== log?.name));
 }
 
 const sampling = store.data('page', () => ({ end: (): void => undefined }));

@@ -2,7 +2,7 @@ import type { McapTypes } from '@mcap/core';
 
 type IReadable = McapTypes.IReadable;
 
-/** A recording in memory: embedded in a report, or dropped on the page. */
+/** A recording in memory: dropped on the page. */
 export class BytesReadable implements IReadable {
   readonly #bytes: Uint8Array;
 

@@ -16,7 +16,6 @@ import {
   searched,
   showBeside,
 } from './player';
-import { isSummaryShown } from './summary_view';
 
 const seek = (time: number): void =>
   void player.value?.seek(time).catch((error: unknown) => (notice.value = String(error)));
@@ -162,13 +161,6 @@ export function TimelineView() {
           ))}
         </select>
       )}
-      <button
-        type="button"
-        aria-pressed={isSummaryShown.value}
-        onClick={() => (isSummaryShown.value = !isSummaryShown.value)}
-      >
-        {isSummaryShown.value ? 'Explore' : 'Report'}
-      </button>
       {searched.value < 1 && <progress max={1} value={searched.value} aria-label="Looking for landmarks" />}
     </section>
   );

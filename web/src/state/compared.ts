@@ -1,6 +1,5 @@
 import { computed } from '@preact/signals';
 import { store } from '../lib/store';
-import type { Lap, Limit } from '../protocol/topics';
 import {
   byCost,
   type ComparedRoad,
@@ -12,11 +11,12 @@ import {
   stretches,
 } from './comparison';
 import { type Corner, cornersOf } from './corners';
+import { lapCourse, limitCourse, recordedCourse } from './courses';
 import type { LapSamples } from './lap_samples';
 import { bestsOf } from './lap_table';
 import { lapSamples, laps, sampledLaps } from './laps';
-import { limit, limitChannel } from './limit';
-import { channelOnto, isSameRoad, otherLaps } from './other_laps';
+import { limit } from './limit';
+import { isSameRoad, otherLaps } from './other_laps';
 import { cursorPlace } from './plot_view';
 import { raceCourses } from './rival';
 import { road } from './road';
@@ -31,30 +31,6 @@ import { type FutureGrid, futureCourses } from './what_if_answer';
 export const chosen = store.signal<readonly [string | null, string | null]>('run', [null, null]);
 
 const LIMIT = 'limit';
-/** A lap whose speed at the line is less began at standstill [m/s]. */
-const STANDING_MPS = 3;
-
-/** A lap of a run as a course at the points of `samples`. */
-export function lapCourse({ lap, lap_time_s: total }: Lap, samples: LapSamples): Course {
-  const speed = lap === 1 ? samples.channel(0, 'speed_mps') : null;
-  return {
-    id: `lap ${lap}`,
-    name: `lap ${lap}`,
-    total,
-    isStanding: (speed?.find(Number.isFinite) ?? Infinity) < STANDING_MPS,
-    channel: (name) => samples.channel(lap - 1, name),
-  };
-}
-
-/** The limit as a course at the points of `samples`. */
-export const limitCourse = (of: Limit, samples: LapSamples): Course => ({
-  id: LIMIT,
-  name: 'the limit',
-  total: of.lap_time_s,
-  isStanding: false,
-  channel: (name) => limitChannel(of, samples, name),
-});
-
 /** The points of this road: those of the laps, or, before the start line is known, from where the first lap begins. */
 function gridNow(): FutureGrid {
   const isLineKnown = Number.isFinite(lapSamples.s(0));
@@ -83,12 +59,7 @@ export const courses = computed<readonly Course[]>(() => {
   const own = laps.value.filter(({ lap }) => known.has(lap - 1)).map((lap) => lapCourse(lap, lapSamples));
   const recorded = otherLaps.value
     .filter(({ samples }) => isSameRoad(samples, lapSamples))
-    .map((each): Course => {
-      const { lap, recording, time, samples } = each;
-      const name = `lap ${lap} of ${recording}`;
-      const isStanding = lapCourse({ lap, lap_time_s: time } as Lap, samples).isStanding;
-      return { id: name, name, total: time, isStanding, channel: (which) => channelOnto(each, which, lapSamples) };
-    });
+    .map((each) => recordedCourse(each, lapSamples));
   const fastest = limit.value && lapSamples.length > 0 ? [limitCourse(limit.value, lapSamples)] : [];
   return [...own.reverse(), ...futuresNow(), ...raceCourses(lapSamples), ...recorded, ...fastest];
 });

@@ -261,7 +261,7 @@ export function causesOf(limit: Limit, best: number): GapCause[] {
     .sort((one, other) => other.faster - one.faster);
 }
 
-/** "Without its grip reserve the best lap would be 0.81 s faster, without the guard 0.30 s. The delay costs nothing." */
+/** "Without its grip reserve the best lap would be 0.81 s faster, without the guard 0.30 s. …" */
 export function causesText(causes: readonly GapCause[]): string {
   const costly = causes.filter(({ faster }) => faster >= SAME_S);
   const free = causes.filter(({ faster }) => faster < SAME_S);

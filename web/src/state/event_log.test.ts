@@ -56,7 +56,7 @@ describe('event log', () => {
   });
 
   it('lists changed settings, but not those of driving by hand', () => {
-    noteChange({ stamp: { sec: 3, nsec: 500_000_000 }, cycle: 90n, name: 'latency_ms', value: '150' });
+    noteChange({ stamp: { sec: 3, nsec: 500_000_000 }, cycle: 90n, name: 'latency_ms', value: '150.00000000000003' });
     noteChange({ stamp: { sec: 4, nsec: 0 }, cycle: 91n, name: 'manual.steer', value: '0.1' });
     expect(events.value).toMatchObject([{ text: 'latency_ms set to 150', time: 3.5 }]);
     noteChange({ stamp: { sec: 5, nsec: 0 }, cycle: 92n, name: 'run.racing_line', value: '0.87' });

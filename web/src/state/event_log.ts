@@ -2,6 +2,7 @@ import { hasBit } from '../lib/bits';
 import { store } from '../lib/store';
 import { nameInWords, rungInWords, type Severity, statusInWords } from '../lib/words';
 import type { Change, Frame } from '../protocol/topics';
+import { shortly } from './lap_setup';
 
 /** An event of the run: when it began and, once it has ended, how long it lasted. */
 export interface RunEvent {
@@ -105,7 +106,7 @@ export function noteChange({ stamp, name, value }: Change): void {
   add({
     id: kept.nextId++,
     severity: isPlan ? 'good' : 'unknown',
-    text: isPlan ? planned : `${name} set to ${value}`,
+    text: isPlan ? planned : `${name} set to ${shortly(value)}`,
     time: stamp.sec + stamp.nsec / 1e9,
     duration: null,
     isChange: true,

@@ -22,7 +22,7 @@ export function changesOf(lap: Setup, start: ReadonlyMap<string, Setting>): Read
 }
 
 /** A value as --set takes it, for display: numbers with six digits at most. */
-const shortly = (text: string): string =>
+export const shortly = (text: string): string =>
   text.trim() !== '' && Number.isFinite(Number(text)) ? tidy(Number(text)) : text;
 
 /** Who drove: empty for the controller. */

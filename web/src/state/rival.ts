@@ -3,14 +3,14 @@ import { wrapAngle } from '../lib/math';
 import { store } from '../lib/store';
 import type { GhostPose, GhostSource } from '../scene3d/ghost';
 import type { Course } from './comparison';
+import { recordedCourse } from './courses';
 import { restartListeners } from './demultiplexer';
 import { ghostShown } from './ghost_shown';
-import { type LapChannel, LapSamples } from './lap_samples';
+import { LapSamples } from './lap_samples';
 import { lapSamples } from './laps';
 import { link, notice } from './link';
 import { live } from './live';
 import { askRival, can, canSet, requests } from './operate';
-import { channelOnto } from './other_laps';
 import { programPage } from './program_page';
 import { type Poses, type Race, readRace, sampleRace } from './rival_answer';
 import { run } from './run';
@@ -96,17 +96,7 @@ export function raceCourses(onto: LapSamples): Course[] {
   const { samples } = driven;
   return (race.value?.b ?? [])
     .filter(({ lap }) => samples.laps.includes(lap - 1))
-    .map(({ lap, time }) => {
-      const other = { recording: 'B', lap, time, samples };
-      const name = `lap ${lap} of B, the ghost`;
-      return {
-        id: name,
-        name,
-        total: time,
-        isStanding: lap === 1,
-        channel: (which: LapChannel) => channelOnto(other, which, onto),
-      };
-    })
+    .map(({ lap, time }) => recordedCourse({ recording: 'B, the ghost', lap, time, samples }, onto))
     .reverse();
 }
 

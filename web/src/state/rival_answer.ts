@@ -91,6 +91,6 @@ export function standingOf({ a, b }: Race): { readonly winner: 'A' | 'B' | null;
   const gap = other.time - own.time;
   if (Math.abs(gap) < SAME_S) return { winner: null, text: `Lap ${own.lap}: as fast as each other.` };
   const [winner, best] = gap < 0 ? (['B', other] as const) : (['A', own] as const);
-  const text = `Lap ${own.lap}: ${winner} is ${fixed(Math.abs(gap), 3)} s faster${best.isClean ? '' : ', off the road'}.`;
-  return { winner, text };
+  const how = best.isClean ? '' : ', off the road';
+  return { winner, text: `Lap ${own.lap}: ${winner} is ${fixed(Math.abs(gap), 3)} s faster${how}.` };
 }

@@ -129,7 +129,8 @@ export async function ask(): Promise<void> {
 export function futureNames(): readonly [string, string] {
   const [first, ...others] = asked.value;
   if (!first) return ['as it is', 'what if'];
-  const name = `${nameInWords(first.key.split('.').at(-1) ?? first.key)} ${typeof first.value === 'number' ? tidy(first.value) : first.value}`;
+  const value = typeof first.value === 'number' ? tidy(first.value) : first.value;
+  const name = `${nameInWords(first.key.split('.').at(-1) ?? first.key)} ${value}`;
   return ['as it is', others.length === 0 ? `with ${name}` : `with ${others.length + 1} changes`];
 }
 

@@ -174,7 +174,7 @@ export function UnderstandView() {
   const at = cursorAlong.value;
   return (
     <section class={isEngineer.value ? 'understand with-engineer' : 'understand'} aria-label="Understand">
-      <header>
+      <div class="headline-row">
         {both ? (
           <Headline
             comparison={both}
@@ -187,7 +187,7 @@ export function UnderstandView() {
           </h1>
         )}
         <EngineerSwitch />
-      </header>
+      </div>
       {both && (
         <>
           <div class="where">
