@@ -43,6 +43,8 @@ TEST(Situation, SaysWhatTheAppliedCommandDoes) {
   Frame in_bend = driven(9.0, 0.4, 0.97);
   in_bend.s = 5.0;
   EXPECT_EQ(sentence_of(next(in_bend)), "Grip: 97 % in T2") << "across the start line";
+  in_bend.s = 300.0;
+  EXPECT_EQ(sentence_of(next(in_bend)), "Grip: 97 %") << "far from any corner";
   in_bend.is_judged = false;
   EXPECT_EQ(sentence_of(next(in_bend)), "Grip: 97 %");
 }
@@ -76,6 +78,22 @@ TEST(Situation, NamesReasonAndKeyOfAStopAndCountsItOnce) {
   EXPECT_EQ(held.alarms, 1U) << "one event";
   frame.time = 12.0;
   EXPECT_EQ(next(frame, held).alarms, 2U) << "another one after a pause";
+}
+
+TEST(Situation, KnowsEverySourceAndEveryReason) {
+  Frame frame = driven(9.0, 0.4);
+  for (const Word<Rung>& rung : controller::kRungWords) {
+    for (const Word<GuardReason>& reason : controller::kGuardReasonWords) {
+      frame.guard = {.rung = rung.value, .reason = reason.value};
+      const Situation now = next(frame);
+      if (rung.value == Rung::kController) continue;
+      EXPECT_EQ(severity_of(now), rung.severity) << rung.name;
+      EXPECT_EQ(reason_of(now), reason.value != GuardReason::kNone  ? reason.sentence
+                                : rung.severity == Severity::kError ? rung.sentence
+                                                                    : std::string_view{})
+          << rung.name << " " << reason.name;
+    }
+  }
 }
 
 TEST(Situation, CallsACarStuckByItsMotion) {

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "chicane/base/math.hpp"
-#include "chicane/controller/guard_words.hpp"
 #include "chicane/protocol/car_messages.hpp"
 #include "chicane/protocol/detail/cdr_source.hpp"
 #include "chicane/protocol/detail/cdr_writer.hpp"
@@ -91,10 +90,13 @@ struct Diagnosis {
   std::string message;
 };
 
-Diagnosis diagnose_controller(const safety::GuardReport& report) {
-  const controller::DriverWords words = controller::describe_driver(report.rung, report.reason);
-  if (words.severity == Severity::kOk && report.gated) return {1, "the command gate changed the command"};
-  return {static_cast<std::uint8_t>(words.severity), controller::sentence_of(words)};
+Diagnosis diagnose_controller(const Frame& frame) {
+  const telemetry::Situation& now = frame.situation;
+  const Severity severity = severity_of(now);
+  if (severity == Severity::kOk && frame.guard.gated) return {1, "the command gate changed the command"};
+  const std::string_view reason = reason_of(now);
+  return {static_cast<std::uint8_t>(severity),
+          reason.empty() ? sentence_of(now) : fmt::format("{}: {}", sentence_of(now), reason)};
 }
 
 Diagnosis diagnose_road(const Frame& frame) {
@@ -111,7 +113,7 @@ std::string encode_diagnostics(const Frame& frame, const Run& run) {
     for (const auto& [key, value] : values) writer.text(key).text(value);
   };
   writer.stamp(frame.time).text("").count(2);
-  status(diagnose_controller(frame.guard), "chicane: controller", run.controller,
+  status(diagnose_controller(frame), "chicane: controller", run.controller,
          {{"solve_status", std::string(solver::to_string(report.solve.status))},
           {"iterations", fmt::format("{}", report.solve.iterations)},
           {"step_time_us", fmt::format("{:.0f}", 1e6 * frame.step_time)},

@@ -50,6 +50,7 @@ constexpr double kFullThrottle = 0.98;
 // Of the grip.
 constexpr double kNearLimit = 75.0;  // [%] from which it is what limits the car
 constexpr double kStillNear = 70.0;  // [%]
+constexpr double kApproach = 100.0;  // [m] before a corner from which it is named
 // Of the speed; between the two a car goes on standing or moving.
 constexpr double kStanding = 0.1;  // [m/s]
 constexpr double kMoving = 0.3;    // [m/s]
@@ -157,21 +158,18 @@ bool is_in(const road::Corner& corner, double s) noexcept {
                                     : s >= corner.begin || s <= corner.end;
 }
 
-/// The corner that the car is in, else the next one ahead.
+/// The corner that the car is in, else the next one before the road's end, where it is near.
 void place(double s, std::span<const road::Corner> corners, Situation& now) noexcept {
-  int next = 0, first = 0;
+  double nearest = kApproach;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const int number = static_cast<int>(i) + 1;
-    const auto begins = [&](int other) { return corners[static_cast<std::size_t>(other - 1)].begin; };
-    if (is_in(corners[i], s)) {
-      now.corner = number;
-      return;
-    }
-    if (corners[i].begin > s && (next == 0 || corners[i].begin < begins(next))) next = number;
-    if (first == 0 || corners[i].begin < begins(first)) first = number;
+    const double distance = corners[i].begin - s;
+    const bool is_here = is_in(corners[i], s);
+    if (!is_here && !(distance >= 0.0 && distance < nearest)) continue;
+    now.corner = static_cast<int>(i) + 1;
+    now.is_ahead = !is_here;
+    if (is_here) return;
+    nearest = distance;
   }
-  now.corner = next > 0 ? next : first;
-  now.is_ahead = now.corner > 0;
 }
 
 std::string_view before_corner(const Situation& now) noexcept {
