@@ -45,23 +45,5 @@ TEST(GuardWords, NumbersAndNamesThatRecordingsKeep) {
   EXPECT_EQ(word_of(GuardReason::kTooFastForSilence).name, "too_fast_for_silence");
 }
 
-TEST(GuardWords, AReasonExplainsWhatReplacesTheController) {
-  const DriverWords words = describe_driver(Rung::kGuardStop, GuardReason::kNoAnswer);
-  EXPECT_EQ(words.severity, Severity::kError);
-  EXPECT_EQ(sentence_of(words), "the guard stops the car on the known road: the controller has no answer");
-  EXPECT_EQ(sentence_of(describe_driver(Rung::kShiftedPlan, GuardReason::kNone)),
-            "the car follows the last plan");
-}
-
-TEST(GuardWords, AReasonExplainsTheControllerOnlyWhereItHoldsTheCarBack) {
-  const DriverWords held = describe_driver(Rung::kController, GuardReason::kTooFastForSilence);
-  EXPECT_EQ(held.severity, Severity::kWarning);
-  EXPECT_EQ(sentence_of(held),
-            "the controller drives: a receiver left alone could not stop the car on the road");
-  const DriverWords observed = describe_driver(Rung::kController, GuardReason::kFrozen);
-  EXPECT_EQ(observed.severity, Severity::kOk);
-  EXPECT_EQ(sentence_of(observed), "the controller drives");
-}
-
 }  // namespace
 }  // namespace chicane::controller

@@ -71,30 +71,4 @@ inline constexpr std::size_t kGuardReasonCount = kGuardReasonWords.size();
   return kGuardReasonWords[static_cast<std::size_t>(reason)];
 }
 
-/// Who drives and why, for people.
-struct DriverWords {
-  Severity severity = Severity::kOk;
-  std::string_view source;  ///< the sentence of the rung
-  std::string_view reason;  ///< the sentence of the reason; empty where it explains nothing
-};
-
-/// A reason explains every rung but the controller's own, and that one where it holds the car back.
-[[nodiscard]] constexpr DriverWords describe_driver(Rung rung, GuardReason reason) noexcept {
-  const Word<Rung>& source = word_of(rung);
-  const Word<GuardReason>& why = word_of(reason);
-  const bool is_replaced = rung != Rung::kController;
-  const bool is_held_back = !is_replaced && why.severity == Severity::kWarning;
-  const bool has_reason = reason != GuardReason::kNone && (is_replaced || is_held_back);
-  return {.severity = is_held_back ? why.severity : source.severity,
-          .source = source.sentence,
-          .reason = has_reason ? why.sentence : std::string_view{}};
-}
-
-/// "the guard stops the car on the known road: the controller has no answer"
-[[nodiscard]] inline std::string sentence_of(const DriverWords& words) {
-  std::string text{words.source};
-  if (!words.reason.empty()) text.append(": ").append(words.reason);
-  return text;
-}
-
 }  // namespace chicane::controller

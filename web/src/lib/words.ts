@@ -23,7 +23,7 @@ export const reasonInWords = (reason: number): string => REASON_WORDS[reason]?.t
 
 /**
  * The source of the command, by Frame.rung, and why. A reason explains every source but the controller, and that one
- * where it holds the car back (controller/guard_words.hpp has the same rule).
+ * where it holds the car back.
  */
 export function rungInWords(rung: number, reason: number = REASON.NONE): Sentence {
   const source = RUNG_WORDS[rung];
