@@ -15,11 +15,11 @@
 namespace chicane::safety {
 
 /// How late and by how much the wheels answer, beyond what was told, by which answer predicts the next
-/// measurement better (docs/identification_method.md, eq. 13 to 15). It is the method of tracking::GripEstimator
-/// for five unknowns at once: one state estimator counts with the estimate, five have one unknown changed
-/// each, and least squares over the last kMemory of driving finds the unknowns with their deviations. Grip
-/// and the share of the rear axle's stiffness are among them, so that tyres that answer otherwise than the
-/// model's do not pass for another steering.
+/// measurement better (docs/identification_method.md, eq. 13 to 15). It is the method of
+/// tracking::GripEstimator for five unknowns at once: one state estimator counts with the estimate, five have
+/// one unknown changed each, and least squares over the last kMemory of driving finds the unknowns with their
+/// deviations. Grip and the share of the rear axle's stiffness are among them, so that tyres that answer
+/// otherwise than the model's do not pass for another steering.
 ///
 /// What is driven with, answer(), follows the estimate in steps, where delay, gain and offset are certain
 /// enough together, and one differs by more than a step and three deviations of both. One thread; allocates
