@@ -18,10 +18,22 @@ export const PHONE = {
   isMobile: true,
   hasTouch: true,
 };
-/** The panels that the dashboard has. */
-const workbench = readFileSync(new URL('../../web/src/views/workbench_view.tsx', import.meta.url), 'utf8');
-export const TABS = [...workbench.matchAll(/^ {2}\{ name: '(\w+)', title: /gm)].map((row) => row[1]);
-assert.ok(TABS.length >= 6, 'workbench_view.tsx lists its panels otherwise than these tests read them');
+/** The modes that the dashboard has. */
+const listed = readFileSync(new URL('../../web/src/state/mode.ts', import.meta.url), 'utf8');
+export const MODES = [.../MODES = \[(.*)\]/.exec(listed)[1].matchAll(/\w+/g)].map(String);
+assert.equal(MODES.length, 3, 'mode.ts lists its modes otherwise than these tests read them');
+/** What stands in the strip, which Watch alone has. */
+const IN_STRIP = new Set([
+  'speed',
+  'lap',
+  'lap-time',
+  'wheels',
+  'pedal',
+  'delta-limit',
+  'why',
+  'end-title',
+  'end-laps',
+]);
 
 /** Every size, theme and colour is looked at: a campaign (./test.sh --all). */
 export const EVERY_SIZE = Boolean(process.env.CHICANE_EVERY_SIZE);
@@ -66,11 +78,11 @@ export const differentFrom = (before) => (now) => now !== before;
 
 export class DashboardPage {
   /**
-   * Opens the page at a tab and waits until it says that it is live, or in another `state`; the browser keeps nothing
+   * Opens the page in a mode and waits until it says that it is live, or in another `state`; the browser keeps nothing
    * of tests before. What the browser complains of is kept in `complaints`. The page draws four times a second without
    * moving parts, or with `fluent` as often as the browser repaints and with all that moves.
    */
-  static async open(browser, url, { tab = 'drive', state = 'Live', fluent = false, ...options } = {}) {
+  static async open(browser, url, { mode = 'watch', state = 'Live', fluent = false, ...options } = {}) {
     const shape = { ...LAPTOP, ...options };
     const { viewport, colorScheme, ...kept } = shape;
     const key = JSON.stringify([fluent, kept]);
@@ -90,7 +102,7 @@ export class DashboardPage {
     };
     dashboard.complaints.length = 0;
     dashboard.home = new URL(url).origin;
-    await dashboard.page.goto(`${url}#${tab}`);
+    await dashboard.page.goto(`${url}#${mode}`);
     await dashboard.page.getByText(state, { exact: true }).waitFor();
     return dashboard;
   }
@@ -137,8 +149,15 @@ export class DashboardPage {
     this.hadNothingToComplainOf(expected);
   }
 
-  text(id) {
-    return this.page.getByTestId(id).innerText();
+  /** A text by its test id; for one of the strip, another mode is left as long as it is read. */
+  async text(id) {
+    const read = () => this.page.getByTestId(id).innerText();
+    const mode = await this.page.locator('main[data-mode]').getAttribute('data-mode');
+    if (mode === 'watch' || !IN_STRIP.has(id)) return read();
+    await this.show('watch');
+    const text = await read();
+    await this.show(mode);
+    return text;
   }
 
   async number(id) {
@@ -151,14 +170,55 @@ export class DashboardPage {
     return 60 * minutes + rest;
   }
 
-  show(tab) {
-    return this.page.locator(`#tab-${tab}`).click();
+  async show(mode) {
+    if (await this.page.locator('#menu:popover-open').count()) await this.page.keyboard.press('Escape');
+    await this.page.locator(`#mode-${mode}`).click();
   }
 
-  /** Of a page that several tests use: a tab as it is after loading, with nothing focused. */
-  async beginAt(tab) {
-    await this.show(tab);
+  /** Of a page that several tests use: a mode as it is after loading, with nothing focused. */
+  async beginAt(mode) {
+    await this.show(mode);
     await this.page.evaluate(() => document.activeElement.blur());
+  }
+
+  /** Presses an entry of the menu under the program's name. */
+  async fromMenu(name) {
+    if ((await this.page.locator('#menu:popover-open').count()) === 0) await this.page.locator('.name').click();
+    await this.page.locator('#menu').getByRole('button', { name }).click();
+  }
+
+  /** Puts the car to the start. */
+  startAgain() {
+    return this.page.locator('body').press('r');
+  }
+
+  /** Chooses a camera by its name. */
+  camera(label) {
+    return this.page.getByLabel('Camera', { exact: true }).selectOption({ label });
+  }
+
+  /** What is driven: controller, preset, car, track, latency, guard. */
+  summary() {
+    return this.page.locator('.run').getAttribute('title');
+  }
+
+  /** The row of a setting in Try: what is searched for is found. */
+  async setting(key) {
+    await this.show('try');
+    await this.page.locator('#search').fill(key);
+    return this.page.locator(`.sliders [data-key="${key}"]`);
+  }
+
+  /** Types a value of a setting, as a reader would. */
+  async type(key, value) {
+    const box = (await this.setting(key)).locator('.number-box');
+    await box.fill(String(value));
+    await box.press('Enter');
+  }
+
+  /** Lets what is typed belong to the run, or to the second car. */
+  aimAt(target) {
+    return this.button(target === 'run' ? 'This run' : 'A second car').click();
   }
 
   button(name) {

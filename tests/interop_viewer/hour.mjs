@@ -13,7 +13,7 @@ import { McapIndexedReader } from '@mcap/core';
 import { WebSocketServer } from 'ws';
 import { launch } from './browser.mjs';
 import { startDrive } from './chicane_drive.mjs';
-import { TABS } from './dashboard_page.mjs';
+import { MODES } from './dashboard_page.mjs';
 
 const MINUTES = Number(argv[2] ?? 60);
 const DIMENSION = argv[3] ?? '2d';
@@ -111,7 +111,7 @@ const complaints = [];
 page.on('pageerror', (error) => complaints.push(String(error)));
 await page.addInitScript(
   ({ port, dimension }) => {
-    localStorage.setItem('chicane.dimension', JSON.stringify(dimension));
+    localStorage.setItem('chicane.camera', JSON.stringify(dimension === '3d' ? 'chase' : 'track'));
     globalThis.taken = 0;
     globalThis.WebSocket = class extends WebSocket {
       constructor(_url, protocols) {
@@ -122,13 +122,13 @@ await page.addInitScript(
   },
   { port: server.address().port, dimension: DIMENSION },
 );
-await page.goto(`${drive.url}#plots`);
+await page.goto(`${drive.url}#watch`);
 const socket = await viewer;
 await page.waitForTimeout(500);
 const session = await context.newCDPSession(page);
 
 async function sample(minute, frames, wall) {
-  await page.locator('#tab-plots').click();
+  await page.locator('#mode-watch').click();
   await page.waitForTimeout(500);
   for (let i = 0; i < 3; ++i) await session.send('HeapProfiler.collectGarbage');
   const heap = await session.send('Runtime.getHeapUsage');
@@ -153,7 +153,7 @@ console.log(
 
 const begin = performance.now();
 const samples = [];
-let [sent, frames, tab] = [0, 0, 0];
+let [sent, frames, mode] = [0, 0, 0];
 const start = reader.statistics.messageStartTime;
 const frameChannel = channels.find(({ topic }) => topic === '/chicane/frame').id;
 for await (const { channelId, logTime, data } of reader.readMessages({ topics: channels.map(({ topic }) => topic) })) {
@@ -170,8 +170,8 @@ for await (const { channelId, logTime, data } of reader.readMessages({ topics: c
     samples.push(await sample(minute, frames, (performance.now() - begin) / 1000));
     console.log(row(samples.at(-1)));
     if (samples.length === SAMPLES) break;
-  } else if (minute > (tab + 1) * (MINUTES / 60)) {
-    await page.locator(`#tab-${TABS[++tab % TABS.length]}`).click();
+  } else if (minute > (mode + 1) * (MINUTES / 60)) {
+    await page.locator(`#mode-${MODES[++mode % MODES.length]}`).click();
   }
 }
 await browser.close();

@@ -13,16 +13,16 @@ const here = browserAndDrive(SIXTY_A_SECOND);
 let page;
 async function firstPage() {
   const made = await (await here.browser.newContext({ viewport: { width: 1366, height: 768 } })).newPage();
-  await made.addInitScript(() => location.protocol === 'http:' && localStorage.setItem('chicane.dimension', '"2d"'));
+  await made.addInitScript(() => location.protocol === 'http:' && localStorage.setItem('chicane.camera', '"track"'));
   await made.addInitScript(notePaints);
   return made;
 }
 
-for (const tab of EVERY_SIZE ? ['plots', 'explain'] : ['plots']) {
-  it(`paints the newest of many frames, in bounded memory: ${tab}`, async () => {
+for (const mode of EVERY_SIZE ? ['watch', 'understand'] : ['understand']) {
+  it(`paints the newest of many frames, in bounded memory: ${mode}`, async () => {
     page ??= await firstPage();
     await page.goto('about:blank');
-    await page.goto(`${here.drive.url}#${tab}`);
+    await page.goto(`${here.drive.url}#${mode}`);
     await page.getByText('Live', { exact: true }).waitFor();
     const dashboard = new DashboardPage(page, []);
     const paints = () => page.evaluate(() => [...globalThis.paints.keys()]);

@@ -21,11 +21,7 @@ async function laps(dashboard, count) {
     `${count} laps`,
   );
 }
-async function type(dashboard, key, value) {
-  const box = dashboard.page.locator(`.panel-body [data-key="${key}"] .number-box`);
-  await box.fill(String(value));
-  await box.press('Enter');
-}
+const type = (dashboard, key, value) => dashboard.type(key, value);
 
 describe('a lap', () => {
   const folder = mkdtempSync(join(tmpdir(), 'chicane-laps-'));
@@ -40,13 +36,13 @@ describe('a lap', () => {
   });
 
   it('remembers the settings it was driven with, for whoever looks', async () => {
-    const dashboard = await DashboardPage.open(here.browser, drive.url, { tab: 'laps' });
+    const dashboard = await DashboardPage.open(here.browser, drive.url, { mode: 'understand' });
     const { page } = dashboard;
     await laps(dashboard, 1);
     assert.equal(await page.locator('.lap-table th', { hasText: 'Driven with' }).count(), 0, 'nothing to tell yet');
-    await dashboard.show('drive');
+    await dashboard.show('try');
     await type(dashboard, 'latency_ms', 60);
-    await dashboard.show('laps');
+    await dashboard.show('understand');
     const before = await lapRows(dashboard).count();
     await laps(dashboard, before + 2);
     await lapRows(dashboard).first().locator('.setup', { hasText: 'latency ms 60' }).waitFor();
@@ -61,7 +57,7 @@ describe('a lap', () => {
     );
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
     await dashboard.close();
-    const late = await DashboardPage.open(here.browser, drive.url, { tab: 'laps' });
+    const late = await DashboardPage.open(here.browser, drive.url, { mode: 'understand' });
     await laps(late, before + 2);
     await lapRows(late).first().locator('.setup', { hasText: 'latency ms 60' }).waitFor();
     await late.close();

@@ -37,7 +37,7 @@ const memory = (pid) => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/
 async function timeUntil(browser, address, isThere, argument) {
   const context = await browser.newContext({ viewport: { width: 1366, height: 768 } });
   const page = await context.newPage();
-  await page.addInitScript(() => localStorage.setItem('chicane.dimension', '"2d"'));
+  await page.addInitScript(() => localStorage.setItem('chicane.camera', '"track"'));
   await page.addInitScript(
     ({ text, argument }) => {
       const isThere = new Function(`return ${text}`)();
@@ -76,12 +76,11 @@ async function several(times, measure) {
 
 /** From the click on "Drive both" to the verdict, of ten seconds from now on [ms]. */
 async function timeToAnswer(browser, url) {
-  const dashboard = await DashboardPage.open(browser, url, { tab: 'whatif', fluent: true });
+  const dashboard = await DashboardPage.open(browser, url, { mode: 'try', fluent: true });
   const { page } = dashboard;
-  await page.getByLabel('Setting to change').fill('latency_ms');
-  await page.getByLabel('What if: latency').fill('60');
-  await page.getByLabel('What if: latency').press('Enter');
-  await dashboard.button('10 s').click();
+  await dashboard.aimAt('second');
+  await dashboard.type('latency_ms', 60);
+  await page.getByLabel('For how long').selectOption('10');
   const time = await page.evaluate(async () => {
     const begin = performance.now();
     [...document.querySelectorAll('button')].find((each) => each.textContent === 'Drive both').click();
@@ -96,16 +95,15 @@ async function timeToAnswer(browser, url) {
 /** The control step of a run in real time [µs], with a second car or without; a page begins it and goes. */
 async function stepTimes(browser, withRival, seconds) {
   const drive = await startDrive(['--track', 'oval', '--pace', '4', '--json']);
-  const dashboard = await DashboardPage.open(browser, drive.url, { tab: 'whatif', fluent: true });
+  const dashboard = await DashboardPage.open(browser, drive.url, { mode: 'try', fluent: true });
   const { page } = dashboard;
   if (withRival) {
-    await page.getByLabel('Setting to change').fill('tracking_mpc.weight_lateral');
-    await page.getByLabel(/^What if: /).fill('4');
-    await page.getByLabel(/^What if: /).press('Enter');
+    await dashboard.aimAt('second');
+    await dashboard.type('tracking_mpc.weight_lateral', 4);
     await dashboard.button('Race A against B').click();
     await page.getByTestId('race').waitFor();
   } else {
-    await dashboard.button('Reset').click();
+    await dashboard.startAgain();
   }
   await page.context().close();
   await sleep(seconds * 1000);
@@ -121,9 +119,9 @@ if (isWanted('page')) {
   const drive = await startDrive(['--track', 'oval', ...SIXTY_A_SECOND]);
   await pageCost(browser, drive.url, 'plots', 1); // the program's page is read once
   row('first picture of a cold page', await several(5, () => timeUntil(browser, drive.url, hasPicture)), '≤ 1 s');
-  for (const tab of ['plots', 'explain']) {
-    const cost = await pageCost(browser, drive.url, tab, 10);
-    const rate = `${tab}, ${cost.framesPerSecond.toFixed(0)} frames a second`;
+  for (const mode of ['watch', 'understand']) {
+    const cost = await pageCost(browser, drive.url, mode, 10);
+    const rate = `${mode}, ${cost.framesPerSecond.toFixed(0)} frames a second`;
     row(`main thread of the page, ${rate}`, `${(100 * cost.mainThread).toFixed(0)} %`, '< 50 %');
     row(`message to screen p95, ${rate}`, ms(cost.p95), '≤ 100 ms');
   }
@@ -145,7 +143,7 @@ if (isWanted('program')) {
 if (isWanted('late')) {
   const drive = await startDrive(['--track', 'oval', '--pace', '20']);
   for (const lap of [1, 50, LAPS]) {
-    const watching = await DashboardPage.open(browser, drive.url, { tab: 'laps', fluent: true });
+    const watching = await DashboardPage.open(browser, drive.url, { mode: 'understand', fluent: true });
     while (!(await watching.page.evaluate(hasLap, lap))) await sleep(500);
     await watching.page.context().close();
     const table = await several(5, () => timeUntil(browser, `${drive.url}#laps`, hasLap, lap));

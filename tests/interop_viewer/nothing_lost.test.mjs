@@ -9,29 +9,25 @@ import { browserAlone } from './here.mjs';
 const here = browserAlone();
 
 const isAboutSocket = (text) => text.startsWith('WebSocket connection to') || /ERR_CONNECTION_REFUSED/.test(text);
-const open = (drive, tab, state = 'Live') => DashboardPage.open(here.browser, drive.url, { tab, state });
+const open = (drive, mode, state = 'Live') => DashboardPage.open(here.browser, drive.url, { mode, state });
 const lapRows = (dashboard) => dashboard.page.locator('.lap-table tbody tr:not(.limit)').count();
-const box = (dashboard, key) => dashboard.page.locator(`.panel-body [data-key="${key}"] .number-box`);
-async function type(dashboard, key, value) {
-  await box(dashboard, key).fill(String(value));
-  await box(dashboard, key).press('Enter');
-}
+const type = (dashboard, key, value) => dashboard.type(key, value);
 
 describe('a page that is opened late', () => {
   let drive;
   let first;
   before(async () => {
     drive = await startDrive(['--track', 'oval']);
-    first = await open(drive, 'drive');
+    first = await open(drive, 'try');
     await type(first, 'latency_ms', 60);
     await type(first, 'run.pace', 5); // faster, a busy program would leave out too much of a lap to compare it
-    await first.show('laps');
+    await first.show('understand');
     await first.until(
       () => lapRows(first),
       (count) => count >= 2,
       'two laps',
     );
-    await first.show('drive');
+    await first.show('try');
     await type(first, 'run.pace', 1);
     await first.pause();
   });
@@ -41,26 +37,26 @@ describe('a page that is opened late', () => {
   });
 
   it('shows plots, compares laps that it has not seen, and knows the changes', async () => {
-    const late = await open(drive, 'plots', 'Paused');
+    const late = await open(drive, 'understand', 'Paused');
     await late.until(
       () => late.colours('.plot[aria-label="Lateral error"] canvas'),
       (colours) => colours > 8,
       'a plot of the last minute',
     );
     await late.page.getByText('60 s', { exact: true }).click();
-    await late.show('laps');
+    await late.show('understand');
     await late.until(
       () => late.page.locator('.compare canvas').count(),
       (count) => count === 3,
       'two laps along the track',
     );
-    await late.show('faults');
+    await late.show('try');
     await late.page.locator('.events li', { hasText: 'latency_ms set to 60' }).waitFor();
     await late.close();
   });
 
   it('shows the same settings as changed, and how they were at the start', async () => {
-    const late = await open(drive, 'tune', 'Paused');
+    const late = await open(drive, 'try', 'Paused');
     await late.until(
       () => late.text('changes'),
       (text) => /1 change.*latency_ms 100 → 60/s.test(text.replace(/\s+/g, ' ')),
@@ -68,14 +64,14 @@ describe('a page that is opened late', () => {
     );
     await late.button('Reset latency_ms').click();
     await late.page.getByText('No changes').waitFor();
-    await first.show('tune');
+    await first.show('try');
     await first.page.getByText('No changes').waitFor();
     await late.close();
   });
 
   it('has one best lap, in thousandths, on the strip and in the table', async () => {
-    const late = await open(drive, 'laps', 'Paused');
-    await first.show('laps');
+    const late = await open(drive, 'understand', 'Paused');
+    await first.show('understand');
     const driven = await lapRows(first);
     await late.until(
       () => lapRows(late),
@@ -98,10 +94,10 @@ describe('a page that is opened late', () => {
 describe('the end of a run', () => {
   it('is told, with all laps, the gap and the last seconds once more', async () => {
     const drive = await startDrive(['--track', 'oval', '--laps', '2']);
-    const dashboard = await open(drive, 'drive');
+    const dashboard = await open(drive, 'try');
     const { page } = dashboard;
     await type(dashboard, 'run.pace', 20); // not before the page is there: the run must not end earlier
-    await dashboard.show('laps');
+    await dashboard.show('watch');
     await page.getByTestId('end-card').waitFor();
     assert.equal(await dashboard.text('end-title'), 'Finished');
     await dashboard.until(
@@ -116,7 +112,7 @@ describe('the end of a run', () => {
     );
     await page.getByText('Program ended', { exact: true }).waitFor();
     assert.equal(await page.getByTestId('banner').count(), 0, 'nothing is wrong');
-    assert.match(await page.locator('.end-command code').innerText(), /^chicane drive --preset \S+ --track oval/);
+    assert.match(await page.locator('.again code').innerText(), /^chicane drive --preset \S+ --track oval/);
     const end = await dashboard.settled(() => dashboard.text('speed')); // the last frames may be painted after the end;
     await page.getByText('Replay the last 10 s').click();
     await page.getByText(/^Replay, \d+ s left$/).waitFor();
@@ -132,8 +128,6 @@ describe('the end of a run', () => {
       'the end again',
     );
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
-    await page.getByLabel('Close', { exact: true }).click();
-    await page.getByTestId('end-card').waitFor({ state: 'detached' });
     await dashboard.close(isAboutSocket);
     await drive.stop();
   });
@@ -144,7 +138,7 @@ describe('the end of a run', () => {
       ['SIGKILL', 'Connection lost'],
     ]) {
       const drive = await startDrive(['--track', 'oval']);
-      const dashboard = await open(drive, 'drive');
+      const dashboard = await open(drive, 'try');
       await drive.stop(signal);
       await dashboard.until(
         () => dashboard.text('end-title'),
@@ -157,7 +151,7 @@ describe('the end of a run', () => {
 
   it('of the program is not the end of the choice that was driven', async () => {
     let drive = await startDrive(['--track', 'oval', '--car', 'road-car']);
-    const dashboard = await open(drive, 'drive');
+    const dashboard = await open(drive, 'try');
     const { port } = drive;
     await drive.stop();
     drive = await startDrive([], port);
@@ -165,7 +159,7 @@ describe('the end of a run', () => {
     assert.match(await dashboard.text('other-run'), /road-car on oval/);
     await dashboard.button('Drive that again').click();
     await dashboard.until(
-      () => dashboard.page.locator('.summary').innerText(),
+      () => dashboard.page.locator('.run').getAttribute('title'),
       (text) => /road-car · oval/.test(text),
       'what was driven before',
     );

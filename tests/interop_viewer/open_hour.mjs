@@ -31,7 +31,7 @@ const pages = [];
 for (const tab of OPEN) {
   const context = await browser.newContext({ viewport: { width: 1366, height: 768 } });
   const page = await context.newPage();
-  await page.addInitScript(() => localStorage.setItem('chicane.dimension', '"2d"'));
+  await page.addInitScript(() => localStorage.setItem('chicane.camera', '"track"'));
   await page.goto(`${drive.url}#${tab}`);
   await page.getByText('Live', { exact: true }).waitFor();
   pages.push({ tab, read: await meter(page) });

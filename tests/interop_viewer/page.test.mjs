@@ -11,11 +11,7 @@ import { browserAlone } from './here.mjs';
 const url = pathToFileURL(process.env.CHICANE_PAGE ?? 'index.html').href;
 const here = browserAlone();
 
-async function type(dashboard, key, value) {
-  const box = dashboard.page.locator(`.panel-body [data-key="${key}"] .number-box`);
-  await box.fill(String(value));
-  await box.press('Enter');
-}
+const type = (dashboard, key, value) => dashboard.type(key, value);
 
 /** What the program's own run gives with the arithmetic that WebAssembly has. */
 async function programHash(...args) {
@@ -29,6 +25,7 @@ describe('the page that needs no program', () => {
   it('drives the run of the program, bit for bit, at twenty times the pace', async () => {
     const dashboard = await DashboardPage.open(here.browser, url);
     await type(dashboard, 'run.pace', 20);
+    await dashboard.show('watch');
     const card = dashboard.page.getByTestId('end-card');
     await card.waitFor();
     assert.equal(await dashboard.text('end-title'), 'Finished');
@@ -39,16 +36,17 @@ describe('the page that needs no program', () => {
 
   it('takes another track and other settings, and gives that run', async () => {
     const dashboard = await DashboardPage.open(here.browser, `${url}`);
-    await dashboard.page.locator('.panel-body [data-key="track"] select').selectOption('oval');
+    await dashboard.page.getByLabel('Track', { exact: true }).selectOption('oval');
     await dashboard.button('Restart').click();
     await type(dashboard, 'run.pace', 20);
+    await dashboard.show('watch');
     await dashboard.page.getByTestId('end-card').waitFor();
     assert.equal(await dashboard.text('state-hash'), await programHash('--track', 'oval'));
     await dashboard.close();
   });
 
   it('pauses, steps, begins again, breaks and mends', async () => {
-    const dashboard = await DashboardPage.open(here.browser, url, { tab: 'faults' });
+    const dashboard = await DashboardPage.open(here.browser, url, { mode: 'try' });
     await dashboard.until(
       () => dashboard.seconds(),
       (seconds) => seconds > 1,
@@ -56,19 +54,20 @@ describe('the page that needs no program', () => {
     );
     await dashboard.pause();
     const time = await dashboard.seconds();
-    await dashboard.button('Step').click();
+    await dashboard.page.locator('body').press('.');
     await dashboard.until(
       () => dashboard.seconds(),
       (seconds) => seconds > time,
       'a step',
     );
-    await dashboard.button('Reset').click();
+    await dashboard.startAgain();
     await dashboard.until(
       () => dashboard.seconds(),
       (seconds) => seconds < time,
       'the start',
     );
     await dashboard.resume();
+    await dashboard.show('try');
     await dashboard.page.locator('.fault').first().click();
     await dashboard.page.locator('.events li').first().waitFor();
     await dashboard.close();

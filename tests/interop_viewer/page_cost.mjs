@@ -10,7 +10,7 @@ export const quantile = (values, share) =>
 export async function pageCost(browser, url, tab, seconds, meanwhile = async () => undefined) {
   const context = await browser.newContext({ viewport: { width: 1366, height: 768 } });
   const page = await context.newPage();
-  await page.addInitScript(() => localStorage.setItem('chicane.dimension', '"2d"'));
+  await page.addInitScript(() => localStorage.setItem('chicane.camera', '"track"'));
   await page.addInitScript(notePaints);
   await page.goto(`${url}#${tab}`);
   await page.getByText('Live', { exact: true }).waitFor();

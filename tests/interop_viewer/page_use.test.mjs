@@ -22,12 +22,15 @@ describe('the page', () => {
   before(() => open());
   beforeEach(async () => {
     await page.setViewportSize(LAPTOP.viewport);
-    await dashboard.beginAt('drive');
+    await dashboard.beginAt('try');
+    await page.locator('#search').fill('');
+    await page.evaluate(() => document.activeElement.blur());
   });
   afterEach(() => dashboard.hadNothingToComplainOf());
   after(() => dashboard.close());
 
   it('says what a log found of the car and how well, and what the road was read from', async () => {
+    await page.getByText('Controller, car and road').click();
     const origin = page.getByTestId('origin');
     assert.match(await origin.innerText(), /road-car, identified from 60 s of run\.mcap/);
     assert.match(await origin.innerText(), /Grip is not known: the tyres were used too little/);
@@ -45,8 +48,9 @@ describe('the page', () => {
   });
 
   it('pauses by Space, whatever was clicked last', async () => {
-    await dashboard.show('faults');
-    const fault = page.locator('.panel-body button[aria-pressed]').first();
+    await dashboard.show('try');
+    await page.getByText(/how long and how strong$/).click();
+    const fault = page.locator('button.fault').first();
     await page
       .getByLabel(/^Duration of/)
       .first()
@@ -59,12 +63,7 @@ describe('the page', () => {
     await page.keyboard.press('Space');
     await page.getByText('Live', { exact: true }).waitFor();
     await dashboard.button('Clear all').click();
-    await page.locator('.panel-body button[aria-pressed="true"]').waitFor({ state: 'detached' });
-  });
-
-  it('gives the stage three fifths of a laptop', async () => {
-    const { width, height } = await page.locator('.stage').boundingBox();
-    assert.ok(width * height >= 0.6 * 1366 * 768 * 0.93, `${width} x ${height}, beside a header of 7 %`);
+    await page.locator('button.fault[aria-pressed="true"]').waitFor({ state: 'detached' });
   });
 
   it('can be used at 200 % and at 320 pixels', async () => {
@@ -73,56 +72,43 @@ describe('the page', () => {
       { width: 320, height: 640 },
     ]) {
       await page.setViewportSize(viewport);
+      await dashboard.show('watch');
       const box = (selector) => page.locator(selector).first().boundingBox();
       const map = await dashboard.until(
         () => box('.map'),
         ({ height }) => height >= 200,
         `a picture that can be seen at ${viewport.width}`,
       );
-      const [hud, controls] = [await box('.hud'), await box('.map-controls')];
-      assert.ok(hud.y >= controls.y + controls.height, 'the speed is below the buttons');
-      assert.ok(hud.y + hud.height <= map.y + map.height, 'and on the picture');
+      const strip = await box('.strip');
+      assert.ok(strip.y >= map.y + map.height - 1, 'the strip is below the picture');
       const { across } = await dashboard.overflow();
       assert.ok(across <= 0, `nothing is cut off at ${viewport.width}`);
       assert.deepEqual(await dashboard.accessibilityFindings(), []);
     }
   });
 
-  it('keeps how far each panel was scrolled', async () => {
-    const body = page.locator('#panel');
-    const scrolled = () => body.evaluate((element) => element.scrollTop);
-    await dashboard.show('tune');
-    await page.locator('#tune-search').waitFor();
-    await body.evaluate((element) => element.scrollTo(0, 400));
-    await dashboard.show('faults');
-    await page.locator('.fault-card').first().waitFor();
-    assert.equal(await scrolled(), 0);
-    await dashboard.show('tune');
-    await dashboard.until(scrolled, (now) => now === 400, 'the settings as they were scrolled');
-  });
-
-  it('has its tab in the address, for back, forward, reload and links', async () => {
-    const chosen = () => page.locator('[role="tab"][aria-selected="true"]').innerText();
+  it('has its mode in the address, for back, forward, reload and links', async () => {
+    const chosen = () => page.locator('.modes [aria-current="page"]').innerText();
     const is = (title) => dashboard.until(chosen, (now) => now === title, title);
-    await dashboard.show('tune');
-    await dashboard.show('laps');
-    assert.match(page.url(), /#laps$/);
+    await dashboard.show('watch');
+    await dashboard.show('understand');
+    assert.match(page.url(), /#understand/);
     await page.goBack();
-    await is('Tune');
+    await is('Watch');
     await page.goBack();
-    await is('Drive');
+    await is('Try');
     await page.goForward();
-    await is('Tune');
+    await is('Watch');
     await page.reload();
-    await is('Tune');
+    await is('Watch');
     await page.evaluate(() => {
-      location.hash = 'faults';
+      location.hash = 'try';
     });
-    await is('Faults');
+    await is('Try');
   });
 
   it('says what a setting means to touch and keyboard', async () => {
-    const name = page.locator('[data-key="latency_ms"] .meaning');
+    const name = page.locator('.sliders [data-key="latency_ms"] .meaning');
     const note = page.getByRole('note').filter({ hasText: /delay.*0 to 500 ms.*latency_ms/s });
     await name.focus();
     await page.keyboard.press('Enter');
@@ -144,24 +130,19 @@ describe('the page', () => {
       localStorage.setItem('chicane.tour.step', '4');
     });
     await page.reload();
-    await dashboard.button('Go on with the tour, step 5 of 7').click();
-    const card = page.locator('[data-key="fault.steering_stuck"]');
-    const isSeen = () =>
-      card.evaluate((element) => {
-        const panel = document.getElementById('panel').getBoundingClientRect();
-        const { top, bottom } = element.getBoundingClientRect();
-        return top >= panel.top && bottom <= panel.bottom;
-      });
-    await dashboard.until(isSeen, Boolean, 'the card of step 5');
-    await page.locator('#panel').evaluate((element) => element.scrollTo(0, 0));
-    await dashboard.show('tune');
-    await page.locator('#panel').evaluate((element) => element.scrollTo(0, 600));
+    await dashboard.fromMenu('Go on with the tour, step 5 of 7');
+    const isSeen = (selector) => () =>
+      page
+        .locator(selector)
+        .first()
+        .evaluate((element) => {
+          const { top, bottom } = element.getBoundingClientRect();
+          return top >= 0 && bottom <= innerHeight;
+        });
+    await dashboard.until(isSeen('[data-key="fault.steering_stuck"]'), Boolean, 'the fault of step 5');
+    await dashboard.show('watch');
     await dashboard.button('Skip').click();
-    const search = () =>
-      page.locator('#tune-search').evaluate((element) => {
-        const panel = document.getElementById('panel').getBoundingClientRect();
-        return element.getBoundingClientRect().top >= panel.top;
-      });
-    await dashboard.until(search, Boolean, 'the search of step 6');
+    await dashboard.until(isSeen('#search'), Boolean, 'the search of step 6');
+    await dashboard.button('Leave the tour').click();
   });
 });

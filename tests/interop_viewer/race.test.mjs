@@ -10,15 +10,12 @@ const here = browserAndDrive(['--track', 'oval', '--preset', 'pid', '--set', 'pi
 const race = async () => (await fetch(new URL('rival.json', here.drive.url))).json();
 
 it('drives a second car with other settings beside the run, tells where it gains, and keeps the winner', async () => {
-  const dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'drive' });
+  const dashboard = await DashboardPage.open(here.browser, here.drive.url, { mode: 'try' });
   const { page } = dashboard;
-  await page.locator('.panel-body [data-key="run.pace"] .number-box').fill('20');
-  await page.locator('.panel-body [data-key="run.pace"] .number-box').press('Enter');
-  await dashboard.show('whatif');
+  await dashboard.type('run.pace', 20);
   assert.ok(await dashboard.button('Race A against B').isDisabled(), 'nothing to race with');
-  await page.getByLabel('Setting to change').fill('pid.speed_reference_mps');
-  await page.getByLabel(/^What if: /).fill('24');
-  await page.getByLabel(/^What if: /).press('Enter');
+  await dashboard.aimAt('second');
+  await dashboard.type('pid.speed_reference_mps', 24);
   await dashboard.button('Race A against B').click();
   await dashboard.until(
     () => page.getByTestId('race-table').locator('tbody tr').count(),
@@ -32,13 +29,13 @@ it('drives a second car with other settings beside the run, tells where it gains
   assert.ok(rival[0].lap_time_s < run[0].lap_time_s - 1);
   assert.deepEqual(await dashboard.accessibilityFindings(), []);
   // A page that comes later shows the race, too.
-  const late = await DashboardPage.open(here.browser, here.drive.url, { tab: 'whatif' });
+  const late = await DashboardPage.open(here.browser, here.drive.url, { mode: 'try' });
   await late.page.getByTestId('race-table').waitFor();
   await late.close();
   await page.getByRole('button', { name: 'Keep B, the winner' }).click();
   await page.getByTestId('race').waitFor({ state: 'detached' });
   assert.equal((await race()).state, 'none');
-  await dashboard.show('tune');
+  await dashboard.aimAt('run');
   await dashboard.until(
     () => dashboard.text('changes'),
     (text) => /pid\.speed_reference_mps 20 → 24/.test(text.replace(/\s+/g, ' ')),
@@ -48,10 +45,9 @@ it('drives a second car with other settings beside the run, tells where it gains
 });
 
 it('says why a setting cannot be raced with', async () => {
-  const dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'whatif' });
-  await dashboard.page.getByLabel('Setting to change').fill('latency_ms');
-  await dashboard.page.getByLabel(/^What if: /).fill('60');
-  await dashboard.page.getByLabel(/^What if: /).press('Enter');
+  const dashboard = await DashboardPage.open(here.browser, here.drive.url, { mode: 'try' });
+  await dashboard.aimAt('second');
+  await dashboard.type('latency_ms', 60);
   await dashboard.button('Race A against B').click();
   await dashboard.page.getByRole('alert').filter({ hasText: 'a setting of the controller or its car' }).waitFor();
   await dashboard.close();

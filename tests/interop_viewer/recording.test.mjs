@@ -54,7 +54,7 @@ function addressOf(child) {
 
 /** The page once its recording is read to the end. */
 async function open(address, options = {}) {
-  dashboard = await DashboardPage.open(browser, address, { tab: 'laps', state: 'Recording', ...options });
+  dashboard = await DashboardPage.open(browser, address, { mode: 'understand', state: 'Recording', ...options });
   await dashboard.page.getByLabel('Looking for landmarks').waitFor({ state: 'detached' });
   return dashboard.page;
 }
@@ -77,6 +77,7 @@ describe('a recording in the page', () => {
 
   it('is scrubbed, played and stepped', async () => {
     await page.locator('.laps .lap-table tbody tr').nth(1).waitFor(); // both laps, though we stand at the start
+    await dashboard.show('watch');
     await scrub(page, 30);
     await dashboard.until(
       () => dashboard.number('speed'),
@@ -97,7 +98,7 @@ describe('a recording in the page', () => {
       (mph) => mph === there,
       'the same moment again',
     );
-    await dashboard.button('Step').click();
+    await dashboard.page.locator('body').press('.');
     await dashboard.until(
       () => time(page),
       (text) => /^0:30\.0[1-9]/.test(text),
@@ -143,6 +144,7 @@ describe('a recording in the page', () => {
   });
 
   it('draws laps of the other recording, and says where they lose time', async () => {
+    await dashboard.show('understand');
     const others = page.locator('.other-laps tbody');
     await others.getByText('branch.mcap').waitFor();
     const rows = others.locator('tr');
@@ -162,7 +164,7 @@ describe('a recording in the page', () => {
       (count) => count === 3,
       'three laps at once',
     );
-    assert.deepEqual(await dashboard.accessibilityFindings('.side'), []);
+    assert.deepEqual(await dashboard.accessibilityFindings('main'), []);
   });
 
   it('is played slower and faster', async () => {
@@ -176,15 +178,14 @@ describe('a recording in the page', () => {
       await page.waitForTimeout(2000);
       return ((await position()) - from) / ((performance.now() - begin) / 1000);
     }
-    await dashboard.beginAt('laps');
+    await dashboard.beginAt('understand');
     await scrub(page, 5);
     await page.locator('body').press('[');
     await page.locator('body').press('[');
     await page.getByText('0.25× speed', { exact: true }).waitFor();
     await dashboard.button('Play').click();
     const slow = await rate();
-    await dashboard.show('drive');
-    await dashboard.button('4×').click();
+    await dashboard.fromMenu('4×');
     await page.getByText('4× speed', { exact: true }).waitFor();
     const fast = await rate();
     assert.ok(slow > 0 && fast > 3 * slow, `${slow}, then ${fast}`); // sixteen times, were the machine not busy
@@ -193,14 +194,16 @@ describe('a recording in the page', () => {
   });
 
   it('says what belongs to the recording and cannot be changed', async () => {
-    await dashboard.show('tune');
-    assert.equal(await page.locator('.panel-body [data-key="tracking_mpc.horizon_steps"]').count(), 0);
+    await dashboard.show('try');
+    await page.getByText('Both drive from').waitFor();
+    assert.equal(await dashboard.button('This run').count(), 0);
+    assert.equal(await page.locator('.choices').count(), 0);
   });
 });
 
 it('is shown when its file is dropped on a page that watches a run; what is none, is refused in words', async () => {
   const drive = await startDrive(['--track', 'oval']);
-  dashboard = await DashboardPage.open(browser, drive.url, { tab: 'laps' });
+  dashboard = await DashboardPage.open(browser, drive.url, { mode: 'understand' });
   const { page } = dashboard;
   const drop = (name, bytes) =>
     page.evaluate(
@@ -224,7 +227,7 @@ it('is shown when its file is dropped on a page that watches a run; what is none
     (count) => count === 2,
     'both of its laps',
   );
-  assert.match(await page.locator('.summary').innerText(), /lakeside/, 'not the oval of the run');
+  assert.match(await page.locator('.run').getAttribute('title'), /lakeside/, 'not the oval of the run');
   await dashboard.close(isAboutGraphics);
   await drive.stop();
 });
@@ -272,22 +275,22 @@ describe('a report', () => {
 it('keeps the laps of several runs in a recording apart', async () => {
   const file = join(folder, 'several.mcap');
   const drive = await startDrive(['--track', 'oval', '--pace', '20', '--record', file]);
-  const live = await DashboardPage.open(browser, drive.url, { tab: 'laps' });
+  const live = await DashboardPage.open(browser, drive.url, { mode: 'understand' });
   const rows = (page) => page.locator('.laps .lap-table tbody tr:not(.limit)').count();
   await live.until(
     () => rows(live.page),
     (count) => count >= 3,
     'laps on the oval',
   );
-  await live.show('drive');
+  await live.show('try');
   await live.page.locator('.choices').getByLabel('Track', { exact: true }).selectOption('hairpins');
   await live.page.getByRole('dialog').getByText('Restart', { exact: true }).click();
   await live.until(
-    () => live.page.locator('.summary').innerText(),
+    () => live.page.locator('.run').getAttribute('title'),
     (text) => /hairpins/.test(text),
     'the other track',
   );
-  await live.show('laps');
+  await live.show('understand');
   await live.until(
     () => rows(live.page),
     (count) => count === 1,
@@ -303,7 +306,7 @@ it('keeps the laps of several runs in a recording apart', async () => {
   assert.equal(await runs.locator('option').count(), 2);
   await runs.selectOption('1');
   await dashboard.until(
-    () => page.locator('.summary').innerText(),
+    () => page.locator('.run').getAttribute('title'),
     (text) => /hairpins/.test(text),
     'the other run',
   );

@@ -12,7 +12,7 @@ const TIMER_MS = 10;
 
 /** In the page: counts. */
 function count({ timer, dimension }) {
-  localStorage.setItem('chicane.dimension', JSON.stringify(dimension));
+  localStorage.setItem('chicane.camera', JSON.stringify(dimension === '3d' ? 'chase' : 'track'));
   globalThis.counts = { repaints: 0, pictures: 0, late: [] };
   const { clear } = WebGL2RenderingContext.prototype;
   WebGL2RenderingContext.prototype.clear = function (bits) {

@@ -73,9 +73,11 @@ async function fresh(browser, { script, fluent, ...options }) {
   return { page, complaints };
 }
 
-const in3d = { 'chicane.dimension': '3d' };
+const in3d = { 'chicane.camera': 'chase' };
 const ready = (page) => page.locator('.map.has-3d canvas.map-3d').waitFor();
 const button = (page, name) => page.getByRole('button', { name, exact: true });
+const camera = (page) => page.getByLabel('Camera', { exact: true });
+const choose = (page, label) => camera(page).selectOption({ label });
 
 /** Waits until nothing is drawn any more; how often it was until then. */
 const atRest = (page) => new DashboardPage(page).settled(() => page.evaluate(() => globalThis.drawn));
@@ -113,40 +115,38 @@ describe('the 3D picture', () => {
 
   it('is drawn when chosen, from every camera, and chosen again after a reload', async () => {
     ({ page, complaints, leave } = await open(browser));
-    // Without a graphics card the map comes first, and says why.
-    await page.getByText('No graphics card here').waitFor();
+    // Without a graphics card the track comes first.
+    assert.equal(await camera(page).inputValue(), 'track');
     assert.equal(await page.locator('canvas.map-3d').count(), 0);
-    await button(page, '3D').click();
+    await choose(page, 'Chase');
     await ready(page);
     const seen = new Set();
-    for (const camera of ['Chase', 'Top', 'Cockpit', 'Free']) {
-      await button(page, camera).click();
-      assert.equal(await button(page, camera).getAttribute('aria-pressed'), 'true');
+    for (const name of ['Chase', 'Top', 'Cockpit', 'Free']) {
+      await choose(page, name);
       const { text } = await new DashboardPage(page).until(
         () => picture(page),
         (now) => now.colours >= 30 && !seen.has(now.text),
-        `a picture from another camera: ${camera}`,
+        `a picture from another camera: ${name}`,
       );
       seen.add(text);
     }
     await page.reload();
     await ready(page);
-    assert.equal(await button(page, 'Free').getAttribute('aria-pressed'), 'true');
-    assert.ok((await page.locator('canvas.map-2d').boundingBox()).width < 200, 'the map stays, small');
+    assert.equal(await camera(page).inputValue(), 'free');
     assert.deepEqual(complaints, []);
   });
 
   it('obeys the keyboard: cameras, map, and turning the free camera', async () => {
-    await button(page, 'Chase').click();
-    await page.locator('body').focus();
+    await choose(page, 'Chase');
+    await page.evaluate(() => document.activeElement.blur());
     for (const name of ['Chase', 'Top', 'Cockpit', 'Free']) {
       await page.waitForFunction(
-        (camera) => document.querySelector('[aria-label="View"] [aria-pressed="true"]')?.textContent === camera,
+        (label) => document.querySelector('select.camera').selectedOptions[0].textContent === label,
         name,
       );
       await page.keyboard.press('c');
     }
-    await button(page, 'Free').click();
+    await choose(page, 'Free');
     await button(page, 'Pause').click();
     await page.getByText('Paused', { exact: true }).waitFor();
     await atRest(page);
@@ -158,9 +158,9 @@ describe('the 3D picture', () => {
       ({ text }) => text !== before.text,
       'another view',
     );
-    await page.keyboard.press('v');
+    await choose(page, 'Map');
     await page.locator('.map:not(.has-3d)').waitFor();
-    await page.keyboard.press('v');
+    await choose(page, 'Free');
     await ready(page);
     await button(page, 'Resume').click();
     assert.deepEqual(complaints, []);
@@ -170,7 +170,7 @@ describe('the 3D picture', () => {
     await button(page, 'Pause').click();
     await page.getByText('Paused', { exact: true }).waitFor();
     const still = await atRest(page);
-    await button(page, 'Reset').click();
+    await page.locator('body').press('r');
     await button(page, 'Resume').click();
     await page.getByText('Live', { exact: true }).waitFor();
     await page.waitForFunction((before) => globalThis.drawn > before, still);
@@ -184,7 +184,7 @@ describe('the 3D picture', () => {
     );
     await page.getByText('The browser stopped the 3D picture').waitFor();
     assert.ok((await page.locator('canvas.map-2d').boundingBox()).width > 300, 'the map fills the place');
-    await button(page, '3D').click();
+    await choose(page, 'Chase');
     await ready(page);
     assert.ok((await picture(page)).colours >= 30);
     complaints.length = 0; // of the context that was taken
@@ -203,7 +203,7 @@ describe('the 3D picture', () => {
       }));
       assert.ok(content <= width, `${name}: ${content} px of content on ${width} px`);
     };
-    await button(page, 'Free').click();
+    await choose(page, 'Free');
     await isGood(page, 'in the light');
     await page.emulateMedia({ colorScheme: 'dark' });
     await isGood(page, 'in the dark', '.stage', ['color-contrast']);
@@ -222,7 +222,7 @@ describe('the 3D picture', () => {
   });
 
   it('comes without the page standing still for it', async (test) => {
-    const smooth = await open(browser, { storage: { 'chicane.dimension': '2d' }, fluent: true });
+    const smooth = await open(browser, { storage: { 'chicane.camera': 'track' }, fluent: true });
     const { page: moving } = smooth;
     const dashboard = new DashboardPage(moving, smooth.complaints);
     await dashboard.until(
@@ -240,7 +240,7 @@ describe('the 3D picture', () => {
       }, 10);
     });
     const begin = performance.now();
-    await button(moving, '3D').click();
+    await choose(moving, 'Chase');
     await ready(moving);
     const took = performance.now() - begin;
     assert.ok((await picture(moving)).colours >= 30, 'there is something to see as soon as the map has made room');
@@ -267,7 +267,7 @@ describe('the 3D picture', () => {
     const opened = await fresh(browser, { script });
     await opened.page.goto(demo.url);
     await opened.page.getByText('Live', { exact: true }).waitFor();
-    await button(opened.page, '3D').click();
+    await choose(opened.page, 'Chase');
     await ready(opened.page);
     assert.ok((await picture(opened.page)).colours >= 30);
     assert.deepEqual(opened.complaints, []);
@@ -286,12 +286,10 @@ it('is replaced by the map, with a note, where there is no WebGL', async (test) 
     (colours) => colours > 20,
     'the map shows road and car',
   );
-  assert.equal(await button(page, '2D').getAttribute('aria-pressed'), 'true');
-  await button(page, 'Whole track').click();
   assert.deepEqual(await accessibilityFindings(page), []);
-  await button(page, '3D').click(); // in vain, and says so again
+  await choose(page, 'Chase'); // in vain, and says so again
   await page.getByText('This browser offers no WebGL 2').waitFor();
-  await button(page, '2D').click();
+  await choose(page, 'Map');
   await page.getByText('This browser offers no WebGL 2').waitFor({ state: 'detached' });
   assert.deepEqual(complaints, []);
 });

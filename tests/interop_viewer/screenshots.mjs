@@ -10,19 +10,19 @@ const isWanted = ({ name }) => names.length === 0 || names.includes(name);
 /** The workbench, all pages watching the same run; `prepare` is done just before the picture, `undo` after it. */
 const LAPTOP = [1440, 900];
 const PICTURES = [
-  { name: 'dashboard', tab: 'plots', size: LAPTOP, colorScheme: 'light' },
-  { name: 'dashboard_explain', tab: 'explain', size: LAPTOP, colorScheme: 'dark' },
-  { name: 'dashboard_laps', tab: 'laps', size: LAPTOP, colorScheme: 'light' },
+  { name: 'dashboard', mode: 'understand', size: LAPTOP, colorScheme: 'light' },
+  { name: 'dashboard_explain', mode: 'understand', size: LAPTOP, colorScheme: 'dark' },
+  { name: 'dashboard_laps', mode: 'understand', size: LAPTOP, colorScheme: 'light' },
   {
     name: 'dashboard_plots',
-    tab: 'plots',
+    mode: 'understand',
     size: [1600, 900],
     colorScheme: 'dark',
     prepare: (page) => page.keyboard.press('f'),
   },
   {
     name: 'dashboard_tune',
-    tab: 'tune',
+    mode: 'try',
     size: LAPTOP,
     colorScheme: 'light',
     prepare: tune,
@@ -30,7 +30,7 @@ const PICTURES = [
   },
   {
     name: 'dashboard_faults',
-    tab: 'faults',
+    mode: 'try',
     size: LAPTOP,
     colorScheme: 'dark',
     prepare: (page) => page.locator('[data-key="fault.half_grip"]').click(),
@@ -42,7 +42,7 @@ const PICTURES = [
   },
   {
     name: 'dashboard_tour',
-    tab: 'drive',
+    mode: 'try',
     size: LAPTOP,
     colorScheme: 'light',
     async prepare(page) {
@@ -53,16 +53,19 @@ const PICTURES = [
   },
   {
     name: 'dashboard_share',
-    tab: 'drive',
+    mode: 'try',
     size: LAPTOP,
     colorScheme: 'light',
-    prepare: (page) => page.getByRole('button', { name: 'Share', exact: true }).click(),
+    async prepare(page) {
+      await page.locator('.name').click();
+      await page.getByRole('button', { name: /^Share this run/ }).click();
+    },
     undo: (page) => page.getByRole('button', { name: 'Close', exact: true }).click(),
   },
-  { name: 'dashboard_what_if', tab: 'whatif', size: [1366, 900], colorScheme: 'light', prepare: whatIf },
+  { name: 'dashboard_what_if', mode: 'try', size: [1366, 900], colorScheme: 'light', prepare: whatIf },
   {
     name: 'dashboard_phone',
-    tab: 'drive',
+    mode: 'try',
     size: [390, 844],
     colorScheme: 'light',
     deviceScaleFactor: 2,
@@ -74,28 +77,30 @@ const PICTURES = [
 ];
 
 async function tune(page) {
-  const box = page.locator('[data-key="tracking_mpc.weight_lateral"] .number-box');
+  const box = page.locator('.sliders [data-key="tracking_mpc.weight_lateral"] .number-box');
   await box.fill('4');
   await box.press('Enter');
 }
 
 async function whatIf(page) {
-  await page.getByLabel('Setting to change').fill('latency_ms');
-  await page.getByLabel('What if: latency').fill('250');
+  await page.getByRole('button', { name: 'A second car' }).click();
+  const box = page.locator('.sliders [data-key="latency_ms"] .number-box');
+  await box.fill('250');
+  await box.press('Enter');
   await page.getByText('Drive both', { exact: true }).click();
   await page.getByTestId('what-if-verdict').waitFor();
 }
 
 const browser = await launch();
 const pages = [];
-for (const { name, tab, size, prepare, undo, ...options } of PICTURES.filter(isWanted)) {
+for (const { name, mode, size, prepare, undo, ...options } of PICTURES.filter(isWanted)) {
   const context = await browser.newContext({ viewport: { width: size[0], height: size[1] }, ...options });
   const page = await context.newPage();
-  await page.addInitScript(() => localStorage.setItem('chicane.dimension', '"2d"'));
-  await page.goto(`${url}#${tab}`);
+  await page.addInitScript(() => localStorage.setItem('chicane.camera', '"track"'));
+  await page.goto(`${url}#${mode}`);
   pages.push({ name, page, prepare, undo });
 }
-await pages[0]?.page.locator('button', { hasText: 'Reset' }).waitFor();
+await pages[0]?.page.locator('.speed').waitFor();
 await pages[0]?.page.keyboard.press('r');
 await pages[0]?.page.waitForTimeout(Number(wait) * 1000);
 for (const { name, page, prepare, undo } of pages) {

@@ -8,12 +8,7 @@ import { browserAlone } from './here.mjs';
 
 const here = browserAlone();
 
-const box = ({ page }, key) => page.locator(`.panel-body [data-key="${key}"] .number-box`);
-async function type(dashboard, key, value) {
-  await box(dashboard, key).fill(String(value));
-  await box(dashboard, key).press('Enter');
-}
-const summary = ({ page }) => page.locator('.summary').innerText();
+const summary = (dashboard) => dashboard.summary();
 
 describe('a link to a run', () => {
   let from;
@@ -26,8 +21,8 @@ describe('a link to a run', () => {
   it('is made by a button, with what was changed on the command line and on the page', async () => {
     const dashboard = await DashboardPage.open(here.browser, from.url);
     const { page } = dashboard;
-    await type(dashboard, 'plant_options.friction_scale', 0.9);
-    await dashboard.button('Share').click();
+    await dashboard.type('plant_options.friction_scale', 0.9);
+    await dashboard.fromMenu('Share this run');
     link = await page.getByLabel('Link', { exact: true }).inputValue();
     const { hash, pathname, search } = new URL(link);
     assert.equal(pathname + search, '/', 'no token in it');
@@ -54,7 +49,7 @@ describe('a link to a run', () => {
   it('asks once on another program, and drives the same from the start there', async (t) => {
     const to = await startDrive(['--track', 'oval', '--set', 'tracking_mpc.speed_limit_mps=20']);
     t.after(() => to.stop());
-    const dashboard = await DashboardPage.open(here.browser, to.url, { tab: new URL(link).hash.slice(1) });
+    const dashboard = await DashboardPage.open(here.browser, to.url, { mode: new URL(link).hash.slice(1) });
     const { page } = dashboard;
     const asked = page.getByTestId('wanted');
     await asked.waitFor();
@@ -70,14 +65,14 @@ describe('a link to a run', () => {
       (text) => /road-car · hairpins · 80 ms/.test(text),
       'the run of the link',
     );
-    await dashboard.show('tune');
+    const limit = (await dashboard.setting('tracking_mpc.speed_limit_mps')).locator('.number-box');
     await dashboard.until(
-      () => box(dashboard, 'tracking_mpc.speed_limit_mps').inputValue(),
+      () => limit.inputValue(),
       (text) => text === '60',
       'what the link does not mention, as the preset gives it',
     );
-    await dashboard.show('drive');
-    await dashboard.button('Share').click();
+    await dashboard.show('try');
+    await dashboard.fromMenu('Share this run');
     await dashboard.until(
       () => page.getByLabel('Link', { exact: true }).inputValue(),
       (text) => new URL(text).hash === new URL(link).hash,
@@ -105,7 +100,7 @@ describe('a link to a run', () => {
   });
 
   it('can be declined', async () => {
-    const dashboard = await DashboardPage.open(here.browser, from.url, { tab: 'run?track=oval' });
+    const dashboard = await DashboardPage.open(here.browser, from.url, { mode: 'run?track=oval' });
     await dashboard.button('Keep this run').click();
     await dashboard.page.getByTestId('wanted').waitFor({ state: 'detached' });
     assert.match(await summary(dashboard), /hairpins/);

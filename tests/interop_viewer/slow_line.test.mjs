@@ -21,7 +21,7 @@ it('shows the newest frame within three seconds, and the past behind it', async 
   });
   while (!(Number(other.newest?.time_s) > 50)) await new Promise((resolve) => setTimeout(resolve, 100));
   // The page itself comes from the program: what is measured is the run.
-  const dashboard = await DashboardPage.open(here.browser, line.url, { tab: 'drive', state: 'Live' });
+  const dashboard = await DashboardPage.open(here.browser, line.url, { mode: 'try', state: 'Live' });
   const opened = performance.now();
   /** Of what the page shows, by the clock [s]. */
   const age = async () => {

@@ -29,9 +29,9 @@ async function next(dashboard, title) {
 
 describe('the tour', () => {
   it('goes on when the thing was done, from the first step to the last', async () => {
-    let dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'plots' });
+    let dashboard = await DashboardPage.open(here.browser, here.drive.url, { mode: 'understand' });
     let { page } = dashboard;
-    await dashboard.button('Tour').click();
+    await dashboard.fromMenu('Tour');
     assert.equal(await heading(dashboard), 'Tours');
     assert.match(
       await tour(dashboard).getByRole('listitem').first().innerText(),
@@ -41,10 +41,9 @@ describe('the tour', () => {
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
     await choose(dashboard, DASHBOARD);
     assert.equal(await heading(dashboard), '1 of 7: Drive it yourself');
-    assert.equal(await page.locator('#tab-drive').getAttribute('aria-selected'), 'true', 'on the panel of the step');
+    assert.equal(await page.locator('#mode-watch').getAttribute('aria-current'), 'page', 'in the mode of the step');
     assert.ok(await dashboard.button('Next').isDisabled());
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
-    await page.locator('button:enabled', { hasText: 'Take the wheel' }).waitFor();
     await page.keyboard.press('m');
     await page.keyboard.down('ArrowUp');
     await isDone(dashboard, 2, 'thirty metres by hand');
@@ -55,14 +54,14 @@ describe('the tour', () => {
     await next(dashboard, '2 of 7: Let it drive');
     await page.keyboard.press('Escape');
     await isDone(dashboard, 1, 'the controller drives');
-    await dashboard.button('Reset').click();
+    await dashboard.startAgain();
     await isDone(dashboard, 2, 'a car that drives by itself');
 
     await next(dashboard, '3 of 7: Slow it');
-    await dashboard.button('0.25×').click();
+    await dashboard.fromMenu('0.25×');
     await isDone(dashboard, 1, 'slow motion');
-    assert.match(await tour(dashboard).getByRole('status').innerText(), /^Done: .*Next: Press 1×/);
-    await dashboard.button('1×').click();
+    assert.match(await tour(dashboard).getByRole('status').innerText(), /^Done: .*Next: Back/);
+    await dashboard.fromMenu('1×');
     await isDone(dashboard, 2, 'the pace of before');
 
     await next(dashboard, '4 of 7: Blind it');
@@ -74,7 +73,7 @@ describe('the tour', () => {
     await dashboard.button('Leave the tour').click();
     await tour(dashboard).waitFor({ state: 'detached' });
     await page.reload();
-    await dashboard.button('Go on with the tour, step 5 of 7').click();
+    await dashboard.fromMenu('Go on with the tour, step 5 of 7');
     assert.equal(await heading(dashboard), '5 of 7: Break it');
     const stuck = page.locator('[data-key="fault.steering_stuck"]');
     await dashboard.until(
@@ -85,18 +84,16 @@ describe('the tour', () => {
       (done) => done >= 1,
       'a car off the road',
     );
-    await dashboard.button('Reset').click();
+    await dashboard.startAgain();
     await isDone(dashboard, 2, 'a car that drives again');
 
     await next(dashboard, '6 of 7: Tune it');
-    const box = page.locator('[data-key="tracking_mpc.speed_limit_mps"] .number-box');
-    await box.fill('15');
-    await box.press('Enter');
+    await dashboard.type('tracking_mpc.speed_limit_mps', 15);
     await isDone(dashboard, 2, 'a changed setting');
 
     await next(dashboard, '7 of 7: Compare');
-    await page.getByLabel('Setting to change').fill('tracking_mpc.speed_limit_mps');
-    await page.getByLabel('What if: Speed limit').fill('60');
+    await dashboard.aimAt('second');
+    await dashboard.type('tracking_mpc.speed_limit_mps', 60);
     await page.getByText('Drive both', { exact: true }).click();
     await isDone(dashboard, 1, 'two futures');
 
@@ -104,21 +101,22 @@ describe('the tour', () => {
     assert.equal(await heading(dashboard), 'The tour is over');
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
     await dashboard.button('Put everything back').click();
-    await dashboard.show('tune');
+    await dashboard.show('try');
+    await dashboard.aimAt('run');
     await page.getByText('No changes').waitFor();
     await dashboard.button('Close').click();
-    await dashboard.button('Tour').waitFor();
+    await page.locator('.name').waitFor();
     await dashboard.close();
-    dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'tune' });
+    dashboard = await DashboardPage.open(here.browser, here.drive.url, { mode: 'try' });
     ({ page } = dashboard);
     await page.getByText('No changes').waitFor();
     await dashboard.close();
   });
 
   it('can be taken with the keyboard alone, and says what was left out', async () => {
-    const dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'plots' });
+    const dashboard = await DashboardPage.open(here.browser, here.drive.url, { mode: 'understand' });
     const { page } = dashboard;
-    await dashboard.button('Tour').waitFor();
+    await page.locator('.name').waitFor();
     // A car that drives meanwhile would finish "Let it drive", which then offers Next instead of Skip.
     await page.keyboard.press('Space');
     await page.getByText('Paused', { exact: true }).waitFor();
@@ -144,12 +142,12 @@ describe('the tour', () => {
   });
 
   it('changes N, dt, a weight and the latency, and sees what each does', async () => {
-    const dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'plots' });
+    const dashboard = await DashboardPage.open(here.browser, here.drive.url, { mode: 'understand' });
     const { page } = dashboard;
-    await dashboard.button('Tour').click();
+    await dashboard.fromMenu('Tour');
     await choose(dashboard, EFFECTS);
     assert.equal(await heading(dashboard), '1 of 6: Choose a controller to change');
-    await page.locator('.choices [data-key="preset"] select').selectOption('fast-short-step');
+    await page.getByLabel('Preset', { exact: true }).selectOption('fast-short-step');
     await dashboard.button('Restart').click();
     await isDone(dashboard, 2, 'the preset drives');
     for (let i = 0; i < 3; ++i) await page.locator('body').press(']'); // eight times as fast
@@ -162,7 +160,7 @@ describe('the tour', () => {
     ];
     for (const [title, key, value, start] of effects) {
       await next(dashboard, title);
-      const box = page.locator(`[data-key="${key}"] .number-box`);
+      const box = page.locator(`.sliders [data-key="${key}"] .number-box`);
       assert.equal(await box.inputValue(), start, 'the value that the text names');
       await box.fill(value);
       await box.press('Enter');
@@ -170,12 +168,12 @@ describe('the tour', () => {
       await box.fill(start);
       await box.press('Enter');
       await isDone(dashboard, 3, `${key} as it was`);
-      await dashboard.button('Reset').click();
+      await dashboard.startAgain();
     }
 
     await next(dashboard, '6 of 6: Compare: without the roll-forward');
-    await page.getByLabel('Setting to change').fill('cubic_mpc.latency_handling');
-    await page.getByLabel('What if: Latency handling').selectOption('none');
+    await dashboard.aimAt('second');
+    await (await dashboard.setting('cubic_mpc.latency_handling')).locator('select').selectOption('none');
     await page.getByText('Drive both', { exact: true }).click();
     await isDone(dashboard, 1, 'two futures');
     await dashboard.button('Next').click();
@@ -188,13 +186,13 @@ describe('the tour', () => {
   });
 
   it('shows where it is done, and fits a phone', async () => {
-    const dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab: 'plots', ...PHONE });
+    const dashboard = await DashboardPage.open(here.browser, here.drive.url, { mode: 'understand', ...PHONE });
     const { page } = dashboard;
-    await dashboard.button('Tour').click();
+    await dashboard.fromMenu('Tour');
     await choose(dashboard, DASHBOARD);
-    await dashboard.show('laps');
+    await dashboard.show('understand');
     await dashboard.button('Show me where').click();
-    assert.equal(await page.locator('#tab-drive').getAttribute('aria-selected'), 'true');
+    assert.equal(await page.locator('#mode-watch').getAttribute('aria-current'), 'page', 'in the mode of the step');
     const { across, down } = await dashboard.overflow();
     assert.ok(across <= 0 && down <= 0, `${across} ${down}`);
     assert.deepEqual(await dashboard.accessibilityFindings(), []);

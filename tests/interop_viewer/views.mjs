@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { setTimeout as delay } from 'node:timers/promises';
 import { pathToFileURL } from 'node:url';
 import { change, startDrive, startProgram, watch } from './chicane_drive.mjs';
-import { DashboardPage, PHONE, TABS } from './dashboard_page.mjs';
+import { DashboardPage, MODES, PHONE } from './dashboard_page.mjs';
 
 export const SIZES = {
   phone: PHONE,
@@ -24,12 +24,12 @@ export const THEMES = ['light', 'dark'];
  * `part`: what a view changes; the rest of the page was looked at with the first one. `isLong`: it takes seconds of
  * processor time to come to.
  */
-const tab = (name, i) => ({
+const modeView = (name, i) => ({
   name,
-  part: i === 0 ? undefined : '.side',
+  part: i === 0 ? undefined : 'main',
   async show(dashboard) {
     await dashboard.show(name);
-    if (name === 'laps') await dashboard.page.locator('.lap-table .picks').nth(1).waitFor();
+    if (name === 'understand') await dashboard.page.locator('.understand h1').waitFor();
   },
 });
 const overlay = (name, key, selector) => ({
@@ -46,44 +46,42 @@ const overlay = (name, key, selector) => ({
 
 /** Of a run that goes on. Each begins where the one before it was left. */
 const LIVE = [
-  ...TABS.filter((name) => name !== 'whatif').map(tab),
+  ...MODES.map(modeView),
   {
-    name: 'track plots',
-    part: '.side',
+    name: 'engineer',
+    part: 'main',
+    isLong: true,
     async show(dashboard) {
-      await dashboard.show('plots');
-      await dashboard.button('Track').click();
-      await dashboard.page.locator('.track-plots .plot').first().waitFor();
+      await dashboard.show('understand');
+      await dashboard.page.locator('body').press('e');
+      await dashboard.page.locator('.plot').first().waitFor();
     },
-    leave: (dashboard) => dashboard.button('Time').click(),
+    leave: ({ page }) => page.locator('body').press('e'),
   },
   {
     name: 'what if',
-    part: '.side',
+    part: 'main',
     isLong: true,
     async show(dashboard) {
       const { page } = dashboard;
-      await dashboard.show('whatif');
-      await page.getByLabel('Setting to change').fill('latency_ms');
-      await page.getByLabel('What if: latency').fill('250');
-      await page.getByLabel('What if: latency').press('Enter');
-      await dashboard.button('10 s').click();
+      await dashboard.show('try');
+      await dashboard.aimAt('second');
+      await dashboard.type('latency_ms', 250);
+      await page.getByLabel('For how long').selectOption('10');
       await dashboard.button('Drive both').click();
       await page.getByTestId('what-if-verdict').waitFor();
-      await dashboard.until(
-        () => page.getByTestId('what-if-verdict').evaluate((each) => innerHeight - each.getBoundingClientRect().bottom),
-        (room) => room > -1, // whole pixels
-        'the verdict comes into sight',
-      );
     },
-    leave: (dashboard) => dashboard.button('Forget it').click(),
+    async leave(dashboard) {
+      await dashboard.button('Forget it').click();
+      await dashboard.aimAt('run');
+    },
   },
   {
     name: 'share',
     part: 'dialog[open]',
     async show(dashboard) {
-      await dashboard.show('drive');
-      await dashboard.button('Share').click();
+      await dashboard.show('try');
+      await dashboard.fromMenu('Share this run');
       await dashboard.page.getByLabel('Link', { exact: true }).waitFor();
     },
     leave: (dashboard) => dashboard.button('Close').click(),
@@ -109,7 +107,15 @@ const LIVE = [
     leave: (dashboard) => dashboard.button('Leave the tour').click(),
   },
   overlay('help', '?', 'dialog[open]'),
-  overlay('presentation', 'g', '.workbench.stage-alone'),
+  {
+    name: 'by hand',
+    async show(dashboard) {
+      await dashboard.show('watch');
+      await dashboard.page.locator('body').press('m');
+      await dashboard.page.locator('.strip.by-hand').waitFor();
+    },
+    leave: ({ page }) => page.keyboard.press('Escape'),
+  },
 ];
 
 const ENDED = [
@@ -117,18 +123,19 @@ const ENDED = [
     name: 'end card',
     part: '[data-testid="end-card"]',
     isLong: true,
-    async show({ page }) {
-      const pace = page.locator('.panel-body [data-key="run.pace"] .number-box');
-      await pace.fill('20'); // not before the page is there: the run must not end earlier
-      await pace.press('Enter');
+    async show(dashboard) {
+      const { page } = dashboard;
+      await dashboard.type('run.pace', 20); // not before the page is there: the run must not end earlier
+      await dashboard.show('watch');
       await page.getByTestId('end-card').waitFor();
       await page.getByText('Program ended', { exact: true }).waitFor();
     },
   },
 ];
 const RECORDED = [
-  { name: 'recording', show: (dashboard) => dashboard.show('plots') },
-  { name: 'recorded laps', part: '.side', show: (dashboard) => dashboard.show('laps') },
+  { name: 'recording', show: (dashboard) => dashboard.show('watch') },
+  { name: 'recorded laps', part: 'main', show: (dashboard) => dashboard.show('understand') },
+  { name: 'what if of a recording', part: 'main', show: (dashboard) => dashboard.show('try') },
 ];
 const REPORTED = [{ name: 'report', isLong: true, show: ({ page }) => page.getByTestId('verdict').nth(1).waitFor() }];
 
@@ -173,7 +180,7 @@ export const isExpected = (text) => /GPU|WebGL|GL Driver|WebSocket connection to
 export async function walk(browser, { address, state, views: all }, options, look, accept = () => true) {
   const views = all.filter(accept);
   if (views.length === 0) return;
-  const dashboard = await DashboardPage.open(browser, await address(), { tab: 'drive', state, ...options });
+  const dashboard = await DashboardPage.open(browser, await address(), { state, ...options });
   for (const view of views) {
     await view.show(dashboard);
     await look(dashboard, view.name, view.part);

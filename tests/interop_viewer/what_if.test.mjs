@@ -16,9 +16,11 @@ const SPEED = 'tracking_mpc.speed_limit_mps';
 const here = browserAlone();
 
 /** Asks for another future with a lower speed limit, and waits for the answer. */
-async function askForLess({ page }, limit = 15) {
-  await page.getByLabel('Setting to change').fill(SPEED);
-  await page.getByLabel('What if: Speed limit').fill(String(limit));
+async function askForLess(dashboard, limit = 15) {
+  const { page } = dashboard;
+  const second = page.getByRole('button', { name: 'A second car' });
+  if (await second.count()) await second.click();
+  await dashboard.type(SPEED, limit);
   await page.getByText('Drive both', { exact: true }).click();
   await page.getByTestId('what-if-verdict').waitFor();
 }
@@ -31,7 +33,7 @@ describe('what if, in a live run', () => {
   let dashboard;
   before(async () => {
     drive = await startDrive(['--track', 'oval', '--pace', '4']);
-    dashboard = await DashboardPage.open(here.browser, drive.url, { tab: 'whatif' });
+    dashboard = await DashboardPage.open(here.browser, drive.url, { mode: 'try' });
     await dashboard.until(
       () => dashboard.number('speed'),
       (mph) => mph > 60,
@@ -44,41 +46,9 @@ describe('what if, in a live run', () => {
     await drive.stop();
   });
 
-  it('takes a setting by its name, and offers the choice where words fit several', async () => {
-    const { page } = dashboard;
-    const search = page.getByLabel('Setting to change');
-    const says = (text) => page.getByRole('status').filter({ hasText: text }).waitFor();
-    const offered = page.getByRole('option');
-    await search.fill('no such thing');
-    await search.press('Enter');
-    await says('No setting that a run can change is called so.');
-    await search.fill('weight');
-    await says(/^\d+ settings fit\./);
-    await search.press('Enter'); // which of them: leads into the list
-    assert.equal(await offered.first().getAttribute('aria-selected'), 'true');
-    assert.deepEqual(await dashboard.accessibilityFindings(), []);
-    await search.press('ArrowDown');
-    const second = await offered.nth(1).locator('b').innerText();
-    await search.press('Enter');
-    await dashboard.button(`Do not change ${second}`).click();
-    await search.fill('latency'); // of the car, of a controller, of the sensor
-    await search.press('Enter');
-    await search.press('Enter');
-    await dashboard.button('Do not change latency').click();
-    await search.fill('weight');
-    const last = offered.last();
-    const name = await last.locator('b').innerText();
-    await last.click();
-    await dashboard.button(`Do not change ${name}`).click();
-    await search.fill('grip share');
-    await search.press('Enter');
-    await page.getByLabel('What if: grip share').waitFor();
-    await dashboard.button('Do not change grip share').click();
-  });
-
   it('drives both futures from now on, and sets them side by side', async () => {
     const { page } = dashboard;
-    await dashboard.button('30 s').click();
+    await page.getByLabel('For how long').selectOption('30');
     await askForLess(dashboard);
     assert.match(await dashboard.text('what-if-verdict'), /s slower to the same place/);
     const [was, branch, difference] = await row(dashboard, 'Mean speed');
@@ -109,31 +79,31 @@ describe('what if, in a live run', () => {
     // Which lap it is depends on how busy the machine has been: the answer is another one when it begins elsewhere.
     const begun = () => page.getByTestId('what-if-table').locator('th', { hasText: 'From' }).innerText();
     const before = await begun();
-    await dashboard.button('From the line').click();
-    await dashboard.button('A lap').click();
+    await page.getByLabel('From when').selectOption('line');
+    await page.getByLabel('For how long').selectOption('lap');
     await askForLess(dashboard, 25);
     await dashboard.until(begun, (from) => from !== before, 'an answer from the line on');
     const lap = await row(dashboard, 'sector 3');
     assert.ok(Number(lap[1]) > Number(lap[0]), lap.join());
-    await page.getByLabel('What if: Speed limit').fill('9999');
+    await dashboard.type(SPEED, 9999);
     await page.getByText('Drive both', { exact: true }).click();
-    await page.locator('.what-if [role="alert"]', { hasText: /Speed limit cannot be 9999: choose / }).waitFor();
+    await page.locator('main [role="alert"]', { hasText: /Speed limit cannot be 9999: choose / }).waitFor();
   });
 
   it('keeps the winner with one click', async () => {
     const { page } = dashboard;
     await askForLess(dashboard, 25);
-    await page.locator('.what-if [role="alert"]').waitFor({ state: 'detached' });
+    await page.locator('main [role="alert"]').waitFor({ state: 'detached' });
     await dashboard.button('Keep the change').click();
     await dashboard.button('Kept').waitFor();
-    await dashboard.show('tune');
+    await dashboard.show('try');
     await dashboard.until(
       () => dashboard.text('changes'),
       (text) => /1 change.*speed_limit_mps.*25/s.test(text),
       'the change',
     );
-    await dashboard.show('whatif');
-    await dashboard.button('Reset').click();
+    await dashboard.show('try');
+    await dashboard.startAgain();
     await page.getByTestId('what-if-verdict').waitFor({ state: 'detached' });
   });
 });
@@ -147,7 +117,7 @@ it('another future of a recording begins at the moment that is shown', async () 
   const replay = await startProgram('replay', [log]);
   const dashboard = await DashboardPage.open(here.browser, replay.url, {
     ...PHONE,
-    tab: 'whatif',
+    mode: 'try',
     state: 'Recording',
   });
   const { page } = dashboard;
@@ -160,7 +130,7 @@ it('another future of a recording begins at the moment that is shown', async () 
     (mph) => mph > 40,
     'the speed of that moment',
   );
-  await dashboard.button('10 s').click();
+  await page.getByLabel('For how long').selectOption('10');
   await askForLess(dashboard);
   const heads = await page.getByTestId('what-if-table').locator('thead th').allInnerTexts();
   assert.match(heads[0], /From 0:10\.0/);
@@ -200,7 +170,7 @@ describe('what if, of a car that another program simulates', () => {
   it('is driven by our own car, and the page says so, and how far that is to be trusted', async () => {
     // Slow enough for a controller that a busy machine asks late.
     const served = await startServed('--track', 'oval', '--set', `${SPEED}=20`);
-    const dashboard = await DashboardPage.open(here.browser, served.url, { tab: 'whatif' });
+    const dashboard = await DashboardPage.open(here.browser, served.url, { mode: 'try' });
     const { page } = dashboard;
     await dashboard.until(
       () => dashboard.number('speed'),
@@ -209,7 +179,7 @@ describe('what if, of a car that another program simulates', () => {
     );
     await page.getByText(/our own car stands in for it/).waitFor();
     assert.equal(await dashboard.button('Race A against B').count(), 0, 'there is no second car of theirs');
-    await dashboard.button('10 s').click();
+    await page.getByLabel('For how long').selectOption('10');
     await askForLess(dashboard);
     assert.match(await dashboard.text('what-if-verdict'), /s slower to the same place/);
     assert.match(
@@ -224,7 +194,7 @@ describe('what if, of a car that another program simulates', () => {
 
   it('is not there without the road, and the page says what would help', async () => {
     const served = await startServed();
-    const dashboard = await DashboardPage.open(here.browser, served.url, { tab: 'whatif' });
+    const dashboard = await DashboardPage.open(here.browser, served.url, { mode: 'try' });
     await dashboard.page.getByText('chicane serve --track FILE').waitFor();
     assert.equal(await dashboard.button('Drive both').count(), 0);
     await dashboard.close();

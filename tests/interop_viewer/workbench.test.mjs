@@ -17,22 +17,18 @@ async function open(tab) {
   page = dashboard.page;
 }
 
-const setting = (key) => page.locator(`.panel-body [data-key="${key}"]`);
+const setting = (key) => page.locator(`.sliders [data-key="${key}"]`);
 const choice = (label) => page.locator('.choices').getByLabel(label, { exact: true });
 const box = (key) => setting(key).locator('.number-box');
 /** The settings that the program itself has: the page shows at once what it has only asked for. */
 const settingsOfTheRun = async () => (await page.request.get(new URL('preset.yaml', here.drive.url).href)).text();
 const equals = (value) => (now) => now === value;
-/** Types a value, as a reader would. */
-async function type(key, value) {
-  await box(key).fill(String(value));
-  await box(key).press('Enter');
-}
+const type = (key, value) => dashboard.type(key, value);
 /** The last frame before a pause with much throttle. A busy machine may pause late, at full speed: again, then. */
 async function pauseWhileItGathersSpeed(other) {
   for (;;) {
     await dashboard.pause();
-    await dashboard.button('Reset').click();
+    await dashboard.startAgain();
     await dashboard.until(
       () => dashboard.number('speed'),
       (mph) => mph === 0,
@@ -56,17 +52,21 @@ async function download(name) {
 }
 
 describe('the workbench', () => {
-  before(() => open('drive'));
-  beforeEach(() => dashboard.beginAt('drive'));
+  before(() => open('try'));
+  beforeEach(async () => {
+    await dashboard.beginAt('try');
+    await page.locator('#search').fill('');
+    await page.evaluate(() => document.activeElement.blur());
+  });
   afterEach(() => dashboard.hadNothingToComplainOf());
   after(() => dashboard.close());
 
   it('changes the command from the next control step on', async () => {
     const other = await watch(here.drive.url);
     const before = await pauseWhileItGathersSpeed(other);
-    await dashboard.show('tune');
+    await dashboard.show('try');
     await type('tracking_mpc.speed_limit_mps', 3);
-    await dashboard.button('Step').click();
+    await dashboard.page.locator('body').press('.');
     await dashboard.until(
       () => other.newest.cycle,
       (cycle) => cycle > before.cycle,
@@ -98,7 +98,7 @@ describe('the workbench', () => {
     await slider.focus();
     for (let i = 0; i < 10; ++i) await page.keyboard.press('ArrowRight');
     await dashboard.until(value, (now) => now > first, 'latency');
-    await setting('latency_ms').getByRole('button', { name: 'Reset latency' }).click();
+    await setting('latency_ms').getByRole('button', { name: 'Reset Delay' }).click();
     await dashboard.until(value, equals(first), 'latency as it started');
     await dashboard.until(settingsOfTheRun, equals(before), 'the settings as they were');
   });
@@ -120,11 +120,11 @@ describe('the workbench', () => {
   });
 
   it('finds tunables by words, and saves them as a preset', async () => {
-    await dashboard.show('tune');
+    await dashboard.show('try');
     await page.keyboard.press('/');
-    await page.locator('#tune-search:focus').waitFor();
+    await page.locator('#search:focus').waitFor();
     await page.keyboard.type('squared lateral');
-    const found = await page.locator('.panel-body .setting').evaluateAll((all) => all.map((each) => each.dataset.key));
+    const found = await page.locator('.sliders .setting').evaluateAll((all) => all.map((each) => each.dataset.key));
     assert.ok(found.includes('tracking_mpc.weight_lateral') && found.every((key) => /weight/.test(key)), found.join());
     const before = await box('tracking_mpc.weight_lateral').inputValue();
     await type('tracking_mpc.weight_lateral', 7);
@@ -141,7 +141,8 @@ describe('the workbench', () => {
 
   it('drives by hand, and hands back', async () => {
     // Before the settings are there, the key does nothing.
-    await page.locator('button:enabled', { hasText: 'Take the wheel' }).waitFor();
+    await page.locator('.sliders .setting').first().waitFor();
+    await dashboard.show('watch');
     await page.locator('body').press('m');
     await page.getByText('By hand', { exact: true }).waitFor();
     await page.keyboard.down('ArrowLeft');
@@ -158,26 +159,17 @@ describe('the workbench', () => {
       'the brake',
     );
     await page.keyboard.up('ArrowDown');
-    const pad = await page.locator('.pad').boundingBox();
-    await page.mouse.move(pad.x + pad.width * 0.9, pad.y + pad.height * 0.1);
-    await page.mouse.down();
-    await dashboard.until(
-      () => dashboard.text('pedal'),
-      (text) => /drive [1-9]/.test(text),
-      'the throttle',
-    );
-    await page.mouse.up();
     await page.keyboard.press('Escape');
     await page.getByText('By hand', { exact: true }).waitFor({ state: 'detached' });
     // A page that closes at once may not have asked, and a car that is left beside the road ends the run.
     await dashboard.pause();
-    await dashboard.button('Reset').click();
+    await dashboard.startAgain();
     await dashboard.until(() => dashboard.number('speed'), equals(0), 'a car at the start');
     await dashboard.resume();
   });
 
   it('changes the pace of the run', async () => {
-    await dashboard.button('4×').click();
+    await dashboard.fromMenu('4×');
     await page.getByText('4× speed').waitFor();
     const moment = async () => ({ run: await dashboard.seconds(), clock: performance.now() / 1000 });
     let last = await moment();
@@ -191,12 +183,13 @@ describe('the workbench', () => {
     await dashboard.until(pace, (measured) => measured > 2, 'a pace well above 1');
     await page.locator('body').press('[');
     await page.getByText('2× speed').waitFor();
-    await dashboard.button('1×').click();
+    await dashboard.fromMenu('1×');
     await page.getByText('2× speed').waitFor({ state: 'detached' });
   });
 
   it('injects a fault and clears it', async () => {
-    await dashboard.show('faults');
+    await dashboard.show('try');
+    await page.getByText(/how long and how strong$/).click();
     await page
       .getByLabel(/^Duration of/)
       .first()
@@ -211,8 +204,8 @@ describe('the workbench', () => {
   });
 
   it('gives a fault the duration and strength that are asked for, and counts down', async () => {
-    await dashboard.show('faults');
-    assert.deepEqual(await page.locator('.fault-group h2').allInnerTexts(), [
+    await dashboard.show('try');
+    assert.deepEqual(await page.locator('.fault-group h3').allInnerTexts(), [
       'Sensors',
       'Link',
       'Actuators',
@@ -221,93 +214,66 @@ describe('the workbench', () => {
     ]);
     const duration = page.getByLabel('Duration of ice patch [s]');
     await duration.fill('300');
-    const then = await dashboard.seconds();
-    await dashboard.until(
-      () => dashboard.seconds(),
-      (now) => now < then || now > then + 0.5,
-      'a page that was drawn again',
-    );
+    await page.waitForTimeout(600); // the page is drawn again
     assert.equal(await duration.inputValue(), '300', 'what is typed stays while the car drives');
     await page.getByLabel(/^Strength of ice patch/).fill('0.9');
-    await page.locator('[data-key="fault.ice_patch"]').click();
-    const badge = page.locator('.fault-card.active .badge');
+    await page.locator('button[data-key="fault.ice_patch"]').click();
+    const badge = page.locator('button.fault[aria-pressed="true"] .left');
     const left = async () => Number(/(\d+\.\d) s left/.exec((await badge.allInnerTexts()).join())?.[1]);
     const first = await dashboard.until(left, (seconds) => seconds > 100 && seconds <= 300, 'a countdown');
     await dashboard.until(left, (seconds) => seconds < first - 1, 'less time left');
-    await page.locator('.alert.bad', { hasText: /Fault: ice patch, \d+ s left/ }).waitFor();
+    await page.locator('.pill', { hasText: /Fault: ice patch, \d+ s left/ }).waitFor();
     assert.match(await dashboard.text('fault-answer'), /What is done about it: \S+/);
-    for (const part of ['.side', '.stage']) // with the marks of a fault
-      assert.deepEqual(await dashboard.accessibilityFindings(part, 'all'), []);
+    assert.deepEqual(await dashboard.accessibilityFindings('main', 'all'), []); // with the marks of a fault
     await dashboard.button('Clear all').click();
-    await page.locator('.fault-card.active').waitFor({ state: 'detached' });
+    await page.locator('button.fault[aria-pressed="true"]').waitFor({ state: 'detached' });
   });
 
   it('explains what limits the speed', async () => {
-    await dashboard.show('explain');
-    await dashboard.until(
-      () => dashboard.text('limiter'),
-      (sentence) => /^(Grip|Brakes|Full throttle|Rolls|Part throttle)/.test(sentence),
-      'what limits the car',
-    );
+    await dashboard.show('understand');
+    await page.locator('body').press('e');
+    await page.locator('.rows dd', { hasText: /^(Grip|Brakes|Full throttle|Rolls|Part throttle)/ }).waitFor();
     assert.ok((await page.locator('.constraints tbody tr').count()) > 3);
     await dashboard.until(() => dashboard.number('prediction-error'), Number.isFinite, 'prediction error');
   });
 
   it('shows the plan of a second ago and the path driven since, when asked to', async () => {
-    const pink = () =>
-      page.locator('canvas.map-2d').evaluate((canvas) => {
-        const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });
-        const context = copy.getContext('2d', { willReadFrequently: true });
-        context.drawImage(canvas, 0, 0);
-        const { data } = context.getImageData(0, 0, copy.width, copy.height);
-        let count = 0;
-        for (let i = 0; i < data.length; i += 4)
-          count += data[i] - data[i + 1] > 60 && data[i + 2] - data[i + 1] > 40 ? 1 : 0;
-        return count;
-      });
-    const line = page.locator('.legend button', { hasText: 'plan 1 s ago' });
-    assert.equal(await line.getAttribute('aria-pressed'), 'false');
+    await dashboard.show('watch');
+    const line = page.locator('.line-key.past');
+    assert.equal(await line.count(), 0);
     await page.locator('body').press('o');
-    assert.equal(await line.getAttribute('aria-pressed'), 'true');
-    await dashboard.until(pink, (count) => count > 50, 'the plan of a second ago');
+    await line.waitFor();
     assert.deepEqual(await dashboard.accessibilityFindings('.stage'), []);
-    await line.click();
-    await dashboard.until(pink, (count) => count === 0, 'the map without it');
+    await page.locator('body').press('o');
+    await line.waitFor({ state: 'detached' });
   });
 
   it('tells speeds in the unit of the reader, and remembers it', async () => {
-    const unit = page.locator('.hud .big .unit');
-    const metres = () => dashboard.text('speed');
-    await dashboard.until(metres, (text) => Number(text) > 1, 'a car that drives');
+    await dashboard.show('watch');
+    const unit = page.locator('.speed .unit');
+    await dashboard.until(
+      () => dashboard.number('speed'),
+      (now) => now > 1,
+      'a car that drives',
+    );
     await dashboard.pause();
     const told = { mph: 0, 'km/h': 0, 'm/s': 0 };
-    await dashboard.show('plots');
     for (const name of Object.keys(told)) {
-      await dashboard.until(
-        () => unit.innerText(),
-        (text) => text === name,
-        name,
-      );
+      await dashboard.until(() => unit.innerText(), equals(name), name);
       told[name] = await dashboard.number('speed');
-      assert.match(await page.locator('.plot[aria-label="Speed"] h2').innerText(), new RegExp(name));
-      assert.ok((await page.locator('.legend').innerText()).includes(name));
       await page.locator('body').press('u');
     }
     assert.ok(Math.abs(told['km/h'] - 1.609344 * told.mph) <= 1.5, JSON.stringify(told));
     assert.ok(Math.abs(told['km/h'] - 3.6 * told['m/s']) <= 2.5, JSON.stringify(told));
-    await unit.click();
+    await page.locator('body').press('u');
     await page.reload();
-    await dashboard.until(
-      () => unit.innerText(),
-      (text) => text === 'km/h',
-      'the same unit after a reload',
-    );
+    await dashboard.until(() => unit.innerText(), equals('km/h'), 'the same unit after a reload');
     await page.getByText('Paused', { exact: true }).waitFor();
     await dashboard.resume();
   });
 
   it('restarts with another track, after asking once', async () => {
-    const summary = () => page.locator('.summary').innerText();
+    const summary = () => dashboard.summary();
     await choice('Track').selectOption('oval');
     await page.getByRole('dialog').getByText('Keep driving').click();
     assert.match(await summary(), /lakeside/);
@@ -315,7 +281,7 @@ describe('the workbench', () => {
     await choice('Track').selectOption('oval');
     await page.getByRole('dialog').getByText('Restart', { exact: true }).click();
     await dashboard.until(summary, (text) => /oval/.test(text), 'the other track');
-    await choice('Controller').selectOption('stanley');
+    await (await dashboard.setting('controller')).locator('select').selectOption('stanley');
     await dashboard.until(summary, (text) => /stanley/.test(text), 'the other controller');
     await choice('Preset').selectOption('weighted');
     await dashboard.until(summary, (text) => /cubic-mpc · weighted/.test(text), 'the preset');
@@ -327,17 +293,17 @@ describe('the workbench', () => {
   });
 
   it('counts laps, compares two of them and exports', async () => {
-    await dashboard.show('drive');
+    await dashboard.show('try');
     await type('run.pace', 20);
-    await dashboard.show('laps');
+    await dashboard.show('understand');
     await dashboard.until(
       () => page.locator('.lap-table tbody tr').count(),
       (count) => count >= 3,
       'laps',
     );
-    await dashboard.show('drive'); // before the page has seen more laps than it keeps
-    await dashboard.button('1×').click();
-    await dashboard.show('laps');
+    await dashboard.show('try'); // before the page has seen more laps than it keeps
+    await dashboard.fromMenu('1×');
+    await dashboard.show('understand');
     assert.ok((await page.locator('.lap-table tbody tr.best').count()) === 1);
     assert.ok((await page.locator('.best-sector').count()) >= 3);
     await dashboard.until(
@@ -352,12 +318,12 @@ describe('the workbench', () => {
     assert.match(lap.content.toString(), /^s_m,time_s,speed_mps/);
     const picture = await download('Map as PNG');
     assert.equal(picture.content.subarray(1, 4).toString(), 'PNG');
-    assert.deepEqual(await dashboard.accessibilityFindings('.side'), []);
+    assert.deepEqual(await dashboard.accessibilityFindings('main'), []);
   });
 
   it('says in which corner a lap loses most to the limit, and why, in three clicks', async (test) => {
     const begin = performance.now();
-    await dashboard.show('laps');
+    await dashboard.show('understand');
     await page.getByTestId('limit').waitFor();
     await page.getByLabel('Compare lap 2 as A', { exact: true }).check();
     await page.getByLabel('Compare the limit as B', { exact: true }).check();
@@ -372,23 +338,23 @@ describe('the workbench', () => {
   });
 
   it('finds the limit again for a car with another grip', async () => {
-    await dashboard.show('laps');
+    await dashboard.show('understand');
     const limit = () => page.getByTestId('limit').locator('.time').innerText();
     const before = await limit();
-    await dashboard.show('drive');
+    await dashboard.show('try');
     await type('plant_options.friction_scale', 0.8);
-    await dashboard.show('laps');
+    await dashboard.show('understand');
     const seconds = (text) => text.split(':').reduce((sum, part) => 60 * sum + Number(part), 0);
     await dashboard.until(limit, (now) => seconds(now) > seconds(before) + 0.1, 'the limit with less grip');
-    await dashboard.show('drive');
+    await dashboard.show('try');
     await type('plant_options.friction_scale', 1);
-    await dashboard.show('laps');
+    await dashboard.show('understand');
     await dashboard.until(limit, (now) => now === before, 'the limit of before');
   });
 
   it('draws plots that are scrolled away for their picture', async () => {
     await page.setViewportSize({ width: 1366, height: 420 });
-    await dashboard.show('plots');
+    await dashboard.show('understand');
     const last = '.plot[aria-label="Control step"] canvas';
     assert.equal(await dashboard.colours(last), 1, 'not drawn yet');
     const picture = await download('PNG');
@@ -399,29 +365,29 @@ describe('the workbench', () => {
 });
 
 it('takes another run of a restarted server for another run', async () => {
-  await open('plots');
+  await open('understand');
   await dashboard.until(
     () => dashboard.seconds(),
     (now) => now > 1,
     'a run',
   );
   // What the page still loads when its program ends, the browser complains of.
-  await dashboard.show('tune');
+  await dashboard.show('try');
   await page.getByText('No changes').waitFor();
-  await dashboard.show('plots');
+  await dashboard.show('understand');
   const { port } = here.drive;
   await here.drive.stop();
   await page.getByTestId('end-card').waitFor();
   here.drive = await startDrive(['--track', 'hairpins', '--controller', 'pid'], port);
   await page.getByTestId('end-card').waitFor({ state: 'detached' });
   await dashboard.until(
-    () => page.locator('.summary').innerText(),
+    () => page.locator('.run').getAttribute('title'),
     (text) => /pid.*hairpins/.test(text),
     'the other run',
   );
   const first = await dashboard.seconds();
   await dashboard.until(() => dashboard.seconds(), differentFrom(first), 'the lap clock');
-  await dashboard.show('tune');
+  await dashboard.show('try');
   await page.getByText('No changes').waitFor();
   await dashboard.close((each) => each.startsWith('WebSocket connection to'));
 });

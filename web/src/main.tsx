@@ -11,30 +11,30 @@ import { ReadingSocket } from './protocol/reading';
 import { readSchema } from './protocol/schema';
 import type { Source } from './protocol/source';
 import { begin, timeline } from './recording/begin';
+import { nextCamera } from './scene3d/view_state';
 import { beginSession, receive, receivePastLeft } from './state/demultiplexer';
 import { toggleLayer } from './state/layers';
-import { toggleDock } from './state/layout';
 import { ageAtArrival, attempt, link, notice, pastLeft, services } from './state/link';
-import { call, can, refresh } from './state/operate';
+import { followAddress, MODES, mode } from './state/mode';
+import { call, refresh } from './state/operate';
 import { rememberRun } from './state/other_run';
 import { toggleFrozen, toggleMark } from './state/plot_view';
-import { togglePresentation } from './state/presentation';
 import { answerBy, programPage } from './state/program_page';
-import { isPaused } from './state/run';
 import { schema } from './state/settings';
 import { refreshOnNewChoice, takeSettings } from './state/settings_session';
 import { refreshText } from './state/shown';
-import { followAddress, TABS, tab } from './state/tab';
+import { oneButton } from './state/stage_state';
 import { everyFrame } from './state/ticker';
-import { changePace } from './views/drive_view';
-import { HeaderView } from './views/header_view';
+import { HeaderView, TITLES } from './views/header_view';
 import { HelpView, isHelpOpen } from './views/help_view';
 import { handBack, listenToDriver, toggleManual } from './views/manual_view';
+import { changePace, present } from './views/menu_view';
 import { RestartView } from './views/restart_view';
 import { listenForLinks, ShareView } from './views/share_view';
-import { nextView, toggleDimension, zoom } from './views/track_view';
-import { focusSearch } from './views/tune_view';
-import { isPanelAlone, titleOf, WorkbenchView } from './views/workbench_view';
+import { StageView } from './views/stage_view';
+import { TourView } from './views/tour_view';
+import { zoom } from './views/track_view';
+import { focusSearch } from './views/try_view';
 
 const session = store.data('page', () => ({ name: null as string | null }));
 
@@ -103,23 +103,22 @@ addShortcuts(
   {
     keys: [' '],
     label: 'Space',
-    does: 'Pause, resume',
+    does: 'The button of the header: pause, resume, drive again',
     group: 'Run',
-    isPossible: () => can('/pause'),
-    action: () => call('/pause', !isPaused.value),
+    isPossible: () => oneButton.value?.isPossible === true,
+    action: () => oneButton.value?.act(),
   },
-  { keys: ['s'], label: 'S', does: 'One control step while paused', group: 'Run', action: () => call('/step') },
+  { keys: ['.'], label: '.', does: 'One control step while paused', group: 'Run', action: () => call('/step') },
   { keys: ['r'], label: 'R', does: 'Back to the start of the run', group: 'Run', action: () => call('/reset') },
-  { keys: ['[', ','], label: '[ ,', does: 'Halve the pace', group: 'Run', action: () => changePace(0.5) },
-  { keys: [']', '.'], label: '] .', does: 'Double the pace', group: 'Run', action: () => changePace(2) },
-  { keys: ['c'], label: 'C', does: 'Next camera', group: 'Camera', action: nextView },
-  { keys: ['v'], label: 'V', does: '3D view or map', group: 'Camera', action: toggleDimension },
+  { keys: ['['], label: '[', does: 'Halve the pace', group: 'Run', action: () => changePace(0.5) },
+  { keys: [']'], label: ']', does: 'Double the pace', group: 'Run', action: () => changePace(2) },
+  { keys: ['c'], label: 'C', does: 'Next camera', group: 'Camera', action: nextCamera },
   { keys: ['+', '='], label: '+', does: 'Zoom in', group: 'Camera', action: () => zoom(0.8) },
   { keys: ['-'], label: '−', does: 'Zoom out', group: 'Camera', action: () => zoom(1.25) },
   {
     keys: ['l'],
     label: 'L',
-    does: 'Show or hide the racing line',
+    does: "Show or hide the limit's line",
     group: 'Camera',
     action: () => toggleLayer('racingLine'),
   },
@@ -130,51 +129,41 @@ addShortcuts(
     group: 'Camera',
     action: () => toggleLayer('hindsight'),
   },
-  { keys: ['t'], label: 'T', does: 'Light or dark', group: 'Panels', action: toggleScheme },
-  { keys: ['u'], label: 'U', does: 'Next unit for speeds: mph, km/h, m/s', group: 'Panels', action: nextSpeedUnit },
-  ...TABS.map((name, i) => ({
+  { keys: ['t'], label: 'T', does: 'Light or dark', group: 'Page', action: toggleScheme },
+  { keys: ['u'], label: 'U', does: 'Next unit for speeds: mph, km/h, m/s', group: 'Page', action: nextSpeedUnit },
+  ...MODES.map((name, i) => ({
     keys: [String(i + 1)],
     label: String(i + 1),
-    does: titleOf(name),
-    group: 'Panels' as const,
+    does: TITLES[name],
+    group: 'Page' as const,
     action: () => {
-      tab.value = name;
+      mode.value = name;
     },
   })),
   {
     keys: ['/'],
     label: '/',
     does: 'Search settings',
-    group: 'Panels',
+    group: 'Page',
     action: () => {
-      tab.value = 'tune';
+      mode.value = 'try';
       focusSearch();
     },
   },
-  { keys: ['p'], label: 'P', does: 'Hold the plots, or follow again', group: 'Panels', action: toggleFrozen },
+  { keys: ['p'], label: 'P', does: 'Hold the plots, or follow again', group: 'Page', action: toggleFrozen },
   {
     keys: ['x'],
     label: 'X',
     does: 'Mark the moment under the cursor: plots show differences from it',
-    group: 'Panels',
+    group: 'Page',
     action: toggleMark,
   },
-  { keys: ['d'], label: 'D', does: 'Panel below or on the right of the picture', group: 'Panels', action: toggleDock },
-  {
-    keys: ['f'],
-    label: 'F',
-    does: 'Panel only',
-    group: 'Panels',
-    action: () => {
-      isPanelAlone.value = !isPanelAlone.value;
-    },
-  },
-  { keys: ['g'], label: 'G', does: 'The picture alone, for an audience', group: 'Panels', action: togglePresentation },
+  { keys: ['g'], label: 'G', does: 'The stage on the whole screen', group: 'Page', action: present },
   {
     keys: ['?'],
     label: '?',
     does: 'This list',
-    group: 'Panels',
+    group: 'Page',
     action: () => {
       isHelpOpen.value = true;
     },
@@ -213,7 +202,8 @@ function App() {
     <>
       <HeaderView />
       {TimelineView && <TimelineView />}
-      <WorkbenchView />
+      <TourView />
+      <StageView />
       <HelpView />
       <RestartView />
       <ShareView />

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { above, behind, fitting, groundGrid, project, scaleBar, unproject, worldInView, zoomed } from './camera';
+import { allRound, behind, fitting, groundGrid, project, unproject, worldInView, zoomed } from './camera';
 
 describe('a place on the screen', () => {
   it('is the point of the world that appears there', () => {
@@ -12,7 +12,7 @@ describe('a place on the screen', () => {
 
 describe('camera', () => {
   it('shows north up and east right', () => {
-    const camera = above({ x: 100, y: 50 }, 800, 600, 60);
+    const camera = { centre: { x: 100, y: 50 }, at: { x: 400, y: 300 }, scale: 10, rotation: 0 };
     expect(project(camera, { x: 100, y: 50 })).toEqual({ x: 400, y: 300 });
     const east = project(camera, { x: 110, y: 50 });
     expect(east.x).toBeCloseTo(500, 9);
@@ -31,10 +31,10 @@ describe('camera', () => {
   });
 
   it('fits a box with its margin', () => {
-    const camera = fitting({ minX: -100, minY: 0, maxX: 300, maxY: 100 }, 1000, 500, 20);
+    const camera = fitting({ minX: -100, minY: 0, maxX: 300, maxY: 100 }, 1000, 500, allRound(20));
     expect(project(camera, { x: -100, y: 0 }).x).toBeCloseTo(20, 9);
     expect(project(camera, { x: 300, y: 100 }).x).toBeCloseTo(980, 9);
-    expect(fitting({ minX: 1, minY: 1, maxX: 1, maxY: 1 }, 100, 100, 60).scale).toBeGreaterThan(0);
+    expect(fitting({ minX: 1, minY: 1, maxX: 1, maxY: 1 }, 100, 100, allRound(60)).scale).toBeGreaterThan(0);
   });
 
   it.each([0, 0.7, 2, -3])('knows the box of the world in view, heading %f', (heading) => {
@@ -84,14 +84,24 @@ describe('camera', () => {
         expect(new Set(sides).size).toBe(1);
       }
     }
-    expect(groundGrid(above({ x: 0, y: 0 }, 800, 600, 2000), 800, 600).spacing).toBe(160);
+    const far = { centre: { x: 0, y: 0 }, at: { x: 400, y: 300 }, scale: 0.3, rotation: 0 };
+    expect(groundGrid(far, 800, 600).spacing).toBe(160);
   });
 
-  it('picks a round scale bar', () => {
-    expect(scaleBar(10, 120)).toEqual({ metres: 10, pixels: 100 });
-    expect(scaleBar(1, 120)).toEqual({ metres: 100, pixels: 100 });
-    expect(scaleBar(7, 120).metres).toBe(10);
-    expect(scaleBar(100, 120).metres).toBe(1);
+  it.each([0, 1, -2.5])('holds a plan that would leave the picture, heading %f', (heading) => {
+    const car = { x: 5, y: -7 };
+    const at = (ahead: number, left: number) => ({
+      x: car.x + ahead * Math.cos(heading) - left * Math.sin(heading),
+      y: car.y + ahead * Math.sin(heading) + left * Math.cos(heading),
+    });
+    const plan = [at(0, 0), at(90, 20), at(120, 95)];
+    const camera = behind(car, heading, 390, 600, 60, plan, 64);
+    for (const point of plan) {
+      const { x, y } = project(camera, point);
+      expect(x).toBeGreaterThan(64 - 1e-6);
+      expect(x).toBeLessThan(390 - 64 + 1e-6);
+      expect(y).toBeGreaterThan(64 - 1e-6);
+    }
   });
 
   it('keeps the zoom in bounds', () => {

@@ -41,48 +41,51 @@ export function worldInView(camera: Camera, width: number, height: number): Box 
   return { minX: x + Math.min(...xs), maxX: x + Math.max(...xs), minY: y + Math.min(...ys), maxY: y + Math.max(...ys) };
 }
 
-/** The whole box in view with `margin` [px] around it. */
-export function fitting(box: Box, width: number, height: number, margin: number): Camera {
+/** What is kept free at the edges of a picture [px]. */
+export interface Insets {
+  readonly top: number;
+  readonly right: number;
+  readonly bottom: number;
+  readonly left: number;
+}
+
+/** The whole box in view, within the insets. */
+export function fitting(box: Box, width: number, height: number, { top, right, bottom, left }: Insets): Camera {
   const spanX = Math.max(box.maxX - box.minX, 1);
   const spanY = Math.max(box.maxY - box.minY, 1);
-  const scale = Math.min(Math.max(width - 2 * margin, 1) / spanX, Math.max(height - 2 * margin, 1) / spanY);
+  const [wide, high] = [Math.max(width - left - right, 1), Math.max(height - top - bottom, 1)];
   return {
     centre: { x: (box.minX + box.maxX) / 2, y: (box.minY + box.maxY) / 2 },
-    at: { x: width / 2, y: height / 2 },
-    scale,
+    at: { x: left + wide / 2, y: top + high / 2 },
+    scale: Math.min(wide / spanX, high / spanY),
     rotation: 0,
   };
 }
 
-/** What lies over the foot of the picture in the way of the car [px]: the legend, and the numbers above it. */
-export const LEGEND_PX = 84;
-export const NUMBERS_PX = 235;
+export const allRound = (margin: number): Insets => ({ top: margin, right: margin, bottom: margin, left: margin });
 
-/** The car below the middle and above the `foot`, looking up the screen; `heading` is a smoothed yaw. */
+/**
+ * The car below the middle, looking up the screen; `heading` is a smoothed yaw. The picture shows so many metres across
+ * its smaller side, and more where one of `points` would be outside: `margin` is kept free at every edge [px].
+ */
 export function behind(
   car: Point,
   heading: number,
   width: number,
   height: number,
   metresAcross: number,
-  foot: number = LEGEND_PX,
+  points: readonly Point[] = [],
+  margin = 24,
 ): Camera {
-  return {
-    centre: car,
-    at: { x: width / 2, y: Math.min(height * 0.72, Math.max(height / 2, height - foot)) },
-    scale: Math.min(width, height) / metresAcross,
-    rotation: Math.PI / 2 - heading,
-  };
-}
-
-/** The car in the middle, north up. */
-export function above(car: Point, width: number, height: number, metresAcross: number): Camera {
-  return {
-    centre: car,
-    at: { x: width / 2, y: height / 2 },
-    scale: Math.min(width, height) / metresAcross,
-    rotation: 0,
-  };
+  const at = { x: width / 2, y: height * 0.72 };
+  const [cos, sin] = [Math.cos(heading), Math.sin(heading)];
+  let scale = Math.min(width, height) / metresAcross;
+  for (const { x, y } of points) {
+    const [ahead, left] = [cos * (x - car.x) + sin * (y - car.y), Math.abs(cos * (y - car.y) - sin * (x - car.x))];
+    const room = Math.max(1, (ahead > 0 ? at.y : height - at.y) - margin);
+    scale = Math.min(scale, room / Math.abs(ahead), Math.max(1, width / 2 - margin) / left);
+  }
+  return { centre: car, at, scale, rotation: Math.PI / 2 - heading };
 }
 
 /** Lines of a square grid that cover the view: 40 px apart or more, at multiples of `least`, twice that, … [m]. */
@@ -103,14 +106,6 @@ export function groundGrid(
     from: { x: snap(x - reach), y: snap(y - reach) },
     to: { x: snap(x + reach) + spacing, y: snap(y + reach) + spacing },
   };
-}
-
-/** A length of 1, 2 or 5 · 10ⁿ metres that is at most `limit` pixels long. */
-export function scaleBar(scale: number, limit: number): { metres: number; pixels: number } {
-  const longest = limit / scale;
-  const power = 10 ** Math.floor(Math.log10(longest));
-  const metres = [5, 2, 1].map((factor) => factor * power).find((length) => length <= longest * (1 + 1e-9)) ?? power;
-  return { metres, pixels: metres * scale };
 }
 
 /** One turn of the wheel or press of a key; the view spans 15 m to 2 km. */

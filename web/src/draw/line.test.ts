@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { addLine, type Line, lengthsOf, lineOf, longestStep, stretchesInside } from './line';
+import { addLine, aheadOf, type Line, lengthsOf, lineOf, longestStep, stretchesInside } from './line';
 
 /** A wave of 400 points, about 1 m apart, that enters and leaves a box often. */
 const wave: Line = lineOf(Array.from({ length: 400 }, (_, i) => ({ x: i * 0.8, y: 30 * Math.sin(i / 12) })));
@@ -47,4 +47,11 @@ describe('a line', () => {
     addLine(path, { x: [0, 1, 50, 51, 52], y: [0, 0, 0, 0, 0] }, 0, 5, 20);
     expect(calls).toEqual(['move 0', 'line 1', 'move 50', 'line 51', 'line 52']);
   });
+});
+
+it('lies ahead of a pose from its first point before it on', () => {
+  const line = { x: [0, 10, 20, 10, 0], y: [0, 0, 5, 10, 10] }; // comes back
+  expect(aheadOf(line, { x: 5, y: 0, yaw: 0 })).toEqual({ x: [10, 20, 10, 0], y: [0, 5, 10, 10] });
+  expect(aheadOf(line, { x: 5, y: 0, yaw: Math.PI })).toEqual(line);
+  expect(aheadOf(line, { x: 30, y: 0, yaw: 0 })).toEqual({ x: [], y: [] });
 });

@@ -59,3 +59,11 @@ export function addLine(path: Path2D, { x, y }: Line, first: number, end: number
     else path.lineTo(px, py);
   }
 }
+
+/** The part of a line that lies ahead of a pose: a plan that is a moment old begins behind its car. */
+export function aheadOf({ x, y }: Line, pose: { readonly x: number; readonly y: number; readonly yaw: number }): Line {
+  const [cos, sin] = [Math.cos(pose.yaw), Math.sin(pose.yaw)];
+  let first = 0;
+  while (first < x.length && cos * ((x[first] ?? 0) - pose.x) + sin * ((y[first] ?? 0) - pose.y) < 0) ++first;
+  return { x: Array.prototype.slice.call(x, first), y: Array.prototype.slice.call(y, first) };
+}

@@ -56,7 +56,7 @@ export function drawKerbs(
         const { x, y } = beside(edge, road.centre, i, width / 2);
         path.lineTo(x, y);
       }
-      ctx.strokeStyle = colours.kerbLight;
+      ctx.strokeStyle = colours.mark;
       ctx.stroke(path);
       ctx.setLineDash([KERB_DASH_M, KERB_DASH_M]);
       ctx.strokeStyle = colours.kerb;
@@ -87,7 +87,7 @@ export function drawStartLine(
   for (let column = 0; column < CHEQUERS; ++column)
     for (const row of [-1, 0]) {
       const [x, y] = [left.x + column * ax + row * dx, left.y + column * ay + row * dy];
-      ctx.fillStyle = (column + row) % 2 === 0 ? colours.kerbLight : colours.wheel;
+      ctx.fillStyle = (column + row) % 2 === 0 ? colours.mark : colours.wheel;
       ctx.beginPath();
       ctx.moveTo(x, y);
       ctx.lineTo(x + ax, y + ay);
@@ -118,11 +118,11 @@ export function drawCornerNumbers(
     if (!(x > 0 && y > 0 && x < ctx.canvas.width / ratio && y < ctx.canvas.height / ratio)) continue;
     const text = `T${number}`;
     const half = ctx.measureText(text).width / 2 + 5;
-    ctx.fillStyle = colours.panel;
+    ctx.fillStyle = colours.sheet;
     ctx.globalAlpha = 0.85;
     ctx.fillRect(x - half, y - 9, 2 * half, 18);
     ctx.globalAlpha = 1;
-    ctx.fillStyle = colours.text;
+    ctx.fillStyle = colours.ink;
     ctx.fillText(text, x, y);
   }
 }
@@ -133,7 +133,7 @@ export function drawLosses(ctx: Context, { line, pieces, most }: Losses, colours
   for (const { first, end, lost } of pieces) {
     const path = new Path2D();
     for (let i = first; i <= end; ++i) path.lineTo(line.x[i % line.x.length] ?? NaN, line.y[i % line.x.length] ?? NaN);
-    ctx.strokeStyle = lost > 0 ? colours.brake : colours.gain;
+    ctx.strokeStyle = lost > 0 ? colours.lost : colours.won;
     ctx.globalAlpha = 0.12 + 0.8 * Math.min(1, Math.abs(lost) / most);
     ctx.stroke(path);
   }

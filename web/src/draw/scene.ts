@@ -1,5 +1,5 @@
 import type { Box, Point } from '../lib/math';
-import type { Limit, Plan } from '../protocol/topics';
+import type { Limit } from '../protocol/topics';
 import type { Hindsight, Pose } from '../state/hindsight';
 import type { RoadLines } from '../state/road';
 import type { Losses, MarkedCorner } from '../state/road_marks';
@@ -7,7 +7,6 @@ import { type Camera, groundGrid, transformOf, worldInView } from './camera';
 import type { CarShape } from './car';
 import { addLine, type Line, lengthsOf, lineOf, longestStep, stretchesInside } from './line';
 import { drawCornerNumbers, drawKerbs, drawLosses, drawStartLine } from './road_marks';
-import { speedColour } from './speed_colour';
 import type { Theme } from './theme';
 
 /** The content of one picture of the map; lengths in metres, angles in radians, in W. */
@@ -20,9 +19,8 @@ export interface Scene {
   readonly losses: Losses | null; // the line of a lap, coloured by the time lost on it
   readonly reference: readonly Point[];
   readonly trace: Line; // where the car has been
-  readonly plan: Plan | null;
+  readonly plan: Line; // from the car on
   readonly size: number; // of lines and paint, against those of full-size cars
-  readonly speedScale: number; // the speed at the end of the colour scale [m/s]
   readonly hindsight: Hindsight | null; // a past plan and the path driven since
   readonly faults: readonly Point[]; // where faults began
   readonly ghost: Pose | null; // drawn in the car's shape
@@ -101,13 +99,13 @@ function drawRoad(
   }
   ctx.fillStyle = colours.road;
   ctx.fill(surface);
-  stroke(ctx, edges, colours.edge, Math.max(0.15 * size, 1.5 * px));
+  stroke(ctx, edges, colours.mark, Math.max(0.15 * size, 1.5 * px));
   ctx.setLineDash([3 * size, 6 * size]);
   for (const [first, end] of stretches) {
     const dashes = new Path2D();
     addLine(dashes, centre, first, end);
     ctx.lineDashOffset = lengths[first] ?? 0; // keeps the dashes fixed to the road
-    stroke(ctx, dashes, colours.centreLine, Math.max(0.1 * size, 0.75 * px));
+    stroke(ctx, dashes, colours.mark, Math.max(0.1 * size, 0.75 * px));
   }
   ctx.lineDashOffset = 0;
   ctx.setLineDash([]);
@@ -120,17 +118,6 @@ function drawInView(ctx: Context, points: Line, view: Box, reach: number, colour
   const path = new Path2D();
   for (const [first, end] of stretchesInside(points, view, reach)) addLine(path, points, first, end, reach);
   stroke(ctx, path, colour, width);
-}
-
-function drawPlan(ctx: Context, plan: Plan, speedScale: number, width: number): void {
-  ctx.lineCap = 'round';
-  for (let i = 0; i + 1 < plan.x_m.length; ++i) {
-    const segment = new Path2D();
-    segment.moveTo(plan.x_m[i] ?? NaN, plan.y_m[i] ?? NaN);
-    segment.lineTo(plan.x_m[i + 1] ?? NaN, plan.y_m[i + 1] ?? NaN);
-    stroke(ctx, segment, speedColour((plan.speed_mps[i] ?? NaN) / speedScale), width);
-  }
-  ctx.lineCap = 'butt';
 }
 
 function trail(points: readonly Point[]): Path2D {
@@ -152,7 +139,7 @@ function drawRacingLine(ctx: Context, limit: Limit, view: Box, colours: Theme, p
   const points = { x: limit.x_m, y: limit.y_m };
   const reach = reaches.get(limit) ?? longestStep(points);
   reaches.set(limit, reach);
-  drawInView(ctx, points, view, reach, colours.racingLine, Math.max(0.2 * size, 1.5 * px));
+  drawInView(ctx, points, view, reach, colours.b, Math.max(0.2 * size, 1.5 * px));
 }
 
 /** A past plan as a broad band, with the path driven since on top. */
@@ -164,9 +151,9 @@ function drawHindsight(
   size: number,
 ): void {
   ctx.globalAlpha = 0.6;
-  stroke(ctx, line(plan.x_m, plan.y_m), colours.predicted, Math.max(1.1 * size, 8 * px));
+  stroke(ctx, line(plan.x_m, plan.y_m), colours.pastPlan, Math.max(1.1 * size, 8 * px));
   ctx.globalAlpha = 1;
-  stroke(ctx, line(drivenX, drivenY), colours.outcome, Math.max(0.18 * size, 2 * px));
+  stroke(ctx, line(drivenX, drivenY), colours.a, Math.max(0.18 * size, 2 * px));
 }
 
 function drawWheels(ctx: Context, shape: CarShape, colour: string): void {
@@ -195,7 +182,7 @@ function drawCar(ctx: Context, car: NonNullable<Scene['car']>, colours: Theme, p
   if (grown > 1) {
     ctx.beginPath();
     ctx.arc(0, 0, 15 * px, 0, 2 * Math.PI);
-    ctx.strokeStyle = colours.accent;
+    ctx.strokeStyle = colours.a;
     ctx.lineWidth = 3 * px;
     ctx.stroke();
   }
@@ -211,23 +198,23 @@ function drawCar(ctx: Context, car: NonNullable<Scene['car']>, colours: Theme, p
     2 * narrow,
     NOSE_M.map((radius) => radius * size),
   );
-  ctx.fillStyle = colours.carBody;
+  ctx.fillStyle = colours.car;
   ctx.fill();
-  ctx.strokeStyle = colours.carEdge;
+  ctx.strokeStyle = colours.wheel;
   ctx.lineWidth = Math.max(0.06 * size, (1 * px) / grown);
   ctx.stroke();
 
   ctx.beginPath();
   ctx.roundRect(shape.rear + 0.24 * length, -0.78 * narrow, 0.4 * length, 1.56 * narrow, 0.4 * size);
-  ctx.fillStyle = colours.carGlass;
+  ctx.fillStyle = colours.glass;
   ctx.fill();
   ctx.beginPath();
   ctx.roundRect(shape.rear + 0.3 * length, -0.66 * narrow, 0.24 * length, 1.32 * narrow, 0.3 * size);
-  ctx.fillStyle = colours.carBody;
+  ctx.fillStyle = colours.car;
   ctx.fill();
 
   if (car.isBraking) {
-    ctx.fillStyle = colours.brake;
+    ctx.fillStyle = colours.lost;
     for (const y of [-0.85, 0.45]) ctx.fillRect(shape.rear - 0.04 * size, y * narrow, 0.22 * size, 0.4 * narrow);
   }
   ctx.restore();
@@ -241,9 +228,9 @@ function drawFault(ctx: Context, { x, y }: Point, colours: Theme, px: number, un
   ctx.lineTo(x - 0.87 * size, y - 0.5 * size);
   ctx.lineTo(x + 0.87 * size, y - 0.5 * size);
   ctx.closePath();
-  ctx.fillStyle = colours.brake;
+  ctx.fillStyle = colours.lost;
   ctx.fill();
-  ctx.strokeStyle = colours.panel;
+  ctx.strokeStyle = colours.sheet;
   ctx.lineWidth = 1.5 * px;
   ctx.stroke();
 }
@@ -269,7 +256,7 @@ function drawPredicted(ctx: Context, pose: Pose, car: NonNullable<Scene['car']>,
   ctx.save();
   outline(ctx, pose, car, px);
   ctx.restore();
-  ctx.strokeStyle = colours.predicted;
+  ctx.strokeStyle = colours.pastPlan;
   ctx.lineWidth = Math.max(0.15 * car.shape.size, 1.5 * px);
   ctx.stroke();
 }
@@ -282,7 +269,7 @@ function drawGhost(ctx: Context, ghost: Pose, car: NonNullable<Scene['car']>, co
   ctx.save();
   outline(ctx, ghost, car, px);
   ctx.globalAlpha = 0.45;
-  ctx.fillStyle = colours.accent;
+  ctx.fillStyle = colours.b;
   ctx.fill();
   ctx.restore();
 }
@@ -299,14 +286,14 @@ export function drawWorld(
   ratio: number,
 ): void {
   ctx.setTransform(1, 0, 0, 1, 0, 0);
-  ctx.fillStyle = colours.ground;
+  ctx.fillStyle = colours.land;
   ctx.fillRect(0, 0, ctx.canvas.width, ctx.canvas.height);
   ctx.setTransform(...transformOf(camera, ratio));
   ctx.lineJoin = 'round';
   const px = 1 / camera.scale; // one CSS pixel in metres
   const { size } = scene;
   const view = worldInView(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
-  drawGround(ctx, camera, colours.groundLine, ratio, size);
+  drawGround(ctx, camera, colours.landLine, ratio, size);
   if (scene.road) {
     drawRoad(ctx, scene.road, view, colours, px, size);
     drawKerbs(ctx, scene.road, scene.corners, scene.kerb, view, colours);
@@ -324,10 +311,10 @@ export function drawMoving(ctx: Context, scene: Scene, camera: Camera, colours: 
   const px = 1 / camera.scale;
   const { size } = scene;
   const view = worldInView(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
-  drawInView(ctx, scene.trace, view, JUMP_M * Math.max(size, 0.1), colours.trace, Math.max(0.2 * size, 2 * px));
-  stroke(ctx, trail(scene.reference), scene.road ? colours.reference : colours.faint, Math.max(0.12 * size, 1.5 * px));
+  drawInView(ctx, scene.trace, view, JUMP_M * Math.max(size, 0.1), colours.a, Math.max(0.2 * size, 2 * px));
+  if (!scene.road) stroke(ctx, trail(scene.reference), colours.quiet, Math.max(0.12 * size, 1.5 * px));
   if (scene.hindsight) drawHindsight(ctx, scene.hindsight, colours, px, size);
-  if (scene.plan) drawPlan(ctx, scene.plan, scene.speedScale, Math.max(0.45 * size, 4 * px));
+  stroke(ctx, line(scene.plan.x, scene.plan.y), colours.plan, Math.max(0.45 * size, 4 * px));
   for (const mark of scene.faults) drawFault(ctx, mark, colours, px, size);
   if (scene.ghost && scene.car) drawGhost(ctx, scene.ghost, scene.car, colours, px);
   if (scene.car) drawCar(ctx, scene.car, colours, px);
@@ -339,8 +326,8 @@ export function drawCursor(ctx: Context, at: Point, camera: Camera, colours: The
   ctx.setTransform(...transformOf(camera, ratio));
   const px = 1 / camera.scale;
   for (const [radius, colour, width] of [
-    [9, colours.carEdge, 5],
-    [9, colours.predicted, 3],
+    [9, colours.wheel, 5],
+    [9, colours.act, 3],
   ] as const) {
     ctx.beginPath();
     ctx.arc(at.x, at.y, radius * px, 0, 2 * Math.PI);
@@ -357,8 +344,8 @@ export function drawOutline(ctx: Context, { centre }: RoadShape, camera: Camera,
   const px = 1 / camera.scale;
   const path = new Path2D();
   addLine(path, centre, 0, centre.x.length);
-  stroke(ctx, path, colours.panel, 7 * px);
-  stroke(ctx, path, colours.faint, 2.5 * px);
+  stroke(ctx, path, colours.sheet, 7 * px);
+  stroke(ctx, path, colours.quiet, 2.5 * px);
 }
 
 /** The car on it, or the cursor of the plots. */
@@ -368,7 +355,7 @@ export function drawDot(
   camera: Camera,
   colours: Theme,
   ratio: number,
-  colour = colours.accent,
+  colour = colours.ink,
 ): void {
   ctx.setTransform(...transformOf(camera, ratio));
   const px = 1 / camera.scale;
@@ -376,7 +363,7 @@ export function drawDot(
   ctx.arc(car.x, car.y, 5 * px, 0, 2 * Math.PI);
   ctx.fillStyle = colour;
   ctx.fill();
-  ctx.strokeStyle = colours.panel;
+  ctx.strokeStyle = colours.sheet;
   ctx.lineWidth = 2 * px;
   ctx.stroke();
 }

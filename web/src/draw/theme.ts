@@ -2,66 +2,66 @@ import { effect } from '@preact/signals';
 import { scheme } from '../lib/appearance';
 import { store } from '../lib/store';
 
-/** The colours of style.css that canvases need. */
+/** The colours of tokens.css that canvases need. */
 export interface Theme {
-  readonly ground: string;
-  readonly groundLine: string;
+  readonly land: string;
+  readonly landLine: string;
   readonly road: string;
-  readonly edge: string;
-  readonly centreLine: string;
-  readonly reference: string;
-  readonly trace: string;
-  readonly racingLine: string;
-  readonly predicted: string;
-  readonly outcome: string;
-  readonly carBody: string;
-  readonly carGlass: string;
-  readonly carEdge: string;
-  readonly wheel: string;
-  readonly brake: string;
-  readonly gain: string;
+  readonly mark: string; // edges and dashes of the road
   readonly kerb: string;
-  readonly kerbLight: string;
-  readonly text: string;
-  readonly faint: string;
-  readonly grid: string;
-  readonly panel: string;
-  readonly accent: string;
+  readonly a: string; // the way driven
+  readonly b: string; // what it is compared with: the limit's line, the ghost
+  readonly plan: string;
+  readonly pastPlan: string;
+  readonly lost: string;
+  readonly won: string;
+  readonly car: string;
+  readonly glass: string;
+  readonly wheel: string;
+  readonly ink: string;
+  readonly quiet: string;
+  readonly rule: string;
+  readonly sheet: string;
+  readonly act: string;
+  readonly lostInText: string;
+  readonly wonInText: string;
   readonly font: string;
-  readonly series: readonly [string, string];
 }
 
-function read(): Theme {
-  const style = getComputedStyle(document.documentElement);
-  const colour = (name: string): string => style.getPropertyValue(`--${name}`).trim();
-  return {
-    ground: colour('ground'),
-    groundLine: colour('ground-line'),
-    road: colour('road'),
-    edge: colour('road-edge'),
-    centreLine: colour('centre-line'),
-    reference: colour('reference'),
-    trace: colour('trace'),
-    racingLine: colour('racing-line'),
-    predicted: colour('predicted'),
-    outcome: colour('outcome'),
-    carBody: colour('car-body'),
-    carGlass: colour('car-glass'),
-    carEdge: colour('car-edge'),
-    wheel: colour('wheel'),
-    brake: colour('bad'),
-    gain: colour('good'),
-    kerb: colour('kerb'),
-    kerbLight: colour('kerb-light'),
-    text: colour('text'),
-    faint: colour('text-faint'),
-    grid: colour('grid'),
-    panel: colour('panel'),
-    accent: colour('accent'),
-    font: style.fontFamily,
-    series: [colour('series-1'), colour('series-2')],
-  };
+/** A token as a canvas can use it: light or dark is chosen, and colours are mixed. */
+export function tokenColour(name: string): string {
+  const probe = document.createElement('i');
+  probe.style.color = `var(--${name})`;
+  document.documentElement.append(probe);
+  const { color } = getComputedStyle(probe);
+  probe.remove();
+  return color;
 }
+
+const read = (): Theme => ({
+  land: tokenColour('land'),
+  landLine: tokenColour('land-line'),
+  road: tokenColour('road'),
+  mark: tokenColour('mark'),
+  kerb: tokenColour('kerb'),
+  a: tokenColour('road-a'),
+  b: tokenColour('road-b'),
+  plan: tokenColour('road-plan'),
+  pastPlan: tokenColour('road-past'),
+  lost: tokenColour('road-lost'),
+  won: tokenColour('road-won'),
+  car: tokenColour('car'),
+  glass: tokenColour('glass'),
+  wheel: tokenColour('wheel'),
+  ink: tokenColour('ink'),
+  quiet: tokenColour('quiet'),
+  rule: tokenColour('rule'),
+  sheet: tokenColour('sheet'),
+  act: tokenColour('act'),
+  lostInText: tokenColour('lost'),
+  wonInText: tokenColour('won'),
+  font: getComputedStyle(document.body).fontFamily,
+});
 
 const known = store.data('page', () => ({ theme: null as Theme | null }));
 const listeners = new Set<() => void>();

@@ -5,7 +5,7 @@ export interface Shortcut {
   /** The key as the help shows it. */
   readonly label: string;
   readonly does: string;
-  readonly group: 'Run' | 'Camera' | 'Panels' | 'Driving by hand';
+  readonly group: 'Run' | 'Camera' | 'Page' | 'Driving by hand';
   action(): void;
   /** False: the key is left to the element that has the focus. */
   isPossible?(): boolean;
@@ -43,8 +43,7 @@ export function isTakenBy(target: KeyTarget | null, key: string): boolean {
   const tag = target?.tagName?.toLowerCase();
   if (key === 'escape' || !tag || !target) return false;
   if (target.isContentEditable || tag === 'textarea' || tag === 'select') return true;
-  if (target.getAttribute?.('role') === 'separator' || target.getAttribute?.('role') === 'tab')
-    return ON_SLIDER.has(key) || key === 'enter';
+  if (target.getAttribute?.('role') === 'separator') return ON_SLIDER.has(key) || key === 'enter';
   if (tag === 'input') {
     if (target.type === 'range') return ON_SLIDER.has(key);
     if (TICKED.has(target.type ?? '')) return ON_SLIDER.has(key);

@@ -3,19 +3,7 @@ import { lapTime } from '../lib/format';
 import { notice } from '../state/link';
 import { attach } from '../state/operate';
 import type { Landmark } from './log_source';
-import {
-  beside,
-  duration,
-  isPlaying,
-  landmarks,
-  logs,
-  play,
-  played,
-  player,
-  position,
-  searched,
-  showBeside,
-} from './player';
+import { beside, duration, landmarks, logs, play, played, player, position, searched, showBeside } from './player';
 
 const seek = (time: number): void =>
   void player.value?.seek(time).catch((error: unknown) => (notice.value = String(error)));
@@ -70,17 +58,8 @@ export function TimelineView() {
   const source = player.value;
   if (!source) return null;
   const length = duration.value;
-  const playing = isPlaying.value;
   return (
     <section class="timeline" aria-label="Time line of the recording">
-      <button
-        type="button"
-        class="primary"
-        aria-keyshortcuts="Space"
-        onClick={() => void source.call('/pause', playing)}
-      >
-        {playing ? 'Pause' : 'Play'}
-      </button>
       <button
         type="button"
         class="icon"

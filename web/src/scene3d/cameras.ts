@@ -1,13 +1,14 @@
+import type { Line } from '../draw/line';
 import { clamp, wrapAngle } from '../lib/math';
 import type { Vector } from './mesh';
 
 export type CameraName = 'chase' | 'top' | 'cockpit' | 'free';
 
 export const CAMERAS: readonly { view: CameraName; label: string; title: string }[] = [
-  { view: 'chase', label: 'Chase', title: 'From behind the car (C)' },
-  { view: 'top', label: 'Top', title: 'From above, looking ahead (C)' },
-  { view: 'cockpit', label: 'Cockpit', title: "From the driver's eyes (C)" },
-  { view: 'free', label: 'Free', title: 'Round the car: drag, arrow keys, wheel (C)' },
+  { view: 'chase', label: 'Chase', title: 'From behind the car' },
+  { view: 'top', label: 'Top', title: 'From above, looking ahead' },
+  { view: 'cockpit', label: 'Cockpit', title: "From the driver's eyes" },
+  { view: 'free', label: 'Free', title: 'Round the car: drag, arrow keys, wheel' },
 ];
 
 /** Position and target of a camera in W; `up` is the picture's upward direction. */
@@ -52,33 +53,51 @@ export const zoomedOrbit = (orbit: Orbit, factor: number): Orbit => ({
 const lens = (wide: number, aspect: number): number =>
   aspect >= 1.2 ? wide : 2 * Math.atan(Math.tan(wide / 2) * Math.min(1.7, 1.2 / aspect));
 
+/** What a picture has to hold. */
+export interface Lens {
+  readonly aspect: number; // width by height
+  /** The points of the plan, in W [m]: the views from behind and from above hold all of them. */
+  readonly plan: Line | null;
+  readonly orbit: Orbit;
+  readonly isCut: boolean; // no gliding, for readers who prefer reduced motion
+}
+
+/** A place of the camera behind the car: turned about it [rad], and so many times as far. */
+interface Stand {
+  readonly turn: number;
+  readonly far: number;
+}
+
+const STRAIGHT: Stand = { turn: 0, far: 1 };
+const MARGIN = 0.84; // of half the picture's width, in which the plan stays
+const TOP_MARGIN = 0.65; // of half its height, from above: the camera's name stands in the corner
+const FAR = [1, 1.3, 1.7, 2.2, 3];
+const BACK = 1.62; // of the car's length
+
+/** The way from one stand to another, by a share of it. */
+const between = (from: Stand, to: Stand, share: number): Stand => ({
+  turn: from.turn + (to.turn - from.turn) * share,
+  far: from.far + (to.far - from.far) * share,
+});
+
 /**
  * Follows the car; heading and speed are smoothed, so that the view turns with corners and not with every bump.
  */
 export class CameraMan {
   #heading = NaN;
   #speed = NaN;
+  #stand = STRAIGHT;
 
   /** The next view is a cut: no smoothing from the previous one. */
   cut(): void {
     this.#heading = NaN;
   }
 
-  /**
-   * The view `seconds` after the last one. With `hasReducedMotion` there is neither smoothing nor a change of the field
-   * of view.
-   */
-  shoot(
-    name: CameraName,
-    car: Subject,
-    orbit: Orbit,
-    aspect: number,
-    seconds: number,
-    hasReducedMotion: boolean,
-  ): Shot {
-    const share =
-      Number.isNaN(this.#heading) || hasReducedMotion ? 1 : 1 - Math.exp(-seconds / (name === 'top' ? 0.35 : 0.22));
-    const from = Number.isNaN(this.#heading) ? car.yaw : this.#heading;
+  /** The view `seconds` after the last one. */
+  shoot(name: CameraName, car: Subject, lens: Lens, seconds: number): Shot {
+    const isFirst = Number.isNaN(this.#heading);
+    const share = isFirst || lens.isCut ? 1 : 1 - Math.exp(-seconds / (name === 'top' ? 0.35 : 0.22));
+    const from = isFirst ? car.yaw : this.#heading;
     this.#heading = wrapAngle(from + wrapAngle(car.yaw - from) * share);
     const slow = Number.isNaN(this.#speed) ? 1 : 1 - Math.exp(-seconds / 0.6);
     this.#speed =
@@ -86,42 +105,80 @@ export class CameraMan {
       (car.speed - (Number.isNaN(this.#speed) ? car.speed : this.#speed)) * slow;
     switch (name) {
       case 'chase':
-        return this.#chase(car, orbit, aspect, hasReducedMotion);
+        return this.#chase(car, lens, share);
       case 'top':
-        return this.#top(car, orbit, aspect);
+        return this.#top(car, lens);
       case 'cockpit':
-        return this.#cockpit(car, orbit, aspect);
+        return this.#cockpit(car, lens);
       case 'free':
-        return this.#free(car, orbit, aspect);
+        return this.#free(car, lens);
     }
   }
 
-  #chase(car: Subject, { zoom }: Orbit, aspect: number, hasReducedMotion: boolean): Shot {
-    const [cos, sin] = [Math.cos(this.#heading), Math.sin(this.#heading)];
-    const back = 1.62 * car.length * zoom;
-    const ahead = 1.5 * car.length;
-    const widening = hasReducedMotion ? 0 : 0.14 * clamp(this.#speed / 50, 0, 1);
+  #chase(car: Subject, { aspect, plan, orbit: { zoom }, isCut }: Lens, share: number): Shot {
+    const widening = isCut ? 0 : 0.14 * clamp(this.#speed / 50, 0, 1);
+    const fieldOfView = lens(0.92 + widening, aspect);
+    const holds = ({ turn, far }: Stand): boolean => {
+      const [cos, sin] = [Math.cos(this.#heading + turn), Math.sin(this.#heading + turn)];
+      const half = MARGIN * Math.tan(fieldOfView / 2) * aspect;
+      for (let i = 0; i < (plan?.x.length ?? 0); ++i) {
+        const [dx, dy] = [(plan?.x[i] ?? NaN) - car.x, (plan?.y[i] ?? NaN) - car.y];
+        const ahead = cos * dx + sin * dy + BACK * car.length * zoom * far;
+        if (Math.abs(cos * dy - sin * dx) > half * ahead) return false;
+      }
+      return true;
+    };
+    const wanted = this.#standFor(car, plan, holds);
+    // On the way to it the plan stays inside, too.
+    const glided = [share, 0.4, 0.6, 0.8]
+      .filter((each) => each >= share)
+      .map((each) => between(this.#stand, wanted, each));
+    this.#stand = (isCut ? null : glided.find(holds)) ?? wanted;
+    const { turn, far } = this.#stand;
+    const [cos, sin] = [Math.cos(this.#heading + turn), Math.sin(this.#heading + turn)];
+    const [back, ahead] = [BACK * car.length * zoom * far, 1.5 * car.length * far];
     return {
-      position: [car.x - back * cos, car.y - back * sin, 0.62 * car.length * zoom ** 1.15],
-      target: [car.x + ahead * cos, car.y + ahead * sin, 0.1 * car.length],
+      position: [car.x - back * cos, car.y - back * sin, 0.62 * car.length * zoom ** 1.15 * far],
+      target: [car.x + ahead * cos, car.y + ahead * sin, 0.1 * car.length * far],
       up: [0, 0, 1],
-      fieldOfView: lens(0.92 + widening, aspect),
+      fieldOfView,
     };
   }
 
-  #top(car: Subject, { zoom }: Orbit, aspect: number): Shot {
+  /** The nearest and straightest stand that holds the plan; the farthest where none does. */
+  #standFor(car: Subject, plan: Lens['plan'], holds: (stand: Stand) => boolean): Stand {
+    const last = (plan?.x.length ?? 0) - 1;
+    if (!plan || last < 0) return STRAIGHT;
+    const [dx, dy] = [(plan.x[last] ?? NaN) - car.x, (plan.y[last] ?? NaN) - car.y];
+    const off = Math.hypot(dx, dy) > 1e-6 ? wrapAngle(Math.atan2(dy, dx) - this.#heading) : 0;
+    for (const far of FAR)
+      for (let part = 0; part <= 1; part += 0.1) if (holds({ turn: part * off, far })) return { turn: part * off, far };
+    return { turn: off, far: FAR.at(-1) ?? 1 };
+  }
+
+  #top(car: Subject, { aspect, plan, orbit: { zoom } }: Lens): Shot {
     const [cos, sin] = [Math.cos(this.#heading), Math.sin(this.#heading)];
-    const height = 16 * car.length * zoom;
-    const shift = 0.2 * height;
+    const fieldOfView = lens(0.75, aspect);
+    const half = Math.tan(fieldOfView / 2);
+    let [least, most, aside] = [0, 0, 0];
+    for (let i = 0; i < (plan?.x.length ?? 0); ++i) {
+      const [dx, dy] = [(plan?.x[i] ?? NaN) - car.x, (plan?.y[i] ?? NaN) - car.y];
+      const ahead = cos * dx + sin * dy;
+      [least, most] = [Math.min(least, ahead), Math.max(most, ahead)];
+      aside = Math.max(aside, Math.abs(cos * dy - sin * dx));
+    }
+    const reach = TOP_MARGIN * half; // by the height
+    const height = Math.max(16 * car.length * zoom, (most - least) / (2 * reach), aside / (MARGIN * half * aspect));
+    const shift = clamp(0.2 * height, most - reach * height, least + reach * height);
     return {
       position: [car.x + shift * cos, car.y + shift * sin, height],
       target: [car.x + shift * cos, car.y + shift * sin, 0],
       up: [cos, sin, 0],
-      fieldOfView: lens(0.75, aspect),
+      fieldOfView,
     };
   }
 
-  #cockpit(car: Subject, { zoom }: Orbit, aspect: number): Shot {
+  #cockpit(car: Subject, { aspect, orbit: { zoom } }: Lens): Shot {
     const [cos, sin] = [Math.cos(car.yaw), Math.sin(car.yaw)];
     const place = (x: number, y: number, z: number): Vector => [
       car.x + x * cos - y * sin,
@@ -137,7 +194,7 @@ export class CameraMan {
     };
   }
 
-  #free(car: Subject, { azimuth, elevation, zoom }: Orbit, aspect: number): Shot {
+  #free(car: Subject, { aspect, orbit: { azimuth, elevation, zoom } }: Lens): Shot {
     const angle = this.#heading + Math.PI + azimuth;
     const distance = 2.1 * car.length * zoom;
     const flat = distance * Math.cos(elevation);

@@ -1,5 +1,6 @@
 import {
   AdditiveBlending,
+  Box3,
   type BufferGeometry,
   Color,
   DataTexture,
@@ -139,6 +140,12 @@ export class CarView {
     this.#beam = this.#headlight();
     this.group.add(this.#body, this.#wheels.group, this.#beam, this.#spot(), this.#shadowCatcher());
     scene.add(this.group);
+  }
+
+  /** Of a box round the car, in W [m]. */
+  corners(): (readonly [number, number, number])[] {
+    const { min, max } = new Box3().setFromObject(this.#body);
+    return [min.x, max.x].flatMap((x) => [min.y, max.y].flatMap((y) => [0, max.z].map((z) => [x, y, z] as const)));
   }
 
   #keep<T extends { dispose(): void }>(thing: T): T {

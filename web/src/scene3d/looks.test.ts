@@ -1,6 +1,7 @@
+import { PerspectiveCamera, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
 import { BodyMotion } from './body_motion';
-import { CAMERAS, CameraMan, DEFAULT_ORBIT, orbited, type Subject, zoomedOrbit } from './cameras';
+import { CAMERAS, CameraMan, DEFAULT_ORBIT, type Lens, orbited, type Subject, zoomedOrbit } from './cameras';
 import { noiseTile } from './noise';
 import { LEVELS, QualityGovernor, SOFTWARE_LEVEL } from './quality';
 import { plantTrees } from './trees';
@@ -29,12 +30,14 @@ describe('the body', () => {
   });
 });
 
+const LENS: Lens = { aspect: 1.6, plan: null, orbit: DEFAULT_ORBIT, isCut: false };
+
 describe('cameras', () => {
   const car: Subject = { x: 100, y: 50, yaw: 0.6, speed: 30, length: 4.5, eye: [0, 0, 1] };
 
   it('keep the car in front of the lens', () => {
     for (const { view } of CAMERAS) {
-      const shot = new CameraMan().shoot(view, car, DEFAULT_ORBIT, 1.6, 0.016, false);
+      const shot = new CameraMan().shoot(view, car, LENS, 0.016);
       const look = shot.target.map((value, i) => value - (shot.position[i] ?? 0));
       const ahead = (look[0] as number) * Math.cos(car.yaw) + (look[1] as number) * Math.sin(car.yaw);
       expect([...shot.position, ...shot.target, shot.fieldOfView].every(Number.isFinite), view).toBe(true);
@@ -47,13 +50,39 @@ describe('cameras', () => {
     const turned = { ...car, yaw: 1.6 };
     const behind = (yaw: number): number => car.x - 1.62 * 4.5 * Math.cos(yaw);
     const man = new CameraMan();
-    man.shoot('chase', car, DEFAULT_ORBIT, 1.6, 0.016, false);
-    const soft = man.shoot('chase', turned, DEFAULT_ORBIT, 1.6, 0.016, false).position[0];
+    man.shoot('chase', car, LENS, 0.016);
+    const soft = man.shoot('chase', turned, LENS, 0.016).position[0];
     expect(Math.abs(soft - behind(0.6))).toBeLessThan(1);
-    const calm = man.shoot('chase', turned, DEFAULT_ORBIT, 1.6, 0.016, true);
+    const calm = man.shoot('chase', turned, { ...LENS, isCut: true }, 0.016);
     expect(calm.position[0]).toBeCloseTo(behind(1.6), 6);
     man.cut();
-    expect(man.shoot('chase', car, DEFAULT_ORBIT, 1.6, 0.016, false).position[0]).toBeCloseTo(behind(0.6), 6);
+    expect(man.shoot('chase', car, LENS, 0.016).position[0]).toBeCloseTo(behind(0.6), 6);
+  });
+
+  it.each([0.46, 1.1, 2])('hold the whole plan from behind and from above, at once and gliding, width %f', (aspect) => {
+    // A hairpin: two seconds that turn by more than half a circle.
+    const bend = Array.from({ length: 41 }, (_, i) => ({ a: 0.6 + i / 11 }));
+    const plan = { x: [car.x], y: [car.y] };
+    for (const { a } of bend) {
+      plan.x.push((plan.x.at(-1) ?? 0) + 1.2 * Math.cos(a));
+      plan.y.push((plan.y.at(-1) ?? 0) + 1.2 * Math.sin(a));
+    }
+    for (const view of ['chase', 'top'] as const) {
+      const man = new CameraMan();
+      man.shoot(view, car, { ...LENS, aspect }, 0.016);
+      for (let i = 0; i < 20; ++i) {
+        const { position, target, up, fieldOfView } = man.shoot(view, car, { ...LENS, aspect, plan }, 0.016);
+        const camera = new PerspectiveCamera((fieldOfView * 180) / Math.PI, aspect);
+        camera.up.set(...up);
+        camera.position.set(...position);
+        camera.lookAt(...target);
+        camera.updateMatrixWorld();
+        for (const [k, x] of plan.x.entries()) {
+          const point = new Vector3(x, plan.y[k], 0).project(camera);
+          expect(Math.max(Math.abs(point.x), Math.abs(point.y)), `${view} ${i} ${k}`).toBeLessThan(0.97);
+        }
+      }
+    }
   });
 
   it('never look from below the ground, nor from inside the car', () => {

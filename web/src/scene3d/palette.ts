@@ -1,4 +1,4 @@
-import { theme } from '../draw/theme';
+import { scheme } from '../lib/appearance';
 import { type Colour, colourOf } from './mesh';
 import type { RoadPaint } from './road_mesh';
 
@@ -13,16 +13,30 @@ export interface Palette {
   readonly leaves: readonly Colour[];
   readonly trunk: Colour;
   readonly road: RoadPaint;
-  readonly reference: Colour;
   readonly trace: Colour;
   readonly racingLine: Colour;
+  readonly plan: Colour;
   readonly predicted: Colour;
+  readonly act: Colour;
+  readonly lost: Colour;
   readonly outcome: Colour;
   readonly ghost: Colour;
   readonly rubber: Colour;
   readonly sun: number; // intensity of the directional light
   readonly sky: number; // intensity of the ambient light
 }
+
+/** What is drawn on the road, as in tokens.css: it has the same colour by day and at dusk. */
+const LINES = {
+  plan: colourOf('#ffcb3d'),
+  predicted: colourOf('#8a7443'),
+  racingLine: colourOf('#dcb3f6'),
+  ghost: colourOf('#dcb3f6'),
+  trace: colourOf('#f7f9fb'),
+  outcome: colourOf('#f7f9fb'),
+  act: colourOf('#82b6ff'),
+  lost: colourOf('#ffa566'),
+};
 
 const DAY: Omit<Palette, 'isDark'> = {
   zenith: colourOf('#5b9bd9'),
@@ -41,12 +55,7 @@ const DAY: Omit<Palette, 'isDark'> = {
     kerbRed: colourOf('#c8342c'),
     kerbWhite: colourOf('#f2f2ee'),
   },
-  reference: colourOf('#ffffff'),
-  trace: colourOf('#c6d5f2'),
-  racingLine: colourOf('#4df0ff'),
-  predicted: colourOf('#f25fc4'),
-  outcome: colourOf('#ffffff'),
-  ghost: colourOf('#3f7cf0'),
+  ...LINES,
   rubber: colourOf('#16181c'),
   sun: 2.6,
   sky: 1.3,
@@ -69,12 +78,7 @@ const DUSK: Omit<Palette, 'isDark'> = {
     kerbRed: colourOf('#8f3a3a'),
     kerbWhite: colourOf('#a9b1bd'),
   },
-  reference: colourOf('#aab6c6'),
-  trace: colourOf('#6283c0'),
-  racingLine: colourOf('#35b9c9'),
-  predicted: colourOf('#e05ab6'),
-  outcome: colourOf('#e4ebf5'),
-  ghost: colourOf('#7aa7ff'),
+  ...LINES,
   rubber: colourOf('#0a0c0f'),
   sun: 1.3,
   sky: 1.0,
@@ -82,7 +86,6 @@ const DUSK: Omit<Palette, 'isDark'> = {
 
 /** The palette for the page's colour scheme. */
 export function palette(): Palette {
-  const [r, g, b] = colourOf(theme().ground);
-  const isDark = r + g + b < 0.6;
+  const isDark = scheme.value === 'dark';
   return { ...(isDark ? DUSK : DAY), isDark };
 }

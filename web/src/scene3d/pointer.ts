@@ -1,6 +1,6 @@
 import { live } from '../state/live';
 import { orbited } from './cameras';
-import { camera, orbit, zoomCamera } from './view_state';
+import { camera, choose, orbit, zoomCamera } from './view_state';
 
 const TURN = 0.007; // [rad] for each pixel
 const KEY_TURN = 0.09; // [rad] for each press
@@ -42,7 +42,7 @@ export function listenToPointers(canvas: HTMLCanvasElement): () => void {
     if (camera.value !== 'free') {
       // Starts from the present position of the camera, behind the car.
       orbit.value = { ...orbit.value, azimuth: 0, elevation: 0.3 };
-      camera.value = 'free';
+      choose('free');
     }
     orbit.value = orbited(orbit.value, -dx * TURN, dy * TURN);
   };

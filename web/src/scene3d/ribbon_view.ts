@@ -1,6 +1,4 @@
 import { BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, Mesh, MeshBasicMaterial, type Scene } from 'three';
-import { speedRgb } from '../draw/speed_colour';
-import type { Plan } from '../protocol/topics';
 import type { Colour } from './mesh';
 import { type RibbonRing, ribbonIndices, writeRibbon } from './ribbon';
 
@@ -98,24 +96,6 @@ export class BandView {
     this.#lay(px, py, count, width);
     const colours = this.#colours.array;
     for (let i = 0; i < count; ++i) colours[8 * i + 3] = colours[8 * i + 7] = 255 * alphaAt(i / Math.max(1, count - 1));
-  }
-
-  showPlan(plan: Plan | null, speedScale: number, width: number): void {
-    const count = Math.min(plan?.x_m.length ?? 0, this.#capacity);
-    this.#lay(plan?.x_m ?? [], plan?.y_m ?? [], count, width);
-    if (!plan) return;
-    const colours = this.#colours.array;
-    for (let i = 0; i < count; ++i) {
-      const [r, g, b] = speedRgb((plan.speed_mps[i] ?? NaN) / speedScale);
-      // Vertex colours are linear, the colour scale is sRGB.
-      const rgba = [
-        255 * (r / 255) ** 2.2,
-        255 * (g / 255) ** 2.2,
-        255 * (b / 255) ** 2.2,
-        i > 0.75 * count ? 225 * 4 * (1 - i / count) : 225,
-      ];
-      for (let k = 0; k < 4; ++k) colours[8 * i + k] = colours[8 * i + 4 + k] = rgba[k] ?? 0;
-    }
   }
 
   #lay(px: ArrayLike<number>, py: ArrayLike<number>, count: number, width: number): void {

@@ -10,11 +10,10 @@ import { road } from '../state/road';
 import { isPaused, run } from '../state/run';
 import { everyFrame } from '../state/ticker';
 import { listenToPointers } from './pointer';
-import './scene3d.css';
 import { renderer } from './renderer';
 import { session } from './session';
 import type { Stage, View } from './stage';
-import { camera, isReady, obstacle, orbit } from './view_state';
+import { camera3d, isReady, obstacle, orbit } from './view_state';
 
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
@@ -25,13 +24,11 @@ function viewNow(): View {
     road: road.lines,
     roadVersion: road.version,
     plan: live.plan,
-    reference: road.reference,
     hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
     racingLine: layers.racingLine.value ? limit.value : null,
-    bodyLength: run.value?.body_length_m ?? NaN,
     ghost: session.ghost,
     cursor: cursorMark(),
-    camera: camera.value,
+    camera: camera3d.value ?? 'chase',
     orbit: orbit.value,
     isHeld: isPaused.value || link.value !== 'live',
     hasReducedMotion: stillness.matches,
@@ -58,7 +55,7 @@ function play(canvas: HTMLCanvasElement): () => void {
   }
   const lost = (event: Event): void => {
     event.preventDefault();
-    give('The browser stopped the 3D picture, so the track is drawn flat. Choose 3D to try again.');
+    give('The browser stopped the 3D picture, so the track is drawn flat. Choose the camera to try again.');
   };
   import('./stage').then(
     ({ Stage: Made }) => {
@@ -74,6 +71,9 @@ function play(canvas: HTMLCanvasElement): () => void {
         canvas.removeEventListener('webglcontextlost', lost);
         stage.dispose();
       });
+      const answer = (event: Event): void => void Object.assign(event, { geometry: stage.geometry() });
+      canvas.addEventListener('geometry', answer); // asked by tests: is anything over the car or its plan?
+      ends.push(() => canvas.removeEventListener('geometry', answer));
       ends.push(listenToPointers(canvas));
       ends.push(onThemeChange(() => stage.repaint()));
       ends.push(
@@ -83,7 +83,7 @@ function play(canvas: HTMLCanvasElement): () => void {
         }),
       );
     },
-    () => give('The 3D picture could not be loaded, so the track is drawn flat. Choose 3D to try again.'),
+    () => give('The 3D picture could not be loaded, so the track is drawn flat. Choose the camera to try again.'),
   );
   return stop;
 }
@@ -92,7 +92,7 @@ function play(canvas: HTMLCanvasElement): () => void {
 export function Scene3dView({ label }: { label: string }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => (canvas.current ? play(canvas.current) : undefined), []);
-  const isFree = camera.value === 'free';
+  const isFree = camera3d.value === 'free';
   return (
     <canvas
       ref={canvas}

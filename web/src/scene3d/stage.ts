@@ -6,13 +6,12 @@ import {
   PMREMGenerator,
   Scene,
   SRGBColorSpace,
+  Vector3,
   WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
-import { topOfScale } from '../draw/speed_colour';
-import type { Point } from '../lib/math';
+import { aheadOf, type Line } from '../draw/line';
 import { paintSize } from '../lib/paint_size';
-import { speedUnit } from '../lib/units';
 import type { Limit, Plan, Run } from '../protocol/topics';
 import type { CursorMark } from '../state/cursor';
 import type { Hindsight } from '../state/hindsight';
@@ -39,16 +38,23 @@ export interface View {
   readonly road: RoadLines;
   readonly roadVersion: number;
   readonly plan: Plan | null;
-  readonly reference: readonly Point[];
   readonly hindsight: Hindsight | null;
   readonly racingLine: Limit | null;
-  readonly bodyLength: number; // [m]
   readonly ghost: GhostSource | null;
   readonly cursor: CursorMark | null; // of the plots
   readonly camera: CameraName;
   readonly orbit: Orbit;
   readonly isHeld: boolean; // paused, or the connection is lost
   readonly hasReducedMotion: boolean; // the user prefers reduced motion
+}
+
+const NO_LINE: Line = { x: [], y: [] };
+
+/** Where things are in the picture [CSS pixels]. */
+export interface Geometry {
+  readonly corners: readonly (readonly [number, number])[]; // of the car's box
+  readonly plan: readonly (readonly [number, number])[];
+  readonly horizon: number;
 }
 
 const NEAR_M = 0.12; // nothing nearer is drawn, for a car in full size
@@ -68,7 +74,6 @@ export class Stage {
   readonly #trace: RingView;
   readonly #marks: RingView;
   readonly #brakes: RingView;
-  readonly #reference: BandView;
   readonly #racingLine: BandView;
   readonly #predicted: BandView;
   readonly #outcome: BandView;
@@ -86,8 +91,8 @@ export class Stage {
   #roadKey = '';
   #lineShown: Float32Array | null = null;
   #planShown: Plan | null = null;
+  #ahead: Line = NO_LINE; // the plan that is drawn
   #limitShown: Limit | null = null;
-  #referenceShown: readonly Point[] | null = null;
   #jumps = -1;
   #runTime = NaN;
   #wheelAngle = 0;
@@ -115,7 +120,6 @@ export class Stage {
     this.#trace = new RingView(this.#scene, session.trace, 2, 0.65);
     this.#marks = new RingView(this.#scene, session.marks.ring, 3, 0.75);
     this.#brakes = new RingView(this.#scene, session.brakes, 4, 0.8);
-    this.#reference = new BandView(this.#scene, 512, 5);
     this.#racingLine = new BandView(this.#scene, 8192, 1.5);
     this.#predicted = new BandView(this.#scene, 512, 6);
     this.#outcome = new BandView(this.#scene, 512, 7);
@@ -143,12 +147,12 @@ export class Stage {
     this.#skyLight.intensity = this.#slow ? 1.25 * sky : sky; // replaces the reflections
     this.#trace.paint(this.#palette.trace);
     this.#marks.paint(this.#palette.rubber);
-    this.#brakes.paint([0.75, 0.03, 0.02]);
-    this.#reference.paint(this.#palette.reference);
+    this.#brakes.paint(this.#palette.lost);
     this.#racingLine.paint(this.#palette.racingLine);
     this.#predicted.paint(this.#palette.predicted);
     this.#outcome.paint(this.#palette.outcome);
-    this.#cursor.paint(this.#palette.predicted);
+    this.#plan.paint(this.#palette.plan);
+    this.#cursor.paint(this.#palette.act);
     this.#bestLine.paint(this.#palette.ghost);
     this.#car?.paint(this.#palette);
     this.#ghost?.paint(this.#palette);
@@ -192,6 +196,7 @@ export class Stage {
     this.#lastPicture = now;
     this.#renew(view);
     const passed = this.#move(view, motion);
+    this.#layPlan(view.plan, motion);
     // In fast motion and after a pause of the page the camera follows the run's time.
     this.#film(view, motion, width / height, Math.max(Math.min(gap, 1000) / 1000, passed));
     this.#draw(width, height, now);
@@ -296,20 +301,19 @@ export class Stage {
       this.#limitShown = view.racingLine;
       this.#racingLine.show(view.racingLine?.x_m ?? [], view.racingLine?.y_m ?? [], 0.22 * width, () => 0.75);
     }
-    if (view.reference !== this.#referenceShown) {
-      this.#referenceShown = view.reference;
-      const [xs, ys] = [view.reference.map(({ x }) => x), view.reference.map(({ y }) => y)];
-      this.#reference.show(xs, ys, 0.14 * width, (share) => 0.9 * Math.min(1, 4 * (1 - share)));
-    }
     const size = (this.#car?.model.length ?? 4.5) / 4.5;
     this.#predicted.show(view.hindsight?.plan.x_m ?? [], view.hindsight?.plan.y_m ?? [], 1.2 * size, () => 0.6);
     this.#outcome.show(view.hindsight?.drivenX ?? [], view.hindsight?.drivenY ?? [], 0.2 * size, () => 1);
     this.#showCursor(view.cursor, size);
-    if (view.plan !== this.#planShown) {
-      this.#planShown = view.plan;
-      this.#plan.showPlan(view.plan, topOfScale(view.bodyLength, speedUnit()), 0.5 * size);
-    }
     for (const ring of [this.#trace, this.#marks, this.#brakes]) ring.update();
+  }
+
+  /** The plan from where the car is now. */
+  #layPlan(plan: Plan | null, motion: Motion | null): void {
+    this.#planShown = plan;
+    this.#ahead = plan && motion ? aheadOf({ x: plan.x_m, y: plan.y_m }, motion) : NO_LINE;
+    const size = (this.#car?.model.length ?? 4.5) / 4.5;
+    this.#plan.show(this.#ahead.x, this.#ahead.y, 0.5 * size, () => 0.9);
   }
 
   /** A bar across the road. */
@@ -326,7 +330,7 @@ export class Stage {
 
   #renewCar(run: Run, key: string): void {
     this.#carKey = key;
-    this.#lineShown = this.#limitShown = this.#referenceShown = null; // their width is the car's
+    this.#lineShown = this.#limitShown = null; // their width is the car's
     this.#camera.near = NEAR_M * paintSize(run);
     this.#car?.dispose();
     this.#ghost?.dispose();
@@ -404,7 +408,8 @@ export class Stage {
       length: model?.length ?? 4.5,
       eye: model?.eye ?? ([0, 0, 1] as const),
     };
-    const shot: Shot = this.#cameraMan.shoot(view.camera, subject, view.orbit, aspect, seconds, view.hasReducedMotion);
+    const lens = { aspect, plan: this.#ahead, orbit: view.orbit, isCut: view.hasReducedMotion };
+    const shot: Shot = this.#cameraMan.shoot(view.camera, subject, lens, seconds);
     const camera = this.#camera;
     camera.position.set(...shot.position);
     camera.up.set(...shot.up);
@@ -413,6 +418,23 @@ export class Stage {
     camera.aspect = aspect;
     camera.updateProjectionMatrix();
     this.#landscape.follow(shot.position[0], shot.position[1]);
+  }
+
+  /** Where the car's box and the plan are in the picture, and the horizon [CSS pixels]; null without a car. */
+  geometry(): Geometry | null {
+    const { clientWidth: width, clientHeight: height } = this.#canvas;
+    if (!this.#car || width === 0) return null;
+    const point = new Vector3();
+    const at = (x: number, y: number, z: number): [number, number] => {
+      point.set(x, y, z).project(this.#camera);
+      return [((point.x + 1) / 2) * width, ((1 - point.y) / 2) * height];
+    };
+    const corners = this.#car.corners().map(([x, y, z]) => at(x, y, z));
+    const points = Array.from(this.#ahead.x, (x, i) => at(x, this.#ahead.y[i] ?? NaN, 0));
+    const { position } = this.#camera;
+    this.#camera.getWorldDirection(point);
+    const horizon = at(position.x + 1e6 * point.x, position.y + 1e6 * point.y, 0)[1];
+    return { corners, plan: points, horizon };
   }
 
   dispose(): void {
@@ -426,7 +448,6 @@ export class Stage {
       this.#trace,
       this.#marks,
       this.#brakes,
-      this.#reference,
       this.#racingLine,
       this.#predicted,
       this.#outcome,

@@ -4,43 +4,48 @@ import { store } from '../lib/store';
 import { CAMERAS, type CameraName, DEFAULT_ORBIT, type Orbit, zoomedOrbit } from './cameras';
 import { renderer } from './renderer';
 
-export type Dimension = '3d' | '2d';
+/** Views from above that are drawn flat. */
+export type FlatView = 'track' | 'ahead';
+export type CameraChoice = CameraName | FlatView;
 
-const isChoice = (value: unknown): boolean => value === '3d' || value === '2d' || value === '';
-const isCamera = (value: unknown): boolean => CAMERAS.some(({ view }) => view === value);
+export const ALL_CAMERAS: readonly { view: CameraChoice; label: string; title: string }[] = [
+  ...CAMERAS,
+  { view: 'track', label: 'Track', title: 'The whole track, from above' },
+  { view: 'ahead', label: 'Map', title: 'The road about the car, from above' },
+];
 
-/** The dimension chosen, empty at first; kept in the browser's storage. */
-const choice = persisted<Dimension | ''>('dimension', '', isChoice);
+const isCamera = (value: unknown): boolean => value === '' || ALL_CAMERAS.some(({ view }) => view === value);
 
-/** 3D by default with a graphics card; without one it takes processor time that the controller may need. */
-export const dimension = computed<Dimension>(() => choice.value || (renderer() === 'processor' ? '2d' : '3d'));
+/** The camera chosen, empty at first; kept in the browser's storage. */
+const chosen = persisted<CameraChoice | ''>('camera', '', isCamera);
 
-/** Whether the map is shown only because 3D would be expensive here. */
-export const isSpared = computed(() => choice.value === '' && dimension.value === '2d');
-
-export const camera = persisted<CameraName>('camera', 'chase', isCamera);
+/** From behind the car with a graphics card; without one that takes processor time which the controller may need. */
+export const camera = computed<CameraChoice>(() => chosen.value || (renderer() === 'processor' ? 'track' : 'chase'));
 
 /** Why there is no 3D picture, as a sentence; null if it is available. */
 export const obstacle = store.signal<string | null>('page', null);
 
-/** Whether the 3D picture is loaded and drawn. Until then, and without it, the map has the full size. */
+/** Whether the 3D picture is loaded and drawn. Until then, and without it, the track has the full size. */
 export const isReady = store.signal('page', false);
 
-export const wants3d = computed(() => dimension.value === '3d' && obstacle.value === null);
-export const shows3d = computed(() => wants3d.value && isReady.value);
+/** The camera of the 3D picture; null where the picture is flat. */
+export const camera3d = computed<CameraName | null>(
+  () => CAMERAS.find(({ view }) => view === camera.value && obstacle.value === null)?.view ?? null,
+);
+export const shows3d = computed(() => camera3d.value !== null && isReady.value);
 
 export const orbit: { value: Orbit } = { value: DEFAULT_ORBIT };
 
+export function choose(next: CameraChoice): void {
+  obstacle.value = null; // try again
+  chosen.value = next;
+}
+
 export function nextCamera(): void {
-  const at = CAMERAS.findIndex(({ view }) => view === camera.value);
-  camera.value = CAMERAS[(at + 1) % CAMERAS.length]?.view ?? 'chase';
+  const at = ALL_CAMERAS.findIndex(({ view }) => view === camera.value);
+  choose(ALL_CAMERAS[(at + 1) % ALL_CAMERAS.length]?.view ?? 'chase');
 }
 
 export function zoomCamera(factor: number): void {
   orbit.value = zoomedOrbit(orbit.value, factor);
-}
-
-export function choose(next: Dimension): void {
-  if (next === '3d') obstacle.value = null; // try again
-  choice.value = next;
 }

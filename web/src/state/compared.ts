@@ -120,10 +120,13 @@ export function markedCorners(): readonly MarkedCorner[] {
 
 const PIECE_M = 25;
 
-/** The line of A by what it loses to B on each piece; null where they are not known. */
-export const lossesNow = computed<Losses | null>(() => {
-  const both = comparison.value;
-  const [x, y] = (['x_m', 'y_m'] as const).map((name) => both?.a.channel(name));
+/** The line of the newest whole lap from a flying start by what it loses to the limit; null where it is not known. */
+export const lossesToLimit = computed<Losses | null>(() => {
+  void sampledLaps.value;
+  const newest = laps.value.filter(({ lap }) => lap > 1 && lapSamples.laps.includes(lap - 1)).at(-1);
+  const a = newest && lapCourse(newest, lapSamples);
+  const both = a && limit.value && compare(a, limitCourse(limit.value, lapSamples), roadNow());
+  const [x, y] = (['x_m', 'y_m'] as const).map((name) => a?.channel(name));
   if (!both || !x || !y) return null;
   const pieces = stretches(both, PIECE_M);
   const indexOf = (place: number): number => Math.round((place / both.length) * x.length);

@@ -27,10 +27,10 @@ const STEPS: readonly Step[] = [
     name: 'drive',
     title: 'Drive it yourself',
     text:
-      'Take the wheel with the button or the key M. Then the arrow keys steer, drive and brake; a ' +
-      'finger or the mouse does it on the pad. At speed that is hard: Reset (R) puts the car to the start, at rest.',
-    tab: 'drive',
-    where: '.manual-row button',
+      'Take the wheel with the key M, or in the menu under “chicane”. Then the arrow keys steer, drive and brake; on ' +
+      'a phone a finger on the pad. At speed that is hard: Start again (R) puts the car to the start, at rest.',
+    mode: 'watch',
+    where: '.name',
     tasks: ['Take the wheel', `Drive ${BY_HAND_M} m`],
     isPossible: () => settings.value.has('manual.is_on'),
     watch() {
@@ -46,10 +46,10 @@ const STEPS: readonly Step[] = [
     title: 'Let it drive',
     text:
       'Hand back with the button or Esc: the controller goes on from where you are. From far off the ' +
-      'road, Reset (R) puts the car back to the start.',
-    tab: 'drive',
-    where: '.manual-row button',
-    tasks: ['Hand back', `Let it drive ${ALONE_S} s on the road; from far off it, press Reset first`],
+      'road, Start again (R) puts the car back to the start.',
+    mode: 'watch',
+    where: '.keys',
+    tasks: ['Hand back', `Let it drive ${ALONE_S} s on the road; from far off it, start again first (R)`],
     isPossible: () => settings.value.has('manual.is_on'),
     watch() {
       let alone = 0;
@@ -63,11 +63,11 @@ const STEPS: readonly Step[] = [
     name: 'slow',
     title: 'Slow it',
     text:
-      'In slow motion you see it think: the coloured band is where the car will be during the next two ' +
-      'seconds, the sentence on the picture says why it is no faster.',
-    tab: 'drive',
-    where: '.pace .segments',
-    tasks: ['Press 0.25× or twice the key [', 'Press 1× again'],
+      'In slow motion you see it think: the yellow band is where the car will be during the next two ' +
+      'seconds, the sentence below the picture says what it does.',
+    mode: 'watch',
+    where: '.name',
+    tasks: ['Press twice the key [, or 0.25× in the menu', 'Back: twice the key ], or 1×'],
     isPossible: () => settings.value.has('run.pace'),
     watch: () => (frame) => [frame.pace <= 0.5, frame.pace >= 1],
   },
@@ -75,10 +75,10 @@ const STEPS: readonly Step[] = [
     name: 'blind',
     title: 'Blind it',
     text:
-      'Take its measurements away: click the card “Link lost” below. It drives on by what it knew, and brakes if it ' +
-      'has to wait for long.',
-    tab: 'faults',
-    where: '.fault-card:has([data-key="fault.link_lost"])',
+      'Take its measurements away: press “Link lost” among the faults. It drives on by what it knew, and brakes ' +
+      'if it has to wait for long.',
+    mode: 'try',
+    where: '[data-key="fault.link_lost"]',
     tasks: ['Inject a fault of the sensors or the link', 'Wait until it is over and the controller drives again'],
     isPossible: () => hasFault(['sensor', 'link']),
     watch: () => (frame) => [isFaulty(frame, ['sensor', 'link']), frame.active_faults === 0 && isDriving(frame)],
@@ -87,11 +87,11 @@ const STEPS: readonly Step[] = [
     name: 'break',
     title: 'Break it',
     text:
-      'Some things no controller can mend: click the card “Steering stuck” below, shortly before a bend. The frame ' +
-      'of the picture turns red.',
-    tab: 'faults',
-    where: '.fault-card:has([data-key="fault.steering_stuck"])',
-    tasks: ['Let the car leave the road, or the guard stop it', 'Wait until it drives again, or press Reset'],
+      'Some things no controller can mend: press “Steering stuck” shortly before a bend. An alarm in the ' +
+      'strip says what happened, and what ends it.',
+    mode: 'try',
+    where: '[data-key="fault.steering_stuck"]',
+    tasks: ['Let the car leave the road, or the guard stop it', 'Wait until it drives again, or press Start again (R)'],
     isPossible: () => hasFault(['actuator', 'road']),
     watch() {
       let isBroken = false; // a stop for another reason does not count
@@ -110,8 +110,8 @@ const STEPS: readonly Step[] = [
     text:
       'Every setting acts at once. Search for “speed limit” and set it to 15 m/s, or move any slider: ' +
       'the list of changes keeps what you did, and takes it back.',
-    tab: 'tune',
-    where: '#tune-search',
+    mode: 'try',
+    where: '#search',
     tasks: ['Change a setting', `Watch it for ${TUNED_S} s`],
     isPossible: () =>
       schema.value.some(({ key, is_live, is_fixed }) => is_live && !is_fixed && settings.value.has(key)),
@@ -128,8 +128,8 @@ const STEPS: readonly Step[] = [
   compareStep(
     'compare',
     'Compare',
-    'Was that better? “As at the start” undoes your change, or choose a setting and another value for it; then ' +
-      '“Drive both”: the program drives both futures from the same moment, and sets them side by side.',
+    'Was that better? Press “Drive both”: the program drives the run as it is and as it was at the start, or with ' +
+      'what you change for “A second car”, from the same moment, and says what it comes to.',
   ),
 ];
 

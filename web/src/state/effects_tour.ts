@@ -15,7 +15,7 @@ const isSlowerThan = (mph: number) => (frame: Frame) => isDriving(frame) && fram
 /** Farther from its line than the preset ever is, or stopped by the guard. */
 const isWide = (frame: Frame): boolean => Math.abs(frame.lateral_error_m) > 1.5 || frame.rung !== 0;
 
-interface Effect extends Pick<Step, 'name' | 'title' | 'text' | 'tab' | 'where'> {
+interface Effect extends Pick<Step, 'name' | 'title' | 'text' | 'mode' | 'where'> {
   readonly key: string;
   /** What it is set to, or beyond. */
   readonly to: number;
@@ -28,6 +28,7 @@ interface Effect extends Pick<Step, 'name' | 'title' | 'text' | 'tab' | 'where'>
 function stepOf({ key, to, tasks, isSeen, ...rest }: Effect): Step {
   return {
     ...rest,
+    search: key,
     tasks: [...tasks, 'Take it back'],
     isPossible: () => run.value?.controller === 'cubic-mpc' && settings.value.has(key),
     watch: () => (frame) => {
@@ -45,9 +46,8 @@ const EFFECTS: readonly Effect[] = [
     title: 'N: look further ahead',
     text:
       'The plan looks N steps ahead: 25 of 0.025 s, the short line before the car. The longer it is, the more a ' +
-      'higher speed saves: N = 40 is faster. Much longer plans cut the bends. Use number box or slider; ↺ takes it ' +
-      'back.',
-    tab: 'tune',
+      'higher speed saves: N = 40 is faster. Much longer plans cut the bends. Search for it; ↺ takes it back.',
+    mode: 'try',
     where: '[data-key="cubic_mpc.horizon_steps"]',
     key: 'cubic_mpc.horizon_steps',
     to: 40,
@@ -60,7 +60,7 @@ const EFFECTS: readonly Effect[] = [
     text:
       'dt is the time between two points of the plan. With 25 steps of 0.1 s the plan is four times as long and four ' +
       'times as coarse: the car drives up to 100 mph, and strays from its line where it should turn.',
-    tab: 'tune',
+    mode: 'try',
     where: '[data-key="cubic_mpc.step_length_s"]',
     key: 'cubic_mpc.step_length_s',
     to: 0.1,
@@ -73,7 +73,7 @@ const EFFECTS: readonly Effect[] = [
     text:
       'The reference of 180 mph is never reached: the price of the speed error pulls against the price of the ' +
       'throttle. The write-up has 80 for 50 mph, and 48 for its fast lap. With 160 the same controller drives 29 mph.',
-    tab: 'tune',
+    mode: 'try',
     where: '[data-key="cubic_mpc.weight_throttle"]',
     key: 'cubic_mpc.weight_throttle',
     to: 160,
@@ -86,7 +86,7 @@ const EFFECTS: readonly Effect[] = [
     text:
       'Commands act 100 ms late, and the controller rolls its state forward by 100 ms before it plans. With 300 ms ' +
       'it still compensates 100: it corrects errors that are being corrected already, and weaves.',
-    tab: 'drive',
+    mode: 'try',
     where: '[data-key="latency_ms"]',
     key: 'latency_ms',
     to: 300,
@@ -101,7 +101,7 @@ const CHOOSE: Step = {
   text:
     `${PRESET} is the controller of one of five public write-ups: N, dt, weights and latency as its author ` +
     'describes them. The choice restarts the run.',
-  tab: 'drive',
+  mode: 'try',
   where: '.choices [data-key="preset"]',
   tasks: [`Choose the preset ${PRESET}`, `Let it drive ${WATCHED_S} s`],
   isPossible: () => run.value?.preset === PRESET || (entryOf('preset')?.choices.length ?? 0) > 0,
@@ -118,8 +118,8 @@ const CHOOSE: Step = {
 const COMPARE = compareStep(
   'without',
   'Compare: without the roll-forward',
-  'What is the roll-forward worth at 100 ms? Choose “Latency handling” and the value none, then “Drive both”: two ' +
-    'futures from the same moment, side by side. Compare the errors.',
+  'What is the roll-forward worth at 100 ms? Let the sliders change “A second car”, search for “latency handling” ' +
+    'and choose none, then “Drive both”: two futures from the same moment.',
 );
 
 export const EFFECTS_TOUR: Tour = {

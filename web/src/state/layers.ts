@@ -6,8 +6,6 @@ export const layers = {
   hindsight: persisted<boolean>('layer.hindsight', false),
   /** The racing line: that of the fastest possible lap. */
   racingLine: persisted<boolean>('layer.racing-line', true),
-  /** The line of lap A by the time it loses to lap B, while laps are compared. */
-  timeLost: persisted<boolean>('layer.time-lost', true),
 } as const;
 
 export type Layer = keyof typeof layers;

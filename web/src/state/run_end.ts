@@ -1,6 +1,5 @@
 import { computed } from '@preact/signals';
 import { plural } from '../lib/format';
-import { store } from '../lib/store';
 import type { Severity } from '../lib/words';
 import { attempt, link } from './link';
 import { run } from './run';
@@ -40,18 +39,3 @@ function endOf(kind: string, reason: string): RunEnd {
 
 const sentence = (reason: string): string =>
   reason === '' ? '' : `${reason[0]?.toUpperCase()}${reason.slice(1)}${reason.endsWith('.') ? '' : '.'}`;
-
-const closed = store.signal('page', '');
-const nameOf = (end: RunEnd | null): string => (end ? `${end.kind} ${end.title}` : '');
-
-/** Whether the card is shown: until it is closed, or the run goes on. */
-export const showsEnd = computed(() => runEnd.value !== null && nameOf(runEnd.value) !== closed.value);
-
-export function closeEnd(): void {
-  closed.value = nameOf(runEnd.value);
-}
-
-/** A run that goes on will end another time. */
-export function reopenEnd(): void {
-  if (runEnd.value === null) closed.value = '';
-}

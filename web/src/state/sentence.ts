@@ -3,10 +3,6 @@ import { type Sentence, statusInWords } from '../lib/words';
 import { REASON, RUNG, STATUS } from '../protocol/messages';
 import type { Frame } from '../protocol/topics';
 
-/** The speed that is planned where the next command acts [m/s]; NaN where there is no plan that drives. */
-export const plannedOf = ({ is_manual, rung, speed_limit_mps }: Frame): number =>
-  !is_manual && rung === RUNG.CONTROLLER && speed_limit_mps > 0 ? speed_limit_mps : NaN;
-
 /** The pedal in words: "drive 40 %", "brake 100 %"; of full braking, which is the throttle −`fullBrake`. */
 export function pedalInWords(throttle: number, fullBrake: number): string {
   if (!Number.isFinite(throttle)) return '–';

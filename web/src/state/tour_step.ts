@@ -1,6 +1,6 @@
 import type { Frame } from '../protocol/topics';
 import { services } from './link';
-import type { Tab } from './tab';
+import type { Mode } from './mode';
 import { answer } from './what_if';
 
 // What a tour is made of. What was done is read from the run, not from clicks.
@@ -12,10 +12,12 @@ export interface Step {
   readonly name: string;
   readonly title: string;
   readonly text: string;
-  /** The panel on which it is done. */
-  readonly tab: Tab;
-  /** What the step is about, on that panel: a selector, as in tour.css, which marks it. */
+  /** The mode in which it is done. */
+  readonly mode: Mode;
+  /** What the step is about, in that mode: a selector, as in try.css, which marks it. */
   readonly where: string;
+  /** What is searched for in Try; empty: nothing. */
+  readonly search?: string;
   /** In their order: a task counts when those before it are done. */
   readonly tasks: readonly string[];
   isPossible(): boolean;
@@ -41,8 +43,8 @@ export const compareStep = (name: string, title: string, text: string): Step => 
   name,
   title,
   text,
-  tab: 'whatif',
-  where: '.what-if-search',
+  mode: 'try',
+  where: '.go',
   tasks: ['Get an answer'],
   isPossible: () => services.value.has('/what_if'),
   watch() {

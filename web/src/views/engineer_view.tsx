@@ -1,14 +1,6 @@
 import { hasBit } from '../lib/bits';
 import { fixed, plural } from '../lib/format';
-import {
-  driverInWords,
-  gateInWords,
-  LIMITERS,
-  nameInWords,
-  type Sentence,
-  sightInWords,
-  worstInWords,
-} from '../lib/words';
+import { gateInWords, LIMITERS, nameInWords, type Sentence, sightInWords, worstInWords } from '../lib/words';
 import { Column } from '../state/columns';
 import { bitSharesOf, sharesOf } from '../state/explain';
 import { learnedOf } from '../state/learned';
@@ -16,6 +8,7 @@ import { live } from '../state/live';
 import { run } from '../state/run';
 import { solverInWords } from '../state/sentence';
 import { shown } from '../state/shown';
+import { situation, situationInWords } from '../state/situation';
 import { EventsView } from './events_view';
 import { PlotsView } from './plots_view';
 
@@ -134,8 +127,8 @@ function Answer() {
               : null
           }
         />
-        <Row label="Driving" sentence={frame ? driverInWords(frame) : null} />
-        <Row label="Gate" sentence={frame ? gateInWords(frame.is_gated) : null} />
+        <Row label="Driving" sentence={situation.value && situationInWords(situation.value)} />
+        <Row label="Gate" sentence={frame ? gateInWords(frame) : null} />
         <Row label="Sight" sentence={frame ? sightInWords(frame.has_map, frame.sight_m) : null} />
       </dl>
       <p class="soft">{numbers.filter(Boolean).join(' · ')}</p>

@@ -16,7 +16,7 @@ import { DraftBox } from './draft_box';
 import { EventsView } from './events_view';
 import { typed } from './setting_row';
 
-interface Fault {
+export interface Fault {
   readonly key: string; // "fault.link_lost"
   readonly name: string;
   readonly meaning: string;
@@ -57,7 +57,7 @@ function choose(
 }
 
 /** The faults of the schema; without a schema those of the run, without descriptions. */
-const faults = computed<readonly Fault[]>(() => {
+export const allFaults = computed<readonly Fault[]>(() => {
   const names = run.value?.fault_names ?? [];
   const active = shown.value?.active_faults ?? 0;
   const isActive = (key: string): boolean =>
@@ -79,7 +79,8 @@ const faults = computed<readonly Fault[]>(() => {
   });
 });
 
-function toggle({ key, isActive, entry }: Fault): void {
+/** Begins a fault with the duration and strength chosen, or ends it. */
+export function toggleFault({ key, isActive, entry }: Fault): void {
   if (isActive || !entry) {
     set(key, !isActive);
     return;
@@ -126,71 +127,91 @@ function Parameters({ fault, entry }: { fault: Fault; entry: FaultEntry }) {
   );
 }
 
-function FaultCard({ fault }: { fault: Fault }) {
-  const { key, name, meaning, isActive, entry } = fault;
+/** The first of them are shown as words to press; the others on request. */
+const FIRST = ['half_grip', 'ice_patch', 'side_wind', 'weak_brakes', 'link_lost', 'steering_stuck', 'dead_controller'];
+const showsAll = store.signal('page', false);
+
+function FaultButton({ fault }: { fault: Fault }) {
+  const { key, name, meaning, isActive } = fault;
   const left = isActive ? secondsLeft(key, shown.value?.time_s ?? NaN) : NaN;
   return (
-    <li class={isActive ? 'fault-card active' : 'fault-card'}>
-      <button
-        type="button"
-        class="fault"
-        data-key={key}
-        aria-pressed={isActive}
-        disabled={!canSet(key)}
-        onClick={() => toggle(fault)}
-      >
-        <span class="fault-name">
-          {name}
-          {isActive && <span class="badge bad">{Number.isFinite(left) ? `${fixed(left, 1)} s left` : 'active'}</span>}
-        </span>
-        <span class="fault-meaning">{meaning}</span>
-      </button>
-      {entry && <Parameters fault={fault} entry={entry} />}
-    </li>
+    <button
+      type="button"
+      class="fault"
+      data-key={key}
+      title={meaning}
+      aria-pressed={isActive}
+      disabled={!canSet(key)}
+      onClick={() => toggleFault(fault)}
+    >
+      {name}
+      {isActive && <span class="left">{Number.isFinite(left) ? `${fixed(left, 1)} s left` : 'active'}</span>}
+    </button>
   );
 }
 
-export function FaultsView() {
-  const all = faults.value;
-  const active = all.filter(({ isActive }) => isActive);
-  const answer = situation.value && situationInWords(situation.value);
-  if (all.length === 0) return <p class="empty">This run has no faults to inject.</p>;
+/** All faults with what they are, how long and how strong. */
+function FaultTable({ all }: { all: readonly Fault[] }) {
   return (
-    <div class="blocks">
-      <div class="toolbar">
-        {/* In one place, so that no card moves when a fault begins. */}
-        {active.length > 0 && answer ? (
-          <p class={`fault-answer ${answer.severity}`} role="status" data-testid="fault-answer">
-            <span>
-              What is done about it: <b>{answer.text}</b>
-            </span>
-          </p>
-        ) : (
-          <p class="fault-answer none soft">Click to inject a fault into the running car, click again to clear it.</p>
-        )}
-        <button
-          type="button"
-          disabled={active.length === 0}
-          onClick={() => active.forEach(({ key }) => set(key, false))}
-        >
-          Clear all
-        </button>
-      </div>
+    <div class="fault-groups">
       {GROUPS.map(({ name: group, title }) => {
         const members = all.filter(({ entry }) => (entry?.group ?? '') === group);
         if (members.length === 0) return null;
         return (
           <section key={group} class="fault-group" aria-label={title}>
-            <h2>{title}</h2>
-            <ul class="faults">
+            <h3>{title}</h3>
+            <ul>
               {members.map((fault) => (
-                <FaultCard key={fault.key} fault={fault} />
+                <li key={fault.key}>
+                  <FaultButton fault={fault} />
+                  <span class="soft">{fault.meaning}</span>
+                  {fault.entry && <Parameters fault={fault} entry={fault.entry} />}
+                </li>
               ))}
             </ul>
           </section>
         );
       })}
-      <EventsView />
     </div>
+  );
+}
+
+export function FaultsView() {
+  const all = allFaults.value;
+  const active = all.filter(({ isActive }) => isActive);
+  const answer = situation.value && situationInWords(situation.value);
+  if (all.length === 0) return null;
+  const isOfFirst = ({ key }: Fault): boolean => FIRST.includes(key.replace(/^fault\./, ''));
+  return (
+    <section class="faults" aria-label="Faults">
+      <h2>Faults</h2>
+      {showsAll.value ? (
+        <FaultTable all={all} />
+      ) : (
+        <div class="chips">
+          {all
+            .filter((each) => isOfFirst(each) || each.isActive)
+            .map((fault) => (
+              <FaultButton key={fault.key} fault={fault} />
+            ))}
+        </div>
+      )}
+      <div class="buttons">
+        <button type="button" class="plain" onClick={() => (showsAll.value = !showsAll.value)}>
+          {showsAll.value ? 'Fewer' : `All ${all.length}, how long and how strong`}
+        </button>
+        {active.length > 0 && (
+          <button type="button" class="plain" onClick={() => active.forEach(({ key }) => set(key, false))}>
+            Clear all
+          </button>
+        )}
+      </div>
+      {active.length > 0 && answer && (
+        <p role="status" data-testid="fault-answer">
+          What is done about it: <b>{answer.text}</b>
+        </p>
+      )}
+      <EventsView />
+    </section>
   );
 }

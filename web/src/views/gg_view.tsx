@@ -139,7 +139,7 @@ export function GgView() {
             <b>{fixed(Math.hypot(across, along), 2)}</b>
           </span>
           <span class="key">
-            <span class="stroke dashed" style={{ borderColor: 'var(--bad)' }} />
+            <span class="stroke dashed" style={{ borderColor: 'var(--lost)' }} />
             grip
           </span>
         </p>

@@ -4,7 +4,7 @@ import { store } from '../lib/store';
 
 export const isHelpOpen = store.signal('page', false);
 
-const GROUPS: readonly Shortcut['group'][] = ['Run', 'Camera', 'Panels', 'Driving by hand'];
+const GROUPS: readonly Shortcut['group'][] = ['Run', 'Camera', 'Page', 'Driving by hand'];
 
 /** A modal dialog, with the browser's handling of focus and Escape. */
 export function Dialog({
@@ -54,7 +54,7 @@ export function HelpView() {
         {GROUPS.map((group) => (
           <section key={group} aria-label={group}>
             <h3>{group}</h3>
-            <dl class="keys">
+            <dl class="keys-list">
               {allShortcuts()
                 .filter((each) => each.group === group)
                 .map(({ label, does }) => (

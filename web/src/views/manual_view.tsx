@@ -1,6 +1,5 @@
 import { effect } from '@preact/signals';
-import { useEffect, useRef } from 'preact/hooks';
-import { fixed } from '../lib/format';
+import { useRef } from 'preact/hooks';
 import { isTakenBy } from '../lib/keys';
 import { clamp } from '../lib/math';
 import { store } from '../lib/store';
@@ -75,14 +74,11 @@ export function listenToDriver(): void {
 }
 
 const gamepad = store.data('page', () => ({ isThere: false, wasStartPressed: false }));
-/** The name of the gamepad that is there; empty without one. */
-const gamepadName = store.signal('page', '');
 
 /** Start takes the wheel and hands it back. */
 function watchGamepad(): void {
   if (!gamepad.isThere) return;
   const pad = firstGamepad(gamepads());
-  gamepadName.value = pad?.id ?? '';
   const isPressed = pad !== null && asksForWheel(pad);
   if (isPressed && !gamepad.wasStartPressed) toggleManual();
   gamepad.wasStartPressed = isPressed;
@@ -91,9 +87,8 @@ function watchGamepad(): void {
 if (typeof window !== 'undefined') addEventListener('gamepadconnected', () => (gamepad.isThere = true));
 
 /** A pad for finger or mouse: sideways steers, up is throttle, down is brake. */
-function Pad() {
+export function Pad() {
   const element = useRef<HTMLDivElement>(null);
-  useEffect(() => element.current?.scrollIntoView({ block: 'nearest' }), []);
   const { steer, throttle } = stick.value;
   const move = (event: PointerEvent): void => {
     const box = element.current?.getBoundingClientRect();
@@ -123,41 +118,5 @@ function Pad() {
     >
       <span class="pad-stick" style={{ left: `${50 - 50 * steer}%`, top: `${50 - 50 * throttle}%` }} />
     </div>
-  );
-}
-
-export function ManualView() {
-  if (!settings.value.has('manual.is_on')) return null;
-  const isOn = isManual();
-  return (
-    <section class={isOn ? 'block manual on' : 'block manual'} aria-label="Driving by hand">
-      <h2>Drive by hand</h2>
-      <div class="manual-row">
-        <button
-          type="button"
-          class={isOn ? 'danger' : ''}
-          aria-pressed={isOn}
-          aria-keyshortcuts="M"
-          disabled={!canSet('manual.is_on')}
-          onClick={toggleManual}
-        >
-          {isOn ? 'Hand back (Esc)' : 'Take the wheel (M)'}
-        </button>
-        {isOn ? (
-          <p class="soft" data-testid="stick">
-            wheel {fixed(stick.value.steer * 100, 0)} % · pedal {fixed(stick.value.throttle * 100, 0)} %
-          </p>
-        ) : (
-          <p class="soft">
-            {gamepadName.value === ''
-              ? 'The arrow keys steer, drive and brake; so do a gamepad and a finger on the pad. ' +
-                'At speed this is hard: Reset (R) first, or 0.25×.'
-              : 'Gamepad: the left stick steers, the triggers drive and brake, Start takes the wheel.'}{' '}
-            The controller keeps computing in the background.
-          </p>
-        )}
-      </div>
-      {isOn && <Pad />}
-    </section>
   );
 }

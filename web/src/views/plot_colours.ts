@@ -1,4 +1,4 @@
-import { onThemeChange } from '../draw/theme';
+import { onThemeChange, tokenColour } from '../draw/theme';
 import { store } from '../lib/store';
 import { LIMITERS } from '../lib/words';
 
@@ -17,23 +17,19 @@ export interface ChartColours {
   readonly font: string;
 }
 
-function read(): ChartColours {
-  const style = getComputedStyle(document.documentElement);
-  const colour = (name: string): string => style.getPropertyValue(`--${name}`).trim();
-  return {
-    series: Array.from({ length: 10 }, (_, i) => colour(`series-${i + 1}`)),
-    limiter: Array.from({ length: LIMITERS.length }, (_, i) => colour(`limiter-${i}`)),
-    good: colour('good'),
-    warning: colour('warning'),
-    bad: colour('bad'),
-    text: colour('text'),
-    soft: colour('text-soft'),
-    faint: colour('text-faint'),
-    grid: colour('grid'),
-    panel: colour('panel'),
-    font: style.fontFamily,
-  };
-}
+const read = (): ChartColours => ({
+  series: Array.from({ length: 10 }, (_, i) => tokenColour(`series-${i + 1}`)),
+  limiter: Array.from({ length: LIMITERS.length }, (_, i) => tokenColour(`limiter-${i}`)),
+  good: tokenColour('won'),
+  warning: tokenColour('plan'),
+  bad: tokenColour('lost'),
+  text: tokenColour('ink'),
+  soft: tokenColour('quiet'),
+  faint: tokenColour('quiet'),
+  grid: tokenColour('rule'),
+  panel: tokenColour('sheet'),
+  font: getComputedStyle(document.body).fontFamily,
+});
 
 const known = store.data('page', () => ({ colours: null as ChartColours | null }));
 onThemeChange(() => (known.colours = null));

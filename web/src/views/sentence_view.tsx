@@ -29,7 +29,7 @@ export function SentenceView({ of }: { of: Situation }) {
   if (spoken.current.kind !== of.kind) spoken.current = { kind: of.kind, text: of.text };
   const isAlarm = of.kind === 'alarm';
   return (
-    <div class="true why" data-testid="why">
+    <div class="true" data-testid="why">
       <p role={isAlarm ? 'alert' : undefined}>{of.text}</p>
       {of.why !== '' && <small>{of.why}</small>}
       {!isAlarm && (

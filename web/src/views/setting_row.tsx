@@ -1,9 +1,10 @@
 import { type Range, scaleOf, shareOf, tidy, valueAt } from '../lib/scale';
 import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
+import { canChange, change, firstValueOf, target, valueShown } from '../state/chosen_settings';
 import { canSet, set } from '../state/operate';
 import { labelOf } from '../state/setting_search';
-import { isControl, refusals, settings, startSettings } from '../state/settings';
+import { refusals, settings } from '../state/settings';
 import { DraftBox } from './draft_box';
 import { Meaning } from './meaning';
 
@@ -27,25 +28,25 @@ const asText = (value: Setting | undefined): string =>
   typeof value === 'number' ? tidy(value).replace('−', '-') : value === undefined ? '' : String(value);
 
 function NumberBox({ entry, id }: { entry: SchemaEntry; id: string }) {
-  const value = settings.value.get(entry.key);
+  const value = valueShown(entry.key);
   return (
     <DraftBox
       class="number-box"
       label={`${id}, value`}
-      disabled={!canSet(entry.key)}
+      disabled={!canChange(entry.key)}
       value={asText(value)}
       when="complete"
       onText={(text) => {
         const request = typed(text);
-        if (request !== null && request !== value) set(entry.key, request);
+        if (request !== null && request !== value) change(entry.key, request);
       }}
     />
   );
 }
 
 function Slider({ entry, range, label }: { entry: SchemaEntry; range: Range; label: string }) {
-  const value = settings.value.get(entry.key);
-  const start = startSettings.value.get(entry.key);
+  const value = valueShown(entry.key);
+  const start = firstValueOf(entry);
   const share = shareOf(typeof value === 'number' ? value : value === 'inf' ? Infinity : NaN, range);
   return (
     <div class="slider">
@@ -60,29 +61,39 @@ function Slider({ entry, range, label }: { entry: SchemaEntry; range: Range; lab
         value={Math.round(share * STEPS)}
         aria-label={label}
         aria-valuetext={`${asText(value)} ${entry.unit}`}
-        disabled={!canSet(entry.key)}
+        disabled={!canChange(entry.key)}
         // A setting that restarts the run is sent when the slider is released.
-        onInput={(event) => entry.is_live && set(entry.key, valueAt(Number(event.currentTarget.value) / STEPS, range))}
+        onInput={(event) =>
+          entry.is_live && change(entry.key, valueAt(Number(event.currentTarget.value) / STEPS, range))
+        }
         onChange={(event) =>
-          !entry.is_live && set(entry.key, valueAt(Number(event.currentTarget.value) / STEPS, range))
+          !entry.is_live && change(entry.key, valueAt(Number(event.currentTarget.value) / STEPS, range))
         }
       />
     </div>
   );
 }
 
-export function ChoiceBox({ entry, label }: { entry: SchemaEntry; label: string }) {
-  const value = String(settings.value.get(entry.key) ?? '');
-  const choices = entry.choices.includes(value) || value === '' ? entry.choices : [value, ...entry.choices];
+/** A choice among names; without `put` it changes the run. */
+export function ChoiceBox({
+  entry,
+  label,
+  value = settings.value.get(entry.key),
+  isPossible = canSet(entry.key),
+  put = (choice: string) => set(entry.key, choice),
+}: {
+  entry: SchemaEntry;
+  label: string;
+  value?: Setting | undefined;
+  isPossible?: boolean;
+  put?: (choice: string) => void;
+}) {
+  const now = String(value ?? '');
+  const choices = entry.choices.includes(now) || now === '' ? entry.choices : [now, ...entry.choices];
   return (
-    <select
-      aria-label={label}
-      value={value}
-      disabled={!canSet(entry.key)}
-      onChange={(event) => set(entry.key, event.currentTarget.value)}
-    >
+    <select aria-label={label} value={now} disabled={!isPossible} onChange={(event) => put(event.currentTarget.value)}>
       {choices.map((choice) => (
-        <option key={choice} value={choice} selected={choice === value}>
+        <option key={choice} value={choice} selected={choice === now}>
           {choice}
         </option>
       ))}
@@ -91,7 +102,7 @@ export function ChoiceBox({ entry, label }: { entry: SchemaEntry; label: string 
 }
 
 function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
-  const value = settings.value.get(entry.key);
+  const value = valueShown(entry.key);
   if (entry.kind === 'bool') {
     return (
       <input
@@ -101,14 +112,17 @@ function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
         role="switch"
         aria-label={label}
         checked={value === true}
-        disabled={!canSet(entry.key)}
-        onChange={(event) => set(entry.key, event.currentTarget.checked)}
+        disabled={!canChange(entry.key)}
+        onChange={(event) => change(entry.key, event.currentTarget.checked)}
       />
     );
   }
-  if (entry.kind === 'choice' || entry.choices.length > 0) return <ChoiceBox entry={entry} label={label} />;
+  if (entry.kind === 'choice' || entry.choices.length > 0) {
+    const put = (choice: string): void => change(entry.key, choice);
+    return <ChoiceBox entry={entry} label={label} value={value} isPossible={canChange(entry.key)} put={put} />;
+  }
   if (entry.kind === 'text') return <TextBox entry={entry} label={label} />;
-  const range = rangeOf(entry, startSettings.value.get(entry.key) ?? entry.default ?? undefined);
+  const range = rangeOf(entry, firstValueOf(entry) ?? entry.default ?? undefined);
   return (
     <>
       {range ? <Slider entry={entry} range={range} label={label} /> : <span class="slider" />}
@@ -123,10 +137,10 @@ function TextBox({ entry, label }: { entry: SchemaEntry; label: string }) {
     <DraftBox
       class="text-box"
       label={label}
-      disabled={!canSet(entry.key)}
-      value={String(settings.value.get(entry.key) ?? '')}
+      disabled={!canChange(entry.key)}
+      value={String(valueShown(entry.key) ?? '')}
       when="complete"
-      onText={(text) => text !== settings.value.get(entry.key) && set(entry.key, text)}
+      onText={(text) => text !== valueShown(entry.key) && change(entry.key, text)}
     />
   );
 }
@@ -168,11 +182,10 @@ export function SettingMeaning({ entry, label }: { entry: SchemaEntry; label: st
 /** A setting: name, control, unit, the reason of a refusal, and a button back to the value at the start. */
 export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string }) {
   const label = name ?? labelOf(entry);
-  const value = settings.value.get(entry.key);
-  // Controls of the page begin at their defaults.
-  const start = startSettings.value.get(entry.key) ?? (isControl(entry.key) ? (entry.default ?? undefined) : undefined);
+  const value = valueShown(entry.key);
+  const start = firstValueOf(entry);
   const isChanged = start !== undefined && !Object.is(value, start);
-  const refusal = refusals.value.get(entry.key);
+  const refusal = target.value === 'run' ? refusals.value.get(entry.key) : undefined;
   return (
     <div
       class={`setting kind-${entry.kind}${isChanged ? ' changed' : ''}`}
@@ -189,8 +202,8 @@ export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string 
         class="icon small"
         aria-label={`Reset ${label}`}
         title={start === undefined ? '' : `Back to ${asText(start)}`}
-        disabled={!isChanged || !canSet(entry.key)}
-        onClick={() => start !== undefined && set(entry.key, start)}
+        disabled={!isChanged || !canChange(entry.key)}
+        onClick={() => start !== undefined && change(entry.key, start)}
       >
         ↺
       </button>

@@ -3,6 +3,7 @@ import { tidy } from '../lib/scale';
 import { store } from '../lib/store';
 import type { Setting } from '../protocol/source';
 import { notice } from '../state/link';
+import { mode } from '../state/mode';
 import { canSet } from '../state/operate';
 import {
   commandOf,
@@ -15,7 +16,6 @@ import {
   wanted,
   wantedTexts,
 } from '../state/share';
-import { tab } from '../state/tab';
 import { Copied, forgetCopied } from './copied';
 import { Dialog } from './help_view';
 
@@ -31,7 +31,7 @@ export function listenForLinks(): void {
     const texts = textsIn(location.hash);
     if (!texts) return;
     wantedTexts.value = texts;
-    history.replaceState(null, '', `#${tab.value}`);
+    history.replaceState(null, '', `#${mode.value}`);
   };
   addEventListener('hashchange', read);
   read();

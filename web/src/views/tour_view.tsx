@@ -1,11 +1,12 @@
 import { effect } from '@preact/signals';
 import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import { addShortcuts } from '../lib/keys';
+import { settingWords } from '../state/chosen_settings';
 import { link } from '../state/link';
+import { mode } from '../state/mode';
 import { call, set } from '../state/operate';
 import { run } from '../state/run';
 import { entryOf, settingChanges, settings } from '../state/settings';
-import { tab } from '../state/tab';
 import {
   chooseTour,
   done,
@@ -22,35 +23,28 @@ import {
 } from '../state/tour';
 import type { Step, Tour } from '../state/tour_step';
 
-/** Opens the tour at its step, on the panel of that step. */
-function open(): void {
+/** Opens the tour at its step, in the mode of that step. */
+export function openTourHere(): void {
   openTour();
   showWhere();
 }
 
 function showWhere(): void {
-  if (step.value) tab.value = step.value.tab;
+  if (!step.value) return;
+  mode.value = step.value.mode;
+  settingWords.value = step.value.search ?? '';
 }
 
 /** The tour is about a run that can be changed. */
-const isOffered = (): boolean => run.value !== null && run.value.mode !== 'replay' && settings.value.size > 0;
+export const isTourOffered = (): boolean =>
+  run.value !== null && run.value.mode !== 'replay' && settings.value.size > 0;
 
-export function TourButton() {
-  if (!isOffered() || isTourOpen.value) return null;
+/** What the menu calls the tour. */
+export function tourLabel(): string {
   const at = stepNumber.value;
   const count = tour.value?.steps.length ?? 0;
-  const isBegun = at > 0 && at < count;
-  return (
-    <button
-      type="button"
-      class="tour-button"
-      title="What there is to do, in a few minutes"
-      aria-label={isBegun ? `Go on with the tour, step ${at + 1} of ${count}` : 'Tour'}
-      onClick={open}
-    >
-      {isBegun ? `Tour ${at + 1}/${count}` : 'Tour'}
-    </button>
-  );
+  if (isTourOpen.value) return 'Leave the tour';
+  return at > 0 && at < count ? `Go on with the tour, step ${at + 1} of ${count}` : 'Tour';
 }
 
 /** As it was before the tour: pace, settings, faults, and the car at the start. */
@@ -99,7 +93,7 @@ function announcement({ tasks }: Step): string {
 
 function StepCard({ of }: { of: Step }) {
   const isPossible = link.value !== 'live' || of.isPossible();
-  const isThere = tab.value === of.tab;
+  const isThere = mode.value === of.mode;
   // What the step is about comes into sight with its panel, also where the reader had scrolled.
   useEffect(() => {
     if (isThere) document.querySelector(of.where)?.scrollIntoView({ block: 'nearest' });
@@ -169,8 +163,8 @@ function EndCard({ of }: { of: Tour }) {
   return (
     <>
       <p>
-        {names.length === 0 ? of.end : `Left out: ${names.join(', ')}.`} Explain (3) tells why it drives as it does,
-        Laps (5) compares laps, <kbd>?</kbd> lists all keys.
+        {names.length === 0 ? of.end : `Left out: ${names.join(', ')}.`} Understand (2) tells where the time goes,{' '}
+        <kbd>?</kbd> lists all keys.
       </p>
       <div class="buttons">
         <button type="button" onClick={putBack}>
@@ -187,9 +181,9 @@ function EndCard({ of }: { of: Tour }) {
   );
 }
 
-/** The tour, above the panel on which its steps are done. */
+/** The tour, a row above the mode in which its steps are done. */
 export function TourView() {
-  if (!isTourOpen.value || !isOffered()) return null;
+  if (!isTourOpen.value || !isTourOffered()) return null;
   const taken = tour.value;
   const now = step.value;
   const heading = now && taken ? `${stepNumber.value + 1} of ${taken.steps.length}: ${now.title}` : 'The tour is over';
@@ -206,7 +200,7 @@ export function TourView() {
           type="button"
           class="icon small"
           aria-label="Leave the tour"
-          title="Leave; the button Tour goes on"
+          title="Leave; the menu goes on with it"
           onClick={leaveTour}
         >
           ×
@@ -221,12 +215,12 @@ addShortcuts({
   keys: ['h'],
   label: 'H',
   does: 'The tour: begin, go on, leave',
-  group: 'Panels',
-  action: () => (isTourOpen.value ? leaveTour() : isOffered() && open()),
+  group: 'Page',
+  action: () => (isTourOpen.value ? leaveTour() : isTourOffered() && openTourHere()),
 });
 
 // What the step is about is marked by the style sheet.
 effect(() => {
-  const name = isTourOpen.value && isOffered() ? (step.value?.name ?? '') : '';
+  const name = isTourOpen.value && isTourOffered() ? (step.value?.name ?? '') : '';
   document.documentElement.dataset.tour = name;
 });

@@ -28,7 +28,7 @@ addShortcuts({
   keys: ['e'],
   label: 'E',
   does: 'Show or hide what solver and controller did',
-  group: 'Panels',
+  group: 'Page',
   action: () => (isEngineer.value = !isEngineer.value),
 });
 

@@ -1,0 +1,245 @@
+import type { ComponentChildren } from 'preact';
+import { tidy } from '../lib/scale';
+import { store } from '../lib/store';
+import type { Setting } from '../protocol/source';
+import {
+  aimAt,
+  canChange,
+  choiceOf,
+  countOfSettings,
+  found,
+  settingWords,
+  target,
+  tenSettings,
+  wishRefusal,
+} from '../state/chosen_settings';
+import { link } from '../state/link';
+import { canSet, set } from '../state/operate';
+import { run } from '../state/run';
+import { schema, settingChanges, settings } from '../state/settings';
+import { askedLog } from '../state/what_if';
+import { AnswerView, canDriveBoth, DriveBothButton, WhenView, WhyNotBoth } from './both_view';
+import { ControllerView } from './controller_view';
+import { allFaults, FaultsView, toggleFault } from './faults_view';
+import { OriginView } from './origin_view';
+import { RaceView } from './race_view';
+import { ChoiceBox, SettingRow } from './setting_row';
+
+const wants = store.data('page', () => ({ search: false }));
+
+/** The search takes the next key, also where it is not there yet: it appears before another key can be pressed. */
+export function focusSearch(): void {
+  const box = document.getElementById('search');
+  wants.search = box === null;
+  box?.focus();
+}
+
+function takeFocus(box: HTMLInputElement | null): void {
+  if (!box || !wants.search) return;
+  wants.search = false;
+  box.focus();
+}
+
+const LATENCIES_MS = [0, 50, 100, 150, 200, 300];
+
+/** A word of the sentence with what follows it, which stays on its line. */
+function Word({ name, children, end = '' }: { name: string; children: ComponentChildren; end?: string }) {
+  return (
+    <span class="keep" data-key={name}>
+      {children}
+      {end}
+    </span>
+  );
+}
+
+function Choice({ name, label, end = '' }: { name: string; label: string; end?: string }) {
+  const entry = choiceOf(name);
+  if (!entry || entry.choices.length === 0) return <b>{String(settings.value.get(name) ?? '')}</b>;
+  return (
+    <Word name={name} end={end}>
+      <ChoiceBox entry={entry} label={label} />
+    </Word>
+  );
+}
+
+function Latency() {
+  const now = Number(settings.value.get('latency_ms'));
+  const all = [...new Set([...LATENCIES_MS, now])].filter(Number.isFinite).sort((a, b) => a - b);
+  return (
+    <select
+      aria-label="Latency"
+      value={now}
+      disabled={!canSet('latency_ms')}
+      onChange={(event) => set('latency_ms', Number(event.currentTarget.value))}
+    >
+      {all.map((ms) => (
+        <option key={ms} value={ms}>
+          {tidy(ms)} ms
+        </option>
+      ))}
+    </select>
+  );
+}
+
+/** The fault that acts; another one that is chosen begins, and the one before ends. */
+function FaultWord() {
+  const all = allFaults.value;
+  const now = all.find(({ isActive }) => isActive);
+  const choose = (key: string): void => {
+    for (const each of all) if (each.isActive !== (each.key === key)) toggleFault(each);
+  };
+  return (
+    <select class="b" aria-label="Fault" value={now?.key ?? ''} onChange={(event) => choose(event.currentTarget.value)}>
+      <option value="">no fault</option>
+      {all.map(({ key, name }) => (
+        <option key={key} value={key}>
+          {name}
+        </option>
+      ))}
+    </select>
+  );
+}
+
+/** The run as a sentence whose words can be changed. */
+function RunSentence() {
+  if (!canSet('track')) {
+    const now = run.value;
+    return <h1>{now ? `The ${now.car} on ${now.track} by ${now.preset || now.controller}.` : 'Waiting for a run.'}</h1>;
+  }
+  return (
+    <h1 class="choices">
+      On <Choice name="track" label="Track" /> the <Choice name="car" label="Car" /> by{' '}
+      <Choice name="preset" label="Preset" end="," />{' '}
+      <Word name="latency">
+        <Latency />
+      </Word>{' '}
+      late, with{' '}
+      <Word name="fault" end=".">
+        <FaultWord />
+      </Word>
+    </h1>
+  );
+}
+
+const asText = (value: Setting): string => (typeof value === 'number' ? tidy(value) : String(value));
+
+function Changes() {
+  const changes = settingChanges.value;
+  return (
+    <section class="changes" aria-label="Changes" data-testid="changes">
+      <header>
+        <h2>{changes.length === 0 ? 'No changes' : changes.length === 1 ? '1 change' : `${changes.length} changes`}</h2>
+        {changes.length > 0 && (
+          <button type="button" onClick={() => changes.forEach(({ key, from }) => set(key, from))}>
+            Reset all
+          </button>
+        )}
+      </header>
+      {changes.length > 0 && (
+        <ul>
+          {changes.map(({ key, from, to }) => (
+            <li key={key}>
+              <code>{key}</code> <span class="was">{asText(from)}</span>{' '}
+              <span role="img" aria-label="to">
+                →
+              </span>{' '}
+              <b>{asText(to)}</b>
+              <button type="button" class="icon small" aria-label={`Reset ${key}`} onClick={() => set(key, from)}>
+                ↺
+              </button>
+            </li>
+          ))}
+        </ul>
+      )}
+    </section>
+  );
+}
+
+/** Which car the sliders change. */
+function Target() {
+  if (!canDriveBoth() || askedLog.value) return null;
+  return (
+    <div class="segments" role="group" aria-label="The sliders change">
+      {(['run', 'second'] as const).map((each) => (
+        <button key={each} type="button" aria-pressed={target.value === each} onClick={() => aimAt(each)}>
+          {each === 'run' ? 'This run' : 'A second car'}
+        </button>
+      ))}
+    </div>
+  );
+}
+
+function Settings() {
+  const words = settingWords.value;
+  const shown = words === '' ? tenSettings.value : found(words);
+  return (
+    <>
+      <div class="find">
+        <input
+          id="search"
+          ref={takeFocus}
+          type="search"
+          placeholder={`Search all ${countOfSettings.value} settings`}
+          aria-label="Search settings"
+          aria-keyshortcuts="/"
+          value={words}
+          onInput={(event) => (settingWords.value = event.currentTarget.value)}
+        />
+        <kbd>/</kbd>
+        <Target />
+      </div>
+      <div class="sliders">
+        {shown.map(({ entry, name }) => (
+          <SettingRow key={entry.key} entry={entry} {...(name === undefined ? {} : { name })} />
+        ))}
+        {shown.length === 0 && words !== '' && <p class="empty">Nothing matches.</p>}
+        {wishRefusal.value !== '' && (
+          <p class="refusal" role="alert">
+            {wishRefusal.value}
+          </p>
+        )}
+      </div>
+      {target.value === 'run' && <Changes />}
+      {shown.some(({ entry }) => !canChange(entry.key)) && target.value === 'second' && (
+        <p class="soft">A second car begins where this one is: what restarts a run stays as it is.</p>
+      )}
+    </>
+  );
+}
+
+/** Says why there is nothing to set. */
+function NothingToSet() {
+  if (link.value !== 'live') return <p class="empty">Waiting for the connection.</p>;
+  return (
+    <p class="empty">
+      This run can be viewed but not changed{run.value?.mode === 'replay' ? ': it is a recording' : ''}.
+    </p>
+  );
+}
+
+/** What happens if: the run as a sentence, ten sliders, search, faults, and both futures. */
+export function TryView() {
+  const isSettable = schema.value.length > 0 || askedLog.value !== null;
+  return (
+    <>
+      <div class="say">
+        <RunSentence />
+        {canDriveBoth() && <DriveBothButton />}
+      </div>
+      <div class="future" tabIndex={0} role="region" aria-label="Both futures">
+        {canDriveBoth() ? <WhenView /> : <WhyNotBoth />}
+        <AnswerView />
+        {!askedLog.value && <RaceView />}
+      </div>
+      <div class="knobs" tabIndex={0} role="region" aria-label="Settings and faults">
+        {isSettable ? <Settings /> : <NothingToSet />}
+        {!askedLog.value && <FaultsView />}
+        <details>
+          <summary>Controller, car and road</summary>
+          <ControllerView />
+          <OriginView />
+        </details>
+      </div>
+    </>
+  );
+}
