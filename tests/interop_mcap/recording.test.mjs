@@ -14,7 +14,7 @@ import { McapIndexedReader, McapStreamReader } from '@mcap/core';
 const { MessageReader } = cdr; // these packages are CommonJS
 const { parse } = rosmsg;
 const STEPS = 250; // 10 s of 40 ms each
-const MESSAGES = STEPS * 10 + 7; // and once: the run, three lines of the road, the limit, its line and the scene
+const MESSAGES = STEPS * 11 + 7; // and once: the run, three lines of the road, the limit, its line and the scene
 
 let folder;
 let bytes;
@@ -53,8 +53,8 @@ describe('a recorded run', () => {
     assert.equal(reader.header.profile, 'ros2');
     const { library } = reader.header;
     assert.match(library, /^chicane \d/);
-    assert.equal(reader.channelsById.size, 19);
-    assert.equal(reader.statistics.channelCount, 19);
+    assert.equal(reader.channelsById.size, 20);
+    assert.equal(reader.statistics.channelCount, 20);
     assert.equal(reader.statistics.chunkCount, reader.chunkIndexes.length);
     assert.equal(reader.statistics.messageCount, BigInt(MESSAGES));
     assert.equal((await collect(reader.readMessages())).length, MESSAGES);
@@ -101,7 +101,7 @@ describe('a recorded run', () => {
     assert.equal(seen.get('/drive').drive.steering_angle, Math.fround(step.command_steer));
     assert.equal(seen.get('/chicane/limit').is_known, false);
     assert.equal(seen.get('/chicane/limit').why_not, 'this run was driven without looking for it');
-    assert.equal(seen.size, 17);
+    assert.equal(seen.size, 18);
   });
 
   it('holds the scenario and how it was built', async () => {

@@ -65,7 +65,7 @@ for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
 
     it('sends every advertised topic, each decodable by its own schema', async () => {
       const { client, seen, next } = connection;
-      assert.equal(seen.channels.size, 18);
+      assert.equal(seen.channels.size, 19);
       // a lap completed, a setting changed, the limit found: not in this short run
       const onOccasion = ['/chicane/lap', '/chicane/change', '/chicane/limit', '/track/racing_line'];
       for (const channel of seen.channels.values()) {

@@ -29,21 +29,18 @@ constexpr double kSure = 3.0;              // deviations by which an estimate di
 constexpr double kShown = 1.0;             // [s] of driving until the estimate is reported
 constexpr double kTold = 0.1;  // of the usual deviation: an estimate that is less certain tells too little
 
-// Of delay [s], gain, offset [rad], grip and stiffness of the rear axle over the model's: by how much an
-// estimator differs, what is assumed to be usual (standard deviation), the step in which the car is driven
-// with, and the range.
+// Of delay [s], gain, offset [rad] and grip: by how much an estimator differs, what is assumed to be usual
+// (standard deviation), the step in which the car is driven with, and the range.
 struct Row {
   double change, usual, step, least, most;
 };
-// Gain and rear stiffness are nearly collinear: the stiffness changes by little, where its effect is linear.
-constexpr std::array<Row, 5> kRows{{
+constexpr std::array<Row, 4> kRows{{
     {0.02, 0.1, 0.008, -0.1, ActuatorEstimator::kMostDelay},
     {0.1, 0.3, 0.03, 0.35, 2.5},
     {0.01, 0.05, 0.003, -0.25, 0.25},
     {-0.1, 0.3, 0.05, 0.3, 1.6},
-    {-0.05, 0.1, 0.05, 0.6, 1.6},
 }};
-constexpr std::array kUsual{0.0, 1.0, 0.0, 1.0, 1.0};
+constexpr std::array kUsual{0.0, 1.0, 0.0, 1.0};
 
 model::VehicleParams without_name(model::VehicleParams vehicle) noexcept {
   vehicle.name.clear();
@@ -80,13 +77,11 @@ void ActuatorEstimator::set_vehicle(const model::VehicleParams& vehicle) noexcep
   believe();
 }
 
-/// The estimators' models, by grip and rear stiffness that they count with.
+/// The estimators' models, by the grip that they count with.
 void ActuatorEstimator::believe() noexcept {
   for (std::size_t i = 0; i <= kUnknowns; ++i) {
-    const auto value = [&](Unknown of) { return here_[of] + (i == of ? kRows[of].change : 0.0); };
-    model::VehicleParams car = model::with_grip(vehicle_, value(kGrip));
-    car.cornering_rear *= value(kRear);
-    estimators_[i].set_model(model::PredictionModel{car});
+    const double grip = here_[kGrip] + (i == kGrip ? kRows[kGrip].change : 0.0);
+    estimators_[i].set_model(model::PredictionModel{model::with_grip(vehicle_, grip)});
   }
 }
 

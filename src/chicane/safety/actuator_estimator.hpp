@@ -16,10 +16,9 @@ namespace chicane::safety {
 
 /// How late and by how much the wheels answer, beyond what was told, by which answer predicts the next
 /// measurement better (docs/identification_method.md, eq. 13 to 15). It is the method of
-/// tracking::GripEstimator for five unknowns at once: one state estimator counts with the estimate, five have
+/// tracking::GripEstimator for four unknowns at once: one state estimator counts with the estimate, four have
 /// one unknown changed each, and least squares over the last kMemory of driving finds the unknowns with their
-/// deviations. Grip and the share of the rear axle's stiffness are among them, so that tyres that answer
-/// otherwise than the model's do not pass for another steering.
+/// deviations. The grip is among them, so that tyres that give less do not pass for another steering.
 ///
 /// What is driven with, answer(), follows the estimate in steps, where delay, gain and offset are certain
 /// enough together, and one differs by more than a step and three deviations of both. One thread; allocates
@@ -48,7 +47,7 @@ class ActuatorEstimator {
   [[nodiscard]] controller::LearnedCar learned() const noexcept;
 
  private:
-  enum Unknown : std::size_t { kDelay, kGain, kOffset, kGrip, kRear, kUnknowns };
+  enum Unknown : std::size_t { kDelay, kGain, kOffset, kGrip, kUnknowns };
   using Values = std::array<double, kUnknowns>;
   using Matrix = std::array<Values, kUnknowns>;
 
@@ -82,7 +81,7 @@ class ActuatorEstimator {
 
   model::VehicleParams vehicle_;  ///< as told, without a name
   ActuatorAnswer answer_;
-  Values here_{0.0, 1.0, 0.0, 1.0, 1.0};                            ///< that the estimators count with
+  Values here_{0.0, 1.0, 0.0, 1.0};                                 ///< that the estimators count with
   std::array<tracking::StateEstimator, kUnknowns + 1> estimators_;  ///< each but the last has one changed
   Sums aside_, heading_;
   Solution solution_;
