@@ -74,6 +74,14 @@ async function rest() {
   return `http://127.0.0.1:${restingPlace.address().port}/`;
 }
 
+/** The sentence above a comparison, without what its words can be chosen from. */
+export const headline = (page) =>
+  page.getByTestId('headline').evaluate((heading) => {
+    const copy = heading.cloneNode(true);
+    for (const choice of copy.querySelectorAll('select')) choice.remove();
+    return copy.textContent;
+  });
+
 export const differentFrom = (before) => (now) => now !== before;
 
 export class DashboardPage {
@@ -179,6 +187,19 @@ export class DashboardPage {
   async beginAt(mode) {
     await this.show(mode);
     await this.page.evaluate(() => document.activeElement.blur());
+  }
+
+  /** Understand, with what solver and controller did. */
+  async showEngineer() {
+    await this.show('understand');
+    const choice = this.page.getByRole('switch', { name: 'Engineer' });
+    if (!(await choice.isChecked())) await this.page.locator('body').press('e');
+    await this.page.locator('.plot').first().waitFor();
+  }
+
+  /** The rows of the table of all laps in Understand, without the limit; the table is folded. */
+  lapRows() {
+    return this.page.getByTestId('lap-rows').locator('tbody tr:not(.limit)');
   }
 
   /** Presses an entry of the menu under the program's name. */

@@ -7,6 +7,7 @@
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/situation.hpp"
 
 namespace chicane::demo {
 
@@ -98,6 +99,7 @@ class Drive {
     frame_.lap_time = frame_.time - lap_start_;
     fill_report();
     fill_plan();
+    frame_.situation = telemetry::situation_of(frame_, frame_.situation, {});
   }
 
   void fill_report() {

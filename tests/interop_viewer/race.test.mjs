@@ -2,7 +2,7 @@
 // Two settings as two cars on one stage: begun, followed, and the winner kept with one click.
 import assert from 'node:assert/strict';
 import { it } from 'node:test';
-import { DashboardPage } from './dashboard_page.mjs';
+import { DashboardPage, headline } from './dashboard_page.mjs';
 import { browserAndDrive } from './here.mjs';
 
 const here = browserAndDrive(['--track', 'oval', '--preset', 'pid', '--set', 'pid.speed_reference_mps=20']);
@@ -18,19 +18,25 @@ it('drives a second car with other settings beside the run, tells where it gains
   await dashboard.type('pid.speed_reference_mps', 24);
   await dashboard.button('Race A against B').click();
   await dashboard.until(
-    () => page.getByTestId('race-table').locator('tbody tr').count(),
-    (rows) => rows >= 2,
+    async () => (await page.getByTestId('race-verdict').count()) === 1 && dashboard.text('race-verdict'),
+    (text) => /^Lap ([2-9]|\d\d): B is \d+\.\d{3} s faster\.$/.test(text),
     'two laps of both cars',
   );
-  assert.match(await dashboard.text('race-verdict'), /^Lap \d+: B is \d+\.\d{3} s faster\.$/);
-  assert.match(await dashboard.text('race-causes'), /sector 1: −\d+\.\d{3} s, B \d+\.\d mph (more|less)/);
-  await page.getByText('B', { exact: true }).first().waitFor(); // the ghost in the legend, and a column
+  await page.locator('.line-key', { hasText: /^B$/ }).waitFor(); // the ghost on the picture
+  await dashboard.show('understand');
+  await page.getByLabel('B', { exact: true }).selectOption('lap 2 of B, the ghost');
+  await dashboard.until(
+    () => headline(page),
+    (text) => /lost \d+\.\d\d s to\s+lap 2 of B, the ghost\s*;/.test(text),
+    'where B gains',
+  );
+  await dashboard.show('try');
   const { run, rival } = await race();
   assert.ok(rival[0].lap_time_s < run[0].lap_time_s - 1);
   assert.deepEqual(await dashboard.accessibilityFindings(), []);
   // A page that comes later shows the race, too.
   const late = await DashboardPage.open(here.browser, here.drive.url, { mode: 'try' });
-  await late.page.getByTestId('race-table').waitFor();
+  await late.page.getByTestId('race').waitFor();
   await late.close();
   await page.getByRole('button', { name: 'Keep B, the winner' }).click();
   await page.getByTestId('race').waitFor({ state: 'detached' });

@@ -30,7 +30,7 @@ export function LossMap({ comparison, at }: { comparison: Comparison; at?: numbe
   const pieces = stretches(comparison, PIECE_M);
   const most = scaleOf(pieces);
   const margin = 90;
-  const labels = corners.map(({ name, apex }) => {
+  const labels = corners.flatMap(({ name, apex }) => {
     const [before, here, after] = [-0.01, 0, 0.01].map((step) => pointOf(apex + step * length)) as [
       { x: number; y: number },
       { x: number; y: number },
@@ -40,7 +40,8 @@ export function LossMap({ comparison, at }: { comparison: Comparison; at?: numbe
     const [dx, dy] = [here.x - (before.x + after.x) / 2, here.y - (before.y + after.y) / 2];
     const far = Math.hypot(dx, dy) || 1;
     const [x, y] = place(here);
-    return { name, x: x + (62 * dx) / far, y: y + (62 * dy) / far };
+    // A lap that was seen in part has no place for some corners.
+    return Number.isFinite(x + y + far) ? [{ name, x: x + (62 * dx) / far, y: y + (62 * dy) / far }] : [];
   });
   const dot = at === undefined ? null : place(pointOf(at));
   return (

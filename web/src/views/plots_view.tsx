@@ -20,7 +20,7 @@ import { GgView } from './gg_view';
 import { drawStatusStrip } from './status_strip';
 import { type PlotSpec, TimePlot } from './time_plot';
 
-/** Colours with the same meaning in all plots: applied blue, requested orange, sent green. */
+/** Colours with the same meaning in all plots: applied ink, requested violet, sent ochre. */
 const [APPLIED, ASKED, SENT, LIMIT] = [0, 1, 2, 4];
 
 /** From the units of a frame. */
