@@ -111,7 +111,7 @@ export class DashboardPage {
     dashboard.complaints.length = 0;
     dashboard.home = new URL(url).origin;
     await dashboard.page.goto(`${url}#${mode}`);
-    await dashboard.page.getByText(state, { exact: true }).waitFor();
+    await dashboard.page.getByText(state, { exact: true }).first().waitFor();
     return dashboard;
   }
 
@@ -208,9 +208,10 @@ export class DashboardPage {
     await this.page.locator('#menu').getByRole('button', { name }).click();
   }
 
-  /** Puts the car to the start. */
-  startAgain() {
-    return this.page.locator('body').press('r');
+  /** Puts the car to the start, whatever box was typed into last. */
+  async startAgain() {
+    await this.page.evaluate(() => document.activeElement.blur());
+    await this.page.locator('body').press('r');
   }
 
   /** Chooses a camera by its name. */

@@ -64,9 +64,10 @@ const hasPicture = () => {
   copy.drawImage(canvas, 0, 0, 160, 90);
   return new Set(new Uint32Array(copy.getImageData(0, 0, 160, 90).data.buffer)).size > 8;
 };
-/** The table of laps with this one, the newest on top. */
+/** The table of laps with this one, the newest at its end. */
 const hasLap = (lap) =>
-  Number.parseInt(document.querySelector('.laps .lap-table tbody tr:not(.limit) th')?.textContent ?? '', 10) >= lap;
+  Number.parseInt(document.querySelector('[data-testid="lap-rows"] tbody tr:last-child th')?.textContent ?? '', 10) >=
+  lap;
 
 async function several(times, measure) {
   const values = [];
@@ -117,7 +118,7 @@ console.log('| | measured | aim |\n|---|--:|--:|');
 
 if (isWanted('page')) {
   const drive = await startDrive(['--track', 'oval', ...SIXTY_A_SECOND]);
-  await pageCost(browser, drive.url, 'plots', 1); // the program's page is read once
+  await pageCost(browser, drive.url, 'understand', 1); // the program's page is read once
   row('first picture of a cold page', await several(5, () => timeUntil(browser, drive.url, hasPicture)), '≤ 1 s');
   for (const mode of ['watch', 'understand']) {
     const cost = await pageCost(browser, drive.url, mode, 10);
@@ -131,7 +132,7 @@ if (isWanted('program')) {
   for (const preset of ['default', 'race']) {
     const drive = await startDrive(['--track', 'oval', '--preset', preset]);
     let share = 0;
-    await pageCost(browser, drive.url, 'plots', 30, async () => {
+    await pageCost(browser, drive.url, 'understand', 30, async () => {
       const [begin, used] = [performance.now(), processorTime(drive.pid)];
       await sleep(30_000);
       share = (processorTime(drive.pid) - used) / ((performance.now() - begin) / 1000);
@@ -146,7 +147,7 @@ if (isWanted('late')) {
     const watching = await DashboardPage.open(browser, drive.url, { mode: 'understand', fluent: true });
     while (!(await watching.page.evaluate(hasLap, lap))) await sleep(500);
     await watching.page.context().close();
-    const table = await several(5, () => timeUntil(browser, `${drive.url}#laps`, hasLap, lap));
+    const table = await several(5, () => timeUntil(browser, `${drive.url}#understand`, hasLap, lap));
     row(`table of laps, of a page opened at lap ${lap}`, table, '≤ 1 s');
     row(`another future from now on, asked at lap ${lap}`, await several(5, () => timeToAnswer(browser, drive.url)));
     row(`memory of the program at lap ${lap}`, `${memory(drive.pid).toFixed(0)} MB`);

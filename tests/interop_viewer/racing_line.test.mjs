@@ -53,7 +53,7 @@ const violet = (page, selector) =>
     return { pixels, fields: fields.size };
   });
 
-/** Off by the key and on again by the legend, seen on a canvas each time. */
+/** Off by the key and on again, seen on a canvas each time. */
 async function toggles(dashboard, selector, fields) {
   const { page } = dashboard;
   const seen = () => violet(page, selector);

@@ -10,7 +10,7 @@ const isWanted = ({ name }) => names.length === 0 || names.includes(name);
 /** The workbench, all pages watching the same run; `prepare` is done just before the picture, `undo` after it. */
 const LAPTOP = [1440, 900];
 const PICTURES = [
-  { name: 'dashboard', mode: 'understand', size: LAPTOP, colorScheme: 'light' },
+  { name: 'dashboard', mode: 'watch', size: LAPTOP, colorScheme: 'light' },
   { name: 'dashboard_explain', mode: 'understand', size: LAPTOP, colorScheme: 'dark' },
   { name: 'dashboard_laps', mode: 'understand', size: LAPTOP, colorScheme: 'light' },
   {
@@ -18,7 +18,7 @@ const PICTURES = [
     mode: 'understand',
     size: [1600, 900],
     colorScheme: 'dark',
-    prepare: (page) => page.keyboard.press('f'),
+    prepare: (page) => page.keyboard.press('e'),
   },
   {
     name: 'dashboard_tune',

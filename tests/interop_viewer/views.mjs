@@ -161,7 +161,7 @@ export async function startScenes() {
       { address: async () => live.url, state: 'Live', views: LIVE },
       { address: ending, state: 'Live', views: ENDED },
       { address: async () => replay.url, state: 'Recording', views: RECORDED },
-      { address: async () => pathToFileURL(report).href, state: 'Recording', views: REPORTED },
+      { address: async () => pathToFileURL(report).href, state: 'All laps', views: REPORTED },
     ],
     async stop() {
       await live.stop();

@@ -5,15 +5,15 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
 import { startDrive, watch } from './chicane_drive.mjs';
-import { DashboardPage, differentFrom, LAPTOP } from './dashboard_page.mjs';
+import { DashboardPage, differentFrom, headline } from './dashboard_page.mjs';
 import { browserAndDrive } from './here.mjs';
 
 const here = browserAndDrive(['--track', 'lakeside']);
 let dashboard;
 let page;
 
-async function open(tab) {
-  dashboard = await DashboardPage.open(here.browser, here.drive.url, { tab });
+async function open(mode) {
+  dashboard = await DashboardPage.open(here.browser, here.drive.url, { mode });
   page = dashboard.page;
 }
 
@@ -66,7 +66,7 @@ describe('the workbench', () => {
     const before = await pauseWhileItGathersSpeed(other);
     await dashboard.show('try');
     await type('tracking_mpc.speed_limit_mps', 3);
-    await dashboard.page.locator('body').press('.');
+    await dashboard.fromMenu('One step');
     await dashboard.until(
       () => other.newest.cycle,
       (cycle) => cycle > before.cycle,
@@ -133,7 +133,9 @@ describe('the workbench', () => {
       (text) => /1 change/.test(text),
       'the list of changes',
     );
-    const preset = await download('Save as preset');
+    await page.locator('.name').click();
+    const preset = await download('Keep these settings as a preset');
+    await page.keyboard.press('Escape');
     assert.match(preset.content.toString(), /weight_lateral: 7/);
     await type('tracking_mpc.weight_lateral', before);
     await page.getByText('No changes').waitFor();
@@ -230,11 +232,9 @@ describe('the workbench', () => {
   });
 
   it('explains what limits the speed', async () => {
-    await dashboard.show('understand');
-    await page.locator('body').press('e');
+    await dashboard.showEngineer();
     await page.locator('.rows dd', { hasText: /^(Grip|Brakes|Full throttle|Rolls|Part throttle)/ }).waitFor();
     assert.ok((await page.locator('.constraints tbody tr').count()) > 3);
-    await dashboard.until(() => dashboard.number('prediction-error'), Number.isFinite, 'prediction error');
   });
 
   it('shows the plan of a second ago and the path driven since, when asked to', async () => {
@@ -297,41 +297,33 @@ describe('the workbench', () => {
     await type('run.pace', 20);
     await dashboard.show('understand');
     await dashboard.until(
-      () => page.locator('.lap-table tbody tr').count(),
-      (count) => count >= 3,
+      () => dashboard.lapRows().count(),
+      (count) => count >= 2,
       'laps',
     );
     await dashboard.show('try'); // before the page has seen more laps than it keeps
     await dashboard.fromMenu('1×');
     await dashboard.show('understand');
-    assert.ok((await page.locator('.lap-table tbody tr.best').count()) === 1);
-    assert.ok((await page.locator('.best-sector').count()) >= 3);
-    await dashboard.until(
-      () => page.locator('.compare canvas').count(),
-      (count) => count === 3,
-      'curves',
-    );
+    await page.getByText('All laps', { exact: true }).click();
+    assert.equal(await page.locator('.lap-rows tr.best').count(), 1);
+    await page.locator('.lap-plots path.a').nth(2).waitFor(); // speed, pedal, steer
     const table = await download('Table as CSV');
     assert.match(table.name, /oval.*laps\.csv/);
     assert.match(table.content.toString(), /^lap,lap_time_s,sector_1_s/);
-    const lap = await download('Lap A as CSV');
+    const lap = await download('This lap as CSV');
     assert.match(lap.content.toString(), /^s_m,time_s,speed_mps/);
-    const picture = await download('Map as PNG');
-    assert.equal(picture.content.subarray(1, 4).toString(), 'PNG');
     assert.deepEqual(await dashboard.accessibilityFindings('main'), []);
   });
 
-  it('says in which corner a lap loses most to the limit, and why, in three clicks', async (test) => {
+  it('says in which corner a lap loses most to the limit, and why, with two choices', async (test) => {
     const begin = performance.now();
     await dashboard.show('understand');
-    await page.getByTestId('limit').waitFor();
-    await page.getByLabel('Compare lap 2 as A', { exact: true }).check();
-    await page.getByLabel('Compare the limit as B', { exact: true }).check();
-    const losses = page.getByTestId('time-won');
-    assert.match(await losses.locator('h2').innerText(), /^Where lap 2 loses time to the limit \+\d/);
-    const most = await losses.locator('tr.most').innerText();
-    assert.match(most, /^T\d[\s\S]* s lost, [\d.]+ s of it (braking|less|a slower|[\d.]+ (mph|km\/h|m\/s) slower)/);
-    assert.match(await page.locator('.legend').innerText(), /lost/i, 'the map shows it in colours');
+    await page.getByTestId('limit').waitFor({ state: 'attached' });
+    await page.getByLabel('A', { exact: true }).selectOption('lap 2');
+    await page.getByLabel('B', { exact: true }).selectOption('limit');
+    assert.match(await headline(page), /^Lap 2\s+lost \d+\.\d\d s to\s+the limit\s*; T\d cost most/);
+    const most = await page.getByTestId('corner-costs').locator('tbody tr').first().innerText();
+    assert.match(most, /^T\d\s+\+\d+\.\d\d\s+\S/);
     const took = (performance.now() - begin) / 1000;
     test.diagnostic(`Laps, lap 2 as A, the limit as B: "${most.replace(/\s+/g, ' ')}" after ${took.toFixed(1)} s`);
     assert.ok(took < 60, `${took} s`);
@@ -339,7 +331,7 @@ describe('the workbench', () => {
 
   it('finds the limit again for a car with another grip', async () => {
     await dashboard.show('understand');
-    const limit = () => page.getByTestId('limit').locator('.time').innerText();
+    const limit = () => page.getByTestId('limit').locator('td').first().textContent();
     const before = await limit();
     await dashboard.show('try');
     await type('plant_options.friction_scale', 0.8);
@@ -350,17 +342,6 @@ describe('the workbench', () => {
     await type('plant_options.friction_scale', 1);
     await dashboard.show('understand');
     await dashboard.until(limit, (now) => now === before, 'the limit of before');
-  });
-
-  it('draws plots that are scrolled away for their picture', async () => {
-    await page.setViewportSize({ width: 1366, height: 420 });
-    await dashboard.show('understand');
-    const last = '.plot[aria-label="Control step"] canvas';
-    assert.equal(await dashboard.colours(last), 1, 'not drawn yet');
-    const picture = await download('PNG');
-    assert.match(picture.name, /plots\.png/);
-    assert.ok((await dashboard.colours(last)) > 2);
-    await page.setViewportSize(LAPTOP.viewport);
   });
 });
 
@@ -374,7 +355,7 @@ it('takes another run of a restarted server for another run', async () => {
   // What the page still loads when its program ends, the browser complains of.
   await dashboard.show('try');
   await page.getByText('No changes').waitFor();
-  await dashboard.show('understand');
+  await dashboard.show('watch');
   const { port } = here.drive;
   await here.drive.stop();
   await page.getByTestId('end-card').waitFor();

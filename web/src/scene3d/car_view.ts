@@ -15,6 +15,7 @@ import {
   RGBAFormat,
   type Scene,
   ShadowMaterial,
+  Vector3,
 } from 'three';
 import { type CarSize, carShape } from '../draw/car';
 import { type CarLooks, type CarModel, carModel } from './car_mesh';
@@ -142,10 +143,20 @@ export class CarView {
     scene.add(this.group);
   }
 
-  /** Of a box round the car, in W [m]. */
+  /** Of a box round the car along its own axes, in W [m]. */
   corners(): (readonly [number, number, number])[] {
-    const { min, max } = new Box3().setFromObject(this.#body);
-    return [min.x, max.x].flatMap((x) => [min.y, max.y].flatMap((y) => [0, max.z].map((z) => [x, y, z] as const)));
+    const box = new Box3();
+    for (const part of this.#body.children) {
+      if (!(part instanceof Mesh)) continue;
+      const { geometry, matrix } = part as Mesh<BufferGeometry>;
+      if (geometry.boundingBox === null) geometry.computeBoundingBox();
+      if (geometry.boundingBox) box.union(geometry.boundingBox.clone().applyMatrix4(matrix));
+    }
+    const { min, max } = box;
+    const places = [min.x, max.x].flatMap((x) =>
+      [min.y, max.y].flatMap((y) => [0, max.z].map((z) => [x, y, z] as const)),
+    );
+    return places.map((place) => this.group.localToWorld(new Vector3(...place)).toArray());
   }
 
   #keep<T extends { dispose(): void }>(thing: T): T {
