@@ -11,61 +11,25 @@ const isWanted = ({ name }) => names.length === 0 || names.includes(name);
 const LAPTOP = [1440, 900];
 const PICTURES = [
   { name: 'dashboard', mode: 'watch', size: LAPTOP, colorScheme: 'light' },
-  { name: 'dashboard_explain', mode: 'understand', size: LAPTOP, colorScheme: 'dark' },
+  {
+    name: 'dashboard_explain',
+    mode: 'understand',
+    size: LAPTOP,
+    colorScheme: 'dark',
+    prepare: (page) => engineer(page, '.engineer-parts .blocks'),
+  },
   { name: 'dashboard_laps', mode: 'understand', size: LAPTOP, colorScheme: 'light' },
   {
     name: 'dashboard_plots',
     mode: 'understand',
-    size: [1600, 900],
-    colorScheme: 'dark',
-    prepare: (page) => page.keyboard.press('e'),
-  },
-  {
-    name: 'dashboard_tune',
-    mode: 'try',
-    size: LAPTOP,
-    colorScheme: 'light',
-    prepare: tune,
-    undo: (page) => page.getByRole('button', { name: 'Reset all' }).click(),
-  },
-  {
-    name: 'dashboard_faults',
-    mode: 'try',
     size: LAPTOP,
     colorScheme: 'dark',
-    prepare: (page) => page.locator('[data-key="fault.half_grip"]').click(),
-    undo: (page) =>
-      page
-        .locator('[data-key="fault.half_grip"][aria-pressed="true"]')
-        .click({ timeout: 1000 })
-        .catch(() => undefined),
-  },
-  {
-    name: 'dashboard_tour',
-    mode: 'try',
-    size: LAPTOP,
-    colorScheme: 'light',
-    async prepare(page) {
-      await page.keyboard.press('h');
-      await page.getByRole('button', { name: 'What the dashboard can do' }).click();
-    },
-    undo: (page) => page.getByRole('button', { name: 'Leave the tour' }).click(),
-  },
-  {
-    name: 'dashboard_share',
-    mode: 'try',
-    size: LAPTOP,
-    colorScheme: 'light',
-    async prepare(page) {
-      await page.locator('.name').click();
-      await page.getByRole('button', { name: /^Share this run/ }).click();
-    },
-    undo: (page) => page.getByRole('button', { name: 'Close', exact: true }).click(),
+    prepare: (page) => engineer(page, '.plots-view'),
   },
   { name: 'dashboard_what_if', mode: 'try', size: [1366, 900], colorScheme: 'light', prepare: whatIf },
   {
     name: 'dashboard_phone',
-    mode: 'try',
+    mode: 'watch',
     size: [390, 844],
     colorScheme: 'light',
     deviceScaleFactor: 2,
@@ -76,10 +40,10 @@ const PICTURES = [
   },
 ];
 
-async function tune(page) {
-  const box = page.locator('.sliders [data-key="tracking_mpc.weight_lateral"] .number-box');
-  await box.fill('4');
-  await box.press('Enter');
+/** What solver and controller did, from a part of it on. */
+async function engineer(page, part) {
+  await page.keyboard.press('e');
+  await page.locator(part).evaluate((each) => each.scrollIntoView());
 }
 
 async function whatIf(page) {
