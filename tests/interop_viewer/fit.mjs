@@ -41,7 +41,7 @@ export function misfits() {
       const canDown = /auto|scroll/.test(overflowY) && each.scrollHeight > each.clientHeight + 1;
       if (canAcross || canDown) return true;
     }
-    return false;
+    return document.documentElement.scrollHeight > innerHeight + 1; // a document scrolls as a whole
   };
   // Texts through which clicks pass are asked for, too.
   const touchable = document.createElement('style');

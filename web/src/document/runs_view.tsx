@@ -120,7 +120,7 @@ function Run({ of }: { of: ReportedRun }) {
   return (
     <section aria-label={of.name}>
       <h2>All laps</h2>
-      {of.laps.length > 0 ? <LapTable laps={of.laps} limit={of.limit} /> : <p>No lap was completed.</p>}
+      {of.laps.length > 0 ? <LapTable of={of.name} laps={of.laps} limit={of.limit} /> : <p>No lap was completed.</p>}
       <Engineer of={of} />
       <h2>See it again</h2>
       <p>

@@ -7,6 +7,8 @@ import { setupInWords } from '../state/lap_setup';
 import { bestsOf } from '../state/lap_table';
 
 interface Options {
+  /** Name of the run, where a page has several. */
+  readonly of?: string;
   readonly laps: readonly Lap[];
   readonly limit: Limit | null;
   /** What the run began with; a lap shows what was otherwise. */
@@ -19,7 +21,7 @@ const NO_START: ReadonlyMap<string, Setting> = new Map();
 const SECTORS = [0, 1, 2] as const;
 
 /** All laps, below the limit: times, what each is behind it, sectors, top speed, distance to the edge. */
-export function LapTable({ laps, limit, start = NO_START, pick }: Options) {
+export function LapTable({ of = '', laps, limit, start = NO_START, pick }: Options) {
   const bests = bestsOf(laps);
   const setups = laps.map((lap) => setupInWords(lap, start).join(', '));
   const hasSetups = setups.some((words) => words !== '');
@@ -34,7 +36,7 @@ export function LapTable({ laps, limit, start = NO_START, pick }: Options) {
     'To the edge, m',
   ];
   return (
-    <div class="table-scroll" role="region" aria-label="All laps" tabIndex={0}>
+    <div class="table-scroll" role="region" aria-label={of === '' ? 'All laps' : `All laps of ${of}`} tabIndex={0}>
       <table class="lap-rows" data-testid="lap-rows">
         <thead>
           <tr>
