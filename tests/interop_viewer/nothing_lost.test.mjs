@@ -8,7 +8,8 @@ import { browserAlone } from './here.mjs';
 
 const here = browserAlone();
 
-const isAboutSocket = (text) => text.startsWith('WebSocket connection to') || /ERR_CONNECTION_REFUSED/.test(text);
+const isAboutSocket = (text) =>
+  text.startsWith('WebSocket connection to') || /ERR_CONNECTION_(REFUSED|RESET)/.test(text);
 const open = (drive, mode, state = 'Live') => DashboardPage.open(here.browser, drive.url, { mode, state });
 const lapRows = (dashboard) => dashboard.lapRows().count();
 const type = (dashboard, key, value) => dashboard.type(key, value);

@@ -90,7 +90,7 @@ describe('what if, in a live run', () => {
     await page.locator('main [role="alert"]').waitFor({ state: 'detached' });
     await dashboard.button('Keep the change').click();
     await dashboard.button('Kept').waitFor();
-    await dashboard.show('try');
+    await dashboard.aimAt('run');
     await dashboard.until(
       () => dashboard.text('changes'),
       (text) => /1 change.*speed_limit_mps.*25/s.test(text),
@@ -158,7 +158,7 @@ describe('what if, of a car that another program simulates', () => {
     };
   }
 
-  it('is driven by our own car, and the page says so, and how far that is to be trusted', async () => {
+  it('is driven by our own car, and the answer says so, and how far that is to be trusted', async () => {
     // Slow enough for a controller that a busy machine asks late.
     const served = await startServed('--track', 'oval', '--set', `${SPEED}=20`);
     const dashboard = await DashboardPage.open(here.browser, served.url, { mode: 'try' });
@@ -168,7 +168,7 @@ describe('what if, of a car that another program simulates', () => {
       (mph) => mph > 20,
       'a car that drives',
     );
-    await page.getByText(/our own car stands in for it/).waitFor();
+    await dashboard.button('Drive both').waitFor();
     assert.equal(await dashboard.button('Race A against B').count(), 0, 'there is no second car of theirs');
     await page.getByLabel('For how long').selectOption('10');
     await askForLess(dashboard);

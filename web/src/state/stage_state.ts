@@ -58,8 +58,9 @@ export const oneButton = computed<OneButton | null>(() => {
 /** So many frames come within a moment on any line but a slow one. */
 const SOON = 400;
 
-/** What is not normal, in a few words each. */
+/** What is not normal, in a few words each; of a run that is watched or shown again. */
 export const pills = computed<readonly string[]>(() => {
+  if (link.value === 'lost') return [];
   const frame = shown.value;
   const asked = settings.value.get('run.pace'); // a paused recording has no frame that tells a new one
   const pace = typeof asked === 'number' ? asked : (frame?.pace ?? NaN);
