@@ -39,9 +39,9 @@ namespace chicane::apps {
   return all;
 }
 
-/// Who drives: preset, controller, car and speed.
+/// Rows of preset, controller, car and speed.
 [[nodiscard]] Rows controller_rows(Options& options);
-/// Where and how long: track, laps and seed.
+/// Rows of track, laps and seed.
 [[nodiscard]] Rows world_rows();
 /// --set, behind all other settings: the last one wins.
 [[nodiscard]] OptionRow set_row(Options& options);

@@ -153,7 +153,7 @@ Rows campaign_rows(Options& o) {
       {{{"--faults", "NAME,...", "Faults, with commas; all when left out", &campaign.faults,
          from_shelf("faults")},
         {"--pairs", "",
-         "Add each two of them at once; without --faults: of those of measurement, link, computer",
+         "Add each two of them at once; without --faults: the faults of measurement, link, computer",
          &campaign.has_pairs},
         durations_row(campaign.durations),
         {"--every-s", "S", "Time between the moments of the flying lap [s]", &campaign.step,

@@ -12,13 +12,13 @@ namespace chicane::apps {
 namespace {
 
 constexpr std::size_t kWidth = 80;
-constexpr std::size_t kIndent = 27;  ///< where the meanings begin
+constexpr std::size_t kIndent = 27;  ///< column at which meanings begin
 
 /// Words in lines that begin at `indent`; the first one goes on at column `begun`.
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t begun) {
   std::string lines;
   std::size_t column = begun;
-  if (column > indent) {  // what stands in the line is too long
+  if (column > indent) {  // the names are too long for this column
     lines += '\n';
     column = 0;
   }

@@ -27,7 +27,7 @@ struct Off {
 /// Takes one value. Returns what was expected of it; empty where it was taken.
 using Take = std::function<std::string(const std::string& text)>;
 
-/// Where the values of an option go.
+/// Variable or function that receives the values of an option.
 using Target =
     std::variant<bool*, Off, Setting, int*, std::uint16_t*, std::uint64_t*, double*, std::optional<double>*,
                  std::string*, std::vector<std::string>*, std::vector<int>*, Take>;
@@ -38,11 +38,11 @@ struct Interval {
 };
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-/// What an option takes besides its kind of value, and in which company.
+/// Limits of the values of an option, and the options that it needs or excludes.
 struct OptionRule {
-  std::optional<Interval> within{};          ///< of numbers
+  std::optional<Interval> within{};          ///< limits of numbers
   std::vector<std::string> words{};          ///< the only words that it takes; empty: any
-  std::string_view shelf{};                  ///< of `chicane list`, where its names stand
+  std::string_view shelf{};                  ///< shelf of `chicane list` that has its names
   std::string_view needs{};                  ///< option without which it is refused
   std::vector<std::string_view> excludes{};  ///< options with which it is refused
   const char* environment = nullptr;         ///< variable with its value where it is not given
@@ -92,12 +92,12 @@ struct OptionRow {
 
 using Rows = std::vector<OptionRow>;
 
-/// Gives the values of an option to its target. Returns what is wrong, "got X, expected Y"; empty where
-/// nothing is. `settings`: receives key and text of a Setting.
+/// Gives the values of an option to its target. Returns the fault, "got X, expected Y", or an
+/// empty text. `settings`: receives key and text of a Setting.
 [[nodiscard]] std::string assign(const OptionRow& row, const std::vector<std::string>& given,
                                  std::vector<std::pair<std::string, std::string>>& settings);
 
-/// What a row says besides its meaning: " (0.05 to 20; default 1; with --simulate)"; empty where nothing.
+/// Notes after the meaning of a row: " (0.05 to 20; default 1; with --simulate)"; empty where nothing.
 [[nodiscard]] std::string notes(const OptionRow& row);
 /// The help of a command, at most 80 columns wide.
 [[nodiscard]] std::string command_help(std::string_view name, std::string_view summary, const Rows& rows,

@@ -33,11 +33,10 @@ std::string did_you_mean(std::string_view got, const std::vector<std::string_vie
   return best.empty() ? "" : fmt::format(" (did you mean {}?)", best);
 }
 
-/// The first word must be a command; empty when it is, or an option.
+/// Fault of a first word that is no command.
 std::string command_fault(std::string_view word) {
   std::vector<std::string_view> names;
   for (const Command& command : commands()) names.push_back(command.name);
-  if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end()) return "";
   return fmt::format("got the unknown command {}, expected one of {}{}", printable(word),
                      fmt::join(names, ", "), did_you_mean(word, names));
 }
@@ -62,7 +61,7 @@ class Words {
     }
   }
 
-  /// What is wrong with the words; empty where nothing is. `wants_help`: set by --help.
+  /// Fault of the words, or an empty text. `wants_help`: set by --help.
   std::string read(int count, const char* const* words, bool& wants_help) {
     try {
       app_.parse(count, words);
@@ -121,7 +120,7 @@ class Words {
   bool lacks_value_ = false;
 };
 
-/// What is wrong with an option among the others; empty where nothing is.
+/// Fault of an option among the others, or an empty text.
 std::string company_fault(const OptionRow& row, bool is_given, const Words& words) {
   if (!is_given)
     return row.rule.is_required ? fmt::format("got nothing, expected {}", row.expectation()) : "";
@@ -154,13 +153,9 @@ std::variant<Options, Done> parse_command_line(int count, const char* const* wor
   const std::string_view first = words[1];
   if (first == "-h" || first == "--help") return fmt::print("{}", program_help()), Done{};
   if (first == "--version") return fmt::print("{}", version_text()), Done{};
-  if (first.starts_with("-"))
-    return refuse("chicane",
-                  fmt::format("got {}, expected a command or one of --help, --version", printable(first)));
-  if (const std::string fault = command_fault(first); !fault.empty()) return refuse("chicane", fault);
-
   const auto command = std::find_if(commands().begin(), commands().end(),
                                     [&](const Command& each) { return each.name == first; });
+  if (command == commands().end()) return refuse("chicane", command_fault(first));
   Options options;
   options.command = first;
   options.words.assign(words + 2, words + count);
@@ -170,7 +165,7 @@ std::variant<Options, Done> parse_command_line(int count, const char* const* wor
   std::string fault = given.read(count - 1, words + 1, wants_help);
   if (wants_help)
     return fmt::print("{}", command_help(command->name, command->summary, rows, command->example)), Done{};
-  // A word too many is often the rest of a value with blanks: the value is what is wrong then.
+  // A word too many is often the rest of a value with blanks: the fault of the value comes first then.
   if (const std::string value_fault = take_words(rows, given, options);
       !value_fault.empty() && !given.lacks_value())
     fault = value_fault;

@@ -256,7 +256,7 @@ Rows report_rows(Options& o) {
         {"-o,--output", "FILE.html", "Page to write; an older one is replaced", &o.output_file},
         {"--page", "FILE.md", "Write the heat maps of a sweep in letters into this page", &o.maps_page},
         {"--compare", "KEY=VALUE",
-         "Print a table: runs of a sweep compared with those of this value of an axis; exit code 1 "
+         "Print a table: runs of a sweep compared with the runs of this value of an axis; exit code 1 "
          "where one is worse",
          &o.comparison, without({"--output", "--page"})}},
        foreign_rows(o, {})});

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 
 #include <fmt/format.h>
@@ -33,14 +32,8 @@ class RunReader {
     const bool is_wanted = topic == "/chicane/frame" || topic == "/chicane/plan" || topic == "/chicane/run" ||
                            topic == "/chicane/lap" || topic == "/track/left" || topic == "/track/right";
     if (!is_wanted) return {};
-    auto reader = readers_.find(message.channel.id);
-    if (reader == readers_.end()) {
-      Result<RosReader> made = RosReader::create(message.channel.schema);
-      if (!made) return fail(made.error());
-      reader = readers_.emplace(message.channel.id, std::move(*made)).first;
-    }
-    const Result<RosContent> content = reader->second.read(message.bytes);
-    if (!content) return fail(content.error().code, fmt::format("{}: {}", topic, content.error().message));
+    const Result<RosContent> content = readers_.read(message);
+    if (!content) return fail(content.error());
     if (topic == "/chicane/frame") add_frame(*content);
     if (topic == "/chicane/plan") add_plan(*content);
     if (topic == "/chicane/run") add_run(*content);
@@ -102,7 +95,7 @@ class RunReader {
   }
 
   DrivenRun run_;
-  std::map<std::uint16_t, RosReader> readers_;
+  RosReaders readers_;
 };
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -124,14 +123,8 @@ class ReportedRuns {
     const std::string& topic = message.channel.topic;
     const bool is_whole = std::find(kWhole.begin(), kWhole.end(), topic) != kWhole.end();
     if (!is_whole && topic != "/chicane/frame" && topic != "/track/centre") return {};
-    auto reader = readers_.find(message.channel.id);
-    if (reader == readers_.end()) {
-      Result<RosReader> made = RosReader::create(message.channel.schema);
-      if (!made) return fail(made.error());
-      reader = readers_.emplace(message.channel.id, std::move(*made)).first;
-    }
-    const Result<RosContent> content = reader->second.read(message.bytes);
-    if (!content) return fail(content.error().code, fmt::format("{}: {}", topic, content.error().message));
+    const Result<RosContent> content = readers_.read(message);
+    if (!content) return fail(content.error());
     if (topic == "/chicane/frame") {
       add_frame(*content);
     } else if (topic == "/track/centre") {
@@ -206,7 +199,7 @@ class ReportedRuns {
   Json runs_ = Json::array(), run_ = nullptr, centre_ = nullptr, limit_ = nullptr;
   std::optional<RosContent> last_;
   std::vector<double> step_times_;
-  std::map<std::uint16_t, RosReader> readers_;
+  RosReaders readers_;
 };
 
 /// A recording with its settings.

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/recording/detail/ros_message.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <cstring>
 #include <sstream>
+#include <utility>
 
 namespace chicane::recording {
 namespace {
@@ -159,6 +162,18 @@ Result<RosContent> RosReader::read(std::string_view bytes) const {
   if (!read_type("", "", cursor, 0, content))
     return fail(ErrorCode::kParse, "got a message that ends too early");
   return content;
+}
+
+Result<RosContent> RosReaders::read(const telemetry::McapMessage& message) {
+  auto reader = readers_.find(message.channel.id);
+  if (reader == readers_.end()) {
+    Result<RosReader> made = RosReader::create(message.channel.schema);
+    if (!made) return fail(made.error());
+    reader = readers_.emplace(message.channel.id, std::move(*made)).first;
+  }
+  Result<RosContent> content = reader->second.read(message.bytes);
+  if (content) return content;
+  return fail(content.error().code, fmt::format("{}: {}", message.channel.topic, content.error().message));
 }
 
 }  // namespace chicane::recording

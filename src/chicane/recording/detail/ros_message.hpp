@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/telemetry/mcap_reader.hpp"
 
 namespace chicane::recording {
 
@@ -46,6 +48,16 @@ class RosReader {
                                RosContent& content) const;
 
   std::map<std::string, std::vector<Field>, std::less<>> types_{};  ///< "" is the message itself
+};
+
+/// Readers of the channels of one recording, each made at the first message of its channel.
+class RosReaders {
+ public:
+  /// Fails as RosReader::create() and read() do; a fault of the bytes names the topic.
+  [[nodiscard]] Result<RosContent> read(const telemetry::McapMessage& message);
+
+ private:
+  std::map<std::uint16_t, RosReader> readers_{};  ///< by the number of the channel
 };
 
 }  // namespace chicane::recording
