@@ -25,8 +25,8 @@ namespace {
 using sweep::Claim;
 using sweep::Settings;
 
-/// The waypoints that the course hands out: not shipped, read where they are.
-constexpr std::string_view kCourseFile = "../shared/tracks/udacity/lake_track_waypoints.csv";
+/// The waypoints that the course hands out: not shipped, fetched by tools/fetch_circuits.sh.
+constexpr std::string_view kCourseFile = "circuits/lake_track_waypoints.csv";
 
 /// How the numbers of a write-up are taken, where it says nothing of telemetry's miles per hour.
 struct Reading {
@@ -280,7 +280,9 @@ std::string details_of(const std::vector<Claim>& claims, const Trials& trials) {
         if (marks[r])
           text += fmt::format("    {:<18} {:<17} {:<4} {}\n", lake.name, readings()[r].name,
                               *marks[r] ? "yes" : "no", figures_of(claim, trials, lake, readings()[r]));
-      if (!lake.is_there) text += fmt::format("    {:<18} skipped: no {}\n", lake.name, lake.track);
+      if (!lake.is_there)
+        text += fmt::format("    {:<18} skipped: no {}: tools/fetch_circuits.sh fetches it\n", lake.name,
+                            lake.track);
     }
     for (const sweep::Case& each : claim.cases)
       text += fmt::format("    {}: {}\n", each.name,
@@ -333,7 +335,8 @@ ExitCode try_claims(const Options& options) {
     }
   }
   for (const Lake& lake : lakes())
-    if (!lake.is_there) fmt::print(stderr, "skipped: {}: no {}\n", lake.name, lake.track);
+    if (!lake.is_there)
+      fmt::print(stderr, "skipped: {}: no {}: tools/fetch_circuits.sh fetches it\n", lake.name, lake.track);
   const std::string& page = options.claims.page;
   if (const Result<void> writable = check_writable(options.claims.is_check ? "" : page); !writable)
     return report(writable.error());

@@ -35,7 +35,7 @@ void measure_solves(const Request& request, References& references, const std::a
 
 /// The folder of problems with known optima beside the sources; empty where there is none.
 std::string recorded_problems() {
-  const std::filesystem::path folder = std::filesystem::path(CHICANE_SOURCE_DIR) / "../shared/reference_nlp";
+  const std::filesystem::path folder = std::filesystem::path(CHICANE_SOURCE_DIR) / "tests/reference_nlp";
   std::error_code error;
   if (std::filesystem::is_directory(folder, error)) return folder.string();
   fmt::print(stderr, "golden optima are left out: {} is not there\n", folder.string());

@@ -47,7 +47,7 @@ TEST(Race, LapsCleanlyNearTheLimit) {
 TEST(Race, IsSureOfTheCarInFastBends) {
   const std::filesystem::path circuit = std::filesystem::path(CHICANE_CIRCUITS) / "Monza.csv";
   if (!std::filesystem::exists(circuit))
-    GTEST_SKIP() << "needs " << circuit << ", which is not part of the source";
+    GTEST_SKIP() << circuit << " is not there: tools/fetch_circuits.sh fetches it";
   const auto run = drive({{"preset", "race"},
                           {"car", "udacity"},
                           {"track", circuit},
@@ -64,7 +64,7 @@ TEST(Race, IsSureOfTheCarInFastBends) {
 TEST(Race, SolvesItsSlidesInAFastChicane) {
   const std::filesystem::path circuit = std::filesystem::path(CHICANE_CIRCUITS) / "Monza.csv";
   if (!std::filesystem::exists(circuit))
-    GTEST_SKIP() << "needs " << circuit << ", which is not part of the source";
+    GTEST_SKIP() << circuit << " is not there: tools/fetch_circuits.sh fetches it";
   const auto run = drive({{"preset", "race"},
                           {"car", "udacity"},
                           {"track", circuit},

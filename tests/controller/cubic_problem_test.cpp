@@ -242,10 +242,10 @@ std::vector<std::vector<double>> read_csv(const std::string& path) {
   return rows;
 }
 
-/// Ipopt's optima of the same formulation (tolerance 1e-10, ../shared/reference_nlp/README.md), every tenth
+/// Ipopt's optima of the same formulation (tolerance 1e-10, tests/reference_nlp/README.md), every tenth
 /// instance.
 TEST(CubicProblem, HasTheOptimaThatIpoptFinds) {
-  const std::string folder = std::string{CHICANE_SOURCE_DIR} + "/../shared/reference_nlp/";
+  const std::string folder = std::string{CHICANE_SOURCE_DIR} + "/tests/reference_nlp/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "optima are not compared with Ipopt's: no " << folder;
   const auto answer = std::make_unique<CubicTrajectory>();
   int compared = 0;

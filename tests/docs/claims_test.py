@@ -41,7 +41,7 @@ class ClaimsOnAClone(unittest.TestCase):
     def test_the_page_is_checked_and_the_missing_file_skipped_by_name(self):
         done = self.claims("--page", "claims.md", "--check")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertIn("skipped: course's file: no ../shared/tracks/udacity/lake_track_waypoints.csv", done.stderr)
+        self.assertIn("skipped: course's file: no circuits/lake_track_waypoints.csv", done.stderr)
         self.assertIn("claims.md: 1 statements as the page has them", done.stdout)
 
     def test_a_changed_digit_fails_with_both_rows(self):
@@ -72,7 +72,7 @@ class ClaimsOnAClone(unittest.TestCase):
     def test_details_have_the_command_of_each_run(self):
         done = self.claims()
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("skipped: no ../shared/tracks/udacity/lake_track_waypoints.csv", done.stdout)
+        self.assertIn("skipped: no circuits/lake_track_waypoints.csv", done.stdout)
         self.assertEqual(done.stdout.count("chicane drive "), 2)
 
 

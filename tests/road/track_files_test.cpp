@@ -11,7 +11,7 @@
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/road/track.hpp"
 
-// The shipped tracks, and the public ones in ../shared/tracks when they are there.
+// The shipped tracks, and the public ones of tools/fetch_circuits.sh where they are.
 namespace chicane::road {
 namespace {
 
@@ -62,7 +62,7 @@ std::string docs_page() {
 
 /// One row of the table of public tracks in docs/tracks.md.
 std::string public_row(const std::string& name) {
-  const Track track = protocol::read_track(kSource + "/../shared/tracks/" + name).value();
+  const Track track = protocol::read_track(kSource + "/circuits/" + name).value();
   double least = 1e9;
   double most = 0.0;
   double curvature = 0.0;
@@ -89,8 +89,9 @@ std::string public_row(const std::string& name) {
 class PublicTrack : public ::testing::TestWithParam<Known> {};
 
 TEST_P(PublicTrack, BecomesASaneRoad) {
-  const std::string file = kSource + "/../shared/tracks/" + GetParam().file;
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  const std::string file = kSource + "/circuits/" + GetParam().file;
+  if (!std::filesystem::exists(file))
+    GTEST_SKIP() << file << " is not there: tools/fetch_circuits.sh fetches it";
   expect_road(file, GetParam());
   const std::string row = public_row(GetParam().file);
   std::fputs(row.c_str(), stdout);
@@ -98,15 +99,14 @@ TEST_P(PublicTrack, BecomesASaneRoad) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shared, PublicTrack,
-                         ::testing::Values(Known{"udacity/lake_scene.csv", 1137.5, 8.1, 9.7, 20.6},
-                                           Known{"udacity/lake_track_waypoints.csv", 1137.0, 9.0, 9.0, 20.7},
-                                           Known{"tum/IMS.csv", 4022.3, 15.3, 15.3, 185.0},
-                                           Known{"tum/Monza.csv", 5790.2, 7.52, 12.42, 9.8},
-                                           Known{"tum/Norisring.csv", 2295.8, 10.3, 20.97, 10.0},
-                                           Known{"tum/Nuerburgring.csv", 5144.1, 7.62, 21.35, 14.2},
-                                           Known{"tum/Silverstone.csv", 5886.8, 11.27, 17.84, 12.8},
-                                           Known{"tum/Spa.csv", 7000.1, 7.87, 16.42, 10.0},
-                                           Known{"tum/berlin_2018.csv", 2326.9, 6.89, 23.3, 8.0}),
+                         ::testing::Values(Known{"lake_track_waypoints.csv", 1137.0, 9.0, 9.0, 20.7},
+                                           Known{"IMS.csv", 4022.3, 15.3, 15.3, 185.0},
+                                           Known{"Monza.csv", 5790.2, 7.52, 12.42, 9.8},
+                                           Known{"Norisring.csv", 2295.8, 10.3, 20.97, 10.0},
+                                           Known{"Nuerburgring.csv", 5144.1, 7.62, 21.35, 14.2},
+                                           Known{"Silverstone.csv", 5886.8, 11.27, 17.84, 12.8},
+                                           Known{"Spa.csv", 7000.1, 7.87, 16.42, 10.0},
+                                           Known{"berlin_2018.csv", 2326.9, 6.89, 23.3, 8.0}),
                          [](const auto& each) {
                            return std::filesystem::path{each.param.file}.stem().string();
                          });

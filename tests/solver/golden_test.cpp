@@ -19,7 +19,7 @@ namespace {
 using bench::DescribedProblem;
 
 constexpr int kCapacity = 200;
-const std::string kFolder = std::string(CHICANE_SOURCE_DIR) + "/../shared/reference_nlp/";
+const std::string kFolder = std::string(CHICANE_SOURCE_DIR) + "/tests/reference_nlp/";
 
 /// Rows of numbers of a comma-separated file without its heading; empty when there is no such file.
 std::vector<std::vector<double>> read_table(const std::string& file) {
