@@ -7,7 +7,7 @@
 namespace chicane::apps {
 
 protocol::Request request_of(const Options& options) {
-  return {options.scenario_file, options.settings, options.speed_mps, options.faults};
+  return {options.scenario_file, options.settings, options.speed_mps, options.faults, options.speed_mph};
 }
 
 Result<scenario::Scenario> experiment(const Options& options) {

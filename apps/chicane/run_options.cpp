@@ -74,6 +74,7 @@ OptionRow speed_mph_row(Options& o) {
     const std::optional<double> mph = number_in(text);
     if (!mph) return "a number";
     o.speed_mps = fmt::format("{}", mph_to_mps(*mph));
+    o.speed_mph = text;
     return "";
   };
   return {"--speed-mph", "X", "Speed reference of the controller [mph]", take, kOnce};

@@ -37,7 +37,11 @@ FILES = {
 MISTAKES = [line.split(" | ") for line in f"""\
 drvie --fast | chicane | got the unknown command drvie | expected one of drive | (did you mean drive?)
 drive --pressets race | chicane drive | got --pressets | expected one of its options | (did you mean --preset?)
-drive --fast --latency 100 | chicane drive | got --latency | expected one of its options | {USAGE}
+drive --fast --latency 100 | chicane drive | got --latency | expected one of its options | (did you mean --latency-ms?)
+drive --fast --speed-mph 300 | --speed-mph | got 300 | expected a number in [2.237, 246.1] mph |
+drive --fast --speed-mps 0 | --speed-mps | got 0 | expected a number in [1, 110] m/s |
+drive --fast guard=off | scenario | got "guard=off" | expected a file or one of | (did you mean --set guard.mode=off?)
+drive --fast --set guard=off | guard | got an unknown key | expected one of `chicane list parameters` | (did you mean guard.mode?)
 drive --fast --speed-mph 60mph | --speed-mph | got 60mph | expected a number | {USAGE}
 drive --fast --speed-mph | --speed-mph | got nothing | expected a number | {USAGE}
 drive --fast --speed-mph 60 --speed-mps 20 | --speed-mps | got it with --speed-mph | expected one of the two | {USAGE}

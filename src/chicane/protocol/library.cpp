@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 
+#include "chicane/base/angle.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/remembered_files.hpp"
@@ -90,6 +91,11 @@ Error unknown_name(Shelf shelf, std::string_view name, const std::vector<Entry>&
         std::any_of(there.begin(), there.end(), [&](const Entry& each) { return each.name == name; });
     if (shelf == Shelf::kScenario && has_it)
       hint = fmt::format(" (did you mean --{} {}?)", names(other).singular, name);
+  }
+  if (const std::size_t equals = name.find('='); equals != std::string_view::npos) {  // a setting
+    const std::string_view key = name.substr(0, equals), group_key = first_of(key);
+    hint = fmt::format(" (did you mean --set {}{}?)", printable(group_key.empty() ? key : group_key),
+                       printable(name.substr(equals)));
   }
   return {ErrorCode::kNotFound,
           fmt::format("{}{}one of {}{}", got, or_what, fmt::join(known_names, ", "), hint)};
@@ -369,13 +375,22 @@ Result<std::string> read_file(const std::string& path) {
 
 namespace {
 
-/// The speed of whichever controller drives. kInvalidArgument where it has none to set.
-Result<void> set_speed(scenario::Scenario& scenario, const std::string& text) {
+/// The speed of whichever controller drives. kInvalidArgument, in the user's words and unit, where it has
+/// none to set or the speed is out of range.
+Result<void> set_speed(const Request& request, scenario::Scenario& scenario) {
+  const bool is_mph = !request.speed_mph.empty();
+  const std::string_view key = is_mph ? "--speed-mph" : "--speed-mps";
+  const std::string& typed = is_mph ? request.speed_mph : request.speed_mps;
   const auto* driver = controller::Registry::find(scenario.controller);
-  if (driver->speed_option.empty()) {
-    return fail(refusal("--speed-mps", text, fmt::format("none: {} has no speed to set", driver->name)));
-  }
-  return set_text(scenario, find_option(driver->name, driver->speed_option)->key, text);
+  if (driver->speed_option.empty())
+    return fail(refusal(key, typed, fmt::format("none: {} has no speed to set", driver->name)));
+  const Parameter& row = *find_option(driver->name, driver->speed_option);
+  const Result<Value> value = parse(row, request.speed_mps);
+  if (value) return set(scenario, row, *value);
+  const auto in_unit = [is_mph](double mps) { return is_mph ? mps_to_mph(mps) : mps; };
+  return fail(refusal(key, typed,
+                      fmt::format("a number in [{:.4g}, {:.4g}] {}", in_unit(row.option.minimum),
+                                  in_unit(row.option.maximum), is_mph ? "mph" : "m/s")));
 }
 
 }  // namespace
@@ -422,7 +437,7 @@ Result<scenario::Scenario> compose(const Request& request, RememberedFiles& file
     if (!event) faults.add(event.error());
   }
   if (faults.empty() && !request.speed_mps.empty()) {
-    if (const Result<void> done = set_speed(scenario, request.speed_mps); !done) faults.add(done.error());
+    if (const Result<void> done = set_speed(request, scenario); !done) faults.add(done.error());
   }
   if (!faults.empty()) return faults.failure();
   for (auto layer = layers.end() - static_cast<std::ptrdiff_t>(asked); layer != layers.end(); ++layer)

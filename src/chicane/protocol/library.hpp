@@ -49,6 +49,7 @@ struct Request {
   std::vector<std::pair<std::string, std::string>> settings;
   std::string speed_mps{};            ///< reference of whichever controller drives; empty: its own
   std::vector<std::string> faults{};  ///< NAME@S+S*X (fault_codec.hpp), beside those of the scenario file
+  std::string speed_mph{};  ///< speed_mps as a user typed it in mph, for messages; empty: it was in m/s
 };
 
 /// The experiment asked for. Later layers win: defaults, car file, preset (with the presets it builds on),

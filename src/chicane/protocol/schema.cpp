@@ -148,8 +148,8 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
   if (word.size() > 100) return best;
   int best_distance = std::max(2, static_cast<int>(word.size()) / 4) + 1;
   for (const std::string_view candidate : known) {
-    const bool unit_forgotten =
-        candidate.starts_with(word) && candidate.size() > word.size() && candidate[word.size()] == '_';
+    const bool unit_forgotten = candidate.starts_with(word) && candidate.size() > word.size() &&
+                                (candidate[word.size()] == '_' || candidate[word.size()] == '-');
     const int distance = unit_forgotten ? 1 : edit_distance(word, candidate);
     if (distance < best_distance) {
       best = candidate;
@@ -157,6 +157,12 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
     }
   }
   return best;
+}
+
+std::string_view first_of(std::string_view group) {
+  const auto row =
+      std::find_if(list().begin(), list().end(), [&](const Parameter& p) { return p.group == group; });
+  return row == list().end() || group.empty() ? "" : row->key;
 }
 
 std::string suggestion(std::string_view key, std::string_view driver) {
@@ -176,6 +182,7 @@ std::string suggestion(std::string_view key, std::string_view driver) {
       const auto it = std::find(names.begin(), names.end(), name);
       if (!name.empty()) best = (*keys)[static_cast<std::size_t>(it - names.begin())];
     }
+    if (best.empty()) best = first_of(key);
     if (!best.empty()) return fmt::format(" (did you mean {}?)", best);
   }
   return "";

@@ -40,6 +40,8 @@ struct Parameter {
 [[nodiscard]] const Parameter* find_option(std::string_view controller, std::string_view name);
 /// The most similar thing among `known` when a typing mistake could explain `word`; otherwise empty.
 [[nodiscard]] std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
+/// The first key of a group: "guard.mode" of "guard"; empty where there is no such group.
+[[nodiscard]] std::string_view first_of(std::string_view group);
 /// For messages: " (did you mean cubic_mpc.horizon_steps?)", or empty when nothing is similar. Where it is
 /// known who drives, options of other controllers come last: they would have no effect.
 [[nodiscard]] std::string suggestion(std::string_view key, std::string_view driver = {});
