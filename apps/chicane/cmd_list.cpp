@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +15,7 @@
 #include "chicane/sim/fault.hpp"
 #include "chicane/sim/plant_registry.hpp"
 #include "commands.hpp"
+#include "option_row.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -21,9 +23,17 @@ namespace {
 using protocol::Parameter;
 using protocol::Shelf;
 
-/// Files of a kind, kinds of controllers, and so on: each with a line of what it is.
+/// A meaning behind `begin`: one line for programs, lines of 80 columns on a terminal. `columns`: of `begin`.
+void print_entry(std::string_view begin, std::string_view meaning, std::size_t columns) {
+  const bool is_terminal = isatty(STDOUT_FILENO) == 1;
+  constexpr std::size_t kWide = 40;  // columns before a meaning that leave it no room beside them
+  const std::size_t indent = columns > kWide ? 4 : columns;
+  fmt::print("{}{}", begin, is_terminal ? wrapped(meaning, indent, columns) : std::string(meaning) + "\n");
+}
+
+/// Files of a kind, kinds of controllers, and so on: each with a sentence.
 void print_entry(std::string_view name, std::string_view meaning) {
-  fmt::print("{:<18} {}\n", name, meaning);
+  print_entry(fmt::format("{:<18} ", name), meaning, 19);
 }
 
 template <Shelf shelf>
@@ -85,8 +95,9 @@ std::string range_of(const Parameter& parameter) {
 
 void print_rows() {
   for (const Parameter& parameter : protocol::list()) {
-    fmt::print("{:<42} {:<14} {:<13} {}\n", parameter.key, default_of(parameter), parameter.option.unit.name,
-               parameter.option.meaning);
+    print_entry(fmt::format("{:<42} {:<14} {:<13} ", parameter.key, default_of(parameter),
+                            parameter.option.unit.name),
+                parameter.option.meaning, 72);
   }
 }
 
@@ -129,8 +140,10 @@ void print_faults(bool is_markdown) {
       fmt::print("| `{}` | {} | {} | {} | {} | {} |\n", kind.name, kind.meaning, kind.duration,
                  strength_of(kind), range, kind.strength_meaning);
     } else {
-      fmt::print("{:<18} {:>4} s  {:<4} {}{}\n", kind.name, kind.duration, strength_of(kind), kind.meaning,
-                 kind.strength_meaning.empty() ? "" : fmt::format(" Strength: {}.", kind.strength_meaning));
+      const std::string strength =
+          kind.strength_meaning.empty() ? "" : fmt::format(" Strength: {}.", kind.strength_meaning);
+      print_entry(fmt::format("{:<18} {:>4} s  {:<4} ", kind.name, kind.duration, strength_of(kind)),
+                  std::string(kind.meaning) + strength, 32);
     }
   }
 }

@@ -14,7 +14,36 @@ namespace {
 constexpr std::size_t kWidth = 80;
 constexpr std::size_t kIndent = 27;  ///< column at which meanings begin
 
-/// Words in lines that begin at `indent`; the first one goes on at column `begun`.
+/// An example that fits the screen and can be typed as it stands.
+std::string example_lines(std::string_view example) {
+  std::string lines;
+  std::size_t room = kWidth - std::string_view{"Example: "}.size();
+  while (example.size() > room) {
+    const std::size_t space = example.rfind(' ', room - 2);  // room for " \\"
+    if (space == std::string_view::npos) break;
+    lines += fmt::format("{} \\\n    ", example.substr(0, space));
+    example.remove_prefix(space + 1);
+    room = kWidth - 4;
+  }
+  return lines + std::string(example);
+}
+
+std::string entry(std::string_view names, std::string_view text, std::size_t indent = kIndent) {
+  const std::string begin = fmt::format("  {}", names);
+  return begin + wrapped(text, indent, begin.size() + 1 > indent ? indent + 1 : begin.size());
+}
+
+std::string entry(const OptionRow& row) {
+  const std::string names = row.is_positional()
+                                ? std::string(row.value) + (row.takes_several() ? "..." : "")
+                                : row.names + (row.is_flag() ? "" : " " + std::string(row.value));
+  return entry(names, row.meaning + notes(row));
+}
+
+const char* const kHelpRow = "Print this help and end";
+
+}  // namespace
+
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t begun) {
   std::string lines;
   std::size_t column = begun;
@@ -40,22 +69,6 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t begun
   }
   return lines + '\n';
 }
-
-std::string entry(std::string_view names, std::string_view text, std::size_t indent = kIndent) {
-  const std::string begin = fmt::format("  {}", names);
-  return begin + wrapped(text, indent, begin.size() + 1 > indent ? indent + 1 : begin.size());
-}
-
-std::string entry(const OptionRow& row) {
-  const std::string names = row.is_positional()
-                                ? std::string(row.value) + (row.takes_several() ? "..." : "")
-                                : row.names + (row.is_flag() ? "" : " " + std::string(row.value));
-  return entry(names, row.meaning + notes(row));
-}
-
-const char* const kHelpRow = "Print this help and end";
-
-}  // namespace
 
 std::string notes(const OptionRow& row) {
   std::vector<std::string> notes;
@@ -86,7 +99,7 @@ std::string command_help(std::string_view name, std::string_view summary, const 
   }
   return fmt::format("{}\n{}\n\n{}Options:\n{}{}\nExample: {}\n", summary, usage,
                      positionals.empty() ? "" : positionals + "\n", entry("-h,--help", kHelpRow), options,
-                     example);
+                     example_lines(example));
 }
 
 std::string program_help() {

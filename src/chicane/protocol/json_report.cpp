@@ -54,11 +54,11 @@ Json to_object(const std::vector<road::Corner>& corners) {
   return json;
 }
 
-/// "corners [s]         1 left 10.44   2 right 3.80", six a line.
+/// "corners [s]         1 left 10.44   2 right 3.80", four a line.
 std::string corner_lines(const RunSummary& run, const LapSummary& lap) {
   std::string text;
   for (std::size_t i = 0; i < lap.corner_times.size() && i < run.corners.size(); ++i) {
-    if (i % 6 == 0) text += i == 0 ? "\ncorners [s]     " : "\n                ";
+    if (i % 4 == 0) text += i == 0 ? "\ncorners [s]     " : "\n                ";
     text += fmt::format("{:>5} {:<5}{:6.2f}", i + 1, run.corners[i].turn > 0.0 ? "left" : "right",
                         lap.corner_times[i]);
   }
@@ -88,14 +88,14 @@ std::string cell(double value, int width) {
 /// A line of the table of causes, for a corner or the lap; what none explains comes last.
 std::string cause_line(std::string_view name, double limit, double planned, double lap,
                        const std::vector<double>& without) {
-  std::string text = fmt::format("{:>10}", name);
-  for (const double time : {limit, planned, lap, lap - limit}) text += cell(time, 8);
+  std::string text = fmt::format("{:>8}", name);
+  for (const double time : {limit, planned, lap, lap - limit}) text += cell(time, 6);
   double rest = lap - limit;
   for (const double time : without) {
-    text += cell(lap - time, 13);
+    text += cell(lap - time, 7);
     if (std::isfinite(time)) rest -= lap - time;
   }
-  return text + cell(rest, 8) + "\n";
+  return text + cell(rest, 5) + "\n";
 }
 
 /// Table of the gap of `lap` by cause, a line for each corner; empty where nothing is known of it.
@@ -104,10 +104,15 @@ std::string cause_table(const RunSummary& run, const LapSummary& lap) {
   const auto at = [](const std::vector<double>& times, std::size_t corner) {
     return corner < times.size() ? times[corner] : telemetry::kNotMeasured;
   };
-  std::string text =
-      fmt::format("\n{:>10} {:>8} {:>8} {:>8} {:>8}", "gap [s]", "limit", "plan", "lap", "gap");
-  for (const lap_time::LapWithout& each : run.without) text += fmt::format(" {:>13}", each.cause);
-  text += fmt::format(" {:>8}\n", "rest");
+  std::string text = fmt::format("\n{:>8} {:>6} {:>6} {:>6} {:>6}", "gap [s]", "limit", "plan", "lap", "gap");
+  std::string second(36, ' ');  // words of the causes: "edge" above "margin"
+  for (const lap_time::LapWithout& each : run.without) {
+    const std::string_view cause = each.cause;
+    const std::size_t space = std::min(cause.find(' '), cause.size());
+    text += fmt::format(" {:>7}", cause.substr(0, space));
+    second += fmt::format(" {:>7}", cause.substr(std::min(space + 1, cause.size())));
+  }
+  text += fmt::format(" {:>5}\n{}\n", "rest", second.substr(0, second.find_last_not_of(' ') + 1));
   std::vector<double> without(run.without.size());
   for (std::size_t corner = 0; corner < lap.corner_times.size(); ++corner) {
     for (std::size_t i = 0; i < without.size(); ++i) without[i] = at(run.without[i].corners, corner);
@@ -122,7 +127,7 @@ std::string cause_table(const RunSummary& run, const LapSummary& lap) {
   text += cause_line("lap", run.limit->lap, planned_lap, lap.lap_time, without);
   for (const lap_time::LapWithout& each : run.without)
     if (each.off_track_events > 0)
-      text += fmt::format("{:>10} without {} the car left the road {} times\n", "", each.cause,
+      text += fmt::format("{:>8} without {} the car left the road {} times\n", "", each.cause,
                           each.off_track_events);
   return text;
 }
@@ -142,7 +147,7 @@ std::string sectors(const LapSummary& lap) {
 std::string row(std::string_view name, const LapSummary& lap) {
   const std::string edge =
       std::isfinite(lap.min_edge_distance) ? fmt::format("{:.2f}", lap.min_edge_distance) : "-";
-  return fmt::format("{:>6} {:>9.3f} {:>9.1f} {:>9.1f} {:>9.2f} {:>9.2f} {:>9} {:>9.1f} {:>20}\n", name,
+  return fmt::format("{:>4} {:>8.3f} {:>6.1f} {:>6.1f} {:>7.2f} {:>7.2f} {:>7} {:>7.1f} {:>20}\n", name,
                      lap.lap_time, mps_to_mph(lap.mean_speed), mps_to_mph(lap.top_speed),
                      lap.rms_lateral_error, lap.max_abs_lateral_error, edge, lap.max_lateral_acceleration,
                      sectors(lap));
@@ -193,15 +198,17 @@ Json to_object(const controller::LearnedCar& learned) {
 std::string learned_line(const controller::LearnedCar& learned) {
   if (!std::isfinite(learned.delay.value)) return "";
   std::string text;
-  const auto add = [&](std::string_view format, const controller::Estimate& estimate, double in_unit) {
+  const auto add = [&](std::string_view name, std::string_view format, const controller::Estimate& estimate,
+                       double in_unit) {
     if (!std::isfinite(estimate.value)) return;
-    text += text.empty() ? "learned            " : ", ";
-    text += fmt::format(fmt::runtime(format), in_unit * estimate.value, 2.0 * in_unit * estimate.deviation);
+    text += text.empty() ? "learned            " : name == "offset" ? ",\n                   " : ", ";
+    text += fmt::format("{} ", name) +
+            fmt::format(fmt::runtime(format), in_unit * estimate.value, 2.0 * in_unit * estimate.deviation);
   };
-  add("delay {:+.0f} ± {:.0f} ms", learned.delay, 1e3);
-  add("steering gain {:.2f} ± {:.2f}", learned.gain, 1.0);
-  add("offset {:+.2f} ± {:.2f}°", learned.offset, radians_to_degrees(1.0));
-  add("grip {:.2f} ± {:.2f}", learned.grip, 1.0);
+  add("delay", "{:+.0f} ± {:.0f} ms", learned.delay, 1e3);
+  add("steering gain", "{:.2f} ± {:.2f}", learned.gain, 1.0);
+  add("offset", "{:+.2f} ± {:.2f}°", learned.offset, radians_to_degrees(1.0));
+  add("grip", "{:.2f} ± {:.2f}", learned.grip, 1.0);
   return text + "\n";
 }
 
@@ -337,9 +344,9 @@ std::string to_table(const RunSummary& run) {
   std::string text = fmt::format("{} on {}, {} ({}){}, {:g} ms latency, seed {}\n", run.car,
                                  run.track.empty() ? "an unknown road" : run.track, run.preset,
                                  run.controller, guard, 1e3 * run.latency, run.seed);
-  text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20}\n", "lap", "time", "mean",
-                      "top", "error rms", "error max", "to edge", "lateral", "sectors");
-  text += fmt::format("{:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20}\n", "", "s", "mph", "mph", "m",
+  text += fmt::format("{:>4} {:>8} {:>6} {:>6} {:>7} {:>7} {:>7} {:>7} {:>20}\n", "lap", "time", "mean",
+                      "top", "e rms", "e max", "to edge", "lateral", "sectors");
+  text += fmt::format("{:>4} {:>8} {:>6} {:>6} {:>7} {:>7} {:>7} {:>7} {:>20}\n", "", "s", "mph", "mph", "m",
                       "m", "m", "m/s²", "s");
   int lap = 0;
   for (const LapSummary& summary : run.laps) text += row(fmt::format("{}", ++lap), summary);
@@ -359,14 +366,16 @@ std::string to_table(const RunSummary& run) {
   text +=
       fmt::format("\noff track          {} times, {:.2f} s\n", run.off_track_events, run.out_of_track_time);
   if (!run.guard) {  // another program drives: nothing is known of it but when it answers
-    text += fmt::format("round trip         {} µs (p50 / p99 / p99.9 / max), {} answers\n",
+    text += fmt::format("round trip         {} µs\n                   p50 / p99 / p99.9 / max, {} answers\n",
                         times(run.step_time), run.cycles);
     return text + outcome(run);
   }
-  text += fmt::format("control step       {} µs (p50 / p99 / p99.9 / max), {} steps, {} late\n",
-                      times(run.step_time), run.cycles, run.deadline_misses);
-  text += fmt::format("optimisation       {} µs, {:.1f} iterations, {} without an answer\n",
-                      times(run.solve_time), run.mean_iterations, run.not_usable);
+  text +=
+      fmt::format("control step       {} µs\n                   p50 / p99 / p99.9 / max, {} steps, {} late\n",
+                  times(run.step_time), run.cycles, run.deadline_misses);
+  text +=
+      fmt::format("optimisation       {} µs\n                   {:.1f} iterations, {} without an answer\n",
+                  times(run.solve_time), run.mean_iterations, run.not_usable);
   text += fmt::format("safety             {} fallbacks, {} commands changed by the gate\n", run.fallbacks,
                       run.gate_interventions);
   text += learned_line(run.learned);
