@@ -89,7 +89,7 @@ Rows sweep_rows(Options& o) {
 
 Rows league_rows(Options& o) {
   Options::League& league = o.league;
-  return {file_row("league", "LEAGUE.yaml", "League of who drives where (docs/league.md)", league.file),
+  return {file_row("league", "LEAGUE.yaml", "League of who drives where (docs/sweep.md)", league.file),
           output_row(o, "FILE.html", "Page to write; an older one is replaced"),
           {"--results", "FILE.jsonl",
            "File with a line for each run; one that is there is completed. LEAGUE.jsonl when left out",

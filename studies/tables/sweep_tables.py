@@ -9,9 +9,9 @@
     studies/tables/sweep_tables.py runs.jsonl sensors    docs/measured/latency.md: presets by latency of the sensors (studies/plans/sensor-latency.yaml)
     studies/tables/sweep_tables.py runs.jsonl race       docs/measured/racing.md: `race` with the guard on and off, and `default` (studies/plans/racing.yaml)
     studies/tables/sweep_tables.py runs.jsonl race_cars  docs/measured/racing.md: `race` with the other cars (studies/plans/racing-cars.yaml)
-    studies/tables/sweep_tables.py runs.jsonl waypoints  docs/racing_unknown.md: laps from waypoints alone (studies/plans/racing-waypoints.yaml)
-    studies/tables/sweep_tables.py runs.jsonl otherwise  docs/racing_unknown.md: another grip, mass, latency (studies/plans/racing-otherwise.yaml)
-    studies/tables/sweep_tables.py runs.jsonl noise      docs/racing_unknown.md: noisy sensors (studies/plans/racing-noise.yaml)
+    studies/tables/sweep_tables.py runs.jsonl waypoints  docs/measured/racing.md: laps from waypoints alone (studies/plans/racing-waypoints.yaml)
+    studies/tables/sweep_tables.py runs.jsonl otherwise  docs/measured/racing.md: another grip, mass, latency (studies/plans/racing-otherwise.yaml)
+    studies/tables/sweep_tables.py runs.jsonl noise      docs/measured/racing.md: noisy sensors (studies/plans/racing-noise.yaml)
     studies/tables/sweep_tables.py runs.jsonl maps       docs/measured/racing.md: a model car on maps (studies/plans/racing-maps.yaml)
     studies/tables/sweep_tables.py runs.jsonl guard      docs/measured/safety.md: presets with the guard on beside off (studies/plans/guard-presets.yaml)
 

@@ -121,7 +121,7 @@ TEST(Race, IsCleanForCarsThatTheModelDoesNotMatch) {
 }
 #endif
 
-// The road is learned in the first lap, with an assumed width (docs/racing_unknown.md).
+// The road is learned in the first lap, with an assumed width (docs/racing.md).
 TEST(Race, NeedsNoTrack) {
   const std::pair<const char*, const char*> races[] = {{"udacity", "lakeside"}, {"road-car", "oval"}};
   for (const auto& [car, track] : races) {
@@ -153,7 +153,7 @@ TEST(Race, IsRarelyStoppedBecauseOfNoise) {
   EXPECT_LT(run.guard_reasons[static_cast<std::size_t>(controller::GuardReason::kNoWayToStop)], 60U);
 }
 
-// docs/racing_unknown.md, Table 2: nobody told it how much grip there is.
+// docs/measured/racing.md: nobody told it how much grip there is.
 TEST(Race, LearnsTheGripWithoutLeavingTheRoad) {
   const std::pair<const char*, double> grips[] = {{"0.8", 24.4}, {"1.1", 22.0}};
   for (const auto& [grip, lap_time] : grips) {

@@ -13,7 +13,7 @@ namespace chicane::controller {
 
 /// The grip that a car is raced with when nobody is sure of it: of the model, which begins at what was told
 /// and follows what the tyres show, and of the plan, which is made for what may be relied on
-/// (docs/racing_unknown.md). Shares of the told grip. One thread; allocates nothing.
+/// (docs/racing.md). Shares of the told grip. One thread; allocates nothing.
 class LearnedGrip {
  public:
   static constexpr double kStep =

@@ -15,13 +15,13 @@ struct SmoothLine {
   std::vector<double> parameter;  ///< of each given point: arc length along the smooth line [m]
   double length = 0.0;            ///< [m]
   double spacing = 0.0;           ///< of the knots [m]
-  double smoothing_length = 0.0;  ///< ℓ, equation (1) of docs/road_from_points.md [m]
+  double smoothing_length = 0.0;  ///< ℓ, equation (1) of docs/tracks.md [m]
   double rms_deviation = 0.0;     ///< of the points from the line, across it [m]
   double max_deviation = 0.0;     ///< [m]
 };
 
 /// Penalised cubic B-spline r(s) that minimises Σ Δsᵢ |r(sᵢ) − pᵢ|² + ℓ^2m ∫ |r⁽ᵐ⁾|² ds over the distance s
-/// (docs/road_from_points.md, eq. 1; Eilers and Marx 1996). m is 3, and 2 where a gap is over four times the
+/// (docs/tracks.md, eq. 1; Eilers and Marx 1996). m is 3, and 2 where a gap is over four times the
 /// median of the seven around it. Wavelengths below about 2π ℓ are damped. ℓ is what `sigma` demands: noise
 /// of that size leaves 0.003 1/m of curvature noise (eq. 2). It shrinks (and the spacing with it) where the
 /// line would leave the points by more than their noise explains: rms > σ or any > 4 σ, with m = 2 any > 2 σ
@@ -33,7 +33,7 @@ struct SmoothLine {
                                              double sigma);
 
 /// Standard deviation of the points' noise across the line [m], at most 1, by leave-one-out cross-validation
-/// of (1) (docs/road_from_points.md, eq. 3): of the largest ℓ that predicts left-out points as well as the
+/// of (1) (docs/tracks.md, eq. 3): of the largest ℓ that predicts left-out points as well as the
 /// best one does, within a standard error. Pre: finite points, at least two different; spacing of the knots
 /// [m]. Allocates.
 [[nodiscard]] double estimate_noise(std::span<const Vec2> points, bool closed, double spacing);

@@ -17,7 +17,7 @@ struct PlantClockOptions {
   double lock_step = 0.0;     ///< time that the simulator advances with each answer [s]; 0: by its own clock
 };
 
-/// Time of the run of a car that another program simulates (docs/protocol.md, "The clock"). A
+/// Time of the run of a car that another program simulates (docs/protocol.md, "Time"). A
 /// displacement over its speed is the time that the simulator has advanced by. Over the last measurements of
 /// a car that drives it tells whether the simulator runs at a ratio of the wall's time, or in lock step: by
 /// the same time with each answer. Noise and delays of a busy machine change neither.

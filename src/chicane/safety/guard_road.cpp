@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The guard with the road that it knows: its line, and where the car is on it (docs/safety.md, "The road").
+// The guard with the road that it knows: its line, and where the car is on it (docs/safety.md, "Settings").
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -56,7 +56,7 @@ inline constexpr int kOriginalPort = 4567;
 /// Adds `command` as an entry of its own name, on all tracks, in all cars and disturbances.
 void add_external(League& league, const std::string& command);
 
-/// Reads a league (docs/league.md):
+/// Reads a league (docs/sweep.md):
 ///
 ///     name: mine against theirs
 ///     settings: {laps: 2, guard.mode: "off"}            # of all runs

@@ -9,7 +9,7 @@
 namespace chicane::tracking {
 
 /// How much grip the tyres have, over what is believed, by which grip predicts the next measurement better
-/// (docs/racing_unknown.md, eq. 1 to 5). Two estimators see the same measurements and commands, one with the
+/// (docs/racing.md, eq. 3 to 7). Two estimators see the same measurements and commands, one with the
 /// believed grip, one with a little less. What each did not expect is noise and the wrong grip; the noise is
 /// the same in both, so that their difference says what the grip does alone, and least squares over the last
 /// kMemory of cornering finds the share, without the bias of noise. How sure it is, is the larger of what
