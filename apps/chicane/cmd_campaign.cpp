@@ -210,10 +210,11 @@ Result<sweep::Campaign> campaign_of(const Options& options) {
 
 /// Says on stderr which places could not be driven, each once.
 void tell_errors(const std::vector<CampaignGroup>& groups) {
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   for (const CampaignGroup& group : groups) {
-    if (group.error.empty() || std::find(told.begin(), told.end(), group.error) != told.end()) continue;
-    told.push_back(group.error);
+    if (group.error.empty() || std::find(reported.begin(), reported.end(), group.error) != reported.end())
+      continue;
+    reported.push_back(group.error);
     fmt::print(stderr, "not tried: {}\n", group.error);
   }
 }

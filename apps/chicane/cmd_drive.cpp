@@ -37,7 +37,7 @@ bool stays_up(const Options& options) {
   return is_watched && !has_laps && !options.is_fast && !options.is_json;
 }
 
-/// The results of a run, which are told even when its recording failed.
+/// The results of a run, which are printed even when its recording failed.
 struct Outcome {
   telemetry::RunSummary summary;
   Result<void> kept;

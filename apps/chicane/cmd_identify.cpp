@@ -295,10 +295,10 @@ Result<std::string> car_for(const std::vector<identify::DriveLog>& logs, const s
 
 /// Logs of other programs do not say whose they are; recordings of ours are of the car of the settings.
 bool is_nobodys(const std::vector<identify::DriveLog>& logs, const Options& options) {
-  const bool is_told = std::any_of(options.settings.begin(), options.settings.end(),
-                                   [](const auto& each) { return each.first == "car"; });
-  return !is_told && std::none_of(logs.begin(), logs.end(),
-                                  [](const identify::DriveLog& log) { return log.is_centre_of_mass; });
+  const bool is_given = std::any_of(options.settings.begin(), options.settings.end(),
+                                    [](const auto& each) { return each.first == "car"; });
+  return !is_given && std::none_of(logs.begin(), logs.end(),
+                                   [](const identify::DriveLog& log) { return log.is_centre_of_mass; });
 }
 
 /// Wheels that are expected: those of the plant that the search begins with, where it has four.

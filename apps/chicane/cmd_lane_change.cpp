@@ -62,7 +62,7 @@ void print_row(const std::string& car, const std::string& preset, const Json& li
              why_not_faster(line));
 }
 
-/// The experiments of all runs; a mistake is told before anything is driven.
+/// The experiments of all runs; a mistake is reported before anything is driven.
 Result<std::vector<scenario::Scenario>> scenarios_of(const Options& options, const sweep::Plan& plan) {
   std::vector<scenario::Scenario> scenarios;
   for (std::uint64_t run = 0; run < plan.size(); ++run) {

@@ -26,14 +26,15 @@ Result<void> print_limit(const Options& options) {
   if (!options.csv_file.empty()) {
     if (Result<void> writable = check_writable(options.csv_file); !writable) return writable;
   }
-  LimitRun told{.track = track->name(), .car = scenario->car};
+  LimitRun limit_run{.track = track->name(), .car = scenario->car};
   const Result<lap_time::PlantLimit> limit =
-      limit_of(*scenario, *track, {.budget = options.limit_budget}, wants_stop, told.wall_time);
+      limit_of(*scenario, *track, {.budget = options.limit_budget}, wants_stop, limit_run.wall_time);
   if (!limit) return fail(limit.error());
   if (!options.csv_file.empty()) {
-    if (Result<void> kept = write_file(options.csv_file, to_csv(told, *track, *limit)); !kept) return kept;
+    if (Result<void> kept = write_file(options.csv_file, to_csv(limit_run, *track, *limit)); !kept)
+      return kept;
   }
-  fmt::print("{}", options.is_json ? to_json(told, *limit) : to_table(told, *limit));
+  fmt::print("{}", options.is_json ? to_json(limit_run, *limit) : to_table(limit_run, *limit));
   return {};
 }
 

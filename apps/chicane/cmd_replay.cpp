@@ -61,7 +61,7 @@ class Shown {
     return {};
   }
   [[nodiscard]] const std::vector<live::ServedLog>& logs() const { return logs_; }
-  /// Another future of one of them. Viewers are told names, not files.
+  /// Another future of one of them. Viewers get names, not files.
   [[nodiscard]] Result<recording::BranchReport> branch(const live::WhatIfQuestion& question,
                                                        const recording::BranchHooks& hooks) const {
     if (question.log >= logs_.size()) {

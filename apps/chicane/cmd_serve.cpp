@@ -17,10 +17,10 @@ namespace chicane::apps {
 namespace {
 
 /// The road of the simulator, where the command line says which; none where it does not.
-Result<std::optional<road::Track>> told_track(const Options& options, const scenario::Scenario& scenario) {
-  const bool is_told = std::any_of(options.settings.begin(), options.settings.end(),
-                                   [](const auto& setting) { return setting.first == "track"; });
-  if (!is_told) return std::optional<road::Track>{};
+Result<std::optional<road::Track>> chosen_track(const Options& options, const scenario::Scenario& scenario) {
+  const bool is_given = std::any_of(options.settings.begin(), options.settings.end(),
+                                    [](const auto& setting) { return setting.first == "track"; });
+  if (!is_given) return std::optional<road::Track>{};
   Result<road::Track> track = run::make_track(scenario);
   if (!track) return fail(track.error());
   return std::optional<road::Track>{std::move(*track)};
@@ -31,7 +31,7 @@ Result<wire::ServeSummary> serve_until_stopped(const Options& options) {
   let_interrupts_end();
   Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
-  Result<std::optional<road::Track>> track = told_track(options, *scenario);
+  Result<std::optional<road::Track>> track = chosen_track(options, *scenario);
   if (!track) return fail(track.error());
   return drive_external_car(
       options, std::move(*scenario), std::move(*track),

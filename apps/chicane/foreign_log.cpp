@@ -30,8 +30,8 @@ bool is_asked_for(const Options& options, std::string_view key) {
 
 std::string in_words(const identify::DriveLog& log, const road::Track* track, int laps, std::size_t frames) {
   std::string missing;
-  if (log.told.empty()) missing += ", no commands";
-  if (!log.told.empty() && !log.has_throttle()) missing += ", no pedal";
+  if (log.commands.empty()) missing += ", no commands";
+  if (!log.commands.empty() && !log.has_throttle()) missing += ", no pedal";
   if (track == nullptr) missing += ", no road (--track)";
   return fmt::format("{}: a log of another program, {:.1f} s, {} samples shown, {} laps{}", log.source,
                      log.samples.back().time - log.samples.front().time, frames, laps, missing);
@@ -67,7 +67,7 @@ Result<void> convert_foreign_log(const std::string& file, const Options& options
   // Odometry is of the rear axle, measurements of the centre of mass.
   const double ahead = log->is_centre_of_mass ? 0.0 : scenario->vehicle.rear_axle;
   const double begin = log->samples.front().time;
-  auto told = log->told.begin();
+  auto commands = log->commands.begin();
   telemetry::Frame frame;
   std::size_t frames = 0;
   int laps = 0;
@@ -77,8 +77,10 @@ Result<void> convert_foreign_log(const std::string& file, const Options& options
     if (time - last < kLeastStep) continue;
     if (frames > 0 && time - last > kPause) roadside.resume();
     last = time;
-    while (told != log->told.end() && told + 1 != log->told.end() && (told + 1)->time <= sample.time) ++told;
-    const bool is_told = told != log->told.end() && told->time <= sample.time;
+    while (commands != log->commands.end() && commands + 1 != log->commands.end() &&
+           (commands + 1)->time <= sample.time)
+      ++commands;
+    const bool has_command = commands != log->commands.end() && commands->time <= sample.time;
     frame = {};
     frame.cycle = frames++;
     frame.time = time;
@@ -87,8 +89,8 @@ Result<void> convert_foreign_log(const std::string& file, const Options& options
     frame.measurement.y = sample.y + ahead * sin(sample.psi);
     frame.measurement.psi = sample.psi;
     frame.measurement.speed = std::fabs(sample.speed);
-    frame.measurement.steer = is_told ? told->steer : kNaN;
-    frame.measurement.throttle = is_told ? told->throttle : kNaN;
+    frame.measurement.steer = has_command ? commands->steer : kNaN;
+    frame.measurement.throttle = has_command ? commands->throttle : kNaN;
     frame.result.command = {.steer = frame.measurement.steer, .throttle = frame.measurement.throttle};
     frame.asked = frame.applied = frame.result.command;
     roadside.judge(frame);

@@ -19,7 +19,7 @@
 namespace chicane::apps {
 namespace {
 
-/// Plans and limits are kept where the user's caches are, unless told otherwise.
+/// Plans and limits are kept where the user's caches are, unless --no-cache is given.
 void use_cache(const Options& options) {
   const std::string folder = options.uses_cache ? run::DiskCache::default_folder() : "";
   if (folder.empty()) return;

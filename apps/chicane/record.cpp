@@ -17,7 +17,7 @@ namespace chicane::apps {
 
 namespace {
 
-/// Better told before the run than after it.
+/// Checked before the run rather than after it.
 Result<void> can_be_reported(const std::string& file) {
   if (live::document_bundle().script.empty()) {
     return fail(
@@ -74,14 +74,14 @@ Result<void> KeptRun::finish() {
   if (!recorder_) return {};
   const Result<recording::RecorderReport> report = recorder_->finish();
   if (!report) return fail(report.error());
-  const std::string& told = temporary_ ? report_file_ : record_file_;
+  const std::string& main_file = temporary_ ? report_file_ : record_file_;
   if (!temporary_)
-    fmt::print(stderr, "{}: recorded {} steps, {:.1f} MB\n", told, report->frames,
+    fmt::print(stderr, "{}: recorded {} steps, {:.1f} MB\n", main_file, report->frames,
                1e-6 * static_cast<double>(report->bytes));
   if (report->left_out > 0)
-    fmt::print(stderr, "{}: the disk was too slow for {} steps\n", told, report->left_out);
+    fmt::print(stderr, "{}: the disk was too slow for {} steps\n", main_file, report->left_out);
   if (report->missing > 0)
-    fmt::print(stderr, "{}: {} steps are missing: the disk did not take them\n", told, report->missing);
+    fmt::print(stderr, "{}: {} steps are missing: the disk did not take them\n", main_file, report->missing);
   if (is_bag_) {
     if (const Result<void> written = recording::write_bag_metadata(record_file_); !written)
       return fail(written.error());

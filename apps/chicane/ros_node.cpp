@@ -25,30 +25,30 @@ namespace {
 std::atomic<bool> ros_stop{false};  // set by signals, whose handler outlives each run
 
 ros::NodeOptions node_of(const Options& options) {
-  const Options::Ros& told = options.ros;
+  const Options::Ros& given = options.ros;
   ros::NodeOptions node;
-  node.network = {.domain = told.domain, .interface = told.interface, .peers = told.peers};
-  node.topics.odom = told.odom_topic;
-  node.topics.drive = told.drive_topic;
-  node.topics.autoware = told.autoware_topic;
-  node.topics.path = told.path_topic;
-  node.topics.imu = told.imu_topic;
-  node.frames = {.map = told.map_frame, .odom = told.map_frame, .base = told.base_frame};
-  node.is_time_simulated = told.is_time_simulated;
-  node.pace = told.pace;
-  node.map_file = told.map_file;
-  node.drive = {.is_by_speed = told.drive_by == "speed", .speed_lead = told.speed_lead};
-  node.is_base_at_rear_axle = told.base_at == "rear-axle";
-  node.odom_qos.is_reliable = told.odom_qos == "reliable";
-  node.drive_qos.is_reliable = told.drive_qos == "reliable";
+  node.network = {.domain = given.domain, .interface = given.interface, .peers = given.peers};
+  node.topics.odom = given.odom_topic;
+  node.topics.drive = given.drive_topic;
+  node.topics.autoware = given.autoware_topic;
+  node.topics.path = given.path_topic;
+  node.topics.imu = given.imu_topic;
+  node.frames = {.map = given.map_frame, .odom = given.map_frame, .base = given.base_frame};
+  node.is_time_simulated = given.is_time_simulated;
+  node.pace = given.pace;
+  node.map_file = given.map_file;
+  node.drive = {.is_by_speed = given.drive_by == "speed", .speed_lead = given.speed_lead};
+  node.is_base_at_rear_axle = given.base_at == "rear-axle";
+  node.odom_qos.is_reliable = given.odom_qos == "reliable";
+  node.drive_qos.is_reliable = given.drive_qos == "reliable";
   return node;
 }
 
 /// The F1TENTH car, whose names the topics have, where neither a scenario nor an option chooses another.
 Options with_car(Options options) {
-  const bool is_told = std::any_of(options.settings.begin(), options.settings.end(),
-                                   [](const auto& setting) { return setting.first == "car"; });
-  if (!is_told) options.settings.insert(options.settings.begin(), {"car", "f1tenth"});
+  const bool is_given = std::any_of(options.settings.begin(), options.settings.end(),
+                                    [](const auto& setting) { return setting.first == "car"; });
+  if (!is_given) options.settings.insert(options.settings.begin(), {"car", "f1tenth"});
   return options;
 }
 
@@ -122,9 +122,9 @@ ExitCode simulate_node(const Options& options, const ros::NodeOptions& node) {
 
 }  // namespace
 
-ExitCode ros_node(const Options& told) {
-  if (told.ros.is_simulator) catch_interrupts(ros_stop);
-  const Options options = with_car(told);
+ExitCode ros_node(const Options& given) {
+  if (given.ros.is_simulator) catch_interrupts(ros_stop);
+  const Options options = with_car(given);
   const ros::NodeOptions node = node_of(options);
   if (const Result<void> sound = check_topics(node.topics); !sound) return report(sound.error());
   return options.ros.is_simulator ? simulate_node(options, node) : drive_node(options, node);

@@ -74,7 +74,7 @@ TEST(DriveLog, IsReadFromACsvFileWithoutAHeaderByPositions) {
   ASSERT_TRUE(logs) << logs.error().message;
   ASSERT_EQ(logs->size(), 1U);
   EXPECT_EQ(logs->front().samples.size(), 200U);
-  EXPECT_DOUBLE_EQ(logs->front().told.front().steer, 0.27);
+  EXPECT_DOUBLE_EQ(logs->front().commands.front().steer, 0.27);
   EXPECT_THAT(csv.refusal({.positions = {{0, "time"}, {1, "x"}}}), HasSubstr("expected a column y"));
   EXPECT_THAT(
       csv.refusal({.positions = {{0, "time"}, {1, "x"}, {2, "y"}, {3, "psi"}, {4, "speed"}, {9, "steer"}}}),
@@ -87,11 +87,11 @@ TEST(DriveLog, IsReadFromACsvFileWithAHeader) {
   ASSERT_EQ(logs->size(), 1U);
   const DriveLog& log = logs->front();
   ASSERT_EQ(log.samples.size(), 200U);
-  EXPECT_EQ(log.told.size(), 200U);
+  EXPECT_EQ(log.commands.size(), 200U);
   EXPECT_FALSE(log.has_throttle());
   EXPECT_FALSE(log.is_centre_of_mass);
   EXPECT_NEAR(log.samples[10].psi, 0.25, 1e-9);
-  EXPECT_NEAR(log.told[10].steer, 0.27, 1e-9);
+  EXPECT_NEAR(log.commands[10].steer, 0.27, 1e-9);
 }
 
 TEST(DriveLog, TakesUnitsFromTheNamesOfColumns) {
@@ -109,7 +109,7 @@ TEST(DriveLog, TakesUnitsFromTheNamesOfColumns) {
   EXPECT_NEAR(log.samples[20].time, 1.0, 1e-9);
   EXPECT_NEAR(log.samples[20].psi, 0.5, 1e-9);
   EXPECT_NEAR(log.samples[20].speed, 5.0, 1e-9);
-  EXPECT_NEAR(log.told[20].steer, 0.27, 1e-9);
+  EXPECT_NEAR(log.commands[20].steer, 0.27, 1e-9);
 }
 
 TEST(DriveLog, TakesColumnsByNameWhereTheyAreTold) {
@@ -180,13 +180,13 @@ void write_bag(const std::string& file, bool has_second_odometry) {
                std::remainder(angle, 6.283185307179586)};
     at.vx = 5.0;
     at.yaw_rate = 0.5;
-    const protocol::DriveMessage told{.stamp = stamp, .frame = "base_link", .steer = 0.27, .speed = 5.0};
+    const protocol::DriveMessage commands{.stamp = stamp, .frame = "base_link", .steer = 0.27, .speed = 5.0};
     const auto time = static_cast<std::uint64_t>(stamp);
     ASSERT_TRUE((*writer)->write(odom, time, time, protocol::encode(at)));
     if (has_second_odometry) {
       ASSERT_TRUE((*writer)->write(other, time, time, protocol::encode(at)));
     }
-    ASSERT_TRUE((*writer)->write(drive, time, time, protocol::encode(told)));
+    ASSERT_TRUE((*writer)->write(drive, time, time, protocol::encode(commands)));
   }
   ASSERT_TRUE((*writer)->close());
 }
@@ -216,7 +216,7 @@ TEST(DriveLog, IsReadFromABagOfOdometryAndCommands) {
   EXPECT_NEAR(log.samples[199].time, 9.95, 1e-9);
   EXPECT_NEAR(log.samples[199].psi, 4.975, 1e-9) << "not wrapped";
   EXPECT_NEAR(log.samples[10].yaw_rate, 0.5, 1e-12);
-  EXPECT_NEAR(log.told[10].steer, 0.27, 1e-6);
+  EXPECT_NEAR(log.commands[10].steer, 0.27, 1e-6);
   EXPECT_FALSE(log.is_centre_of_mass);
 
   write_bag(file, true);
@@ -275,8 +275,8 @@ TEST(SqliteBag, HasItsOdometryAndCommands) {
   EXPECT_NEAR(log->samples[5].psi, 0.5, 1e-9);
   EXPECT_NEAR(log->samples[5].x, 10.0 * std::sin(0.5), 1e-9);
   EXPECT_EQ(log->samples[5].speed, 10.0);
-  ASSERT_EQ(log->told.size(), 6U);
-  EXPECT_NEAR(log->told[2].steer, 0.03, 1e-7) << "a float";
+  ASSERT_EQ(log->commands.size(), 6U);
+  EXPECT_NEAR(log->commands[2].steer, 0.03, 1e-7) << "a float";
   EXPECT_FALSE(log->has_throttle());
   const auto two = read_plain_log(folder + "two_topics.db3", {});
   EXPECT_TRUE(two) << "messages that cannot be read are none";

@@ -34,7 +34,8 @@ DriveLog drive_log(const Settings& settings, double steer_offset = 0.0) {
     if (!log.samples.empty())
       psi = log.samples.back().psi + std::remainder(psi - log.samples.back().psi, 2.0 * kPi);
     log.samples.push_back({.time = m.time, .x = m.x, .y = m.y, .psi = psi, .speed = m.speed});
-    log.told.push_back({m.time, frame.result.command.steer - steer_offset, frame.result.command.throttle});
+    log.commands.push_back(
+        {m.time, frame.result.command.steer - steer_offset, frame.result.command.throttle});
   }
   return log;
 }
@@ -93,9 +94,9 @@ TEST(Identification, FindsTheCarThatDrove) {
 TEST(Identification, DoesNotPredictByCommandsThatDidNotDriveTheCar) {
   DriveLog log = drive_log({{"car", "road-car"}, {"track", "hairpins"}, {"laps", "1"}});
   std::vector<double> steer;
-  for (const Told& told : log.told) steer.push_back(told.steer);
+  for (const SentCommand& commands : log.commands) steer.push_back(commands.steer);
   for (std::size_t i = 0; i < steer.size(); ++i)
-    log.told[i].steer = -steer[(i + steer.size() / 3) % steer.size()];
+    log.commands[i].steer = -steer[(i + steer.size() / 3) % steer.size()];
   const auto found = identify({log}, guess(), {.hold_out = 0.3, .is_rough = true});
   ASSERT_TRUE(found) << found.error().message;
   EXPECT_FALSE(found->predicts()) << found->held_out[0].position << ' ' << found->held_out[0].kept_position;
@@ -120,7 +121,7 @@ TEST(Identification, FindsTyresAndYawInertiaNearTheLimit) {
 TEST(Identification, SaysThatTheModelLacksSomething) {
   DriveLog log = drive_log({{"car", "road-car"}, {"track", "oval"}, {"laps", "1"}});
   const auto right = identify({log}, guess(), {.hold_out = 0.0});
-  for (Told& told : log.told) told.steer += 0.02 * sin(1.5 * told.time);
+  for (SentCommand& commands : log.commands) commands.steer += 0.02 * sin(1.5 * commands.time);
   const auto wrong = identify({log}, guess(), {.hold_out = 0.0});
   ASSERT_TRUE(right && wrong);
   EXPECT_GT(wrong->correlation, kWrongModel);
@@ -137,7 +138,7 @@ TEST(Identification, SaysWhatTheLogDoesNotExcite) {
   for (int i = 0; i < 800; ++i) {
     const double t = 0.05 * i;
     log.samples.push_back({.time = t, .x = 20.0 * t, .y = 0.0, .psi = 0.0, .speed = 20.0});
-    log.told.push_back({t, 0.0, 0.1});
+    log.commands.push_back({t, 0.0, 0.1});
   }
   const auto found = identify({log}, guess(), {.hold_out = 0.3});
   ASSERT_TRUE(found) << found.error().message;
@@ -175,7 +176,7 @@ TEST(Identification, IsTheMirrorImageOfAMirroredLog) {
     sample.y = -sample.y;
     sample.psi = -sample.psi;
   }
-  for (Told& told : mirrored.told) told.steer = -told.steer;
+  for (SentCommand& commands : mirrored.commands) commands.steer = -commands.steer;
   const auto a = identify({log}, guess(), {.hold_out = 0.5});
   const auto b = identify({mirrored}, guess(), {.hold_out = 0.5});
   ASSERT_TRUE(a && b);
@@ -212,7 +213,7 @@ TEST(Identification, NeedsTenSecondsOfDriving) {
   DriveLog log{"short", {}, {}, true};
   for (int i = 0; i < 100; ++i) {
     log.samples.push_back({.time = 0.05 * i, .x = 1.0 * i, .y = 0.0, .psi = 0.0, .speed = 20.0});
-    log.told.push_back({0.05 * i, 0.0, 0.1});
+    log.commands.push_back({0.05 * i, 0.0, 0.1});
   }
   const auto found = identify({log}, guess(), {.hold_out = 0.0});
   ASSERT_FALSE(found);

@@ -18,9 +18,9 @@ using tracking::CommandHistory;
 using tracking::StateEstimator;
 
 constexpr double kPeriod = 0.04;
-constexpr double kTold = 0.1;  // [s] after which commands act, as told
+constexpr double kConfiguredDelay = 0.1;  // [s] after which commands act, as commanded
 
-/// How a car is otherwise than told, and the noise of what is measured.
+/// How a car is otherwise than commanded, and the noise of what is measured.
 struct Otherwise {
   double delay = 0.0, gain = 1.0, offset = 0.0, grip = 1.0;
   double place_noise = 0.0, heading_noise = 0.0;
@@ -57,15 +57,16 @@ class Weaving {
       const double before = estimator.answer().delay;
       if (estimator.take_up()) {
         ++taken_up;
-        told_.delay(estimator.answer().delay - before);
+        commanded_.delay(estimator.answer().delay - before);
       }
-      estimator.see(now, told_);
+      estimator.see(now, commanded_);
       const model::Command wanted{
           bends_are_alike ? most_ * sin(0.15 * time_) : most_ * (sin(1.3 * time_) + 0.5 * sin(4.1 * time_)),
           0.2};
       const model::Command sent = estimator.answer().command_for(wanted);
-      told_.add(time_ + kTold + estimator.answer().delay, sent);
-      acted_.add(time_ + kTold + truth_.delay, {truth_.gain * sent.steer + truth_.offset, sent.throttle});
+      commanded_.add(time_ + kConfiguredDelay + estimator.answer().delay, sent);
+      acted_.add(time_ + kConfiguredDelay + truth_.delay,
+                 {truth_.gain * sent.steer + truth_.offset, sent.throttle});
     }
   }
 
@@ -77,7 +78,7 @@ class Weaving {
   StateEstimator car_;
   Otherwise truth_;
   double most_;
-  CommandHistory told_, acted_;
+  CommandHistory commanded_, acted_;
   Random random_{1};
   double time_ = 0.0;
 };

@@ -13,7 +13,7 @@
 namespace chicane::safety {
 namespace {
 
-constexpr double kCycle = 0.04;  // [s] between measurements, unless another time is told
+constexpr double kCycle = 0.04;  // [s] between measurements, unless another time is commanded
 constexpr double kOnset = 5.0;   // [s] from which actuators answer otherwise
 
 /// A car that is steered to and fro by its model, with actuators that answer as `effect` says from kOnset on.
@@ -29,7 +29,7 @@ struct Drive {
   double speed = 12.0;           ///< [m/s]
   double swing = 1.3;            ///< frequency of the steering [rad/s]
   double jitter = 0.0;           ///< by which commands act late, at most [s]
-  ActuatorWatch::AxleUse use{};  ///< of the tyres, as the watch is told
+  ActuatorWatch::AxleUse use{};  ///< of the tyres, as the watch is commanded
 
   /// What the watch holds after `seconds`; `first`: when it differed first [s].
   ActuatorWatch after(double seconds, double* first = nullptr) const {
@@ -214,10 +214,10 @@ TEST(ActuatorWatch, JudgesNothingWhileNothingIsMeasured) {
 
 TEST(ActuatorAnswer, CommandsWhatHasTheWantedEffect) {
   const ActuatorAnswer answer{.gain = 0.5, .offset = 0.1};
-  const model::Command told = answer.command_for({0.2, -0.3});
-  EXPECT_DOUBLE_EQ(told.steer, 0.2);
-  EXPECT_DOUBLE_EQ(answer.effect_of(told).steer, 0.2);
-  EXPECT_EQ(told.throttle, -0.3);
+  const model::Command commanded = answer.command_for({0.2, -0.3});
+  EXPECT_DOUBLE_EQ(commanded.steer, 0.2);
+  EXPECT_DOUBLE_EQ(answer.effect_of(commanded).steer, 0.2);
+  EXPECT_EQ(commanded.throttle, -0.3);
 }
 
 }  // namespace

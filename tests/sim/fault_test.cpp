@@ -110,9 +110,9 @@ TEST(FaultLab, SwitchesOnForTheKindsOwnTimeAndOff) {
 TEST(FaultLab, ChangesNothingWhenNothingIsOn) {
   FaultLab lab({}, 1);
   lab.update(1.0);
-  const model::Measurement told = lab.seen(measurement());
-  EXPECT_EQ(told.x, 10.0);
-  EXPECT_EQ(told.waypoint_count, 6);
+  const model::Measurement measured = lab.seen(measurement());
+  EXPECT_EQ(measured.x, 10.0);
+  EXPECT_EQ(measured.waypoint_count, 6);
   EXPECT_TRUE(lab.is_delivered());
   EXPECT_EQ(lab.done({0.1, -0.2}).steer, 0.1);
   EXPECT_EQ(lab.done({0.1, -0.2}).throttle, -0.2);

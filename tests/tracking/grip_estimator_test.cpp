@@ -45,7 +45,7 @@ class Weaving {
     for (const double end = time_ + seconds; time_ < end;) {
       time_ += kPeriod;
       const model::Command command{.steer = most_ * sin(1.3 * time_), .throttle = 0.2};
-      told_.add(time_ - kPeriod, command);
+      commanded_.add(time_ - kPeriod, command);
       sent_.add(time_ - kPeriod + (jitter > 0.0 ? random_.uniform(0.0, jitter) : 0.0), command);
       const model::State car = truth_.predict(time_, sent_).state;
       model::Measurement now{.time = time_,
@@ -59,7 +59,7 @@ class Weaving {
       now.y += noise_.place * random_.normal();
       now.psi += noise_.heading * random_.normal();
       now.speed += noise_.speed * random_.normal();
-      estimator.see(now, told_);
+      estimator.see(now, commanded_);
     }
   }
   double jitter = 0.0;  ///< [s] by which a command acts later than told, at most
@@ -75,7 +75,7 @@ class Weaving {
   Noise noise_;
   double most_;
   Random random_;
-  CommandHistory sent_, told_;
+  CommandHistory sent_, commanded_;
   double time_ = 0.0;
 
  public:

@@ -5,7 +5,7 @@
 
 namespace chicane {
 
-/// A point, direction or force in a plane; two doubles, zero unless told otherwise. Each operation rounds as
+/// A point, direction or force in a plane; two doubles, zero by default. Each operation rounds as
 /// it is written in its components, from left to right.
 class Vec2 {
  public:

@@ -17,7 +17,7 @@ namespace {
 
 /// What a steering law looks at.
 struct View {
-  const road::Path& line;  ///< through the waypoints just told
+  const road::Path& line;  ///< through the waypoints just measured
   road::Projection here;   ///< nearest place to the centre of mass
   double heading_error;    ///< yaw minus the line's heading there [rad]
   const model::Measurement& now;

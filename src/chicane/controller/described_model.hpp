@@ -99,8 +99,8 @@ class RollForward {
   /// Other settings; a measured latency stays measured.
   void configure(LatencyHandling handling, double latency, double kinematic_length, double speed_unit = 1.0,
                  bool has_term = true) noexcept {
-    const bool is_told_anew = handling != handling_ || latency != first_latency_;
-    if (is_told_anew) latency_ = latency;
+    const bool is_other_car = handling != handling_ || latency != first_latency_;
+    if (is_other_car) latency_ = latency;
     handling_ = handling;
     first_latency_ = latency;
     kinematic_length_ = kinematic_length;

@@ -11,23 +11,23 @@
 
 namespace chicane::controller {
 
-/// The grip that a car is raced with when nobody is sure of it: of the model, which begins at what was told
+/// The grip that a car is raced with when nobody is sure of it: of the model, which begins as configured
 /// and follows what the tyres show, and of the plan, which is made for what may be relied on
-/// (docs/racing.md). Shares of the told grip. One thread; allocates nothing.
+/// (docs/racing.md). Shares of the configured grip. One thread; allocates nothing.
 class LearnedGrip {
  public:
   static constexpr double kStep =
       0.03;  ///< the model, and a plan upwards, follow where the grip differs by more
   static constexpr double kStepDown = 0.015;   ///< a plan downwards
-  static constexpr double kOtherGrip = 0.055;  ///< difference to the told grip that rules a slide out
+  static constexpr double kOtherGrip = 0.055;  ///< difference to the configured grip that rules a slide out
   static constexpr double kOtherCar = 0.03;    ///< sure difference of the estimate that does so for the run
   static constexpr double kSlidesOn = 0.01;    ///< more delay that a lap which slides may have [s]
 
-  explicit LearnedGrip(const model::PredictionModel& told) noexcept : estimator_{told} {}
+  explicit LearnedGrip(const model::PredictionModel& configured) noexcept : estimator_{configured} {}
 
-  /// Sets the told car. Takes some 0.1 ms (model::SlidingBound).
-  void tell(const model::VehicleParams& told) noexcept {
-    longest_delay_ = model::SlidingBound::longest_delay(told);
+  /// Sets the configured car. Takes some 0.1 ms (model::SlidingBound).
+  void configure(const model::VehicleParams& configured) noexcept {
+    longest_delay_ = model::SlidingBound::longest_delay(configured);
   }
   /// Nothing is known; begin() has to follow.
   void forget() noexcept {
@@ -61,8 +61,8 @@ class LearnedGrip {
   }
   /// Whether the tyres have shown anything yet.
   [[nodiscard]] bool is_shown() const noexcept { return is_shown_; }
-  /// Whether the car is so much what was told, and answered so soon and surely, that a lap planned for `grip`
-  /// may slide (docs/limit.md, eq. 19). `delay`: that is told, from a measurement to its command's
+  /// Whether the car is so close to its configuration, and answered so soon and surely, that a lap planned
+  /// for `grip` may slide (docs/limit.md, eq. 19). `delay`: assumed from a measurement to its command's
   /// effect [s]; `slides`: it does already.
   [[nodiscard]] bool may_slide(double grip, double delay, bool slides) const noexcept {
     const double answered = delay + estimator_.interval() + estimator_.unsure_time();
@@ -87,21 +87,21 @@ class LearnedGrip {
   [[nodiscard]] double unsure() const noexcept {
     return estimator_.is_known() ? 2.0 * share_ * estimator_.deviation() : unsure_;
   }
-  /// In hundredths. Nearly what was told is what was told: a car that is as believed ends with the plan that
-  /// it would have had without learning. A little more may be the model's error: `udacity`, which is as told,
-  /// shows 1.06 on circuits of 48 m/s (docs/measured/limit.md).
+  /// In hundredths. Nearly one is one: a car with the configured grip ends with the plan that
+  /// it would have had without learning. A little more may be the model's error: `udacity`, with its
+  /// configured grip, shows 1.06 on circuits of 48 m/s (docs/measured/limit.md).
   [[nodiscard]] static double rounded(double share) noexcept {
     constexpr double kLittleLess = 0.02, kLittleMore = 0.075;
-    const bool is_told = share >= 1.0 - kLittleLess && share <= 1.0 + kLittleMore;
-    return is_told ? 1.0 : std::floor(100.0 * share + 0.5) / 100.0;
+    const bool is_configured = share >= 1.0 - kLittleLess && share <= 1.0 + kLittleMore;
+    return is_configured ? 1.0 : std::floor(100.0 * share + 0.5) / 100.0;
   }
 
   tracking::GripEstimator estimator_;
-  double longest_delay_ = 0.0;  ///< longest with which the told car may slide [s]
+  double longest_delay_ = 0.0;  ///< longest with which the configured car may slide [s]
   double share_ = 1.0;
   double unsure_ = 0.0;  ///< two standard deviations of share_ when it was found
   bool is_shown_ = false;
-  bool is_other_ = false;  ///< the car has shown another grip than told
+  bool is_other_ = false;  ///< the car has shown another grip than configured
 };
 
 }  // namespace chicane::controller

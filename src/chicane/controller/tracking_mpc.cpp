@@ -44,20 +44,20 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
  public:
   TrackingMpc(const TrackingMpcOptions& options, const model::VehicleParams& vehicle)
       : options_{options},
-        told_{vehicle},
+        configured_{vehicle},
         model_{vehicle},
         road_{options.road(), vehicle},
         estimator_{model_},
         solver_{tracking::make_tracking_solver(kRacingTurns)} {
-    grip_.tell(told_);
+    grip_.configure(configured_);
     shape_raced();
   }
 
   void configure(const TrackingMpcOptions& options, const model::VehicleParams& vehicle) noexcept override {
     if (options.learns() != options_.learns()) grip_.forget();
     options_ = options;
-    if (!(vehicle == told_)) grip_.tell(vehicle);
-    told_ = vehicle;
+    if (!(vehicle == configured_)) grip_.configure(vehicle);
+    configured_ = vehicle;
     believe();
     grip_.begin(estimator_, model_);
   }
@@ -94,7 +94,8 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const bool goes_on = has_horizon_;
     road_.race_by(std::move(lap));
     shape_raced();
-    has_horizon_ = goes_on && move_to_line(line(), result_.plan, 2.0 * told_.width, kFarFromLine, horizon_);
+    has_horizon_ =
+        goes_on && move_to_line(line(), result_.plan, 2.0 * configured_.width, kFarFromLine, horizon_);
   }
 
   [[nodiscard]] LapWish wants_lap() const noexcept override {
@@ -104,7 +105,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const double planned = lap != nullptr ? lap->grip() : options_.first_grip();
     const double shown = grip_.is_shown() ? grip_.for_plan(planned) : planned;
     const bool is_known = lap != nullptr && !lap->is_learned();
-    const double grip = is_known ? shown : std::min(shown, 1.0);  // assumed edges: no more than told
+    const double grip = is_known ? shown : std::min(shown, 1.0);  // assumed edges: no more than configured
     const bool slides =
         options_.slide && is_known && grip_.may_slide(grip, result_.report.delay, lap->slides());
     return {.is_wanted = lap == nullptr || grip != planned || slides != lap->slides(),
@@ -114,7 +115,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   [[nodiscard]] double beside(const road::RacingRoad& lap) const noexcept override {
-    return beside_lap(lap, road_.lap(), result_.plan, 2.0 * told_.width, kFarFromLine);
+    return beside_lap(lap, road_.lap(), result_.plan, 2.0 * configured_.width, kFarFromLine);
   }
 
   void reset() noexcept override {
@@ -174,13 +175,13 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   /// Model, road and problem for options, vehicle and grip. What is driven at by a plan is in that plan;
-  /// without one, a car that has not shown its grip is driven with little of it, and with no more than told.
+  /// without one, a car that has not shown its grip is driven with little of it, at most the configured one.
   void believe() noexcept {
-    const model::VehicleParams car = model::with_grip(told_, grip_.share());
+    const model::VehicleParams car = model::with_grip(configured_, grip_.share());
     model_.set_vehicle(car);
     const double used =
         grip_.is_shown() || road_.is_raced() ? std::min(grip_.share(), 1.0) : options_.first_grip();
-    road_.configure(options_.road(), model::with_grip(told_, used));
+    road_.configure(options_.road(), model::with_grip(configured_, used));
     estimator_.set_model(model_);
     shape_problem();
   }
@@ -277,7 +278,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     } else {
       follow_line();
     }
-    if (road_.is_raced() && !(told_.friction_coupling > 0.0)) turns_ = kRacingTurns;
+    if (road_.is_raced() && !(configured_.friction_coupling > 0.0)) turns_ = kRacingTurns;
     if (road_.is_raced()) mind_helper_gap(problem_, horizon_, line(), s_);
     correct_first();
     act_time_ = act_time;
@@ -457,7 +458,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   TrackingMpcOptions options_;
-  model::VehicleParams told_;  ///< whose grip may differ from the model's
+  model::VehicleParams configured_;  ///< whose grip may differ from the model's
   model::PredictionModel model_;
   LearnedGrip grip_{model_};
   road::DrivenRoad road_;

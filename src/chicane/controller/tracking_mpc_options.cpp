@@ -42,7 +42,7 @@ constexpr std::array kOptions{
         "racing_line", "Race by the minimum-time line of the track, or of the road learned from waypoints."),
     option<&T::learn_grip>(
         "learn_grip",
-        "Race with the grip that the tyres have shown; the first plan has 0.6 of what was told."),
+        "Race with the grip that the tyres have shown; the first plan has 0.6 of the configured grip."),
     option<&T::slip_share>("slip_share", unit::kNone, 0.1, 2,
                            "Most slip of an axle in the plan to race by, over that of its peak force."),
     option<&T::slide>("slide",

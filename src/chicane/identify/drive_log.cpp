@@ -28,20 +28,20 @@ std::vector<DriveLog> parts_of(LogRows rows, const std::string& file) {
   std::vector<DriveLog> parts;
   const DriveLog empty{file, {}, {}, rows.is_centre_of_mass};
   DriveLog part = empty;
-  std::vector<Told> told = rows.told;
-  std::stable_sort(told.begin(), told.end(), earlier);
+  std::vector<SentCommand> commands = rows.commands;
+  std::stable_sort(commands.begin(), commands.end(), earlier);
   // Odometry has a place for the yaw rate also where nothing measures it: 0 throughout is none.
   const bool has_yaw_rate = std::any_of(rows.samples.begin(), rows.samples.end(),
                                         [](const Sample& each) { return each.yaw_rate != 0.0; });
   const auto finish = [&] {
     if (!part.samples.empty() && part.samples.back().time - part.samples.front().time >= kShortestLog) {
       // Commands from a second before, which may act still.
-      const auto from =
-          std::lower_bound(told.begin(), told.end(), Told{.time = part.samples.front().time - 1.0}, earlier);
-      const auto to =
-          std::upper_bound(told.begin(), told.end(), Told{.time = part.samples.back().time}, earlier);
-      part.told.assign(from, to);
-      if (!part.told.empty()) parts.push_back(std::move(part));
+      const auto from = std::lower_bound(commands.begin(), commands.end(),
+                                         SentCommand{.time = part.samples.front().time - 1.0}, earlier);
+      const auto to = std::upper_bound(commands.begin(), commands.end(),
+                                       SentCommand{.time = part.samples.back().time}, earlier);
+      part.commands.assign(from, to);
+      if (!part.commands.empty()) parts.push_back(std::move(part));
     }
     part = empty;
   };
@@ -99,8 +99,8 @@ struct Agreement {
         (turned * yawed >= 0.0 ? turned_left : turned_right) += std::min(std::fabs(turned), std::fabs(yawed));
       }
       last_course = course;
-      while (command + 1 < log.told.size() && log.told[command + 1].time <= a.time - 0.1) ++command;
-      const double steer = log.told[command].steer;
+      while (command + 1 < log.commands.size() && log.commands[command + 1].time <= a.time - 0.1) ++command;
+      const double steer = log.commands[command].steer;
       most_steer = std::max(most_steer, std::fabs(steer));
       (steer * yawed >= 0.0 ? steer_with : steer_against) += std::fabs(steer) * dt;
     }
@@ -202,13 +202,14 @@ Result<DriveLog> read_plain_log(const std::string& file, const LogOptions& optio
   std::erase_if(rows->samples, [](const Sample& each) {
     return !std::isfinite(each.time + each.x + each.y + each.psi + each.speed);
   });
-  std::erase_if(rows->told, [](const Told& each) { return !std::isfinite(each.time + each.steer); });
+  std::erase_if(rows->commands,
+                [](const SentCommand& each) { return !std::isfinite(each.time + each.steer); });
   const auto earlier = [](const auto& a, const auto& b) { return a.time < b.time; };
   std::stable_sort(rows->samples.begin(), rows->samples.end(), earlier);
-  std::stable_sort(rows->told.begin(), rows->told.end(), earlier);
+  std::stable_sort(rows->commands.begin(), rows->commands.end(), earlier);
   if (rows->samples.empty())
     return fail(ErrorCode::kParse, file + ": got no sample of a car, expected places and speeds");
-  return DriveLog{file, std::move(rows->samples), std::move(rows->told), rows->is_centre_of_mass};
+  return DriveLog{file, std::move(rows->samples), std::move(rows->commands), rows->is_centre_of_mass};
 }
 
 }  // namespace chicane::identify

@@ -9,7 +9,7 @@
 
 #include "chicane/base/result.hpp"
 
-/// Logs of driving: where a car was and what it was told, without the program that drove it.
+/// Logs of driving: a car's positions and the commands sent to it, without the program that drove it.
 namespace chicane::identify {
 
 /// Where the car was, in axes with x forward, y left and yaw positive to the left (docs/notation.md).
@@ -22,8 +22,8 @@ struct Sample {
   double yaw_rate = std::numeric_limits<double>::quiet_NaN();  ///< [rad/s]; NaN: not measured
 };
 
-/// What the car was told, until the next one.
-struct Told {
+/// Command sent to the car; acts until the next one.
+struct SentCommand {
   double time = 0.0;   ///< when it was sent [s], by the clock of the samples
   double steer = 0.0;  ///< road-wheel angle [rad], left positive
   double throttle = std::numeric_limits<double>::quiet_NaN();  ///< [-1, 1]; NaN: the log has no pedal
@@ -33,10 +33,10 @@ struct Told {
 struct DriveLog {
   std::string source;  ///< file, for messages
   std::vector<Sample> samples;
-  std::vector<Told> told;
+  std::vector<SentCommand> commands;
   bool is_centre_of_mass = false;  ///< of the reference point; else where it lies is to be found
   [[nodiscard]] bool has_throttle() const noexcept {
-    return !told.empty() && told.front().throttle == told.front().throttle;
+    return !commands.empty() && commands.front().throttle == commands.front().throttle;
   }
 };
 

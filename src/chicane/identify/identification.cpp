@@ -64,7 +64,7 @@ DriveLog full_size(DriveLog log, const model::Similarity& to) {
     sample.speed *= to.speed();
     sample.yaw_rate /= to.time();
   }
-  for (Told& told : log.told) told.time *= to.time();
+  for (SentCommand& commands : log.commands) commands.time *= to.time();
   return log;
 }
 
@@ -272,11 +272,12 @@ void thin(std::vector<Window>& windows, std::size_t most) {
   }
 }
 
-/// `logs` are in full size, `told` is as the car is.
-Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, const model::VehicleParams& told,
+/// `logs` are in full size; `configured` is the car in its own size.
+Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
+                                          const model::VehicleParams& configured,
                                           const IdentifyOptions& options) {
-  const model::Similarity similarity(told);
-  const model::VehicleParams start = similarity.full_size(told);
+  const model::Similarity similarity(configured);
+  const model::VehicleParams start = similarity.full_size(configured);
   Wheels wheels = options.wheels;
   wheels.relaxation *= similarity.length();
   wheels.load_lag *= similarity.time();
@@ -331,7 +332,7 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs, con
   found.loss = fit.loss;
   found.correlation = fit.correlation;
   const Car car = beliefs.car(fit.theta);
-  Car as_it_is{.vehicle = told, .wheels = options.wheels};
+  Car as_it_is{.vehicle = configured, .wheels = options.wheels};
   for (std::size_t i = 0; i < rows.size(); ++i)
     rows[i].put(as_it_is, rows[i].per_full_size * value_of(rows[i], fit.theta[i]));
   found.vehicle = as_it_is.vehicle;
@@ -393,8 +394,8 @@ double turning_wheelbase(const std::vector<DriveLog>& logs) {
       while (ahead + 1 < log.samples.size() && log.samples[ahead].time < at.time + kSpan) ++ahead;
       const Sample& next = log.samples[ahead];
       const double middle = 0.5 * (at.time + next.time);
-      while (command + 1 < log.told.size() && log.told[command + 1].time <= middle - kLate) ++command;
-      const double steer = log.told[command].steer;
+      while (command + 1 < log.commands.size() && log.commands[command + 1].time <= middle - kLate) ++command;
+      const double steer = log.commands[command].steer;
       if (next.time - at.time < 0.5 * kSpan || std::fabs(steer) < kLeastSteer) continue;
       const double yaw_rate = (next.psi - at.psi) / (next.time - at.time);
       const double speed = 0.5 * (at.speed + next.speed);

@@ -98,7 +98,7 @@ struct IdentifyOptions {
   double hold_out = 0.3;  ///< share of each log, at its end, kept for the prediction errors, in [0, 0.8]
   bool is_rough = false;  ///< few stretches and steps: enough to compare cars to begin with by their loss
   Wheels wheels{};        ///< of the car that `start` is of: what to expect
-  /// Is told the share done, and ends the search by returning false: the best so far is the result.
+  /// Called with the share done; false ends the search, and the best so far is the result.
   std::function<bool(double)> progress = [](double) { return true; };
 };
 

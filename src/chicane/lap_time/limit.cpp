@@ -54,14 +54,15 @@ std::vector<double> corner_times(const road::Track& track, const road::RacingLin
 }
 
 Limit bound_from_start(const road::Track& track, const PlantLimit& limit) {
-  Limit told{.times = limit.bound, .line = {}};
-  if (limit.line.is_empty()) return told;
-  told.line = road::line_points(track, beginning_at(limit.line, track.centre().wrap(track.start_s())));
-  for (std::size_t i = 1; i < told.line.size(); ++i)  // continuous across the beginning of the centre line
-    told.line[i].heading =
-        told.line[i - 1].heading + angle_difference(told.line[i].heading, told.line[i - 1].heading);
-  told.times.corners = corner_times(track, limit.line);
-  return told;
+  Limit from_start{.times = limit.bound, .line = {}};
+  if (limit.line.is_empty()) return from_start;
+  from_start.line = road::line_points(track, beginning_at(limit.line, track.centre().wrap(track.start_s())));
+  for (std::size_t i = 1; i < from_start.line.size();
+       ++i)  // continuous across the beginning of the centre line
+    from_start.line[i].heading = from_start.line[i - 1].heading +
+                                 angle_difference(from_start.line[i].heading, from_start.line[i - 1].heading);
+  from_start.times.corners = corner_times(track, limit.line);
+  return from_start;
 }
 
 }  // namespace chicane::lap_time

@@ -59,7 +59,7 @@ struct PlantLimitOptions {
   int laps = 4;  ///< of the witness, after a flying start
   /// Work after which the best lap so far is the answer (PlanProgress) [s], > 0.
   double budget = std::numeric_limits<double>::infinity();
-  /// Told how far it has come, and the lap time, after each iteration; false ends the search. May be empty.
+  /// Called with the progress, and the lap time, after each iteration; false ends the search. May be empty.
   std::function<bool(std::string_view stage, int iteration, double lap_time)> go_on{};
   std::function<void(const PlanProgress&)> on_progress{};  ///< of the optimum; may be empty
 };

@@ -25,7 +25,7 @@ struct RacingPlanOptions {
   double time_step = 0.08;                            ///< between nodes, about [s]; [0.01, 0.2]
   /// Work after which the best plan so far is the answer (PlanProgress) [s], > 0. The same on every machine.
   double budget = std::numeric_limits<double>::infinity();
-  /// Told how far it has come, and the lap time, after each iteration; false ends the search. May be empty.
+  /// Called with the progress, and the lap time, after each iteration; false ends the search. May be empty.
   std::function<bool(int iteration, double lap_time)> go_on{};
   std::function<void(const PlanProgress&)> on_progress{};  ///< after each iteration; may be empty
 };

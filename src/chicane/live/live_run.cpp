@@ -20,7 +20,7 @@ wire::ViewerServices services(run::RunControls& controls, WhatIf& what_if, Rival
   return services;
 }
 
-/// What viewers are told of a run that begins now.
+/// What viewers get of a run that begins now.
 protocol::Run live_description(const run::ClosedLoop& loop) {
   protocol::Run run = description(loop);
   run.limit = RunLimit::first_answer(loop.track());
@@ -124,7 +124,7 @@ telemetry::RunSummary LiveRun::drive() {
                             .on_change = [&](const telemetry::Change& change) { publisher_->change(change); },
                             .on_over =
                                 [&] {
-                                  if (!publisher_->has_told_end()) publisher_->end(loop_->summary());
+                                  if (!publisher_->has_reported_end()) publisher_->end(loop_->summary());
                                 }};
   for (;;) {
     telemetry::RunSummary summary = run::run_realtime(

@@ -324,7 +324,7 @@ Result<void> LiveSettings::send(const run::Setting& setting) {
 
 std::vector<telemetry::Change> LiveSettings::applied() {
   std::vector<telemetry::Change> changes;
-  while (const telemetry::Change* change = told_.front()) {
+  while (const telemetry::Change* change = announced_.front()) {
     // Faults end by themselves; everything else was asked for here.
     const auto value = control_values_.find(change->name.view());
     if (value != control_values_.end() && value->first.starts_with("fault.")) {
@@ -334,7 +334,7 @@ std::vector<telemetry::Change> LiveSettings::applied() {
     // Its description is from when it was built.
     if (change->starts_anew && options_.on_accepted) options_.on_accepted(scenario_);
     changes.push_back(*change);
-    told_.pop();
+    announced_.pop();
   }
   return changes;
 }

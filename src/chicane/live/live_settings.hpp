@@ -69,7 +69,7 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
 
   /// The control thread: a change was applied, or happened by itself. Never waits; when update() has not been
   /// called for long, viewers do not hear of it.
-  void tell(const telemetry::Change& change) noexcept { static_cast<void>(told_.push(change)); }
+  void tell(const telemetry::Change& change) noexcept { static_cast<void>(announced_.push(change)); }
   [[nodiscard]] std::vector<telemetry::Change> applied() override;
   [[nodiscard]] std::vector<protocol::foxglove::Parameter> news() override;
   /// Hands the run that has been built over, where there is one and the queue has room.
@@ -111,14 +111,14 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
 
   LiveSettingsOptions options_;
   run::SettingQueue& requests_;
-  run::ChangeQueue told_;
+  run::ChangeQueue announced_;
   scenario::Scenario scenario_;
   scenario::Scenario base_;   ///< what its preset gives with its car
   scenario::Scenario start_;  ///< what the run started with
   std::optional<Building> building_;
   std::vector<protocol::Control> controls_;
   std::map<std::string, protocol::Value, std::less<>> control_values_;
-  std::vector<protocol::foxglove::Parameter> shown_;  ///< as news() told last
+  std::vector<protocol::foxglove::Parameter> shown_;  ///< as news() reported last
   bool has_news_ = false;
   std::uint64_t runs_ = 0;  ///< that have been handed over
   std::vector<std::string> complaints_;

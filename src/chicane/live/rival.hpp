@@ -55,8 +55,8 @@ class LapNoter {
 /// run begins with other choices, or when the rival is lost.
 class Rival {
  public:
-  static constexpr std::size_t kMostLaps = 100;  ///< told of each car, the newest
-  static constexpr std::size_t kTrace = 125;     ///< poses told of the rival, the newest: five seconds
+  static constexpr std::size_t kMostLaps = 100;  ///< reported of each car, the newest
+  static constexpr std::size_t kTrace = 125;     ///< poses reported of the rival, the newest: five seconds
 
   /// `log` outlives this. `begin_anew` is called on the rival's thread when it is ready: both begin at the
   /// line.

@@ -79,10 +79,10 @@ void RunLimit::follow(const scenario::Scenario& now, const telemetry::Frame& fra
     searched.friction_scale = asked.friction_scale;
     searched.mass_scale = asked.mass_scale;
     first_lap_ = frame.begins ? 1 : frame.lap + kNext;
-    const bool is_told = begins_at_.has_value();
+    const bool is_announced = begins_at_.has_value();
     retire();
     begins_at_ = Clock::now() + kSettle;
-    if (!is_told) tell({.why_not = kChanged, .first_lap = first_lap_});
+    if (!is_announced) tell({.why_not = kChanged, .first_lap = first_lap_});
   }
   if (begins_at_ && Clock::now() >= *begins_at_) begin();
 }

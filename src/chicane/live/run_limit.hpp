@@ -19,7 +19,7 @@
 
 namespace chicane::live {
 
-/// The limit of the run that goes on, whoever drives and whoever simulates: searched beside it, told to
+/// The limit of the current run, whoever drives and whoever simulates: searched in parallel, sent to
 /// viewers and recordings when it is known, and set beside the laps at the end. One thread, the control
 /// thread, but for `on_news`.
 class RunLimit {
@@ -34,7 +34,7 @@ class RunLimit {
   /// empty. It must stay callable as long as this lives.
   explicit RunLimit(std::function<void(const lap_time::LimitAnswer&)> on_news = {});
 
-  /// What viewers are told of a run on this road until there are news. An open road has no laps, nor a limit.
+  /// What viewers get of a run on this road until there are news. An open road has no laps, nor a limit.
   [[nodiscard]] static lap_time::LimitAnswer first_answer(const road::Track& track);
   /// Another run: gives up the one before, and begins to search where the road is closed. Does not wait.
   void search(const road::Track& track, const scenario::Scenario& scenario);

@@ -44,7 +44,7 @@ RunPublisher::RunPublisher(wire::ViewerEndpoint& viewer, LiveSettings& settings,
     : viewer_{viewer}, settings_{settings}, to_{std::move(listeners)}, faults_{protocol::fault_controls()} {}
 
 void RunPublisher::frame(const telemetry::Frame& frame) {
-  if (frame.begins && frame.cycle == 0) has_told_end_ = false;
+  if (frame.begins && frame.cycle == 0) has_reported_end_ = false;
   record_limit();
   if (to_.recorder != nullptr) to_.recorder->record(frame);
   if (to_.log != nullptr) to_.log->note(frame);
@@ -63,7 +63,7 @@ void RunPublisher::lap(const telemetry::CompletedLap& lap) {
 
 /// Faults that began or ended by themselves, as changes.
 void RunPublisher::tell_faults(const telemetry::Frame& frame) {
-  const std::uint32_t changed = frame.active_faults ^ told_faults_;
+  const std::uint32_t changed = frame.active_faults ^ reported_faults_;
   for (std::size_t i = 0; i < faults_.size() && changed != 0U; ++i) {
     if ((changed >> i & 1U) == 0U) continue;
     const bool is_on = (frame.active_faults >> i & 1U) != 0U;
@@ -78,7 +78,7 @@ void RunPublisher::change(const telemetry::Change& change) {
   for (std::size_t i = 0; i < faults_.size(); ++i) {
     if (faults_[i].key != change.name.view()) continue;
     const bool is_on = change.value.view() != "false";
-    told_faults_ = (told_faults_ & ~(1U << i)) | (is_on ? 1U << i : 0U);
+    reported_faults_ = (reported_faults_ & ~(1U << i)) | (is_on ? 1U << i : 0U);
   }
   if (to_.recorder != nullptr) to_.recorder->record(change);
   if (to_.log != nullptr) to_.log->note(change);
@@ -105,7 +105,7 @@ void RunPublisher::compare(telemetry::RunSummary& summary, const std::atomic<boo
 }
 
 bool RunPublisher::end(const telemetry::RunSummary& summary) {
-  if (std::exchange(has_told_end_, true)) return false;
+  if (std::exchange(has_reported_end_, true)) return false;
   if (summary.completed || summary.laps_wanted == 0) {
     viewer_.set_end(summary.completed ? "finished" : "stopped",
                     summary.completed ? "" : "stopped by its operator");

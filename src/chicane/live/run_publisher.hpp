@@ -59,7 +59,7 @@ class RunPublisher {
   void change(const telemetry::Change& change);
   /// The run is over: tells viewers why, and gives true, the first time. A run that is driven on stays over.
   bool end(const telemetry::RunSummary& summary);
-  [[nodiscard]] bool has_told_end() const { return has_told_end_; }
+  [[nodiscard]] bool has_reported_end() const { return has_reported_end_; }
   /// Compares the laps of a run that has ended with its limit, and records the limit. Waits for it as
   /// RunLimit::compare() does, until `wants_stop`. Pre: there is a limit.
   void compare(telemetry::RunSummary& summary, const std::atomic<bool>& wants_stop);
@@ -76,8 +76,8 @@ class RunPublisher {
   LiveSettings& settings_;
   RunListeners to_;
   const std::vector<protocol::Control> faults_;
-  std::uint32_t told_faults_ = 0;  ///< bits, as viewers know them
-  bool has_told_end_ = false;
+  std::uint32_t reported_faults_ = 0;  ///< bits, as viewers know them
+  bool has_reported_end_ = false;
   double time_ = 0.0;
 };
 

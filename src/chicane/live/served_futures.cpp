@@ -152,7 +152,7 @@ Result<recording::BranchReport> ServedFutures::branch(const recording::BranchOpt
   const auto from = std::make_shared<recording::ShadowRun>();
   if (Result<void> begun = follow(*from, scenario, seen, known->at); !begun) return fail(begun.error());
   recording::BranchOptions from_there = options;
-  from_there.at = seen[known->at].time + 1.0;  // behind all that is told: the futures begin where it ends
+  from_there.at = seen[known->at].time + 1.0;  // behind all that is recorded: the futures begin where it ends
   from_there.drives_both = true;
   from_there.from = from;
   const recording::RunEvents nothing = [](const auto&) { return Result<void>{}; };

@@ -20,7 +20,7 @@
 
 namespace chicane::live {
 
-/// Serves a car that is not ours until it is told to stop: wire::serve, or the same in another dialect
+/// Serves a car of another simulator until it is stopped: wire::serve, or the same in another dialect
 /// (ros/drive_node.hpp). The hooks are called on one thread, but for `log`.
 using ServeFunction = std::function<Result<wire::ServeSummary>(
     const wire::ServeOptions&, std::unique_ptr<controller::Controller>, wire::ServeHooks, wire::Endpoint*,

@@ -8,7 +8,7 @@
 
 namespace chicane::model {
 
-/// What a controller is told in one cycle: exactly what the original simulator's telemetry holds, in our axes
+/// Input of a controller in one cycle: exactly what the original simulator's telemetry holds, in our axes
 /// and units.
 struct Measurement {
   static constexpr int kMaxWaypoints = 32;

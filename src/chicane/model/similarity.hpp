@@ -46,7 +46,7 @@ class Similarity {
     return car;
   }
 
-  /// What the controller of the car in full size is told.
+  /// The measurement for the controller of the car in full size.
   [[nodiscard]] Measurement full_size(Measurement seen) const noexcept {
     seen.time *= time_;
     seen.x *= length_;

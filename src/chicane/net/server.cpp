@@ -186,7 +186,7 @@ class WebSocket : public std::enable_shared_from_this<WebSocket> {
       return fmt::format("sent a message of more than {} bytes", core_.options.max_message);
     if (ec == beast::error::timeout)
       return fmt::format("silent for {} ms", core_.options.idle_timeout.count());
-    if (ec == asio::error::bad_descriptor) return "broke a rule and did not hang up when told";
+    if (ec == asio::error::bad_descriptor) return "broke a rule and did not hang up when asked";
     return ec == asio::error::eof ? "connection ended without a close frame" : ec.message();
   }
 

@@ -224,7 +224,7 @@ constexpr std::array kReasons{
 const controller::LearnedCar& learned(const Frame& frame) { return frame.result.report.learned; }
 
 constexpr std::array kLearned{
-    field<double>("learned_delay_s", "by which commands act later than told",
+    field<double>("learned_delay_s", "by which commands act later than configured",
                   [](const Frame& f) { return learned(f).delay.value; }),
     field<double>("learned_delay_sd_s", "its standard deviation",
                   [](const Frame& f) { return learned(f).delay.deviation; }),
@@ -236,7 +236,7 @@ constexpr std::array kLearned{
                   [](const Frame& f) { return learned(f).offset.value; }),
     field<double>("learned_steer_offset_sd_rad", "its standard deviation",
                   [](const Frame& f) { return learned(f).offset.deviation; }),
-    field<double>("learned_grip", "of the tyres, share of the told one",
+    field<double>("learned_grip", "of the tyres, share of the configured one",
                   [](const Frame& f) { return learned(f).grip.value; }),
     field<double>("learned_grip_sd", "its standard deviation",
                   [](const Frame& f) { return learned(f).grip.deviation; }),
@@ -267,8 +267,8 @@ constexpr std::array kSolver{
 constexpr std::array kGroups{
     FrameGroup{"", kTime},
     FrameGroup{"Motion of the centre of mass; map is the world, yaw 0 along its x axis", kMotion},
-    FrameGroup{"What the controller was told: the measurement as it came in", kMeasured},
-    FrameGroup{"On the road, judged by our simulator, or from what was measured where the track was told; "
+    FrameGroup{"Input of the controller: the measurement as it came in", kMeasured},
+    FrameGroup{"On the road, judged by our simulator, or from what was measured where the track is known; "
                "else not-a-number",
                kRoad},
     FrameGroup{

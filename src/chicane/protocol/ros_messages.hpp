@@ -20,8 +20,8 @@
 
 namespace chicane::protocol {
 
-/// The road as polylines in W [m], for drawing. A closed road repeats its first point. Empty where nobody
-/// told us.
+/// The road as polylines in W [m], for drawing. A closed road repeats its first point. Empty where the road
+/// is not known.
 struct RoadLines {
   std::vector<Vec2> centre;
   std::vector<Vec2> left;
@@ -56,7 +56,7 @@ struct Run {
   double kerb_width = 0.0;            ///< [m]
   RoadLines road;
   lap_time::LimitAnswer limit{};
-  telemetry::LapSetup lap_setup{};  ///< of the lap that is told next
+  telemetry::LapSetup lap_setup{};  ///< of the lap that is reported next
   std::string building{};    ///< another run that is being built, in words: "track = oval"; empty: none
   std::string end{};         ///< "finished", "stopped" or "failed"; empty: it goes on
   std::string end_reason{};  ///< why it is over, in one sentence; empty when it finished

@@ -35,10 +35,9 @@ auto run_options() {
                        "Laps to drive, the first from standstill; 0 drives until stopped."),
       option<&S::seed>("seed", unit::kNone, 0, 9007199254740992.0, "Seed of everything random."),
       option<&S::latency>("latency", unit::kMillisecond, 0, 500, "Actuation delay of the simulated car."),
-      option<&S::latency_jitter>(
-          "latency_jitter", unit::kMillisecond, 0, 500,
-          "Random delay of each command on top, evenly distributed from 0 to this; the "
-          "controller is not told."),
+      option<&S::latency_jitter>("latency_jitter", unit::kMillisecond, 0, 500,
+                                 "Random delay of each command on top, evenly distributed from 0 to this; "
+                                 "unknown to the controller."),
       option<&S::friction_low>(
           "friction_low", unit::kNone, 0, 5,
           "Friction that the car is known to have at least, which a race is planned with; 0 where it is not "

@@ -14,7 +14,7 @@
 
 namespace chicane::protocol {
 
-/// What one control step was told and what it sent, to the last bit: enough to compute it again.
+/// Input and output of one control step, to the last bit: enough to compute it again.
 struct Step {
   std::uint64_t cycle = 0;
   model::Measurement measurement;
@@ -26,7 +26,7 @@ struct Step {
   bool begins = false;                     ///< a run begins: controller and gate have forgotten everything
   bool has_measurement = true;             ///< false: what came was unusable, the controller was not asked
   std::optional<model::Command> manual{};  ///< a person's command, sent in the controller's place
-  double gate_interval = 0.0;              ///< as the gate was told [s]
+  double gate_interval = 0.0;              ///< since the command before, by the gate's clock [s]
   std::uint32_t deadline_spent_at = 0;     ///< DeadlineLog::spent_at
 };
 

@@ -78,7 +78,7 @@ class FutureMeter {
       start_ = frame.time;
       events_ = frame.off_track_events;
     }
-    // What the car did, not what it was told: sensors may fail.
+    // The car's true motion, not the measured one: sensors may fail.
     const double speed = frame.has_truth ? hypot(frame.truth.vx, frame.truth.vy) : frame.measurement.speed;
     future_.duration = frame.time - start_;
     future_.max_lateral_error = std::max(future_.max_lateral_error, std::fabs(frame.lateral_error));

@@ -100,9 +100,9 @@ class DriveNode {
   }
 
   run::ExternalDriveHooks with_laps_published(run::ExternalDriveHooks hooks) {
-    hooks.on_lap = [this, told = std::move(hooks.on_lap)](const telemetry::CompletedLap& lap) {
+    hooks.on_lap = [this, on_lap = std::move(hooks.on_lap)](const telemetry::CompletedLap& lap) {
       publisher_->publish(lap);
-      if (told) told(lap);
+      if (on_lap) on_lap(lap);
     };
     return hooks;
   }

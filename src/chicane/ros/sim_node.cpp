@@ -312,13 +312,13 @@ class SimNode {
     if (is_forsaken && !is_forsaken_ && speed > standing_) {
       ++report_.stops;
       log_.say(fmt::format("no command in time: the car is stopped from {:.1f} m/s", speed));
-      is_told_standing_ = false;
+      is_standing_reported_ = false;
     }
     if (!is_forsaken && is_forsaken_)
       log_.say(fmt::format("commands again at {:.1f} m/s", plant_.output().speed));
     is_forsaken_ = is_forsaken;
-    if (!is_forsaken || is_told_standing_ || plant_.output().speed >= standing_) return;
-    is_told_standing_ = true;
+    if (!is_forsaken || is_standing_reported_ || plant_.output().speed >= standing_) return;
+    is_standing_reported_ = true;
     const double edge = world_.state().edge_distance;
     log_.say(fmt::format("the car stands, its outermost wheel {:.2f} m {} the road's edge", std::fabs(edge),
                          edge < 0.0 ? "beyond" : "inside"));
@@ -454,7 +454,7 @@ class SimNode {
   double arrived_ = 0.0;                                        ///< the last command [s]
   model::Command applied_;
   bool is_forsaken_ = false;
-  bool is_told_standing_ = true;  ///< nothing more to say about the stop
+  bool is_standing_reported_ = true;  ///< nothing more to say about the stop
 };
 
 }  // namespace

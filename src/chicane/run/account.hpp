@@ -15,7 +15,7 @@
 
 namespace chicane::run {
 
-/// What the account of a run is told of it beforehand.
+/// What the account of a run has to know beforehand.
 struct AccountTerms {
   std::string track{}, car{}, controller{}, preset{};  ///< names in the report
   std::vector<road::Corner> corners{};                 ///< of the track

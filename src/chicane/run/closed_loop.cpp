@@ -79,7 +79,7 @@ void ClosedLoop::restart() {
   world_.place(track_.start_s(), track_.start_d());
   cycle_.begin();
   in_flight_.reset({});
-  told_act_time_ = -std::numeric_limits<double>::infinity();
+  configured_act_time_ = -std::numeric_limits<double>::infinity();
   manual_.restart();
   faults_.reset();
   receiver_.reset();
@@ -189,14 +189,14 @@ model::Command ClosedLoop::acting() noexcept {
   return command;
 }
 
-/// What the controller is told now.
+/// The controller's measurement now.
 model::Measurement ClosedLoop::measure() noexcept {
   model::Measurement now = sensor_.sample(time(), *plant_);
   sim::select_waypoints(waypoints_, {now.x, now.y, now.psi}, scenario_.waypoints_sent, now);
   now = faults_.seen(now);
   if (interceptor_.measured) interceptor_.measured(now);
   // Commands act in the order they are sent: behind a latency that has just been shortened they still wait.
-  now.delay = std::max(scenario_.latency + step_time_, told_act_time_ - now.time);
+  now.delay = std::max(scenario_.latency + step_time_, configured_act_time_ - now.time);
   return now;
 }
 
@@ -231,9 +231,9 @@ void ClosedLoop::control(double budget, const GivenStep* given, const model::Com
   cycle_.step(input, frame_);
   if (budget > 0.0) step_time_ += 0.1 * (std::min(frame_.step_time, budget) - step_time_);
   if (faults_.is_delivered()) {
-    told_act_time_ = frame_.measurement.time + frame_.measurement.delay;
+    configured_act_time_ = frame_.measurement.time + frame_.measurement.delay;
     const double act_time =
-        told_act_time_ + sim::random_delay(scenario_.seed, time(), scenario_.latency_jitter);
+        configured_act_time_ + sim::random_delay(scenario_.seed, time(), scenario_.latency_jitter);
     in_flight_.push(act_time, frame_.result.command);
     receiver_.arrived(act_time, cycle_.stop());
   }

@@ -100,7 +100,7 @@ class ClosedLoop {
   void set_fault(const sim::FaultEvent& event) noexcept { faults_.set(event); }
   /// From the next advance() on. A copy() calls the same functions.
   void intercept(Interceptor interceptor) { interceptor_ = std::move(interceptor); }
-  /// Stands the car at `pose`, as a simulator's reset does: controller and guard are not told. Call it
+  /// Stands the car at `pose`, as a simulator's reset does: controller and guard are not informed. Call it
   /// between two advance().
   void put_car(const model::Pose& pose) noexcept { world_.put(pose); }
   /// All laps driven, the car lost, or time up (Account).
@@ -174,11 +174,11 @@ class ClosedLoop {
   std::optional<model::Measurement> seen_;  ///< by look(), of the step that is due
   double next_control_ = 0.0;
   double step_time_ = 0.0;  ///< of the control step, smoothed; 0 in virtual time [s]
-  /// When the last command acts by what the controller is told [s].
-  double told_act_time_ = -std::numeric_limits<double>::infinity();
+  /// When the last command acts by the configured latency [s].
+  double configured_act_time_ = -std::numeric_limits<double>::infinity();
 };
 
-/// What is told of a run on the thread that runs it; must not block. Empty functions are not called.
+/// Called during a run on the thread that runs it; must not block. Empty functions are not called.
 struct RunHooks {
   std::function<void(const telemetry::Frame&)> on_frame{};       ///< after each control cycle
   std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< after each lap, the last one too

@@ -102,7 +102,7 @@ class ExternalDrive {
   std::optional<Clock::time_point> last_received_;
   std::optional<double> last_time_;  ///< of the last cycle since the run began [s]
   bool begins_again_ = false;
-  bool is_other_road_ = false;  ///< than the one that was told
+  bool is_other_road_ = false;  ///< than the configured one
   model::Command last_sent_;
   model::Command acting_;  ///< between the last two measurements: a command acts from the next one on
   telemetry::Frame frame_;

@@ -43,7 +43,7 @@ constexpr double kShown = 6.0;          // [m] of road beside the waypoints that
 constexpr double kWaypoints = 3.0;      // [m] between waypoints in the course
 constexpr double kFarWaypoints = 20.0;  // [m] and before and behind it
 constexpr double kSpeedGain = 2.0;      // [1/s]
-constexpr double kNoPedal = 0.01;       // [m/s²] that drive and brakes give, as the controller is told
+constexpr double kNoPedal = 0.01;       // [m/s²] that drive and brakes give, known to the controller
 constexpr double kMostTime = 60.0;      // [s]
 constexpr double kHasStopped = 1.0;     // [m/s]
 

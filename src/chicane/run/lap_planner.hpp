@@ -50,13 +50,13 @@ class LapPlanner {
                                                                const road::Track* track, double time);
 
   /// follow() after a control cycle of a run: a lap that is ready is used from the next one on. Gives what
-  /// recordings and viewers are to be told of it then.
+  /// recordings and viewers get of it then.
   std::optional<telemetry::Change> advance(ClosedLoop& loop);
   /// The same for a run without a plant, at its time [s].
   std::optional<telemetry::Change> advance(ControlCycle& cycle, const scenario::Scenario& scenario,
                                            const road::Track* track, double time);
 
-  /// What recordings and viewers are told where `lap` is used from control cycle `cycle` on: the grip that it
+  /// What recordings and viewers get where `lap` is used from control cycle `cycle` on: the grip that it
   /// is planned with, and kSlides where it slides. Allocates.
   [[nodiscard]] static telemetry::Change lap_change(const road::RacingRoad& lap, std::uint64_t cycle,
                                                     double time);

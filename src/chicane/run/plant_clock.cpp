@@ -12,20 +12,20 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kFullSize = 4.5;      // [m] length of a car
-constexpr double kLegWay = 0.5;        // [m] of one leg, for a car in full size
-constexpr double kLeastSpeed = 0.5;    // [m/s] that tells a time, for a car in full size
-constexpr double kLongestStep = 5.0;   // [s] between measurements that say anything of each other
-constexpr std::size_t kLeastLegs = 5;  // that tell a clock
-constexpr double kLeastTold = 0.6;     // [s] of the wall's time that do
-constexpr double kClockAcross = 0.3;   // share of the way that a car may move across its heading
-constexpr double kJump = 0.3;          // [m] and beside it
-constexpr double kSpeedJump = 2.0;     // [m/s] and
-constexpr double kMostBraking = 20.0;  // [m/s²] by which a speed changes
-constexpr double kDrives = 0.1;        // pedal that drives
-constexpr double kPedalMemory = 3.0;   // [s]
-constexpr double kLeastAsked = 1.0;    // [m/s] after which a pedal tells a clock from a speed
-constexpr double kSteadier = 0.5;      // share of the other's deviation with which one explanation is better
+constexpr double kFullSize = 4.5;       // [m] length of a car
+constexpr double kLegWay = 0.5;         // [m] of one leg, for a car in full size
+constexpr double kLeastSpeed = 0.5;     // [m/s] that tells a time, for a car in full size
+constexpr double kLongestStep = 5.0;    // [s] between measurements that say anything of each other
+constexpr std::size_t kLeastLegs = 5;   // that tell a clock
+constexpr double kLeastWallTime = 0.6;  // [s] of the wall's time that do
+constexpr double kClockAcross = 0.3;    // share of the way that a car may move across its heading
+constexpr double kJump = 0.3;           // [m] and beside it
+constexpr double kSpeedJump = 2.0;      // [m/s] and
+constexpr double kMostBraking = 20.0;   // [m/s²] by which a speed changes
+constexpr double kDrives = 0.1;         // pedal that drives
+constexpr double kPedalMemory = 3.0;    // [s]
+constexpr double kLeastAsked = 1.0;     // [m/s] after which a pedal tells a clock from a speed
+constexpr double kSteadier = 0.5;       // share of the other's deviation with which one explanation is better
 constexpr double kLeastDeviation = 0.02;
 constexpr double kFollowed = 0.1;  // share of a difference that is made up for with each leg
 constexpr double kBurst = 0.5;     // share by which a step in lock step differs that had to wait
@@ -151,7 +151,7 @@ bool PlantClock::differs(double ratio) const {
     sum.wall += legs_[i].wall;
     sum.plant += legs_[i].plant;
   }
-  return sum.wall > kLeastTold && std::fabs(log(sum.plant / (ratio * sum.wall))) > log(kLeastChange);
+  return sum.wall > kLeastWallTime && std::fabs(log(sum.plant / (ratio * sum.wall))) > log(kLeastChange);
 }
 
 /// Whether the pedals gain speed as in the time that the displacement shows: with a speed in another unit
@@ -168,13 +168,13 @@ bool PlantClock::take_up() {
   const Fit by_step = fit([](const Leg& leg) { return leg.steps; });
   const bool was_in_step = step_ > 0.0;
   const double worse = std::max(by_clock.deviation, by_step.deviation);
-  const bool is_told = worse > kLeastDeviation;
+  const bool is_distinct = worse > kLeastDeviation;
   // In real time, with steps that are alike, a busy machine makes the wall's clock look the worse one; but a
   // step that waited is longer by it.
   const bool is_real_time = !was_in_step && ratio_ == 1.0 && !differs(ratio_);
   const bool is_in_step =
-      was_in_step ? !(is_told && by_clock.deviation < kSteadier * by_step.deviation)
-                  : is_told && !is_real_time && by_step.deviation < kSteadier * by_clock.deviation;
+      was_in_step ? !(is_distinct && by_clock.deviation < kSteadier * by_step.deviation)
+                  : is_distinct && !is_real_time && by_step.deviation < kSteadier * by_clock.deviation;
   const double counted = was_in_step ? step_ : ratio_;
   const double found = is_in_step ? by_step.value : by_clock.value;
   const double deviation = is_in_step ? by_step.deviation : by_clock.deviation;

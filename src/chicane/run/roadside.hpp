@@ -25,7 +25,7 @@ class Roadside {
 
   /// Another car, or the same one from another place: the running lap does not count, the rest stays.
   void resume() noexcept;
-  /// The car drives on another road than was told: what was judged by it is forgotten.
+  /// The car drives on another road than configured: what was judged by it is forgotten.
   void forget_track();
   /// Writes place, edges and laps of what was measured into the frame, and counts it. Allocates nothing.
   void judge(telemetry::Frame& frame) noexcept;

@@ -44,7 +44,7 @@ using Action = std::variant<std::monostate, FieldValue, Pace, ManualSetting, Fau
 /// One change of a setting, made and checked once: data that is handed from thread to thread and applied.
 /// Plain; no allocation.
 struct Setting {
-  telemetry::Change change;  ///< what recordings and viewers are told
+  telemetry::Change change;  ///< for recordings and viewers
   Action action;
 };
 using SettingQueue = ThreadQueue<Setting>;

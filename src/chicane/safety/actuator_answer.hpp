@@ -6,12 +6,12 @@
 namespace chicane::safety {
 
 /// How the actuators answer: the wheels turn to gain · command + offset, the brakes give a share of what is
-/// asked for, and both act later than told.
+/// asked for, and both act later than configured.
 struct ActuatorAnswer {
   double gain = 1.0;
   double offset = 0.0;   ///< [rad]
   double braking = 1.0;  ///< (0, 1]
-  double delay = 0.0;    ///< beyond the one that was told [s]
+  double delay = 0.0;    ///< beyond the configured one [s]
 
   /// Commands have the effect that they are meant to have.
   [[nodiscard]] bool is_usual() const noexcept { return gain == 1.0 && offset == 0.0 && braking == 1.0; }

@@ -27,7 +27,8 @@ constexpr double kCorrelated = 2.0;        // [s] of which correlation and varia
 constexpr double kMostCorrelation = 0.98;  // from one measurement to the next: some information is left
 constexpr double kSure = 3.0;              // deviations by which an estimate differs from what is driven with
 constexpr double kShown = 1.0;             // [s] of driving until the estimate is reported
-constexpr double kTold = 0.1;  // of the usual deviation: an estimate that is less certain tells too little
+constexpr double kMostDeviation =
+    0.1;  // of the usual deviation: an estimate that is less certain tells too little
 
 // Of delay [s], gain, offset [rad] and grip: by how much an estimator differs, what is assumed to be usual
 // (standard deviation), the step in which the car is driven with, and the range.
@@ -85,20 +86,21 @@ void ActuatorEstimator::believe() noexcept {
   }
 }
 
-/// How the wheels turn by what they were told, if they answered as `values` say.
-tracking::CommandHistory ActuatorEstimator::effect(const tracking::CommandHistory& told,
+/// How the wheels turn by `commanded`, if they answered as `values` say.
+tracking::CommandHistory ActuatorEstimator::effect(const tracking::CommandHistory& commanded,
                                                    const Values& values) const noexcept {
   const ActuatorAnswer answer{.gain = values[kGain], .offset = values[kOffset]};
   tracking::CommandHistory sent =
-      told.changed([&](const model::Command& command) { return answer.effect_of(command); });
+      commanded.changed([&](const model::Command& command) { return answer.effect_of(command); });
   sent.delay(values[kDelay] - answer_.delay);
   return sent;
 }
 
-void ActuatorEstimator::see(const model::Measurement& now, const tracking::CommandHistory& told) noexcept {
+void ActuatorEstimator::see(const model::Measurement& now,
+                            const tracking::CommandHistory& commanded) noexcept {
   tracking::StateEstimator& last = estimators_[kUnknowns];
   const double elapsed = now.time - last.time();
-  last.correct(now, effect(told, here_));
+  last.correct(now, effect(commanded, here_));
   const tracking::StateEstimator::Surprise n = last.surprise();
   Values aside{}, heading{};
   double sum = n.aside + n.heading;
@@ -106,7 +108,7 @@ void ActuatorEstimator::see(const model::Measurement& now, const tracking::Comma
     const double by = kRows[i].change;
     Values changed = here_;
     changed[i] += by;
-    estimators_[i].correct(now, effect(told, changed));
+    estimators_[i].correct(now, effect(commanded, changed));
     const tracking::StateEstimator::Surprise& other = estimators_[i].surprise();
     aside[i] = (n.aside - other.aside) / by;
     heading[i] = (n.heading - other.heading) / by;
@@ -223,7 +225,7 @@ ActuatorEstimator::Solution ActuatorEstimator::solve() const noexcept {
 
 /// Delay, gain and offset pass for each other in bends that are much alike: all are known, or none is.
 bool ActuatorEstimator::is_certain() const noexcept {
-  const auto is_known = [&](Unknown i) { return solution_.deviation[i] <= kTold * kRows[i].usual; };
+  const auto is_known = [&](Unknown i) { return solution_.deviation[i] <= kMostDeviation * kRows[i].usual; };
   return time_ >= kEnough && is_known(kDelay) && is_known(kGain) && is_known(kOffset);
 }
 

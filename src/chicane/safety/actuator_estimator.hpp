@@ -14,7 +14,7 @@
 
 namespace chicane::safety {
 
-/// How late and by how much the wheels answer, beyond what was told, by which answer predicts the next
+/// How late and by how much the wheels answer, beyond the configuration, by which answer predicts the next
 /// measurement better (docs/identification_method.md, eq. 13 to 15). It is the method of
 /// tracking::GripEstimator for four unknowns at once: one state estimator counts with the estimate, four have
 /// one unknown changed each, and least squares over the last kMemory of driving finds the unknowns with their
@@ -32,12 +32,12 @@ class ActuatorEstimator {
   explicit ActuatorEstimator(const model::VehicleParams& vehicle) noexcept;
   /// Nothing is known.
   void reset() noexcept;
-  /// Another car was told; what was learned about the answer stays.
+  /// Sets another car; what was learned about the answer stays.
   void set_vehicle(const model::VehicleParams& vehicle) noexcept;
 
-  /// A measurement that is not in doubt; `told`: the commands as the actuators were sent them, with the times
+  /// A measurement that is not in doubt; `commanded`: the commands sent to the actuators, with the times
   /// at which they act by answer().
-  void see(const model::Measurement& now, const tracking::CommandHistory& told) noexcept;
+  void see(const model::Measurement& now, const tracking::CommandHistory& commanded) noexcept;
   /// Between two cycles: answer() follows the estimate where it differs by enough. True: it changed.
   [[nodiscard]] bool take_up() noexcept;
 
@@ -72,20 +72,20 @@ class ActuatorEstimator {
     Values deviation{};
   };
 
-  [[nodiscard]] tracking::CommandHistory effect(const tracking::CommandHistory& told,
+  [[nodiscard]] tracking::CommandHistory effect(const tracking::CommandHistory& commanded,
                                                 const Values& values) const noexcept;
   void believe() noexcept;
   void move_on() noexcept;
   [[nodiscard]] bool is_certain() const noexcept;
   [[nodiscard]] Solution solve() const noexcept;
 
-  model::VehicleParams vehicle_;  ///< as told, without a name
+  model::VehicleParams vehicle_;  ///< as configured, without a name
   ActuatorAnswer answer_;
   Values here_{0.0, 1.0, 0.0, 1.0};                                 ///< that the estimators count with
   std::array<tracking::StateEstimator, kUnknowns + 1> estimators_;  ///< each but the last has one changed
   Sums aside_, heading_;
   Solution solution_;
-  Values taken_up_{};      ///< deviations of what is driven with when it was taken up; 0: as told
+  Values taken_up_{};      ///< deviations of what is driven with when it was taken up; 0: as configured
   double time_ = 0.0;      ///< of driving, as far as it is remembered [s]
   double interval_ = 0.0;  ///< between measurements, mean [s]
   double counted_ = 0.0;   ///< since here_ changed [s]

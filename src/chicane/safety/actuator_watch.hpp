@@ -39,8 +39,8 @@ class ActuatorWatch {
     double rear = 0.0;
     std::optional<double> sideslip{};  ///< of the car [rad], as estimated
   };
-  /// A measurement that is not in doubt; `sent`: what the actuators were told. While the rear axle slides the
-  /// steering is not judged, and while either does the brakes are not.
+  /// A measurement that is not in doubt; `sent`: the commands to the actuators. While the rear axle slides
+  /// the steering is not judged, and while either does the brakes are not.
   void see(const model::Measurement& now, const tracking::CommandHistory& sent, const AxleUse& use) noexcept;
   void see(const model::Measurement& now, const tracking::CommandHistory& sent) noexcept {
     see(now, sent, {});

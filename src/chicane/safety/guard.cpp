@@ -81,7 +81,7 @@ void Guard::reset() noexcept {
   actuators_.reset();
   learned_.reset();
   sent_.clear();
-  told_.clear();
+  commanded_.clear();
   count_with_answer();
   count_with_actuators();
   supervisor_.reset();
@@ -107,7 +107,7 @@ void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   believe_grip(grip_);
 }
 
-/// A stop counts with the grip that the car is driven with: what its tyres have shown, over what was told.
+/// A stop counts with the grip that the car is driven with: the estimated over the configured one.
 void Guard::believe_grip(double share) noexcept {
   grip_ = share;
   actuators_.set_vehicle(model::with_grip(vehicle_, share));
@@ -130,7 +130,7 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   model::Measurement now = measured;
   now.delay = std::max(now.delay + learned_.answer().delay, 0.0);
   const bool is_off = options_.mode == GuardMode::kOff;
-  if (options_.mode != GuardMode::kOn) learned_.see(now, told_);
+  if (options_.mode != GuardMode::kOn) learned_.see(now, commanded_);
   // What was in doubt while a person drove says nothing of where the person has driven to.
   const bool is_handed_back = std::exchange(is_by_hand_, cycle.manual.has_value()) && !cycle.manual;
   if (is_handed_back && Supervisor::wants_trial(monitor_.findings())) begin_here();
@@ -154,15 +154,15 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
 
 /// The last word: the command for the actuators, in range and rate.
 void Guard::send(const Cycle& cycle, const model::Command& asked, controller::StepResult& result) noexcept {
-  const model::Command told = answer().command_for(result.command);
-  const GateResult gated = gate_.pass(cycle.manual.value_or(told), cycle.interval);
+  const model::Command commanded = answer().command_for(result.command);
+  const GateResult gated = gate_.pass(cycle.manual.value_or(commanded), cycle.interval);
   result.command = gated.command;
   report_.gated = gated.reason != GateReason::kNone ||
                   !is_same(gated.command, cycle.manual.value_or(answer().command_for(asked)));
   const model::Command effect = answer().effect_of(gated.command);
   controller_->note_sent(effect);
   if (!std::isfinite(sent_from_)) return;
-  told_.add(sent_from_, gated.command);
+  commanded_.add(sent_from_, gated.command);
   sent_.add(sent_from_, effect);
   if (answer().is_usual()) return;
   stop_ = filter_.stop();
@@ -177,7 +177,7 @@ void Guard::count_with_answer() noexcept {
   constexpr ActuatorAnswer kUsual;
   const ActuatorAnswer& watched = options_.mode == GuardMode::kOn ? actuators_.answer() : kUsual;
   answer_ = watched.after(learned_.answer());
-  sent_ = told_.changed([this](const model::Command& command) { return answer_.effect_of(command); });
+  sent_ = commanded_.changed([this](const model::Command& command) { return answer_.effect_of(command); });
 }
 
 /// Between two cycles: what was learned is driven with from now on, and what the watch found beyond it is
@@ -186,7 +186,7 @@ void Guard::take_up_actuators() noexcept {
   if (!plans_with_car(*controller_)) return;
   const double delay = learned_.answer().delay;
   if (!learned_.take_up()) return;
-  told_.delay(learned_.answer().delay - delay);
+  commanded_.delay(learned_.answer().delay - delay);
   actuators_.reset();
   count_with_answer();
   count_with_actuators();
@@ -205,7 +205,7 @@ void Guard::watch_actuators(const model::Measurement& seen) noexcept {
                           found.heading_jump || found.position_jump || direction_.rolls_back();
   if (is_doubted) return actuators_.skip();
   const ActuatorAnswer before = actuators_.answer();
-  if (options_.mode == GuardMode::kOn) learned_.see(seen, told_);
+  if (options_.mode == GuardMode::kOn) learned_.see(seen, commanded_);
   ActuatorWatch::AxleUse use;
   const model::State& car = estimator_.state();
   if (estimator_.is_started() && car.vx > kRollsBackAtMost) {
@@ -213,7 +213,8 @@ void Guard::watch_actuators(const model::Measurement& seen) noexcept {
     use = {tires.front, tires.rear, car.vy / car.vx};
   }
   const ActuatorAnswer& usual = learned_.answer();
-  actuators_.see(seen, told_.changed([&](const auto& command) { return usual.effect_of(command); }), use);
+  actuators_.see(seen, commanded_.changed([&](const auto& command) { return usual.effect_of(command); }),
+                 use);
   const ActuatorAnswer& after = actuators_.answer();
   if (after.gain != before.gain || after.offset != before.offset || after.braking != before.braking)
     count_with_answer();
@@ -338,9 +339,9 @@ bool Guard::slow_down(const StopStart& start, const Cycle& cycle, controller::St
 /// The command inside range and rate, without the reverse gear: a stop ends in standstill. No drive beyond
 /// the speed up to which the car's parameters hold: no stop can be computed from there.
 model::Command Guard::limited(const model::Command& command, double interval) const noexcept {
-  const model::Command told = answer().command_for(command);
-  const model::Command gated = gate_.limited(told, interval).command;
-  model::Command inside = is_same(gated, told) ? command : answer().effect_of(gated);
+  const model::Command commanded = answer().command_for(command);
+  const model::Command gated = gate_.limited(commanded, interval).command;
+  model::Command inside = is_same(gated, commanded) ? command : answer().effect_of(gated);
   const model::VehicleParams& car = model_.vehicle();
   const double v = act_speed_;
   if (inside.throttle > 0.0) {

@@ -75,7 +75,7 @@ class Guard {
   [[nodiscard]] const GuardReport& report() const noexcept { return report_; }
   /// Everything learned is forgotten, the controller's part included: a new run begins.
   void reset() noexcept;
-  /// The road that was told is another one: from now on the guard learns it from waypoints. Allocates.
+  /// The car is on another road than configured: from now on the guard learns it from waypoints. Allocates.
   void forget_road();
   /// A planned lap for the controller to race by; the stops follow it, too, where the guard knows the track,
   /// and count with its grip.
@@ -139,7 +139,7 @@ class Guard {
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
 
   Owned<controller::Controller> controller_;
-  model::VehicleParams vehicle_;  ///< as it was told
+  model::VehicleParams vehicle_;  ///< as configured
   double grip_ = 1.0;             ///< of the planned lap, over that
   GuardOptions options_;
   MeasurementMonitor monitor_;
@@ -153,8 +153,8 @@ class Guard {
   road::KnownRoad road_;
   tracking::StateEstimator estimator_;
   tracking::DirectionWatch direction_;  ///< by what is measured, plausible or not
-  tracking::CommandHistory told_;       ///< what the actuators were told
-  tracking::CommandHistory sent_;       ///< and what it makes of wheels and pedals
+  tracking::CommandHistory commanded_;  ///< the commands to the actuators
+  tracking::CommandHistory sent_;       ///< their effect on wheels and pedals
   GuardReport report_;
   StopPlan stop_;  ///< the stop at hand, for actuators that answer otherwise
   PredictiveFilter filter_;

@@ -30,7 +30,7 @@ struct Scenario {
   int laps = 3;  ///< the first is from standstill; 0 = until stopped
   std::uint64_t seed = 1;
   double latency = 0.1;          ///< actuation delay of the plant [s]
-  double latency_jitter = 0.0;   ///< random delay on top, untold, at most [s]
+  double latency_jitter = 0.0;   ///< random delay on top, unknown to the controller, at most [s]
   double control_period = 0.04;  ///< between measurements [s]
   double time_limit = 0.0;       ///< ends the run [s]; 0 = 10 min per lap
   double turn_around = 0.02;     ///< of the simulator as a client, between reply and next telemetry [s]

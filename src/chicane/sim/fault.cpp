@@ -90,13 +90,13 @@ void FaultLab::end(Fault fault) noexcept {
 }
 
 model::Measurement FaultLab::seen(const model::Measurement& now) noexcept {
-  model::Measurement told = now;
+  model::Measurement measured = now;
   for (const FaultPlace place : {FaultPlace::kSource, FaultPlace::kValue, FaultPlace::kLink}) {
     for_each_on(*this, [&](const FaultKind& kind, FaultMemory& memory) {
-      if (kind.place == place && kind.measure != nullptr) kind.measure(memory, now, told);
+      if (kind.place == place && kind.measure != nullptr) kind.measure(memory, now, measured);
     });
   }
-  return told;
+  return measured;
 }
 
 bool FaultLab::is_delivered() noexcept {

@@ -50,13 +50,14 @@ struct FaultKind {
   std::string_view stream{};            ///< seed of its random numbers: at most eight letters
   FaultPlace place = FaultPlace::kValue;
 
-  /// Changes what the controller is `told`; `now` is what was measured.
-  void (*measure)(FaultMemory&, const model::Measurement& now, model::Measurement& told) noexcept = nullptr;
+  /// Changes what the controller gets as `measured`; `now` is the true measurement.
+  void (*measure)(FaultMemory&, const model::Measurement& now,
+                  model::Measurement& measured) noexcept = nullptr;
   /// Whether a command gets lost on its way.
   bool (*loses_command)(FaultMemory&) noexcept = nullptr;
   /// Changes what the actuators do; `asked` is the command that arrived.
   void (*actuate)(FaultMemory&, const model::Command& asked, model::Command& done) noexcept = nullptr;
-  /// Time that commands arrive later than the controller is told, when it is told `latency` [s].
+  /// Time that commands arrive later than the controller assumes, when it assumes `latency` [s].
   double (*extra_delay)(double strength, double latency) noexcept = nullptr;
   /// Tyre forces times this.
   double (*grip)(double strength) noexcept = nullptr;
@@ -108,13 +109,13 @@ class FaultLab {
   [[nodiscard]] bool is_on(Fault fault) const noexcept { return (bits_ & bit(fault)) != 0U; }
   [[nodiscard]] std::uint32_t bits() const noexcept { return bits_; }
 
-  /// What the controller is told instead of `now`. With a lost link only the time is known.
+  /// What the controller gets instead of `now`. With a lost link only the time is known.
   [[nodiscard]] model::Measurement seen(const model::Measurement& now) noexcept;
   /// False when a command gets lost on its way.
   [[nodiscard]] bool is_delivered() noexcept;
   /// What the actuators do instead of `command`.
   [[nodiscard]] model::Command done(const model::Command& command) noexcept;
-  /// Time that commands arrive later than the controller is told, when they are told `latency` [s].
+  /// Time that commands arrive later than the controller assumes, when it assumes `latency` [s].
   [[nodiscard]] double extra_delay(double latency) const noexcept;
   /// Tyre forces times this.
   [[nodiscard]] double grip() const noexcept;

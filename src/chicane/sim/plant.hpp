@@ -22,7 +22,7 @@ struct PlantOutput {
   std::array<double, 2> tire_use{};
 };
 
-/// How a plant differs from its nominal self: what a controller is not told.
+/// How a plant differs from its nominal self, unknown to a controller.
 struct PlantDeviation {
   double friction_scale = 1.0;  ///< all tyre forces times this
   double mass_scale = 1.0;      ///< mass and yaw inertia of the body times this
@@ -49,7 +49,7 @@ class Plant {
   /// Another deviation from the nominal car from the next step on; the car stays where it is, as fast as it
   /// is.
   virtual void deviate(const PlantDeviation& deviation) noexcept = 0;
-  /// Acts from the next step on, until told otherwise; survives reset().
+  /// Acts from the next step on, until the next call; survives reset().
   virtual void disturb(const Disturbance& /*disturbance*/) noexcept {}
   /// One physics step with `command` acting on the actuators from its beginning. Any command, also one
   /// that is not finite; clamped inside.

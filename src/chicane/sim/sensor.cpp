@@ -26,7 +26,7 @@ constexpr std::array kOptions{
     option<&S::speed_quantum>("speed_quantum", unit::kSpeed, 0, 10,
                               "Step to whose multiples the speed is rounded."),
     option<&S::latency>("latency", unit::kMillisecond, 0, 500,
-                        "Age of what is measured when the controller gets it, which is not told of it."),
+                        "Age of a measurement when it reaches the controller, which does not know it."),
 };
 
 }  // namespace

@@ -13,7 +13,7 @@
 
 namespace chicane::sim {
 
-/// What stands between the plant and what a controller is told. Zero means perfect.
+/// Errors between the plant and a controller's measurement. Zero means perfect.
 struct SensorOptions {
   double position_noise = 0.0;    ///< standard deviation of x and y [m]
   double heading_noise = 0.0;     ///< [rad]
@@ -21,7 +21,7 @@ struct SensorOptions {
   double position_quantum = 0.0;  ///< x and y are rounded to multiples of it [m]
   double heading_quantum = 0.0;   ///< [rad]
   double speed_quantum = 0.0;     ///< [m/s]
-  double latency = 0.0;           ///< age of what is measured, which the controller is not told [s]
+  double latency = 0.0;           ///< age of a measurement when the controller gets it, unknown to it [s]
 
   friend bool operator==(const SensorOptions&, const SensorOptions&) = default;
 };

@@ -166,7 +166,7 @@ class LeagueTables {
     return row;
   }
 
-  /// Medians over an entry's runs of what a clock has told.
+  /// Medians over an entry's runs of the times that a clock measured.
   [[nodiscard]] LeagueTable times() const {
     LeagueTable table{.title = "Times",
                       .note =

@@ -13,7 +13,7 @@
 #include "chicane/telemetry/metrics.hpp"
 
 /// What a league has found. The runs of our own controllers are the results of a sweep, the same bytes on
-/// every machine; what a clock has told, and the limits, stand in a file beside them.
+/// every machine; times that a clock measured, and the limits, stand in a file of their own.
 namespace chicane::sweep {
 
 /// One controller on one track, in one car and disturbance.

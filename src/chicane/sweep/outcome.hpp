@@ -7,7 +7,7 @@
 
 #include "chicane/telemetry/metrics.hpp"
 
-/// What a sweep keeps of a run: nothing that the clock has told.
+/// What a sweep keeps of a run: nothing that a clock measured.
 namespace chicane::sweep {
 
 /// One column of the results.

@@ -54,8 +54,8 @@ struct SweepOptions {
   int jobs = 1;        ///< threads
   std::string file{};  ///< of the results, of this shard; an older one is completed
   std::function<void(const Progress&)> on_progress{};  ///< after each run, any thread
-  /// With each run that could be driven, one thread at a time: what a clock has told is in it, and nowhere in
-  /// the file.
+  /// With each run that could be driven, one thread at a time: the times that a clock measured are in it, and
+  /// not in the file.
   std::function<void(std::uint64_t run, const telemetry::RunSummary&)> on_run{};
 };
 

@@ -69,7 +69,7 @@ struct Frame {
   bool begins = false;                  ///< controller and gate had forgotten everything
   bool has_measurement = true;          ///< false: what came was unusable, the controller was not asked
   model::Command manual;                ///< a person's command, while is_manual
-  double gate_interval = 0.0;           ///< since the command before, as the gate was told [s]
+  double gate_interval = 0.0;           ///< since the command before, by the gate's clock [s]
   std::uint32_t deadline_spent_at = 0;  ///< DeadlineLog::spent_at of the control step
 };
 

@@ -39,7 +39,7 @@ bool is_left_out(std::string_view name) {
 
 void Metrics::Stretch::add(double dt, double speed, double error) noexcept {
   if (!std::isfinite(speed) || !std::isfinite(error))
-    return;  // what a broken client told is not a measurement
+    return;  // a broken client's message is not a measurement
   time += dt;
   speed_time += speed * dt;
   error_squared_time += error * error * dt;

@@ -112,7 +112,7 @@ void compare_with_limit(RunSummary& run, const lap_time::LapTimes& limit, int fi
 ///
 /// Call add_physics() after each physics step and add() once each control cycle. Where the plant is outside
 /// (a frame without truth) add() also measures speed and lateral error, and where a judge knows the track the
-/// distance to the edge, from what the controller was told.
+/// distance to the edge, from the controller's measurements.
 class Metrics {
  public:
   /// Remembers up to `lap_capacity` laps one by one (more are only counted), with the times of so many
@@ -122,7 +122,7 @@ class Metrics {
   void add_physics(const PhysicsSample& sample) noexcept;
   void add(const Frame& frame) noexcept;
   /// The running lap ended; `lap_time` [s] may be interpolated between physics steps, as may its thirds and
-  /// corners. Times of another number of corners than the constructor was told are left out.
+  /// corners. Times of another number of corners than the constructor was given are left out.
   void lap_completed(double lap_time, const std::array<double, 3>& sector_times = LapSummary{}.sector_times,
                      std::span<const double> corner_times = {}) noexcept;
 
@@ -186,7 +186,7 @@ struct LapSetup {
   std::vector<std::string> faults{};  ///< that acted in it, without "fault.", by name
 };
 
-/// Keeps the changes of a run, so that each lap can be told with what it was driven. For threads that write
+/// Keeps the changes of a run, so that each lap can be reported with its settings. For threads that write
 /// or send: it allocates. Pace and a person's hands are no settings. Of very many changes the older ones are
 /// known by their outcome only: laps of long ago cannot be asked for, the newest always.
 class LapLedger {

@@ -18,7 +18,7 @@ namespace chicane::tracking {
 /// Another mass, a side wind or steering that answers otherwise pass for grip.
 ///
 /// A third estimator sees the commands act a little later. What the headings are off by, beside what that
-/// makes of them, says how much another time than told explains (docs/limit.md, eq. 18). One thread;
+/// makes of them, says how much another time than configured explains (docs/limit.md, eq. 18). One thread;
 /// allocates nothing.
 class GripEstimator {
  public:
@@ -45,7 +45,7 @@ class GripEstimator {
   [[nodiscard]] bool differs(double least) const noexcept;
   /// Standard deviation of share(), the larger of eq. 4 and 5; infinite before there is any corner.
   [[nodiscard]] double deviation() const noexcept;
-  /// By how much a command may act otherwise than told so that it explains what headings are off by, root
+  /// By how much a command may act otherwise than configured so that it explains the error of headings, root
   /// mean square [s]: jitter, and all else that is not known. Infinite before there is any corner.
   [[nodiscard]] double unsure_time() const noexcept;
   /// Mean time between measurements in corners [s].

@@ -24,7 +24,7 @@ namespace chicane::tracking {
   constexpr double kMostBraking = -2.0;  // [m/s²]
   constexpr double kMostDrive = 1.0;     // [m/s²]
   constexpr double kFullLock = 0.5;      // [rad] off its course the wheel is turned as far as it goes
-  constexpr double kWheelOff = 0.5;      // [rad] the wheel is from where it is told to, and the car stands
+  constexpr double kWheelOff = 0.5;      // [rad] the wheel is from its command, and the car stands
   const double course = line.at(place.s).heading - atan(place.d / kApproach);
   const double turn = std::clamp(angle_difference(course, car.psi) / kFullLock, -1.0, 1.0);
   const double steer = turn * vehicle.steer_limit;

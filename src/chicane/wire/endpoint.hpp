@@ -46,7 +46,7 @@ inline constexpr std::array<std::string_view, 2> kViewerSubprotocols{"foxglove.s
 /// Either may be null: its clients are refused in words.
 class Router {
  public:
-  /// `say` is told why somebody was refused, once for each reason, on the network thread. May be empty.
+  /// `say` gets the reason of a refusal, once for each reason, on the network thread. May be empty.
   Router(Endpoint* simulator, Endpoint* viewer, std::function<void(std::string_view)> say = {})
       : endpoints_{simulator, viewer}, log_{std::move(say)} {}
 

@@ -300,7 +300,7 @@ void UdacityEndpoint::hear_telemetry(std::string_view bytes) {
     request.kind = Request::Kind::kUnusable;
   }
   if (session_.is_reported_silent) log_.say(fmt::format("telemetry from {} again", session_.name));
-  session_.has_told = true;
+  session_.has_telemetry = true;
   session_.is_reported_silent = false;
   if (++session_.unanswered > kMaxUnanswered) {
     return server_->close(session_.id, 1008, fmt::format("more than {} unanswered messages", kMaxUnanswered));
@@ -358,7 +358,7 @@ void UdacityEndpoint::watch() {
       session_.id != 0 && !session_.has_left && session_.unanswered == 0 && !session_.is_reported_silent;
   if (!is_waiting || Clock::now() - session_.last_word < options_.silent_after) return;
   session_.is_reported_silent = true;
-  log_.say(session_.has_told
+  log_.say(session_.has_telemetry
                ? fmt::format("no telemetry from {} for {:.0f} s: is it paused, or in its menu?",
                              session_.name, seconds(options_.silent_after))
                : fmt::format("{} is connected but sends no telemetry: leave the scene and enter it again",

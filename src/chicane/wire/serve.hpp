@@ -101,8 +101,8 @@ class UdacityEndpoint final : public Endpoint {
     bool is_version_3 = false;     ///< EIO=3: the server connects the namespace, the client pings
     bool knows_stop_plan = false;  ///< said so in its request: it gets one with each command
     bool has_spoken = false;
-    bool has_left = false;  ///< said goodbye, though the connection still stands
-    bool has_told = false;  ///< telemetry has come
+    bool has_left = false;       ///< said goodbye, though the connection still stands
+    bool has_telemetry = false;  ///< telemetry has come
     bool is_reported_silent = false;
     int unanswered = 0;             ///< telemetry that waits for its answer
     Clock::time_point last_word{};  ///< heard or said

@@ -188,15 +188,15 @@ class Simulation {
       ++report_.stops;
       log_.say(
           fmt::format("no command in time: the car is stopped from {:.1f} m/s: {}", speed, silence(now)));
-      is_told_standing_ = false;
+      is_standing_reported_ = false;
     }
-    if (!is_forsaken && is_forsaken_ && !is_told_standing_) {
+    if (!is_forsaken && is_forsaken_ && !is_standing_reported_) {
       log_.say(fmt::format("commands again: the car drives on from {:.1f} m/s", speed));
-      is_told_standing_ = true;
+      is_standing_reported_ = true;
     }
     is_forsaken_ = is_forsaken;
-    if (!is_forsaken || is_told_standing_ || scene_.speed() >= kStanding) return;
-    is_told_standing_ = true;
+    if (!is_forsaken || is_standing_reported_ || scene_.speed() >= kStanding) return;
+    is_standing_reported_ = true;
     log_.say(fmt::format("the car stands, its outermost wheel {:.2f} m {} the road's edge: {}",
                          std::fabs(scene_.edge()), scene_.edge() < 0.0 ? "beyond" : "inside", silence(now)));
   }
@@ -366,8 +366,8 @@ class Simulation {
   std::optional<Clock::time_point> asked_;  ///< telemetry is out since then
   bool is_reported_silent_ = false;
   bool is_manual_ = false;
-  bool is_forsaken_ = false;      ///< when the car was looked at last
-  bool is_told_standing_ = true;  ///< nothing more to say about the stop
+  bool is_forsaken_ = false;          ///< when the car was looked at last
+  bool is_standing_reported_ = true;  ///< nothing more to say about the stop
   telemetry::Frame frame_;
 };
 

@@ -151,7 +151,7 @@ void ViewerEndpoint::dismiss(const Patience& patience) {
   auto heard = begin;
   std::map<net::ConnectionId, std::pair<std::size_t, std::uint64_t>> reading;  // what waits, what was read
   std::promise<void> gone;
-  std::set<net::ConnectionId> told;
+  std::set<net::ConnectionId> informed;
   bool has_ticked = false;
   std::function<void()> look = [&] {
     if (!std::exchange(has_ticked, true)) tick();
@@ -159,7 +159,7 @@ void ViewerEndpoint::dismiss(const Patience& patience) {
       const std::pair<std::size_t, std::uint64_t> now{server_->waiting(id),
                                                       client.pace ? client.pace->received() : 0};
       if (std::exchange(reading[id], now) != now) heard = Steady::now();
-      if (has_all(id, client) && told.insert(id).second) {
+      if (has_all(id, client) && informed.insert(id).second) {
         heard = Steady::now();
         server_->close(id, kGoingAway, "the run is over");
       }
@@ -175,12 +175,12 @@ void ViewerEndpoint::dismiss(const Patience& patience) {
 
 /// Nothing of the run is left that it has asked for.
 bool ViewerEndpoint::has_all(net::ConnectionId id, const Client& client) const {
-  const auto is_told = [&](std::uint32_t channel, const KeptMessage* next) {
+  const auto is_sent = [&](std::uint32_t channel, const KeptMessage* next) {
     return next == nullptr || !client.subscriptions.contains(channel);
   };
   return server_->waiting(id) == 0 && client.past_before == 0 && client.owed.empty() && !client.is_behind &&
-         is_told(lap_channel(), memory_.lap_from(client.next_lap)) &&
-         is_told(change_channel(), memory_.change_from(client.next_change));
+         is_sent(lap_channel(), memory_.lap_from(client.next_lap)) &&
+         is_sent(change_channel(), memory_.change_from(client.next_change));
 }
 
 void ViewerEndpoint::change_run(std::function<void(protocol::Run&)> change) {

@@ -109,10 +109,10 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::SetParameters&
   if (message.request) send_text(id, foxglove::parameter_values(values, message.request));
   // A choice of preset changes more than its own value.
   for (foxglove::Parameter& other : options_.parameters->news()) {
-    const bool is_told = std::any_of(values.begin(), values.end(), [&](const foxglove::Parameter& value) {
+    const bool is_listed = std::any_of(values.begin(), values.end(), [&](const foxglove::Parameter& value) {
       return value.name == other.name;
     });
-    if (!is_told) values.push_back(std::move(other));
+    if (!is_listed) values.push_back(std::move(other));
   }
   send_parameters(values);
 }

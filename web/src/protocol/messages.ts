@@ -39,7 +39,7 @@ export interface Frame {
   /** to its left */
   lateral_acceleration_mps2: number;
 
-  // What the controller was told: the measurement as it came in
+  // Input of the controller: the measurement as it came in
   /** of the centre of mass, in map */
   measured_x_m: number;
   /** of the centre of mass, in map */
@@ -47,7 +47,7 @@ export interface Frame {
   measured_yaw_rad: number;
   measured_speed_mps: number;
 
-  // On the road, judged by our simulator, or from what was measured where the track was told; else not-a-number
+  // On the road, judged by our simulator, or from what was measured where the track is known; else not-a-number
   /** along the centre line */
   s_m: number;
   /** from the centre line, left positive */
@@ -146,7 +146,7 @@ export interface Frame {
   prediction_error_m: number;
 
   // What the run has found out about its car (docs/identification.md); else not-a-number
-  /** by which commands act later than told */
+  /** by which commands act later than configured */
   learned_delay_s: number;
   /** its standard deviation */
   learned_delay_sd_s: number;
@@ -158,7 +158,7 @@ export interface Frame {
   learned_steer_offset_rad: number;
   /** its standard deviation */
   learned_steer_offset_sd_rad: number;
-  /** of the tyres, share of the told one */
+  /** of the tyres, share of the configured one */
   learned_grip: number;
   /** its standard deviation */
   learned_grip_sd: number;

@@ -13,11 +13,12 @@ namespace {
 /// Integral of held commands over time: means over any interval follow, continuous in its ends.
 class Held {
  public:
-  Held(const std::vector<Told>& told, double Told::*value) : told_{told}, value_{value} {
-    sums_.reserve(told.size());
+  Held(const std::vector<SentCommand>& commands, double SentCommand::*value)
+      : commands_{commands}, value_{value} {
+    sums_.reserve(commands.size());
     double sum = 0.0;
-    for (std::size_t i = 0; i < told.size(); ++i) {
-      if (i > 0) sum += told[i - 1].*value * (told[i].time - told[i - 1].time);
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+      if (i > 0) sum += commands[i - 1].*value * (commands[i].time - commands[i - 1].time);
       sums_.push_back(sum);
     }
   }
@@ -26,12 +27,12 @@ class Held {
 
  private:
   double integral(double t) {
-    while (at_ + 1 < told_.size() && told_[at_ + 1].time <= t) ++at_;
-    while (at_ > 0 && told_[at_].time > t) --at_;
-    return sums_[at_] + told_[at_].*value_ * (t - told_[at_].time);
+    while (at_ + 1 < commands_.size() && commands_[at_ + 1].time <= t) ++at_;
+    while (at_ > 0 && commands_[at_].time > t) --at_;
+    return sums_[at_] + commands_[at_].*value_ * (t - commands_[at_].time);
   }
-  const std::vector<Told>& told_;
-  double Told::*value_;
+  const std::vector<SentCommand>& commands_;
+  double SentCommand::*value_;
   std::vector<double> sums_;
   std::size_t at_ = 0;
 };
@@ -109,14 +110,14 @@ Actuators::Actuators(const DriveLog& log, const Car& car) : start_{log.samples.f
   const auto count = static_cast<std::size_t>((log.samples.back().time - start_) / kStep) + 2;
   const model::PredictionModel model(car.vehicle);
   const auto lags = model.lags(kStep);
-  Held steering(log.told, &Told::steer);
-  Held pedal(log.told, &Told::throttle);
+  Held steering(log.commands, &SentCommand::steer);
+  Held pedal(log.commands, &SentCommand::throttle);
   const bool has_throttle = log.has_throttle();
   MeasuredSpeed measured(log.samples);
   steer_.reserve(count);
   steer_mean_.reserve(count);
   std::size_t sample = 0;
-  double steer = log.told.front().steer;
+  double steer = log.commands.front().steer;
   double acceleration = 0.0;
   double pressed = 0.0;
   const double most_steer = car.vehicle.steer_limit;

@@ -74,16 +74,17 @@ Result<Header> read_header(const std::vector<std::string_view>& names, const std
   header.count = names.size();
   for (std::size_t q = 0; q < kQuantities; ++q) {
     const Meaning& meaning = kMeanings[q];
-    const auto told = options.columns.find(std::string(meaning.name));
+    const auto configured = options.columns.find(std::string(meaning.name));
     for (std::size_t i = 0; i < names.size() && !header.columns[q]; ++i) {
       const auto [name, factor] = parted(names[i]);
-      const bool is_it = told == options.columns.end() ? means(meaning, name) : told->second == names[i];
+      const bool is_it =
+          configured == options.columns.end() ? means(meaning, name) : configured->second == names[i];
       if (is_it) header.columns[q] = Column{i, factor};
     }
     if (header.columns[q]) continue;
-    if (told != options.columns.end())
+    if (configured != options.columns.end())
       return fail(ErrorCode::kParse, fmt::format("{}: header: got no column {}, expected one for {}", place,
-                                                 printable(told->second), meaning.name));
+                                                 printable(configured->second), meaning.name));
     if (!meaning.is_needed || (q == kSteer && !options.needs_commands)) continue;
     std::string got;
     for (const std::string_view name : names) got += (got.empty() ? "" : ",") + printable(name);
@@ -140,7 +141,7 @@ Result<LogRows> read_csv_rows(const std::string& text, const std::string& file, 
       row[q] = *value * header->columns[q]->factor;
     }
     rows.samples.push_back({row[kTime], row[kX], row[kY], row[kPsi], row[kSpeed], row[kYawRate]});
-    if (header->columns[kSteer]) rows.told.push_back({row[kTime], row[kSteer], row[kThrottle]});
+    if (header->columns[kSteer]) rows.commands.push_back({row[kTime], row[kSteer], row[kThrottle]});
   }
   if (!header) return fail(ErrorCode::kParse, fmt::format("{}: got no header, expected one", file));
   return rows;

@@ -12,7 +12,7 @@ namespace chicane::identify {
 /// Samples and commands of a whole file in any order, as one reader of a format found them.
 struct LogRows {
   std::vector<Sample> samples;
-  std::vector<Told> told;
+  std::vector<SentCommand> commands;
   bool is_centre_of_mass = false;
 };
 

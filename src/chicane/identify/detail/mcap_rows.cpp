@@ -17,14 +17,14 @@ Result<LogRows> read_mcap_rows(const std::string& file, const LogOptions& option
       const model::Measurement& m = step->measurement;
       if (step->has_measurement)
         own.samples.push_back({.time = m.time, .x = m.x, .y = m.y, .psi = m.psi, .speed = m.speed});
-      own.told.push_back({m.time, step->command.steer, step->command.throttle});
+      own.commands.push_back({m.time, step->command.steer, step->command.throttle});
     } else if (channel.message_encoding == "cdr") {
       foreign.add(channel.topic, channel.type, message.bytes, message.log_time);
     }
   };
   const auto read = telemetry::read_mcap(file, visitor);
   if (!read) return fail(read.error());
-  if (own.told.empty()) return foreign.rows(file, options);
+  if (own.commands.empty()) return foreign.rows(file, options);
   own.is_centre_of_mass = true;
   return own;
 }

@@ -43,17 +43,17 @@ void RosRows::add(const std::string& topic, std::string_view type, std::string_v
                                  hypot(odom->vx, odom->vy), odom->yaw_rate});
   } else if (type == kDrive) {
     if (const auto command = protocol::decode<protocol::DriveMessage>(bytes))
-      told_[topic].push_back({.time = seconds(command->stamp, log_time), .steer = command->steer});
+      commands_[topic].push_back({.time = seconds(command->stamp, log_time), .steer = command->steer});
   }
 }
 
 Result<LogRows> RosRows::rows(const std::string& file, const LogOptions& options) const {
   auto samples = chosen(samples_, options.odom_topic, kOdometry, "--odom-topic", file);
   if (!samples) return fail(samples.error());
-  if (told_.empty() && !options.needs_commands) return LogRows{std::move(*samples), {}, false};
-  auto told = chosen(told_, options.drive_topic, kDrive, "--drive-topic", file);
-  if (!told) return fail(told.error());
-  return LogRows{std::move(*samples), std::move(*told), false};
+  if (commands_.empty() && !options.needs_commands) return LogRows{std::move(*samples), {}, false};
+  auto commands = chosen(commands_, options.drive_topic, kDrive, "--drive-topic", file);
+  if (!commands) return fail(commands.error());
+  return LogRows{std::move(*samples), std::move(*commands), false};
 }
 
 }  // namespace chicane::identify

@@ -26,7 +26,7 @@ class RosRows {
   [[nodiscard]] double seconds(std::int64_t stamp, std::uint64_t log_time);
 
   std::map<std::string, std::vector<Sample>> samples_;  ///< by topic
-  std::map<std::string, std::vector<Told>> told_;
+  std::map<std::string, std::vector<SentCommand>> commands_;
   std::optional<std::int64_t> first_;
 };
 

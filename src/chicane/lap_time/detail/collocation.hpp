@@ -38,10 +38,10 @@ class Collocation {
     double last_barrier = 1e-8;
     double cost_scale = 20.0;  ///< so that the cost of a node is about one
     int most_iterations = 600;
-    /// Told iteration, cost and the largest violated equation; false ends the search. May be empty.
+    /// Called with iteration, cost and the largest violated equation; false ends the search. May be empty.
     std::function<bool(int, double, double)> go_on{};
-    /// Told the variables and the largest violation before each iteration; true ends the search as solved,
-    /// where less than an optimum is enough. May be empty.
+    /// Called with the variables and the largest violation before each iteration; true ends the search as
+    /// solved, where less than an optimum is enough. May be empty.
     std::function<bool(const std::vector<double>&, double)> is_enough{};
   };
   struct Report {

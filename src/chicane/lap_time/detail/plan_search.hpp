@@ -37,7 +37,7 @@ class PlanSearch {
     double time_step = 0.05;  ///< between nodes [s]
     double tolerance = 1e-6;  ///< stationarity of an optimum (Collocation::Options)
     double budget = std::numeric_limits<double>::infinity();  ///< of find() (seconds_of_work) [s]
-    /// Told how far it has come in words, and the lap time; false ends the search. May be empty.
+    /// Called with the progress in words, and the lap time; false ends the search. May be empty.
     std::function<bool(int iteration, double lap_time)> go_on{};
     std::function<void(const PlanProgress&)> on_progress{};  ///< after each iteration; may be empty
   };

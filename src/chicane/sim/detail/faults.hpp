@@ -140,10 +140,10 @@ inline constexpr FaultKind kLinkLost{
     .duration = 2.0,
     .place = FaultPlace::kLink,
     .measure =
-        [](FaultMemory&, const model::Measurement&, model::Measurement& told) noexcept {
-          told.waypoint_count = 0;
-          told.x = told.y = told.psi = told.speed = std::numeric_limits<double>::quiet_NaN();
-          told.steer = told.throttle = std::numeric_limits<double>::quiet_NaN();
+        [](FaultMemory&, const model::Measurement&, model::Measurement& measured) noexcept {
+          measured.waypoint_count = 0;
+          measured.x = measured.y = measured.psi = measured.speed = std::numeric_limits<double>::quiet_NaN();
+          measured.steer = measured.throttle = std::numeric_limits<double>::quiet_NaN();
         },
 };
 
@@ -152,11 +152,11 @@ inline constexpr FaultKind kFrozenSensor{
     .meaning = "The sensors repeat their last measurement with a new time.",
     .place = FaultPlace::kSource,
     .measure =
-        [](FaultMemory& memory, const model::Measurement& now, model::Measurement& told) noexcept {
+        [](FaultMemory& memory, const model::Measurement& now, model::Measurement& measured) noexcept {
           if (!memory.measurement) memory.measurement = now;
-          told = *memory.measurement;
-          told.time = now.time;
-          told.delay = now.delay;
+          measured = *memory.measurement;
+          measured.time = now.time;
+          measured.delay = now.delay;
         },
 };
 
@@ -166,8 +166,8 @@ inline constexpr FaultKind kNanMeasurement{
     .duration = 2.0,
     .place = FaultPlace::kLink,
     .measure =
-        [](FaultMemory&, const model::Measurement&, model::Measurement& told) noexcept {
-          told.x = told.y = told.psi = told.speed = std::numeric_limits<double>::quiet_NaN();
+        [](FaultMemory&, const model::Measurement&, model::Measurement& measured) noexcept {
+          measured.x = measured.y = measured.psi = measured.speed = std::numeric_limits<double>::quiet_NaN();
         },
 };
 
@@ -179,9 +179,9 @@ inline constexpr FaultKind kPositionJump{
     .strongest = 100.0,
     .strength_meaning = "distance, right negative [m]",
     .measure =
-        [](FaultMemory& memory, const model::Measurement& now, model::Measurement& told) noexcept {
-          told.x -= memory.strength * sin(now.psi);
-          told.y += memory.strength * cos(now.psi);
+        [](FaultMemory& memory, const model::Measurement& now, model::Measurement& measured) noexcept {
+          measured.x -= memory.strength * sin(now.psi);
+          measured.y += memory.strength * cos(now.psi);
         },
 };
 
@@ -196,9 +196,9 @@ inline constexpr FaultKind kGpsNoise{
     .stream = "noise",
     .place = FaultPlace::kSource,
     .measure =
-        [](FaultMemory& memory, const model::Measurement&, model::Measurement& told) noexcept {
-          told.x += memory.strength * memory.random.normal();
-          told.y += memory.strength * memory.random.normal();
+        [](FaultMemory& memory, const model::Measurement&, model::Measurement& measured) noexcept {
+          measured.x += memory.strength * memory.random.normal();
+          measured.y += memory.strength * memory.random.normal();
         },
 };
 
@@ -206,7 +206,7 @@ inline constexpr FaultKind kSpeedSensorZero{
     .name = "speed_sensor_zero",
     .meaning = "The measured speed is zero.",
     .measure = [](FaultMemory&, const model::Measurement&,
-                  model::Measurement& told) noexcept { told.speed = 0.0; },
+                  model::Measurement& measured) noexcept { measured.speed = 0.0; },
 };
 
 inline constexpr FaultKind kWaypointsMissing{
@@ -215,7 +215,7 @@ inline constexpr FaultKind kWaypointsMissing{
     .duration = 2.0,
     .place = FaultPlace::kLink,
     .measure = [](FaultMemory&, const model::Measurement&,
-                  model::Measurement& told) noexcept { told.waypoint_count = 0; },
+                  model::Measurement& measured) noexcept { measured.waypoint_count = 0; },
 };
 
 }  // namespace chicane::sim

@@ -485,8 +485,8 @@ class HardSolver {
   std::array<double, kEnd> terminal_{};
 };
 
-/// A class of its own does the work: compilers differ in how members of a constrained specialisation are told
-/// from those of the class itself.
+/// A class of its own does the work: compilers differ in how they distinguish members of a constrained
+/// specialisation from members of the class itself.
 template <HardProblem P, int Capacity, class Arch>
 class OcpSolver<P, Capacity, Arch> : public HardSolver<P, Capacity, Arch> {
  public:

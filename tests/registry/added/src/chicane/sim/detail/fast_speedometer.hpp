@@ -14,7 +14,7 @@ inline constexpr FaultKind kFastSpeedometer{
     .strongest = 4.0,
     .strength_meaning = "times the speed",
     .measure = [](FaultMemory& memory, const model::Measurement&,
-                  model::Measurement& told) noexcept { told.speed *= memory.strength; },
+                  model::Measurement& measured) noexcept { measured.speed *= memory.strength; },
 };
 
 }  // namespace chicane::sim
