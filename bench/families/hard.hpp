@@ -17,8 +17,8 @@
 
 namespace chicane::bench {
 
-// Families with something that must hold: goals that are reached exactly, limits without a price, a path that
-// is kept, a time that is free, a motion that repeats itself.
+// Families with something that must hold: goals that are reached exactly, limits without a penalty, a path
+// that is kept, a time that is free, a motion that repeats itself.
 
 namespace detail {
 /// An instance of another problem with the same data.

@@ -68,8 +68,8 @@ class FamilyMeasurement {
 
   /// Where the multipliers of what must hold are.
   template <class Solver>
-  static const auto& hard_prices(const Solver& ocp) {
-    static constexpr NoHardPrices kNone;
+  static const auto& hard_multipliers(const Solver& ocp) {
+    static constexpr NoHardMultipliers kNone;
     if constexpr (solver::HardProblem<P>) {
       return ocp;
     } else {
@@ -98,7 +98,7 @@ class FamilyMeasurement {
       }
       const OverArrays<P> arrays{one.problem};
       const KktResidual kkt = check_kkt(
-          arrays, *t, [&](int k, int c) { return ocp->constraint_multiplier(k, c); }, hard_prices(*ocp));
+          arrays, *t, [&](int k, int c) { return ocp->constraint_multiplier(k, c); }, hard_multipliers(*ocp));
       const bool is_optimal = report.status == solver::SolveStatus::kOptimal;
       const bool is_asked = !is_optimal || i - request.first < request.ipopt_instances;
       const ReferenceAnswer reference = reference_of(request, references, one, arrays, start, i, is_asked);

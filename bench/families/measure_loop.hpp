@@ -47,8 +47,8 @@ class LoopMeasurement {
     Random random{static_cast<std::uint64_t>(seed) + 1000U};
     auto x = one.start;
     auto plan = std::make_unique<Trajectory>(Measurement::guess(one, NaiveStart::kIdle));
-    typename Prices::Type prices{};
-    if (!solver::usable(solve_with(*first_, one.problem, x, *plan, prices).status)) return;
+    typename Multipliers::Type multipliers{};
+    if (!solver::usable(solve_with(*first_, one.problem, x, *plan, multipliers).status)) return;
 #if defined(CHICANE_HAVE_IPOPT)
     const auto reference_plan = std::make_unique<Trajectory>(*plan);
     ipopt_.solve(arrays, x, *reference_plan);
@@ -59,31 +59,32 @@ class LoopMeasurement {
         x[i] = next[i] + kDisturbance * std::max(1.0, std::fabs(next[i])) * random.normal();
       solver::shift(*plan, 1.0);
       plan->x[0] = x;
-      if constexpr (solver::HardProblem<P>) prices.shift(1, P::kHorizon);
+      if constexpr (solver::HardProblem<P>) multipliers.shift(1, P::kHorizon);
       const Trajectory start = *plan;
-      solve(one.problem, x, start, *plan, prices);
+      solve(one.problem, x, start, *plan, multipliers);
       compare(arrays, x, start, *plan);
       if (!is_usable_) return;
     }
   }
 
   /// The multipliers of what must hold, if anything must.
-  struct Prices {
+  struct Multipliers {
     template <class Q>
     struct Of {
       using Type = int;
     };
     template <solver::HardProblem Q>
     struct Of<Q> {
-      using Type = solver::HardPrices<Q, P::kHorizon>;
+      using Type = solver::HardMultipliers<Q, P::kHorizon>;
     };
     using Type = typename Of<P>::Type;
   };
 
   static solver::SolveReport solve_with(Solver& ocp, const P& problem, const std::array<double, P::kNx>& x,
-                                        Trajectory& plan, [[maybe_unused]] typename Prices::Type& prices) {
+                                        Trajectory& plan,
+                                        [[maybe_unused]] typename Multipliers::Type& multipliers) {
     if constexpr (solver::HardProblem<P>) {
-      return ocp.solve(problem, x, plan, prices);
+      return ocp.solve(problem, x, plan, multipliers);
     } else {
       return ocp.solve(problem, x, plan);
     }
@@ -91,17 +92,17 @@ class LoopMeasurement {
 
   /// The lesser of two measured times.
   void solve(const P& problem, const std::array<double, P::kNx>& x, const Trajectory& start, Trajectory& plan,
-             typename Prices::Type& prices) {
+             typename Multipliers::Type& multipliers) {
     double time = 1e30;
-    auto known = prices;
+    auto known = multipliers;
     for (int repeat = 0; repeat < 2; ++repeat) {
       plan = start;
-      known = prices;
+      known = multipliers;
       const double begin = cpu_time();
       report_ = solve_with(*ocp_, problem, x, plan, known);
       time = std::min(time, cpu_time() - begin);
     }
-    prices = known;
+    multipliers = known;
     is_usable_ = solver::usable(report_.status);
     is_optimal_ = report_.status == solver::SolveStatus::kOptimal;
     time_ = time;

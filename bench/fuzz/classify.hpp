@@ -81,11 +81,11 @@ class Judge {
     return Wrong::kNothing;
   }
   [[nodiscard]] KktResidual check(const solver::Trajectory<P::kNx, P::kNu, Capacity>& t) const {
-    const auto price = [&](int k, int c) { return ocp_.constraint_multiplier(k, c); };
+    const auto multiplier = [&](int k, int c) { return ocp_.constraint_multiplier(k, c); };
     if constexpr (kIsHard) {
-      return check_kkt(arrays_, t, price, ocp_);
+      return check_kkt(arrays_, t, multiplier, ocp_);
     } else {
-      return check_kkt(arrays_, t, price);
+      return check_kkt(arrays_, t, multiplier);
     }
   }
 

@@ -39,7 +39,7 @@ FuzzTally run(long count, long first) {
     const KktResidual kkt = judge.check(one->answer);
     std::printf(
         "%s %ld: %s (%s, %d iterations, tolerance %.0e, says %.2e %.2e %.2e; check: slope %.2e defect %.2e "
-        "prices "
+        "multipliers "
         "%.2e "
         "outside %.2e miss %.2e rounding %.2e cost %.6g)\n",
         KIND_NAME, seed, kWrongNames[static_cast<int>(wrong)], to_string(one->report.status).data(),

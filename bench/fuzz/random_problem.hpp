@@ -34,10 +34,10 @@ struct RandomData {
   double a[Nx][Nx]{}, b[Nx][Nu]{}, wave[Nx]{}, goal[Nx]{}, weight[Nx + Nu]{}, end[Nx]{};
   double edge[Nc + 1]{}, slope[Nc + 1]{};
   std::array<double, Nu> low{}, high{};
-  solver::SoftPenalty price;
+  solver::SoftPenalty penalty;
   Quirks quirks;
 
-  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const { return price; }
+  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const { return penalty; }
   [[nodiscard]] std::array<double, Nu> input_lower(int) const { return low; }
   [[nodiscard]] std::array<double, Nu> input_upper(int) const { return high; }
 
@@ -107,9 +107,9 @@ struct RandomData {
       p.edge[c] = random.normal();
       p.slope[c] = chance(0.5) ? 0.0 : random.normal() * scale;
     }
-    p.price = {.linear = decade(-1.0, 4.0),
-               .quadratic = chance(0.2) ? 0.0 : decade(-1.0, 4.0),
-               .cap = chance(0.2) ? decade(-3.0, 0.0) : 1e30};
+    p.penalty = {.linear = decade(-1.0, 4.0),
+                 .quadratic = chance(0.2) ? 0.0 : decade(-1.0, 4.0),
+                 .cap = chance(0.2) ? decade(-3.0, 0.0) : 1e30};
     Quirks& q = p.quirks;
     q.log = chance(0.04) ? 1.0 : 0.0;
     q.root = chance(0.04) ? 1.0 : 0.0;

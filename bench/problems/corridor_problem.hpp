@@ -10,7 +10,7 @@
 
 namespace chicane::bench {
 
-/// The described problem with a soft corridor low_k <= cte_k <= high_k (linear price 500, quadratic 100):
+/// The described problem with a soft corridor low_k <= cte_k <= high_k (linear penalty 500, quadratic 100):
 /// half-width 1.2 m with a window that forces the car at least 0.6 m to one side.
 struct CorridorProblem : DescribedProblem {
   static constexpr int kNc = 2;
@@ -20,7 +20,7 @@ struct CorridorProblem : DescribedProblem {
   double window_side = 1.0;
   double half_width = 1.2;
   double keep_out = 0.6;
-  solver::SoftPenalty price{.linear = 500.0, .quadratic = 100.0};
+  solver::SoftPenalty penalty{.linear = 500.0, .quadratic = 100.0};
 
   template <class T>
   std::array<T, kNc> constraint(int k, const std::array<T, kNx>& s, const std::array<T, kNu>&) const {
@@ -32,7 +32,7 @@ struct CorridorProblem : DescribedProblem {
     }
     return {s[4] - high, low - s[4]};
   }
-  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const { return price; }
+  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const { return penalty; }
 };
 
 /// The same problem in the solver's structured form. cte_{k+1} is an output of stage k, so each bound stands
@@ -44,11 +44,11 @@ struct StructuredCorridorProblem : StructuredDescribedProblem {
 
   solver::StageData<kCapacity> low;
   solver::StageData<kCapacity> high;
-  solver::SoftPenalty price;
+  solver::SoftPenalty penalty;
 
   StructuredCorridorProblem() = default;
   StructuredCorridorProblem(const CorridorProblem& plain, double cte, int horizon)
-      : StructuredDescribedProblem(plain, cte), price(plain.price) {
+      : StructuredDescribedProblem(plain, cte), penalty(plain.penalty) {
     for (int k = 0; k < horizon; ++k) {
       const std::array<double, 2> excess =
           plain.constraint(k + 1, std::array<double, DescribedProblem::kNx>{}, std::array<double, 2>{});
@@ -63,7 +63,7 @@ struct StructuredCorridorProblem : StructuredDescribedProblem {
     const auto cte = next_cte(s);
     return std::make_tuple(cte - high.at(k), low.at(k) - cte);
   }
-  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const { return price; }
+  [[nodiscard]] solver::SoftPenalty soft_penalty(int) const { return penalty; }
   [[nodiscard]] static std::string_view constraint_name(int c) { return c == 0 ? "left edge" : "right edge"; }
   [[nodiscard]] static std::string_view constraint_unit(int) { return "m"; }
 };

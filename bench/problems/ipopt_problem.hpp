@@ -127,8 +127,8 @@ class IpoptProblem : public Ipopt::TNLP {
       }
       if constexpr (kNc > 0) {
         for (int c = 0; c < kNc; ++c) {
-          const auto price = problem->soft_penalty(c);
-          gradient[at_s(k) + c] = price.linear + price.quadratic * w[at_s(k) + c];
+          const auto penalty = problem->soft_penalty(c);
+          gradient[at_s(k) + c] = penalty.linear + penalty.quadratic * w[at_s(k) + c];
         }
       }
     }
@@ -316,27 +316,28 @@ class IpoptProblem : public Ipopt::TNLP {
     for (int k = 0; k <= horizon; ++k) {
       D lagrangian(0.0);
       const auto x = state<D>(w, k);
-      const auto price = [&](int row) { return multipliers == nullptr ? 0.0 : multipliers[row]; };
+      const auto multiplier = [&](int row) { return multipliers == nullptr ? 0.0 : multipliers[row]; };
       if (k < horizon) {
         const auto u = input<D>(w, k);
         for (const D& r : problem->residual(k, x, u)) lagrangian += (0.5 * factor) * r * r;
         const auto next = problem->dynamics(k, x, u);
-        for (int i = 0; i < kNx; ++i) lagrangian += price(k * kNx + i) * next[static_cast<std::size_t>(i)];
+        for (int i = 0; i < kNx; ++i)
+          lagrangian += multiplier(k * kNx + i) * next[static_cast<std::size_t>(i)];
         if constexpr (kNc > 0) {
           const auto values = problem->constraint(k, x, u);
           for (int c = 0; c < kNc; ++c) {
-            lagrangian += price(horizon * kNx + k * kNc + c) * values[static_cast<std::size_t>(c)];
+            lagrangian += multiplier(horizon * kNx + k * kNc + c) * values[static_cast<std::size_t>(c)];
             put(at_s(k) + c, at_s(k) + c, factor * problem->soft_penalty(c).quadratic);
             ++count;
           }
         }
         if constexpr (kNh > 0) {
           int row = equality_row(k, 0);
-          for (const D& h : problem->equality(k, x, u)) lagrangian += price(row++) * h;
+          for (const D& h : problem->equality(k, x, u)) lagrangian += multiplier(row++) * h;
         }
       } else {
         for (const D& r : problem->terminal_residual(x)) lagrangian += (0.5 * factor) * r * r;
-        each_at_end(x, [&](int row, const D& value) { lagrangian += price(row) * value; });
+        each_at_end(x, [&](int row, const D& value) { lagrangian += multiplier(row) * value; });
       }
       for (int a = 0; a < (k < horizon ? kNz : kNx); ++a) {
         for (int b = 0; b <= a; ++b) {

@@ -27,8 +27,8 @@ T simulated_cost(const P& problem, const std::array<double, P::kNx>& x0, int hor
       const auto values = problem.constraint(k, x, input);
       for (int c = 0; c < P::kNc; ++c) {
         const T& value = values[static_cast<std::size_t>(c)];
-        const auto price = problem.soft_penalty(c);
-        if (value > T(0.0)) cost += value * (price.linear + 0.5 * price.quadratic * value);
+        const auto penalty = problem.soft_penalty(c);
+        if (value > T(0.0)) cost += value * (penalty.linear + 0.5 * penalty.quadratic * value);
       }
     }
     x = problem.dynamics(k, x, input);

@@ -101,7 +101,7 @@ Node node_of(int op, const std::int32_t* operands, double value, std::size_t bef
 /// How a problem is solved: what TracedCall has, as arrays that live as long as it is used.
 struct Setting {
   std::vector<double> lower, upper;
-  std::vector<solver::SoftPenalty> prices;
+  std::vector<solver::SoftPenalty> penalties;
   std::unique_ptr<bool[]> is_hard;
   solver::SolverOptions options;
   double budget_s = 0.0;
@@ -150,13 +150,14 @@ class Interpreter {
     if (is_to_solve) number_as_in(kSizeClasses[static_cast<std::size_t>(kind_)], problem_);
   }
 
-  void set(const Array& lower, const Array& upper, const Array& prices, const std::vector<bool>& is_hard,
+  void set(const Array& lower, const Array& upper, const Array& penalties, const std::vector<bool>& is_hard,
            const py::dict& options) {
     setting_.lower.assign(lower.data(), lower.data() + lower.size());
     setting_.upper.assign(upper.data(), upper.data() + upper.size());
-    setting_.prices.clear();
-    for (py::ssize_t c = 0; c < prices.size() / 3; ++c)
-      setting_.prices.push_back({prices.data()[3 * c], prices.data()[3 * c + 1], prices.data()[3 * c + 2]});
+    setting_.penalties.clear();
+    for (py::ssize_t c = 0; c < penalties.size() / 3; ++c)
+      setting_.penalties.push_back(
+          {penalties.data()[3 * c], penalties.data()[3 * c + 1], penalties.data()[3 * c + 2]});
     setting_.is_hard = std::make_unique<bool[]>(is_hard.size() + 1);
     std::copy(is_hard.begin(), is_hard.end(), setting_.is_hard.get());
     setting_.options.tolerance = options["tolerance"].cast<double>();
@@ -342,7 +343,7 @@ class Interpreter {
                             .data_stride = parameters.stride,
                             .lower = setting.lower.data(),
                             .upper = setting.upper.data(),
-                            .prices = setting.prices.data(),
+                            .penalties = setting.penalties.data(),
                             .is_hard = setting.is_hard.get(),
                             .options = setting.options,
                             .goes_on = goes_on,

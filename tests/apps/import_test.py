@@ -51,7 +51,7 @@ class Import(unittest.TestCase):
             self.assertEqual(code, 0, err)
             self.assertIn("all tyres on the road", out)
 
-    # Its steering lags by 0.16 s: prices and limits that took what is asked for the wheel drove it off eight maps of ten.
+    # Its steering lags by 0.16 s: weights and limits that took what is asked for the wheel drove it off eight maps of ten.
     def test_a_model_car_races_on_maps_with_the_settings_of_the_preset(self):
         for name in ("chicane", "long") if os.environ.get("CHICANE_SLOW_TESTS") else ("chicane",):
             with self.subTest(name):

@@ -86,7 +86,7 @@ Instance<Problem> make(Kind kind, Random& random) {
       break;
     case Kind::kHeavy:
       p.path[0] = random.uniform(20.0, 60.0) * (random.uniform() < 0.5 ? -1.0 : 1.0);
-      if (Problem::kNc > 0) p.path[0] *= 0.2;  // 4 to 12 m, each at a price of 500 and more
+      if (Problem::kNc > 0) p.path[0] *= 0.2;  // 4 to 12 m, each at a penalty of 500 and more
       break;
     default:
       break;
@@ -203,7 +203,7 @@ INSTANTIATE_TEST_SUITE_P(Campaign, Corridors,
                                          Batch{Kind::kHeavy, 100}),
                          name_of_batch);
 
-/// A corridor that cannot be kept: it ends where both sides contradict each other, at the price agreed on.
+/// A corridor that cannot be kept: it ends where both sides contradict each other, at the penalty agreed on.
 TEST(Campaign, CorridorsThatCannotBeKeptAreSolvedAndNamed) {
   const auto ocp = std::make_unique<Solver<CorridorProblem>>();
   const auto ours = std::make_unique<Trajectory>();
@@ -212,7 +212,7 @@ TEST(Campaign, CorridorsThatCannotBeKeptAreSolvedAndNamed) {
     auto instance = make<CorridorProblem>(Kind::kRandom, random);
     instance.problem.window_end = instance.problem.window_begin;
     instance.problem.half_width = -0.3;  // 0.3 m beyond each other
-    instance.problem.price.cap = 0.05;
+    instance.problem.penalty.cap = 0.05;
     *ours = instance.guess;
     const SolveReport report = ocp->solve(instance.problem, instance.start, *ours);
     ASSERT_EQ(report.status, SolveStatus::kInfeasible) << i;
@@ -245,7 +245,7 @@ TEST(Campaign, EveryFailureIsForgottenAtOnce) {
         break;
       case 3:
         broken.problem.half_width = -0.3;
-        broken.problem.price.cap = 0.05;
+        broken.problem.penalty.cap = 0.05;
         break;
       default:
         deadline = Deadline::after(std::chrono::nanoseconds{0});

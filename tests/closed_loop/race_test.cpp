@@ -192,7 +192,7 @@ TEST(Race, CountsOnTheFrictionThatIsKnown) {
 }
 
 // docs/controller.md, eq. 18a: more speed where there is grip and room, less in neither.
-TEST(Race, IsFasterWhereSpeedHasAPrice) {
+TEST(Race, IsFasterWhereSpeedHasAWeight) {
   const auto race = [](const char* progress) {
     return drive({{"preset", "race"},
                   {"car", "road-car"},

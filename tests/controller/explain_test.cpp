@@ -64,8 +64,8 @@ TEST(Explanation, ATermIsPaidForWhatItNames) {
   EXPECT_GT(term(*controller, far, "lateral"), 3.0 * term(*controller, near, "lateral"));
   EXPECT_EQ(term(*controller, near, "edge"), 0.0);
 
-  const auto priced = cubic({.weight_speed_steer = 10.0});
-  EXPECT_GT(term(*priced, answer(*priced, on_a_left_bend()).report.explanation, "speed_steer"), 0.0);
+  const auto weighted = cubic({.weight_speed_steer = 10.0});
+  EXPECT_GT(term(*weighted, answer(*weighted, on_a_left_bend()).report.explanation, "speed_steer"), 0.0);
   const auto free = cubic();
   EXPECT_EQ(term(*free, answer(*free, on_a_left_bend()).report.explanation, "speed_steer"), 0.0);
 }

@@ -155,7 +155,7 @@ describe('the tour', () => {
     const effects = [
       ['2 of 6: N: look further ahead', 'cubic_mpc.horizon_steps', '40', '25'],
       ['3 of 6: dt: longer steps', 'cubic_mpc.step_length_s', '0.1', '0.025'],
-      ['4 of 6: A weight: the price of the pedal', 'cubic_mpc.weight_throttle', '160', '80'],
+      ['4 of 6: A weight: the cost of the pedal', 'cubic_mpc.weight_throttle', '160', '80'],
       ['5 of 6: Latency: more than it counts on', 'latency_ms', '300', '100'],
     ];
     for (const [title, key, value, start] of effects) {

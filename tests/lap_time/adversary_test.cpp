@@ -65,7 +65,7 @@ TEST_P(Adversary, BeatsNoBoundWithWhateverItBelievesAndRisks) {
         .grip_share = numbers.between(0.97, 1.02),  // above 1: it believes in more than there is
         .slip_share = is_udacity ? numbers.between(0.9, 1.6) : numbers.between(0.75, 1.05),
         .brake_share = numbers.between(0.95, 1.02),
-        .steer_price = numbers.between(1e-5, 1e-3)};
+        .steer_weight = numbers.between(1e-5, 1e-3)};
     const Result<NodePlan> plan = search.near(from, risk);
     if (!plan) continue;
     from = *plan;

@@ -76,7 +76,7 @@ TEST(LiveChange, IsRefusedWhereSetWouldRefuseIt) {
   EXPECT_EQ(loop->scenario().track, "oval");
 }
 
-TEST(LiveChange, OfPricesHorizonAndSpeedKeepsTheMapAndTheCarOnTheRoad) {
+TEST(LiveChange, OfWeightsHorizonAndSpeedKeepsTheMapAndTheCarOnTheRoad) {
   const auto loop = loop_of({{"track", "oval"}});
   drive_to_map(*loop);
   const Settings changes{{"tracking_mpc.weight_lateral", "4"},

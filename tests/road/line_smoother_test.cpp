@@ -57,7 +57,7 @@ TEST(LineSmoother, CutsABendOnItsInsideAndBendsLess) {
 
 TEST(LineSmoother, KeepsWithinAboutItsWidth) {
   for (const double width : {0.5, 1.0, 2.0}) {
-    // The price is raised a few times over, and not until the bound holds.
+    // The weight is raised a few times over, and not until the bound holds.
     for (const double n : smooth(bend(), width)) EXPECT_LT(std::fabs(n), 1.3 * width) << width;
   }
 }

@@ -26,7 +26,7 @@ TEST(Road, SmoothsWithinItsWidthAndBendsLess) {
       const Road::Room room = road.room(at.offset);
       EXPECT_NEAR(room.left + room.right, 6.0, 1e-9);
       EXPECT_GE(std::min(room.left, room.right), 3.0 - 1.3 * width)
-          << "the price keeps it within about the width";
+          << "the weight keeps it within about the width";
     }
     return sum;
   };

@@ -92,12 +92,12 @@ TEST_F(CInterface, GivesTheAnswerOfTheSolverBitByBit) {
   EXPECT_EQ(report_.cost, report.cost + 0.5);
   EXPECT_GT(report_.seconds, 0.0);
   const auto states = get(CHICANE_STATES), inputs = get(CHICANE_INPUTS);
-  const auto prices = get(CHICANE_CONSTRAINT_MULTIPLIERS), adjoint = get(CHICANE_DYNAMICS_MULTIPLIERS);
+  const auto multipliers = get(CHICANE_CONSTRAINT_MULTIPLIERS), adjoint = get(CHICANE_DYNAMICS_MULTIPLIERS);
   for (std::size_t k = 0; k < 20; ++k) {
     const int stage = static_cast<int>(k);
     EXPECT_EQ(inputs[k], t.u[k][0]);
     EXPECT_EQ(states[2 * k + 2], t.x[k + 1][0]);
-    EXPECT_EQ(prices[k], solver->constraint_multiplier(stage, 0));
+    EXPECT_EQ(multipliers[k], solver->constraint_multiplier(stage, 0));
     EXPECT_EQ(adjoint[2 * k + 1], solver->adjoint(stage, 1));
   }
   std::vector<float> rounded(20);

@@ -63,7 +63,7 @@ TEST(FilterMethod, SaysWhereRoundingEndsIt) {
     EXPECT_EQ(report.status == SolveStatus::kOptimal, left <= 1e-12) << seed;
     if (report.status == SolveStatus::kAtFloor) {
       EXPECT_LE(left, 1e-6) << seed;
-      EXPECT_LE(kkt.stationarity, 1e-5) << seed;  // with the prices that are handed out
+      EXPECT_LE(kkt.stationarity, 1e-5) << seed;  // with the multipliers that are handed out
     }
     EXPECT_LE(kkt.defect, 1e-12) << seed;
     at_floor += report.status == SolveStatus::kAtFloor ? 1 : 0;

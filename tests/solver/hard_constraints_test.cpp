@@ -30,7 +30,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 struct Push {
   static constexpr int kNx = 2, kNu = 1, kNr = 1, kNe = 0, kNc = 1, kNeh = 1, kNec = 1;
   static constexpr double kStep = 0.1;
-  double goal = 1.0, end_speed = 0.0, most = kInfinity, fastest = kInfinity, first_price = 1.0;
+  double goal = 1.0, end_speed = 0.0, most = kInfinity, fastest = kInfinity, first_penalty = 1.0;
 
   template <class K, class X, class U>
   auto dynamics(K, const X& x, const U& u) const {
@@ -59,7 +59,7 @@ struct Push {
   }
   [[nodiscard]] bool is_hard(int) const { return true; }
   [[nodiscard]] solver::SoftPenalty soft_penalty(int) const {
-    return {.linear = first_price, .quadratic = 0.0};
+    return {.linear = first_penalty, .quadratic = 0.0};
   }
   [[nodiscard]] std::array<double, 1> input_lower(int) const { return {-most}; }
   [[nodiscard]] std::array<double, 1> input_upper(int) const { return {most}; }
@@ -114,16 +114,16 @@ TEST(HardConstraints, HaveMultipliersThatSayWhatARightHandSideCosts) {
   EXPECT_EQ(ocp->terminal_constraint_multiplier(0), 0.0);
 }
 
-TEST(HardConstraints, KeepAHardLimitWhoseFirstPriceIsTooLow) {
+TEST(HardConstraints, KeepAHardLimitWhoseFirstPenaltyIsTooLow) {
   const auto ocp = std::make_unique<PushSolver>();
   PushPlan plan;
-  for (const double price : {1e-4, 1.0, 1e4}) {
-    const HardReport report = solve({.fastest = 0.6, .first_price = price}, plan, *ocp);
-    ASSERT_EQ(report.status, SolveStatus::kOptimal) << price;
+  for (const double penalty : {1e-4, 1.0, 1e4}) {
+    const HardReport report = solve({.fastest = 0.6, .first_penalty = penalty}, plan, *ocp);
+    ASSERT_EQ(report.status, SolveStatus::kOptimal) << penalty;
     double fastest = 0.0;
     for (int k = 0; k < kStages; ++k) fastest = std::max(fastest, plan.x[static_cast<std::size_t>(k)][1]);
-    EXPECT_NEAR(fastest, 0.6, 1e-4) << price;
-    EXPECT_LE(fastest, 0.6 + 1e-6) << price;
+    EXPECT_NEAR(fastest, 0.6, 1e-4) << penalty;
+    EXPECT_LE(fastest, 0.6 + 1e-6) << penalty;
   }
 }
 
@@ -164,10 +164,10 @@ TEST(HardConstraints, AreUsableOnlyWhereTheyHold) {
 TEST(HardConstraints, GoOnFromMultipliersOfTheLastSolve) {
   const auto ocp = std::make_unique<PushSolver>(solver::SolverOptions{.start_from_states = true});
   PushPlan plan{.horizon = kStages};
-  PushSolver::Prices prices;
-  const HardReport first = ocp->solve({}, {0.0, 0.0}, plan, prices);
+  PushSolver::Multipliers multipliers;
+  const HardReport first = ocp->solve({}, {0.0, 0.0}, plan, multipliers);
   ASSERT_EQ(first.status, SolveStatus::kOptimal);
-  const HardReport second = ocp->solve({}, {0.0, 0.0}, plan, prices);
+  const HardReport second = ocp->solve({}, {0.0, 0.0}, plan, multipliers);
   EXPECT_EQ(second.status, SolveStatus::kOptimal);
   EXPECT_EQ(second.rounds, 1);
   EXPECT_LT(second.iterations, first.iterations);

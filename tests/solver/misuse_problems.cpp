@@ -75,7 +75,7 @@ struct WithoutConstraint : Soft {
 struct ConstraintTooMany : Soft {
   static constexpr int kNc = 2;
 };
-struct NoPrice : Base {
+struct NoPenalty : Base {
   static constexpr int kNc = 1;
   template <class K, class X, class U>
   auto constraint(K, const X& x, const U&) const {
@@ -151,7 +151,7 @@ Solver<CountWithoutConstraint> problem06;
 // expect: constraint() has to return kNc rows
 Solver<ConstraintTooMany> problem07;
 // expect: kNc > 0: write `chicane::solver::SoftPenalty soft_penalty(int
-Solver<NoPrice> problem08;
+Solver<NoPenalty> problem08;
 // expect: write `bool is_hard(int constraint) const`
 Solver<HardAsNumber> problem09;
 // expect: write `bool is_hard(int constraint) const`

@@ -262,7 +262,7 @@ TEST_F(OcpSolverTest, RefusesBoundsThatNoNumberKeepsAndLeavesFiniteInputs) {
 }
 
 /// λ_1 is what the rest of the horizon costs per unit of x_1.
-TEST_F(OcpSolverTest, KnowsThePriceOfAState) {
+TEST_F(OcpSolverTest, KnowsTheMultiplierOfAState) {
   const SolverOptions exact{.tolerance = 1e-9};
   ASSERT_EQ(solve(exact).status, SolveStatus::kOptimal);
   const auto x = trajectory.x[1];

@@ -31,7 +31,7 @@ void expect_confirmed(std::uint64_t first, std::uint64_t count, std::uint64_t le
   EXPECT_GE(usable, least_usable);  // the check has something to do
 }
 
-// Of 1000 answers 15 were none: prices of another iterate than the one handed out, a barrier that was
+// Of 1000 answers 15 were none: multipliers of another iterate than the one handed out, a barrier that was
 // still high, inputs that cost more than the guess.
 TEST(RandomProblems, GetAnswersThatAnIndependentCheckConfirms) {
   expect_confirmed<bench::RandomStructured<2, 1, 1>>(0, 400, 200);
@@ -47,9 +47,9 @@ TEST(RandomProblems, GetNoAnswersWhoseCostHasNoDigitsLeft) {
   expect_confirmed<bench::RandomStructured<4, 2, 2>>(245, 24, 12);
 }
 
-// One was "budget spent" with slacks and prices of another point: the filter method had begun where the
+// One was "budget spent" with slacks and multipliers of another point: the filter method had begun where the
 // working set cycled, at the best iterate so far.
-TEST(RandomProblems, GetNoAnswersWithPricesOfAnotherPoint) {
+TEST(RandomProblems, GetNoAnswersWithMultipliersOfAnotherPoint) {
   expect_confirmed<bench::RandomStructured<4, 2, 2>>(1000205, 20, 8);
 }
 #endif

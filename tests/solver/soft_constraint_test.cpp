@@ -22,26 +22,26 @@ using solver::SolveStatus;
 /// Powers of ten between two exponents.
 double decade(Random& random, double low, double high) { return std::pow(10.0, random.uniform(low, high)); }
 
-TEST(SoftConstraint, CentreSolvesTheCentralPathForAnyPriceAndValue) {
+TEST(SoftConstraint, CentreSolvesTheCentralPathForAnyPenaltyAndValue) {
   Random random{41};
   for (int i = 0; i < 5000; ++i) {
-    const SoftPenalty price{.linear = i % 10 == 0 ? 0.0 : decade(random, -2.0, 5.0),
-                            .quadratic = decade(random, -2.0, 5.0)};
+    const SoftPenalty penalty{.linear = i % 10 == 0 ? 0.0 : decade(random, -2.0, 5.0),
+                              .quadratic = decade(random, -2.0, 5.0)};
     const double mu = decade(random, -8.0, 3.0);
     SoftConstraint<> c;
     c.value = (i % 2 == 0 ? 1.0 : -1.0) * decade(random, -6.0, 3.0);
-    c.centre(price, mu);
+    c.centre(penalty, mu);
     ASSERT_GT(c.s, 0.0);
     ASSERT_GT(c.t, 0.0);
     ASSERT_NEAR(c.s - c.t, c.value, 1e-12 * (c.s + c.t));
-    const double pull = price.linear + price.quadratic * c.s;
+    const double pull = penalty.linear + penalty.quadratic * c.s;
     ASSERT_NEAR(c.n + c.z, pull, 1e-6 * pull) << "value " << c.value << ", mu " << mu;
   }
 }
 
 TEST(SoftConstraint, ModelPredictsTheMultiplierAfterTheStep) {
   Random random{42};
-  const SoftPenalty price{.linear = 500.0, .quadratic = 100.0};
+  const SoftPenalty penalty{.linear = 500.0, .quadratic = 100.0};
   for (int i = 0; i < 1000; ++i) {
     SoftConstraint<> c;
     c.value = random.uniform(-2.0, 2.0);
@@ -50,8 +50,8 @@ TEST(SoftConstraint, ModelPredictsTheMultiplierAfterTheStep) {
     c.n = decade(random, -1.0, 3.0);
     c.z = decade(random, -1.0, 3.0);
     const double change = random.uniform(-0.5, 0.5);
-    const SoftConstraint<> step = c.step(price, 0.1, change);
-    const SoftConstraint<>::Model model = c.model(price, 0.1);
+    const SoftConstraint<> step = c.step(penalty, 0.1, change);
+    const SoftConstraint<>::Model model = c.model(penalty, 0.1);
     const double predicted = model.slope + model.curvature * change;
     ASSERT_NEAR(c.z + step.z, predicted, 1e-9 * (std::fabs(predicted) + model.curvature + c.z)) << i;
     ASSERT_GE(model.curvature, 0.0);
@@ -59,12 +59,12 @@ TEST(SoftConstraint, ModelPredictsTheMultiplierAfterTheStep) {
 }
 
 TEST(SoftConstraint, SmoothedPenaltyTendsToTheExactOne) {
-  const SoftPenalty price{.linear = 500.0, .quadratic = 100.0};
+  const SoftPenalty penalty{.linear = 500.0, .quadratic = 100.0};
   for (const double value : {-1.0, -1e-3, 1e-3, 1.0}) {
     SoftConstraint<> c;
     c.value = value;
-    c.centre(price, 1e-9);
-    EXPECT_NEAR(c.barrier(price, 1e-9), c.penalty(price), 1e-6);
+    c.centre(penalty, 1e-9);
+    EXPECT_NEAR(c.barrier(penalty, 1e-9), c.penalty(penalty), 1e-6);
   }
 }
 
@@ -99,7 +99,7 @@ TEST_F(SoftOcp, AWindowIsPassedWithoutViolationWhenThatIsPossible) {
   problem.window_end = 16;
   const auto report = solve();
   ASSERT_EQ(report.status, SolveStatus::kOptimal);
-  EXPECT_LT(report.violation, 1e-5);  // the linear price exceeds the multiplier: an exact penalty
+  EXPECT_LT(report.violation, 1e-5);  // the linear penalty exceeds the multiplier: an exact penalty
   for (int k = 12; k < 16; ++k) EXPECT_GT(trajectory.x[k][4], problem.keep_out - 1e-5);
 }
 
@@ -107,7 +107,7 @@ TEST_F(SoftOcp, ReportsTheWorstStageAndConstraintWhenACapIsExceeded) {
   problem.window_begin = 2;  // 0.2 s to move 0.3 m aside and farther: too soon
   problem.window_end = 6;
   problem.keep_out = 1.0;
-  problem.price.cap = 0.1;
+  problem.penalty.cap = 0.1;
   const auto report = solve();
   EXPECT_EQ(report.status, SolveStatus::kInfeasible);
   EXPECT_GT(report.violation, 0.1);
@@ -115,7 +115,7 @@ TEST_F(SoftOcp, ReportsTheWorstStageAndConstraintWhenACapIsExceeded) {
   ASSERT_GE(report.worst_stage, 2);
   ASSERT_LT(report.worst_stage, 6);
   EXPECT_NEAR(1.0 - trajectory.x[report.worst_stage][4], report.violation, 1e-12);
-  problem.price.cap = 10.0;
+  problem.penalty.cap = 10.0;
   EXPECT_EQ(solve().status, SolveStatus::kOptimal);
 }
 
@@ -125,7 +125,7 @@ TEST_F(SoftOcp, WhateverTheStatusTheReportIsOfTheAnswer) {
   int cut_short = 0;
   for (int i = 0; i < 40; ++i) {
     bench::CorridorInstance instance = bench::random_corridor(random, kCapacity);
-    instance.problem.price = {.linear = 3e4, .quadratic = 1e4};
+    instance.problem.penalty = {.linear = 3e4, .quadratic = 1e4};
     for (int iterations = 1; iterations <= 40; ++iterations) {
       *ocp = Solver{{.max_iterations = iterations}};
       trajectory = {};
@@ -154,8 +154,8 @@ TEST_F(SoftOcp, WhateverTheStatusTheReportIsOfTheAnswer) {
   EXPECT_GT(cut_short, 400);
 }
 
-/// A unit more room saves the price of the violation, and nothing where there is room.
-TEST_F(SoftOcp, KnowsThePriceOfAConstraint) {
+/// A unit more room saves the penalty of the violation, and nothing where there is room.
+TEST_F(SoftOcp, KnowsTheMultiplierOfAConstraint) {
   problem.window_begin = 2;
   problem.window_end = 6;
   problem.keep_out = 1.0;
@@ -167,8 +167,8 @@ TEST_F(SoftOcp, KnowsThePriceOfAConstraint) {
     for (int c = 0; c < 2; ++c) {
       const double value = values[static_cast<std::size_t>(c)];
       if (value > 1e-3) {
-        const double price = problem.price.linear + problem.price.quadratic * value;
-        EXPECT_NEAR(ocp->constraint_multiplier(k, c), price, 1e-3) << k;
+        const double penalty = problem.penalty.linear + problem.penalty.quadratic * value;
+        EXPECT_NEAR(ocp->constraint_multiplier(k, c), penalty, 1e-3) << k;
         ++violated;
       } else if (value < -1e-3) {
         EXPECT_NEAR(ocp->constraint_multiplier(k, c), 0.0, 1e-4) << k;
@@ -196,15 +196,15 @@ TEST(WorstViolation, IsTheLargestButOneAboveItsCapBeforeAll) {
   EXPECT_TRUE(worst.is_above_a_cap());
 }
 
-TEST_F(SoftOcp, AHigherPriceLeavesLessToPay) {
+TEST_F(SoftOcp, AHigherPenaltyLeavesLessViolation) {
   problem.window_begin = 2;
   problem.window_end = 6;
   problem.keep_out = 1.0;
   double last = 1e9;
   for (const double scale : {1.0, 30.0, 1000.0, 30000.0}) {
-    problem.price = {.linear = scale, .quadratic = scale};
+    problem.penalty = {.linear = scale, .quadratic = scale};
     ASSERT_EQ(solve().status, SolveStatus::kOptimal) << scale;
-    double penalty = 0.0;  // at unit price
+    double penalty = 0.0;  // at unit penalty
     for (int k = 0; k < kCapacity; ++k) {
       for (const double value : problem.constraint(k, trajectory.x[k], trajectory.u[k])) {
         if (value > 0.0) penalty += value + 0.5 * value * value;
@@ -215,10 +215,10 @@ TEST_F(SoftOcp, AHigherPriceLeavesLessToPay) {
   }
 }
 
-TEST_F(SoftOcp, APurelyQuadraticPriceWorks) {
+TEST_F(SoftOcp, APurelyQuadraticPenaltyWorks) {
   problem.window_begin = 8;
   problem.window_end = 12;
-  problem.price = {.linear = 0.0, .quadratic = 1000.0};
+  problem.penalty = {.linear = 0.0, .quadratic = 1000.0};
   EXPECT_EQ(solve().status, SolveStatus::kOptimal);
 }
 

@@ -135,8 +135,8 @@ TEST(TrackingProblem, AMoveInPartsIsThatOfShorterStages) {
 }
 
 // Behind a lag of 0.5 s the angle asked for runs ahead of the wheel by sixteen times what the wheel moves in
-// a stage of 30 ms: priced as a rate, it kept f1tenth from steering into bends.
-TEST(TrackingProblem, PricesTheRateOfTheWheelWhereSteeringIsSlow) {
+// a stage of 30 ms: weighted as a rate, it kept f1tenth from steering into bends.
+TEST(TrackingProblem, WeightsTheRateOfTheWheelWhereSteeringIsSlow) {
   Random random(9);
   model::VehicleParams car = model::road_car_params();
   const X x{0.0, 0.0, 0.0, 20.0, 0.0, 0.0, 0.02, 0.0};

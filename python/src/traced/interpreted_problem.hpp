@@ -64,7 +64,7 @@ class InterpretedProblem {
   [[nodiscard]] solver::SoftPenalty soft_penalty(int c) const noexcept {
     constexpr double kNothing = 1e-12;
     if (static_cast<std::size_t>(c) >= constraint_count()) return {.linear = kNothing, .quadratic = kNothing};
-    return call.prices[c];
+    return call.penalties[c];
   }
   [[nodiscard]] bool is_hard(int c) const noexcept {
     return static_cast<std::size_t>(c) < constraint_count() && call.is_hard[c];

@@ -20,7 +20,7 @@ class SolverOfSize final : public TracedSolver {
     for (const Function f : {Function::kEquality, Function::kTerminalEquality, Function::kTerminalConstraint})
       has_equalities_ = has_equalities_ || problem.rows(f) > 0;
     augmented_.problem = &problem_;
-    augmented_.price_factor.fill(1.0);
+    augmented_.penalty_factor.fill(1.0);
   }
 
   void solve(const TracedCall& call, TracedAnswer& answer) noexcept override {
@@ -32,8 +32,8 @@ class SolverOfSize final : public TracedSolver {
       if (hard_ == nullptr) hard_ = std::make_unique<Hard>(call.options);
       hard_->set_options(call.options);
       hard_->record_iterations(call.log);
-      prices_.is_known = prices_.is_known && call.goes_on;
-      answer.report = hard_->solve(problem_, x0, trajectory_, prices_, call.deadline);
+      multipliers_.is_known = multipliers_.is_known && call.goes_on;
+      answer.report = hard_->solve(problem_, x0, trajectory_, multipliers_, call.deadline);
       store_multipliers(*hard_, answer);
       store_hard(answer);
     } else {
@@ -124,7 +124,7 @@ class SolverOfSize final : public TracedSolver {
   bool is_hard_ = false;  ///< the last solve was with what must hold
   std::unique_ptr<Soft> soft_;
   std::unique_ptr<Hard> hard_;
-  solver::HardPrices<Problem, kMostStages> prices_;
+  solver::HardMultipliers<Problem, kMostStages> multipliers_;
   solver::Trajectory<Sizes.nx, Sizes.nu, kMostStages> trajectory_;
 };
 

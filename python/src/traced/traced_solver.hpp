@@ -26,7 +26,7 @@ struct TracedCall {
   std::size_t data_stride = 0;
   const double* lower = nullptr;  ///< (horizon, nu)
   const double* upper = nullptr;
-  const solver::SoftPenalty* prices = nullptr;  ///< of each constraint
+  const solver::SoftPenalty* penalties = nullptr;  ///< of each constraint
   const bool* is_hard = nullptr;
   solver::SolverOptions options;
   bool goes_on = false;  ///< from the multipliers of the solve before

@@ -14,7 +14,7 @@ namespace chicane {
 struct SineCosine {
   double sine, cosine;
 };
-[[nodiscard]] SineCosine sine_cosine(double x) noexcept;  ///< the bits of sin and cos, for the price of one
+[[nodiscard]] SineCosine sine_cosine(double x) noexcept;  ///< the bits of sin and cos, for the time of one
 [[nodiscard]] double tan(double x) noexcept;              ///< sin / cos: error up to 2 ulp
 [[nodiscard]] double atan(double x) noexcept;             ///< all x
 [[nodiscard]] double atan2(double y, double x) noexcept;

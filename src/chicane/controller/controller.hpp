@@ -63,7 +63,7 @@ using road::SpeedLimiter;
 struct Explanation {
   static constexpr int kMaxCostTerms = 12;
 
-  /// Price of the plan by what it is paid for, summed over the stages: the first `cost_term_count` have the
+  /// Cost of the plan by term, summed over the stages: the first `cost_term_count` have the
   /// names of Controller::cost_terms(). Together they are SolveReport::cost.
   std::array<double, kMaxCostTerms> cost_terms{};
   int cost_term_count = 0;

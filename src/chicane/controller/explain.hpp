@@ -92,7 +92,7 @@ void explain(const Problem& problem, const Trajectory& answer, Explanation& expl
   constexpr double kReached = 0.5;  // [m/s]
   const bool is_reached = speed >= limit - kReached;
   if (!is_reached && (active_now & bit(Constraint::kThrottleMax)) != 0U) return SpeedLimiter::kPower;
-  // Below the wanted speed other prices than the speed's hold the car back.
+  // Below the wanted speed other weights than the speed's hold the car back.
   return !is_reached && by == SpeedLimiter::kAsked ? SpeedLimiter::kPartThrottle : by;
 }
 

@@ -141,7 +141,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
  private:
   [[nodiscard]] const road::ReferenceLine& line() const noexcept { return road_.line(); }
 
-  /// Horizon and prices, from the options.
+  /// Horizon and weights, from the options.
   void shape_problem() noexcept {
     problem_.others = Problem::Step::of(model_, options_.step_length);
     problem_.first = problem_.others;
@@ -363,7 +363,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const road::Road::Room behind = room_at(s - problem_.tail, demand.offset);
     const model::VehicleParams& car = model_.vehicle();
     const double v = std::max(x[Problem::kVx], 0.0);
-    const bool is_reachable = demand.speed < v + kSpeedAhead;  // more would drown the other prices
+    const bool is_reachable = demand.speed < v + kSpeedAhead;  // more would drown the other weights
     const auto i = static_cast<std::size_t>(k);
     Problem::Road& road = problem_.road;
     road.s[i] = s;

@@ -31,8 +31,8 @@ struct TrackingMpcOptions {
   double weight_progress = 0.0;     ///< of −v where a planned lap is raced by, if weight_speed > 0 [s/m]
   double weight_steer_rate = 10.0;  ///< on (steering rate)² [s²/rad²]
   double weight_jerk = 0.02;        ///< on (change of acceleration per second)² [s⁶/m²]
-  double weight_edge = 200.0;       ///< price of leaving assumed_half_width, per m² [1/m²]
-  double weight_slip = 100.0;       ///< price of slip beyond the useful, normalised²
+  double weight_edge = 200.0;       ///< on (leaving assumed_half_width)² [1/m²]
+  double weight_slip = 100.0;       ///< on (slip beyond the useful, normalised)²
   bool compensate_delay = true;     ///< replay commands in flight; off only to show what happens
   bool racing_line = false;         ///< race by the minimum-time line of track or learned road
   double edge_margin = 0.2;         ///< that the tyres keep from the edges of a road that is raced on [m]

@@ -46,7 +46,7 @@ class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
     model_.margin = reserve.margin;
     model_.brake_share = reserve.brake_share;
     model_.slip_share = reserve.slip_share;
-    model_.steer_price = reserve.steer_price;
+    model_.steer_weight = reserve.steer_weight;
   }
   void guess(double v, double a, double curvature, double* z) const override {
     const model::VehicleParams& car = vehicle_;

@@ -10,7 +10,7 @@ namespace chicane::model {
 
 /// Steering with a longer time constant than this is slow [s of a car in full size]: what is asked of it runs
 /// ahead of the wheel by far more than the wheel moves until the next command. Controller and gate then count
-/// the rate of the wheel. Below, the change of what is asked stands in for it, as prices and limits of
+/// the rate of the wheel. Below, the change of what is asked stands in for it, as weights and limits of
 /// cars in full size were chosen with (docs/decisions/0039-rates-of-slow-steering.md).
 inline constexpr double kSlowSteering = 0.3;
 

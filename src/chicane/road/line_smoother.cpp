@@ -7,10 +7,10 @@
 namespace chicane::road {
 namespace {
 
-constexpr int kPasses = 10;           // over the prices
-constexpr double kLeastPrice = 1e-3;  // √w where there is room [1/m²]
-constexpr double kFirstPrice = 2e-3;  // √w of the first pass
-constexpr double kEndPrice = 5e-2;    // √w added at the ends of the line
+constexpr int kPasses = 10;            // over the weights
+constexpr double kLeastWeight = 1e-3;  // √w where there is room [1/m²]
+constexpr double kFirstWeight = 2e-3;  // √w of the first pass
+constexpr double kEndWeight = 5e-2;    // √w added at the ends of the line
 
 }  // namespace
 
@@ -47,7 +47,7 @@ bool LineSmoother::advance(int& work) noexcept {
       }
       instalments_.loop(knots_, 1, work, [&](int k) {
         row(k) = {};
-        row(k).root_price = kFirstPrice;
+        row(k).root_weight = kFirstWeight;
       });
     } else if (phase == 1) {
       instalments_.loop(knots_ - 2, 2, work, [&](int k) { assemble(k + 1); });
@@ -56,7 +56,7 @@ bool LineSmoother::advance(int& work) noexcept {
     } else if ((phase - 2) % 3 == 1) {
       instalments_.loop(knots_, 1, work, [&](int k) { substitute(knots_ - 1 - k); });
     } else {
-      instalments_.loop(knots_, 1, work, [&](int k) { raise_price(k); });
+      instalments_.loop(knots_, 1, work, [&](int k) { raise_weight(k); });
     }
   }
   return instalments_.phase() == kLastPhase;
@@ -70,7 +70,7 @@ void LineSmoother::assemble(int k) noexcept {
   // The ends of the line are held a little, and come in along it.
   const int end = k == 1 ? 0 : knots_ - 1;
   const double lean = 0.1 / spacing_;
-  row(end).band[0] += kEndPrice * kEndPrice + lean * lean;
+  row(end).band[0] += kEndWeight * kEndWeight + lean * lean;
   row(k).band[0] += lean * lean;
   row(std::max(end, k)).band[1] -= lean * lean;
 }
@@ -116,7 +116,7 @@ void LineSmoother::eliminate(int k) noexcept {
   const double l3 = u3 * three.factor[0];
   const double l2 = u2 * two.factor[0];
   const double l1 = u1 * one.factor[0];
-  const double pivot = now.band[0] + now.root_price * now.root_price - u3 * l3 - u2 * l2 - u1 * l1;
+  const double pivot = now.band[0] + now.root_weight * now.root_weight - u3 * l3 - u2 * l2 - u1 * l1;
   now.factor = {1.0 / pivot, l1, l2, l3};
   now.forward = now.right - u3 * three.forward - u2 * two.forward - u1 * one.forward;
   now.forward *= now.factor[0];
@@ -128,7 +128,7 @@ void LineSmoother::substitute(int k) noexcept {
                row(k + 2).factor[2] * offset_[i + 2] - row(k + 3).factor[3] * offset_[i + 3];
 }
 
-void LineSmoother::raise_price(int k) noexcept {
+void LineSmoother::raise_weight(int k) noexcept {
   // By place, not by knot: both ends of a closed line pay what the same places in the middle pay.
   const int extra = (knots_ - period_) / 2;
   int twin = k;
@@ -136,7 +136,7 @@ void LineSmoother::raise_price(int k) noexcept {
   if (period_ > 0 && k >= extra + period_) twin = k - period_;
   const double ratio = std::fabs(offset_[static_cast<std::size_t>(twin)]) / width_;
   Row& now = row(k);
-  now.root_price = std::max(kLeastPrice, now.root_price * std::clamp(ratio, 0.4, 2.5));
+  now.root_weight = std::max(kLeastWeight, now.root_weight * std::clamp(ratio, 0.4, 2.5));
 }
 
 }  // namespace chicane::road

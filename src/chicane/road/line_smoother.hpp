@@ -14,7 +14,7 @@ namespace chicane::road {
 ///
 ///     Σ κ_new² + ℓ² (Δκ_new/h)² + w n²,      κ_new = κ (1 + κ n) + (n₋ − 2 n + n₊)/h²
 ///
-/// The strip |n| <= width is kept by raising the price w where n is too large and lowering it elsewhere, a
+/// The strip |n| <= width is kept by raising the weight w where n is too large and lowering it elsewhere, a
 /// few passes over. ℓ is the length over which the car's yaw inertia makes a change of curvature as dear as
 /// curvature itself. Each pass is one positive definite system with three entries beside the diagonal: a
 /// sweep forwards, a sweep back.
@@ -29,7 +29,7 @@ class LineSmoother {
 
   /// A new line: `knots` of them [6, capacity], `spacing` [m] apart. The caller fills curvature() before
   /// advance(). With `period` > 0 the line closes after so many knots and goes on round: places `period`
-  /// apart are the same and pay the same price.
+  /// apart are the same and have the same weight.
   void begin(int knots, double spacing, int period) noexcept;
   [[nodiscard]] std::span<double> curvature() noexcept { return curvature_; }  ///< [1/m]
   /// Does up to `work` and takes it off; true when the offsets are there.
@@ -39,18 +39,18 @@ class LineSmoother {
 
  private:
   struct Row {
-    std::array<double, 4> band{};  ///< A(k, k), A(k, k−1), A(k, k−2), A(k, k−3) without the price
+    std::array<double, 4> band{};  ///< A(k, k), A(k, k−1), A(k, k−2), A(k, k−3) without the weight
     double right = 0.0;
     std::array<double, 4> factor{};  ///< 1/D, L(k, k−1), L(k, k−2), L(k, k−3)
     double forward = 0.0;            ///< of L y = right, over D
-    double root_price = 0.0;         ///< √w [1/m²]
+    double root_weight = 0.0;        ///< √w [1/m²]
   };
   void assemble(int k) noexcept;
   void add_bending(int k) noexcept;
   void add_slope(int k) noexcept;
   void eliminate(int k) noexcept;
   void substitute(int k) noexcept;
-  void raise_price(int k) noexcept;
+  void raise_weight(int k) noexcept;
   [[nodiscard]] Row& row(int k) noexcept { return rows_[static_cast<std::size_t>(k + kMargin)]; }
 
   static constexpr int kMargin = 3;  ///< rows before the first and behind the last, always zero

@@ -59,7 +59,7 @@ class RacingRoad {
   [[nodiscard]] double grip() const noexcept { return basis_.grip; }
   /// Whether it was asked to slide beyond the peak of the tyres.
   [[nodiscard]] bool slides() const noexcept { return basis_.slides; }
-  /// Beyond which slip has a price for who drives it.
+  /// Slip beyond which the controller's cost has a weight.
   [[nodiscard]] const Slips& slips() const noexcept { return basis_.slips; }
 
   /// Planned times of the corners of its track [s], as lap_time::corner_times(); empty on an open

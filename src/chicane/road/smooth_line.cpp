@@ -200,10 +200,10 @@ void solve(Fit& fit, std::span<const Vec2> points, bool closed, const Penalty& p
   for (std::size_t i = 0; i + members <= rolled.count; ++i) {
     const double s = fit.spacing * (static_cast<double>(i) - static_cast<double>(rolled.lead));
     while (next + 1 < rolled.s.size() && rolled.s[next] < s) ++next;
-    const double price = weight * penalty.stiffness(rolled.s[next] - rolled.s[next - 1]);
+    const double factor = weight * penalty.stiffness(rolled.s[next] - rolled.s[next - 1]);
     for (std::size_t k = 0; k < members; ++k) {
       for (std::size_t m = k; m < members; ++m)
-        fit.band[i + k][m - k] += price * differences[k] * differences[m];
+        fit.band[i + k][m - k] += factor * differences[k] * differences[m];
     }
   }
   factorise(fit.band);

@@ -18,14 +18,14 @@ namespace chicane::solver {
 ///     static constexpr int kNh;    template <…> auto equality(k, x, u) const;           // = 0, k < N
 ///     static constexpr int kNeh;   template <…> auto terminal_equality(x) const;        // = 0 of x_N
 ///     static constexpr int kNec;   template <…> auto terminal_constraint(x) const;      // <= 0 of x_N
-///     bool is_hard(int constraint) const;    // constraint() <= 0 that must hold, whatever its price
+///     bool is_hard(int constraint) const;    // constraint() <= 0 that must hold, whatever its penalty
 ///     std::string_view equality_name(int) const, terminal_equality_name(int) const,
 ///         terminal_constraint_name(int) const;                                          // optional
 ///
 /// written like constraint() and terminal_residual(). OcpSolver then solves it by a primal-dual interior
 /// point method (docs/solver_hard.md), and its report says by how much and where they are missed. Choose
 /// units in which a miss of `tolerance` is one that you do not mind. The soft penalty of a hard constraint is
-/// the price that it starts with.
+/// the penalty that it starts with.
 
 /// How many of each a problem has.
 template <class P>
@@ -59,15 +59,15 @@ concept HardProblem = OcpProblem<P> &&
 /// Multipliers of what must hold, d(cost)/d(right-hand side), and the weights that a solve ended with: to
 /// start the next one with.
 template <class P, int Capacity>
-struct HardPrices {
+struct HardMultipliers {
   static constexpr std::size_t kNh = equality_count<P>();
   static constexpr std::size_t kEnd = terminal_equality_count<P>() + terminal_constraint_count<P>();
   std::array<StageData<Capacity>, kNh> equality{};
   std::array<double, kEnd> terminal{};  ///< equalities, then constraints
   std::array<double, kNh> equality_weight{};
   std::array<double, kEnd> terminal_weight{};
-  std::array<double, P::kNc> price_factor{};  ///< of hard constraints' first prices
-  bool is_known = false;                      ///< false: a solve begins without
+  std::array<double, P::kNc> penalty_factor{};  ///< of hard constraints' first penalties
+  bool is_known = false;                        ///< false: a solve begins without
 
   /// The same for a horizon that begins `steps` stages later; the last ones are repeated.
   void shift(int steps, int horizon) noexcept {

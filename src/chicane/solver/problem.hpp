@@ -133,7 +133,7 @@ template <class T, OcpProblem P>
   }
 }
 
-/// Price of violating a soft constraint c <= 0 by s > 0: linear · s + ½ quadratic · s².
+/// Penalty of violating a soft constraint c <= 0 by s > 0: linear · s + ½ quadratic · s².
 struct SoftPenalty {
   double linear = 500.0;
   double quadratic = 200.0;
@@ -159,7 +159,7 @@ struct SolverOptions {
   int max_iterations = 1000;  ///< SQP iterations, those of a shorter horizon by their share; worst-case time
                               ///< is proportional to it; [1, 10000]. Controllers ask for fewer
   bool may_start_short = true;     ///< when full steps fail, the filter method, or for kRealTime a growing
-                                   ///< horizon: reaches optima from poor guesses, at the price of tens of
+                                   ///< horizon: reaches optima from poor guesses, at the cost of tens of
                                    ///< iterations; off where the budget is a few iterations
   bool start_from_states = false;  ///< a warm start's states count, too, where they are finite: the first
                                    ///< steps close their gaps. For systems that are unstable, whose simulated

@@ -191,14 +191,14 @@ class LoopFinder {
     std::vector<float> cost(coarse_.size(), kUnseen);
     std::vector<std::int8_t> turns(coarse_.size(), 0);
     std::vector<std::int8_t> back(coarse_.size(), -1);
-    std::vector<float> price(coarse_.size(), 0.0F);
-    for (std::size_t i = 0; i < price.size(); ++i) {
+    std::vector<float> cell_cost(coarse_.size(), 0.0F);
+    for (std::size_t i = 0; i < cell_cost.size(); ++i) {
       if (ring.road[i] == 0) continue;
       const double near = roomy / std::max(0.5, clearance_at(i));
-      price[i] = static_cast<float>(1.0 + near * near);
+      cell_cost[i] = static_cast<float>(1.0 + near * near);
     }
     const auto step_cost = [&](std::size_t a, std::size_t b, int n) {
-      return 0.5F * (price[a] + price[b]) * (n < 4 ? 1.0F : 1.41421356F);
+      return 0.5F * (cell_cost[a] + cell_cost[b]) * (n < 4 ? 1.0F : 1.41421356F);
     };
     using Entry = std::pair<float, std::size_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;

@@ -90,8 +90,8 @@ class Tuner {
     return point;
   }
 
-  /// The price of a point; keeps the best.
-  double price(const double* shares) {
+  /// The score of a point, lower is better; keeps the best.
+  double score(const double* shares) {
     if (is_over()) return kWorst;
     Settings values;
     for (std::size_t i = 0; i < knobs_.size(); ++i)
@@ -102,15 +102,15 @@ class Tuner {
       ++tuning_.evaluations;
       tuning_.runs += verdict->driven;
     }
-    const double price = price_of(*verdict);
-    if (price < best_) {
-      best_ = price;
+    const double score = score_of(*verdict);
+    if (score < best_) {
+      best_ = score;
       best_point_.assign(shares, shares + knobs_.size());
       tuning_.values = values;
       tuning_.found = *verdict;
       if (on_better_) on_better_(tuning_.evaluations, *verdict);
     }
-    return price;
+    return score;
   }
 
   [[nodiscard]] Result<Tuning> result() {
@@ -148,7 +148,7 @@ class Tuner {
   }
 
   /// Only the order counts: trials passed, then how the next one was failed, then how nearly.
-  [[nodiscard]] double price_of(const Verdict& verdict) const {
+  [[nodiscard]] double score_of(const Verdict& verdict) const {
     const int missing = static_cast<int>(trials_.size()) - verdict.passed;
     if (missing == 0) return objective(verdict);
     const double deficit = std::max(0.0, tuning_.by_hand.margin - verdict.margin);
@@ -255,17 +255,17 @@ nlopt_result search_from(std::vector<double> point, double step, const TuneTask&
       context.search,
       [](unsigned, const double* x, double*, void* data) {
         const Context& at = *static_cast<Context*>(data);
-        const double price = at.tuner.price(x);
+        const double score = at.tuner.score(x);
         if (at.tuner.is_over()) nlopt_force_stop(at.search);
-        return price;
+        return score;
       },
       &context);
   nlopt_set_lower_bounds1(context.search, 0.0);
   nlopt_set_upper_bounds1(context.search, 1.0);
   nlopt_set_initial_step1(context.search, step);
   nlopt_set_maxeval(context.search, kSameAgain * task.evaluations);
-  double price = 0.0;
-  const nlopt_result result = nlopt_optimize(context.search, point.data(), &price);
+  double score = 0.0;
+  const nlopt_result result = nlopt_optimize(context.search, point.data(), &score);
   nlopt_destroy(context.search);
   return result;
 }

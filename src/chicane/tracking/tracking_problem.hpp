@@ -53,13 +53,13 @@ struct TrackingProblem {
     Data tail_right;
     Data acceleration_min;  ///< [m/s²]
     Data acceleration_max;
-    Data slide_front;  ///< slip of the front tyres beyond their peak, over that of the peak, without a price
+    Data slide_front;  ///< slip of the front tyres beyond their peak, over the peak's, without cost
     Data slide_rear;   ///< and of the rear tyres
     Data pushed_vy;    ///< what a disturbance adds to v_y over the stage [m/s]
     Data pushed_r;     ///< and to the yaw rate [rad/s]
   };
 
-  /// Square roots of the prices.
+  /// Square roots of the weights.
   struct RootWeights {
     double lateral, heading, speed, steer_rate, jerk, edge, slip, excess_steer_rate, friction;
   };

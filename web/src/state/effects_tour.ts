@@ -69,9 +69,9 @@ const EFFECTS: readonly Effect[] = [
   },
   {
     name: 'weight',
-    title: 'A weight: the price of the pedal',
+    title: 'A weight: the cost of the pedal',
     text:
-      'The reference of 180 mph is never reached: the price of the speed error pulls against the price of the ' +
+      'The reference of 180 mph is never reached: the weight of the speed error pulls against the weight of the ' +
       'throttle. The write-up has 80 for 50 mph, and 48 for its fast lap. With 160 the same controller drives 29 mph.',
     mode: 'try',
     where: '[data-key="cubic_mpc.weight_throttle"]',

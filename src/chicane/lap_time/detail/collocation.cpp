@@ -189,7 +189,7 @@ class Collocation::Search {
   void measure(double mu) {
     double slope_of = 0.0;
     double multipliers = 0.0;
-    double prices = 0.0;
+    double of_inequalities = 0.0;
     violation_ = complementarity_ = 0.0;
     for (size_t k = 0; k < n_; ++k) {
       for (size_t j = 0; j < nz_; ++j) {
@@ -205,7 +205,7 @@ class Collocation::Search {
         const double s = now_.slack[k * ng_ + j];
         violation_ = std::max(violation_, std::fabs(inequality(out_, k, j) - s));
         complementarity_ = std::max(complementarity_, std::fabs(s * now_.nu[k * ng_ + j] - mu));
-        prices += now_.nu[k * ng_ + j];
+        of_inequalities += now_.nu[k * ng_ + j];
       }
     }
     for (const double g : gap_) violation_ = std::max(violation_, std::fabs(g));
@@ -214,8 +214,8 @@ class Collocation::Search {
     const double inequalities = static_cast<double>(n_ * ng_);
     const double all = inequalities + static_cast<double>(n_ * (nx_ + na_));
     constexpr double kLarge = 100.0;
-    stationarity_ = slope_of / (std::max(kLarge, (multipliers + prices) / all) / kLarge);
-    complementarity_ /= std::max(kLarge, prices / inequalities) / kLarge;
+    stationarity_ = slope_of / (std::max(kLarge, (multipliers + of_inequalities) / all) / kLarge);
+    complementarity_ /= std::max(kLarge, of_inequalities / inequalities) / kLarge;
   }
   [[nodiscard]] double error() const { return std::max({stationarity_, violation_, complementarity_}); }
 

@@ -28,7 +28,7 @@ struct DoubleTrackModel {
   double margin = 0.0;  ///< kept from the edges [m]
   double grip_share = 1.0;
   double slip_share = kNoCap;  ///< most combined slip over that of the peak force
-  double steer_price = 1e-5, pedal_price = 1e-5;
+  double steer_weight = 1e-5, pedal_weight = 1e-5;
 
   template <class T>
   struct Motion {
@@ -103,8 +103,8 @@ struct DoubleTrackModel {
     *out++ = (1.0 / car.load_lag) * (m.ax - z[kShiftX]) * on.slowness;
     *out++ = (1.0 / car.load_lag) * (m.ay - z[kShiftY]) * on.slowness;
     for (const T& b : m.balance) *out++ = b;
-    *out++ = (1.0 + steer_price * (z[kSteerRate] * z[kSteerRate]) +
-              (0.01 * pedal_price) * (z[kPedalRate] * z[kPedalRate])) *
+    *out++ = (1.0 + steer_weight * (z[kSteerRate] * z[kSteerRate]) +
+              (0.01 * pedal_weight) * (z[kPedalRate] * z[kPedalRate])) *
              on.slowness;
     const double w = car.half_track() + car.half_tire();
     *out++ = at.front_left[k] - margin - on.offset_of(n, car.front_axle, w, at.front_bend[k]);

@@ -55,7 +55,7 @@ class UdacityLimit final : public WithModel<UdacityModel> {
     model_.margin = reserve.margin;
     model_.brake_share = reserve.brake_share;
     model_.slip_share = reserve.slip_share;
-    model_.steer_price = reserve.steer_price;
+    model_.steer_weight = reserve.steer_weight;
     model_.car.friction_scale = friction_ * reserve.grip_share;
   }
   void guess(double v, double a, double curvature, double* z) const override {
@@ -80,7 +80,7 @@ class UdacityLimit final : public WithModel<UdacityModel> {
             .throttle = std::clamp(model_.pedal_for(z[kPedal], z[kVx], m.vx), -1.0, 1.0)};
   }
 
-  [[nodiscard]] std::vector<double> error_prices() const override { return {25.0, 4.0, 4.0, 0.1, 0.1}; }
+  [[nodiscard]] std::vector<double> error_weights() const override { return {25.0, 4.0, 4.0, 0.1, 0.1}; }
   [[nodiscard]] std::span<const Tuning> tunings() const override {
     static constexpr Tuning kTunings[] = {{{40.0, 0.1}}, {{10.0, 0.1}}, {{160.0, 0.1}}, {{40.0, 0.02}}};
     return kTunings;
@@ -154,7 +154,7 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
     model_.margin = reserve.margin;
     model_.grip_share = reserve.grip_share;
     model_.slip_share = reserve.slip_share;
-    model_.steer_price = reserve.steer_price;
+    model_.steer_weight = reserve.steer_weight;
   }
   void guess(double v, double a, double curvature, double* z) const override {
     const sim::DoubleTrackParams& car = model_.car;
@@ -190,7 +190,7 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
             .throttle = std::clamp(z[kPedal] + car.drive_lag * z[DoubleTrackModel::kPedalRate], -1.0, 1.0)};
   }
 
-  [[nodiscard]] std::vector<double> error_prices() const override {
+  [[nodiscard]] std::vector<double> error_weights() const override {
     return {25.0, 4.0, 4.0, 0.1, 0.1, 0.0, 0.0, 0.0, 0.0};
   }
   [[nodiscard]] std::span<const Tuning> tunings() const override {

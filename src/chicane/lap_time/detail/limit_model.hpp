@@ -15,7 +15,7 @@
 
 namespace chicane::lap_time {
 
-/// Prices of a feedback's two inputs, squared and second, and times which where the drive has no more to
+/// Weights of a feedback's two inputs, squared and second, and times which where the drive has no more to
 /// give.
 struct Tuning {
   std::array<double, 2> inputs{1.0, 1.0};
@@ -28,11 +28,11 @@ class LimitModel : public PlanModel {
   /// What plans to be driven keep in reserve: the first that can be driven is taken.
   [[nodiscard]] virtual std::span<const Reserve> reserves() const = 0;
 
-  /// Feedback along a plan: the first `driven` states, and two inputs from variable `input` on. Prices of
+  /// Feedback along a plan: the first `driven` states, and two inputs from variable `input` on. Weights of
   /// errors and inputs, over each of them squared and second.
   [[nodiscard]] virtual int driven() const = 0;
   [[nodiscard]] virtual int input() const = 0;
-  [[nodiscard]] virtual std::vector<double> error_prices() const = 0;
+  [[nodiscard]] virtual std::vector<double> error_weights() const = 0;
   /// Several are tried: plans at the limit differ in how well they are followed.
   [[nodiscard]] virtual std::span<const Tuning> tunings() const = 0;
   /// The drive has no more to give at a plan's variables.

@@ -11,11 +11,11 @@ namespace chicane::lap_time {
 
 /// What a plan keeps in reserve.
 struct Reserve {
-  double margin = 0.0;        ///< of each contact patch from its edge [m]
-  double grip_share = 1.0;    ///< of the tyres' force that it uses
-  double slip_share = 10.0;   ///< most slip over that of the peak force, so that steering keeps its effect
-  double brake_share = 1.0;   ///< of the largest braking force
-  double steer_price = 1e-3;  ///< of the steering's rate squared, in time [s/rad²·s]
+  double margin = 0.0;         ///< of each contact patch from its edge [m]
+  double grip_share = 1.0;     ///< of the tyres' force that it uses
+  double slip_share = 10.0;    ///< most slip over that of the peak force, so that steering keeps its effect
+  double brake_share = 1.0;    ///< of the largest braking force
+  double steer_weight = 1e-3;  ///< of the steering's rate squared, in time [s/rad²·s]
 };
 
 /// A car as the search for its fastest lap sees it.

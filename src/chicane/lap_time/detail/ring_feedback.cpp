@@ -82,7 +82,7 @@ RingFeedback::RingFeedback(const LimitModel& model, const RoadNodes& road, const
   const std::size_t m = n + 2;
   std::vector<Matrix> slopes(nodes);
   for (std::size_t k = 0; k < nodes; ++k) slopes[k] = reduced_slopes(model, k, z.data() + k * variables);
-  const std::vector<double> error = model.error_prices();
+  const std::vector<double> error = model.error_weights();
   gains_.resize(nodes * 2 * n);
   Matrix p(n * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) p[i * n + i] = error[i];
@@ -91,8 +91,8 @@ RingFeedback::RingFeedback(const LimitModel& model, const RoadNodes& road, const
     const std::size_t k = turn % nodes;
     const std::size_t next = (k + 1) % nodes;
     const double h = road.step[k];
-    std::array<double, 2> price = tuning.inputs;
-    if (model.is_spent(z.data() + k * variables)) price[1] *= tuning.spent;
+    std::array<double, 2> weight = tuning.inputs;
+    if (model.is_spent(z.data() + k * variables)) weight[1] *= tuning.spent;
     // x⁺ = A x + B u by the trapezoidal rule with the input held.
     Matrix left(n * n);
     Matrix right(n * m);
@@ -115,7 +115,7 @@ RingFeedback::RingFeedback(const LimitModel& model, const RoadNodes& road, const
         for (std::size_t j = 0; j < m; ++j) q[i * m + j] += f[l * m + i] * pf[l * m + j];
     const double dt = h * std::max(1e-3, 1.0 / z[k * variables + kVx]);
     for (std::size_t i = 0; i < n; ++i) q[i * m + i] += dt * error[i];
-    for (std::size_t i = 0; i < 2; ++i) q[(n + i) * m + n + i] += dt * price[i];
+    for (std::size_t i = 0; i < 2; ++i) q[(n + i) * m + n + i] += dt * weight[i];
     const double a = q[n * m + n];
     const double b = q[n * m + n + 1];
     const double c = q[(n + 1) * m + n + 1];

@@ -27,7 +27,7 @@ struct UdacityModel {
   double slip_share = kNoCap;  ///< most slip of the front tyres over that of their peak
   static constexpr double kNoCap = 10.0;
   double brake_share = 1.0;  ///< of the force at which the rear wheels lock
-  double steer_price = 1e-5, pedal_price = 1e-5;
+  double steer_weight = 1e-5, pedal_weight = 1e-5;
 
   /// By how much the helper is late on average as the tyres see it, over the parts of a step [s].
   static constexpr double kHelperLag = 0.375 * sim::UdacityCar::kStepLength;
@@ -119,7 +119,7 @@ struct UdacityModel {
     *out++ = m.yaw * on.slowness;
     *out++ = z[7] * on.slowness;
     *out++ = z[8] * on.slowness;
-    *out++ = (1.0 + steer_price * (z[7] * z[7]) + (1e-4 * pedal_price) * (z[8] * z[8])) * on.slowness;
+    *out++ = (1.0 + steer_weight * (z[7] * z[7]) + (1e-4 * pedal_weight) * (z[8] * z[8])) * on.slowness;
     const double w = car.half_track + car.half_tire;
     *out++ = at.front_left[k] - margin - on.offset_of(n, car.front_axle, w, at.front_bend[k]);
     *out++ = at.front_right[k] - margin + on.offset_of(n, car.front_axle, -w, at.front_bend[k]);

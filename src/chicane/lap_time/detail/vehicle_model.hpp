@@ -33,8 +33,8 @@ struct VehicleModel {
   double slip_share = 1.0;     ///< most slip of an axle over that of its peak
   double brake_share = 1.0;    ///< of the largest useful deceleration
   double speed_limit = 100.0;  ///< [m/s]
-  double steer_price = 1e-3;   ///< of the steering's rate squared, in time [s/rad²·s]
-  double jerk_price = 1e-6;    ///< of the change of acceleration squared
+  double steer_weight = 1e-3;  ///< of the steering's rate squared, in time [s/rad²·s]
+  double jerk_weight = 1e-6;   ///< of the change of acceleration squared
 
   template <class T>
   [[nodiscard]] T drag(const T& v) const {
@@ -68,7 +68,7 @@ struct VehicleModel {
     *out++ = change.r * on.slowness;
     *out++ = steer_rate * on.slowness;
     *out++ = jerk * on.slowness;
-    *out++ = (1.0 + steer_price * (steer_rate * steer_rate) + jerk_price * (jerk * jerk)) * on.slowness;
+    *out++ = (1.0 + steer_weight * (steer_rate * steer_rate) + jerk_weight * (jerk * jerk)) * on.slowness;
     const double w = 0.5 * (car.track_width + car.tire_width);
     *out++ = at.front_left[k] - margin - on.offset_of(n, car.front_axle, w, at.front_bend[k]);
     *out++ = at.front_right[k] - margin + on.offset_of(n, car.front_axle, -w, at.front_bend[k]);

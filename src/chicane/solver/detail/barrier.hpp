@@ -14,10 +14,10 @@
 
 namespace chicane::solver {
 
-/// The price of soft constraint `c`.
+/// The penalty of soft constraint `c`.
 template <OcpProblem P>
-[[nodiscard]] SoftPenalty price_of([[maybe_unused]] const P& problem,
-                                   [[maybe_unused]] std::size_t c) noexcept {
+[[nodiscard]] SoftPenalty penalty_of([[maybe_unused]] const P& problem,
+                                     [[maybe_unused]] std::size_t c) noexcept {
   if constexpr (P::kNc > 0) return problem.soft_penalty(static_cast<int>(c));
   return {};
 }
@@ -32,17 +32,17 @@ class Barrier {
   using V = Stages<Arch>;
   using Step = Iterate<P::kNx, P::kNu, Capacity>;
 
-  /// Begins with a barrier in proportion to the prices and to how far constraints are violated at the start;
-  /// it will end at `final_mu`.
+  /// Begins with a barrier in proportion to the penalties and to how far constraints are violated at the
+  /// start; it will end at `final_mu`.
   void start(const P& problem, double final_mu, double violation) noexcept {
     constexpr double kLeast = 0.002;  // a start that keeps all constraints is likely to be a good one
     constexpr double kMost = 2.0;
     final_ = final_mu;
     count_ = constraint_count(problem);
-    mu_ = std::max(final_, highest_price(problem) * std::min(std::max(0.5 * violation, kLeast), kMost));
+    mu_ = std::max(final_, highest_penalty(problem) * std::min(std::max(0.5 * violation, kLeast), kMost));
   }
   /// Raises the barrier again: small slacks would leave a new start no room.
-  void lift(const P& problem) noexcept { mu_ = std::max(mu_, 0.002 * highest_price(problem)); }
+  void lift(const P& problem) noexcept { mu_ = std::max(mu_, 0.002 * highest_penalty(problem)); }
 
   [[nodiscard]] double mu() const noexcept { return mu_; }
   void set_mu(double mu) noexcept { mu_ = mu; }
@@ -75,13 +75,13 @@ class Barrier {
     }
   }
 
-  /// Constraints that must hold, whose slack is next to none, to their prices of now.
-  void reprice(const P& problem, std::size_t horizon) noexcept {
+  /// Constraints that must hold, whose slack is next to none, to their present penalties.
+  void update_penalties(const P& problem, std::size_t horizon) noexcept {
     for (std::size_t c = 0; c < count(); ++c) {
       if (!problem.keeps(c)) continue;
-      const double price = price_of(problem, c).linear;
+      const double penalty = penalty_of(problem, c).linear;
       for (std::size_t k = 0; k < horizon; ++k) {
-        n_[c][k] = std::max(price - z_[c][k], 1e-3 * price);
+        n_[c][k] = std::max(penalty - z_[c][k], 1e-3 * penalty);
         s_[c][k] = mu_ / n_[c][k];
       }
     }
@@ -133,8 +133,8 @@ class Barrier {
       pull.fill(V(0.0));
       for (std::size_t c = 0; c < count(); ++c) {
         const SoftConstraint<V> soft = load(c, k);
-        const SoftPenalty price = price_of(problem, c);
-        const V more = soft.model(price, mu_).slope - soft.model(price, from).slope;
+        const SoftPenalty penalty = penalty_of(problem, c);
+        const V more = soft.model(penalty, mu_).slope - soft.model(penalty, from).slope;
         for (std::size_t j = 0; j < kNz; ++j) pull[j] += more * V::load(row_[c][j] + k);
       }
       for (std::size_t j = 0; j < kNz; ++j) {
@@ -167,8 +167,8 @@ class Barrier {
     for (std::size_t c = 0; c < count(); ++c) {
       SoftConstraint<> soft;
       soft.value = values[c];
-      soft.centre(price_of(problem, c), mu_);
-      sum += soft.barrier(price_of(problem, c), mu_);
+      soft.centre(penalty_of(problem, c), mu_);
+      sum += soft.barrier(penalty_of(problem, c), mu_);
     }
     return sum;
   }
@@ -213,7 +213,7 @@ class Barrier {
 
   bool exceeds_a_cap(const P& problem, std::size_t horizon) const noexcept {
     for (std::size_t c = 0; c < count(); ++c) {
-      const double cap = price_of(problem, c).cap;
+      const double cap = penalty_of(problem, c).cap;
       for (std::size_t k = 0; k < horizon; ++k) {
         if (value_[c][k] > cap) return true;
       }
@@ -224,12 +224,12 @@ class Barrier {
  private:
   static constexpr std::size_t kStride = kStageStride<Capacity>;
 
-  static double highest_price(const P& problem) noexcept {
-    double price = 0.0;
+  static double highest_penalty(const P& problem) noexcept {
+    double penalty = 0.0;
     for (std::size_t c = 0; c < constraint_count(problem); ++c) {
-      price = std::max({price, price_of(problem, c).linear, 0.1 * price_of(problem, c).quadratic});
+      penalty = std::max({penalty, penalty_of(problem, c).linear, 0.1 * penalty_of(problem, c).quadratic});
     }
-    return price;
+    return penalty;
   }
 
   template <class Visit>
@@ -239,7 +239,7 @@ class Barrier {
           stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(step.horizon));
       for (std::size_t c = 0; c < count(); ++c) {
         const SoftConstraint<V> soft = load(c, k);
-        visit(soft, soft.step(price_of(problem, c), mu_, change(step, c, k)), live, c, k);
+        visit(soft, soft.step(penalty_of(problem, c), mu_, change(step, c, k)), live, c, k);
       }
     }
   }

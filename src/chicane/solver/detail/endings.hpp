@@ -37,7 +37,7 @@ void tell_violation(const P& problem, const Slacks& slacks, std::size_t horizon,
   WorstViolation worst;
   for (std::size_t k = 0; k < horizon; ++k) {
     for (std::size_t c = 0; c < static_cast<std::size_t>(P::kNc); ++c)
-      worst.consider(slacks.value(c, k), price_of(problem, c).cap, k, c);
+      worst.consider(slacks.value(c, k), penalty_of(problem, c).cap, k, c);
   }
   worst.tell(report);
   report.gap = slacks.gap(horizon);

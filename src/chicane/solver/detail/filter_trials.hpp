@@ -23,7 +23,8 @@ Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]
     const auto values = Evaluate::values(problem, point, k);
     cost += select(live, values.cost, V(0.0));
     for (std::size_t c = 0; c < slacks.count(); ++c)
-      soft_.measure(price_of(problem, c), slacks, c, k, values.constraint[c], length, live, miss, cost, logs);
+      soft_.measure(penalty_of(problem, c), slacks, c, k, values.constraint[c], length, live, miss, cost,
+                    logs);
     for (std::size_t i = 0; i < kNx; ++i)
       miss += select(live, abs(values.next[i] - V::load_unaligned(point.x[i] + k + 1)), V(0.0));
     if constexpr (Evaluate::kHardRows > 0) {

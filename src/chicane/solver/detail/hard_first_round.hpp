@@ -33,8 +33,8 @@ bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& tra
   }
   return round(x0, trajectory, deadline, left, report);
 }
-/// The primal-dual method (eq. 50–54). True when it has got to the end of its barrier: multipliers and prices
-/// are those of its point, and full steps may go on from there.
+/// The primal-dual method (eq. 50–54). True when it has got to the end of its barrier: multipliers and
+/// penalties are those of its point, and full steps may go on from there.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajectory, const Deadline& deadline,
                                            int& left, HardReport& report) noexcept {
@@ -52,15 +52,15 @@ bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajecto
     double highest = 0.0;
     for (int k = 0; k < trajectory.horizon; ++k)
       highest = std::max(highest, inner_.constraint_multiplier(k, static_cast<int>(c)));
-    const double price = std::max(1e-12, price_of(problem_, c).linear);
-    problem_.price_factor[c] *= std::max(1.0, kDearer * highest / price);
+    const double penalty = std::max(1e-12, penalty_of(problem_, c).linear);
+    problem_.penalty_factor[c] *= std::max(1.0, kDearer * highest / penalty);
   }
-  inner_.reprice(problem_);
-  keep_prices(trajectory.horizon);
+  inner_.update_penalties(problem_);
+  keep_multipliers(trajectory.horizon);
   return can_go_on_ = true;
 }
 
-/// Follows the filter method's barrier down, and brings multipliers, weights and prices up to date at the
+/// Follows the filter method's barrier down, and brings multipliers, weights and penalties up to date at the
 /// solution of each barrier's problem. True when it has got to the end within a trial's iterations.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::track(const State& x0, Trajectory& trajectory, const Deadline& deadline,

@@ -26,7 +26,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   constexpr std::array kKept{0.0, 0.5, 0.01};  // of the largest miss; squares spread it
   constexpr std::size_t kSquares = 2, kPhases = kShares.size();
   if (left <= 0) return false;
-  const auto factors = problem_.price_factor;
+  const auto factors = problem_.penalty_factor;
   double unit = std::max(kFirstUnit, measure(problem, trajectory, nullptr).worst());
   double share = 1.0;
   double last = 0.0;
@@ -39,7 +39,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
     const double cost_unit = std::isfinite(cost) ? std::max(unit_, cost) : unit_;
     share = kShares[phase] / (cost_unit * std::max(1.0, unit * unit));
     weigh_misses(share, unit);
-    problem_.square_price = phase == kSquares ? 1.0 / (unit * unit) : 0.0;
+    problem_.square_penalty = phase == kSquares ? 1.0 / (unit * unit) : 0.0;
     if (phase == kSquares) {
       least_ = trajectory;
       least_unit_ = unit;
@@ -59,15 +59,15 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
     }
     last = unit = worst;
   }
-  problem_.square_price = 0.0;
+  problem_.square_penalty = 0.0;
   is_minimum = is_minimum && !leads_downhill(problem, x0, trajectory, report);
-  problem_.violation_price = 0.0;
+  problem_.violation_penalty = 0.0;
   ask_for(round_tolerance());
   if (is_minimum) return is_certified_ = true;
   report.status = SolveStatus::kStalled;  // it converged, but not with the whole cost
   can_go_on_ = false;
   problem_.cost_root = 1.0;
-  problem_.price_factor = factors;
+  problem_.penalty_factor = factors;
   const double multiplier = 1.0 / (share * unit * unit);  // times a miss: of the same point
   const double weight = std::min(multiplier, kHeavy * unit_ / (0.5 * unit * unit));
   for (std::size_t n = 0; n < kNh; ++n) {
@@ -135,8 +135,8 @@ HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, cons
   }
   for (std::size_t n = 0; n < kEnd; ++n)
     problem_.terminal_shift[n] = n < kNeh ? terminal_[n] : std::max(0.0, terminal_[n]);
-  keep_prices(trajectory.horizon);
-  problem_.violation_price = 0.0;
+  keep_multipliers(trajectory.horizon);
+  problem_.violation_penalty = 0.0;
   return finish(SolveStatus::kInfeasible, now, report);
 }
 /// A ten thousandth of the narrowest bounds' distance, at most 1e-8: steps from one to the other are
@@ -159,8 +159,8 @@ void HardSolver<P, Capacity, Arch>::weigh_misses(double share, double unit) noex
   problem_.cost_root = std::sqrt(share);
   for (auto& weight : problem_.equality_weight) weight.set(1.0 / (unit * unit));
   for (auto& weight : problem_.terminal_weight) weight.set(1.0 / (unit * unit));
-  problem_.price_factor.fill(share);
-  problem_.violation_price = 1.0 / unit;
+  problem_.penalty_factor.fill(share);
+  problem_.violation_penalty = 1.0 / unit;
 }
 
 }  // namespace chicane::solver

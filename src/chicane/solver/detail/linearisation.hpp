@@ -40,15 +40,15 @@ class Linearisation {
   using Slacks = Barrier<P, Capacity, Arch>;
 
   alignas(64) double slope[kNu][kStageStride<Capacity>]{};    ///< dJ/du along the dynamics
-  alignas(64) double adjoint[kNx][kStageStride<Capacity>]{};  ///< adjoint[i][k]: price of x_{k+1}
+  alignas(64) double adjoint[kNx][kStageStride<Capacity>]{};  ///< adjoint[i][k]: multiplier of x_{k+1}
   alignas(64) double lower[kNu][kStageStride<Capacity>]{};    ///< bounds of the inputs
   alignas(64) double upper[kNu][kStageStride<Capacity>]{};
   using Hard = typename HardRowsOf<P, Capacity, Arch>::Type;
   Hard hard;                   ///< rows that must hold, for the primal-dual method
   double merit = 0.0;          ///< cost with the barrier's smoothed penalties; when slacks were centred
   double defect_excess = 0.0;  ///< largest defect beyond its tolerance; <= 0: all are small enough
-  /// Not null: prices of the dynamics are unknowns, too. Linearisations leave `adjoint` as it is and put here
-  /// what is missing to optimality in the states: [i][k] of x_k, k = 1 … horizon.
+  /// Not null: multipliers of the dynamics are unknowns, too. Linearisations leave `adjoint` as it is and put
+  /// here what is missing to optimality in the states: [i][k] of x_k, k = 1 … horizon.
   double (*state_residual)[kStageStride<Capacity>] = nullptr;
 
   /// Linearises at `t`. With Order 2 the stages get exact Hessians of the Lagrangian, else Gauss–Newton's.
@@ -305,21 +305,21 @@ class Linearisation {
                                       Costs& l, Sums& sums) noexcept {
     const double mu = slacks.mu();
     each_row<V, Order>(constraint, [&](auto n, const auto& c) CHICANE_INLINE {
-      const SoftPenalty price = price_of(problem, n);
+      const SoftPenalty penalty = penalty_of(problem, n);
       SoftConstraint<V> soft = slacks.load(n, k0);
       soft.value = c.v;
       if (centre) {
-        soft.centre(price, mu);
-        sums.smoothing += select(live, soft.barrier(price, mu) - soft.penalty(price), V(0.0));
+        soft.centre(penalty, mu);
+        sums.smoothing += select(live, soft.barrier(penalty, mu) - soft.penalty(penalty), V(0.0));
       }
       slacks.store(n, k0, soft);
       slacks.store_row(n, k0, c);
-      const auto model = soft.model(price, mu);
+      const auto model = soft.model(penalty, mu);
       Entries::template add_gradient<void>(n, c, soft.z, gradient);
       Entries::add_to_gradient(c, model.slope, l);
       Entries::template add_square<void>(n, c, model.curvature, l);
-      sums.cost += select(live, soft.penalty(price), V(0.0));
-      sums.complementarity = max(sums.complementarity, select(live, soft.residual(price, mu), V(0.0)));
+      sums.cost += select(live, soft.penalty(penalty), V(0.0));
+      sums.complementarity = max(sums.complementarity, select(live, soft.residual(penalty, mu), V(0.0)));
       sums.violation = max(sums.violation, select(live, c.v, V(0.0)));
       sums.values += select(live, c.v, V(0.0));
     });

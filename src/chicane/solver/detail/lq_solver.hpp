@@ -108,9 +108,9 @@ class LqSolver {
     }
   }
 
-  /// Price of state i of x_k at the step's end, after forward(): the multiplier of the dynamics that lead to
+  /// Multiplier of state i of x_k at the step's end, after forward(): of the dynamics that lead to
   /// it.
-  [[nodiscard]] double price(std::size_t k, std::size_t i) const noexcept {
+  [[nodiscard]] double multiplier(std::size_t k, std::size_t i) const noexcept {
     double sum = value_[k][kNx][i];
     for (std::size_t j = 0; j < kNx; ++j) sum += value_[k][j][i] * dx[k][j];
     return sum;

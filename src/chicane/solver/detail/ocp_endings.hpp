@@ -11,7 +11,7 @@ namespace chicane::solver {
 
 // How OcpSolver ends: the parts of it that make an answer of an iterate.
 
-/// Constraints and prices are to be of the answer, and the report of both.
+/// Constraints and multipliers are to be of the answer, and the report of both.
 template <OcpProblem P, int Capacity, class Arch>
 void OcpSolver<P, Capacity, Arch>::look_at_best(const P& problem, SolveReport& report) noexcept {
   is_exact_ = false;

@@ -47,7 +47,7 @@ bool OcpSolver<P, Capacity, Arch>::filter_iteration(const P& problem, const Dead
   filter_.hand_over(now_, lq_);
   best_ = t_;
   best_report_ = report;
-  best_report_.stationarity = kInfinity;  // by other prices than those of the first linearisation at it
+  best_report_.stationarity = kInfinity;  // by other multipliers than the first linearisation's
   barrier_.save(best_slacks_, t_.horizon);
   has_best_ = full_steps_ = true;
   is_exact_ = options_.second_order;
@@ -171,8 +171,8 @@ void OcpSolver<P, Capacity, Arch>::record_filter_iteration(const SolveReport& re
   log_->set_step(filter_.moved());
 }
 
-/// Steps have become as short as rounding lets them: the present iterate, whose slacks and prices are known,
-/// is as good as any.
+/// Steps have become as short as rounding lets them: the present iterate, whose slacks and multipliers are
+/// known, is as good as any.
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::is_at_floor(const SolveReport& report) noexcept {
   constexpr double kFloor = 1e-8;  // of the inputs

@@ -226,12 +226,12 @@ consteval bool check_constraints() {
     static_assert(
         kRows == P::kNc,
         "constraint() has to return kNc rows: std::make_tuple(...), or std::array<T, kNc> of arrays of T");
-    constexpr bool kHasPrice = requires(const P& p) {
+    constexpr bool kHasPenalty = requires(const P& p) {
       { p.soft_penalty(0) } -> std::same_as<SoftPenalty>;
     };
-    static_assert(kHasPrice,
+    static_assert(kHasPenalty,
                   "kNc > 0: write `chicane::solver::SoftPenalty soft_penalty(int constraint) const`");
-    is_good = kRows == P::kNc && kHasPrice;
+    is_good = kRows == P::kNc && kHasPenalty;
   }
   constexpr bool kSaysHard = requires(const P& p) {
     { p.is_hard(0) } -> std::same_as<bool>;

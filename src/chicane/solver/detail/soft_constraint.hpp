@@ -16,13 +16,14 @@ namespace chicane::solver {
 /// V is double, or a pack with one stage, or one problem, in each lane; μ is one number, or a pack as well.
 template <class V = double>
 struct SoftConstraint {
-  static constexpr double kMustHold = -1.0;  ///< the cap of constraints whose price keeps them from violation
+  static constexpr double kMustHold =
+      -1.0;  ///< the cap of constraints whose penalty keeps them from violation
 
   V value{0.0};  ///< c at the iterate
   V s{1.0};
   V t{1.0};
   V n{1.0};
-  V z{1.0};  ///< price of the constraint: d(cost)/dc
+  V z{1.0};  ///< multiplier of the constraint: d(cost)/dc
 
   /// What the eliminated slacks add to the quadratic program: multiplier `slope` + `curvature` · δc.
   struct Model {
@@ -33,9 +34,9 @@ struct SoftConstraint {
   /// Puts (s, t, n, z) on the central path for the present value: an interior point always exists and needs
   /// no memory. Newton's method for linear + quadratic · s = μ/s + μ/t on the smaller slack, from the
   /// solution for quadratic = 0.
-  CHICANE_INLINE void centre(const SoftPenalty& price, const auto& mu) noexcept {
-    if (price.cap == kMustHold) {  // no room for a violation: what is missed stays a residual
-      s = V(1.0) * (mu / price.linear);
+  CHICANE_INLINE void centre(const SoftPenalty& penalty, const auto& mu) noexcept {
+    if (penalty.cap == kMustHold) {  // no room for a violation: what is missed stays a residual
+      s = V(1.0) * (mu / penalty.linear);
       t = max(-value, 1e-2 * max(abs(value), V(1.0)));
       n = mu / s;
       z = mu / t;
@@ -44,7 +45,7 @@ struct SoftConstraint {
     const auto is_violated = value > V(0.0);
     const V gap = abs(value);
     const V beyond = max(value, V(0.0));
-    const V total = price.linear + price.quadratic * beyond + sqrt(price.quadratic * mu);
+    const V total = penalty.linear + penalty.quadratic * beyond + sqrt(penalty.quadratic * mu);
     const V b = total * gap - 2.0 * mu;
     const V root = sqrt(total * gap * total * gap + 4.0 * mu * mu);
     V y = select(b > V(0.0), 2.0 * mu * gap / (b + root), (root - b) / (2.0 * total));
@@ -52,8 +53,8 @@ struct SoftConstraint {
     for (int iteration = 0; iteration < 8; ++iteration) {
       const V far = y + gap;
       const V slack = select(is_violated, far, y);
-      const V excess = price.linear + price.quadratic * slack - mu / y - mu / far;
-      const V next = y - excess / (price.quadratic + mu / (y * y) + mu / (far * far));
+      const V excess = penalty.linear + penalty.quadratic * slack - mu / y - mu / far;
+      const V next = y - excess / (penalty.quadratic + mu / (y * y) + mu / (far * far));
       y = max(next, 0.1 * y);
     }
     s = select(is_violated, y + gap, y);
@@ -62,30 +63,30 @@ struct SoftConstraint {
     z = mu / t;
   }
 
-  [[nodiscard]] Model model(const SoftPenalty& price, const auto& mu) const noexcept {
+  [[nodiscard]] Model model(const SoftPenalty& penalty, const auto& mu) const noexcept {
     const V D = z / t;
-    const V E = n / s + price.quadratic;
+    const V E = n / s + penalty.quadratic;
     const V miss = s - value - t;
-    const V b = pull(price, mu, miss);
+    const V b = pull(penalty, mu, miss);
     const V share = D / (E + D);
     return {mu / t - D * miss - share * b, share * E};
   }
 
   /// Largest residual of the constraint's own optimality conditions at barrier μ.
-  [[nodiscard]] V residual(const SoftPenalty& price, const auto& mu) const noexcept {
+  [[nodiscard]] V residual(const SoftPenalty& penalty, const auto& mu) const noexcept {
     const V products = max(abs(t * z - mu), abs(s * n - mu));
-    const V equations = max(abs(s - value - t), abs(price.linear + price.quadratic * s - z - n));
+    const V equations = max(abs(s - value - t), abs(penalty.linear + penalty.quadratic * s - z - n));
     return max(products, equations);
   }
 
   /// Newton step of the slacks and multipliers when the constraint moves by `change`.
-  [[nodiscard]] SoftConstraint step(const SoftPenalty& price, const auto& mu,
+  [[nodiscard]] SoftConstraint step(const SoftPenalty& penalty, const auto& mu,
                                     const V& change) const noexcept {
     const V D = z / t;
     const V miss = s - value - t;
     SoftConstraint d;
     d.value = change;
-    d.s = (D * change + pull(price, mu, miss)) / (n / s + price.quadratic + D);
+    d.s = (D * change + pull(penalty, mu, miss)) / (n / s + penalty.quadratic + D);
     d.t = d.s - change + miss;
     d.z = (mu - z * d.t) / t - z;
     d.n = (mu - n * d.s) / s - n;
@@ -93,19 +94,19 @@ struct SoftConstraint {
   }
 
   /// Smoothed penalty: the minimum above. Pre: centred at `mu`.
-  [[nodiscard]] V barrier(const SoftPenalty& price, const auto& mu) const noexcept {
-    return s * (price.linear + 0.5 * price.quadratic * s) - mu * (log(s) + log(t));
+  [[nodiscard]] V barrier(const SoftPenalty& penalty, const auto& mu) const noexcept {
+    return s * (penalty.linear + 0.5 * penalty.quadratic * s) - mu * (log(s) + log(t));
   }
 
   /// The exact penalty, without slacks.
-  [[nodiscard]] V penalty(const SoftPenalty& price) const noexcept {
+  [[nodiscard]] V penalty(const SoftPenalty& penalty) const noexcept {
     const V beyond = max(value, V(0.0));
-    return beyond * (price.linear + 0.5 * price.quadratic * beyond);
+    return beyond * (penalty.linear + 0.5 * penalty.quadratic * beyond);
   }
 
  private:
-  [[nodiscard]] V pull(const SoftPenalty& price, const auto& mu, const V& miss) const noexcept {
-    return mu / t + mu / s - z / t * miss - price.linear - price.quadratic * s;
+  [[nodiscard]] V pull(const SoftPenalty& penalty, const auto& mu, const V& miss) const noexcept {
+    return mu / t + mu / s - z / t * miss - penalty.linear - penalty.quadratic * s;
   }
 };
 
