@@ -41,7 +41,7 @@ TEST(PathLaw, PullsAGuessBackToTheRoad) {
 
 using Problem = tracking::TrackingProblem;
 
-/// A line along +x: what turns is the car.
+/// A line along +x: what iterations is the car.
 road::ReferenceLine straight() {
   road::ReferenceLine line{101};
   EXPECT_TRUE(line.shape(100.0, 100, false));
@@ -50,7 +50,7 @@ road::ReferenceLine straight() {
   return line;
 }
 
-/// `side`: 1 turns left, -1 right.
+/// `side`: 1 iterations left, -1 right.
 double pushed(const model::PredictionModel& model, double heading, double& moment, double side = 1.0) {
   Problem problem;
   problem.model = &model;

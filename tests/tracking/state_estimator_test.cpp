@@ -289,7 +289,7 @@ TEST(StateEstimator, FindsWhatTheModelLacks) {
   const SofterCar left(1.0);
   EXPECT_LT(left.worst_yaw_rate, 0.5 * SofterCar(1.0, false).worst_yaw_rate);
   EXPECT_LT(left.worst_slide, SofterCar(1.0, false).worst_slide);
-  EXPECT_LT(left.disturbance.yaw, -0.3) << "the car turns in less than the model";
+  EXPECT_LT(left.disturbance.yaw, -0.3) << "the car iterations in less than the model";
   const SofterCar right(-1.0);
   EXPECT_NEAR(right.disturbance.yaw, -left.disturbance.yaw, 1e-9);
   EXPECT_NEAR(right.disturbance.lateral, -left.disturbance.lateral, 1e-9);

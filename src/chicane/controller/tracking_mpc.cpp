@@ -27,17 +27,17 @@ using Prediction = tracking::StateEstimator::Prediction;
 using StageState = std::array<double, Problem::kNx>;
 using StageInput = std::array<double, Problem::kNu>;
 
-constexpr int kMostTurns = TrackingMpcOptions::kMostTurns;  // from a new guess, or with more time
-constexpr int kRacingTurns = 30;       // original curve of tyres, in a race (docs/limit.md, "The solver")
-constexpr double kTimePerTurn = 0.04;  // [s] that a step must come later for one turn more
-constexpr double kFarFromLine = 15.0;  // [m] further away it returns to the road
-constexpr double kLost = 100.0;        // [m] further away it does not return by itself
-constexpr double kSlow = 6.0;          // [m/s] below which it may turn round
-constexpr double kJoining = 0.2;       // [rad] to the road at which a car that returns has joined it
-constexpr double kSpeedAhead = 4.0;    // [m/s] wanted at most beyond what the last answer reaches
-constexpr double kLongestHold = 0.3;   // [s] the first command is assumed to be held at most this long
-constexpr double kBlindAfter = 0.3;    // [s] without a measurement, or a waypoint: stop
-constexpr double kPreview = 0.3;       // [s] the car answers the wheel about so late
+constexpr int kMostIterations = TrackingMpcOptions::kMostIterations;  // from a new guess, or with more time
+constexpr int kRacingIterations = 30;  // original curve of tyres, in a race (docs/limit.md, "The solver")
+constexpr double kTimePerIteration = 0.04;  // [s] that a step must come later for one turn more
+constexpr double kFarFromLine = 15.0;       // [m] further away it returns to the road
+constexpr double kLost = 100.0;             // [m] further away it does not return by itself
+constexpr double kSlow = 6.0;               // [m/s] below which it may turn round
+constexpr double kJoining = 0.2;            // [rad] to the road at which a car that returns has joined it
+constexpr double kSpeedAhead = 4.0;         // [m/s] wanted at most beyond what the last answer reaches
+constexpr double kLongestHold = 0.3;        // [s] the first command is assumed to be held at most this long
+constexpr double kBlindAfter = 0.3;         // [s] without a measurement, or a waypoint: stop
+constexpr double kPreview = 0.3;            // [s] the car answers the wheel about so late
 constexpr double kCrawl = 3.0;  // [m/s] below it the fallback brings the car to rest, and no plan races
 
 class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable<TrackingMpcOptions> {
@@ -48,7 +48,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
         model_{vehicle},
         road_{options.road(), vehicle},
         estimator_{model_},
-        solver_{tracking::make_tracking_solver(kRacingTurns)} {
+        solver_{tracking::make_tracking_solver(kRacingIterations)} {
     grip_.configure(configured_);
     shape_raced();
   }
@@ -75,7 +75,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     if (start.state.vx < kCrawl && stopping_speed(0.0) < kCrawl) return no_answer(act_time);
     prepare(act_time);
     const double started = deadline.elapsed();
-    const solver::SolveReport report = solver_->solve(problem_, x0_, horizon_, turns_, deadline);
+    const solver::SolveReport report = solver_->solve(problem_, x0_, horizon_, iterations_, deadline);
     result_.report.solve_time = deadline.elapsed() - started;
     result_.report.solve = report;
     // A guess that was never improved is no answer, however well it went before.
@@ -270,15 +270,15 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     problem_.first = first == step ? problem_.others : Problem::Step::of(model_, first);
     problem_.first_correction = {};
     problem_.push(disturbance_);
-    turns_ = kMostTurns;
+    iterations_ = kMostIterations;
     if (can_shift) {
-      const int later = static_cast<int>(elapsed / kTimePerTurn + 0.5);
-      turns_ = std::clamp(options_.turns - 1 + later, options_.turns, kMostTurns);
+      const int later = static_cast<int>(elapsed / kTimePerIteration + 0.5);
+      iterations_ = std::clamp(options_.iterations - 1 + later, options_.iterations, kMostIterations);
       shift_answer(elapsed);
     } else {
       follow_line();
     }
-    if (road_.is_raced() && !(configured_.friction_coupling > 0.0)) turns_ = kRacingTurns;
+    if (road_.is_raced() && !(configured_.friction_coupling > 0.0)) iterations_ = kRacingIterations;
     if (road_.is_raced()) mind_helper_gap(problem_, horizon_, line(), s_);
     correct_first();
     act_time_ = act_time;
@@ -474,10 +474,10 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   StepResult result_;
   double s_ = 0.0;  ///< arc length on the line where the command acts
   double act_time_ = 0.0;
-  double sent_time_ = 0.0;  ///< from which the last command acts [s]
-  double old_first_ = 0.0;  ///< length of the first stage of the last answer [s]
-  double old_step_ = 0.0;   ///< of its other stages [s]
-  int turns_ = kMostTurns;  ///< of the solver in this step
+  double sent_time_ = 0.0;            ///< from which the last command acts [s]
+  double old_first_ = 0.0;            ///< length of the first stage of the last answer [s]
+  double old_step_ = 0.0;             ///< of its other stages [s]
+  int iterations_ = kMostIterations;  ///< of the solver in this step
   unsigned revision_ = 0;
   bool has_place_ = false;
   bool has_horizon_ = false;

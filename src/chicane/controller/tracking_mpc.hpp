@@ -17,7 +17,7 @@ namespace chicane::controller {
 /// The default controller: arc-length reference from remembered waypoints, single-track model with the car's
 /// yaw lag, commands in flight replayed through it, speed planned for curvature and sight.
 struct TrackingMpcOptions {
-  static constexpr int kMostTurns = 8;
+  static constexpr int kMostIterations = 8;
   int horizon_steps = 40;           ///< N
   double step_length = 0.05;        ///< dt [s]
   double speed_limit = 60.0;        ///< never planned above [m/s]
@@ -39,7 +39,7 @@ struct TrackingMpcOptions {
   double slip_share = 1.0;    ///< most slip of an axle in the plan to race by, over that of its peak force
   bool slide = false;         ///< beyond the peak where that is stable in closed loop (model::SlidingBound)
   double plan_budget = 90.0;  ///< work that a plan to race by may take (lap_time::PlanProgress) [s]
-  int turns = 3;              ///< of the solver in a step, at least
+  int iterations = 3;         ///< of the solver in a step, at least
   bool learn_grip = false;    ///< race with the grip that the tyres have shown (docs/racing.md)
   bool remember_waypoints = true;  ///< close the waypoints seen into a map
 

@@ -52,8 +52,8 @@ constexpr std::array kOptions{
     option<&T::plan_budget>("plan_budget", unit::kSecond, 0.1, 36000,
                             "Work that planning a lap may take, in seconds of a reference core; the best "
                             "plan so far is used then."),
-    option<&T::turns>("turns", unit::kNone, 1, T::kMostTurns,
-                      "Iterations of the solver in a step, at least."),
+    option<&T::iterations>("iterations", unit::kNone, 1, T::kMostIterations,
+                           "Least iterations of the solver in a control step."),
     option<&T::compensate_delay>("compensate_delay",
                                  "Replay the commands in flight; off only to show what happens."),
     option<&T::remember_waypoints>("remember_waypoints", "Close the waypoints seen into a map."),

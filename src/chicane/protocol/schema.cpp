@@ -130,8 +130,11 @@ bool is_fixed(const Parameter& parameter) {
 }
 
 const Parameter* find(std::string_view key) {
+  constexpr std::pair<std::string_view, std::string_view> kRenamed{"tracking_mpc.turns",
+                                                                   "tracking_mpc.iterations"};
+  const std::string_view present = key == kRenamed.first ? kRenamed.second : key;
   const auto row =
-      std::find_if(list().begin(), list().end(), [&](const Parameter& p) { return p.key == key; });
+      std::find_if(list().begin(), list().end(), [&](const Parameter& p) { return p.key == present; });
   return row == list().end() ? nullptr : &*row;
 }
 

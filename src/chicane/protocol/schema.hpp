@@ -34,7 +34,8 @@ struct Parameter {
 /// Whether only whoever starts a run may set it: the guard, and the model of the car that the guard and the
 /// limits of its commands follow from. Viewers are shown the value; futures that only predict may vary it.
 [[nodiscard]] bool is_fixed(const Parameter& parameter);
-/// The row of `key`; nullptr when there is none.
+/// The row of `key`; nullptr when there is none. Finds a key renamed in this version by its old name, too, so
+/// that files and recordings of the last version keep their meaning.
 [[nodiscard]] const Parameter* find(std::string_view key);
 /// The row of a controller's option: find_option("pure-pursuit", "lookahead_time").
 [[nodiscard]] const Parameter* find_option(std::string_view controller, std::string_view name);

@@ -13,8 +13,9 @@ class ArchSolver final : public TrackingSolver {
   explicit ArchSolver(const solver::SolverOptions& options) : options_{options}, solver_{options} {}
 
   solver::SolveReport solve(const TrackingProblem& problem, const TrackingProblem::State& start,
-                            TrackingTrajectory& trajectory, int turns, Deadline deadline) noexcept override {
-    solver_.allow_iterations(turns);
+                            TrackingTrajectory& trajectory, int iterations,
+                            Deadline deadline) noexcept override {
+    solver_.allow_iterations(iterations);
     return solver_.solve(problem, start, trajectory, deadline);
   }
   [[nodiscard]] std::unique_ptr<TrackingSolver> copy() const override {

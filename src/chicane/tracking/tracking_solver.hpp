@@ -18,9 +18,9 @@ using TrackingTrajectory =
 class TrackingSolver {
  public:
   virtual ~TrackingSolver() = default;
-  /// As OcpSolver::solve(), in at most `turns` of them.
+  /// As OcpSolver::solve(), in at most `iterations` iterations.
   virtual solver::SolveReport solve(const TrackingProblem& problem, const TrackingProblem::State& start,
-                                    TrackingTrajectory& trajectory, int turns,
+                                    TrackingTrajectory& trajectory, int iterations,
                                     Deadline deadline) noexcept = 0;
   /// One like it: nothing is remembered from solve to solve.
   [[nodiscard]] virtual std::unique_ptr<TrackingSolver> copy() const = 0;
@@ -33,7 +33,7 @@ class TrackingSolver {
 template <class Arch>
 [[nodiscard]] std::unique_ptr<TrackingSolver> make_tracking_solver(const solver::SolverOptions& options);
 
-/// For the instruction set that was chosen; solves in real time, with `most_turns` in a step.
-[[nodiscard]] std::unique_ptr<TrackingSolver> make_tracking_solver(int most_turns);
+/// For the instruction set that was chosen; solves in real time, with at most `most_iterations` in a step.
+[[nodiscard]] std::unique_ptr<TrackingSolver> make_tracking_solver(int most_iterations);
 
 }  // namespace chicane::tracking

@@ -4,10 +4,10 @@
 
 namespace chicane::tracking {
 
-std::unique_ptr<TrackingSolver> make_tracking_solver(int most_turns) {
+std::unique_ptr<TrackingSolver> make_tracking_solver(int most_iterations) {
   const solver::SolverOptions options{.tolerance = 1e-2,
                                       .loose_tolerance = 1e3,
-                                      .max_iterations = most_turns,
+                                      .max_iterations = most_iterations,
                                       .may_start_short = false,
                                       .start_from_states = true,
                                       .second_order = false};
