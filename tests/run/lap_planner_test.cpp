@@ -37,7 +37,7 @@ class Learner final : public controller::Controller {
                                                    Deadline /*deadline*/) noexcept override {
     return result_;
   }
-  [[nodiscard]] controller::LapWish wants_lap() const noexcept override {
+  [[nodiscard]] controller::LapRequest wants_lap() const noexcept override {
     return {.is_wanted = is_wanted, .waypoints = waypoints_, .grip = grip, .slides = slides};
   }
   void reset() noexcept override {}

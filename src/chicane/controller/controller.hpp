@@ -134,7 +134,7 @@ struct StepResult {
 };
 
 /// A lap that a controller wants to be planned, from what it has learned of road and grip.
-struct LapWish {
+struct LapRequest {
   bool is_wanted = false;
   std::span<const Vec2> waypoints{};  ///< of the closed road that was learned, in driving order; empty: the
                                       ///< track's, which is known
@@ -158,7 +158,7 @@ class Controller {
   /// waypoints do not care. Allocates nothing.
   virtual void use_line(std::shared_ptr<const road::RacingRoad> /*lap*/) noexcept {}
   /// The lap to race by that the controller would rather have than what it drives by. Valid until step().
-  [[nodiscard]] virtual LapWish wants_lap() const noexcept { return {}; }
+  [[nodiscard]] virtual LapRequest wants_lap() const noexcept { return {}; }
   /// How far beside `lap` [m] the controller is about to drive: what taking it up now makes it correct. 0: to
   /// be taken up at once.
   [[nodiscard]] virtual double beside(const road::RacingRoad& /*lap*/) const noexcept { return 0.0; }

@@ -98,7 +98,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
         goes_on && move_to_line(line(), result_.plan, 2.0 * configured_.width, kFarFromLine, horizon_);
   }
 
-  [[nodiscard]] LapWish wants_lap() const noexcept override {
+  [[nodiscard]] LapRequest wants_lap() const noexcept override {
     const road::RacingRoad* lap = road_.lap();
     const std::span<const Vec2> waypoints = road_.seen().closed_waypoints();
     if (!options_.racing_line || (lap == nullptr && waypoints.empty())) return {};

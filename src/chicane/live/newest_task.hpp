@@ -12,14 +12,14 @@
 
 namespace chicane::live {
 
-/// Computes the answer to the newest of several wishes, on a thread of its own with low priority; callers do
-/// not wait. A newer wish replaces one that waits, and cancels one that is being computed, whose answer is
-/// discarded.
-template <class Wish, class Answer>
+/// Computes the answer to the newest of several requests, on a thread of its own with low priority; callers
+/// do not wait. A newer request replaces one that waits, and cancels one that is being computed, whose answer
+/// is discarded.
+template <class Request, class Answer>
 class NewestTask {
  public:
   /// `is_wanted`: false once this answer is discarded.
-  using Compute = std::function<Answer(Wish wish, const std::function<bool()>& is_wanted)>;
+  using Compute = std::function<Answer(Request request, const std::function<bool()>& is_wanted)>;
   using OnAnswer = std::function<void(const Answer&)>;
 
   /// Both are called on the thread; `on_answer` with each answer that is still wanted, and must call nothing
@@ -32,9 +32,9 @@ class NewestTask {
   NewestTask& operator=(const NewestTask&) = delete;
 
   /// Any thread, as the rest.
-  void begin(Wish wish) {
+  void begin(Request request) {
     const std::lock_guard lock(mutex_);
-    wish_ = std::move(wish);
+    request_ = std::move(request);
     answer_.reset();
     ++newest_;
     worker_.wake();
@@ -42,29 +42,29 @@ class NewestTask {
   /// There is no answer, nor a call of `on_answer`, any more. Waits for no more than a call under way.
   void cancel() {
     const std::lock_guard lock(mutex_);
-    wish_.reset();
+    request_.reset();
     answer_.reset();
     ++newest_;
   }
-  /// The answer to the newest wish, once; none while it is computed, and when there is none.
+  /// The answer to the newest request, once; none while it is computed, and when there is none.
   [[nodiscard]] std::optional<Answer> take() {
     const std::lock_guard lock(mutex_);
     return std::exchange(answer_, std::nullopt);
   }
-  /// There is a wish without an answer.
+  /// There is a request without an answer.
   [[nodiscard]] bool is_computing() const {
     const std::lock_guard lock(mutex_);
-    return wish_ || (computed_ > 0 && computed_ == newest_);
+    return request_ || (computed_ > 0 && computed_ == newest_);
   }
 
  private:
   void work() {
     std::unique_lock lock(mutex_);
-    if (!wish_) return;
-    Wish wish = *std::exchange(wish_, std::nullopt);
+    if (!request_) return;
+    Request request = *std::exchange(request_, std::nullopt);
     const std::uint64_t number = computed_ = newest_;
     lock.unlock();
-    Answer answer = compute_(std::move(wish), [this, number] { return number == newest_; });
+    Answer answer = compute_(std::move(request), [this, number] { return number == newest_; });
     lock.lock();
     computed_ = 0;
     if (number != newest_) return;
@@ -75,9 +75,9 @@ class NewestTask {
   Compute compute_;
   OnAnswer on_answer_;
   mutable std::mutex mutex_;  ///< of all below
-  std::optional<Wish> wish_;
-  std::atomic<std::uint64_t> newest_{0};  ///< number of the last wish; read without the mutex
-  std::uint64_t computed_ = 0;            ///< number of the wish that is being computed; 0: none
+  std::optional<Request> request_;
+  std::atomic<std::uint64_t> newest_{0};  ///< number of the last request; read without the mutex
+  std::uint64_t computed_ = 0;            ///< number of the request that is being computed; 0: none
   std::optional<Answer> answer_;
   Worker worker_;  // last
 };

@@ -98,7 +98,7 @@ Result<std::string> Rival::ask(std::string_view json, const scenario::Scenario& 
   const Result<scenario::Scenario> raced = with_settings(scenario, settings);
   if (!raced) return fail(raced.error());
   const std::lock_guard lock(mutex_);
-  wish_ = Wish{*raced, settings};
+  request_ = Request{*raced, settings};
   state_ = settings.empty() ? State::kNone : State::kBuilding;
   worker_.wake();
   return std::to_string(++newest_);
@@ -120,25 +120,25 @@ std::string Rival::answer() const {
 
 void Rival::work() {
   std::unique_lock lock(mutex_);
-  const std::optional<Wish> wish = std::exchange(wish_, std::nullopt);
+  const std::optional<Request> request = std::exchange(request_, std::nullopt);
   lock.unlock();
   if (car_) catch_up();
-  if (wish) build(*wish);
+  if (request) build(*request);
 }
 
-void Rival::build(const Wish& wish) {
+void Rival::build(const Request& request) {
   car_.emplace(recording::ShadowObservers{
       .on_step = [this](const run::ClosedLoop& loop) { note(loop); },
       .on_lap = [this](const telemetry::CompletedLap& lap) { keep(laps_, own_laps_.finish(lap)); }});
-  const bool is_wanted = !wish.settings.empty();
-  const Result<void> built = is_wanted ? car_->begin(wish.scenario) : Result<void>{};
+  const bool is_wanted = !request.settings.empty();
+  const Result<void> built = is_wanted ? car_->begin(request.scenario) : Result<void>{};
   {
     const std::lock_guard lock(mutex_);
     laps_of_run_.clear();
     laps_.clear();
     trace_.clear();
     why_ = built ? "" : built.error().message;
-    settings_ = wish.settings;
+    settings_ = request.settings;
     state_ = !built ? State::kFailed : is_wanted ? State::kWaiting : State::kNone;
   }
   if (!car_->has_begun()) return car_.reset();

@@ -71,7 +71,7 @@ class Rival {
 
  private:
   enum class State { kNone, kBuilding, kWaiting, kRacing, kEnded, kFailed };
-  struct Wish {
+  struct Request {
     scenario::Scenario scenario;
     std::vector<std::pair<std::string, std::string>> settings;
   };
@@ -79,7 +79,7 @@ class Rival {
                                        "steer_rad", "speed_mps", "distance_m"};
 
   void work();
-  void build(const Wish& wish);
+  void build(const Request& request);
   void catch_up();
   void take(const RunLog::Step& step);
   void take(const RunLog::Change& change);
@@ -99,7 +99,7 @@ class Rival {
   LapNoter own_laps_, run_laps_;
 
   mutable std::mutex mutex_;  ///< of all below
-  std::optional<Wish> wish_;
+  std::optional<Request> request_;
   std::uint64_t newest_ = 0;
   State state_ = State::kNone;
   std::string why_;

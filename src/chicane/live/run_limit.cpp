@@ -42,22 +42,22 @@ void RunLimit::begin() {
 }
 
 /// From the cache where it is known (run/plan_cache.hpp).
-lap_time::LimitAnswer RunLimit::found(const Wish& wish, const std::function<bool()>& is_wanted) {
+lap_time::LimitAnswer RunLimit::found(const Request& request, const std::function<bool()>& is_wanted) {
   const auto bound = [&]() -> Result<lap_time::PlantLimit> {
-    if (auto known = run::known_limit(wish.scenario, wish.track)) return std::move(*known);
-    return run::limit_of(wish.scenario, wish.track,
+    if (auto known = run::known_limit(request.scenario, request.track)) return std::move(*known);
+    return run::limit_of(request.scenario, request.track,
                          {.wants_witness = false,
                           .budget = kBudget,
                           .go_on = [&](std::string_view, int, double) { return is_wanted(); }});
   };
   const Result<lap_time::PlantLimit> limit = bound();
-  lap_time::LimitAnswer answer{.first_lap = wish.first_lap};
+  lap_time::LimitAnswer answer{.first_lap = request.first_lap};
   if (!limit)
     answer.why_not = limit.error().message;
   else if (!limit->is_whole())
     answer.why_not = "its search takes longer than beside a run; `chicane limit` finds it";
   else
-    answer.found = std::make_shared<const lap_time::Limit>(lap_time::bound_from_start(wish.track, *limit));
+    answer.found = std::make_shared<const lap_time::Limit>(lap_time::bound_from_start(request.track, *limit));
   return answer;
 }
 

@@ -62,13 +62,13 @@ class RunLimit {
 
  private:
   using Clock = std::chrono::steady_clock;
-  struct Wish {
+  struct Request {
     road::Track track;
     scenario::Scenario scenario;
     int first_lap = 1;
   };
 
-  static lap_time::LimitAnswer found(const Wish& wish, const std::function<bool()>& is_wanted);
+  static lap_time::LimitAnswer found(const Request& request, const std::function<bool()>& is_wanted);
   void begin();
   void retire();
   void tell(lap_time::LimitAnswer answer);
@@ -76,11 +76,11 @@ class RunLimit {
   std::function<void(const lap_time::LimitAnswer&)> on_news_;
   std::shared_ptr<const lap_time::LimitAnswer> answer_;  ///< while a search goes on: written by it
   std::atomic<bool> has_news_{false};                    ///< it may be read
-  std::optional<road::Track> track_;                ///< of the run; none where there is nothing to search
-  scenario::Scenario scenario_;                     ///< its car, with the grip and mass of the newest search
-  int first_lap_ = 1;                               ///< LimitAnswer::first_lap
-  std::optional<Clock::time_point> begins_at_;      ///< the next search, when nothing changes until then
-  NewestTask<Wish, lap_time::LimitAnswer> search_;  // last: tells on its thread
+  std::optional<road::Track> track_;            ///< of the run; none where there is nothing to search
+  scenario::Scenario scenario_;                 ///< its car, with the grip and mass of the newest search
+  int first_lap_ = 1;                           ///< LimitAnswer::first_lap
+  std::optional<Clock::time_point> begins_at_;  ///< the next search, when nothing changes until then
+  NewestTask<Request, lap_time::LimitAnswer> search_;  // last: tells on its thread
 };
 
 }  // namespace chicane::live

@@ -123,8 +123,9 @@ Result<WhatIfQuestion> read_question(std::string_view text) {
 }
 
 WhatIf::WhatIf(Compute compute)
-    : compute_{std::move(compute)}, task_{[this](const Wish& wish, const std::function<bool()>& is_wanted) {
-        return computed(wish, is_wanted);
+    : compute_{std::move(compute)},
+      task_{[this](const Request& request, const std::function<bool()>& is_wanted) {
+        return computed(request, is_wanted);
       }} {}
 
 Result<std::string> WhatIf::ask(std::string_view json) {
@@ -142,8 +143,8 @@ std::string WhatIf::answer() {
   return protocol::json_text({{"id", newest_}, {"state", "computing"}, {"share", rounded(share_)}}) + "\n";
 }
 
-std::string WhatIf::computed(const Wish& wish, const std::function<bool()>& is_wanted) {
-  const WhatIfQuestion& question = wish.question;
+std::string WhatIf::computed(const Request& request, const std::function<bool()>& is_wanted) {
+  const WhatIfQuestion& question = request.question;
   Trace was, branch;
   recording::BranchHooks hooks;
   hooks.on_future = [&](const recording::FutureStep& step) { (step.is_branch ? branch : was).add(step); };
@@ -155,7 +156,7 @@ std::string WhatIf::computed(const Wish& wish, const std::function<bool()>& is_w
     return is_wanted();
   };
   const Result<recording::BranchReport> report = compute_(question, hooks);
-  Json answer{{"id", wish.number}, {"state", report ? "done" : "failed"}, {"asked", json_of(question)}};
+  Json answer{{"id", request.number}, {"state", report ? "done" : "failed"}, {"asked", json_of(question)}};
   if (!report) {
     answer["why"] = report.error().message;
     return protocol::json_text(answer);

@@ -46,17 +46,17 @@ class WhatIf {
   [[nodiscard]] std::string answer();
 
  private:
-  struct Wish {
+  struct Request {
     std::uint64_t number = 0;
     WhatIfQuestion question;
   };
-  [[nodiscard]] std::string computed(const Wish& wish, const std::function<bool()>& is_wanted);
+  [[nodiscard]] std::string computed(const Request& request, const std::function<bool()>& is_wanted);
 
   Compute compute_;
   std::uint64_t newest_ = 0;        ///< number of the last question
   std::atomic<double> share_{0.0};  ///< of the question that is being computed
   std::string answer_ = R"({"id":0,"state":"none"})";
-  NewestTask<Wish, std::string> task_;  // last
+  NewestTask<Request, std::string> task_;  // last
 };
 
 }  // namespace chicane::live

@@ -29,10 +29,10 @@ WorkerRun::WorkerRun(std::unique_ptr<run::ClosedLoop> loop, WorkerServer::Send s
     : loop_{std::move(loop)},
       settings_{with_viewer(viewer_, {.scenario = loop_->scenario(),
                                       .faults = protocol::fault_controls(),
-                                      .build = [this](ChosenRun next) { wish_ = std::move(next); },
+                                      .build = [this](ChosenRun next) { request_ = std::move(next); },
                                       .built = [this]() -> std::optional<Result<void>> {
-                                        if (!wish_) return std::nullopt;
-                                        auto built = build_run(*std::exchange(wish_, std::nullopt),
+                                        if (!request_) return std::nullopt;
+                                        auto built = build_run(*std::exchange(request_, std::nullopt),
                                                                &worker_description);
                                         if (!built) return fail(built.error());
                                         built_ = std::move(*built);

@@ -57,7 +57,7 @@ class WorkerRun {
 
   run::RunControls controls_;
   std::unique_ptr<run::ClosedLoop> loop_;
-  std::optional<ChosenRun> wish_;  ///< to be built
+  std::optional<ChosenRun> request_;  ///< to be built
   std::unique_ptr<BuiltRun> built_;
   LiveSettings settings_;
   wire::ViewerEndpoint viewer_;

@@ -101,22 +101,22 @@ Error unknown_name(Shelf shelf, std::string_view name, const std::vector<Entry>&
           fmt::format("{}{}one of {}{}", got, or_what, fmt::join(known_names, ", "), hint)};
 }
 
-/// A name and who asks for it: "runs/wet.yaml:3: ", nothing for the command line and for defaults.
-struct Wish {
+/// A name and its place in a file: "runs/wet.yaml:3: ", nothing for the command line and for defaults.
+struct Reference {
   std::string name;
   std::string place{};
 };
 
-/// locate(), and who asked when there is none.
-Result<std::string> locate(Shelf shelf, const Wish& wish) {
-  Result<std::string> file = locate(shelf, wish.name);
-  if (!file) return fail(file.error().code, wish.place + file.error().message);
+/// locate(), with the place in the error.
+Result<std::string> locate(Shelf shelf, const Reference& reference) {
+  Result<std::string> file = locate(shelf, reference.name);
+  if (!file) return fail(file.error().code, reference.place + file.error().message);
   return file;
 }
 
-Result<Document> read_document(Shelf shelf, const Wish& wish, RememberedFiles& files) {
-  return files.document(shelf, wish.name, [&]() -> Result<Document> {
-    const Result<std::string> file = locate(shelf, wish);
+Result<Document> read_document(Shelf shelf, const Reference& reference, RememberedFiles& files) {
+  return files.document(shelf, reference.name, [&]() -> Result<Document> {
+    const Result<std::string> file = locate(shelf, reference);
     if (!file) return fail(file.error());
     const Result<std::string> text = read_file(*file);
     return text ? parse_document(*text, *file) : fail(text.error());
@@ -124,9 +124,9 @@ Result<Document> read_document(Shelf shelf, const Wish& wish, RememberedFiles& f
 }
 
 /// Of a track only that there is one.
-Result<Document> find_track(const Wish& wish, RememberedFiles& files) {
-  return files.document(Shelf::kTrack, wish.name, [&]() -> Result<Document> {
-    const Result<std::string> file = locate(Shelf::kTrack, wish);
+Result<Document> find_track(const Reference& reference, RememberedFiles& files) {
+  return files.document(Shelf::kTrack, reference.name, [&]() -> Result<Document> {
+    const Result<std::string> file = locate(Shelf::kTrack, reference);
     if (!file) return fail(file.error());
     Document document;
     document.file = *file;
@@ -135,8 +135,9 @@ Result<Document> find_track(const Wish& wish, RememberedFiles& files) {
 }
 
 /// What the last layer that sets `key` wants.
-Wish last_wish(const std::vector<Document>& layers, std::string_view key, const std::string& otherwise) {
-  Wish found{otherwise};
+Reference last_reference(const std::vector<Document>& layers, std::string_view key,
+                         const std::string& otherwise) {
+  Reference found{otherwise};
   for (const Document& layer : layers) {
     for (const Assignment& assignment : layer.assignments) {
       if (assignment.parameter->key == key)
@@ -256,9 +257,9 @@ void resolve_names(Document& document) {
 }
 
 /// `name` and the presets it builds on, the deepest first.
-std::vector<Document> read_presets(Wish name, RememberedFiles& files, Faults& faults) {
+std::vector<Document> read_presets(Reference name, RememberedFiles& files, Faults& faults) {
   std::vector<Document> presets;
-  std::optional<Wish> next = std::move(name);
+  std::optional<Reference> next = std::move(name);
   while (next) {
     if (presets.size() == kMostPresets) {
       faults.add(
@@ -274,14 +275,14 @@ std::vector<Document> read_presets(Wish name, RememberedFiles& files, Faults& fa
     }
     resolve_names(*preset);
     next.reset();
-    if (preset->preset) next = Wish{*preset->preset, place(preset->file, preset->preset_line)};
+    if (preset->preset) next = Reference{*preset->preset, place(preset->file, preset->preset_line)};
     presets.insert(presets.begin(), std::move(*preset));
   }
   return presets;
 }
 
-std::optional<Document> read_car(const Wish& wish, RememberedFiles& files, Faults& faults) {
-  Result<Document> car = read_document(Shelf::kCar, wish, files);
+std::optional<Document> read_car(const Reference& reference, RememberedFiles& files, Faults& faults) {
+  Result<Document> car = read_document(Shelf::kCar, reference, files);
   if (!car) {
     faults.add(car.error());
     return std::nullopt;
@@ -405,9 +406,9 @@ Result<scenario::Scenario> compose(const Request& request, RememberedFiles& file
   std::vector<Document> layers;
   Document settings = parse_settings(request, faults);
   const scenario::Scenario defaults;
-  Wish preset{settings.preset.value_or(defaults.preset)};
+  Reference preset{settings.preset.value_or(defaults.preset)};
   if (!request.scenario_file.empty()) {
-    Result<Document> file = read_document(Shelf::kScenario, Wish{request.scenario_file}, files);
+    Result<Document> file = read_document(Shelf::kScenario, Reference{request.scenario_file}, files);
     if (!file) {
       faults.add(file.error());
     } else {
@@ -422,12 +423,12 @@ Result<scenario::Scenario> compose(const Request& request, RememberedFiles& file
   std::vector<Document> presets = read_presets(preset, files, faults);
   layers.insert(layers.begin(), std::make_move_iterator(presets.begin()),
                 std::make_move_iterator(presets.end()));
-  std::optional<Document> car = read_car(last_wish(layers, "car", defaults.car), files, faults);
+  std::optional<Document> car = read_car(last_reference(layers, "car", defaults.car), files, faults);
   if (car) layers.insert(layers.begin(), std::move(*car));
-  if (const auto track = find_track(last_wish(layers, "track", defaults.track), files); !track)
+  if (const auto track = find_track(last_reference(layers, "track", defaults.track), files); !track)
     faults.add(track.error());
 
-  refuse_unknown(request, last_wish(layers, "controller", defaults.controller).name, faults);
+  refuse_unknown(request, last_reference(layers, "controller", defaults.controller).name, faults);
   scenario::Scenario scenario;
   scenario.preset = preset.name;
   if (const Result<void> applied = apply_layers(layers, scenario); !applied) faults.add(applied.error());

@@ -28,7 +28,7 @@ constexpr std::string_view kSchema =
     "bool gated               # the command gate changed it\n"
     "float64[] waypoints      # x and y in turn, world frame [m]\n"
     "float64 gate_interval    # since the command before [s]; 0 skips the rate limit\n"
-    "float64 manual_steer     # a person's wish, while is_manual [rad], left positive\n"
+    "float64 manual_steer     # a person's command, while is_manual [rad], left positive\n"
     "float64 manual_throttle  # [-1, 1]\n"
     "uint32 deadline_spent_at # the solver's first question to the clock that was answered with \"late\"; 0 "
     "none\n"

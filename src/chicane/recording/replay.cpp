@@ -36,10 +36,10 @@ class Recomputation {
     const Result<run::Setting> setting = run::read_setting(change);
     if (!setting) return;
     if (const auto* learned = std::get_if<run::LearnedLap>(&setting->action)) {
-      controller::LapWish wish = cycle_.controller().wants_lap();
-      wish.grip = learned->grip;
-      wish.slides = learned->slides;
-      const auto lap = run::plan_wanted_lap(scenario_, track_ ? &*track_ : nullptr, wish);
+      controller::LapRequest request = cycle_.controller().wants_lap();
+      request.grip = learned->grip;
+      request.slides = learned->slides;
+      const auto lap = run::plan_wanted_lap(scenario_, track_ ? &*track_ : nullptr, request);
       if (lap) cycle_.use_line(*lap);
     }
     const auto* field = std::get_if<run::FieldValue>(&setting->action);

@@ -161,10 +161,10 @@ void ClosedLoop::take(const FaultSwitch& fault) noexcept {
 }
 
 void ClosedLoop::take(LearnedLap learned) noexcept {
-  controller::LapWish wish = controller().wants_lap();
-  wish.grip = learned.grip;
-  wish.slides = learned.slides;
-  const auto lap = plan_wanted_lap(scenario_, &track_, wish);
+  controller::LapRequest request = controller().wants_lap();
+  request.grip = learned.grip;
+  request.slides = learned.slides;
+  const auto lap = plan_wanted_lap(scenario_, &track_, request);
   if (lap) use_line(*lap);
 }
 

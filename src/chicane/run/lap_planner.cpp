@@ -26,10 +26,10 @@ telemetry::Change LapPlanner::lap_change(const road::RacingRoad& lap, std::uint6
 std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Controller& controller,
                                                            const scenario::Scenario& scenario,
                                                            const road::Track* track, double time) {
-  const controller::LapWish wish = controller.wants_lap();
-  is_wanted_ = wish.is_wanted;
+  const controller::LapRequest request = controller.wants_lap();
+  is_wanted_ = request.is_wanted;
   if (thread_.joinable() && has_ended_.load(std::memory_order_acquire)) thread_.join();
-  if (!wish.is_wanted) {
+  if (!request.is_wanted) {
     wanted_since_.reset();
     return {};
   }
@@ -42,8 +42,8 @@ std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Con
     lap_.reset();
     if (clock_ == Clock::kReal)
       thread_ = std::thread([this, scenario, track,
-                             points = std::vector(wish.waypoints.begin(), wish.waypoints.end()),
-                             wanted = controller::LapWish(wish)]() mutable {
+                             points = std::vector(request.waypoints.begin(), request.waypoints.end()),
+                             wanted = controller::LapRequest(request)]() mutable {
         wanted.waypoints = points;
         search(scenario, track, wanted);
       });
@@ -52,7 +52,7 @@ std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Con
   if (has_answered_) return {};
   if (clock_ == Clock::kVirtual && !ready_since_) {
     if (time - *wanted_since_ < kPlanningTime) return {};
-    search(scenario, track, wish);
+    search(scenario, track, request);
   }
   if (!has_ended_.load(std::memory_order_acquire)) return {};
   if (!ready_since_) ready_since_ = time;
@@ -78,13 +78,13 @@ std::optional<telemetry::Change> LapPlanner::advance(ControlCycle& cycle, const 
 }
 
 void LapPlanner::search(const scenario::Scenario& scenario, const road::Track* track,
-                        const controller::LapWish& wish) {
+                        const controller::LapRequest& request) {
   if (clock_ == Clock::kReal) {
     // Behind everything else, yet not starved: on cores that others keep busy, a tenth of one thread's share.
     constexpr int kLowPriority = 10;
     static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // of this thread, on Linux
   }
-  auto lap = plan_wanted_lap(scenario, track, wish, [this] { return is_wanted_.load(); });
+  auto lap = plan_wanted_lap(scenario, track, request, [this] { return is_wanted_.load(); });
   if (lap) lap_ = std::move(*lap);
   has_ended_.store(true, std::memory_order_release);
 }

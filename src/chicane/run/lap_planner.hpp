@@ -64,7 +64,8 @@ class LapPlanner {
   static constexpr std::string_view kSlides = ", slides";
 
  private:
-  void search(const scenario::Scenario& scenario, const road::Track* track, const controller::LapWish& wish);
+  void search(const scenario::Scenario& scenario, const road::Track* track,
+              const controller::LapRequest& request);
 
   Clock clock_;
   std::optional<double> wanted_since_;  ///< [s]

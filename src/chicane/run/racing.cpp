@@ -116,10 +116,10 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenari
 
 Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::Scenario& scenario,
                                                                 const road::Track* track,
-                                                                const controller::LapWish& wish,
+                                                                const controller::LapRequest& request,
                                                                 const std::function<bool()>& go_on) {
   const road::RacingRoad::Basis basis{
-      .is_learned = !wish.waypoints.empty(), .grip = wish.grip, .slides = wish.slides};
+      .is_learned = !request.waypoints.empty(), .grip = request.grip, .slides = request.slides};
   if (!basis.is_learned && track == nullptr) return std::shared_ptr<const road::RacingRoad>{};
   if (!basis.is_learned) return plan_on(in_full_size(*track, scenario), scenario, basis, go_on, {});
   const model::VehicleParams car = full_size(scenario);
@@ -129,8 +129,8 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::
   const double granted = is_guarded ? scenario.guard.half_width : std::numeric_limits<double>::infinity();
   const double half_width = std::min(options_of(scenario).assumed_half_width + beside, granted);
   std::vector<road::TrackPoint> points;
-  points.reserve(wish.waypoints.size());
-  for (const Vec2& waypoint : wish.waypoints) points.push_back({waypoint, half_width, half_width});
+  points.reserve(request.waypoints.size());
+  for (const Vec2& waypoint : request.waypoints) points.push_back({waypoint, half_width, half_width});
   const Result<road::Track> learned = road::Track::create("learned", points, true);
   if (!learned) return fail(learned.error());
   return plan_on(*learned, scenario, basis, go_on, {});

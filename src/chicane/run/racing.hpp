@@ -47,9 +47,9 @@ struct PlanHooks {
 /// The lap that a controller wants: with another grip, on `track`, or on a road through waypoints with
 /// TrackingMpcOptions::assumed_half_width for the centre of mass each side of them. Null where it is to be
 /// the track, and that is null. `go_on` is asked in each iteration; false ends the search. The same scenario,
-/// track and wish give the same bits.
+/// track and request give the same bits.
 [[nodiscard]] Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(
-    const scenario::Scenario& scenario, const road::Track* track, const controller::LapWish& wish,
+    const scenario::Scenario& scenario, const road::Track* track, const controller::LapRequest& request,
     const std::function<bool()>& go_on = {});
 
 }  // namespace chicane::run

@@ -33,8 +33,8 @@ struct FaultSwitch {
 };
 /// The lap to race by that is planned for road and grip as the controller has learned them (LapPlanner).
 struct LearnedLap {
-  double grip = 1.0;    ///< LapWish::grip
-  bool slides = false;  ///< LapWish::slides
+  double grip = 1.0;    ///< LapRequest::grip
+  bool slides = false;  ///< LapRequest::slides
 };
 
 /// What a change of a setting does to a run that goes on. std::monostate: nothing that can be done to it,
