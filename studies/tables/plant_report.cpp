@@ -109,7 +109,7 @@ void print_lateral(Plant& plant) {
 }
 
 void print_model_mismatch(Plant& plant, const model::VehicleParams& params, double gentle, double hard) {
-  std::printf("believed single track against the plant: rms error of yaw rate, of lateral velocity\n");
+  std::printf("assumed single track against the plant: rms error of yaw rate, of lateral velocity\n");
   for (const double v : {10.0, 20.0, 30.0, 45.0}) {
     const experiment::Mismatch low = experiment::compare(plant, params, v, gentle);
     const experiment::Mismatch high = experiment::compare(plant, params, v, hard);
@@ -169,16 +169,16 @@ void print_cost(Plant& plant) {
 }
 
 void print_tables() {
-  for (const model::VehicleParams& believed : {model::udacity_params(), model::road_car_params()}) {
-    const std::unique_ptr<Plant> plant = sim::make_plant(believed.name).value();
-    const bool is_udacity = believed.steer_helper > 0.0;
-    std::printf("== %s\n", believed.name.c_str());
+  for (const model::VehicleParams& assumed : {model::udacity_params(), model::road_car_params()}) {
+    const std::unique_ptr<Plant> plant = sim::make_plant(assumed.name).value();
+    const bool is_udacity = assumed.steer_helper > 0.0;
+    std::printf("== %s\n", assumed.name.c_str());
     print_longitudinal(*plant);
     print_braking(*plant);
     if (is_udacity) print_lock_threshold(*plant);
     print_lateral(*plant);
-    print_model_mismatch(*plant, believed, is_udacity ? 5.0 : 3.0, is_udacity ? 20.0 : 8.5);
-    if (is_udacity) print_identified(*plant, believed);
+    print_model_mismatch(*plant, assumed, is_udacity ? 5.0 : 3.0, is_udacity ? 20.0 : 8.5);
+    if (is_udacity) print_identified(*plant, assumed);
     print_cost(*plant);
     std::printf("\n");
   }

@@ -173,7 +173,7 @@ def otherwise(runs):
         late = float(setting(run, "latency_ms")) - 100.0
         jitter = float(setting(run, "latency_jitter_ms"))
         found += [f"latency +{late:g} ms"] if late else []
-        return ", ".join(found + ([f"jitter {jitter:g} ms"] if jitter else [])) or "as believed"
+        return ", ".join(found + ([f"jitter {jitter:g} ms"] if jitter else [])) or "as assumed"
 
     return pivot(runs, lambda run: f"`{setting(run, 'car')}`, {what(run)}", road, lap_and_edge, ("car, what is otherwise", "{}"))
 

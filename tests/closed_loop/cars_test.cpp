@@ -38,7 +38,7 @@ TEST(Cars, Ship) {
 
 // What the file says of the plant and does not say of the model comes out alike, and what it says of both
 // agrees.
-TEST_P(EveryCar, SpeedsUpAndBrakesAsItsModelBelieves) {
+TEST_P(EveryCar, SpeedsUpAndBrakesAsItsModelPredicts) {
   const model::VehicleParams& car = scenario_.vehicle;
   const double grip = car.cornering_friction() * std::min(car.load_constant, 9.81);
   for (const double share : {0.3, -0.3}) {  // far from what its tyres hold: the model's law knows no slip
@@ -51,15 +51,15 @@ TEST_P(EveryCar, SpeedsUpAndBrakesAsItsModelBelieves) {
       const auto run = sim::experiment::drive_straight(*plant_, throttle, 0.8);
       const auto& from = run[run.size() / 2];
       const double measured = (run.back().speed - from.speed) / (run.back().time - from.time);
-      const double believed = longitudinal_acceleration(car, throttle, 0.5 * (from.speed + run.back().speed));
+      const double assumed = longitudinal_acceleration(car, throttle, 0.5 * (from.speed + run.back().speed));
       // The slip of the wheels, and the share of the lag that is left after 0.4 s.
-      const double tolerance = 0.05 * std::fabs(believed) + (GetParam() == "udacity" ? 0.5 : 0.05);
-      EXPECT_NEAR(measured, believed, tolerance) << throttle << " at " << v;
+      const double tolerance = 0.05 * std::fabs(assumed) + (GetParam() == "udacity" ? 0.5 : 0.05);
+      EXPECT_NEAR(measured, assumed, tolerance) << throttle << " at " << v;
     }
   }
 }
 
-TEST_P(EveryCar, TurnsAsItsModelBelieves) {
+TEST_P(EveryCar, TurnsAsItsModelPredicts) {
   for (const double equivalent : {12.0, 20.0}) {
     const double v = equivalent * std::sqrt(scenario_.vehicle.scale);
     const auto mismatch = sim::experiment::compare(*plant_, scenario_.vehicle, v, 2.5);

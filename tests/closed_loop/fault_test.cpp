@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Drivers, EveryFault, testing::ValuesIn(trials()), [](co
 /// told and cannot find out in time. Measured worst plus a fifth; docs/faults.md has the figures and says
 /// why.
 double beyond_edge(std::string_view fault, std::string_view driver) {
-  // The guard believes in the full grip, too.
+  // The guard assumes the full grip, too.
   if (fault == "half_grip" && driver == "tracking_road") return 3.7;
   if (fault == "half_grip" && driver == "cubic_road") return 9.0;
   if (fault == "delay_doubled" && driver == "cubic_road") return 16.0;
@@ -122,7 +122,7 @@ TEST_P(EveryFault, LeavesTheCarOnTheRoadAndGoingOn) {
 
 TEST(Faults, SameSeedSameBits) {
   for (const Fault fault : {*sim::fault_named("gps_noise"), *sim::fault_named("command_dropped")}) {
-    // The guard drives by what it believes: noise leaves no trace.
+    // The guard drives by its estimate: noise leaves no trace.
     const Settings off = {{"guard.mode", "off"}};
     const Outcome first = drive_through(off, fault);
     EXPECT_EQ(first.hash, drive_through(off, fault).hash);

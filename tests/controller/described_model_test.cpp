@@ -182,7 +182,7 @@ TEST(RollForward, LeavesOutTheTermOfTheAccelerationWhenAskedTo) {
   EXPECT_GT(term, 1e-4);
 }
 
-TEST(RollForward, BelievesNoImpossibleLatency) {
+TEST(RollForward, RejectsAnImpossibleLatency) {
   RollForward roll{LatencyHandling::kMeasured, 0.1, kLength};
   model::Measurement now = moving();
   for (const double delay :

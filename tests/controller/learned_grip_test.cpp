@@ -12,14 +12,14 @@ namespace {
 /// A car with `grip` of what it is told weaves at 25 m/s for `seconds`; the model follows what it shows.
 LearnedGrip driven_with(double grip, double seconds) {
   const model::VehicleParams told = model::road_car_params();
-  model::PredictionModel believed{told};
-  tracking::StateEstimator truth{model::PredictionModel{model::with_grip(told, grip)}}, seen{believed};
+  model::PredictionModel assumed{told};
+  tracking::StateEstimator truth{model::PredictionModel{model::with_grip(told, grip)}}, seen{assumed};
   tracking::CommandHistory sent;
   model::Measurement now{.speed = 25.0};
   truth.correct(now, sent);
   seen.correct(now, sent);
-  LearnedGrip learned{believed};
-  learned.begin(seen, believed);
+  LearnedGrip learned{assumed};
+  learned.begin(seen, assumed);
   while (now.time < seconds) {
     const double time = now.time + 0.04;
     sent.add(now.time, {.steer = 0.05 * sin(1.3 * time), .throttle = 0.2});
@@ -33,9 +33,9 @@ LearnedGrip driven_with(double grip, double seconds) {
     truth.correct(now, sent);
     seen.correct(now, sent);
     if (learned.see(now, sent) != LearnedGrip::Change::kModel) continue;
-    believed.set_vehicle(model::with_grip(told, learned.share()));
-    seen.set_model(believed);
-    learned.begin(seen, believed);
+    assumed.set_vehicle(model::with_grip(told, learned.share()));
+    seen.set_model(assumed);
+    learned.begin(seen, assumed);
   }
   return learned;
 }
@@ -99,7 +99,7 @@ TEST(LearnedGrip, LetsACarSlideThatIsAsToldAndAnsweredSoon) {
   EXPECT_FALSE(learned.may_slide(1.0, most, false)) << "before its tyres have shown anything";
 }
 
-TEST(LearnedGrip, BelievesWhatWasToldUntilThen) {
+TEST(LearnedGrip, KeepsTheConfiguredGripUntilThen) {
   LearnedGrip learned = driven_with(0.8, 0.5);
   EXPECT_FALSE(learned.is_shown());
   EXPECT_EQ(learned.share(), 1.0);

@@ -49,7 +49,7 @@ TEST(CarFrame, IsTheSameByRotationAndByRadiusAndAngle) {
   }
 }
 
-TEST(CarFrame, SkipsPointsThatAreNotFiniteAndBelievesNoImpossibleCount) {
+TEST(CarFrame, SkipsPointsThatAreNotFiniteAndRejectsAnImpossibleCount) {
   auto now =
       with_waypoints({{1.0, 2.0}, {kNaN, 1.0}, {3.0, std::numeric_limits<double>::infinity()}, {4.0, 5.0}});
   EXPECT_EQ(to_car_frame(now, {}).count, 2);

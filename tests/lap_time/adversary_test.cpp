@@ -42,7 +42,7 @@ class Numbers {
 
 class Adversary : public testing::TestWithParam<const char*> {};
 
-TEST_P(Adversary, BeatsNoBoundWithWhateverItBelievesAndRisks) {
+TEST_P(Adversary, BeatsNoBoundWithWhateverItAssumesAndRisks) {
   const road::Track track = road();
   const PlantLimitOptions options{.time_step = 0.1, .wants_witness = false};
   const Result<PlantLimit> limit = find_plant_limit(track, GetParam(), {}, options);
@@ -60,12 +60,11 @@ TEST_P(Adversary, BeatsNoBoundWithWhateverItBelievesAndRisks) {
   double best = 1e9;
   constexpr int kTrials = 16;
   for (int trial = 0; trial < kTrials; ++trial) {
-    const Reserve risk{
-        .margin = numbers.between(-0.02, 0.2),
-        .grip_share = numbers.between(0.97, 1.02),  // above 1: it believes in more than there is
-        .slip_share = is_udacity ? numbers.between(0.9, 1.6) : numbers.between(0.75, 1.05),
-        .brake_share = numbers.between(0.95, 1.02),
-        .steer_weight = numbers.between(1e-5, 1e-3)};
+    const Reserve risk{.margin = numbers.between(-0.02, 0.2),
+                       .grip_share = numbers.between(0.97, 1.02),  // above 1: it assumes more than there is
+                       .slip_share = is_udacity ? numbers.between(0.9, 1.6) : numbers.between(0.75, 1.05),
+                       .brake_share = numbers.between(0.95, 1.02),
+                       .steer_weight = numbers.between(1e-5, 1e-3)};
     const Result<NodePlan> plan = search.near(from, risk);
     if (!plan) continue;
     from = *plan;

@@ -19,7 +19,7 @@ using test::Live;
 using test::scenario_of;
 using testing::HasSubstr;
 
-TEST(FixedSettings, KeepTheGuardAndTheModelThatItBelievesOutOfReach) {
+TEST(FixedSettings, KeepTheGuardAndItsModelOutOfReach) {
   EXPECT_EQ(Live().refusal({"guard.mode", std::string("off")}),
             "guard.mode is fixed when the run starts; set it on the command line: --set guard.mode=off");
   EXPECT_EQ(Live().refusal({"vehicle.friction", 2.5}),

@@ -138,7 +138,7 @@ TEST(RunLimit, IsAnotherOneOnceTheCarHasOtherGripOrMass) {
   ASSERT_TRUE(first->found);
   EXPECT_EQ(first->first_lap, 1);
 
-  now.vehicle.friction *= 0.5;  // what the controller believes: the car is as it was
+  now.vehicle.friction *= 0.5;  // the controller's assumption: the car is as it was
   limit.follow(now, frame);
   EXPECT_FALSE(limit.is_searching());
 

@@ -84,7 +84,7 @@ class Futures : public testing::TestWithParam<Case> {};
 TEST_P(Futures, BeginWhereTheCarIsAndGoOnAsItDoes) {
   Theirs theirs(GetParam().settings);
   ServedFutures futures(theirs.log);
-  futures.believe(scenario_of(GetParam().settings));
+  futures.assume(scenario_of(GetParam().settings));
   for (const double more : {8.0, 5.0, 14.0}) {
     theirs.drive(more);
     const auto asked = ask(futures, {});
@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ServedFutures, TellWhatAChangeWouldDo) {
   Theirs theirs({});
   ServedFutures futures(theirs.log);
-  futures.believe(scenario_of({}));
+  futures.assume(scenario_of({}));
   theirs.drive(20.0);
   const auto slower = ask(futures, {{"tracking_mpc.speed_limit_mps", "12"}});
   ASSERT_TRUE(slower) << slower.error().message;
@@ -127,7 +127,7 @@ TEST(ServedFutures, TellWhatAChangeWouldDo) {
 TEST(ServedFutures, SayHowFarOurCarIsFromTheirs) {
   Theirs theirs({{"plant_options.friction_scale", "0.6"}, {"latency_ms", "160"}});
   ServedFutures futures(theirs.log);
-  futures.believe(scenario_of({}));
+  futures.assume(scenario_of({}));
   theirs.drive(25.0);
   const auto asked = ask(futures, {});
   ASSERT_TRUE(asked) << asked.error().message;
@@ -144,7 +144,7 @@ TEST(ServedFutures, SayWhyThereAreNone) {
     return asked ? "" : asked.error().message;
   };
   EXPECT_THAT(why(), HasSubstr("road is not known"));
-  futures.believe(scenario_of({}));
+  futures.assume(scenario_of({}));
   EXPECT_THAT(why(), HasSubstr("no second"));
   theirs.drive(5.0);
   EXPECT_THAT(why(0.2), HasSubstr("no second"));

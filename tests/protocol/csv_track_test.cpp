@@ -103,7 +103,7 @@ TEST(CsvTrack, GuessesNoColumnsButTwo) {
               HasSubstr("header: none, read as x_m,y_m"));
 }
 
-TEST(CsvTrack, BelievesACommentThatNamesOtherColumns) {
+TEST(CsvTrack, TakesACommentThatNamesOtherColumns) {
   EXPECT_EQ(parse_track("# v_mps, ax_max_machines_mps2\n0,9\n1,8\n", "a.csv").error().message,
             "a.csv:1: header: got v_mps, ax_max_machines_mps2, expected columns x and y (or x_m and y_m) in "
             "metres");

@@ -39,7 +39,7 @@ inline std::string repeated(const std::string& element, int count) {
   return "[" + repeat(element + ",", count - 1) + element + "]";
 }
 
-/// Telemetry that must not be believed.
+/// Telemetry that must be refused.
 struct Hostile {
   std::string text;
   std::string words;  ///< that the reason must contain

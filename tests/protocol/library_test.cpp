@@ -70,20 +70,20 @@ TEST_F(Library, RefusesToRaceACarWhoseGripIsNotKnown) {
   const auto stated =
       compose({.scenario_file = {}, .settings = {{"car", car}, {"preset", "race"}, {"friction_low", "0.7"}}});
   ASSERT_TRUE(stated) << stated.error().message;
-  EXPECT_EQ(stated->believed_vehicle().friction, 0.7);
+  EXPECT_EQ(stated->assumed_vehicle().friction, 0.7);
   EXPECT_EQ(stated->vehicle.friction, 1.1);
   ASSERT_EQ(stated->notices.size(), 1U);
   EXPECT_THAT(stated->notices[0], HasSubstr("planned with a friction of 0.7"));
 }
 
 TEST_F(Library, TheLeastFrictionIsOfARaceAlone) {
-  for (const auto& [preset, low, believed] :
+  for (const auto& [preset, low, assumed] :
        {std::tuple{"default", "0.7", 1.2}, {"race", "inf", 1.2}, {"race", "3", 1.2}, {"race", "0.7", 0.7}}) {
     const auto scenario = compose(
         {.scenario_file = {}, .settings = {{"car", "road-car"}, {"preset", preset}, {"friction_low", low}}});
     ASSERT_TRUE(scenario) << scenario.error().message;
-    EXPECT_EQ(scenario->believed_vehicle().friction, believed) << preset << ' ' << low;
-    EXPECT_EQ(scenario->notices.size(), believed < 1.2 ? 1U : 0U) << preset << ' ' << low;
+    EXPECT_EQ(scenario->assumed_vehicle().friction, assumed) << preset << ' ' << low;
+    EXPECT_EQ(scenario->notices.size(), assumed < 1.2 ? 1U : 0U) << preset << ' ' << low;
   }
 }
 

@@ -91,7 +91,7 @@ TEST_F(GuardTest, BeginsAControllerAnewThatHasNoAnswerToWholeMeasurements) {
   EXPECT_EQ(scripted_.resets - before, 2) << "nothing to answer";
 }
 
-TEST_F(GuardTest, BelievesThePlaceToWhichAPersonHasDriven) {
+TEST_F(GuardTest, AcceptsThePlaceToWhichAPersonHasDriven) {
   scripted_.result.command = {0.0, 0.2};
   const auto elsewhere = [](int i) {
     model::Measurement now = at(0.04 * i);

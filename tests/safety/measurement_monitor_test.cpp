@@ -143,7 +143,7 @@ TEST(MeasurementMonitor, FindsAFrozenSensorInACarThatMoves) {
   }
 }
 
-TEST(MeasurementMonitor, DisbelievesAJumpHoweverLongItLasts) {
+TEST(MeasurementMonitor, RejectsAJumpHoweverLongItLasts) {
   for (const double side : {5.0, -5.0}) {
     MeasurementMonitor monitor{4.5, 2.7};
     for (int i = 0; i < 10; ++i) EXPECT_TRUE(is_plausible(look(monitor, at(i), expected(i))));
@@ -160,8 +160,8 @@ TEST(MeasurementMonitor, DisbelievesAJumpHoweverLongItLasts) {
   }
 }
 
-/// What is expected drifts while the place is not believed, and may come upon a place that is still wrong.
-TEST(MeasurementMonitor, BelievesAPlaceAgainOnlyWhenItJumpsBack) {
+/// What is expected drifts while the place is rejected, and may come upon a place that is still wrong.
+TEST(MeasurementMonitor, AcceptsAPlaceAgainOnlyWhenItJumpsBack) {
   for (const double side : {5.0, -5.0}) {
     MeasurementMonitor monitor{4.5, 2.7};
     for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
@@ -192,7 +192,7 @@ TEST(MeasurementMonitor, KeepsWhatIsPlausibleBesideAJump) {
 }
 
 // A sensor that is stuck and noisy repeats in what has no noise. Its heading turned the car off the road.
-TEST(MeasurementMonitor, BelievesNothingThatRepeatsBesideADoubt) {
+TEST(MeasurementMonitor, AcceptsNothingThatRepeatsBesideADoubt) {
   using Change = void (*)(model::Measurement&, int);
   const Change changes[] = {[](model::Measurement& m, int i) { m.x += i % 2 == 0 ? 0.7 : -0.7; },
                             [](model::Measurement& m, int) { m.y += 6.0; },
@@ -226,7 +226,7 @@ TEST(MeasurementMonitor, BelievesNothingThatRepeatsBesideADoubt) {
   }
 }
 
-TEST(MeasurementMonitor, DisbelievesASpeedThatNoBrakingExplains) {
+TEST(MeasurementMonitor, RejectsASpeedThatNoBrakingExplains) {
   MeasurementMonitor monitor{4.5, 2.7};
   for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
   model::Measurement zero = at(10);
@@ -243,7 +243,7 @@ TEST(MeasurementMonitor, FindsASpeedInAnotherUnitByTheDisplacement) {
   int found_at = 0;
   for (int i = 0; i < 100 && found_at == 0; ++i) {
     model::Measurement now = at(i);
-    now.speed *= 2.236936;  // mph told as m/s, from the first message on: the expectation believes it
+    now.speed *= 2.236936;  // mph sent as m/s, from the first message on: the expectation follows it
     model::State state = expected(i);
     state.vx = now.speed;
     if (look(monitor, now, state).speed_mismatch) found_at = i;
@@ -252,7 +252,7 @@ TEST(MeasurementMonitor, FindsASpeedInAnotherUnitByTheDisplacement) {
   EXPECT_LT(kCycle * found_at, 0.5);
 }
 
-TEST(MeasurementMonitor, DisbelievesAYawThatNoCarTurnsTo) {
+TEST(MeasurementMonitor, RejectsAYawThatNoCarTurnsTo) {
   MeasurementMonitor monitor{4.5, 2.7};
   for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
   model::Measurement turned = at(10);
@@ -262,7 +262,7 @@ TEST(MeasurementMonitor, DisbelievesAYawThatNoCarTurnsTo) {
   EXPECT_FALSE(look(monitor, turned, expected(10)).heading_jump) << "angles wrap";
 }
 
-TEST(MeasurementMonitor, NeverBelievesAPlaceBecauseItLasts) {
+TEST(MeasurementMonitor, NeverAcceptsAPlaceBecauseItLasts) {
   MeasurementMonitor monitor{4.5, 2.7};
   for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
   for (int i = 10; i < 100; ++i) {
@@ -273,7 +273,7 @@ TEST(MeasurementMonitor, NeverBelievesAPlaceBecauseItLasts) {
   }
 }
 
-TEST(MeasurementMonitor, DoesNotBelieveTheHeadingWherePlaceAndSpeedAreWrong) {
+TEST(MeasurementMonitor, RejectsTheHeadingWherePlaceAndSpeedAreWrong) {
   MeasurementMonitor monitor{4.5, 2.7};
   for (int i = 0; i < 10; ++i) look(monitor, at(i), expected(i));
   model::Measurement now = at(10);

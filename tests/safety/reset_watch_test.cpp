@@ -12,7 +12,7 @@ constexpr double kCycle = 0.04;  // [s]
 
 /// A car that drives at 20 m/s along x is then measured at 100 m aside, where `answer` moves it.
 template <class Answer>
-bool is_believed(double pedal, double seconds, Answer answer) {
+bool is_accepted(double pedal, double seconds, Answer answer) {
   ResetWatch watch;
   model::Measurement now;
   for (int i = 0; i < 20; ++i) {
@@ -41,27 +41,27 @@ auto driven(double acceleration) {
   };
 }
 
-TEST(ResetWatch, BelievesACarThatAnswers) {
-  EXPECT_TRUE(is_believed(0.3, 3.0, driven(1.0)));
-  EXPECT_TRUE(is_believed(-1.0, 3.0, driven(-5.0))) << "the brake pedal may be the reverse gear";
+TEST(ResetWatch, AcceptsACarThatAnswers) {
+  EXPECT_TRUE(is_accepted(0.3, 3.0, driven(1.0)));
+  EXPECT_TRUE(is_accepted(-1.0, 3.0, driven(-5.0))) << "the brake pedal may be the reverse gear";
 }
 
-TEST(ResetWatch, DoesNotBelieveAConstantPlace) {
-  EXPECT_FALSE(is_believed(0.3, 60.0, [](model::Measurement&) {}));
+TEST(ResetWatch, RejectsAConstantPlace) {
+  EXPECT_FALSE(is_accepted(0.3, 60.0, [](model::Measurement&) {}));
 }
 
-TEST(ResetWatch, DoesNotBelieveAPlaceThatMovesWithoutSpeed) {
-  EXPECT_FALSE(is_believed(0.3, 60.0, [](model::Measurement& now) { now.x += 0.3 * kCycle; }));
+TEST(ResetWatch, RejectsAPlaceThatMovesWithoutSpeed) {
+  EXPECT_FALSE(is_accepted(0.3, 60.0, [](model::Measurement& now) { now.x += 0.3 * kCycle; }));
 }
 
-TEST(ResetWatch, DoesNotBelieveAMotionAgainstThePedal) {
-  EXPECT_FALSE(is_believed(0.3, 3.0, driven(-1.0)));
-  EXPECT_FALSE(is_believed(-1.0, 3.0, driven(5.0)));
-  EXPECT_FALSE(is_believed(0.0, 3.0, driven(1.0)));
+TEST(ResetWatch, RejectsAMotionAgainstThePedal) {
+  EXPECT_FALSE(is_accepted(0.3, 3.0, driven(-1.0)));
+  EXPECT_FALSE(is_accepted(-1.0, 3.0, driven(5.0)));
+  EXPECT_FALSE(is_accepted(0.0, 3.0, driven(1.0)));
 }
 
-TEST(ResetWatch, DoesNotBelieveAMotionAcrossTheHeading) {
-  EXPECT_FALSE(is_believed(0.3, 3.0, [velocity = 0.0](model::Measurement& now) mutable {
+TEST(ResetWatch, RejectsAMotionAcrossTheHeading) {
+  EXPECT_FALSE(is_accepted(0.3, 3.0, [velocity = 0.0](model::Measurement& now) mutable {
     now.y += velocity * kCycle;
     velocity += kCycle;
     now.speed = velocity;
@@ -119,13 +119,13 @@ TEST(ResetWatch, AsksACarThatRestsWhereItIsMeasured) {
   }
 }
 
-TEST(ResetWatch, BelievesNoSpeedOfHalfTheWay) {
+TEST(ResetWatch, RejectsASpeedOfHalfTheWay) {
   auto halved = [moves = driven(1.0)](model::Measurement& now) mutable {
     now.speed *= 2.0;
     moves(now);
     now.speed *= 0.5;
   };
-  EXPECT_FALSE(is_believed(0.3, 1.5, halved));
+  EXPECT_FALSE(is_accepted(0.3, 1.5, halved));
 }
 
 }  // namespace

@@ -221,7 +221,7 @@ int doubts_of_a_loss(double lost, double share, double cycle, bool is_true) {
 }
 
 /// Wheels that were locked spin up again, and take 4 % of the speed of `udacity`.
-TEST(SensorWatch, BelievesASpeedThatThePlaceConfirms) {
+TEST(SensorWatch, AcceptsASpeedThatThePlaceConfirms) {
   Random random(7);
   for (int i = 0; i < 300; ++i) {
     const double lost = (i % 2 == 0 ? 1.0 : -1.0) * random.uniform(1.05, 1.6);
@@ -270,7 +270,7 @@ TEST(SensorWatch, TellsAPlaceOfLongAgoFromALateMeasurement) {
   EXPECT_FALSE(doubts.late || doubts.is_old || doubts.heading || doubts.speed);
 }
 
-TEST(SensorWatch, BelievesMeasurementsOfNowAgain) {
+TEST(SensorWatch, AcceptsMeasurementsOfNowAgain) {
   SensorWatch watch{kLength, kWheelbase};
   double ended = 0.0;
   for (double time = 0.0; time < 12.0; time += kCycle) {
@@ -314,7 +314,7 @@ TEST(SensorWatch, DoubtsADriftSoonAfterASilence) {
   EXPECT_LT(found, 9.6);
 }
 
-TEST(SensorWatch, NeverBelievesAPlaceBecauseItLasts) {
+TEST(SensorWatch, NeverAcceptsAPlaceBecauseItLasts) {
   SensorWatch watch{kLength, kWheelbase};
   for (double time = 0.0; time < 300.0; time += kCycle) {
     const model::State expected = car_at(time, kYawRate);

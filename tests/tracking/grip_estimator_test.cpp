@@ -20,27 +20,27 @@ struct Noise {
   double place = 0.0, heading = 0.0, speed = 0.0;
 };
 
-/// A car whose tyres have `grip` of what is believed, and `inertia` times the yaw inertia, weaves at about 25
+/// A car whose tyres have `grip` of the assumed one, and `inertia` times the yaw inertia, weaves at about 25
 /// m/s, up to `most` of steering [rad], and is measured.
 class Weaving {
  public:
   explicit Weaving(double grip, const Noise& noise = {}, double most = 0.05, std::uint64_t seed = 1,
                    double inertia = 1.0)
-      : truth_{model::PredictionModel{true_car(believed_.vehicle(), grip, inertia)}},
+      : truth_{model::PredictionModel{true_car(assumed_.vehicle(), grip, inertia)}},
         noise_{noise},
         most_{most},
         random_{seed} {
     truth_.correct({.speed = 25.0}, sent_);
-    estimator.begin(truth_, believed_);
+    estimator.begin(truth_, assumed_);
   }
-  void begin_anew() { estimator.begin(truth_, believed_); }
+  void begin_anew() { estimator.begin(truth_, assumed_); }
   /// From an estimate that counts with a disturbance, as the controller's does.
   void begin_with_disturbance() {
     StateEstimator from = truth_;
     from.estimate_disturbance(true);
-    estimator.begin(from, believed_);
+    estimator.begin(from, assumed_);
   }
-  [[nodiscard]] const model::PredictionModel& believed() const { return believed_; }
+  [[nodiscard]] const model::PredictionModel& assumed() const { return assumed_; }
   void drive(double seconds) {
     for (const double end = time_ + seconds; time_ < end;) {
       time_ += kPeriod;
@@ -70,7 +70,7 @@ class Weaving {
     return model::with_grip(car, grip);
   }
 
-  model::PredictionModel believed_{model::road_car_params()};
+  model::PredictionModel assumed_{model::road_car_params()};
   StateEstimator truth_;
   Noise noise_;
   double most_;
@@ -79,7 +79,7 @@ class Weaving {
   double time_ = 0.0;
 
  public:
-  GripEstimator estimator{believed_};
+  GripEstimator estimator{assumed_};
 };
 
 TEST(GripEstimator, FindsTheGripOfTheTyres) {
@@ -119,7 +119,7 @@ TEST(GripEstimator, ForgetsEverythingWhereItBeginsAnew) {
   EXPECT_FALSE(car.estimator.is_known());
   EXPECT_TRUE(std::isinf(car.estimator.deviation()));
   fresh.drive(16.0);
-  fresh.estimator = GripEstimator{fresh.believed()};
+  fresh.estimator = GripEstimator{fresh.assumed()};
   fresh.begin_anew();
   for (Weaving* each : {&car, &fresh}) each->drive(15.0);
   EXPECT_EQ(car.estimator.share(), fresh.estimator.share());
@@ -160,7 +160,7 @@ TEST(GripEstimator, IsUnsureWhereTheModelLacksSomething) {
   }
 }
 
-TEST(GripEstimator, SaysWhenItDiffersFromWhatIsBelieved) {
+TEST(GripEstimator, SaysWhenItDiffersFromTheAssumption) {
   Weaving same(1.0), less(0.8);
   same.drive(15.0);
   less.drive(15.0);

@@ -259,11 +259,11 @@ struct SofterCar {
     model::VehicleParams softer = model::road_car_params();
     softer.cornering_front *= 0.8;
     StateEstimator truth{model::PredictionModel{softer}};
-    StateEstimator believed{model::PredictionModel{model::road_car_params()}};
-    believed.estimate_disturbance(with_disturbance);
+    StateEstimator assumed{model::PredictionModel{model::road_car_params()}};
+    assumed.estimate_disturbance(with_disturbance);
     CommandHistory sent;
     truth.correct({.time = 0.0, .speed = 30.0}, sent);
-    believed.correct({.time = 0.0, .speed = 30.0}, sent);
+    assumed.correct({.time = 0.0, .speed = 30.0}, sent);
     for (int i = 1; i <= 60; ++i) {
       const double time = 0.04 * i;
       sent.add(time - 0.04, {.steer = side * 0.0008 * i, .throttle = 0.2});
@@ -274,14 +274,14 @@ struct SofterCar {
       model::Measurement part = seen;
       if (lacks == Lacks::kSpeed) part.speed = std::nan("");
       if (lacks == Lacks::kPlace) part.x = part.y = std::nan("");
-      believed.correct(part, sent);
+      assumed.correct(part, sent);
       if (i < 20) continue;  // until the disturbance is there
-      const model::State expected = believed.predict(time + 0.1, sent).state;
+      const model::State expected = assumed.predict(time + 0.1, sent).state;
       const model::State later = truth.predict(time + 0.1, sent).state;
       worst_yaw_rate = std::max(worst_yaw_rate, std::fabs(expected.r - later.r));
       worst_slide = std::max(worst_slide, std::fabs(expected.vy - later.vy));
     }
-    disturbance = believed.disturbance();
+    disturbance = assumed.disturbance();
   }
 };
 

@@ -36,7 +36,7 @@ struct CubicMpcOptions {
   /// The model takes telemetry's miles per hour for metres per second: it sees 2.24 times as far, and steers
   /// that much less. The delay is still rolled forward in m/s.
   bool speed_in_mph = false;
-  /// So does the roll-forward: the car is believed 2.24 times as far along, as if the latency were longer.
+  /// So does the roll-forward: the car is predicted 2.24 times as far along, as if the latency were longer.
   bool roll_forward_in_mph = false;
   /// Write-up of `measured-latency`: equation 5 with cte = y − f(x) (docs/problem.md).
   bool lateral_error_to_left = false;

@@ -58,7 +58,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     options_ = options;
     if (!(vehicle == configured_)) grip_.configure(vehicle);
     configured_ = vehicle;
-    believe();
+    configure_model();
     grip_.begin(estimator_, model_);
   }
 
@@ -171,12 +171,12 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const bool races = road_.is_raced() || options_.learns();
     estimator_.estimate_disturbance(races);
     estimator_.mind_helper_gap(races);
-    believe();
+    configure_model();
   }
 
   /// Model, road and problem for options, vehicle and grip. What is driven at by a plan is in that plan;
   /// without one, a car that has not shown its grip is driven with little of it, at most the configured one.
-  void believe() noexcept {
+  void configure_model() noexcept {
     const model::VehicleParams car = model::with_grip(configured_, grip_.share());
     model_.set_vehicle(car);
     const double used =
@@ -189,7 +189,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   void watch_grip(const model::Measurement& now) noexcept {
     const LearnedGrip::Change change = grip_.see(now, sent_);
     if (change == LearnedGrip::Change::kNothing) return;
-    believe();
+    configure_model();
     if (change == LearnedGrip::Change::kModel) grip_.begin(estimator_, model_);
   }
 

@@ -28,7 +28,7 @@ constexpr double kLeastSpeed = 3.0;  ///< of a car in full size: below it tyres 
 constexpr std::size_t kMostWindows = 400;
 constexpr int kRoughSteps = 12;
 constexpr double kRoughAccuracy = 3e-2,
-                 kAccuracy = 1e-3;                  ///< of what is believed: an interval is a tenth of it
+                 kAccuracy = 1e-3;  ///< of the prior's deviation: an interval is a tenth of it
 constexpr std::string_view kRotating = "rotating";  ///< estimated with the others, and not of use to anybody
 constexpr std::size_t kFewWindows = 12;             ///< for a rough look
 
@@ -119,19 +119,19 @@ std::vector<Row> rows_for(const model::VehicleParams& start, const Wheels& wheel
 
 double value_of(const Row& row, double theta) { return row.is_log ? exp(theta) : theta; }
 
-Beliefs beliefs_of(const std::vector<Row>& rows, const model::VehicleParams& start, const Wheels& wheels) {
-  Beliefs beliefs;
+Prior prior_of(const std::vector<Row>& rows, const model::VehicleParams& start, const Wheels& wheels) {
+  Prior prior;
   for (const Row& row : rows) {
-    beliefs.mean.push_back(row.is_log ? log(row.mean) : row.mean);
-    beliefs.deviation.push_back(row.deviation);
+    prior.mean.push_back(row.is_log ? log(row.mean) : row.mean);
+    prior.deviation.push_back(row.deviation);
   }
-  beliefs.car = [rows, start, wheels](const std::vector<double>& theta) {
+  prior.car = [rows, start, wheels](const std::vector<double>& theta) {
     Car car{.vehicle = start, .wheels = wheels};
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].put(car, value_of(rows[i], theta[i]));
     car.delay = std::max(0.0, car.delay);
     return car;
   };
-  return beliefs;
+  return prior;
 }
 
 /// Stretches of `length` [s] without standing; the start is what the samples say.
@@ -302,12 +302,12 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
                             to_fit / similarity.time(), 10.0 / similarity.time()));
   std::vector<Row> rows = rows_for(start, wheels, has_pedal, is_centre_of_mass);
   for (Row& row : rows) row.per_full_size = per_full_size(row.unit.name, similarity);
-  const Beliefs beliefs = beliefs_of(rows, start, wheels);
+  const Prior prior = prior_of(rows, start, wheels);
   Noise noise{0.055, 0.055, 0.005, 0.1, 0.02};
   const Noise least{1e-3, 1e-3, 2e-4, 5e-3, 1e-3};
-  // A limit that is believed too low explains every bend wrongly, one that is too high changes nothing: the
+  // A limit assumed too low explains every bend wrongly, one that is too high changes nothing: the
   // first round has a high one.
-  Beliefs first = beliefs;
+  Prior first = prior;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].key != "steer_rate_limit_degps") continue;
     first.mean[i] += 1.5;
@@ -319,7 +319,7 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
   bool goes_on = true;
   for (int round = 0; round < rounds && goes_on; ++round) {
     int step = 0;
-    fit = fit_windows(logs, windows, round == 0 ? first : beliefs, fit.theta, noise,
+    fit = fit_windows(logs, windows, round == 0 ? first : prior, fit.theta, noise,
                       round + 1 < rounds ? kRoughAccuracy : kAccuracy, [&] {
                         goes_on = options.progress((round + std::min(1.0, 0.07 * step)) / rounds);
                         return goes_on && (step++ < kRoughSteps || !options.is_rough);
@@ -331,7 +331,7 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
   }
   found.loss = fit.loss;
   found.correlation = fit.correlation;
-  const Car car = beliefs.car(fit.theta);
+  const Car car = prior.car(fit.theta);
   Car as_it_is{.vehicle = configured, .wheels = options.wheels};
   for (std::size_t i = 0; i < rows.size(); ++i)
     rows[i].put(as_it_is, rows[i].per_full_size * value_of(rows[i], fit.theta[i]));
@@ -348,8 +348,8 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
     };
     found.estimates.push_back({rows[i].key, std::string(rows[i].unit.name), outside(fit.theta[i]),
                                outside(fit.theta[i] - 2.0 * deviation),
-                               outside(fit.theta[i] + 2.0 * deviation), outside(beliefs.mean[i]),
-                               deviation < 0.4 * beliefs.deviation[i]});
+                               outside(fit.theta[i] + 2.0 * deviation), outside(prior.mean[i]),
+                               deviation < 0.4 * prior.deviation[i]});
   }
   look_back(logs, windows, car, found);
   for (Estimate& each : found.estimates) {

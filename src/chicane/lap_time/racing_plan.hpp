@@ -30,7 +30,7 @@ struct RacingPlanOptions {
   std::function<void(const PlanProgress&)> on_progress{};  ///< after each iteration; may be empty
 };
 
-/// The fastest lap of a car as a controller believes it to be (model::PredictionModel), with its yaw motion,
+/// The fastest lap of a car as a controller models it (model::PredictionModel), with its yaw motion,
 /// sideslip, lags and rates: a plan that such a controller can follow (docs/racing.md, eq. 1). Takes 0.2
 /// to 30 s and some 10 MB. Deterministic. Keeps nothing between calls.
 ///

@@ -85,7 +85,7 @@ void RunPublisher::change(const telemetry::Change& change) {
   if (to_.hooks.on_change) to_.hooks.on_change(change);
   settings_.tell(change);
   if (change.name.view() == run::LapPlanner::kChange)
-    say("races by a new lap, planned with " + std::string(change.value.view()) + " of the believed grip");
+    say("races by a new lap, planned with " + std::string(change.value.view()) + " of the configured grip");
 }
 
 void RunPublisher::say(std::string_view line) const {

@@ -59,7 +59,7 @@ model::State moving(const std::vector<Seen>& seen, std::size_t i) {
           .steer = before.sent.steer};
 }
 
-void ServedFutures::believe(const scenario::Scenario& scenario) {
+void ServedFutures::assume(const scenario::Scenario& scenario) {
   const std::lock_guard lock(mutex_);
   scenario_ = scenario;
 }

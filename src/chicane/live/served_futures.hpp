@@ -40,7 +40,7 @@ class ServedFutures {
   explicit ServedFutures(RunLog& log) : log_{log} {}
 
   /// Any thread: the settings that hold from now on; the scenario's track is the simulator's road.
-  void believe(const scenario::Scenario& scenario);
+  void assume(const scenario::Scenario& scenario);
   /// Any thread: the road is not the simulator's; branch() says why from now on.
   void give_up(std::string why);
 

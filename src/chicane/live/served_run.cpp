@@ -73,7 +73,7 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
   viewing.parameters = &settings;
   if (track_) {
     viewing.services.what_if = [&](std::string_view question) {
-      futures.believe(settings.scenario());
+      futures.assume(settings.scenario());
       return what_if.ask(question);
     };
   }

@@ -233,7 +233,7 @@ Result<void> note_track(bool is_asked_for, scenario::Scenario& scenario) {
 
 /// A race with less friction than the model has, because no more is known of the car.
 void note_friction(scenario::Scenario& scenario) {
-  const double friction = scenario.believed_vehicle().friction;
+  const double friction = scenario.assumed_vehicle().friction;
   if (friction < scenario.vehicle.friction)
     scenario.notices.push_back(
         fmt::format("friction_low: the race is planned with a friction of {:.3g}, the least that is known of "

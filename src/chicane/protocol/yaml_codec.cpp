@@ -168,7 +168,7 @@ std::string write_faults(const scenario::Scenario& scenario) {
 }
 
 /// Of a plant with parameters the model follows from them; what is set of it replaces that.
-void believe_plant(std::span<const Document> layers, scenario::Scenario& scenario) {
+void derive_model(std::span<const Document> layers, scenario::Scenario& scenario) {
   scenario::Scenario plant = scenario;
   for (const Document& layer : layers) {
     for (const Assignment& assignment : layer.assignments) {
@@ -298,7 +298,7 @@ Result<void> apply_layers(std::span<const Document> layers, scenario::Scenario& 
   scenario::Scenario changed = scenario;
   std::map<std::string_view, std::string> places;
   std::vector<std::string> faults;
-  believe_plant(layers, changed);
+  derive_model(layers, changed);
   for (const Document& layer : layers) {
     for (const Assignment& assignment : layer.assignments) {
       const std::string where = place(layer.file, assignment.line);

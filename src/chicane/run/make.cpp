@@ -20,7 +20,7 @@ constexpr double kFewestWaypoints = 8.0;   // of a road, however short it is
 }  // namespace
 
 model::VehicleParams full_size(const scenario::Scenario& scenario) {
-  return model::Similarity(scenario.vehicle).full_size(scenario.believed_vehicle());
+  return model::Similarity(scenario.vehicle).full_size(scenario.assumed_vehicle());
 }
 
 void configure(controller::Controller& controller, const scenario::Scenario& scenario) noexcept {

@@ -31,7 +31,7 @@ struct PlanHooks {
   std::function<void(std::string_view)> say{};  ///< a line where it is not the optimum; may be empty
 };
 
-/// The lap that a scenario's controller races by: the minimum-time line of the car it believes in on `track`,
+/// The lap that a scenario's controller races by: the minimum-time line of the car it assumes on `track`,
 /// with the shares of grip and brakes and the margin to the edges that its settings leave. Null where the
 /// settings do not ask for one, or let it know waypoints only (GuardRoad::kWaypoints), and where the search
 /// finds none: the controller then follows its reference. Takes 1 to 30 s (lap_time::plan_racing_line), or

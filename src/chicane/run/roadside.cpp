@@ -18,7 +18,7 @@ AccountTerms terms(const road::Track* track, const scenario::Scenario& scenario)
   return terms;
 }
 
-/// What was measured, with the wheels where they are believed to be.
+/// The measurement, with the wheels where they are assumed.
 sim::Sighting sighting_of(const model::Measurement& seen, const model::VehicleParams& car) {
   const double edge = 0.5 * (car.track_width + car.tire_width);
   return {.pose = {.x = seen.x, .y = seen.y, .psi = seen.psi},

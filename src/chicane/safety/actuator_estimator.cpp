@@ -68,18 +68,18 @@ std::array<tracking::StateEstimator, Count> estimators_of(const model::VehiclePa
 ActuatorEstimator::ActuatorEstimator(const model::VehicleParams& vehicle) noexcept
     : vehicle_{without_name(vehicle)}, estimators_{estimators_of<kUnknowns + 1>(vehicle_)} {
   for (tracking::StateEstimator& each : estimators_) each.average_over(kAverage);
-  believe();
+  configure_estimators();
 }
 
 void ActuatorEstimator::reset() noexcept { *this = ActuatorEstimator{vehicle_}; }
 
 void ActuatorEstimator::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   vehicle_ = without_name(vehicle);
-  believe();
+  configure_estimators();
 }
 
 /// The estimators' models, by the grip that they count with.
-void ActuatorEstimator::believe() noexcept {
+void ActuatorEstimator::configure_estimators() noexcept {
   for (std::size_t i = 0; i <= kUnknowns; ++i) {
     const double grip = here_[kGrip] + (i == kGrip ? kRows[kGrip].change : 0.0);
     estimators_[i].set_model(model::PredictionModel{model::with_grip(vehicle_, grip)});
@@ -163,7 +163,7 @@ void ActuatorEstimator::move_on() noexcept {
   aside_.shift(by, kKeptBehind);
   heading_.shift(by, kKeptBehind);
   counted_ = 0.0;
-  believe();
+  configure_estimators();
   solution_ = solve();
 }
 

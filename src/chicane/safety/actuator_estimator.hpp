@@ -74,7 +74,7 @@ class ActuatorEstimator {
 
   [[nodiscard]] tracking::CommandHistory effect(const tracking::CommandHistory& commanded,
                                                 const Values& values) const noexcept;
-  void believe() noexcept;
+  void configure_estimators() noexcept;
   void move_on() noexcept;
   [[nodiscard]] bool is_certain() const noexcept;
   [[nodiscard]] Solution solve() const noexcept;

@@ -45,7 +45,7 @@ class ActuatorWatch {
   void see(const model::Measurement& now, const tracking::CommandHistory& sent) noexcept {
     see(now, sent, {});
   }
-  /// Nothing is measured that can be believed.
+  /// No measurement is usable.
   void skip() noexcept { count_ = 0; }
 
   [[nodiscard]] const ActuatorAnswer& answer() const noexcept { return answer_; }

@@ -9,7 +9,7 @@
 namespace chicane::safety {
 namespace {
 
-/// Cycle length assumed when the clock cannot be believed [s].
+/// Cycle length assumed when the clock is not plausible [s].
 constexpr double kAssumedCycle = 0.1;
 constexpr double kFarthestStep = 100.0;  // [m] between two points of a plan; more is no plan
 constexpr double kFastest = 200.0;       // [m/s]

@@ -104,11 +104,11 @@ void Guard::reset() noexcept {
 void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   vehicle_ = vehicle;
   learned_.set_vehicle(vehicle);
-  believe_grip(grip_);
+  set_grip(grip_);
 }
 
 /// A stop counts with the grip that the car is driven with: the estimated over the configured one.
-void Guard::believe_grip(double share) noexcept {
+void Guard::set_grip(double share) noexcept {
   grip_ = share;
   actuators_.set_vehicle(model::with_grip(vehicle_, share));
   count_with_actuators();
@@ -221,7 +221,7 @@ void Guard::watch_actuators(const model::Measurement& seen) noexcept {
   if (after.braking != before.braking) count_with_actuators();
 }
 
-/// What of a measurement can be believed; estimate and road take it in.
+/// The plausible part of a measurement; estimate and road take it in.
 const model::Measurement& Guard::look(const model::Measurement& measured) noexcept {
   watch_for_reset(measured);
   std::optional<model::State> expected;

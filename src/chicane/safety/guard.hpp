@@ -128,7 +128,7 @@ class Guard {
   void watch_rest(double time, double throttle) noexcept;
   void free_stuck_car(double time, controller::StepResult& result) noexcept;
   [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
-  void believe_grip(double share) noexcept;
+  void set_grip(double share) noexcept;
   void count_with_actuators() noexcept;
   void watch_actuators(const model::Measurement& seen) noexcept;
   void take_up_actuators() noexcept;

@@ -28,7 +28,7 @@ constexpr std::array kOptions{
     option<&G::blind_time>(
         "blind_time", unit::kSecond, 0, 60,
         "Duration that a silence may last: the stop at hand keeps the road for so long when it is played "
-        "by a car that is a little other than believed; 0: not checked."),
+        "by a car that differs a little from the assumed one; 0: not checked."),
 };
 
 }  // namespace

@@ -43,7 +43,7 @@ void Guard::forget_road() {
   road_ = known_road(options_, nullptr, model_.vehicle());
   has_place_ = false;
   filter_.forget();
-  believe_grip(1.0);
+  set_grip(1.0);
   controller_->use_line(nullptr);
 }
 
@@ -54,7 +54,7 @@ void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
     take_up_line();
   }
   estimator_.mind_helper_gap(lap != nullptr);
-  believe_grip(lap ? lap->grip() : 1.0);
+  set_grip(lap ? lap->grip() : 1.0);
   controller_->use_line(std::move(lap));
 }
 

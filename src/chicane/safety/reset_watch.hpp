@@ -7,7 +7,7 @@ namespace chicane::safety {
 
 /// Whether a car that is measured elsewhere than it can be was really put there, or is measured right again
 /// (docs/safety.md, "A trial"). It has to answer: move as its pedal asks, along its heading, as far as its
-/// speed says. A localiser that reports a constant place does not answer, and is not believed. A measurement
+/// speed says. A localiser that reports a constant place does not answer, and is not accepted. A measurement
 /// that jumps to standstill asks for it by itself; any other has to have rested. No allocation; one thread.
 class ResetWatch {
  public:

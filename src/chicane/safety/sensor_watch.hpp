@@ -53,7 +53,7 @@ class SensorWatch {
     double way_x = 0.0, way_y = 0.0;    ///< the way that speed and heading describe [m]
     double slip_x = 0.0, slip_y = 0.0;  ///< what of it comes from the slip of the estimate [m]
     double turned = 0.0, asked = 0.0;   ///< the heading, unwrapped, and what the wheels asked for [rad]
-    model::State believed;              ///< by the estimate
+    model::State estimated;             ///< of the car, when it was measured
   };
   static constexpr std::size_t kSamples = 256;
   static constexpr double kSpacing = 0.0395;  ///< [s] at least: the samples reach 10 s back

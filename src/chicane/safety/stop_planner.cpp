@@ -26,7 +26,7 @@ constexpr double kLapDamping =
     1.0;  // the same to a planned lap, which is too near to the edge to overshoot it
 constexpr double kYawBandwidth = 6.0;      // [rad/s] of the feedback to the yaw rate
 constexpr double kPreview = 0.2;           // [s] the car answers the wheel about so late
-constexpr double kGripShare = 0.85;        // of the believed tyre force of the rear axle, used sideways
+constexpr double kGripShare = 0.85;        // of the assumed tyre force of the rear axle, used sideways
 constexpr double kGravity = 9.81;          // [m/s²]
 constexpr double kLeastBraking = 0.15;     // of the useful one, in any curve
 constexpr double kMostPerMetre = 0.25;     // [1/m] of the feedback: ω/v of a slow car

@@ -24,7 +24,7 @@ struct StopStart {
 
 /// The result of a simulated stop.
 struct StopCheck {
-  double least_edge = 0.0;  ///< of the outermost contact patch to the believed edge [m]; < 0: off the road
+  double least_edge = 0.0;  ///< of the outermost contact patch to the assumed edge [m]; < 0: off the road
   double distance = 0.0;    ///< to standstill [m]
   bool stands = false;      ///< it ends at standstill before the end of the known road, without a spin
   double spins_at = 0.0;    ///< speed at which the car begins to spin [m/s]; 0: it does not
@@ -109,7 +109,7 @@ class StopPlanner {
   /// How much nearer to the edge [m] a car comes that stands at `at` and turns back along the road at full
   /// lock: equation 6a. 0: no nearer.
   [[nodiscard]] double turning_room(const road::KnownRoad& road, const StopStart& at) const noexcept;
-  /// Of the outermost contact patch to the believed edge [m].
+  /// Of the outermost contact patch to the assumed edge [m].
   [[nodiscard]] double edge(const road::KnownRoad& road, const StopStart& at) const noexcept;
 
  private:

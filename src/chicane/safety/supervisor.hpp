@@ -55,7 +55,7 @@ inline constexpr std::array<Condition, 13> kConditions{{
   return nullptr;
 }
 
-/// Decides by kConditions whether the car has to be stopped. A place that was believed because it lasts would
+/// Decides by kConditions whether the car has to be stopped. A place that was accepted because it lasts would
 /// lead a car off the road that it stands on. No allocation; one thread.
 class Supervisor {
  public:

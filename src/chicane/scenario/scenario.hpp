@@ -62,11 +62,11 @@ struct Scenario {
     using Entry = controller::TrackingMpcEntry;
     return controller == Entry::kName && std::get<Entry::Options>(controllers).racing_line;
   }
-  /// The car that controller and planner count on: a race is planned with no more friction than is known.
-  [[nodiscard]] model::VehicleParams believed_vehicle() const {
-    model::VehicleParams believed = vehicle;
-    if (races() && friction_low < believed.friction) believed.friction = friction_low;
-    return believed;
+  /// The car that controller and planner assume: a race is planned with no more friction than is known.
+  [[nodiscard]] model::VehicleParams assumed_vehicle() const {
+    model::VehicleParams assumed = vehicle;
+    if (races() && friction_low < assumed.friction) assumed.friction = friction_low;
+    return assumed;
   }
 
   /// Of every controller, whichever drives: std::get<controller::PidOptions>(controllers).

@@ -16,28 +16,28 @@ constexpr double kFarAside = 1.0;         // [m] a measurement that is another t
 
 }  // namespace
 
-void GripEstimator::begin(const StateEstimator& from, const model::PredictionModel& believed) noexcept {
+void GripEstimator::begin(const StateEstimator& from, const model::PredictionModel& assumed) noexcept {
   const auto copy = [&](double share) {
     StateEstimator estimator = from;
     estimator.estimate_disturbance(false);
-    estimator.set_model(model::PredictionModel{model::with_grip(believed.vehicle(), share)});
+    estimator.set_model(model::PredictionModel{model::with_grip(assumed.vehicle(), share)});
     return estimator;
   };
   *this = GripEstimator{copy(1.0), copy(1.0 - kStep), copy(1.0)};
 }
 
 void GripEstimator::see(const model::Measurement& now, const CommandHistory& sent) noexcept {
-  const double elapsed = now.time - believed_.time();
-  believed_.correct(now, sent);
+  const double elapsed = now.time - assumed_.time();
+  assumed_.correct(now, sent);
   less_.correct(now, sent);
   model::Measurement later = now;  // on a clock that is late all commands are
   later.time -= kLate;
   late_.correct(later, sent);
-  const double n = believed_.surprise().aside, less = less_.surprise().aside;
+  const double n = assumed_.surprise().aside, less = less_.surprise().aside;
   const bool is_seen =
       elapsed > 0.0 && elapsed < kLongestSilence && std::fabs(n) < kFarAside && std::isfinite(less);
-  const model::State& car = believed_.state();
-  const double by_tyres = (1.0 - believed_.model().vehicle().steer_helper) * car.vx * car.r;
+  const model::State& car = assumed_.state();
+  const double by_tyres = (1.0 - assumed_.model().vehicle().steer_helper) * car.vx * car.r;
   const bool goes_on = std::fabs(by_tyres) > 0.5 * kLeast && by_tyres * side_ >= 0.0;
   if (bend_time_ >= (goes_on ? kLongestBend : kShortestBend)) end_bend();
   if (!is_seen || !(std::fabs(by_tyres) >= kLeast)) return;
@@ -49,7 +49,7 @@ void GripEstimator::see(const model::Measurement& now, const CommandHistory& sen
   all_.add(h, n, left, elapsed);
   bend_.add(h, n, 1.0, elapsed);
   bend_time_ += elapsed;
-  const double off = believed_.surprise().heading, late = late_.surprise().heading;
+  const double off = assumed_.surprise().heading, late = late_.surprise().heading;
   if (!std::isfinite(late)) return;
   off_ = left * off_ + elapsed * off * off;
   by_time_ = left * by_time_ + elapsed * (late - off) * (late - off) / (kLate * kLate);

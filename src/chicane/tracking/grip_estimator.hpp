@@ -8,9 +8,9 @@
 
 namespace chicane::tracking {
 
-/// How much grip the tyres have, over what is believed, by which grip predicts the next measurement better
+/// How much grip the tyres have, over the assumed one, by which grip predicts the next measurement better
 /// (docs/racing.md, eq. 3 to 7). Two estimators see the same measurements and commands, one with the
-/// believed grip, one with a little less. What each did not expect is noise and the wrong grip; the noise is
+/// assumed grip, one with a little less. What each did not expect is noise and the wrong grip; the noise is
 /// the same in both, so that their difference says what the grip does alone, and least squares over the last
 /// kMemory of cornering finds the share, without the bias of noise. How sure it is, is the larger of what
 /// noise explains and of what the bends disagree by: a model that lacks something is wrong for a whole bend.
@@ -32,14 +32,14 @@ class GripEstimator {
   static constexpr double kLow = 0.3, kHigh = 1.6;  ///< range of share()
 
   explicit GripEstimator(const model::PredictionModel& model) noexcept
-      : believed_{model}, less_{model}, late_{model} {}
+      : assumed_{model}, less_{model}, late_{model} {}
 
-  /// Begins anew where `from` is, with the car as it is believed to be.
-  void begin(const StateEstimator& from, const model::PredictionModel& believed) noexcept;
+  /// Restarts where `from` is, with the assumed car.
+  void begin(const StateEstimator& from, const model::PredictionModel& assumed) noexcept;
   void see(const model::Measurement& now, const CommandHistory& sent) noexcept;
 
   [[nodiscard]] bool is_known() const noexcept { return bends_.count >= kEnough && deviation() <= kSure; }
-  /// Grip over the one that is believed; 1 until it is known.
+  /// Grip over the assumed one; 1 until it is known.
   [[nodiscard]] double share() const noexcept;
   /// Whether share() differs from one by more than `least`, and by more than noise does in one case of 20.
   [[nodiscard]] bool differs(double least) const noexcept;
@@ -55,9 +55,9 @@ class GripEstimator {
   static constexpr double kStep = 0.1;   ///< share of grip that the other estimator has less
   static constexpr double kLate = 0.02;  ///< by which commands act later for the third [s]
 
-  GripEstimator(const StateEstimator& believed, const StateEstimator& less,
+  GripEstimator(const StateEstimator& assumed, const StateEstimator& less,
                 const StateEstimator& late) noexcept
-      : believed_{believed}, less_{less}, late_{late} {}
+      : assumed_{assumed}, less_{less}, late_{late} {}
 
   /// Sums of the unexpected part of the place, n, and of the grip's effect on it, h [m], times seconds.
   struct Sums {
@@ -75,7 +75,7 @@ class GripEstimator {
   };
   void end_bend() noexcept;
 
-  StateEstimator believed_, less_, late_;
+  StateEstimator assumed_, less_, late_;
   double time_ = 0.0;      ///< of cornering, as far as it is remembered [s]
   double interval_ = 0.0;  ///< between measurements in corners, mean [s]
   Sums all_;

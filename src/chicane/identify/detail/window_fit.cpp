@@ -16,7 +16,7 @@ constexpr Start kStartStep{1e-4, 1e-4, 1e-5, 1e-4, 1e-4, 1e-5};
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Residuals of a window over their deviations: samples, then what is believed of the start.
+/// Residuals of a window over their deviations: samples, then the prior of the start.
 void residuals(const DriveLog& log, const Window& window, const std::vector<Expected>& expected,
                const Start& start, const Noise& noise, VectorXd& r) {
   const auto count = static_cast<Eigen::Index>(window.last - window.first);
@@ -152,17 +152,17 @@ Eigen::Map<const VectorXd> mapped(const std::vector<double>& values) {
 }
 std::vector<double> listed(const VectorXd& values) { return {values.begin(), values.end()}; }
 
-/// Beliefs as vectors.
+/// The prior as vectors.
 struct Expectation {
-  explicit Expectation(const Beliefs& beliefs)
-      : mean{mapped(beliefs.mean)}, deviation{mapped(beliefs.deviation)}, of{beliefs.car} {}
+  explicit Expectation(const Prior& prior)
+      : mean{mapped(prior.mean)}, deviation{mapped(prior.deviation)}, of{prior.car} {}
   [[nodiscard]] Car car(const VectorXd& theta) const { return of(listed(theta)); }
   VectorXd mean, deviation;
   const std::function<Car(const std::vector<double>&)>& of;
 };
 
-double loss_of_beliefs(const Expectation& beliefs, const VectorXd& theta) {
-  return 0.5 * (theta - beliefs.mean).cwiseQuotient(beliefs.deviation).squaredNorm();
+double loss_of_prior(const Expectation& prior, const VectorXd& theta) {
+  return 0.5 * (theta - prior.mean).cwiseQuotient(prior.deviation).squaredNorm();
 }
 
 /// All windows at one theta: what they say of it, and how their starts follow.
@@ -175,10 +175,10 @@ struct Linearised {
 };
 
 Linearised linearise(const std::vector<DriveLog>& logs, const std::vector<Window>& windows,
-                     const Expectation& beliefs, const VectorXd& theta, const Noise& noise) {
+                     const Expectation& prior, const VectorXd& theta, const Noise& noise) {
   const Eigen::Index p = theta.size();
-  const VectorXd weight = beliefs.deviation.cwiseAbs2().cwiseInverse();
-  Linearised now{weight.asDiagonal(), weight.cwiseProduct(theta - beliefs.mean), {}, {}, {}};
+  const VectorXd weight = prior.deviation.cwiseAbs2().cwiseInverse();
+  Linearised now{weight.asDiagonal(), weight.cwiseProduct(theta - prior.mean), {}, {}, {}};
   struct Side {
     Car car;
     std::vector<Actuators> actuators;
@@ -186,11 +186,11 @@ Linearised linearise(const std::vector<DriveLog>& logs, const std::vector<Window
   const auto side = [&](Eigen::Index i, double step) {
     VectorXd other = theta;
     if (i >= 0) other[i] += step;
-    const Car car = beliefs.car(other);
+    const Car car = prior.car(other);
     return Side{car, actuators_of(logs, car)};
   };
   std::vector<Side> sides;  // beside, for each number
-  const VectorXd steps = 1e-4 * beliefs.deviation;
+  const VectorXd steps = 1e-4 * prior.deviation;
   const Side here = side(-1, 0.0);
   for (Eigen::Index i = 0; i < p; ++i) sides.push_back(side(i, steps[i]));
   std::vector<Expected> expected;
@@ -278,29 +278,29 @@ class Correlation {
 }  // namespace
 
 WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,
-                      const Beliefs& believed, const std::vector<double>& from, const Noise& noise,
+                      const Prior& of_numbers, const std::vector<double>& from, const Noise& noise,
                       double accuracy, const std::function<bool()>& go_on) {
   constexpr int kMostIterations = 40;
-  const Expectation beliefs(believed);
+  const Expectation prior(of_numbers);
   VectorXd theta = mapped(from);
   WindowFit fit;
   double lambda = 1e-3;
-  double now = loss_of_beliefs(beliefs, theta);
+  double now = loss_of_prior(prior, theta);
   {
-    const Car car = beliefs.car(theta);
+    const Car car = prior.car(theta);
     const std::vector<Actuators> actuators = actuators_of(logs, car);
     for (Window& window : windows)
       now += improve_start(logs[window.log], window, car, actuators[window.log], noise, 5);
   }
-  Linearised at = linearise(logs, windows, beliefs, theta, noise);
+  Linearised at = linearise(logs, windows, prior, theta, noise);
   for (; fit.iterations < kMostIterations && go_on(); ++fit.iterations) {
     MatrixXd damped = at.information;
     damped.diagonal() *= 1.0 + lambda;
     const VectorXd step = -damped.ldlt().solve(at.slope);
     std::vector<Window> tried = windows;
-    const Car car = beliefs.car(theta + step);
+    const Car car = prior.car(theta + step);
     const std::vector<Actuators> actuators = actuators_of(logs, car);
-    double then = loss_of_beliefs(beliefs, theta + step);
+    double then = loss_of_prior(prior, theta + step);
     for (std::size_t w = 0; w < windows.size() && then < now; ++w) {
       const Eliminated& e = at.windows[w];
       Window& window = tried[w];
@@ -314,24 +314,24 @@ WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& wi
       if (lambda > 1e8) break;
       continue;
     }
-    const bool is_done = step.cwiseQuotient(beliefs.deviation).cwiseAbs().maxCoeff() < accuracy &&
+    const bool is_done = step.cwiseQuotient(prior.deviation).cwiseAbs().maxCoeff() < accuracy &&
                          now - then < 1e-2 * accuracy * (1.0 + now);
     theta += step;
     windows = std::move(tried);
     now = then;
     lambda = std::max(0.1 * lambda, 1e-9);
-    at = linearise(logs, windows, beliefs, theta, noise);
+    at = linearise(logs, windows, prior, theta, noise);
     if (is_done) break;
   }
   const MatrixXd inverse = at.information.ldlt().solve(MatrixXd::Identity(theta.size(), theta.size()));
-  const VectorXd weight = beliefs.deviation.cwiseAbs2().cwiseInverse();
+  const VectorXd weight = prior.deviation.cwiseAbs2().cwiseInverse();
   fit.theta = listed(theta);
   fit.loss = now;
   const VectorXd root = inverse.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const MatrixXd correlation = root.asDiagonal() * inverse * root.asDiagonal();
   for (const auto& row : correlation.rowwise()) fit.correlations.emplace_back(row.begin(), row.end());
   // What is left, by kind.
-  const Car car = beliefs.car(theta);
+  const Car car = prior.car(theta);
   const std::vector<Actuators> actuators = actuators_of(logs, car);
   std::array<std::vector<double>, 5> sizes;
   std::vector<Expected> expected;
@@ -351,13 +351,13 @@ WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& wi
     std::nth_element(sizes[kind].begin(), middle, sizes[kind].end());
     fit.residual[kind] = 1.4826 * *middle;  // of a normal distribution with this median
   }
-  // What was believed before is as certain as it was; samples tell as much as fewer independent ones.
+  // The prior is as certain as it was; samples count as fewer independent ones.
   fit.correlation = correlated.factor();
-  const MatrixXd believed_alone = inverse * weight.asDiagonal() * inverse;
-  const VectorXd plain = fit.correlation * (inverse - believed_alone).diagonal() + believed_alone.diagonal();
-  const VectorXd left_out = (jackknife(at) + believed_alone).diagonal();
+  const MatrixXd prior_alone = inverse * weight.asDiagonal() * inverse;
+  const VectorXd plain = fit.correlation * (inverse - prior_alone).diagonal() + prior_alone.diagonal();
+  const VectorXd left_out = (jackknife(at) + prior_alone).diagonal();
   fit.deviation =
-      listed(plain.cwiseMax(left_out).cwiseMin(beliefs.deviation.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt());
+      listed(plain.cwiseMax(left_out).cwiseMin(prior.deviation.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt());
   return fit;
 }
 

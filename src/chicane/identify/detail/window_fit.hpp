@@ -19,8 +19,9 @@ struct Window {
 /// Standard deviations of what was measured: x and y [m], psi [rad], speed [m/s], r [rad/s].
 using Noise = std::array<double, 5>;
 
-/// What is estimated: numbers without bounds, each with what is believed of it before the log is seen.
-struct Beliefs {
+/// Prior of the estimated numbers: they have no bounds, each has a mean and a deviation before the log is
+/// read.
+struct Prior {
   std::vector<double> mean, deviation;
   std::function<Car(const std::vector<double>&)> car;
 };
@@ -28,22 +29,22 @@ struct Beliefs {
 struct WindowFit {
   std::vector<double> theta;
   /// Standard deviations: the larger of what size and correlation of the residuals say, and of what the
-  /// windows' disagreement does. No larger than what was believed.
+  /// windows' disagreement does. No larger than the prior's.
   std::vector<double> deviation;
   double correlation = 1.0;                       ///< samples for each one that is independent
   std::vector<std::vector<double>> correlations;  ///< of theta
   Noise residual{};                               ///< standard deviations of what is left, by its median
-  double loss = 0.0;                              ///< of samples and beliefs
+  double loss = 0.0;                              ///< of samples and prior
   int iterations = 0;
 };
 
 /// Multiple shooting (docs/identification_method.md, eq. 6–12): the numbers and the starts of all windows
 /// that explain the samples best, by Levenberg and Marquardt with the starts eliminated window by window.
-/// Huber's loss. Windows keep their fitted starts. Ends where a step is below `accuracy` of the deviations
-/// believed.
+/// Huber's loss. Windows keep their fitted starts. Ends where a step is below `accuracy` of the prior's
+/// deviations.
 [[nodiscard]] WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,
-                                    const Beliefs& beliefs, const std::vector<double>& theta,
-                                    const Noise& noise, double accuracy, const std::function<bool()>& go_on);
+                                    const Prior& prior, const std::vector<double>& theta, const Noise& noise,
+                                    double accuracy, const std::function<bool()>& go_on);
 
 /// The start alone, of one window in which only samples up to `fitted` count.
 void fit_start(const std::vector<DriveLog>& logs, Window& window, std::size_t fitted, const Car& car,

@@ -11,7 +11,7 @@
 
 namespace chicane::lap_time {
 
-/// The car as a controller believes it to be (model/prediction.hpp) in continuous time (docs/racing.md,
+/// The car as a controller models it (model/prediction.hpp) in continuous time (docs/racing.md,
 /// section 1). Variables: offset, heading, vx, vy, yaw rate, steering angle, net acceleration; changes of the
 /// last two by time.
 struct VehicleModel {
