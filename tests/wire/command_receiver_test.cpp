@@ -38,7 +38,7 @@ TEST(CommandReceiver, BrakesWithTheLastSteeringWhereNoPlanCame) {
   const double end = driven(receiver, 2.0);
   EXPECT_EQ(receiver.act(end + 0.3, 10.0).throttle, 1.0);  // three cycles are 0.36 s
   EXPECT_LT(receiver.act(end + 0.4, 10.0).throttle, 0.0);
-  EXPECT_TRUE(receiver.is_forsaken());
+  EXPECT_TRUE(receiver.is_timed_out());
 }
 
 TEST(CommandReceiver, HoldsForEverAsTheOriginalWhereItIsTold) {
@@ -65,7 +65,7 @@ TEST(CommandReceiver, AnAnswerFromBeforeTheStopIsNotUsedTheNextOneIs) {
   static_cast<void>(receiver.act(end + 2.15, 10.0));
   EXPECT_TRUE(receiver.sampled(end + 2.2));
   EXPECT_EQ(receiver.act(end + 2.2, 10.0).throttle, 0.5);
-  EXPECT_FALSE(receiver.is_forsaken());
+  EXPECT_FALSE(receiver.is_timed_out());
 }
 
 TEST(CommandReceiver, AnAnswerOfAnEndedConnectionIsForgotten) {

@@ -203,7 +203,7 @@ TEST(Simulate, NoticesASilentControllerAndConnectsAnew) {
 }
 
 /// Full throttle for 1.2 s, then silence.
-Outcome forsaken(safety::Receiver receiver) {
+Outcome timed_out(safety::Receiver receiver) {
   const auto began = std::make_shared<std::optional<std::chrono::steady_clock::time_point>>();
   ScriptedServer server([began](int, const std::string&) {
     const auto now = std::chrono::steady_clock::now();
@@ -216,7 +216,7 @@ Outcome forsaken(safety::Receiver receiver) {
 }
 
 TEST(Simulate, StopsTheCarOfAControllerThatFallsSilent) {
-  const Outcome outcome = forsaken(safety::Receiver::kStopPlan);
+  const Outcome outcome = timed_out(safety::Receiver::kStopPlan);
   ASSERT_TRUE(outcome.report);
   EXPECT_GE(outcome.report->stops, 1U);
   EXPECT_THAT(outcome.log, HasSubstr("no command in time: the car is stopped from "));
@@ -225,7 +225,7 @@ TEST(Simulate, StopsTheCarOfAControllerThatFallsSilent) {
 }
 
 TEST(Simulate, HoldsTheLastCommandOfAControllerThatFallsSilentWhereItIsTold) {
-  const Outcome outcome = forsaken(safety::Receiver::kHold);
+  const Outcome outcome = timed_out(safety::Receiver::kHold);
   ASSERT_TRUE(outcome.report);
   EXPECT_EQ(outcome.report->stops, 0U);
   EXPECT_GT(outcome.report->run.total.top_speed, 10.0);

@@ -307,17 +307,17 @@ class SimNode {
   }
 
   void tell_stops(double speed) {
-    const bool is_forsaken = receiver_.is_stopping() &&
-                             world_.time() - arrived_ > safety::StopPlayer::kPatience + scenario_.latency;
-    if (is_forsaken && !is_forsaken_ && speed > standing_) {
+    const bool is_timed_out = receiver_.is_stopping() &&
+                              world_.time() - arrived_ > safety::StopPlayer::kPatience + scenario_.latency;
+    if (is_timed_out && !is_timed_out_ && speed > standing_) {
       ++report_.stops;
       log_.say(fmt::format("no command in time: the car is stopped from {:.1f} m/s", speed));
       is_standing_reported_ = false;
     }
-    if (!is_forsaken && is_forsaken_)
+    if (!is_timed_out && is_timed_out_)
       log_.say(fmt::format("commands again at {:.1f} m/s", plant_.output().speed));
-    is_forsaken_ = is_forsaken;
-    if (!is_forsaken || is_standing_reported_ || plant_.output().speed >= standing_) return;
+    is_timed_out_ = is_timed_out;
+    if (!is_timed_out || is_standing_reported_ || plant_.output().speed >= standing_) return;
     is_standing_reported_ = true;
     const double edge = world_.state().edge_distance;
     log_.say(fmt::format("the car stands, its outermost wheel {:.2f} m {} the road's edge", std::fabs(edge),
@@ -453,7 +453,7 @@ class SimNode {
   double next_tick_ = std::numeric_limits<double>::infinity();  ///< of /clock [s]
   double arrived_ = 0.0;                                        ///< the last command [s]
   model::Command applied_;
-  bool is_forsaken_ = false;
+  bool is_timed_out_ = false;
   bool is_standing_reported_ = true;  ///< nothing more to say about the stop
 };
 

@@ -15,7 +15,7 @@ bool CommandReceiver::sampled(double time) noexcept {
   const double asked = std::exchange(sampled_, time);
   if (!waiting_) return true;
   add_cycle(time - asked);
-  const bool is_late = is_forsaken_ && forsaken_ >= asked;
+  const bool is_late = is_timed_out_ && timed_out_since_ >= asked;
   if (!is_late) {
     received_ = waiting_->command;
     for (int i = 0; i < waiting_->stop.size; ++i)
@@ -23,7 +23,7 @@ bool CommandReceiver::sampled(double time) noexcept {
     player_.arrived(time, waiting_->stop);
     picked_up_ = time;
     has_any_ = true;
-    is_forsaken_ = false;
+    is_timed_out_ = false;
   }
   waiting_.reset();
   return !is_late;
@@ -36,9 +36,9 @@ void CommandReceiver::disconnected() noexcept { waiting_.reset(); }
 model::Command CommandReceiver::act(double time, double speed) noexcept {
   if (!has_any_) return acting_;
   acting_ = player_.guard(received_, time, speed);
-  if (!is_forsaken_ && player_.is_stopping() && time - picked_up_ > patience_) {
-    is_forsaken_ = true;
-    forsaken_ = time;
+  if (!is_timed_out_ && player_.is_stopping() && time - picked_up_ > patience_) {
+    is_timed_out_ = true;
+    timed_out_since_ = time;
   }
   return acting_;
 }

@@ -23,7 +23,7 @@ class CommandReceiver {
       : player_{vehicle, 0.0, receiver} {}
 
   /// Telemetry is sampled at `time`, and the answer to the one before acts from now on. An answer that came
-  /// after the car had been forsaken is too old for that: it is not used; false says so.
+  /// after the command timeout is too old for that: it is not used; false says so.
   bool sampled(double time) noexcept;
   /// The answer to the last telemetry has come.
   void answered(const protocol::UdacitySteer& steer) noexcept;
@@ -34,9 +34,9 @@ class CommandReceiver {
   [[nodiscard]] model::Command act(double time, double speed) noexcept;
   /// What act() has said last.
   [[nodiscard]] const model::Command& acting() const noexcept { return acting_; }
-  /// No command has come for longer than the controller's habit, and the car is being stopped, or has been. A
-  /// stop that the controller's guard wanted, and that goes on with each of its commands, is none of this.
-  [[nodiscard]] bool is_forsaken() const noexcept { return is_forsaken_; }
+  /// Command timeout: no command has come for longer than usual, and the receiver stops the car, or has. A
+  /// stop by the controller's guard, repeated with each of its commands, does not count.
+  [[nodiscard]] bool is_timed_out() const noexcept { return is_timed_out_; }
 
  private:
   void add_cycle(double length) noexcept;
@@ -47,8 +47,8 @@ class CommandReceiver {
   double sampled_ = 0.0;    ///< the telemetry that was sent last
   double picked_up_ = 0.0;  ///< the command that acts
   double patience_ = safety::StopPlayer::kPatience;
-  bool is_forsaken_ = false;
-  double forsaken_ = -1.0;  ///< since then
+  bool is_timed_out_ = false;
+  double timed_out_since_ = -1.0;  ///< [s]
   model::Command received_, acting_;
   std::array<double, 9> cycles_{};  ///< [s]
   int cycle_count_ = 0;

@@ -183,19 +183,19 @@ class Simulation {
   void move(Clock::time_point now) {
     const double speed = scene_.speed();
     began_ += duration(scene_.advance_to(seconds(now - began_)));
-    const bool is_forsaken = scene_.receiver().is_forsaken();
-    if (is_forsaken && !is_forsaken_ && speed > kStanding) {
+    const bool is_timed_out = scene_.receiver().is_timed_out();
+    if (is_timed_out && !is_timed_out_ && speed > kStanding) {
       ++report_.stops;
       log_.say(
           fmt::format("no command in time: the car is stopped from {:.1f} m/s: {}", speed, silence(now)));
       is_standing_reported_ = false;
     }
-    if (!is_forsaken && is_forsaken_ && !is_standing_reported_) {
+    if (!is_timed_out && is_timed_out_ && !is_standing_reported_) {
       log_.say(fmt::format("commands again: the car drives on from {:.1f} m/s", speed));
       is_standing_reported_ = true;
     }
-    is_forsaken_ = is_forsaken;
-    if (!is_forsaken || is_standing_reported_ || scene_.speed() >= kStanding) return;
+    is_timed_out_ = is_timed_out;
+    if (!is_timed_out || is_standing_reported_ || scene_.speed() >= kStanding) return;
     is_standing_reported_ = true;
     log_.say(fmt::format("the car stands, its outermost wheel {:.2f} m {} the road's edge: {}",
                          std::fabs(scene_.edge()), scene_.edge() < 0.0 ? "beyond" : "inside", silence(now)));
@@ -366,7 +366,7 @@ class Simulation {
   std::optional<Clock::time_point> asked_;  ///< telemetry is out since then
   bool is_reported_silent_ = false;
   bool is_manual_ = false;
-  bool is_forsaken_ = false;          ///< when the car was looked at last
+  bool is_timed_out_ = false;         ///< when the car was looked at last
   bool is_standing_reported_ = true;  ///< nothing more to say about the stop
   telemetry::Frame frame_;
 };
