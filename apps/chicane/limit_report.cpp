@@ -141,7 +141,7 @@ std::string to_csv(const LimitRun& run, const road::Track& track, const lap_time
         "{:.4f},{:.4f},{:.4f},{:.4f},{:.3f},{:.4f},{:.4f},{:.5f},{:.4f},{:.4f},{:.5f},{:.5f},{:.5f},{:.4f},{:"
         ".4f}\n",
         place.x(), place.y(), track.right_width(p.s) + p.offset, track.left_width(p.s) - p.offset, p.s,
-        p.offset, p.time, p.heading, p.vx, p.vy, p.yaw_rate, p.steer, p.steer_asked, p.acceleration,
+        p.offset, p.time, p.heading, p.vx, p.vy, p.yaw_rate, p.steer, p.steer_command, p.acceleration,
         p.throttle);
   }
   return text;

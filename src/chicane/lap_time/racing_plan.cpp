@@ -67,7 +67,7 @@ class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
             .vy = z[kVy],
             .yaw_rate = z[kYawRate],
             .steer = z[kSteer],
-            .steer_asked = z[kSteer] + car.steer_lag * z[7],
+            .steer_command = z[kSteer] + car.steer_lag * z[7],
             .acceleration = model_.model.change(body).vx,
             .throttle = throttle_for(car, z[kPedal] + car.drive_lag * z[8], z[kVx])};
   }

@@ -97,15 +97,15 @@ class PredictionModel {
   }
 
   /// The whole motion after dt [s] with what is asked for all along.
-  [[nodiscard]] BodyMotion<double> advance(const BodyMotion<double>& from, double steer_asked,
-                                           double acceleration_asked, double dt,
+  [[nodiscard]] BodyMotion<double> advance(const BodyMotion<double>& from, double steer_command,
+                                           double acceleration_command, double dt,
                                            const Lags& lags) const noexcept {
-    const double steer = from.steer - steer_asked;
-    const double acceleration = from.acceleration - acceleration_asked;
-    BodyMotion<double> to = advance(from, steer_asked + steer * lags.steer.mean,
-                                    acceleration_asked + acceleration * lags.drive.mean, dt);
-    to.steer = steer_asked + steer * lags.steer.end;
-    to.acceleration = acceleration_asked + acceleration * lags.drive.end;
+    const double steer = from.steer - steer_command;
+    const double acceleration = from.acceleration - acceleration_command;
+    BodyMotion<double> to = advance(from, steer_command + steer * lags.steer.mean,
+                                    acceleration_command + acceleration * lags.drive.mean, dt);
+    to.steer = steer_command + steer * lags.steer.end;
+    to.acceleration = acceleration_command + acceleration * lags.drive.end;
     return to;
   }
 

@@ -30,7 +30,7 @@ RacingLinePoint RacingLine::at(double s) const noexcept {
           .vy = between(&P::vy),
           .yaw_rate = between(&P::yaw_rate),
           .steer = between(&P::steer),
-          .steer_asked = between(&P::steer_asked),
+          .steer_command = between(&P::steer_command),
           .acceleration = between(&P::acceleration),
           .throttle = between(&P::throttle)};
 }

@@ -11,17 +11,17 @@ namespace chicane::road {
 /// A car at one place of a lap that is planned with its whole motion: where it is across the road, how it
 /// moves, and what is asked of it there.
 struct RacingLinePoint {
-  double s = 0.0;             ///< along the road's centre line [m]
-  double time = 0.0;          ///< since s = 0 of the lap [s]
-  double offset = 0.0;        ///< of the centre of mass from the centre line, left positive [m]
-  double heading = 0.0;       ///< of the body against the centre line's tangent, left positive [rad]
-  double vx = 0.0;            ///< velocity of the centre of mass along the body [m/s]
-  double vy = 0.0;            ///< and to its left [m/s]
-  double yaw_rate = 0.0;      ///< [rad/s]
-  double steer = 0.0;         ///< road-wheel angle that the car has here [rad], left positive
-  double steer_asked = 0.0;   ///< that is asked of the steering here: ahead of `steer` by its lag [rad]
-  double acceleration = 0.0;  ///< change of vx, drag and cornering resistance included [m/s²]
-  double throttle = 0.0;      ///< the pedal asked for here, [-1, 1]
+  double s = 0.0;              ///< along the road's centre line [m]
+  double time = 0.0;           ///< since s = 0 of the lap [s]
+  double offset = 0.0;         ///< of the centre of mass from the centre line, left positive [m]
+  double heading = 0.0;        ///< of the body against the centre line's tangent, left positive [rad]
+  double vx = 0.0;             ///< velocity of the centre of mass along the body [m/s]
+  double vy = 0.0;             ///< and to its left [m/s]
+  double yaw_rate = 0.0;       ///< [rad/s]
+  double steer = 0.0;          ///< road-wheel angle that the car has here [rad], left positive
+  double steer_command = 0.0;  ///< that is asked of the steering here: ahead of `steer` by its lag [rad]
+  double acceleration = 0.0;   ///< change of vx, drag and cornering resistance included [m/s²]
+  double throttle = 0.0;       ///< the pedal asked for here, [-1, 1]
 };
 
 /// A lap planned for one car on one closed road, as plain data: what a limit hands to controllers, files and

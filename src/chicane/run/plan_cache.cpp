@@ -149,11 +149,16 @@ class Reader {
   bool is_good_ = true;
 };
 
-constexpr std::array kFields{&road::RacingLinePoint::s,           &road::RacingLinePoint::time,
-                             &road::RacingLinePoint::offset,      &road::RacingLinePoint::heading,
-                             &road::RacingLinePoint::vx,          &road::RacingLinePoint::vy,
-                             &road::RacingLinePoint::yaw_rate,    &road::RacingLinePoint::steer,
-                             &road::RacingLinePoint::steer_asked, &road::RacingLinePoint::acceleration,
+constexpr std::array kFields{&road::RacingLinePoint::s,
+                             &road::RacingLinePoint::time,
+                             &road::RacingLinePoint::offset,
+                             &road::RacingLinePoint::heading,
+                             &road::RacingLinePoint::vx,
+                             &road::RacingLinePoint::vy,
+                             &road::RacingLinePoint::yaw_rate,
+                             &road::RacingLinePoint::steer,
+                             &road::RacingLinePoint::steer_command,
+                             &road::RacingLinePoint::acceleration,
                              &road::RacingLinePoint::throttle};
 static_assert(sizeof(road::RacingLinePoint) == kFields.size() * sizeof(double), "a field is missing here");
 

@@ -74,11 +74,11 @@ StopCar::Step StopCar::step(double dt) const noexcept {
   return {dt, model_.lags(dt), left(0.5 * dt), left(dt)};
 }
 
-StopMotion StopCar::advance(const StopMotion& from, double steer_asked, double acceleration_asked,
+StopMotion StopCar::advance(const StopMotion& from, double steer_command, double acceleration_command,
                             const Step& step) const noexcept {
   const model::BodyMotion<double>& m = from.body;
   if (!has_wheels_ || !(m.vx > kSlowest)) {
-    StopMotion to{.body = model_.advance(m, steer_asked, acceleration_asked, step.dt, step.lags)};
+    StopMotion to{.body = model_.advance(m, steer_command, acceleration_command, step.dt, step.lags)};
     to.load_along = to.body.acceleration;
     to.load_across = to.body.vx * to.body.r;
     return to;
@@ -86,8 +86,8 @@ StopMotion StopCar::advance(const StopMotion& from, double steer_asked, double a
   // The midpoint rule, with the lags' exact solutions.
   const auto later = [&](double h, const Left& left, const Change& change) {
     return StopMotion{.body = {m.vx + h * change.vx, m.vy + h * change.vy, m.r + h * change.r,
-                               steer_asked + (m.steer - steer_asked) * left.steer,
-                               acceleration_asked + (m.acceleration - acceleration_asked) * left.drive},
+                               steer_command + (m.steer - steer_command) * left.steer,
+                               acceleration_command + (m.acceleration - acceleration_command) * left.drive},
                       .load_along = change.along + (from.load_along - change.along) * left.load,
                       .load_across = change.across + (from.load_across - change.across) * left.load};
   };

@@ -41,7 +41,7 @@ class StopCar {
   [[nodiscard]] Step step(double dt) const noexcept;
   /// The motion after a step towards a road-wheel angle and a net acceleration as asked for. Pre: `step` is
   /// of a car with the same lags.
-  [[nodiscard]] StopMotion advance(const StopMotion& from, double steer_asked, double acceleration_asked,
+  [[nodiscard]] StopMotion advance(const StopMotion& from, double steer_command, double acceleration_command,
                                    const Step& step) const noexcept;
   /// Whether it is more than the PredictionModel.
   [[nodiscard]] bool has_wheels() const noexcept { return has_wheels_; }

@@ -122,10 +122,10 @@ struct TrackingProblem {
   template <class K, class X, class U>
   [[nodiscard]] auto residual(K k, const X& x, const U& u) const noexcept {
     const auto& [s, d, e, vx, vy, r, steer, a] = x;
-    const auto& [steer_asked, a_asked] = u;
+    const auto& [steer_command, a_command] = u;
     const auto is_first = solver::stage_number(k) < 0.5;
     const auto per_length = select(is_first, 1.0 / first.length, 1.0 / others.length);
-    const auto rate = (steer_asked - steer) * select(is_first, first.steer_speed(), others.steer_speed());
+    const auto rate = (steer_command - steer) * select(is_first, first.steer_speed(), others.steer_speed());
     using T = Common<decltype(vx), decltype(vy), decltype(r), decltype(steer), decltype(a)>;
     const auto use = model->tire_use(model::BodyMotion<T>{T(vx), T(vy), T(r), T(steer), T(a)});
     const model::VehicleParams& car = model->vehicle();
@@ -137,7 +137,7 @@ struct TrackingProblem {
     return std::make_tuple(
         weight.lateral * d, weight.heading * (e + road.sideslip.at(k)),
         weight.speed * (vx - (road.speed.at(k) + road.speed_slope.at(k) * (s - road.s.at(k)))),
-        weight.steer_rate * rate, (weight.jerk * per_length) * (a_asked - a),
+        weight.steer_rate * rate, (weight.jerk * per_length) * (a_command - a),
         weight.edge * positive_part(max(ahead - road.left.at(k), behind - road.tail_left.at(k))),
         weight.edge *
             positive_part(max(-1.0 * ahead - road.right.at(k), -1.0 * behind - road.tail_right.at(k))),
@@ -202,14 +202,14 @@ struct TrackingProblem {
   [[nodiscard]] CHICANE_INLINE inline auto move_by(const D& h, const Lags& lags, K k, const X& x,
                                                    const U& u) const noexcept {
     const auto& [s, d, e, vx, vy, r, steer, a] = x;
-    const auto& [steer_asked, a_asked] = u;
-    const auto late_steer = steer - steer_asked;
-    const auto late_a = a - a_asked;
+    const auto& [steer_command, a_command] = u;
+    const auto late_steer = steer - steer_command;
+    const auto late_a = a - a_command;
     using T = Common<decltype(vx), decltype(vy), decltype(r), decltype(steer), decltype(a),
-                     decltype(steer_asked), decltype(a_asked)>;
+                     decltype(steer_command), decltype(a_command)>;
     const model::BodyMotion<T> from{T(vx), T(vy), T(r), T(steer), T(a)};
-    const model::BodyMotion<T> to = model->advance(from, T(steer_asked + late_steer * lags.steer.mean),
-                                                   T(a_asked + late_a * lags.drive.mean), h);
+    const model::BodyMotion<T> to = model->advance(from, T(steer_command + late_steer * lags.steer.mean),
+                                                   T(a_command + late_a * lags.drive.mean), h);
     // Means over the interval carry the car along the line: second order in h.
     const auto mean_vx = 0.5 * (vx + to.vx);
     const auto mean_vy = 0.5 * (vy + to.vy);
@@ -221,8 +221,8 @@ struct TrackingProblem {
     const auto sn = sin(half);
     const auto ds = h * (mean_vx * c - mean_vy * sn) / (1.0 - kappa * d);
     return std::make_tuple(s + ds, d + h * (mean_vx * sn + mean_vy * c), e + yaw - kappa * ds, to.vx, to.vy,
-                           to.r, steer_asked + late_steer * lags.steer.end,
-                           a_asked + late_a * lags.drive.end);
+                           to.r, steer_command + late_steer * lags.steer.end,
+                           a_command + late_a * lags.drive.end);
   }
 
   static constexpr double kUsefulForce =

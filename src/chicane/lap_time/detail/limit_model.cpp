@@ -75,7 +75,7 @@ class UdacityLimit final : public WithModel<UdacityModel> {
             .vy = z[kVy],
             .yaw_rate = z[kYawRate],
             .steer = z[kSteer],
-            .steer_asked = z[kSteer],
+            .steer_command = z[kSteer],
             .acceleration = m.vx,
             .throttle = std::clamp(model_.pedal_for(z[kPedal], z[kVx], m.vx), -1.0, 1.0)};
   }
@@ -185,7 +185,7 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
             .vy = z[kVy],
             .yaw_rate = z[kYawRate],
             .steer = z[kSteer],
-            .steer_asked = z[kSteer] + car.steer_lag * z[DoubleTrackModel::kSteerRate],
+            .steer_command = z[kSteer] + car.steer_lag * z[DoubleTrackModel::kSteerRate],
             .acceleration = m.ax + z[kYawRate] * z[kVy],
             .throttle = std::clamp(z[kPedal] + car.drive_lag * z[DoubleTrackModel::kPedalRate], -1.0, 1.0)};
   }
