@@ -162,17 +162,17 @@ class _Handle:
         report = _Report()
         x0 = np.ascontiguousarray(x0, float)
         self.check(self._calls.chicane_solve(self.solver, x0.ctypes.data_as(_Double), ctypes.byref(report)))
-        told: dict[str, Any] = {name: getattr(report, name) for name, _ in _Report._fields_}
-        return told | self.answer()
+        reply: dict[str, Any] = {name: getattr(report, name) for name, _ in _Report._fields_}
+        return reply | self.answer()
 
     def answer(self) -> dict[str, Any]:
         """States, inputs and multipliers of the last solve or feedback."""
         s = self.sizes
         shapes = ((s.horizon + 1, s.nx), (s.horizon, s.nu), (s.horizon, s.nx), (s.horizon, s.nu), (s.horizon, s.constraints),
                   (s.horizon, s.equalities), (s.terminal_equalities + s.terminal_constraints,))
-        told: dict[str, Any] = {name: self.get(_STATES + n, shape) for n, (name, shape) in enumerate(zip(_ANSWERS, shapes))}
-        told["terminal_equality"], told["terminal_constraint"] = np.split(told.pop("end"), [s.terminal_equalities])
-        return told
+        reply: dict[str, Any] = {name: self.get(_STATES + n, shape) for n, (name, shape) in enumerate(zip(_ANSWERS, shapes))}
+        reply["terminal_equality"], reply["terminal_constraint"] = np.split(reply.pop("end"), [s.terminal_equalities])
+        return reply
 
 
 def _load(file: Path) -> ctypes.CDLL:
@@ -198,8 +198,8 @@ class CompiledSolver:
         self._library = _load(file)
         self._main = _Handle(self._library)
 
-    def set(self, lower: Array, upper: Array, prices: Array, is_hard: list[bool], options: dict[str, Any]) -> None:
-        """For the next solves; prices are compiled in."""
+    def set(self, lower: Array, upper: Array, penalties: Array, is_hard: list[bool], options: dict[str, Any]) -> None:
+        """For the next solves; penalties are compiled in."""
         words = _Options(options["tolerance"], options["budget_s"], options["max_iterations"], options["second_order"], options["start_from_states"])
         self._setting = words, lower, upper
 
@@ -225,7 +225,7 @@ class CompiledSolver:
             return [handle.solve(self._setting, x0[n], parameters[n if len(parameters) > 1 else 0], states, guess) for n in numbers]
         share = -(-len(x0) // threads)
         with ThreadPoolExecutor(threads) as pool:
-            answers = [told for part in pool.map(work, [range(n, min(n + share, len(x0))) for n in range(0, len(x0), share)]) for told in part]
-        many = {name: np.array([told[name] for told in answers]) for name in ("x", "u", "cost", "status", "iterations", "time")}
-        many["violation"] = np.array([max(told["violation"], told["miss"]) for told in answers])
+            answers = [reply for part in pool.map(work, [range(n, min(n + share, len(x0))) for n in range(0, len(x0), share)]) for reply in part]
+        many = {name: np.array([reply[name] for reply in answers]) for name in ("x", "u", "cost", "status", "iterations", "time")}
+        many["violation"] = np.array([max(reply["violation"], reply["miss"]) for reply in answers])
         return many

@@ -41,14 +41,14 @@ def drive(track: AnyTrack | None = None, *, car: str | None = None, preset: str 
                              "controller": None if own is not None else controller, "plant": plant if own_plant is None else None}
     request = make_request(named, settings, faults, scenario, speed_mps)
     _make_room(record)
-    told = _chicane.drive(request, own, own_plant, os.fspath(record), frames, step_limit_s)
-    error = told["error"]
+    reply = _chicane.drive(request, own, own_plant, os.fspath(record), frames, step_limit_s)
+    error = reply["error"]
     if error is not None:
-        print(f"chicane: {type(own).__name__} failed at {told['error_time']:.2f} s; the guard stops the car:\n{error}",
+        print(f"chicane: {type(own).__name__} failed at {reply['error_time']:.2f} s; the guard stops the car:\n{error}",
               end="", file=sys.stderr)
     again = None if own is not None or own_plant is not None else dict(named=named, settings=dict(settings), faults=_listed(faults), scenario=scenario,
                                               speed_mps=speed_mps)
-    return Run(json.loads(told["report"]), told["table"], Frames(told["frames"]), told["situations"], told["road"], error,
+    return Run(json.loads(reply["report"]), reply["table"], Frames(reply["frames"]), reply["situations"], reply["road"], error,
                os.fspath(record), again)
 
 
@@ -74,8 +74,8 @@ def _listed(faults: Iterable[str]) -> list[str]:
 def read(path: str | os.PathLike[str]) -> Recording:
     """Reads a recording of `drive(record=...)`, `chicane drive --record`, `serve` or `simulate` (.mcap); of several runs
     in one file the last. ValueError for what is no recording of chicane."""
-    told = _chicane.read(os.fspath(path))
-    return Recording(os.fspath(path), told["head"], Frames(told["frames"]), told["laps"], told["road"])
+    reply = _chicane.read(os.fspath(path))
+    return Recording(os.fspath(path), reply["head"], Frames(reply["frames"]), reply["laps"], reply["road"])
 
 
 def verify(path: str | os.PathLike[str], controller: Controller | None = None, step_limit_s: float = 10.0) -> dict[str, Any]:

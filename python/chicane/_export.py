@@ -16,7 +16,7 @@ _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _CALLS = {"sin": "sin", "cos": "cos", "tan": "tan", "atan": "atan", "asin": "asin", "acos": "acos", "exp": "exp", "log": "log", "tanh": "tanh",
           "sqrt": "sqrt"}
 _MOST_INLINED = 150
-"""Operations of a function up to which the compiler is told to inline it: beyond, it would take minutes and gigabytes."""
+"""Operations of a function up to which the compiler inlines it: beyond, it would take minutes and gigabytes."""
 _SIGNS = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/"}
 _USING = "    using chicane::sin, chicane::cos, chicane::tan, chicane::atan, chicane::asin, chicane::acos, chicane::exp, chicane::log;\n" \
          "    using chicane::tanh, chicane::sqrt, chicane::pow, chicane::atan2, chicane::select;\n"
@@ -103,14 +103,14 @@ def _function(problem: Problem, name: str, rows: list[Symbol]) -> str:
     return f"  {head}\n  {inline}auto {name}({given}) const {{\n{body}  }}\n"
 
 
-def _prices(problem: Problem) -> str:
-    count = len(problem.prices)
+def _penalties(problem: Problem) -> str:
+    count = len(problem.penalties)
     if count == 0:
         return ""
-    rows = ", ".join(f"chicane::solver::SoftPenalty{{{number(linear)}, {number(square)}, {number(cap)}}}" for linear, square, cap in problem.prices)
+    rows = ", ".join(f"chicane::solver::SoftPenalty{{{number(linear)}, {number(square)}, {number(cap)}}}" for linear, square, cap in problem.penalties)
     names = ", ".join('"' + name.replace("\\", "\\\\").replace('"', '\\"') + '"' for name in problem.names["constraint"])
     text = (f"  [[nodiscard]] chicane::solver::SoftPenalty soft_penalty(int c) const {{\n    static constexpr std::array<chicane::solver::SoftPenalty, {count}> "
-            f"kPrices{{{rows}}};\n    return kPrices[static_cast<std::size_t>(c)];\n  }}\n"
+            f"kPenalties{{{rows}}};\n    return kPenalties[static_cast<std::size_t>(c)];\n  }}\n"
             f"  [[nodiscard]] std::string_view constraint_name(int c) const {{\n    static constexpr std::array<std::string_view, {count}> kNames{{{names}}};\n"
             "    return kNames[static_cast<std::size_t>(c)];\n  }\n")
     if any(problem.is_hard):
@@ -171,7 +171,7 @@ struct {name} {{
 
   {name}() {{
 {_bounds(problem)}{hidden}  }}
-{functions}{_prices(problem)}  [[nodiscard]] std::array<double, kNu> input_lower(int k) const {{ return lower[static_cast<std::size_t>(k)]; }}
+{functions}{_penalties(problem)}  [[nodiscard]] std::array<double, kNu> input_lower(int k) const {{ return lower[static_cast<std::size_t>(k)]; }}
   [[nodiscard]] std::array<double, kNu> input_upper(int k) const {{ return upper[static_cast<std::size_t>(k)]; }}
 }};
 """

@@ -19,13 +19,13 @@ class Limit:
     sector_times_s: the thirds of the bound [s].
     line: the racing line of the optimum: "s_m" and "speed_mps" of shape (n,), "xy_m" of shape (n, 2)."""
 
-    def __init__(self, told: dict[str, Any]) -> None:
-        self.bound_s: float = told["bound_s"]
-        self.witness_s: float | None = told["witness_s"]
-        self.sector_times_s: list[float] = told["sector_times_s"]
-        self.iterations: int = told["iterations"]
-        self.violation: float = told["violation"]
-        self.line: dict[str, npt.NDArray[Any]] = told["line"]
+    def __init__(self, reply: dict[str, Any]) -> None:
+        self.bound_s: float = reply["bound_s"]
+        self.witness_s: float | None = reply["witness_s"]
+        self.sector_times_s: list[float] = reply["sector_times_s"]
+        self.iterations: int = reply["iterations"]
+        self.violation: float = reply["violation"]
+        self.line: dict[str, npt.NDArray[Any]] = reply["line"]
 
     def __repr__(self) -> str:
         witness = "" if self.witness_s is None else f", driven {self.witness_s:.3f} s"

@@ -23,7 +23,7 @@ class Plant:
     step_s: float = 0.005
     """Length of a step [s], 0.0001 to 0.05."""
     front_axle: float
-    """From the centre of mass to the front axle [m]: of the `car` that drive() is told, as the two below."""
+    """From the centre of mass to the front axle [m]: of the `car` of drive(), as the two below."""
     rear_axle: float
     steer_limit: float
     """Largest angle of the front wheels [rad]; step() gets none above."""

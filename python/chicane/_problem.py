@@ -23,7 +23,7 @@ _INSIDE = "the implicit step"
 
 
 class Problem:
-    """min Σ_k cost(x_k, u_k) + terminal(x_N)  s.t.  x_0 given, x_{k+1} = dynamics(x_k, u_k), and what else it is told.
+    """min Σ_k cost(x_k, u_k) + terminal(x_N)  s.t.  x_0 given, x_{k+1} = dynamics(x_k, u_k), and further constraints.
 
         ocp = ch.Problem(nx=2, nu=1, horizon=20)
 
@@ -53,7 +53,7 @@ class Problem:
         self._k = Symbol(self.graph, self.graph.add("stage"))
         self.rows: dict[str, list[Symbol]] = {name: [] for name in FUNCTIONS}
         self.names: dict[str, list[str]] = {name: [] for name in FUNCTIONS}
-        self.prices: list[tuple[float, float, float]] = []
+        self.penalties: list[tuple[float, float, float]] = []
         self.is_hard: list[bool] = []
         self._lower = np.full((self.horizon, self.nu), -np.inf)
         self._upper = np.full((self.horizon, self.nu), np.inf)
@@ -108,19 +108,20 @@ class Problem:
                         self.names["terminal_constraint"].append(f"x[{i}] {word}")
         self._change()
 
-    def subject_to(self, function: Function, *, hard: bool = False, price: tuple[float, float] = (500.0, 200.0), cap: float = np.inf,
-                   name: str = "", at_end: bool = False) -> Function:
+    def subject_to(self, function: Function, *, hard: bool = False, penalty: tuple[float, float] = (500.0, 200.0), cap: float = np.inf,
+                   name: str = "", at_end: bool = False, price: tuple[float, float] | None = None) -> Function:
         """function(x, u) <= 0 in each stage, one value or several; with `at_end` function(x) <= 0 of the last state, which is hard.
 
-        Soft: violating it by s > 0 costs price[0] s + ½ price[1] s²; a violation above `cap` at the end makes the problem
-        infeasible. Hard: holds, or the problem is infeasible. name: for messages."""
+        Soft: violating it by s > 0 costs penalty[0] s + ½ penalty[1] s²; a violation above `cap` at the end makes the problem
+        infeasible. Hard: holds, or the problem is infeasible. name: for messages. price: the former name of penalty."""
         if at_end:
             self._add_hard(function, "terminal_constraint", name)
         else:
-            if not (price[0] > 0 and price[1] >= 0):
-                raise ValueError(f"subject_to: price: got {price}, expected a linear price above 0 and a quadratic one that is not below")
+            penalty = penalty if price is None else price
+            if not (penalty[0] > 0 and penalty[1] >= 0):
+                raise ValueError(f"subject_to: penalty: got {penalty}, expected a linear one above 0 and a quadratic one that is not below")
             rows = self._trace(function, "constraint")
-            self._add_constraint(rows, name or f"constraint {len(self.rows['constraint'])}", hard, price, cap)
+            self._add_constraint(rows, name or f"constraint {len(self.rows['constraint'])}", hard, penalty, cap)
         self._change()
         return function
 
@@ -156,17 +157,17 @@ class Problem:
                    "max_iterations": int(number_of("max_iterations", max_iterations, 1, 10000)), "second_order": bool(second_order),
                    "start_from_states": has_states}
         values = self.stage_parameters(p)
-        told = {}
+        reply = {}
         iterations = 2 * int(max_iterations) + 1000 if log else 0
         for shift in self._shifts():
             full = self._with_shifts(values, shift)
             solver = self._solver(options, must_interpret=log)
-            told = solver.solve(state, full, states, inputs, start is not None and start is self._last, iterations)
-            if told["status"] >= 0 or not self.has_expression_cost:
+            reply = solver.solve(state, full, states, inputs, start is not None and start is self._last, iterations)
+            if reply["status"] >= 0 or not self.has_expression_cost:
                 break
-        told["cost"] += self._offset(full)
+        reply["cost"] += self._offset(full)
         self._solved_by, self._prepared = solver, None
-        self._course = self._last = Solution(self, told, state, values, full, tolerance)
+        self._course = self._last = Solution(self, reply, state, values, full, tolerance)
         return self._last
 
     def prepare(self, x0: npt.ArrayLike | None = None, p: npt.ArrayLike | None = None, *, shift: int = 0, tolerance: float = 1e-6,
@@ -201,8 +202,8 @@ class Problem:
         if self._prepared is None:
             raise ValueError("feedback: got no preparation, expected prepare() after the last solve() or change")
         state = state_of(x0, self.nx)
-        told = self._prepared.feedback(state)
-        self._course = Feedback(told | {"u": np.ascontiguousarray(told["u"][:, :self.nu])}, state)
+        reply = self._prepared.feedback(state)
+        self._course = Feedback(reply | {"u": np.ascontiguousarray(reply["u"][:, :self.nu])}, state)
         return self._course
 
     def solve_many(self, x0: npt.ArrayLike, p: npt.ArrayLike | None = None, *, u: npt.ArrayLike | None = None, threads: int = 0,
@@ -224,10 +225,10 @@ class Problem:
         inputs = array_of("u", 0.0 if u is None else u, (self.horizon, self.nu))
         if self.unknowns > 0:
             inputs = np.hstack([inputs, self._guess_unknowns(states.mean(axis=0) if len(states) else np.zeros(self.nx), None)])
-        told = self._solver(options).solve_many(states, full, inputs, threads)
-        told["u"] = np.ascontiguousarray(told["u"][:, :, :self.nu])
-        told["cost"] += self._offset(full[0])
-        return Solutions(told)
+        reply = self._solver(options).solve_many(states, full, inputs, threads)
+        reply["u"] = np.ascontiguousarray(reply["u"][:, :, :self.nu])
+        reply["cost"] += self._offset(full[0])
+        return Solutions(reply)
 
     def export(self, file: str | Path, name: str = "Problem") -> None:
         """Writes the problem as a C++ header for the library: a struct `name` that chicane::solver::OcpSolver takes, with the
@@ -354,10 +355,10 @@ class Problem:
         self._change()
         return function
 
-    def _add_constraint(self, rows: list[Symbol], name: str, hard: bool, price: tuple[float, float], cap: float) -> None:
+    def _add_constraint(self, rows: list[Symbol], name: str, hard: bool, penalty: tuple[float, float], cap: float) -> None:
         self.rows["constraint"] += rows
         self.names["constraint"] += [name] * len(rows)
-        self.prices += [(float(price[0]), float(price[1]), float(min(cap, 1e30)))] * len(rows)
+        self.penalties += [(float(penalty[0]), float(penalty[1]), float(min(cap, 1e30)))] * len(rows)
         self.is_hard += [bool(hard)] * len(rows)
 
     def _pair(self, name: str, given: Any, shape: tuple[int, ...]) -> tuple[Array, Array]:
@@ -441,7 +442,7 @@ class Problem:
         solver: Any = self._interpreter
         if self.speed == "compiled" and not must_interpret:
             solver = self._compiled.solver
-        solver.set(*self.input_bounds, np.array(self.prices, float).reshape(-1, 3), self.is_hard, options)
+        solver.set(*self.input_bounds, np.array(self.penalties, float).reshape(-1, 3), self.is_hard, options)
         return solver
 
     @property

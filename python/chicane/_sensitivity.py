@@ -17,13 +17,13 @@ Array = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int_]
 _Entries = tuple[Integers, Integers, Array]
 _CLEAR = 3e-4
-"""Constraint and multiplier both below this: which of them is zero cannot be told."""
+"""Constraint and multiplier both below this: which of them is zero cannot be reply."""
 
 
 class Sensitivity:
     """How a solution changes: u of shape (horizon, nu, n) and x of shape (horizon + 1, nx, n) are derivatives by the n numbers of x0
     or p. is_one_sided: a constraint is about to become active or inactive, so that the derivative on one side is another one.
-    margin: of the constraint that is nearest to that, what it has of room or of price, whichever is more."""
+    margin: of the constraint that is nearest to that, its room or its multiplier, whichever is more."""
 
     def __init__(self, u: Array, x: Array, is_one_sided: bool, margin: float) -> None:
         self.u, self.x, self.is_one_sided, self.margin = u, x, is_one_sided, margin
@@ -54,11 +54,11 @@ class _Conditions:
         self.is_one_sided = False
         self.margin = np.inf
 
-    def see(self, room: float, price: float) -> None:
-        """A constraint. The solver ends with room · price at its last barrier: neither is told from zero below its root."""
-        larger = max(room, price)
+    def see(self, room: float, multiplier: float) -> None:
+        """A constraint. The solver ends with room · multiplier at its last barrier: neither differs from zero below its root."""
+        larger = max(room, multiplier)
         self.margin = min(self.margin, larger)
-        self.is_one_sided = self.is_one_sided or larger < max(_CLEAR, 10.0 * float(np.sqrt(max(0.0, room * price))))
+        self.is_one_sided = self.is_one_sided or larger < max(_CLEAR, 10.0 * float(np.sqrt(max(0.0, room * multiplier))))
 
     def place(self, stage: int) -> Integers:
         """Where the variables (x_k, u_k, p) of a stage are; x_0 and p behind the unknowns."""
@@ -118,17 +118,17 @@ class _Conditions:
                 self.add_row(slopes[k, i], (0, k, i), next_state=i)
 
     def add_constraints(self) -> None:
-        """Soft ones: nothing where they hold with room, a price where they are violated, an equality at the edge."""
+        """Soft ones: nothing where they hold with room, a penalty where they are violated, an equality at the edge."""
         count = len(self.problem.rows["constraint"])
         if count == 0:
             return
-        price = self.solution.multipliers["constraints"]
+        multiplier = self.solution.multipliers["constraints"]
         values, slopes, _ = self.evaluate(2, range(self.horizon), np.zeros((self.horizon, count)))
         weights = np.zeros((self.horizon, count))
         for k in range(self.horizon):
             for c in range(count):
-                value, z = values[k, c], price[k, c]
-                linear, quadratic, _ = self.problem.prices[c]
+                value, z = values[k, c], multiplier[k, c]
+                linear, quadratic, _ = self.problem.penalties[c]
                 left = linear + quadratic * max(value, 0.0) - z
                 is_violated = not self.problem.is_hard[c] and value > 0.0 and value > left
                 if is_violated:
@@ -167,13 +167,13 @@ class _Conditions:
         for k in range(self.horizon):
             for m in range(self.problem.nu):
                 room = min(self.solution.u[k, m] - lower[k, m], upper[k, m] - self.solution.u[k, m])
-                price = abs(self.solution.multipliers["bounds"][k, m])
+                multiplier = abs(self.solution.multipliers["bounds"][k, m])
                 if room <= 1e-9 * (1.0 + abs(self.solution.u[k, m])):
                     self.rows.append((np.array([k * self.block + m]), np.ones(1)))
                     self.row_changes.append(np.zeros(self.nx + self.np))
                     self.curved.append((-1, k, m))
                 if lower[k, m] < upper[k, m] and np.isfinite(room):
-                    self.see(room, price)
+                    self.see(room, multiplier)
 
     def add_curvature_of_rows(self) -> None:
         """Second derivatives of what is an equality, by the multipliers that make the gradient vanish: those of least squares."""

@@ -22,48 +22,48 @@ class Solution:
 
     u: inputs, (horizon, nu). x: states, (horizon + 1, nx).
     status: "optimal"; "at_floor" and "budget_spent", which are usable; "stalled", "infeasible" and "not_finite", which are
-    not. is_usable: which of these. cost: the objective, prices of violated soft constraints included.
+    not. is_usable: which of these. cost: the objective, penalties of violated soft constraints included.
     violation: the largest amount by which something that should hold does not, in its own unit, and `violated`, what and where.
-    multipliers: "dynamics" (horizon, nx), the price of each next state; "bounds" (horizon, nu); "constraints" and "equalities",
+    multipliers: "dynamics" (horizon, nx), of each next state; "bounds" (horizon, nu); "constraints" and "equalities",
     (horizon, rows); "terminal_equality", "terminal_constraint", (rows,).
     unknowns: states inside the intervals of an implicit method, (horizon, count). iterations: iterations of the solver. residual: how far from optimal. gap: what
     the barrier of soft and hard limits costs, at most in a convex problem. time: how long C++ worked [s]. log: the iterations, where solve() was
     asked for them (Iterations), else None."""
 
-    def __init__(self, problem: Problem, told: dict[str, Any], x0: Array, parameters: Array, full: Array,
+    def __init__(self, problem: Problem, reply: dict[str, Any], x0: Array, parameters: Array, full: Array,
                  tolerance: float) -> None:
         self._problem = problem
         self._parameters, self._full = parameters, full
         self.x0 = x0
-        self.u: Array = np.ascontiguousarray(told["u"][:, :problem.nu])
-        self.unknowns: Array = np.ascontiguousarray(told["u"][:, problem.nu:])
-        self.x: Array = told["x"]
+        self.u: Array = np.ascontiguousarray(reply["u"][:, :problem.nu])
+        self.unknowns: Array = np.ascontiguousarray(reply["u"][:, problem.nu:])
+        self.x: Array = reply["x"]
         self.status: str
-        self.status, self._sentence = _chicane.SOLVE_STATUSES[told["status"]]
-        self.is_usable: bool = told["status"] >= 0
+        self.status, self._sentence = _chicane.SOLVE_STATUSES[reply["status"]]
+        self.is_usable: bool = reply["status"] >= 0
         if problem.has_expression_cost:
             self._sentence += "; a cost that is no sum of squares has to stay above its at_least"
-        self.cost: float = told["cost"]
-        self.iterations: int = told["iterations"]
-        self.residual: float = max(told["stationarity"], told["defect"], told["complementarity"])
-        self.gap: float = told["gap"]
-        self.time: float = told["time"]
-        self.log = Iterations(told["log"]) if "log" in told else None
-        self.multipliers: dict[str, Array] = {name: told[name] for name in ("dynamics", "bounds", "constraints", "equalities",
+        self.cost: float = reply["cost"]
+        self.iterations: int = reply["iterations"]
+        self.residual: float = max(reply["stationarity"], reply["defect"], reply["complementarity"])
+        self.gap: float = reply["gap"]
+        self.time: float = reply["time"]
+        self.log = Iterations(reply["log"]) if "log" in reply else None
+        self.multipliers: dict[str, Array] = {name: reply[name] for name in ("dynamics", "bounds", "constraints", "equalities",
                                                                             "terminal_equality", "terminal_constraint")}
-        self.multipliers["equalities"] = np.ascontiguousarray(told["equalities"][:, problem.unknowns:])
-        self.multipliers["bounds"] = np.ascontiguousarray(told["bounds"][:, :problem.nu])
-        self.violation, self.violated = self._find_violation(told, tolerance)
+        self.multipliers["equalities"] = np.ascontiguousarray(reply["equalities"][:, problem.unknowns:])
+        self.multipliers["bounds"] = np.ascontiguousarray(reply["bounds"][:, :problem.nu])
+        self.violation, self.violated = self._find_violation(reply, tolerance)
 
-    def _find_violation(self, told: dict[str, Any], tolerance: float) -> tuple[float, str]:
+    def _find_violation(self, reply: dict[str, Any], tolerance: float) -> tuple[float, str]:
         """The worst one above the tolerance of the solve, and its name and stage."""
         names = self._problem.names
         found = (0.0, "")
-        if told["worst_constraint"] >= 0 and told["violation"] > tolerance:
-            found = told["violation"], f"{names['constraint'][told['worst_constraint']]} at stage {told['worst_stage']}"
-        if told["miss_row"] >= 0 and told["miss"] > max(tolerance, found[0]):
-            kind = ("", "equality", "terminal_equality", "terminal_constraint", "constraint")[told["miss_kind"]]
-            found = told["miss"], f"{names[kind][told['miss_row']]} at stage {told['miss_stage']}"
+        if reply["worst_constraint"] >= 0 and reply["violation"] > tolerance:
+            found = reply["violation"], f"{names['constraint'][reply['worst_constraint']]} at stage {reply['worst_stage']}"
+        if reply["miss_row"] >= 0 and reply["miss"] > max(tolerance, found[0]):
+            kind = ("", "equality", "terminal_equality", "terminal_constraint", "constraint")[reply["miss_kind"]]
+            found = reply["miss"], f"{names[kind][reply['miss_row']]} at stage {reply['miss_stage']}"
         return found
 
     def sensitivity(self, of: str = "x0") -> Sensitivity:
@@ -109,12 +109,12 @@ class Feedback:
     """The answer of feedback(): u (horizon, nu) and x (horizon + 1, nx) from x0, by the linearisation of the last prepare().
     is_solved: the quadratic program is; else inputs were cut to their bounds. time: how long C++ worked [s]."""
 
-    def __init__(self, told: dict[str, Any], x0: Array) -> None:
+    def __init__(self, reply: dict[str, Any], x0: Array) -> None:
         self.x0 = x0
-        self.u: Array = told["u"]
-        self.x: Array = told["x"]
-        self.is_solved: bool = told["is_solved"]
-        self.time: float = told["time"]
+        self.u: Array = reply["u"]
+        self.x: Array = reply["x"]
+        self.is_solved: bool = reply["is_solved"]
+        self.time: float = reply["time"]
 
     def __repr__(self) -> str:
         return f"<Feedback: u[0] = {self.u[0]}, {1e6 * self.time:.3g} µs{'' if self.is_solved else ', cut to bounds'}>"
@@ -124,15 +124,15 @@ class Solutions:
     """The answers to many problems, row by row: u (n, horizon, nu), x (n, horizon + 1, nx), cost, violation, iterations, time [s],
     status (n words) and is_usable, each of shape (n,)."""
 
-    def __init__(self, told: dict[str, Any]) -> None:
-        self.u: Array = told["u"]
-        self.x: Array = told["x"]
-        self.cost: Array = told["cost"]
-        self.violation: Array = told["violation"]
-        self.iterations: npt.NDArray[np.int32] = told["iterations"]
-        self.time: Array = told["time"]
-        self.status = np.array([_chicane.SOLVE_STATUSES[int(number)][0] for number in told["status"]])
-        self.is_usable: npt.NDArray[np.bool_] = told["status"] >= 0
+    def __init__(self, reply: dict[str, Any]) -> None:
+        self.u: Array = reply["u"]
+        self.x: Array = reply["x"]
+        self.cost: Array = reply["cost"]
+        self.violation: Array = reply["violation"]
+        self.iterations: npt.NDArray[np.int32] = reply["iterations"]
+        self.time: Array = reply["time"]
+        self.status = np.array([_chicane.SOLVE_STATUSES[int(number)][0] for number in reply["status"]])
+        self.is_usable: npt.NDArray[np.bool_] = reply["status"] >= 0
 
     def __len__(self) -> int:
         return len(self.cost)

@@ -61,10 +61,10 @@ def sweep(axes: Mapping[str, Any], *, settings: Settings = {}, keep: Iterable[st
     return pd.DataFrame(rows)
 
 
-def _row(told: dict[str, Any]) -> dict[str, Any]:
+def _row(reply: dict[str, Any]) -> dict[str, Any]:
     """A line of the results with its settings as columns; results of the same name win."""
-    settings = told.pop("settings")
-    return {"run": told.pop("run"), **settings, **told}
+    settings = reply.pop("settings")
+    return {"run": reply.pop("run"), **settings, **reply}
 
 
 def _json(value: Any) -> str:

@@ -30,7 +30,7 @@ def cart_pole() -> Family:
         return [position + h * v, angle + h * w, v, w]
     ocp.cost(lambda x, u: [x[0], x[1] - np.pi, 0.1 * x[2], 0.1 * x[3], 0.05 * u[0]])
     ocp.terminal(lambda x: [10 * x[0], 30 * (x[1] - np.pi), 5 * x[2], 5 * x[3]])
-    ocp.subject_to(lambda x, u: [x[0] - 0.6, -0.6 - x[0]], price=(100, 100), name="wall")
+    ocp.subject_to(lambda x, u: [x[0] - 0.6, -0.6 - x[0]], penalty=(100, 100), name="wall")
     ocp.bounds(u=(-20, 20))
     return ocp, np.zeros(4), None
 
@@ -53,7 +53,7 @@ def planar_quadrotor() -> Family:
     ocp.cost(lambda x, u: 0.5 * ((x[0] - 4) ** 2 + x[1] ** 2 + x[2] ** 2) + 0.05 * (x[3] ** 2 + x[4] ** 2 + x[5] ** 2)
              + 0.02 * ((u[0] - 4.9) ** 2 + (u[1] - 4.9) ** 2))
     ocp.terminal(lambda x: 20 * ((x[0] - 4) ** 2 + x[1] ** 2 + x[2] ** 2 + x[3] ** 2 + x[4] ** 2 + x[5] ** 2))
-    ocp.subject_to(lambda x, u: 0.64 - (x[0] - 2) ** 2 - (x[1] - 0.1) ** 2, price=(200, 100), name="disc")
+    ocp.subject_to(lambda x, u: 0.64 - (x[0] - 2) ** 2 - (x[1] - 0.1) ** 2, penalty=(200, 100), name="disc")
     ocp.bounds(u=(0, 12))
     return ocp, np.zeros(6), None
 
@@ -95,7 +95,7 @@ def parking() -> Family:
     ocp.dynamics(ch.rk4(motion, 0.15))
     ocp.cost(lambda x, u: 0.02 * (x[0] ** 2 + x[1] ** 2) + 0.02 * x[2] ** 2 + 0.05 * u[0] ** 2 + 0.2 * u[1] ** 2)
     ocp.terminal(lambda x: 20 * (x[0] ** 2 + x[1] ** 2 + 2 * x[2] ** 2 + x[3] ** 2))
-    ocp.subject_to(lambda x, u: [1.0 - (x[0] - 3) ** 2 - (x[1] - 3.2) ** 2, x[4] - 0.6, -0.6 - x[4]], price=(50, 50), name="pillar and lock")
+    ocp.subject_to(lambda x, u: [1.0 - (x[0] - 3) ** 2 - (x[1] - 3.2) ** 2, x[4] - 0.6, -0.6 - x[4]], penalty=(50, 50), name="pillar and lock")
     ocp.bounds(u=([-2, -1], [2, 1]))
     return ocp, np.array([6.0, 2.0, 0.2, 0.0, 0.0]), None
 
@@ -109,7 +109,7 @@ def crane() -> Family:
     ocp.dynamics(ch.rk4(motion, 0.1))
     ocp.cost(lambda x, u: 0.1 * (x[0] - 3) ** 2 + x[2] ** 2 + 0.1 * (x[1] - 2) ** 2 + 0.05 * u @ u)
     ocp.terminal(lambda x: 50 * ((x[0] - 3) ** 2 + (x[1] - 2) ** 2 + x[2:] @ x[2:]))
-    ocp.subject_to(lambda x, u: [x[2] - 0.15, -0.15 - x[2]], price=(30, 30), name="swing")
+    ocp.subject_to(lambda x, u: [x[2] - 0.15, -0.15 - x[2]], penalty=(30, 30), name="swing")
     ocp.bounds(u=(-2, 2))
     return ocp, np.array([0.0, 2.0, 0.0, 0.0, 0.0, 0.0]), None
 
@@ -146,7 +146,7 @@ def race_car() -> Family:
     ocp.cost(lambda x, u, p: [0.3 * x[1], 0.3 * x[2], x[3] - p[1], 0.1 * u[0], 0.05 * u[1], 0.1 * (u[0] - x[5])])
     ocp.terminal(lambda x: [x[1], x[2]])
     ocp.subject_to(lambda x, u: [x[1] - 0.8, -0.8 - x[1]], name="edge")
-    ocp.subject_to(lambda x, u: [x[3] ** 2 * ch.tan(x[4]) / length - 7, -7 - x[3] ** 2 * ch.tan(x[4]) / length], price=(20, 20), name="grip")
+    ocp.subject_to(lambda x, u: [x[3] ** 2 * ch.tan(x[4]) / length - 7, -7 - x[3] ** 2 * ch.tan(x[4]) / length], penalty=(20, 20), name="grip")
     ocp.bounds(u=([-1.5, -8], [1.5, 5]))
     curvature = 0.3 * np.sin(0.15 * np.arange(41))
     return ocp, np.array([0.0, 0.1, 0.0, 3.0, 0.0, 0.0]), np.column_stack([curvature, np.full(41, 4.0)])

@@ -97,7 +97,7 @@ def slope(ocp, solution, p, number, step):
 
 def changes(count):
     """`count` instances of all families in turns, each constraint clearly active or clearly not: differences of a solver that ends
-    with room · price at 1e-10 have five digits where either is above 5e-3."""
+    with room · multiplier at 1e-10 have five digits where either is above 5e-3."""
     worst, one_sided, narrow, compared, missed = 0.0, 0, 0, 0, 0
     random = np.random.default_rng(5)
     makers = list(families.FAMILIES.values())

@@ -188,7 +188,7 @@ class Iterations(unittest.TestCase):
 class Feedback(unittest.TestCase):
     def test_is_of_first_order_as_sensitivities_are(self):
         ocp = double_integrator()
-        ocp.subject_to(lambda x, u: -x[1] - 0.3, price=(5, 5))
+        ocp.subject_to(lambda x, u: -x[1] - 0.3, penalty=(5, 5))
         solution = ocp.prepare([1.0, 0.0], tolerance=1e-9)
         change = solution.sensitivity("x0")
         step = np.array([1e-4, -2e-4])
@@ -331,7 +331,7 @@ class Derivatives(unittest.TestCase):
         ocp = ch.Problem(2, 1, 15, parameters=2)
         ocp.dynamics(lambda x, u, p: [x[0] + 0.1 * x[1], x[1] + 0.1 * (u[0] - p[0] * ch.sin(x[0]))])
         ocp.cost(lambda x, u, p: (x[0] - p[1]) ** 2 + 0.1 * u @ u)
-        ocp.subject_to(lambda x, u: -u[0] - 0.6, price=(0.05, 1.0))
+        ocp.subject_to(lambda x, u: -u[0] - 0.6, penalty=(0.05, 1.0))
         ocp.subject_to(lambda x, u: x[1] + 0.2 * x[0] ** 2 - 0.5, hard=True)
         ocp.terminal_equality(lambda x, p: x[1] - 0.1 * p[0])
         ocp.bounds(u=(-1, 1.5))
