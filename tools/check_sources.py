@@ -45,7 +45,8 @@ RULES = (
 )
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 PUBLIC_THIRD_PARTY = re.compile(r"tl/expected\.hpp")
-KINDS = {"C++": (".hpp", ".cpp"), "YAML": (".yaml",), "Python": (".py", ".pyi"), "TypeScript": (".ts", ".tsx"), "docs": (".md",)}
+KINDS = {"C++": (".hpp", ".cpp"), "YAML": (".yaml",), "Python": (".py", ".pyi"), "TypeScript": (".ts", ".tsx"), "docs": (".md",),
+         "program text": ()}  # all text of src and apps, comments and strings included
 HASHED = (".yaml", ".py", ".pyi")  # comments begin with #
 
 
@@ -109,19 +110,26 @@ def check_web_file(path, lines):
             yield f"{path}:{number}: got {len(line)} characters, expected at most 120"
 
 
+def is_program(path):
+    return path.parts[0] in ("src", "apps") and path.suffix in KINDS["C++"]
+
+
 def check_names(root):
-    """Names that the last table of docs/notation.md refuses; comments of code are free."""
+    """Names that the last table of docs/notation.md refuses, in code, and words in all text of src and apps."""
     law = root / "docs/notation.md"
     rows = re.findall(r"^\| `(\w+)` \| (.+) \| ([^|]+) \|$", law.read_text(encoding="utf-8"), re.MULTILINE) if law.exists() else []
     for folder, inner, names in os.walk(root):
         inner[:] = sorted(set(inner) - {"build", "corpus", "decisions", "dist", "node_modules", ".git"})
         for path in (Path(folder) / name for name in sorted(names) if name not in ("notation.md", "CHANGELOG.md")):
             refused = {old: new for old, new, kinds in rows if any(path.suffix in KINDS[kind] for kind in kinds.split(", "))}
-            text = path.read_text(encoding="utf-8", errors="replace") if refused else ""
+            words = {old: new for old, new, kinds in rows if "program text" in kinds and is_program(path.relative_to(root))}
+            text = path.read_text(encoding="utf-8", errors="replace") if refused or words else ""
             code = text if path.suffix == ".md" else re.sub("#.*", "", text) if path.suffix in HASHED else without_comments(text)
-            for match in re.finditer(rf"\b(?:{'|'.join(refused)})\b", code) if refused else ():
-                yield (f"{path.relative_to(root)}:{code.count(chr(10), 0, match.start()) + 1}: got {match[0]}, "
-                       f"expected {refused[match[0]]} (docs/notation.md)")
+            found = {(match.start(), match[0]): names[match[0].lower() if names is words else match[0]]
+                     for names, where, flags in ((refused, code, 0), (words, text, re.IGNORECASE)) if names
+                     for match in re.finditer(rf"\b(?:{'|'.join(names)})\b", where, flags)}
+            for (start, old), new in sorted(found.items()):
+                yield f"{path.relative_to(root)}:{text.count(chr(10), 0, start) + 1}: got {old}, expected {new} (docs/notation.md)"
 
 
 def check(root):

@@ -23,7 +23,7 @@ CLEAN = {
     "bench/CMakeLists.txt": "add_executable(bench main.cpp)\ntarget_link_libraries(bench PRIVATE chicane_solver)\n",
     "bench/main.cpp": SPDX + '#include "problems/hard.hpp"\n#include "chicane/solver/solve.hpp"\n',
     "bench/problems/hard.hpp": SPDX + "#pragma once\n",
-    "docs/notation.md": "| `old_name` | `new_name` | C++ |\n| `old_key` | a state | docs |\n",
+    "docs/notation.md": "| `old_name` | `new_name` | C++ |\n| `old_key` | a state | docs |\n| `riddle` | a noun | program text |\n",
     "tests/solver/solve_test.cpp": SPDX + '#include "problems/hard.hpp"\n',
     "tests/solver/CMakeLists.txt": "chicane_test(solver SOURCES solve_test.cpp PRIVATE chicane_cli)\n",
 }
@@ -90,6 +90,8 @@ class Checks(unittest.TestCase):
             (source, 'void f() { std::printf("x"); }\n', "only live, wire and apps print"),
             (source, "auto t = std::chrono::steady_clock::now();\n", "a Deadline"),
             (source, "run::old_name queue;\n", "got old_name, expected `new_name`"),
+            (source, "double gain;  // Riddle of the gain\n", "got Riddle, expected a noun"),
+            ("apps/chicane/main.cpp", 'constexpr char kMeaning[] = "the riddle";\n', "got riddle, expected a noun"),
             ("docs/solver.md", ("`old_key` bounds changes.\n",), "got old_key, expected a state"),
             (source, "std::mutex m;\n", "threads and locks"),
             (source, "int f() { static int calls = 0; return ++calls; }\n", "objects share nothing"),
@@ -140,7 +142,8 @@ class Checks(unittest.TestCase):
 
     def test_comments_strings_and_other_names_are_no_violation(self):
         text = '// std::sin(x), the car, a old_name\n/* throw */ const char* s = "throw std::mutex"; int scar; char c = \'"\'; // throw\n'
-        files = {"src/chicane/solver/solve.cpp": text, "web/src/main.ts": (f"// {'ä' * 117}\n",), "web/node_modules/a/b.ts": " " * 999}
+        files = {"src/chicane/solver/solve.cpp": text, "web/src/main.ts": (f"// {'ä' * 117}\n",), "tests/solver/solve_test.cpp": "// a riddle\n",
+                 "web/node_modules/a/b.ts": " " * 999}
         self.assertEqual(self.violations(check_sources.check, files=files), [])
 
 
