@@ -1,13 +1,12 @@
-# One folder of src/chicane is one static library chicane::<name>; the libraries it may use are its arrows (docs/architecture.md).
+# One folder of src/chicane is one static library chicane::<name> of all headers and sources in it and in its detail/. The libraries it may
+# use are its arrows in tools/layers.txt.
 #
-#   chicane_module(road HEADERS path.hpp track.hpp SOURCES path.cpp DEPENDS base model PRIVATE yaml-cpp)
-#   chicane_test(road SOURCES path_test.cpp LABELS slow)
+#   chicane_module(road PRIVATE yaml-cpp)
 #
-# Without HEADERS and SOURCES all of the folder belong to the module: so in folders that get a file for each controller, plant, fault or
-# track format; PRIVATE_HEADERS are for our own sources and not installed. SIMD_SOURCES are compiled once for each instruction set
-# (InstructionSets.cmake). A test without SOURCES has every *_test.cpp of its folder; each of its tests is a process of its own, but those
-# of a suite in SUITES, which share what takes long to make. OWN_OPTIONS is for tests that are compiled with further options, and so
-# cannot have the precompiled headers of the others.
+# PRIVATE_HEADERS are for our own sources and not installed, HEADERS lie elsewhere. SIMD_SOURCES are compiled once for each instruction set
+# (InstructionSets.cmake). A test has every *_test.cpp of its folder but those WITHOUT, and FURTHER sources; or its SOURCES alone. Each of its
+# tests is a process of its own, but those of a suite in SUITES, which share what takes long to make. OWN_OPTIONS is for tests that are
+# compiled with further options, and so cannot have the precompiled headers of the others.
 #
 # Most of a small source file's compile time goes into the headers that it includes. UNITY compiles the module's sources as one file,
 # and chicane_unity(TARGET GROUP FILE...) some of a target's, so names in their anonymous namespaces must differ; files that no group
@@ -24,21 +23,25 @@ function(chicane_light target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
+# What each module and each folder above the library may use: chicane_arrows_of_NAME.
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/layers.txt)
+file(STRINGS ${PROJECT_SOURCE_DIR}/tools/layers.txt layers REGEX "^[a-z_]+:")
+foreach(layer IN LISTS layers)
+  string(REGEX MATCHALL "[a-z_]+" words ${layer})
+  list(POP_FRONT words name)
+  set(chicane_arrows_of_${name} ${words})
+endforeach()
+
 function(chicane_module name)
-  cmake_parse_arguments(M "UNITY;LIGHT" "" "HEADERS;SOURCES;SIMD_SOURCES;DEPENDS;PRIVATE;PRIVATE_HEADERS" ${ARGN})
-  if(NOT M_HEADERS AND NOT M_SOURCES)
-    list(JOIN M_SIMD_SOURCES "|" simd_sources)
-    file(GLOB M_HEADERS CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.hpp detail/*.hpp)
-    file(GLOB M_SOURCES CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp detail/*.cpp)
-    list(FILTER M_SOURCES EXCLUDE REGEX "^(${simd_sources})$")
-    if(M_PRIVATE_HEADERS)
-      list(REMOVE_ITEM M_HEADERS ${M_PRIVATE_HEADERS})
-    endif()
-  endif()
+  cmake_parse_arguments(M "UNITY;LIGHT" "" "HEADERS;SIMD_SOURCES;PRIVATE;PRIVATE_HEADERS" ${ARGN})
+  file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.hpp detail/*.hpp)
+  file(GLOB sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp detail/*.cpp)
+  list(REMOVE_ITEM headers ${M_PRIVATE_HEADERS})
+  list(REMOVE_ITEM sources ${M_SIMD_SOURCES})
   set(target chicane_${name})
-  list(TRANSFORM M_DEPENDS PREPEND chicane_)
-  if(M_SOURCES)
-    add_library(${target} STATIC ${M_SOURCES})
+  list(TRANSFORM chicane_arrows_of_${name} PREPEND chicane_ OUTPUT_VARIABLE depends)
+  if(sources)
+    add_library(${target} STATIC ${sources})
     set(scope PUBLIC)
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:chicane_options> ${M_PRIVATE})
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
@@ -46,7 +49,7 @@ function(chicane_module name)
       target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:chicane_hardened>)
     endif()
     if(M_UNITY)
-      chicane_unity(${target} ${name} ${M_SOURCES})
+      chicane_unity(${target} ${name} ${sources})
     endif()
     if(M_LIGHT)
       chicane_light(${target})
@@ -57,8 +60,8 @@ function(chicane_module name)
   endif()
   add_library(chicane::${name} ALIAS ${target})
   target_compile_features(${target} ${scope} cxx_std_20)
-  target_link_libraries(${target} ${scope} ${M_DEPENDS} tl::expected)
-  target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/src FILES ${M_HEADERS})
+  target_link_libraries(${target} ${scope} ${depends} tl::expected)
+  target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/src FILES ${headers} ${M_HEADERS})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} OUTPUT_NAME chicane_${name})
   set_property(GLOBAL APPEND PROPERTY CHICANE_MODULES ${target})
   if(M_SIMD_SOURCES)
@@ -92,16 +95,17 @@ function(chicane_test_options target)
 endfunction()
 
 function(chicane_test name)
-  cmake_parse_arguments(T "OWN_OPTIONS" "" "SOURCES;DEPENDS;LABELS;PRIVATE;SUITES" ${ARGN})
+  cmake_parse_arguments(T "OWN_OPTIONS" "" "SOURCES;FURTHER;WITHOUT;DEPENDS;LABELS;PRIVATE;SUITES" ${ARGN})
   if(NOT T_DEPENDS)
     set(T_DEPENDS ${name})
   endif()
   if(NOT T_SOURCES)
     file(GLOB T_SOURCES CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *_test.cpp)
+    list(REMOVE_ITEM T_SOURCES ${T_WITHOUT})
   endif()
   list(TRANSFORM T_DEPENDS PREPEND chicane_)
   set(target ${name}_test)
-  add_executable(${target} ${T_SOURCES})
+  add_executable(${target} ${T_SOURCES} ${T_FURTHER})
   chicane_test_options(${target})
   target_link_libraries(${target} PRIVATE ${T_DEPENDS} ${T_PRIVATE})
   if(NOT CMAKE_CROSSCOMPILING)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks the arrows between modules, and between the folders above them, against tools/layers.txt: every #include, every
-DEPENDS of a module, every file and target of another folder that a CMakeLists.txt compiles or links.
+file and target of another folder that a CMakeLists.txt compiles or links.
 
     tools/check_layers.py [ROOT]        prints file:line: what is wrong; exit code 1 when anything is
 """
@@ -12,7 +12,6 @@ import usage
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"(?P<path>[^"]+)"')
 CALL = re.compile(r"(?P<command>\w+)\s*\((?P<arguments>[^()]*(?:\([^()]*\)[^()]*)*)\)")
-KEYWORDS = {"HEADERS", "SOURCES", "DEPENDS", "PRIVATE"}
 # Folders above the library, and where their quoted includes start.
 ABOVE = {"apps": "apps/chicane", "python": "python/src", "bench": "bench", "tests": "tests", "studies": "studies", "examples": "examples"}
 USERS = {"apps", "examples"}  # written as a user of the library would
@@ -50,17 +49,6 @@ def calls(cmake_file):
         yield text.count("\n", 0, call.start()) + 1, call["command"], call["arguments"].split()
 
 
-def depends_of(cmake_file):
-    """The DEPENDS of the chicane_module() call in a CMakeLists.txt."""
-    keyword, depends = None, set()
-    for _, command, words in calls(cmake_file):
-        for word in words if command == "chicane_module" else ():
-            keyword = word if word in KEYWORDS else keyword
-            if keyword == "DEPENDS" and word != keyword:
-                depends.add(word)
-    return depends
-
-
 def includes(folder):
     """(file, line, included path) of each #include "..." below a folder."""
     for source in sorted(p for p in folder.rglob("*") if p.suffix in (".hpp", ".cpp")):
@@ -85,11 +73,6 @@ def check_module(root, folder, table):
         yield f"{folder.relative_to(root)}:1: module {module} is not in tools/layers.txt"
         return
     allowed = table[module]
-    cmake_file = folder / "CMakeLists.txt"
-    linked = depends_of(cmake_file) if cmake_file.exists() else None
-    for name in sorted(linked or ()):
-        if name not in allowed:
-            yield f"{cmake_file.relative_to(root)}:1: {module} must not link {name}"
     for source, number, path in includes(folder):
         where = f"{source.relative_to(root)}:{number}"
         if not (included := library_header(path)):
@@ -103,8 +86,6 @@ def check_module(root, folder, table):
             yield f"{where}: {module} must not include {header}"
         elif header.startswith(f"{target}/detail/"):
             yield f"{where}: {module} must not include {header}: it is an implementation detail of {target}"
-        elif linked is not None and target not in linked:
-            yield f"{where}: {module} includes {header} but does not list {target} in DEPENDS"
 
 
 def check_includes_above(root, name, table):
