@@ -14,7 +14,7 @@
 #include EXPORTED
 #include "families/cart_pole.hpp"
 #include "families/kkt.hpp"
-#include "problems/ipopt_solver.hpp"
+#include "problems/ipopt_problem.hpp"
 
 namespace {
 

@@ -42,17 +42,20 @@ struct Passes {
     for (std::size_t i = 0; i < Layout::kNx; ++i) qp.lq.terminal[i][i] = 1.0;
     qp.backward(kKernelStages);
   }
-  void run(Kernel kernel) noexcept {
-    if (kernel == Kernel::kBackward) qp.backward(kKernelStages);
-    if (kernel == Kernel::kForward) qp.forward(kKernelStages, Solver::Repair::kLast);
-  }
 };
 
-template <class Arch, class Pattern>
-void run(Kernel kernel) noexcept {
+template <class Arch, class Pattern, bool IsBackward>
+void sweep() noexcept {
   static Passes<Arch, Pattern> passes;
-  passes.run(kernel);
+  if constexpr (IsBackward) {
+    passes.qp.backward(kKernelStages);
+  } else {
+    passes.qp.forward(kKernelStages, Passes<Arch, Pattern>::Solver::Repair::kLast);
+  }
 }
+
+/// Parts of an iteration.
+enum class Part { kRollOut, kFirstOrder, kSecondOrder, kSetStages };
 
 template <class Arch>
 struct Parts {
@@ -99,33 +102,37 @@ struct Parts {
   }
 };
 
-}  // namespace
-
-template <class Arch>
-void run_kernel(Kernel kernel, Shape shape) noexcept {
-  switch (shape) {
-    case Shape::kDescribed:
-      return run<Arch, solver::ProblemPattern<StructuredDescribedProblem>>(kernel);
-    case Shape::kFull4:
-      return run<Arch, solver::FullPattern<4, 2>>(kernel);
-    case Shape::kFull6:
-      return run<Arch, solver::FullPattern<6, 2>>(kernel);
-    case Shape::kFull8:
-      return run<Arch, solver::FullPattern<8, 2>>(kernel);
-    case Shape::kFull10:
-      return run<Arch, solver::FullPattern<10, 2>>(kernel);
-    case Shape::kFull12:
-      return run<Arch, solver::FullPattern<12, 2>>(kernel);
-  }
-}
-
-template <class Arch>
-void run_part(Part part) noexcept {
+template <class Arch, Part part>
+void run_part() noexcept {
   static Parts<Arch> parts;
   parts.run(part);
 }
 
-template void run_kernel<arch::Native>(Kernel, Shape) noexcept;
-template void run_part<arch::Native>(Part) noexcept;
+}  // namespace
+
+template <class Arch>
+std::span<const KernelCase> kernel_cases() noexcept {
+  static constexpr KernelCase kCases[] = {
+      {"Backward/described", &sweep<Arch, solver::ProblemPattern<StructuredDescribedProblem>, true>},
+      {"Forward/described", &sweep<Arch, solver::ProblemPattern<StructuredDescribedProblem>, false>},
+      {"Backward/full4", &sweep<Arch, solver::FullPattern<4, 2>, true>},
+      {"Forward/full4", &sweep<Arch, solver::FullPattern<4, 2>, false>},
+      {"Backward/full6", &sweep<Arch, solver::FullPattern<6, 2>, true>},
+      {"Forward/full6", &sweep<Arch, solver::FullPattern<6, 2>, false>},
+      {"Backward/full8", &sweep<Arch, solver::FullPattern<8, 2>, true>},
+      {"Forward/full8", &sweep<Arch, solver::FullPattern<8, 2>, false>},
+      {"Backward/full10", &sweep<Arch, solver::FullPattern<10, 2>, true>},
+      {"Forward/full10", &sweep<Arch, solver::FullPattern<10, 2>, false>},
+      {"Backward/full12", &sweep<Arch, solver::FullPattern<12, 2>, true>},
+      {"Forward/full12", &sweep<Arch, solver::FullPattern<12, 2>, false>},
+      {"RollOut/described", &run_part<Arch, Part::kRollOut>},
+      {"LineariseFirstOrder/described", &run_part<Arch, Part::kFirstOrder>},
+      {"LineariseSecondOrder/described", &run_part<Arch, Part::kSecondOrder>},
+      {"SetStages/described", &run_part<Arch, Part::kSetStages>},
+  };
+  return kCases;
+}
+
+template std::span<const KernelCase> kernel_cases<arch::Native>() noexcept;
 
 }  // namespace chicane::bench

@@ -2,13 +2,12 @@
 // The solver on families of problems that are no car, beside Ipopt: how many are solved, at what cost, in
 // what time.
 //
-//   chicane-robustness [-n INSTANCES] [-f FIRST] [-i IPOPT] [-t TOLERANCE] [-m TURNS] [--each] [--markdown]
+//   chicane-robustness [-n INSTANCES] [-f FIRST] [-i IPOPT] [-t TOLERANCE] [-m TURNS] [--each]
 //                      [--references FILE] [NAME...]
 //   chicane-robustness --tolerances [-n INSTANCES] [NAME...]     statuses and residuals, without Ipopt
-//   chicane-robustness --closed-loop [-n INSTANCES] [--markdown] [NAME...]     20 cycles of a controller for
-//                      each instance
+//   chicane-robustness --closed-loop [-n INSTANCES] [NAME...]     20 cycles of a controller for each instance
 //
-// --markdown: the tables as docs/measured/solver_measured.md has them. FIRST: seed of the first instance.
+// Prints the tables of docs/measured/solver_measured.md. FIRST: seed of the first instance.
 // IPOPT: it solves so many of each, and what is not solved; all without. NAME: families whose name contains
 // it; all without. FILE keeps what Ipopt finds, which takes minutes; without Ipopt (Debian:
 // coinor-libipopt-dev) FILE alone is compared with.
@@ -54,32 +53,16 @@ void write(const References& references, const std::string& file) {
   }
 }
 
-/// The table of families.
-void print_head(bool is_markdown) {
-  if (is_markdown) {
-    std::printf(
-        "| family | from | solved | of Ipopt's | less / more | iterations | time [ms] | p99 | ratio | p1 |\n"
-        "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
-  } else {
-    std::printf("%-34s %-4s %9s %4s %9s %4s %4s %5s %5s %8s %8s %6s %6s %8s\n", "family", "from", "optimal",
-                "near", "of Ipopt's", "less", "more", "false", "iterations", "ms", "p99", "ratio", "p1",
-                "residual");
-  }
+void print_head() {
+  std::printf(
+      "| family | from | solved | of Ipopt's | less / more | iterations | time [ms] | p99 | ratio | p1 |\n"
+      "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
 }
-void print(const FamilyRow& row, bool is_markdown) {
-  const char* const family = row.family.data();
-  const char* const start = to_string(row.start).data();
-  const double ms = 1e3 * row.time, most_ms = 1e3 * row.most_time;
-  if (is_markdown) {
-    std::printf("| %s | %s | %d of %d | %d of %d | %d / %d | %.0f | %.2f | %.2f | %.0f | %.0f |\n", family,
-                start, row.optimal, row.instances, row.both, row.reference, row.lower, row.higher,
-                row.iterations, ms, most_ms, row.ratio, row.least_ratio);
-  } else {
-    std::printf("%-34s %-4s %4d/%-4d %4d %4d/%-4d %4d %4d %5d %5.0f %8.2f %8.2f %6.0f %6.0f %8.1e\n", family,
-                start, row.optimal, row.instances, row.usable - row.optimal, row.both, row.reference,
-                row.lower, row.higher, row.false_optimal, row.iterations, ms, most_ms, row.ratio,
-                row.least_ratio, row.worst_residual);
-  }
+void print(const FamilyRow& row) {
+  std::printf("| %s | %s | %d of %d | %d of %d | %d / %d | %.0f | %.2f | %.2f | %.0f | %.0f |\n",
+              row.family.data(), to_string(row.start).data(), row.optimal, row.instances, row.both,
+              row.reference, row.lower, row.higher, row.iterations, 1e3 * row.time, 1e3 * row.most_time,
+              row.ratio, row.least_ratio);
   std::fflush(stdout);
 }
 /// Counts of infeasible answers where Ipopt has them, and of points with larger misses than its point.
@@ -144,29 +127,18 @@ int print_tolerances(FamilyRequest request, const std::vector<std::string_view>&
 }
 
 /// Each family in closed loop, beside Ipopt from the same start.
-int print_loops(const FamilyRequest& request, bool is_markdown, const std::vector<std::string_view>& names) {
-  if (is_markdown) {
-    std::printf(
-        "| family | solved | of Ipopt's | more | iterations | time [ms] | p99 | ratio | p1 | with its "
-        "multipliers "
-        "|\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
-  } else {
-    std::printf("%-34s %9s %4s %10s %4s %5s %8s %8s %6s %6s %6s\n", "family", "optimal", "near", "of Ipopt's",
-                "more", "iterations", "ms", "p99", "ratio", "p1", "warm");
-  }
+int print_loops(const FamilyRequest& request, const std::vector<std::string_view>& names) {
+  std::printf(
+      "| family | solved | of Ipopt's | more | iterations | time [ms] | p99 | ratio | p1 | with its "
+      "multipliers "
+      "|\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   for (const Family& family : all_families()) {
     if (!is_wanted(family, names) || family.drive == nullptr) continue;
     const LoopRow row = family.drive(request);
-    const double ms = 1e3 * row.time, most_ms = 1e3 * row.most_time;
-    if (is_markdown) {
-      std::printf("| %s | %d of %d | %d of %d | %d | %.0f | %.3f | %.3f | %.0f | %.0f | %.0f |\n",
-                  row.family.data(), row.optimal, row.solves, row.both, row.reference, row.higher,
-                  row.iterations, ms, most_ms, row.ratio, row.least_ratio, row.warm_ratio);
-    } else {
-      std::printf("%-34s %4d/%-4d %4d %5d/%-4d %4d %5.0f %8.3f %8.3f %6.0f %6.0f %6.0f\n", row.family.data(),
-                  row.optimal, row.solves, row.usable - row.optimal, row.both, row.reference, row.higher,
-                  row.iterations, ms, most_ms, row.ratio, row.least_ratio, row.warm_ratio);
-    }
+    std::printf("| %s | %d of %d | %d of %d | %d | %.0f | %.3f | %.3f | %.0f | %.0f | %.0f |\n",
+                row.family.data(), row.optimal, row.solves, row.both, row.reference, row.higher,
+                row.iterations, 1e3 * row.time, 1e3 * row.most_time, row.ratio, row.least_ratio,
+                row.warm_ratio);
     std::fflush(stdout);
   }
   return 0;
@@ -176,7 +148,7 @@ int print_loops(const FamilyRequest& request, bool is_markdown, const std::vecto
 
 int main(int argc, char** argv) {
   FamilyRequest request{.with_ipopt = true};
-  bool are_tolerances = false, are_loops = false, is_markdown = false;
+  bool are_tolerances = false, are_loops = false;
   std::string file;
   std::vector<std::string_view> names;
   for (int i = 1; i < argc; ++i) {
@@ -184,8 +156,6 @@ int main(int argc, char** argv) {
     const char* value = i + 1 < argc ? argv[i + 1] : "";
     if (word == "--each") {
       request.each = true;
-    } else if (word == "--markdown") {
-      is_markdown = true;
     } else if (word == "--tolerances") {
       are_tolerances = true;
       request.instances = 30;
@@ -206,16 +176,16 @@ int main(int argc, char** argv) {
     }
   }
   if (are_tolerances) return print_tolerances(request, names);
-  if (are_loops) return print_loops(request, is_markdown, names);
+  if (are_loops) return print_loops(request, names);
   References references = read(file);
-  print_head(is_markdown);
+  print_head();
   int both = 0, reference = 0, wrong = 0;
   std::vector<FamilyRow> impossible;
   for (const Family& family : all_families()) {
     if (!is_wanted(family, names)) continue;
     for (const NaiveStart start : {NaiveStart::kIdle, NaiveStart::kLine}) {
       const FamilyRow row = family.measure(request, start, references);
-      print(row, is_markdown);
+      print(row);
       both += row.both;
       reference += row.reference;
       wrong += row.false_optimal;

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <string_view>
-
-#include "chicane/base/angle.hpp"
-#include "chicane/solver/problem.hpp"
 #include "families/arm.hpp"
 #include "families/family.hpp"
 

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <string_view>
-#include <tuple>
-
-#include "chicane/base/inlining.hpp"
-#include "chicane/solver/problem.hpp"
 #include "families/family.hpp"
 
 namespace chicane::bench {

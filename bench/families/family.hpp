@@ -3,8 +3,18 @@
 
 #include <array>
 #include <cstddef>
+#include <string_view>
+#include <tuple>
 
+#include "chicane/base/angle.hpp"
+#include "chicane/base/inlining.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
+#include "chicane/solver/hard_constraints.hpp"
+#include "chicane/solver/problem.hpp"
+#include "chicane/solver/stage_data.hpp"
+
+// The vocabulary of problems, for the headers of families.
 
 namespace chicane::bench {
 

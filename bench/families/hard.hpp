@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <string_view>
-#include <tuple>
-
-#include "chicane/base/inlining.hpp"
-#include "chicane/solver/hard_constraints.hpp"
-#include "chicane/solver/problem.hpp"
-#include "chicane/solver/stage_data.hpp"
 #include "families/arm.hpp"
 #include "families/cart_pole.hpp"
 #include "families/parking.hpp"

@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <string_view>
-
-#include "chicane/base/math.hpp"
-#include "chicane/solver/hard_constraints.hpp"
-#include "chicane/solver/problem.hpp"
 #include "families/family.hpp"
 
 namespace chicane::bench {

@@ -66,7 +66,7 @@ template <class P>
 struct KktResidual {
   double defect = 0.0;        ///< ‖x_{k+1} − f‖∞ / (1 + |x|)
   double stationarity = 0.0;  ///< ‖u − Proj(u − dL/du)‖∞
-  double subgradient = 0.0;   ///< how far each multiplier is from belonging to its constraint's value
+  double subgradient = 0.0;   ///< how far each price is from belonging to its constraint's value
   double outside = 0.0;       ///< of the bounds of inputs and of their changes
   double miss = 0.0;          ///< of what must hold
   double total = 0.0;         ///< sum of its misses
@@ -76,71 +76,73 @@ struct KktResidual {
 };
 
 /// The multipliers of what must hold: of the equalities of stages, and at the end.
-struct NoHardMultipliers {
+struct NoHardPrices {
   double equality_multiplier(int, int) const { return 0.0; }
   double terminal_equality_multiplier(int) const { return 0.0; }
   double terminal_constraint_multiplier(int) const { return 0.0; }
 };
 
-/// Checks a trajectory with the multipliers of its soft constraints, `multiplier(k, c)`, and of what must
-/// hold. Everything else is computed here, by dual numbers, stage by stage: no line is shared with the
-/// solver.
-template <solver::OcpProblem P, int Capacity, class Multiplier, class HardMultiplier = NoHardMultipliers>
+/// Dual numbers at `values`, variables from number `first` on.
+template <class D, std::size_t N>
+[[nodiscard]] std::array<D, N> variables_at(const std::array<double, N>& values, int first) {
+  std::array<D, N> result;
+  for (std::size_t i = 0; i < N; ++i) result[i] = D::variable(values[i], first + static_cast<int>(i));
+  return result;
+}
+
+/// Checks a trajectory with the prices of its soft constraints, `price(k, c)`, and of what must hold.
+/// Everything else is computed here, by dual numbers, stage by stage: no line is shared with the solver.
+/// `gradient`, where given, gets dL/du of each stage.
+template <solver::OcpProblem P, int Capacity, class Price, class HardPrice = NoHardPrices>
 KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::kNx, P::kNu, Capacity>& t,
-                      const Multiplier& multiplier, const HardMultiplier& hard = {}) {
+                      const Price& price, const HardPrice& hard = {},
+                      std::array<double, P::kNu>* gradient = nullptr) {
   constexpr int kNx = P::kNx, kNu = P::kNu, kNz = kNx + kNu;
   using D = Dual<kNz>;
   constexpr double kUnit = 2.2e-16;
-  std::array<double, kNx> error{};  // of the adjoint, as rounding adds up
   KktResidual result;
-  std::array<double, kNx> adjoint{};
-  {
-    std::array<D, kNx> x;
-    for (int i = 0; i < kNx; ++i)
-      x[static_cast<std::size_t>(i)] =
-          D::variable(t.x[static_cast<std::size_t>(t.horizon)][static_cast<std::size_t>(i)], i);
-    for (const D& r : problem.template terminal_residual<D>(x)) {
-      result.cost += 0.5 * r.v * r.v;
-      for (std::size_t i = 0; i < kNx; ++i) adjoint[i] += r.v * r.d[i];
+  std::array<double, kNz> slope{};  // of the Lagrangian's stage, by x_k and u_k
+  std::array<double, kNz> noise{};  // what rounding leaves in it
+  const auto add = [&](const D& row, double weight) {
+    for (std::size_t v = 0; v < kNz; ++v) {
+      slope[v] += weight * row.d[v];
+      noise[v] += kUnit * std::fabs(weight * row.d[v]);
     }
-    const auto add = [&](const D& row, double y) {
-      if (std::isnan(row.v)) result.miss = HUGE_VAL;
-      for (std::size_t i = 0; i < kNx; ++i) {
-        adjoint[i] += y * row.d[i];
-        error[i] += kUnit * std::fabs(y * row.d[i]);
-      }
-    };
-    int n = 0;
-    for (const D& h : problem.template terminal_equality<D>(x)) {
-      result.miss = std::max(result.miss, std::fabs(h.v));
-      result.total += std::fabs(h.v);
-      add(h, hard.terminal_equality_multiplier(n++));
-    }
-    n = 0;
-    for (const D& g : problem.template terminal_constraint<D>(x)) {
-      const double y = hard.terminal_constraint_multiplier(n++);
-      result.miss = std::max(result.miss, g.v);
-      result.total += std::max(0.0, g.v);
-      result.subgradient = std::max({result.subgradient, -y, std::min(-g.v, y)});
-      add(g, y);
-    }
+  };
+  const auto must_be_zero = [&](const D& h, double multiplier) {
+    if (std::isnan(h.v)) result.miss = HUGE_VAL;
+    result.miss = std::max(result.miss, std::fabs(h.v));
+    result.total += std::fabs(h.v);
+    add(h, multiplier);
+  };
+  const auto must_not_be_positive = [&](const D& g, double multiplier) {
+    const double beyond = std::max(g.v, 0.0), inside = -std::min(g.v, 0.0);
+    result.miss = std::isnan(g.v) ? HUGE_VAL : std::max(result.miss, beyond);
+    result.total += beyond;
+    result.subgradient = std::max({result.subgradient, -multiplier, std::min(inside, multiplier)});
+    add(g, multiplier);
+  };
+  const auto end = variables_at<D>(t.x[static_cast<std::size_t>(t.horizon)], 0);
+  for (const D& r : problem.template terminal_residual<D>(end)) {
+    result.cost += 0.5 * r.v * r.v;
+    for (std::size_t i = 0; i < kNx; ++i) slope[i] += r.v * r.d[i];
   }
+  int row = 0;
+  for (const D& h : problem.template terminal_equality<D>(end))
+    must_be_zero(h, hard.terminal_equality_multiplier(row++));
+  row = 0;
+  for (const D& g : problem.template terminal_constraint<D>(end))
+    must_not_be_positive(g, hard.terminal_constraint_multiplier(row++));
+  std::array<double, kNx> adjoint{}, error{};  // and the error of the adjoint, as rounding adds up
   for (int stage = t.horizon; stage-- > 0;) {
+    for (std::size_t i = 0; i < kNx; ++i) {
+      adjoint[i] = slope[i];
+      error[i] = noise[i] + (stage + 1 < t.horizon ? kUnit * std::fabs(slope[i]) : 0.0);
+    }
+    slope = noise = {};
     const auto k = static_cast<std::size_t>(stage);
-    std::array<D, kNx> x;
-    std::array<D, kNu> u;
-    for (int i = 0; i < kNx; ++i)
-      x[static_cast<std::size_t>(i)] = D::variable(t.x[k][static_cast<std::size_t>(i)], i);
-    for (int m = 0; m < kNu; ++m)
-      u[static_cast<std::size_t>(m)] = D::variable(t.u[k][static_cast<std::size_t>(m)], kNx + m);
-    std::array<double, kNz> slope{};
-    std::array<double, kNz> noise{};
-    const auto add = [&](const D& row, double weight) {
-      for (std::size_t v = 0; v < kNz; ++v) {
-        slope[v] += weight * row.d[v];
-        noise[v] += kUnit * std::fabs(weight * row.d[v]);
-      }
-    };
+    const auto x = variables_at<D>(t.x[k], 0);
+    const auto u = variables_at<D>(t.u[k], kNx);
     for (const D& r : problem.template residual<D>(stage, x, u)) {
       result.cost += 0.5 * r.v * r.v;
       add(r, r.v);
@@ -153,47 +155,33 @@ KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::
       for (std::size_t v = 0; v < kNz; ++v)
         noise[v] += std::fabs(next[i].d[v]) * (error[i] + kUnit * std::fabs(adjoint[i]));
     }
-    int row = 0;
-    for (const D& h : problem.template equality<D>(stage, x, u)) {
-      if (std::isnan(h.v)) result.miss = HUGE_VAL;
-      result.miss = std::max(result.miss, std::fabs(h.v));
-      result.total += std::fabs(h.v);
-      add(h, hard.equality_multiplier(stage, row++));
-    }
+    row = 0;
+    for (const D& h : problem.template equality<D>(stage, x, u))
+      must_be_zero(h, hard.equality_multiplier(stage, row++));
     if constexpr (P::kNc > 0) {
-      const auto values = problem.template constraint<D>(stage, x, u);
-      for (int c = 0; c < P::kNc; ++c) {
-        const double value = values[static_cast<std::size_t>(c)].v;
-        const auto penalty = problem.soft_penalty(c);
-        const double z = multiplier(stage, c);
-        const double beyond = std::max(value, 0.0);
+      int c = -1;
+      for (const D& value : problem.template constraint<D>(stage, x, u)) {
+        const double z = price(stage, ++c);
         if (is_hard(problem, c)) {
-          result.miss = std::max(result.miss, beyond);
-          result.total += beyond;
-          result.subgradient = std::max({result.subgradient, std::min(-std::min(value, 0.0), z), -z});
-          add(values[static_cast<std::size_t>(c)], z);
+          must_not_be_positive(value, z);
           continue;
         }
+        const auto penalty = problem.soft_penalty(c);
+        const double beyond = std::max(value.v, 0.0);
         result.cost += beyond * (penalty.linear + 0.5 * penalty.quadratic * beyond);
-        const double inside = std::min(std::fabs(std::min(value, 0.0)), std::fabs(z));
+        const double inside = std::min(std::fabs(std::min(value.v, 0.0)), std::fabs(z));
         const double kink = std::min(beyond, std::fabs(penalty.linear + penalty.quadratic * beyond - z));
         result.subgradient = std::max({result.subgradient, inside, kink, -z});
-        add(values[static_cast<std::size_t>(c)], z);
+        add(value, z);
       }
     }
-    const auto low = problem.input_lower(stage);
-    const auto high = problem.input_upper(stage);
+    const auto low = problem.input_lower(stage), high = problem.input_upper(stage);
     for (std::size_t m = 0; m < kNu; ++m) {
-      const double gradient = slope[kNx + m];
-      const double at = t.u[k][m];
-      const double moved = std::clamp(at - gradient, low[m], high[m]);
+      const double at = t.u[k][m], moved = std::clamp(at - slope[kNx + m], low[m], high[m]);
       result.stationarity = std::max(result.stationarity, std::fabs(moved - at));
       result.outside = std::max({result.outside, low[m] - at, at - high[m]});
-    }
-    for (std::size_t m = 0; m < kNu; ++m) result.rounding = std::max(result.rounding, noise[kNx + m]);
-    for (std::size_t i = 0; i < kNx; ++i) {
-      adjoint[i] = slope[i];
-      error[i] = noise[i] + kUnit * std::fabs(slope[i]);
+      result.rounding = std::max(result.rounding, noise[kNx + m]);
+      if (gradient != nullptr) gradient[k][m] = slope[kNx + m];
     }
   }
   return result;

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <string_view>
-
-#include "chicane/solver/problem.hpp"
 #include "families/family.hpp"
 
 namespace chicane::bench {

@@ -18,7 +18,7 @@
 #include "families/kkt.hpp"
 #include "problems/cpu_time.hpp"
 #if defined(CHICANE_HAVE_IPOPT)
-#include "problems/ipopt_solver.hpp"
+#include "problems/ipopt_problem.hpp"
 #endif
 
 namespace chicane::bench {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiled once for each family: FAMILY is its type, FAMILY_HEADER where it is, FAMILY_FUNCTION what makes
+// Compiled once for each family: FAMILY is its type, FAMILY_HEADER where it is, MADE_BY what makes
 // its entry.
 #include FAMILY_HEADER
 #include "families/list.hpp"
@@ -8,8 +8,8 @@
 
 namespace chicane::bench {
 
-Family FAMILY_FUNCTION();
-Family FAMILY_FUNCTION() {
+Family MADE_BY();
+Family MADE_BY() {
   return {FAMILY::kName, &FamilyMeasurement<FAMILY>::measure, loop_of<FAMILY>(), kHasImpossible<FAMILY>};
 }
 

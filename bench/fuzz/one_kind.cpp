@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compiled once for each type of random problems: KIND is the type, KIND_NAME its name, KIND_FUNCTION what
+// Compiled once for each type of random problems: KIND is the type, KIND_NAME its name, MADE_BY what
 // makes its entry.
 #include <algorithm>
 #include <cstdint>
@@ -52,7 +52,7 @@ FuzzTally run(long count, long first) {
 
 }  // namespace
 
-FuzzKind KIND_FUNCTION();
-FuzzKind KIND_FUNCTION() { return {KIND_NAME, &run}; }
+FuzzKind MADE_BY();
+FuzzKind MADE_BY() { return {KIND_NAME, &run}; }
 
 }  // namespace chicane::bench

@@ -8,61 +8,52 @@
 #include <vector>
 
 #include "chicane/solver/problem.hpp"
-#include "problems/dual.hpp"
+#include "families/kkt.hpp"
 
 namespace chicane::bench {
 
-/// Objective of the inputs when they are simulated from x0, soft constraints as exact penalties. Works for
-/// any scalar: `u(k, m)` gives the inputs.
-template <class T, solver::OcpProblem P, class Inputs>
-T simulated_cost(const P& problem, const std::array<double, P::kNx>& x0, int horizon, const Inputs& u) {
-  std::array<T, P::kNx> x;
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = T(x0[i]);
-  T cost(0.0);
-  for (int k = 0; k < horizon; ++k) {
-    std::array<T, P::kNu> input;
-    for (int m = 0; m < P::kNu; ++m) input[static_cast<std::size_t>(m)] = u(k, m);
-    for (const T& r : problem.residual(k, x, input)) cost += 0.5 * r * r;
-    if constexpr (P::kNc > 0) {
-      const auto values = problem.constraint(k, x, input);
-      for (int c = 0; c < P::kNc; ++c) {
-        const T& value = values[static_cast<std::size_t>(c)];
-        const auto penalty = problem.soft_penalty(c);
-        if (value > T(0.0)) cost += value * (penalty.linear + 0.5 * penalty.quadratic * value);
-      }
-    }
-    x = problem.dynamics(k, x, input);
-  }
-  for (const T& r : problem.terminal_residual(x)) cost += 0.5 * r * r;
-  return cost;
+/// The inputs simulated from x0.
+template <solver::OcpProblem P, int Capacity>
+solver::Trajectory<P::kNx, P::kNu, Capacity> simulated(const P& problem, const std::array<double, P::kNx>& x0,
+                                                       solver::Trajectory<P::kNx, P::kNu, Capacity> t) {
+  t.x[0] = x0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(t.horizon); ++k)
+    t.x[k + 1] = problem.dynamics(static_cast<int>(k), t.x[k], t.u[k]);
+  return t;
 }
 
+/// Objective of the inputs when they are simulated from x0, soft constraints as exact penalties.
 template <solver::OcpProblem P, int Capacity>
 double simulated_cost(const P& problem, const std::array<double, P::kNx>& x0,
                       const solver::Trajectory<P::kNx, P::kNu, Capacity>& t) {
-  return simulated_cost<double>(problem, x0, t.horizon, [&](int k, int m) {
-    return t.u[static_cast<std::size_t>(k)][static_cast<std::size_t>(m)];
-  });
+  const auto along = simulated(problem, x0, t);
+  double cost = 0.0;
+  for (int k = 0; k < t.horizon; ++k) {
+    const auto& x = along.x[static_cast<std::size_t>(k)];
+    const auto& u = along.u[static_cast<std::size_t>(k)];
+    for (const double r : problem.residual(k, x, u)) cost += 0.5 * r * r;
+    if constexpr (P::kNc > 0) {
+      int c = 0;
+      for (const double value : problem.constraint(k, x, u)) {
+        const auto price = problem.soft_penalty(c++);
+        if (value > 0.0) cost += value * (price.linear + 0.5 * price.quadratic * value);
+      }
+    }
+  }
+  for (const double r : problem.terminal_residual(along.x[static_cast<std::size_t>(t.horizon)]))
+    cost += 0.5 * r * r;
+  return cost;
 }
 
-/// dJ/du of the simulated inputs, by stages. Shares no code with the solver's adjoint: one forward derivative
-/// for each input, through the whole simulation. Only for problems without soft constraints (their penalty
-/// has a kink).
+/// dJ/du of the simulated inputs, by stages, from the independent check (kkt.hpp). Only for problems without
+/// soft constraints (their penalty has a kink).
 template <solver::OcpProblem P, int Capacity>
 std::vector<std::array<double, P::kNu>> simulated_gradient(
     const P& problem, const std::array<double, P::kNx>& x0,
     const solver::Trajectory<P::kNx, P::kNu, Capacity>& t) {
-  using T = Dual<1>;
   std::vector<std::array<double, P::kNu>> gradient(static_cast<std::size_t>(t.horizon));
-  for (int stage = 0; stage < t.horizon; ++stage) {
-    for (int input = 0; input < P::kNu; ++input) {
-      const T cost = simulated_cost<T>(problem, x0, t.horizon, [&](int k, int m) {
-        const double u = t.u[static_cast<std::size_t>(k)][static_cast<std::size_t>(m)];
-        return k == stage && m == input ? T::variable(u, 0) : T(u);
-      });
-      gradient[static_cast<std::size_t>(stage)][static_cast<std::size_t>(input)] = cost.d[0];
-    }
-  }
+  const auto no_price = [](int, int) { return 0.0; };
+  check_kkt(OverArrays<P>{problem}, simulated(problem, x0, t), no_price, NoHardPrices{}, gradient.data());
   return gradient;
 }
 
@@ -70,18 +61,8 @@ std::vector<std::array<double, P::kNu>> simulated_gradient(
 template <solver::OcpProblem P, int Capacity>
 double projected_gradient(const P& problem, const std::array<double, P::kNx>& x0,
                           const solver::Trajectory<P::kNx, P::kNu, Capacity>& t) {
-  const auto gradient = simulated_gradient(problem, x0, t);
-  double worst = 0.0;
-  for (int stage = 0; stage < t.horizon; ++stage) {
-    const auto k = static_cast<std::size_t>(stage);
-    for (std::size_t m = 0; m < gradient[k].size(); ++m) {
-      const double u = t.u[k][m];
-      const double moved =
-          std::clamp(u - gradient[k][m], problem.input_lower(stage)[m], problem.input_upper(stage)[m]);
-      worst = std::max(worst, std::fabs(moved - u));
-    }
-  }
-  return worst;
+  const auto no_price = [](int, int) { return 0.0; };
+  return check_kkt(OverArrays<P>{problem}, simulated(problem, x0, t), no_price).stationarity;
 }
 
 /// Ipopt moves every bound outwards by this share of it, and at least by this much (its option

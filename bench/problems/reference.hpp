@@ -9,11 +9,9 @@
 #include "problems/corridor_problem.hpp"
 #include "problems/described_problem.hpp"
 #include "problems/families.hpp"
+#include "problems/structured_solver.hpp"
 
 namespace chicane::bench {
-
-/// Longest horizon that is measured.
-inline constexpr int kLongestHorizon = 200;
 
 /// What another solver did with one instance.
 struct Outcome {

@@ -9,29 +9,25 @@
 
 namespace chicane::bench {
 
-using StructuredTrajectory = solver::Trajectory<7, 2, 200>;
+/// Longest horizon that is measured.
+inline constexpr int kLongestHorizon = 200;
 
-/// OcpSolver compiled for each instruction set: on the structured problems, and on the described one as any
+template <class Problem>
+using CompiledTrajectory = solver::Trajectory<Problem::kNx, Problem::kNu, kLongestHorizon>;
+using StructuredTrajectory = CompiledTrajectory<StructuredDescribedProblem>;
+
+/// OcpSolver compiled for each instruction set: on both structured problems, and on DescribedProblem as any
 /// model is written (level 1).
-template <class Arch>
-solver::SolveReport solve_structured(const StructuredDescribedProblem& problem,
-                                     const std::array<double, 7>& x0,
-                                     StructuredTrajectory& trajectory) noexcept;
-template <class Arch>
-solver::SolveReport solve_structured(const StructuredCorridorProblem& problem,
-                                     const std::array<double, 7>& x0,
-                                     StructuredTrajectory& trajectory) noexcept;
-template <class Arch>
-solver::SolveReport solve_dense(const DescribedProblem& problem,
-                                const std::array<double, DescribedProblem::kNx>& x0,
-                                DescribedTrajectory<200>& trajectory) noexcept;
+template <class Arch, class Problem>
+solver::SolveReport solve_compiled(const Problem& problem, const std::array<double, Problem::kNx>& x0,
+                                   CompiledTrajectory<Problem>& trajectory) noexcept;
 
 /// By the instruction set that is chosen.
 template <class Problem>
-solver::SolveReport solve_fast(const Problem& problem, const std::array<double, 7>& x0,
-                               StructuredTrajectory& trajectory) noexcept {
+solver::SolveReport solve_fast(const Problem& problem, const std::array<double, Problem::kNx>& x0,
+                               CompiledTrajectory<Problem>& trajectory) noexcept {
   return with_instructions(chosen_instruction_set(), [&](auto arch) {
-    return solve_structured<decltype(arch)>(problem, x0, trajectory);
+    return solve_compiled<decltype(arch)>(problem, x0, trajectory);
   });
 }
 

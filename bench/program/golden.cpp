@@ -10,6 +10,7 @@
 #include <fstream>
 #include <memory>
 
+#include "chicane/protocol/csv_text.hpp"
 #include "problems/cpu_time.hpp"
 #include "problems/families.hpp"
 #include "problems/optimality.hpp"
@@ -31,14 +32,10 @@ Result<Table> read_table(const std::filesystem::path& file, std::size_t columns)
   std::getline(stream, line);
   for (int number = 2; std::getline(stream, line); ++number) {
     auto& row = table.emplace_back();
-    const char* at = line.data();
-    const char* end = line.data() + line.size();
-    while (at < end) {
-      double value = 0.0;
-      const auto [next, error] = std::from_chars(at, end, value);
-      if (error != std::errc{} || (next != end && *next != ',')) break;
-      row.push_back(value);
-      at = next == end ? end : next + 1;
+    for (const std::string_view field : protocol::split(line, ',')) {
+      const auto value = protocol::number(field);
+      if (!value) break;
+      row.push_back(*value);
     }
     if (row.size() != columns) {
       return fail(ErrorCode::kParse, fmt::format("{}:{}: got {} numbers, expected {}", file.string(), number,

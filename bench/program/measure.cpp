@@ -12,7 +12,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "problems/cpu_time.hpp"
-#include "problems/dense_reference.hpp"
+#include "problems/structured_solver.hpp"
 
 namespace chicane::bench {
 namespace {
@@ -20,6 +20,25 @@ namespace {
 constexpr int kGrowthHorizons[] = {10, 20, 50, 100, 200};
 constexpr int kGrowthInstances = 64;
 constexpr int kDrives = 3;
+
+/// Our own solver on the described problem as any model is written: one scalar type, dense derivatives.
+class DenseReference final : public Reference<DescribedProblem> {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "dense"; }
+  [[nodiscard]] Outcome solve(const Instance& now, const Instance*, Trajectory& answer) override {
+    constexpr int kRepeats = 12;  // as many as of the structured form
+    solver::SolveReport report;
+    const double begin = cpu_time();
+    for (int repeat = 0; repeat < kRepeats; ++repeat) {
+      answer.horizon = now.guess.horizon;
+      std::copy_n(now.guess.u.begin(), now.guess.horizon, answer.u.begin());
+      report = solve_fast(now.problem, now.start, answer);
+    }
+    return {.is_solved = report.status == solver::SolveStatus::kOptimal,
+            .iterations = report.iterations,
+            .time = (cpu_time() - begin) / kRepeats};
+  }
+};
 
 void measure_solves(const Request& request, References& references, const std::atomic<bool>& stop,
                     BenchReport& report) {

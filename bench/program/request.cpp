@@ -3,39 +3,31 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string_view>
 
-#include "problems/reference.hpp"
+#include "chicane/base/text.hpp"
+#include "chicane/protocol/csv_text.hpp"
+#include "problems/structured_solver.hpp"
 
 namespace chicane::bench {
 namespace {
 
 constexpr int kMostInstances = 100000;
 
-std::optional<int> number_in(std::string_view text, int low, int high) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_number = error == std::errc{} && end == text.data() + text.size();
-  return is_number && value >= low && value <= high ? std::optional(value) : std::nullopt;
-}
-
-tl::unexpected<Error> refuse(std::string_view option, std::string_view text, int low, int high) {
-  return fail(ErrorCode::kInvalidArgument,
-              fmt::format("{}: got {}, expected {} to {}", option, text, low, high));
+Result<int> number_of(std::string_view option, std::string_view text, int low, int high) {
+  const std::optional<std::uint64_t> number = count_in(text);
+  if (!number || *number < static_cast<std::uint64_t>(low) || *number > static_cast<std::uint64_t>(high))
+    return fail(refusal(option, text, fmt::format("{} to {}", low, high)));
+  return static_cast<int>(*number);
 }
 
 Result<std::vector<int>> numbers_of(std::string_view text) {
   std::vector<int> numbers;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', begin), text.size());
-    const std::string_view word = text.substr(begin, comma - begin);
-    const std::optional<int> number = number_in(word, 2, kLongestHorizon);
-    if (!number) return refuse("--horizons", word, 2, kLongestHorizon);
+  for (const std::string_view word : protocol::split(text, ',')) {
+    const Result<int> number = number_of("--horizons", word, 2, kLongestHorizon);
+    if (!number) return fail(number.error());
     numbers.push_back(*number);
-    begin = comma + 1;
   }
   return numbers;
 }
@@ -59,8 +51,8 @@ Result<Request> parse_request(const std::vector<std::string>& words) {
     }
     const std::string& value = words[++i];
     if (option == "--instances") {
-      const std::optional<int> number = number_in(value, 1, kMostInstances);
-      if (!number) return refuse(option, value, 1, kMostInstances);
+      const Result<int> number = number_of(option, value, 1, kMostInstances);
+      if (!number) return fail(number.error());
       request.instances = *number;
     } else if (option == "--horizons") {
       Result<std::vector<int>> horizons = numbers_of(value);

@@ -1,30 +1,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <IpTNLP.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "problems/cpu_time.hpp"
 #include "problems/described_problem.hpp"
+#include "problems/ipopt_solver.hpp"
 
 namespace chicane::bench {
 
 /// The described problem for Ipopt at its best: six states, derivatives by hand, only the entries that are
 /// not zero. Variables stage by stage, s_0 u_0 s_1 u_1 ... s_N; s_0 is fixed by its bounds. Equations
 /// s_{k+1} - f(s_k, u_k) = 0.
-class DescribedNlp final : public Ipopt::TNLP {
+class DescribedNlp final : public SparseNlp<DescribedNlp> {
  public:
-  using Index = Ipopt::Index;
-  using Number = Ipopt::Number;
-
-  std::vector<double> start, solution;                  ///< of all variables
-  std::vector<double> low, high, equation;              ///< multipliers of the start
-  std::vector<double> end_low, end_high, end_equation;  ///< and of the solution
-  double time_in_functions = 0.0;                       ///< CPU time [s]
-
   static constexpr int kNs = 6;
   static constexpr int kNz = 8;
   static int at_s(int k) { return kNz * k; }
@@ -43,19 +34,25 @@ class DescribedNlp final : public Ipopt::TNLP {
       if (k < horizon_) std::copy(t.u[stage].begin(), t.u[stage].end(), start.begin() + at_u(k));
     }
   }
+  /// The solution's inputs.
   template <int Capacity>
-  void answer(DescribedTrajectory<Capacity>& t) const {
+  void give_solution(DescribedTrajectory<Capacity>& t) const {
     for (int k = 0; k < horizon_; ++k)
       std::copy_n(solution.begin() + at_u(k), 2, t.u[static_cast<std::size_t>(k)].begin());
   }
+  /// One stage earlier; the last one stays.
+  static void shift(Multipliers& multipliers) {
+    const auto shift = [](std::vector<double>& values, std::ptrdiff_t width) {
+      std::copy(values.begin() + width, values.end(), values.begin());
+    };
+    shift(multipliers.low, kNz);
+    shift(multipliers.high, kNz);
+    shift(multipliers.equation, kNs);
+  }
 
-  bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian, IndexStyleEnum& style) override {
+  void sizes(Index& n, Index& m) const {
     n = kNz * horizon_ + kNs;
     m = kNs * horizon_;
-    jacobian = horizon_ * (kEntries + kNs);
-    hessian = visit_hessian(nullptr, 0.0, nullptr, [](int, int, double) {});
-    style = C_STYLE;
-    return true;
   }
   bool get_bounds_info(Index n, Number* x_low, Number* x_high, Index m, Number* g_low,
                        Number* g_high) override {
@@ -73,19 +70,8 @@ class DescribedNlp final : public Ipopt::TNLP {
     }
     return true;
   }
-  bool get_starting_point(Index, bool, Number* x, bool wants_bounds, Number* x_low, Number* x_high, Index,
-                          bool wants_equations, Number* lambda) override {
-    std::copy(start.begin(), start.end(), x);
-    if (wants_bounds) {
-      std::copy(low.begin(), low.end(), x_low);
-      std::copy(high.begin(), high.end(), x_high);
-    }
-    if (wants_equations) std::copy(equation.begin(), equation.end(), lambda);
-    return true;
-  }
-  bool eval_f(Index, const Number* z, bool, Number& cost) override {
-    const Stopwatch stopwatch(time_in_functions);
-    cost = 0.0;
+  double cost_at(const Number* z) const {
+    double cost = 0.0;
     for (int k = 0; k <= horizon_; ++k) {
       const double* s = z + at_s(k);
       const double dv = s[3] - problem_->speed_reference;
@@ -98,11 +84,9 @@ class DescribedNlp final : public Ipopt::TNLP {
         cost += kChange[i] * change * change;
       }
     }
-    return true;
+    return cost;
   }
-  bool eval_grad_f(Index n, const Number* z, bool, Number* gradient) override {
-    const Stopwatch stopwatch(time_in_functions);
-    std::fill(gradient, gradient + n, 0.0);
+  void add_gradient(const Number* z, Number* gradient) const {
     for (int k = 0; k <= horizon_; ++k) {
       const double* s = z + at_s(k);
       gradient[at_s(k) + 3] = 2.0 * kSpeed * (s[3] - problem_->speed_reference);
@@ -118,10 +102,8 @@ class DescribedNlp final : public Ipopt::TNLP {
         gradient[at_u(k - 1) + i] -= slope;
       }
     }
-    return true;
   }
-  bool eval_g(Index, const Number* z, bool, Index, Number* g) override {
-    const Stopwatch stopwatch(time_in_functions);
+  void set_equations(const Number* z, Number* g) const {
     const auto& c = problem_->path;
     for (int k = 0; k < horizon_; ++k) {
       const double* s = z + at_s(k);
@@ -137,56 +119,53 @@ class DescribedNlp final : public Ipopt::TNLP {
           next[4] - (c[0] + s[0] * (c[1] + s[0] * (c[2] + s[0] * c[3])) - s[1] + s[3] * std::sin(s[5]) * kDt);
       row[5] = next[5] - (s[2] - std::atan(slope(s[0])) + turn);
     }
-    return true;
   }
-  bool eval_jac_g(Index, const Number* z, bool, Index, Index, Index* rows, Index* columns,
-                  Number* values) override {
-    const Stopwatch stopwatch(time_in_functions);
-    int at = 0;
+  template <class Put>
+  void visit_jacobian(const Number* z, const Put& put) const {
     for (int k = 0; k < horizon_; ++k) {
       std::array<double, kEntries> entry{};
-      if (values != nullptr) entry = stage_jacobian(z + at_s(k), z + at_u(k));
-      for (int e = 0; e < kEntries; ++e, ++at) {
-        if (values != nullptr) {
-          values[at] = -entry[static_cast<std::size_t>(e)];
-        } else {
-          rows[at] = kNs * k + kRow[e];
-          columns[at] = kNz * k + kColumn[e];
-        }
+      if (z != nullptr) entry = stage_jacobian(z + at_s(k), z + at_u(k));
+      for (int e = 0; e < kEntries; ++e)
+        put(kNs * k + kRow[e], kNz * k + kColumn[e], -entry[static_cast<std::size_t>(e)]);
+      for (int i = 0; i < kNs; ++i) put(kNs * k + i, at_s(k + 1) + i, 1.0);
+    }
+  }
+  /// Lower triangle of factor · ∇²cost + λᵀ∇²g, always the same entries in the same order; z may be null.
+  template <class Put>
+  void visit_hessian(const Number* z, double factor, const Number* lambda, const Put& put) const {
+    for (int k = 0; k <= horizon_; ++k) {
+      const int s0 = at_s(k);
+      double xx = 0.0, pp = 0.0, pv = 0.0, ve = 0.0, vd = 0.0, ee = 2.0 * factor * kEpsi;
+      if (z != nullptr && k < horizon_) {
+        const double* s = z + s0;
+        const double* m = lambda + kNs * k;
+        const double c = std::cos(s[2]);
+        const double n = std::sin(s[2]);
+        const double g = slope(s[0]);
+        const double h = bend(s[0]);
+        const double w = 1.0 / (1.0 + g * g);
+        xx = -m[4] * h + m[5] * (6.0 * problem_->path[3] - 2.0 * g * h * h * w) * w;
+        pp = s[3] * kDt * (m[0] * c + m[1] * n);
+        pv = kDt * (m[0] * n - m[1] * c);
+        ve = -m[4] * std::cos(s[5]) * kDt;
+        ee += m[4] * s[3] * std::sin(s[5]) * kDt;
+        vd = -(m[2] + m[5]) * kTurn;
       }
-      for (int i = 0; i < kNs; ++i, ++at) {
-        if (values != nullptr) {
-          values[at] = 1.0;
-        } else {
-          rows[at] = kNs * k + i;
-          columns[at] = at_s(k + 1) + i;
-        }
+      put(s0 + 3, s0 + 3, 2.0 * factor * kSpeed);
+      put(s0 + 4, s0 + 4, 2.0 * factor * kCte);
+      put(s0 + 5, s0 + 5, ee);
+      if (k == horizon_) break;
+      put(s0, s0, xx);
+      put(s0 + 2, s0 + 2, pp);
+      put(s0 + 3, s0 + 2, pv);
+      put(s0 + 5, s0 + 3, ve);
+      put(at_u(k), s0 + 3, vd);
+      const double changes = (k > 0 ? 1.0 : 0.0) + (k < horizon_ - 1 ? 1.0 : 0.0);
+      for (int i = 0; i < 2; ++i) {
+        put(at_u(k) + i, at_u(k) + i, 2.0 * factor * (kInput[i] + changes * kChange[i]));
+        if (k > 0) put(at_u(k) + i, at_u(k - 1) + i, -2.0 * factor * kChange[i]);
       }
     }
-    return true;
-  }
-  bool eval_h(Index, const Number* z, bool, Number factor, Index, const Number* lambda, bool, Index,
-              Index* rows, Index* columns, Number* values) override {
-    const Stopwatch stopwatch(time_in_functions);
-    int at = 0;
-    visit_hessian(values != nullptr ? z : nullptr, factor, lambda, [&](int i, int j, double value) {
-      if (values != nullptr) {
-        values[at] = value;
-      } else {
-        rows[at] = std::max(i, j);
-        columns[at] = std::min(i, j);
-      }
-      ++at;
-    });
-    return true;
-  }
-  void finalize_solution(Ipopt::SolverReturn, Index n, const Number* z, const Number* z_low,
-                         const Number* z_high, Index m, const Number*, const Number* lambda, Number,
-                         const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
-    solution.assign(z, z + n);
-    end_low.assign(z_low, z_low + n);
-    end_high.assign(z_high, z_high + n);
-    end_equation.assign(lambda, lambda + m);
   }
 
  private:
@@ -228,50 +207,6 @@ class DescribedNlp final : public Ipopt::TNLP {
             1.0,
             u[0] * kTurn,
             s[3] * kTurn};
-  }
-
-  /// Lower triangle of factor · ∇²cost + λᵀ∇²g, always the same entries in the same order; z may be null.
-  template <class Visit>
-  int visit_hessian(const double* z, double factor, const double* lambda, const Visit& visit) const {
-    int count = 0;
-    const auto put = [&](int i, int j, double value) {
-      visit(i, j, value);
-      ++count;
-    };
-    for (int k = 0; k <= horizon_; ++k) {
-      const int s0 = at_s(k);
-      double xx = 0.0, pp = 0.0, pv = 0.0, ve = 0.0, vd = 0.0, ee = 2.0 * factor * kEpsi;
-      if (z != nullptr && k < horizon_) {
-        const double* s = z + s0;
-        const double* m = lambda + kNs * k;
-        const double c = std::cos(s[2]);
-        const double n = std::sin(s[2]);
-        const double g = slope(s[0]);
-        const double h = bend(s[0]);
-        const double w = 1.0 / (1.0 + g * g);
-        xx = -m[4] * h + m[5] * (6.0 * problem_->path[3] - 2.0 * g * h * h * w) * w;
-        pp = s[3] * kDt * (m[0] * c + m[1] * n);
-        pv = kDt * (m[0] * n - m[1] * c);
-        ve = -m[4] * std::cos(s[5]) * kDt;
-        ee += m[4] * s[3] * std::sin(s[5]) * kDt;
-        vd = -(m[2] + m[5]) * kTurn;
-      }
-      put(s0 + 3, s0 + 3, 2.0 * factor * kSpeed);
-      put(s0 + 4, s0 + 4, 2.0 * factor * kCte);
-      put(s0 + 5, s0 + 5, ee);
-      if (k == horizon_) break;
-      put(s0, s0, xx);
-      put(s0 + 2, s0 + 2, pp);
-      put(s0 + 3, s0 + 2, pv);
-      put(s0 + 5, s0 + 3, ve);
-      put(at_u(k), s0 + 3, vd);
-      const double changes = (k > 0 ? 1.0 : 0.0) + (k < horizon_ - 1 ? 1.0 : 0.0);
-      for (int i = 0; i < 2; ++i) {
-        put(at_u(k) + i, at_u(k) + i, 2.0 * factor * (kInput[i] + changes * kChange[i]));
-        if (k > 0) put(at_u(k) + i, at_u(k - 1) + i, -2.0 * factor * kChange[i]);
-      }
-    }
-    return count;
   }
 
   const DescribedProblem* problem_ = nullptr;

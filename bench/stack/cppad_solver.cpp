@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "problems/cpu_time.hpp"
 #include "references/cppad_nlp.hpp"
 
 namespace chicane::bench {
@@ -28,22 +27,11 @@ DescribedTerms terms_of(const CubicProblem& problem, const CubicProblem::State& 
   return terms;
 }
 
-class CppadSolver final : public controller::CubicSolver, public SolveClock {
+class CppadSolver final : public controller::CubicSolver {
  public:
-  [[nodiscard]] double last() const noexcept override { return last_; }
-
+  /// From zeros, as the template does.
   solver::SolveReport solve(const CubicProblem& problem, const CubicProblem::State& begin,
                             CubicTrajectory& answer, Deadline /*deadline*/) noexcept override {
-    const double started = cpu_time();
-    const solver::SolveReport report = solved(problem, begin, answer);
-    last_ = cpu_time() - started;
-    return report;
-  }
-
- private:
-  /// From zeros, as the template does.
-  static solver::SolveReport solved(const CubicProblem& problem, const CubicProblem::State& begin,
-                                    CubicTrajectory& answer) {
     const CppadLayout at{static_cast<std::size_t>(answer.horizon) + 1};
     CppadVector start(at.size());
     for (std::size_t i = 0; i < at.size(); ++i) start[i] = 0.0;
@@ -58,7 +46,9 @@ class CppadSolver final : public controller::CubicSolver, public SolveClock {
     read(solution, at, begin, answer);
     return report;
   }
+  [[nodiscard]] std::unique_ptr<controller::CubicSolver> copy() const override { return make_cppad_solver(); }
 
+ private:
   static void read(const CppadSolution& solution, const CppadLayout& at, const CubicProblem::State& begin,
                    CubicTrajectory& answer) {
     for (std::size_t k = 0; k < at.nodes; ++k) {
@@ -72,16 +62,10 @@ class CppadSolver final : public controller::CubicSolver, public SolveClock {
       answer.u[k] = {solution.x[at.steer(k)], std::clamp(solution.x[at.throttle(k)], -1.0, 1.0)};
     }
   }
-
-  double last_ = 0.0;
 };
 
 }  // namespace
 
-TimedSolver make_cppad_solver() {
-  auto solver = std::make_unique<CppadSolver>();
-  const SolveClock* clock = solver.get();
-  return {std::move(solver), clock};
-}
+std::unique_ptr<controller::CubicSolver> make_cppad_solver() { return std::make_unique<CppadSolver>(); }
 
 }  // namespace chicane::bench

@@ -15,6 +15,7 @@
 #include "chicane/controller/cubic_mpc.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "problems/cpu_time.hpp"
 #include "stack/cppad_solver.hpp"
 
 namespace chicane::bench {
@@ -37,17 +38,40 @@ struct Arguments {
   std::string solver = "cppad", record, times;
 };
 
+/// A solver whose solves are timed.
+class TimedSolver final : public controller::CubicSolver {
+ public:
+  /// `last` gets the processor time of each solve [s]; it outlives the solver.
+  TimedSolver(std::unique_ptr<controller::CubicSolver> inner, double& last)
+      : inner_{std::move(inner)}, last_{last} {}
+
+  solver::SolveReport solve(const controller::CubicProblem& problem,
+                            const controller::CubicProblem::State& start, controller::CubicTrajectory& answer,
+                            Deadline deadline) noexcept override {
+    last_ = 0.0;
+    const Stopwatch stopwatch(last_);
+    return inner_->solve(problem, start, answer, deadline);
+  }
+  [[nodiscard]] std::unique_ptr<controller::CubicSolver> copy() const override {
+    return std::make_unique<TimedSolver>(inner_->copy(), last_);
+  }
+
+ private:
+  std::unique_ptr<controller::CubicSolver> inner_;
+  double& last_;
+};
+
 /// Answers to telemetry at the times of the write-ups: while it solves and sleeps, the answer before holds.
 class SleepingController final : public controller::Controller {
  public:
-  SleepingController(std::unique_ptr<controller::Controller> inner, const SolveClock& clock,
+  SleepingController(std::unique_ptr<controller::Controller> inner, const double& solve_time,
                      std::vector<double>& times, bool is_recording)
-      : inner_{std::move(inner)}, clock_{clock}, times_{times}, is_recording_{is_recording} {}
+      : inner_{std::move(inner)}, solve_time_{solve_time}, times_{times}, is_recording_{is_recording} {}
 
   const controller::StepResult& step(const model::Measurement& now, Deadline deadline) noexcept override {
     if (now.time < busy_until_ - 1e-9) return *result_;
     result_ = &inner_->step(now, deadline);
-    if (is_recording_) times_.push_back(clock_.last());
+    if (is_recording_) times_.push_back(solve_time_);
     busy_until_ = now.time + time_of(solves_) + kSleep;
     ++solves_;
     if (result_->answer == controller::Answer::kNone) ++failures_;
@@ -75,7 +99,7 @@ class SleepingController final : public controller::Controller {
   }
 
   std::unique_ptr<controller::Controller> inner_;
-  const SolveClock& clock_;
+  const double& solve_time_;  ///< of the last solve [s]
   std::vector<double>& times_;
   bool is_recording_;
   const controller::StepResult* result_ = nullptr;
@@ -92,12 +116,14 @@ struct Driven {
 Result<Driven> drive(const scenario::Scenario& scenario, const std::string& solver,
                      std::vector<double>& times, bool is_recording) {
   SleepingController* driver = nullptr;
+  double solve_time = 0.0;
   const auto make = [&](const scenario::Scenario& of) -> Result<std::unique_ptr<controller::Controller>> {
-    TimedSolver timed = solver == "own" ? make_own_solver() : make_cppad_solver();
+    auto timed = std::make_unique<TimedSolver>(
+        solver == "own" ? controller::make_cubic_solver() : make_cppad_solver(), solve_time);
     auto inner = controller::make_cubic_mpc_with(std::get<controller::CubicMpcOptions>(of.controllers),
-                                                 of.vehicle, std::move(timed.solver));
+                                                 of.vehicle, std::move(timed));
     if (!inner) return fail(inner.error());
-    auto made = std::make_unique<SleepingController>(std::move(*inner), *timed.clock, times, is_recording);
+    auto made = std::make_unique<SleepingController>(std::move(*inner), solve_time, times, is_recording);
     driver = made.get();
     return made;
   };

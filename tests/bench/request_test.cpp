@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "problems/reference.hpp"
+#include "problems/structured_solver.hpp"
 
 namespace chicane::bench {
 namespace {
@@ -38,8 +38,8 @@ TEST(Request, RefusesWhatItCannotMeasure) {
       {{"--instances", "many"}, "--instances: got many, expected 1 to 100000"},
       {{"--horizons", "10,201"}, "--horizons: got 201, expected 2 to 200"},
       {{"--horizons", "1"}, "--horizons: got 1, expected 2 to 200"},
-      {{"--horizons", ""}, "--horizons: got , expected 2 to 200"},
-      {{"--horizons", "10,"}, "--horizons: got , expected 2 to 200"},
+      {{"--horizons", ""}, "--horizons: got nothing, expected 2 to 200"},
+      {{"--horizons", "10,"}, "--horizons: got nothing, expected 2 to 200"},
       {{"--horizons", "10 20"}, "--horizons: got 10 20, expected 2 to 200"},
       {{"--instances"}, "got --instances, expected --instances N, "},
       {{"--tolerance", "1"}, "got --tolerance, expected --instances N, "},

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "chicane/base/instruction_set.hpp"
+#include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 
@@ -21,7 +22,8 @@ struct Golden {
   const char* name;
   std::vector<std::pair<std::string, std::string>> settings;
   std::uint64_t plain;
-  std::uint64_t fused;  ///< with the fused multiply-add of AVX2, AVX-512, and aarch64
+  std::uint64_t fused;                ///< with the fused multiply-add of AVX2, AVX-512, and aarch64
+  std::vector<std::string> faults{};  ///< as --fault takes them
 };
 
 void PrintTo(const Golden& golden, std::ostream* out) { *out << golden.name; }
@@ -31,8 +33,13 @@ class GoldenRun : public ::testing::TestWithParam<Golden> {};
 std::uint64_t hash_of(const Golden& golden, InstructionSet set) {
   choose_instruction_set(set);
   auto settings = golden.settings;
-  settings.emplace_back("time_limit_s", "20");
-  const auto scenario = protocol::compose({.scenario_file = {}, .settings = settings});
+  settings.insert(settings.begin(), {"time_limit_s", "20"});
+  auto scenario = protocol::compose({.scenario_file = {}, .settings = settings});
+  for (const std::string& fault : golden.faults) {
+    const auto event = protocol::parse_fault(fault);
+    if (!event) scenario = fail(event.error());
+    if (scenario) scenario->faults.push_back(*event);
+  }
   const auto loop = scenario ? run::ClosedLoop::create(*scenario) : fail(scenario.error());
   choose_instruction_set(detect_instruction_set());
   if (!loop) {
@@ -72,6 +79,14 @@ INSTANTIATE_TEST_SUITE_P(
                {{"preset", "delay-in-model"}, {"guard.mode", "off"}},
                0xd30ef6e02d73d5c9,
                0xa462655e2609913f},
+        Golden{"race", {{"preset", "race"}, {"time_limit_s", "6"}}, 0xab790f1fca13832c, 0xbcbf21d7cb0c1cb6},
+        Golden{"faults",
+               {{"time_limit_s", "10"}},
+               0x29f1278b1e815d97,
+               0x5c44cd1eceb3d8f0,
+               {"gps_noise@3", "frozen_sensor@6"}},
+        Golden{
+            "model_car", {{"car", "f1tenth"}, {"time_limit_s", "6"}}, 0xf5a9b0a306b227f2, 0x94945568f51851c5},
         Golden{"pid", {{"preset", "pid"}, {"latency_ms", "37"}}, 0xdab4f526bb2d5617, 0xdab4f526bb2d5617}),
     [](const auto& run) { return std::string(run.param.name); });
 

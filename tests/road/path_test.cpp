@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -10,20 +11,14 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/base/random.hpp"
 #include "support/alloc_guard.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::road {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using test::circle_points;
 
-std::vector<Vec2> circle(double radius, int count, double direction = 1.0) {
-  std::vector<Vec2> points;
-  for (int i = 0; i < count; ++i) {
-    const double angle = direction * kTwoPi * i / count;
-    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
-  }
-  return points;
-}
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// A smooth closed loop with left and right turns, points unevenly spaced by up to 3 : 1.
 std::vector<Vec2> wavy_loop(std::uint64_t seed, int count = 90) {
@@ -47,7 +42,7 @@ Vec2 offset_point(const Path& path, double s, double d) {
 }
 
 TEST(Path, CircleHasItsLengthHeadingAndCurvature) {
-  const Path path = Path::create(circle(50.0, 60), true).value();
+  const Path path = Path::create(circle_points(50.0, 60), true).value();
   // 60 points: a turn of 0.105 rad per segment, the interpolation error is of order 0.105⁴/384.
   EXPECT_NEAR(path.length(), kTwoPi * 50.0, 1e-3);
   EXPECT_DOUBLE_EQ(path.turning(), kTwoPi);
@@ -60,7 +55,9 @@ TEST(Path, CircleHasItsLengthHeadingAndCurvature) {
 }
 
 TEST(Path, ClockwiseCircleCurvesToTheRight) {
-  const Path path = Path::create(circle(30.0, 40, -1.0), true).value();
+  std::vector<Vec2> points = circle_points(30.0, 40);
+  std::reverse(points.begin() + 1, points.end());
+  const Path path = Path::create(points, true).value();
   EXPECT_NEAR(path.at(12.0).curvature, -1.0 / 30.0, 1e-4);
   EXPECT_DOUBLE_EQ(path.turning(), -kTwoPi);
   EXPECT_GT(path.project({40.0, 0.0}).d, 0.0) << "outside of a clockwise circle is left";
@@ -141,7 +138,7 @@ TEST(Path, WarmStartedProjectionStaysOnItsLegOfTheRoad) {
 }
 
 TEST(Path, WindowAcrossTheStartLineWorks) {
-  const Path path = Path::create(circle(50.0, 60), true).value();
+  const Path path = Path::create(circle_points(50.0, 60), true).value();
   const Projection foot = path.project(offset_point(path, path.length() - 2.0, 1.0), 3.0, 10.0);
   EXPECT_NEAR(foot.s, path.length() - 2.0, 1e-6);
   EXPECT_NEAR(foot.d, 1.0, 1e-9);
@@ -169,7 +166,7 @@ TEST(Path, TwoPointsAreAStraightLine) {
 }
 
 TEST(Path, WrapAndDifferenceTakeTheShortestWay) {
-  const Path path = Path::create(circle(50.0, 60), true).value();
+  const Path path = Path::create(circle_points(50.0, 60), true).value();
   const double length = path.length();
   EXPECT_NEAR(path.wrap(-1.0), length - 1.0, 1e-12);
   EXPECT_NEAR(path.wrap(3.0 * length + 2.0), 2.0, 1e-9);
@@ -181,46 +178,13 @@ TEST(Path, WrapAndDifferenceTakeTheShortestWay) {
   EXPECT_EQ(open.difference(1.0, 9.0), -8.0);
 }
 
-TEST(Path, RotatingThePlaneRotatesThePathAndNothingElse) {
-  const std::vector<Vec2> points = wavy_loop(5);
-  const double angle = 1.1;
-  const Vec2 along{std::cos(angle), std::sin(angle)};
-  const Vec2 across{-along.y(), along.x()};
-  std::vector<Vec2> turned;
-  for (const Vec2& point : points)
-    turned.push_back(point.x() * along + point.y() * across + Vec2{300.0, -70.0});
-  const Path a = Path::create(points, true).value();
-  const Path b = Path::create(turned, true).value();
-  EXPECT_NEAR(a.length(), b.length(), 1e-9);
-  for (double s = 0.0; s < a.length(); s += 5.0) {
-    EXPECT_NEAR(a.at(s).curvature, b.at(s).curvature, 1e-11);
-    EXPECT_NEAR(a.at(s).curvature_slope, b.at(s).curvature_slope, 1e-10);
-    EXPECT_NEAR(wrap_angle(b.at(s).heading - a.at(s).heading - angle), 0.0, 1e-11);
-  }
-}
-
-TEST(Path, MirroringFlipsCurvatureAndSide) {
-  const std::vector<Vec2> points = wavy_loop(6);
-  std::vector<Vec2> mirrored;
-  for (const Vec2& point : points) mirrored.emplace_back(point.x(), -point.y());
-  const Path a = Path::create(points, true).value();
-  const Path b = Path::create(mirrored, true).value();
-  EXPECT_EQ(a.length(), b.length());
-  EXPECT_EQ(a.turning(), -b.turning());
-  for (double s = 0.5; s < a.length(); s += 5.0) {
-    EXPECT_EQ(a.at(s).curvature, -b.at(s).curvature);
-    const Vec2 point = offset_point(a, s, 2.0);
-    EXPECT_NEAR(b.project({point.x(), -point.y()}).d, -2.0, 1e-9);
-  }
-}
-
 TEST(Path, RebuildWithinCapacityEqualsCreateAndRefusesTheRest) {
   const std::vector<Vec2> points = wavy_loop(9);
   const Path fresh = Path::create(points, true).value();
   Path path = Path::with_capacity(200);
   EXPECT_TRUE(path.is_empty());
   EXPECT_EQ(path.capacity(), 200);
-  ASSERT_TRUE(path.rebuild(circle(20.0, 150), true));
+  ASSERT_TRUE(path.rebuild(circle_points(20.0, 150), true));
   ASSERT_TRUE(path.rebuild(points, true));
   EXPECT_EQ(path.length(), fresh.length());
   EXPECT_EQ(path.at(77.0).curvature, fresh.at(77.0).curvature);
@@ -228,7 +192,7 @@ TEST(Path, RebuildWithinCapacityEqualsCreateAndRefusesTheRest) {
   std::vector<Vec2> broken = points;
   broken[4].x() = kNan;
   EXPECT_FALSE(path.rebuild(broken, true));
-  EXPECT_FALSE(path.rebuild(circle(50.0, 201), true)) << "more than the capacity";
+  EXPECT_FALSE(path.rebuild(circle_points(50.0, 201), true)) << "more than the capacity";
   EXPECT_FALSE(path.rebuild(std::vector<Vec2>{{0, 0}, {0, 0}, {1, 1}}, true));
   EXPECT_EQ(path.length(), fresh.length()) << "refused data change nothing";
 }
@@ -265,7 +229,7 @@ TEST(Path, RefusesWhatIsNoCurveAndNamesThePoint) {
 }
 
 TEST(Path, AnswersNonFiniteQuestionsWithoutHarm) {
-  const Path path = Path::create(circle(50.0, 60), true).value();
+  const Path path = Path::create(circle_points(50.0, 60), true).value();
   EXPECT_TRUE(std::isnan(path.at(kNan).curvature));
   EXPECT_TRUE(std::isnan(path.project({kNan, 0.0}).d));
   EXPECT_TRUE(std::isnan(path.project({kNan, 0.0}, 10.0, 5.0).d));

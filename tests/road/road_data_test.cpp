@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "chicane/base/angle.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::road {
 namespace {
@@ -13,19 +14,12 @@ namespace {
 constexpr double kRadius = 100.0;
 
 /// Counter-clockwise, 5 m to the left, 3 m to the right.
-Track circle() {
-  std::vector<TrackPoint> points;
-  for (int i = 0; i < 200; ++i) {
-    const double angle = kTwoPi * i / 200;
-    points.push_back({kRadius * Vec2{std::cos(angle), std::sin(angle)}, 5.0, 3.0});
-  }
-  return Track::create("circle", points, true, {.smoothing_sigma = 0.0}).value();
-}
+Track circle() { return test::circle_road(kRadius, 200, 5.0, 3.0); }
 
 /// 100 m along x, its right edge moving from 2 m to 4 m.
 Track straight() {
-  std::vector<TrackPoint> points;
-  for (int i = 0; i <= 10; ++i) points.push_back({Vec2{10.0 * i, 0.0}, 6.0, 2.0 + 0.2 * i});
+  std::vector<TrackPoint> points = test::straight_points(10, 6.0, 2.0);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].right += 0.2 * static_cast<double>(i);
   return Track::create("straight", points, false, {.smoothing_sigma = 0.0}).value();
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "road/sample_loop.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::road {
 namespace {
@@ -98,14 +99,7 @@ TEST(WaypointMap, IsNotClosedByAnotherPassageOfACrossing) {
 constexpr double kRingRadius = 100.0;
 constexpr int kRingWaypoints = 52;  // waypoints, 12.1 m apart
 
-std::vector<Vec2> circle() {
-  std::vector<Vec2> points;
-  for (int i = 0; i < kRingWaypoints; ++i) {
-    const double angle = kTwoPi * i / kRingWaypoints;
-    points.emplace_back(kRingRadius * cos(angle), kRingRadius * sin(angle));
-  }
-  return points;
-}
+std::vector<Vec2> circle() { return test::circle_points(kRingRadius, kRingWaypoints); }
 
 /// A car that has seen `seen` waypoints of the circle.
 WaypointMap map_of(int seen) {

@@ -8,6 +8,7 @@
 
 #include "chicane/base/angle.hpp"
 #include "chicane/sim/plant_registry.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::sim {
 namespace {
@@ -49,26 +50,11 @@ class Puppet final : public Plant {
   model::Pose next_;
 };
 
-/// Circle about the origin, counter-clockwise, s = 0 at (kRadius, 0), 5 m to the left edge and 4 m to the
-/// right.
+/// 5 m to the left edge and 4 m to the right.
 road::Track circle(double kerb = 0.0) {
-  std::vector<road::TrackPoint> points;
-  const int count = 120;
-  for (int i = 0; i < count; ++i) {
-    const double angle = kTwoPi * i / count;
-    points.push_back({Vec2{kRadius * std::cos(angle), kRadius * std::sin(angle)}, 5.0, 4.0});
-  }
-  return road::Track::create("circle", points, true,
-                             {.spacing = 2.0, .smoothing_sigma = 0.0, .kerb_width = kerb})
-      .value();
+  return test::circle_road(kRadius, 120, 5.0, 4.0, {.smoothing_sigma = 0.0, .kerb_width = kerb});
 }
-
-/// Straight of 300 m along x, open.
-road::Track straight() {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i <= 30; ++i) points.push_back({Vec2{10.0 * i, 0.0}, 5.0, 4.0});
-  return road::Track::create("straight", points, false, {.spacing = 2.0, .smoothing_sigma = 0.0}).value();
-}
+road::Track straight() { return test::straight_road(30, 5.0, 4.0); }
 
 /// On the circle at `angle` from the start, `left` of the line.
 model::Pose on_circle(double angle, double left = 0.0) {
@@ -104,31 +90,27 @@ TEST(World, KnowsWhereTheCarIs) {
   EXPECT_NEAR(drive.state().time, 1.0, 1e-12);
 }
 
-TEST(World, TimesALapToAFractionOfAStep) {
+/// A plant with steps of 1 ms is judged every five of them.
+TEST(World, TimesLapsAndTheirSectorsToAFractionOfAStep) {
   const road::Track track = circle();
-  Drive drive{track};
-  // 0.4 rad/s: a lap takes 2π / 0.4 = 15.70796 s, not a multiple of 0.02 s.
-  for (int i = 1; i <= 2000; ++i) drive.to(0.4 * 0.02 * i);
-  const double lap_time = kTwoPi / 0.4;
-  EXPECT_EQ(drive.state().lap, 2);
-  EXPECT_NEAR(drive.state().last_lap_time, lap_time,
-              1e-5);  // rounding and the symmetry of the spline; one step is 0.02
-  EXPECT_NEAR(drive.state().best_lap_time, lap_time, 1e-5);
-  EXPECT_TRUE(drive.state().last_lap_was_clean);
-  EXPECT_NEAR(drive.state().lap_time, 40.0 - 2.0 * lap_time, 1e-4);
-}
-
-TEST(World, SectorTimesAddUpToTheLap) {
-  const road::Track track = circle();
-  Drive drive{track};
-  for (int i = 1; i <= 1000; ++i) drive.to(0.4 * 0.02 * i);
-  ASSERT_EQ(drive.state().lap, 1);
-  double sum = 0.0;
-  for (const double time : drive.state().last_sector_times) {
-    EXPECT_NEAR(time, kTwoPi / 0.4 / 3.0, 1e-4);
-    sum += time;
+  for (const double step : {0.02, 0.001}) {
+    Drive drive{track, step};
+    // 0.4 rad/s: a lap takes 2π / 0.4 = 15.70796 s, not a multiple of 0.02 s.
+    for (int i = 1; i * step < 40.0 + 1e-9; ++i) drive.to(0.4 * step * i);
+    const double lap_time = kTwoPi / 0.4;
+    EXPECT_EQ(drive.state().lap, 2);
+    EXPECT_NEAR(drive.state().last_lap_time, lap_time, 1e-5);  // rounding and the symmetry of the spline
+    EXPECT_NEAR(drive.state().best_lap_time, lap_time, 1e-5);
+    EXPECT_TRUE(drive.state().last_lap_was_clean);
+    EXPECT_NEAR(drive.state().lap_time, 40.0 - 2.0 * lap_time, 1e-4);
+    EXPECT_NEAR(drive.state().time, 40.0, 1e-9);
+    double sum = 0.0;
+    for (const double time : drive.state().last_sector_times) {
+      EXPECT_NEAR(time, lap_time / 3.0, 1e-4);
+      sum += time;
+    }
+    EXPECT_NEAR(sum, drive.state().last_lap_time, 1e-12);
   }
-  EXPECT_NEAR(sum, drive.state().last_lap_time, 1e-12);
 }
 
 TEST(World, CountsALapOnceWhenTheLineIsCrossedBackAndForth) {
@@ -243,11 +225,8 @@ TEST(World, AnOpenTrackEndsWithOneLap) {
 // From the start line to the finish, whatever lies before and behind; also for a car that comes up to the
 // start.
 TEST(World, TimesAnOpenRoadFromStartToFinish) {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i <= 30; ++i) points.push_back({Vec2{10.0 * i, 0.0}, 5.0, 4.0});
-  const road::Track track = road::Track::create("straight", points, false,
-                                                {.smoothing_sigma = 0.0, .start_s = 40.0, .finish_s = 190.0})
-                                .value();
+  const road::Track track =
+      test::straight_road(30, 5.0, 4.0, {.smoothing_sigma = 0.0, .start_s = 40.0, .finish_s = 190.0});
   for (const double from : {10.0, 40.0}) {
     Puppet puppet;
     World world{puppet, track};
@@ -261,15 +240,6 @@ TEST(World, TimesAnOpenRoadFromStartToFinish) {
     EXPECT_NEAR(world.state().last_lap_time, 150.0 / 15.0, 1e-6) << from;
     EXPECT_NEAR(steps * 0.3, 190.0 - from, 0.6) << from;
   }
-}
-
-TEST(World, JudgesAPlantOfOneMillisecondEveryFiveSteps) {
-  const road::Track track = circle();
-  Drive drive{track, 0.001};
-  for (int i = 1; i <= 16000; ++i) drive.to(0.4 * 0.001 * i);
-  EXPECT_EQ(drive.state().lap, 1);
-  EXPECT_NEAR(drive.state().last_lap_time, kTwoPi / 0.4, 1e-5);
-  EXPECT_NEAR(drive.state().time, 16.0, 1e-9);
 }
 
 TEST(World, RealCarsStandAtTheStart) {
