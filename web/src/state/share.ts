@@ -65,6 +65,9 @@ export function linkTo({ choices, changes }: SharedRun, page: string): string {
   return `${page}${PREFIX}${query}`;
 }
 
+/** Name by which the program was started: "./run.sh", where that started it. */
+export const programName = store.signal('page', 'chicane');
+
 const quoted = (value: Setting): string => (/^[\w.+-]+$/.test(String(value)) ? String(value) : `'${value}'`);
 
 /** The command that begins a run. The controller is told where it is not the preset's. */
@@ -72,7 +75,7 @@ export function commandOf({ choices, changes }: SharedRun): string {
   const given = schema.value.find(({ key }) => key === 'controller')?.default;
   const isTold = (key: string, value: Setting): boolean =>
     key === 'controller' ? value !== given : key === 'seed' ? value !== 1 : true;
-  const words = ['chicane drive'];
+  const words = [`${programName.value} drive`];
   for (const key of ['preset', 'track', 'car', 'controller', 'seed']) {
     const value = choices.get(key);
     if (value !== undefined && isTold(key, value)) words.push(`--${key} ${quoted(value)}`);
@@ -83,7 +86,7 @@ export function commandOf({ choices, changes }: SharedRun): string {
 
 /** How a run is driven beside what is in a link. */
 export interface DrivenWith {
-  readonly laps: number; // 0: as many as the program drives without being told
+  readonly laps: number; // 0: until it is stopped, as without an option
   readonly pace: number;
   readonly port: number;
 }

@@ -64,7 +64,10 @@ export const pills = computed<readonly string[]>(() => {
   const frame = shown.value;
   const asked = settings.value.get('run.pace'); // a paused recording has no frame that tells a new one
   const pace = typeof asked === 'number' ? asked : (frame?.pace ?? NaN);
+  const laps = Number(settings.value.get('laps')); // 0: until it is stopped
+  const isLast = laps > 0 && run.value?.mode === 'drive' && run.value.end === '' && frame?.lap === laps - 1;
   return [
+    ...(isLast ? ['Last lap'] : []),
     ...((run.value?.building ?? '') === '' ? [] : [`Next: ${run.value?.building} …`]),
     ...(frame?.is_manual ? ['By hand'] : []),
     ...(frame ? faultsInWords(frame, run.value?.fault_names ?? []) : []),
