@@ -46,7 +46,7 @@ async function loadSchema(): Promise<void> {
     const answer = await programPage('schema.json');
     if (answer !== null) schema.value = readSchema(JSON.parse(answer));
   } catch {
-    // The banner of the connection shows what is wrong.
+    // The banner of the connection gives the reason.
   }
 }
 
@@ -78,7 +78,7 @@ function opener(): () => IWebSocket {
 function live(): Source {
   return new Connection(opener(), {
     open(name) {
-      // The program tells of its run from the beginning, whenever the page comes.
+      // The program sends its run from the beginning, whenever the page comes.
       const isOther = name !== session.name;
       beginSession(isOther);
       if (isOther) {

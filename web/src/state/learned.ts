@@ -22,7 +22,7 @@ function learned(
   return [{ label, text: `${sign}${fixed(value, digits)} ± ${fixed(2 * deviation, digits)}${unit}` }];
 }
 
-/** What the run has found out about its car, over what was told; empty where nothing is estimated. */
+/** Estimates of the car relative to its configuration; empty where nothing is estimated. */
 export function learnedOf(frame: Frame): Learned[] {
   return [
     ...learned('Delay beyond the told one', ' ms', 0, frame.learned_delay_s * 1e3, frame.learned_delay_sd_s * 1e3, 0),

@@ -70,7 +70,7 @@ export const programName = store.signal('page', 'chicane');
 
 const quoted = (value: Setting): string => (/^[\w.+-]+$/.test(String(value)) ? String(value) : `'${value}'`);
 
-/** The command that begins a run. The controller is told where it is not the preset's. */
+/** The command that begins a run. It names a controller only where that is not the preset's. */
 export function commandOf({ choices, changes }: SharedRun): string {
   const given = schema.value.find(({ key }) => key === 'controller')?.default;
   const isTold = (key: string, value: Setting): boolean =>
@@ -84,7 +84,7 @@ export function commandOf({ choices, changes }: SharedRun): string {
   return words.join(' ');
 }
 
-/** How a run is driven beside what is in a link. */
+/** Options of a run that a link does not hold. */
 export interface DrivenWith {
   readonly laps: number; // 0: until it is stopped, as without an option
   readonly pace: number;
