@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # From a clone to a car on the screen: installs what is missing, builds, and runs the program.
 #
-#   ./run.sh                                      drive, with the dashboard at http://localhost:4567/
+#   ./run.sh                                      drive until Ctrl-C, with the dashboard at http://localhost:4567/
 #   ./run.sh --laps 1                             options alone mean `drive`
 #   ./run.sh drive --fast --laps 2 --json         any command of `chicane`; stdout carries its results only
 #   ./run.sh bench                                builds the benchmark, too, with Ipopt to compare with
@@ -88,4 +88,4 @@ case "${1:-}" in
   -h | --help | --version) ;;
   '' | -*) set -- drive "$@" ;;
 esac
-exec "$root/build/release/apps/chicane/chicane" "$@"
+CHICANE_COMMAND=$0 exec "$root/build/release/apps/chicane/chicane" "$@"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -28,13 +28,17 @@
 namespace chicane::apps {
 namespace {
 
-/// In a terminal the dashboard stays up after the last lap. A script's run, and one with a number of laps,
-/// ends.
+/// Without a number of laps a run with a dashboard goes on until it is stopped.
 bool stays_up(const Options& options) {
   const bool has_laps = std::any_of(options.settings.begin(), options.settings.end(),
                                     [](const auto& setting) { return setting.first == "laps"; });
-  const bool is_watched = isatty(STDOUT_FILENO) == 1 && isatty(STDERR_FILENO) == 1;
-  return is_watched && !has_laps && !options.is_fast && !options.is_json;
+  return !has_laps && !options.is_fast && !options.is_json;
+}
+
+/// Command by which the program was started, for the page: run.sh sets it.
+net::Asset command_name() {
+  const char* const name = std::getenv("CHICANE_COMMAND");
+  return {"/command.txt", "text/plain; charset=utf-8", name == nullptr ? "chicane" : name};
 }
 
 /// The results of a run, which are printed even when its recording failed.
@@ -48,6 +52,7 @@ Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop
   live::LiveRunOptions living{
       .stay_at_end = stays_up(options), .pace = options.pace, .is_manual = options.is_manual};
   living.assets = live::embedded_assets();
+  living.assets.push_back(command_name());
   living.server = std::move(server);
   if (options.step_budget_ms) living.step_budget = 1e-3 * *options.step_budget_ms;
   const scenario::Scenario scenario = loop->scenario();
@@ -148,6 +153,8 @@ Result<Outcome> run(const Options& options) {
   }
   Result<std::unique_ptr<run::ClosedLoop>> loop = planned(*scenario, &server);
   if (!loop) return fail(loop.error());
+  if (stays_up(options) && options.scenario_file.empty() && (*loop)->track().centre().is_closed())
+    (*loop)->apply(telemetry::Change{.name = "laps", .value = "0"});
   print_guard_notice(options, (*loop)->scenario().guard);
   print_notices((*loop)->scenario());
   return options.is_fast ? run_fast(options, **loop, controls)

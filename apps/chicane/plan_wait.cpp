@@ -20,11 +20,14 @@ constexpr std::chrono::milliseconds kGoodbyeOfPage{50};
 
 net::Content waiting_page(const std::string& line) {
   return {.content_type = "text/html; charset=utf-8",
-          .bytes =
-              fmt::format("<!doctype html><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"1\">"
-                          "<title>chicane</title><body style=\"font:1.2rem sans-serif;margin:3rem\">"
-                          "<h1>chicane</h1><p>{}</p><p>The dashboard follows here.</p>",
-                          line)};
+          .bytes = fmt::format(
+              "<!doctype html><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" "
+              "content=\"1\"><title>chicane</title>"
+              "<body style=\"color-scheme:light dark;margin:24px;font:14px/1.4 system-ui,sans-serif;"
+              "background:light-dark(#f6f7f8,#0f1419);color:light-dark(#17202a,#e8edf2)\">"
+              "<b>chicane</b><h1 style=\"font-size:28px;font-weight:500\">{}</h1><p>The dashboard follows "
+              "here.</p>",
+              line)};
 }
 
 }  // namespace

@@ -153,9 +153,10 @@ Rows controller_rows(Options& o) {
 }
 
 Rows world_rows() {
-  return {track_row(),
-          {"--laps", "N", "Laps to drive; 0 drives until stopped", Setting{"laps"}},
-          {"--seed", "N", "Seed of everything random", Setting{"seed"}}};
+  return {
+      track_row(),
+      {"--laps", "N", "Laps to drive; 0, the default of a dashboard, drives until stopped", Setting{"laps"}},
+      {"--seed", "N", "Seed of everything random", Setting{"seed"}}};
 }
 
 Rows drive_rows(Options& o) {

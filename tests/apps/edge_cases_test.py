@@ -202,6 +202,18 @@ class Files(unittest.TestCase):
         process.wait(10)
         self.assertNotEqual(process.returncode, 0)
 
+    def test_a_run_with_a_dashboard_goes_on_until_it_is_stopped(self):
+        process = subprocess.Popen([PROGRAM, "drive", "--port", "0", "--track", "oval", "--preset", "pid"], cwd=DATA, text=True, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, env={**environment(), "CHICANE_COMMAND": "./run.sh"})
+        said = ""
+        while "dashboard at" not in said:
+            said = process.stderr.readline()
+        page = re.search(r"http://\S+/", said)[0]
+        with urllib.request.urlopen(f"{page}command.txt") as answer:
+            self.assertEqual(answer.read(), b"./run.sh")
+        process.send_signal(signal.SIGINT)
+        self.assertIn("laps until stopped", process.communicate(timeout=30)[0])
+
     def test_ctrl_c_ends_planning(self):
         race = ("drive", "--fast", "--laps", "1", "--preset", "race")
         self.assert_ended_while_planning(signal.SIGINT, *race, "--track", "speedway")

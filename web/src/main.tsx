@@ -1,4 +1,5 @@
 import type { IWebSocket } from '@foxglove/ws-protocol';
+import { computed, effect } from '@preact/signals';
 import { render } from 'preact';
 import { toggleScheme } from './lib/appearance';
 import { addShortcuts, shortcutFor, ticks } from './lib/keys';
@@ -20,8 +21,10 @@ import { call, refresh } from './state/operate';
 import { rememberRun } from './state/other_run';
 import { toggleFrozen, toggleMark } from './state/plot_view';
 import { answerBy, programPage } from './state/program_page';
+import { run } from './state/run';
 import { schema } from './state/settings';
 import { refreshOnNewChoice, takeSettings } from './state/settings_session';
+import { programName } from './state/share';
 import { refreshText } from './state/shown';
 import { oneButton } from './state/stage_state';
 import { everyFrame } from './state/ticker';
@@ -43,8 +46,14 @@ async function loadSchema(): Promise<void> {
     const answer = await programPage('schema.json');
     if (answer !== null) schema.value = readSchema(JSON.parse(answer));
   } catch {
-    // The banner of the connection shows what is wrong.
+    // The banner of the connection gives the reason.
   }
+}
+
+/** Asked while the program is there: the command that starts it again is shown when it has ended. */
+async function loadProgramName(): Promise<void> {
+  const name = await programPage('command.txt').catch(() => null);
+  if (name) programName.value = name;
 }
 
 function tellPastLeft(messages: number): void {
@@ -69,7 +78,7 @@ function opener(): () => IWebSocket {
 function live(): Source {
   return new Connection(opener(), {
     open(name) {
-      // The program tells of its run from the beginning, whenever the page comes.
+      // The program sends its run from the beginning, whenever the page comes.
       const isOther = name !== session.name;
       beginSession(isOther);
       if (isOther) {
@@ -95,6 +104,10 @@ function live(): Source {
 
 void begin(live);
 refreshOnNewChoice(refresh);
+const isDriven = computed(() => run.value?.mode === 'drive' && link.value === 'live');
+effect(() => {
+  if (!__PAGE__ && isDriven.value) void loadProgramName();
+});
 listenToDriver();
 listenForLinks();
 followAddress();

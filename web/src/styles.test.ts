@@ -1,6 +1,8 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { expect, it } from 'vitest';
+import { TONES } from './parts/plot';
+import { toneOf } from './views/plot_colours';
 
 const root = new URL('.', import.meta.url).pathname;
 const sheets = readdirSync(root, { recursive: true })
@@ -11,7 +13,7 @@ const COLOUR = /#[0-9a-f]{3,8}\b(?=[;, )])|\b(?:rgb|hsl|oklch)a?\(/gi;
 const DISTANCE = /\b(?:gap|padding|margin)[a-z-]*:[^;{}]*?\b\d*\.?\d+(?:px|r?em)\b/g;
 const SIZE = /\bfont(?:-size)?:[^;{}]*?\b\d*\.?\d+(?:px|r?em)\b/g;
 /** What follows from the shape of a thing: half of its own size, a hairline, or units of its own drawing. */
-const OWN_SHAPE = /\.start-mark|\.pad-stick|\.segments|\.switch|\.loss-map text|\.mini-sectors|\.timeline-marks/;
+const OWN_SHAPE = /\.start-mark|\.pad-stick|\.segments|\.switch|\.loss-map text|\.timeline-marks/;
 
 it('colours, distances and sizes of text come from tokens.css', () => {
   const found = sheets.flatMap((name) => {
@@ -34,4 +36,6 @@ it('every token that is used is there', () => {
       .map((token) => `${name}: ${token}`),
   );
   expect(missing).toEqual([]);
+  const ofCharts = [...Object.values(TONES), ...Array.from({ length: 10 }, (_, i) => toneOf(i).slice(6, -1))];
+  expect(ofCharts.filter((token) => !tokens.includes(`--${token}:`))).toEqual([]);
 });

@@ -35,7 +35,7 @@ interface ToldRun {
   readonly steps?: Readonly<Record<'count' | 'p50_us' | 'p99_us' | 'longest_us' | 'mean_iterations', number>>;
 }
 
-/** A message from lists, one for each of its fields; what is missing is as in `unknown`. */
+/** A message from lists, one for each of its fields; missing fields are as in `unknown`. */
 function messageOf<T extends object>(unknown: T, lists: Lists): T {
   const numbers = (name: string): number[] =>
     (lists[name] ?? []).map((each) => (typeof each === 'number' ? each : NaN));

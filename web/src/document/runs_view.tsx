@@ -98,7 +98,7 @@ function Engineer({ of: { steps, interventions, gated, duration, settings } }: {
   return (
     <details>
       <summary>Engineer</summary>
-      <dl>
+      <dl class="facts-of-run">
         {facts.map(([name, value]) => (
           <div key={name}>
             <dt>{name}</dt>

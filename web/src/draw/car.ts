@@ -14,7 +14,7 @@ export interface CarShape {
   readonly halfWidth: number;
   readonly wheelLength: number;
   readonly wheelWidth: number;
-  readonly size: number; // of details, against those of a full-size car
+  readonly size: number; // scale of details; 1 for a full-size car
   readonly wheels: readonly Wheel[]; // front left, front right, rear left, rear right
 }
 

@@ -20,7 +20,7 @@ export interface Scene {
   readonly reference: readonly Point[];
   readonly trace: Line; // where the car has been
   readonly plan: Line; // from the car on
-  readonly size: number; // of lines and paint, against those of full-size cars
+  readonly size: number; // scale of lines and paint; 1 for full-size cars
   readonly hindsight: Hindsight | null; // a past plan and the path driven since
   readonly faults: readonly Point[]; // where faults began
   readonly ghost: Pose | null; // drawn in the car's shape

@@ -3,6 +3,6 @@ const FULL_LENGTH_M = 4.5;
 /** Shorter cars are model cars, on roads of their size [m]. */
 const SMALL_M = 2;
 
-/** Of lines, marks and paint on the road, against those of full-size cars: 1, and less for model cars. */
+/** Scale of lines, marks and paint on the road: 1 for full-size cars, less for model cars. */
 export const paintSize = ({ body_length_m: length }: { readonly body_length_m: number }): number =>
   length > 0 && length < SMALL_M ? length / FULL_LENGTH_M : 1;

@@ -4,7 +4,7 @@ import { signal as makeSignal, type Signal } from '@preact/signals';
 // reset() puts back what has ended. layers.test.ts refuses state beside it.
 
 /**
- * 'moment': gathered up to this moment of the run; ends when the run begins anew, or a recording jumps.
+ * 'moment': gathered up to this moment of the run; ends when the run begins again, or a recording jumps.
  * 'run': ends when another run, or another recording, is shown.
  * 'page': stays.
  */
@@ -36,7 +36,7 @@ export const store = {
     return made;
   },
 
-  /** What has to be done beside that, in memory that is not made anew. */
+  /** Further work at that moment, in memory that is kept. */
   onReset(lasts: Lasts, reset: () => void): void {
     parts.push({ lasts, reset, peek: () => null });
   },

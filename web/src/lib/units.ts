@@ -7,41 +7,15 @@ export interface SpeedUnit {
   readonly perMps: number; // of the unit in one m/s
   readonly axisStep: number; // of plots [unit]
   readonly axisLeast: number; // least height of a plot's axis [unit]
-  readonly scaleTop: number; // where the colours of a plan end [unit]
-  readonly scaleTopOfModels: number; // the same for small model cars
 }
 
 /** mph in one m/s: 3600 s/h over 1609.344 m/mile. */
 export const MPH = 3600 / 1609.344;
 
 export const SPEED_UNITS: readonly SpeedUnit[] = [
-  {
-    name: 'mph',
-    spoken: 'miles per hour',
-    perMps: MPH,
-    axisStep: 10,
-    axisLeast: 40,
-    scaleTop: 120,
-    scaleTopOfModels: 30,
-  },
-  {
-    name: 'km/h',
-    spoken: 'kilometres per hour',
-    perMps: 3.6,
-    axisStep: 20,
-    axisLeast: 60,
-    scaleTop: 200,
-    scaleTopOfModels: 50,
-  },
-  {
-    name: 'm/s',
-    spoken: 'metres per second',
-    perMps: 1,
-    axisStep: 5,
-    axisLeast: 20,
-    scaleTop: 55,
-    scaleTopOfModels: 14,
-  },
+  { name: 'mph', spoken: 'miles per hour', perMps: MPH, axisStep: 10, axisLeast: 40 },
+  { name: 'km/h', spoken: 'kilometres per hour', perMps: 3.6, axisStep: 20, axisLeast: 60 },
+  { name: 'm/s', spoken: 'metres per second', perMps: 1, axisStep: 5, axisLeast: 20 },
 ];
 
 const chosen = persisted<SpeedUnit['name']>('speed-unit', 'mph', (value) =>

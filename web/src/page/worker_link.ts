@@ -59,7 +59,7 @@ export class WorkerLink {
   #socket: WorkerSocket | undefined;
   #next = 1;
 
-  /** `fail` is told when the run cannot begin. */
+  /** `fail` is called with the reason when the run cannot begin. */
   constructor(fail: (sentence: string) => void, start: () => Promise<Port> = startWorker) {
     this.#fail = fail;
     this.#port = start();

@@ -37,10 +37,10 @@ export function CornerTable({ comparison, at, pick }: Options) {
                   name
                 )}
               </th>
-              <td>
+              <td class="bar-of-cost">
                 <i class={toneOf(lost)} style={{ width: `${(100 * Math.abs(lost)) / most}%` }} />
               </td>
-              <td>{signed(lost)}</td>
+              <td class="cost">{signed(lost)}</td>
               <td class="why">{whyOf(corner)}</td>
             </tr>
           );

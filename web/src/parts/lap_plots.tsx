@@ -154,7 +154,7 @@ function gapRow({ gap, b }: Comparison): Row {
   };
 }
 
-/** The rows that A has; `isEngineer`: those of solver and controller too. */
+/** The rows that A has; `isEngineer`: also rows of solver and controller. */
 export function rowsOf(comparison: Comparison, unit: SpeedUnit, isEngineer: boolean): Row[] {
   const specs = [speedRow(unit), ...DRIVER_ROWS, ...(isEngineer ? ENGINEER_ROWS : [])];
   const scaled = (values: Float64Array | null, factor: number): Float64Array | null =>

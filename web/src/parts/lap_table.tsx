@@ -49,7 +49,7 @@ export function LapTable({ of = '', laps, limit, start = NO_START, pick }: Optio
         </thead>
         <tbody>
           {limit && (
-            <tr class="limit" data-testid="limit">
+            <tr class="limit other" data-testid="limit">
               <th scope="row">limit</th>
               <td>{lapTime(limit.lap_time_s, 3)}</td>
               <td />

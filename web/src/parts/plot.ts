@@ -1,15 +1,15 @@
 import { ticksOf } from '../draw/axis';
 import { extent } from '../lib/math';
 
-/** What a colour says, and its name in base.css. */
+/** Tokens of the colours of a series. */
 export const TONES = {
-  ink: 'text',
-  other: 'series-2',
-  good: 'good',
-  bad: 'bad',
-  soft: 'control',
-  faint: 'line',
-  paper: 'panel',
+  ink: 'ink',
+  other: 'other',
+  good: 'won',
+  bad: 'lost',
+  soft: 'edge',
+  faint: 'rule',
+  paper: 'paper',
 } as const;
 
 /** 'map': both axes to the same scale. */
@@ -47,7 +47,7 @@ const MOST_MAP_HEIGHT = 0.62; // of its width
 const PAD = 0.04;
 const TICK_EVERY = { x: 80, y: 36 } as const;
 
-/** Every `step`th value from `first`, and behind `length` after it; NaN for what is not known. */
+/** Every `step`th value from `first`, and behind `length` after it; NaN where unknown. */
 const every = ({ values }: Series, step: number, first: number, length = first): number[] =>
   values.flatMap((value, i) =>
     i % step === first

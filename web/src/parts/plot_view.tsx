@@ -1,7 +1,6 @@
 import { useLayoutEffect, useRef, useState } from 'preact/hooks';
 import { onScreen } from '../lib/on_screen';
 import { tidy } from '../lib/scale';
-import './plot.css';
 import { dotSize, type Frame, frameOf, MARGIN, type Plot, pathOf, type Series, TONES } from './plot';
 
 const FIRST_WIDTH = 512; // until the page has measured it [px]

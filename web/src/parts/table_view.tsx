@@ -34,7 +34,7 @@ function Contents({ cell }: { cell: Cell }) {
   );
 }
 
-/** Colour and hint of a cell; the colours are those of document.css. */
+/** Class and hint of a cell; document.css has the colours. */
 function looks(cell: Cell | undefined, isNumber: boolean) {
   const more = typeof cell === 'object' ? cell : undefined;
   const kinds = [

@@ -10,7 +10,7 @@ export interface SchemaEntry {
   readonly maximum: number | null;
   readonly choices: readonly string[];
   readonly default: number | boolean | string | null;
-  /** What the run started with; null for what is no setting of the experiment, and for older programs. */
+  /** Value at the start of the run; null for controls of the run, and for older programs. */
   readonly start: number | boolean | string | null;
   readonly meaning: string;
   /** Of a switch for a fault; else absent. */
@@ -21,7 +21,7 @@ export interface SchemaEntry {
   readonly is_fixed: boolean;
 }
 
-/** What a fault does unless it is told otherwise, and the range of its strength; no meaning: it has no strength. */
+/** Default duration and strength of a fault, and the range of its strength; no meaning: it has no strength. */
 export interface FaultEntry {
   readonly group: string;
   readonly duration_s: number;

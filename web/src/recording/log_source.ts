@@ -243,7 +243,7 @@ export class LogSource implements Source {
   }
 }
 
-/** Where runs begin: another one is told, or laps are counted anew. */
+/** Where runs begin: another run is described, or laps are counted from 1 again. */
 export function runStarts(messages: readonly LoggedMessage[]): number[] {
   const starts = [0];
   let lap = 0;

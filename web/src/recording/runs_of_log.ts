@@ -12,7 +12,7 @@ export interface LoggedRun {
   readonly samples: LapSamples;
 }
 
-/** The runs of a recording: another one begins where time goes back or another track, car or controller is told. */
+/** Runs of a recording: another one begins where time goes back, or track, car or controller change. */
 export async function runsOf(log: McapLog): Promise<LoggedRun[]> {
   const runs: Omit<LoggedRun, 'name' | 'recording'>[] = [];
   let last: Frame | null = null;

@@ -1,4 +1,3 @@
-import './timeline.css';
 import { lapTime } from '../lib/format';
 import { notice } from '../state/link';
 import { attach } from '../state/operate';
@@ -59,7 +58,7 @@ export function TimelineView() {
   if (!source) return null;
   const length = duration.value;
   return (
-    <section class="timeline" aria-label="Time line of the recording">
+    <section class="timeline row" aria-label="Time line of the recording">
       <button
         type="button"
         class="icon"

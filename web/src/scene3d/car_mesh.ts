@@ -338,7 +338,7 @@ export type CarLooks = CarSize & { readonly car?: string };
 
 /**
  * Six bodies: saloon, van, coupé, Indy car, model car, and for all others an open single-seater, whose front wheels are
- * visible from every camera. Axles, track, tyres, length and width are those of the car; the rest is invented.
+ * visible from every camera. Axles, track, tyres, length and width are taken from the car; the rest is invented.
  */
 export function carModel(size: CarLooks): CarModel {
   const body = bodyOf(size);

@@ -110,7 +110,7 @@ export class LapRecorder {
     this.#add(frame);
   }
 
-  /** A reset discards the lap in progress; the best lap stays, but the run's own count begins anew. */
+  /** A reset discards the lap in progress; the best lap stays, but the run's own count begins again. */
   #reset(): void {
     this.#begin(NaN, false, 0);
     if (this.best) this.best = this.best.named(`best lap before the reset ${lapTime(this.best.lapTime, 3)}`);

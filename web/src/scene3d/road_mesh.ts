@@ -217,8 +217,8 @@ export interface RoadMeshes {
 }
 
 /**
- * `lines` as tidyLines() returns them; `kerb` is the width of the kerbs, none at 0 [m]. What is painted on the road has
- * `size` of a full-size road's: that of the car.
+ * `lines` as tidyLines() returns them; `kerb` is the width of the kerbs, none at 0 [m]. Paint on the road has `size` of
+ * a full-size road's, the scale of the car.
  */
 export function roadMeshes(lines: RoadLines, isClosed: boolean, kerb: number, paint: RoadPaint, size = 1): RoadMeshes {
   if (size === 1) return fullSizeMeshes(lines, isClosed, kerb, paint);

@@ -31,7 +31,7 @@ import { type FutureGrid, futureCourses } from './what_if_answer';
 export const chosen = store.signal<readonly [string | null, string | null]>('run', [null, null]);
 
 const LIMIT = 'limit';
-/** The points of this road: those of the laps, or, before the start line is known, from where the first lap begins. */
+/** Grid of this road: of the laps, or, before the start line is known, from where the first lap begins. */
 function gridNow(): FutureGrid {
   const isLineKnown = Number.isFinite(lapSamples.s(0));
   const { points } = lapSamples;

@@ -18,7 +18,7 @@ import { receiveSituation } from './situation';
 /** Called with each frame on arrival, also while the page is hidden; `now` as of performance.now() [ms]. */
 export const frameListeners = new Set<(frame: Frame, now: number) => void>();
 
-/** Called when the run that is shown has begun anew. */
+/** Called when the run that is shown has begun again. */
 export const restartListeners = new Set<() => void>();
 
 /** Called when all frames of the run follow once more, because older ones have come. */
@@ -95,7 +95,7 @@ function receiveFrame(frame: Frame, now: number): void {
 
 /**
  * So many frames of before are still to come. What has come is put before the present from time to time, and when all
- * of it is here: history, samples of laps and events are made anew from all frames.
+ * of it is here: history, samples of laps and events are computed again from all frames.
  */
 export function receivePastLeft(left: number, now: number): void {
   const frames = past.take(left, now);
@@ -119,8 +119,8 @@ export function receivePastLeft(left: number, now: number): void {
 }
 
 /**
- * Messages follow that tell of a run from its beginning: clears what is known. The last frame of the same run stays on
- * the screen until they come.
+ * Clears the state before messages that describe a run from its beginning. The last frame of the same run stays on the
+ * screen until they come.
  */
 export function beginSession(isOtherRun = true): void {
   store.reset(isOtherRun ? 'run' : 'moment');

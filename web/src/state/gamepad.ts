@@ -1,7 +1,7 @@
 import type { Stick } from './manual';
 
 // A gamepad as the wheel: the left stick steers, the right trigger drives, the left one brakes, Start takes the wheel
-// and hands it back. Browsers tell of a gamepad once one of its buttons was pressed.
+// and hands it back. Browsers report a gamepad once one of its buttons was pressed.
 
 const DEAD = 0.08; // of the stick's way, about its middle
 const [LEFT_TRIGGER, RIGHT_TRIGGER, START] = [6, 7, 9]; // of the standard mapping

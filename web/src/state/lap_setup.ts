@@ -3,7 +3,7 @@ import { nameInWords } from '../lib/words';
 import type { Setting } from '../protocol/source';
 import type { Lap } from '../protocol/topics';
 
-// With what a lap was driven: settings that were changed, who drove, faults. The program tells it with each lap.
+// Conditions of a lap: settings that were changed, who drove, faults. The program sends them with each lap.
 
 type Setup = Pick<Lap, 'setting_names' | 'setting_values' | 'is_mixed' | 'by_hand_share' | 'faults'>;
 
@@ -51,7 +51,7 @@ export interface Difference {
   readonly b: string;
 }
 
-/** What differed between two laps; where a value is not known it is told as the one of the start. */
+/** What differed between two laps; an unknown value is named by the value at the start. */
 export function differences(a: Setup, b: Setup, start: ReadonlyMap<string, Setting>): Difference[] {
   const [first, second] = [changesOf(a, start), changesOf(b, start)];
   const began = (key: string): string => {

@@ -31,7 +31,7 @@ store.onReset('moment', () => {
   live.pastPlans = [];
 });
 
-/** Clears what is made of frames alone. */
+/** Clears all state that is computed from frames alone. */
 export function forgetRows(): void {
   live.plots.clear();
   live.trace.clear();

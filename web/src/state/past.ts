@@ -4,8 +4,8 @@ import type { Frame } from '../protocol/topics';
 const SHOWN_EVERY_MS = 1000;
 
 /**
- * Frames of before that a page is sent behind those of the present, the newest first, until all are here; and those of
- * the present since it came. Together they are what is known of the run.
+ * Frames of the run before the page was opened, which arrive behind the present ones, the newest first; and the frames
+ * since then. Together they are all known frames of the run.
  */
 export class Past {
   #before: Frame[] = []; // the newest first
@@ -23,7 +23,7 @@ export class Past {
     this.#isExpected = true;
   }
 
-  /** The run has begun anew: what is still on its way is of the one before. */
+  /** The run has begun again: frames still under way belong to the one before. */
   drop(): void {
     this.#before = [];
     this.#since = [];

@@ -20,7 +20,7 @@ import type { Wish } from './what_if';
 // A race of two settings on one stage: the program drives a second car beside the run's own, the page draws it as the
 // ghost, and asks for its laps.
 
-/** What the program tells of the race; null without one. */
+/** State of the race; null without one. */
 export const race = store.signal<Race | null>('page', null);
 /** The settings of B. */
 export const raced = store.signal<readonly Wish[]>('page', []);
@@ -30,7 +30,7 @@ export const canRace = (): boolean => can('/rival');
 
 const AHEAD_S = 0.6; // shown beyond the newest pose at most, by its speed [s]
 
-/** B's pose when the run's newest frame was; B is told a moment later, and goes on as it went until then. */
+/** B's pose at the time of the run's newest frame; B's poses arrive later, and are extrapolated until then. */
 export function poseOf(poses: Poses, time: number, into: GhostPose): boolean {
   const times = poses.time_s;
   const last = times.length - 1;

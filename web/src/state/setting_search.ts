@@ -27,7 +27,7 @@ export function labelOf({ key, unit }: Pick<SchemaEntry, 'key' | 'unit'>): strin
 const wordsOf = (text: string): string[] => text.toLowerCase().trim().split(/\s+/);
 
 /** Every word of the search must be in the name, meaning or unit. */
-export function isFound(entry: Pick<Described, 'key' | 'meaning' | 'group'>, words: string): boolean {
+function isFound(entry: Pick<Described, 'key' | 'meaning' | 'group'>, words: string): boolean {
   const text = `${entry.key} ${nameInWords(entry.key)} ${entry.meaning} ${entry.group}`.toLowerCase();
   return wordsOf(words).every((word) => text.includes(word));
 }
@@ -41,7 +41,7 @@ function distance(entry: Described, words: string): number {
   return wordsOf(words).every((word) => label.includes(word)) ? 2 : 3;
 }
 
-/** The settings of which all words tell, the best names first. */
+/** Settings that contain all words, the best names first. */
 export function settingsFound<T extends Described>(all: readonly T[], words: string): readonly T[] {
   if (words.trim() === '') return all;
   return all
@@ -49,11 +49,4 @@ export function settingsFound<T extends Described>(all: readonly T[], words: str
     .map((entry) => ({ entry, far: distance(entry, words) }))
     .sort((a, b) => a.far - b.far)
     .map(({ entry }) => entry);
-}
-
-/** The one setting that words mean: the only one that is called so, or the only one found; null for several. */
-export function settingMeant<T extends Described>(found: readonly T[], words: string): T | null {
-  const named = found.filter((entry) => distance(entry, words) === 0);
-  const one = named.length > 0 ? named : found;
-  return one.length === 1 ? (one[0] ?? null) : null;
 }

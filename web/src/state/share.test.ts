@@ -11,6 +11,7 @@ import {
   filesChosen,
   fixedChanges,
   linkTo,
+  programName,
   sharedNow,
   textsIn,
   wanted,
@@ -98,6 +99,9 @@ describe('a link to a run', () => {
     expect(again(2, 15, 4777)).toBe(' --laps 2 --pace 15 --port 4777');
     expect(again(0, 1, 4567)).toBe('');
     expect(again(0, NaN, 0)).toBe('');
+    programName.value = './run.sh';
+    expect(commandAgain(sharedNow.value, { laps: 2, pace: 1, port: 0 })).toMatch(/^\.\/run\.sh drive --.* --laps 2$/);
+    programName.value = 'chicane';
   });
 
   it('cannot name a file', () => {

@@ -65,14 +65,17 @@ export function linkTo({ choices, changes }: SharedRun, page: string): string {
   return `${page}${PREFIX}${query}`;
 }
 
+/** Name by which the program was started: "./run.sh", where that started it. */
+export const programName = store.signal('page', 'chicane');
+
 const quoted = (value: Setting): string => (/^[\w.+-]+$/.test(String(value)) ? String(value) : `'${value}'`);
 
-/** The command that begins a run. The controller is told where it is not the preset's. */
+/** The command that begins a run. It names a controller only where that is not the preset's. */
 export function commandOf({ choices, changes }: SharedRun): string {
   const given = schema.value.find(({ key }) => key === 'controller')?.default;
   const isTold = (key: string, value: Setting): boolean =>
     key === 'controller' ? value !== given : key === 'seed' ? value !== 1 : true;
-  const words = ['chicane drive'];
+  const words = [`${programName.value} drive`];
   for (const key of ['preset', 'track', 'car', 'controller', 'seed']) {
     const value = choices.get(key);
     if (value !== undefined && isTold(key, value)) words.push(`--${key} ${quoted(value)}`);
@@ -81,9 +84,9 @@ export function commandOf({ choices, changes }: SharedRun): string {
   return words.join(' ');
 }
 
-/** How a run is driven beside what is in a link. */
+/** Options of a run that a link does not hold. */
 export interface DrivenWith {
-  readonly laps: number; // 0: as many as the program drives without being told
+  readonly laps: number; // 0: until it is stopped, as without an option
   readonly pace: number;
   readonly port: number;
 }

@@ -13,7 +13,7 @@ const kept = store.data('moment', () => ({ recent: [] as Situation[] }));
 
 const timeOf = ({ stamp }: Situation): number => stamp.sec + stamp.nsec / 1e9;
 
-/** Keeps those of the last seconds, which may be shown again. */
+/** Keeps the situations of the last seconds, which may be shown again. */
 export function receiveSituation(message: Situation): void {
   const last = kept.recent.at(-1);
   if (last && timeOf(message) < timeOf(last)) kept.recent = [];

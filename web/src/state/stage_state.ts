@@ -25,7 +25,7 @@ export const stateWord = computed<string>(() => {
   return behind.value > 0 ? `${behind.value} s behind` : 'Live';
 });
 
-/** Whether what is shown is old: stage and strip are dimmed. */
+/** Whether the picture is old: stage and strip are dimmed. */
 export const isStale = computed(
   () => (run.value?.end ?? '') === '' && replayLeft.value === null && (link.value === 'lost' || silence.value > 0),
 );
@@ -62,9 +62,12 @@ const SOON = 400;
 export const pills = computed<readonly string[]>(() => {
   if (link.value === 'lost') return [];
   const frame = shown.value;
-  const asked = settings.value.get('run.pace'); // a paused recording has no frame that tells a new one
+  const asked = settings.value.get('run.pace'); // a paused recording has no frame with a new pace
   const pace = typeof asked === 'number' ? asked : (frame?.pace ?? NaN);
+  const laps = Number(settings.value.get('laps')); // 0: until it is stopped
+  const isLast = laps > 0 && run.value?.mode === 'drive' && run.value.end === '' && frame?.lap === laps - 1;
   return [
+    ...(isLast ? ['Last lap'] : []),
     ...((run.value?.building ?? '') === '' ? [] : [`Next: ${run.value?.building} …`]),
     ...(frame?.is_manual ? ['By hand'] : []),
     ...(frame ? faultsInWords(frame, run.value?.fault_names ?? []) : []),

@@ -86,7 +86,7 @@ export function DriveBothButton() {
   const isReady = toAsk.value.length > 0 && canDriveBoth();
   if (share !== null) {
     return (
-      <div class="going">
+      <div class="row">
         <progress max={1} value={share} aria-label="Computing both futures" />
         <button type="button" onClick={forgetAnswer}>
           Cancel
@@ -97,7 +97,7 @@ export function DriveBothButton() {
   return (
     <button
       type="button"
-      class="go"
+      class="go primary"
       disabled={!isReady}
       title={isReady ? 'The run as it is, and with the changes, from the same moment' : 'Change a setting first'}
       onClick={driveBoth}
@@ -130,11 +130,11 @@ export function AnswerView() {
   const isKept = kept.value === asked.value;
   const fixed = asked.value.map(({ key }) => key).filter((key) => entryOf(key)?.is_fixed === true);
   return (
-    <div class="answer">
+    <div class="answer stack">
       <p role="status" data-testid="what-if-verdict">
         <span class="other">{changesInWords(asked.value)}</span>: {verdictOf(found, both ? -both.total : NaN)}
       </p>
-      <div class="buttons">
+      <div class="row">
         {replayLeft.value === null ? (
           <button
             type="button"

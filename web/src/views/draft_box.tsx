@@ -9,7 +9,7 @@ export function DraftBox(props: {
   readonly label: string;
   readonly value: string;
   readonly disabled?: boolean;
-  /** When it is heard of what is typed: at each key, or once it is complete. */
+  /** When the text is reported: at each key, or once it is complete. */
   readonly when: 'typed' | 'complete';
   readonly onText: (text: string) => void;
 }) {

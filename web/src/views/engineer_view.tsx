@@ -1,14 +1,13 @@
 import { hasBit } from '../lib/bits';
-import { fixed, plural } from '../lib/format';
-import { gateInWords, LIMITERS, nameInWords, type Sentence, sightInWords, worstInWords } from '../lib/words';
+import { fixed } from '../lib/format';
+import { LIMITERS, nameInWords } from '../lib/words';
 import { Column } from '../state/columns';
 import { bitSharesOf, sharesOf } from '../state/explain';
 import { learnedOf } from '../state/learned';
 import { live } from '../state/live';
 import { run } from '../state/run';
-import { solverInWords } from '../state/sentence';
 import { shown } from '../state/shown';
-import { situation, situationInWords } from '../state/situation';
+import { ControllerView } from './controller_view';
 import { EventsView } from './events_view';
 import { PlotsView } from './plots_view';
 
@@ -31,7 +30,7 @@ function Limiters() {
   const shares = sharesOf(live.plots, Column.speed_limiter, LIMITERS.length, WINDOW_S);
   const rows = LIMITERS.map(({ short }, i) => ({ short, share: shares[i] ?? 0 })).filter(({ share }) => share > 0.005);
   return (
-    <section class="block" aria-label="What limits the speed">
+    <section class="stack" aria-label="What limits the speed">
       <h2>What limited the speed, last {WINDOW_S} s</h2>
       <table>
         <tbody>
@@ -55,7 +54,7 @@ function Constraints() {
   if (names.length === 0) return null;
   const shares = bitSharesOf(live.plots, Column.active_now, names.length, WINDOW_S);
   return (
-    <section class="block" aria-label="Constraints">
+    <section class="stack" aria-label="Constraints">
       <h2>Constraints</h2>
       <table class="constraints">
         <thead>
@@ -74,7 +73,7 @@ function Constraints() {
             return (
               <tr key={name} class={isNow ? 'now' : isAhead ? 'ahead' : ''}>
                 <th scope="row">{nameInWords(name)}</th>
-                <td>{isNow ? <span class="active-mark now">now</span> : <span class="soft">–</span>}</td>
+                <td>{isNow ? <span class="active-mark">now</span> : <span class="soft">–</span>}</td>
                 <td>{isAhead ? <span class="active-mark">ahead</span> : <span class="soft">–</span>}</td>
                 <td>
                   <Share share={shares[i] ?? 0} />
@@ -88,64 +87,16 @@ function Constraints() {
   );
 }
 
-function Row({ label, sentence }: { label: string; sentence: Sentence | null }) {
-  return (
-    <div class="row">
-      <dt>{label}</dt>
-      <dd>
-        {sentence ? <span class={`severity ${sentence.severity}`} aria-hidden="true" /> : null}
-        {sentence?.text ?? '–'}
-      </dd>
-    </div>
-  );
-}
-
-function Answer() {
-  const frame = shown.value;
-  // Controllers such as PID have no solver.
-  const solved = frame && (frame.iterations > 0 || /mpc$/.test(run.value?.controller ?? '')) ? frame : null;
-  const worst = solved ? worstInWords(solved, run.value?.constraint_names ?? []) : null;
-  const solve = solved ? solverInWords(solved) : null;
-  const [optimality, violation] = [solved?.stationarity ?? NaN, solved?.violation ?? NaN];
-  const numbers = [
-    solved && solved.iterations > 0 ? plural(solved.iterations, 'iteration') : '',
-    Number.isFinite(optimality) ? `optimal to ${optimality.toExponential(1)}` : '',
-    Number.isFinite(violation) ? `constraints ${violation === 0 ? 'exact' : `to ${violation.toExponential(1)}`}` : '',
-  ];
-  return (
-    <section class="block" aria-label="Solution">
-      <h2>Solution</h2>
-      <dl class="rows">
-        <Row label="Solver" sentence={solve} />
-        <Row
-          label="Constraints"
-          sentence={
-            solved
-              ? worst
-                ? { severity: 'warning', text: worst }
-                : { severity: 'good', text: 'All constraints hold' }
-              : null
-          }
-        />
-        <Row label="Driving" sentence={situation.value && situationInWords(situation.value)} />
-        <Row label="Gate" sentence={frame ? gateInWords(frame) : null} />
-        <Row label="Sight" sentence={frame ? sightInWords(frame.has_map, frame.sight_m) : null} />
-      </dl>
-      <p class="soft">{numbers.filter(Boolean).join(' · ')}</p>
-    </section>
-  );
-}
-
 /** What the run has found out about its car; nothing where it does not learn. */
 function LearnedCar() {
   const rows = shown.value ? learnedOf(shown.value) : [];
   if (rows.length === 0) return null;
   return (
-    <section class="block" aria-label="The car, as it answers">
+    <section class="stack" aria-label="The car, as it answers">
       <h2>The car, as it answers</h2>
-      <dl data-testid="learned">
+      <dl class="rows" data-testid="learned">
         {rows.map(({ label, text }) => (
-          <div class="row" key={label}>
+          <div key={label}>
             <dt>{label}</dt>
             <dd>{text}</dd>
           </div>
@@ -159,12 +110,12 @@ function LearnedCar() {
 /** What solver and controller did, over time, and in words. */
 export function EngineerView() {
   return (
-    <section class="engineer-parts" aria-label="Engineer">
+    <section class="engineer-parts stack" aria-label="Engineer">
       <PlotsView />
       <div class="blocks">
         <Limiters />
         <Constraints />
-        <Answer />
+        <ControllerView />
         <LearnedCar />
         <EventsView />
       </div>

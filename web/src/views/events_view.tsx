@@ -4,14 +4,14 @@ import { events } from '../state/event_log';
 /** The events of the run, newest first. */
 export function EventsView() {
   return (
-    <section class="block" aria-label="Events">
+    <section class="stack" aria-label="Events">
       <h2>Events</h2>
       {events.value.length === 0 ? (
         <p class="soft">No events so far.</p>
       ) : (
         <ol class="events" tabIndex={0}>
           {events.value.map(({ id, severity, text, time, duration }) => (
-            <li key={id}>
+            <li class="row" key={id}>
               <span class="event-time">{fixed(time, 2)} s</span>
               <span class={`severity ${severity}`} aria-hidden="true" />
               <span>{text}</span>

@@ -33,7 +33,7 @@ const GROUPS: readonly { readonly name: string; readonly title: string }[] = [
   { name: '', title: 'Others' },
 ];
 
-/** Shorter faults are over before anybody has seen them: the page asks for this, unless told otherwise [s]. */
+/** Duration that the page asks for by default [s]: shorter faults end before anybody has seen them. */
 const LEAST_S = 3;
 const DURATIONS_S = [0.1, 600] as const;
 
@@ -56,7 +56,7 @@ function choose(
   chosen.value = new Map([...chosen.value, [key, now]]);
 }
 
-/** The faults of the schema; without a schema those of the run, without descriptions. */
+/** Faults of the schema; without a schema, faults of the run, without descriptions. */
 export const allFaults = computed<readonly Fault[]>(() => {
   const names = run.value?.fault_names ?? [];
   const active = shown.value?.active_faults ?? 0;
@@ -99,8 +99,8 @@ function Parameters({ fault, entry }: { fault: Fault; entry: FaultEntry }) {
   const { key, name } = fault;
   const { duration, strength } = choiceOf(key, entry);
   return (
-    <div class="fault-parameters">
-      <span class="parameter">
+    <div class="row parameter">
+      <span class="row parameter">
         <span>for</span>
         <DraftBox
           class="number-box"
@@ -112,7 +112,7 @@ function Parameters({ fault, entry }: { fault: Fault; entry: FaultEntry }) {
         <span>s</span>
       </span>
       {entry.strength_meaning !== '' && (
-        <span class="parameter">
+        <span class="row parameter">
           <DraftBox
             class="number-box"
             label={`Strength of ${name}: ${entry.strength_meaning}`}
@@ -153,12 +153,12 @@ function FaultButton({ fault }: { fault: Fault }) {
 /** All faults with what they are, how long and how strong. */
 function FaultTable({ all }: { all: readonly Fault[] }) {
   return (
-    <div class="fault-groups">
+    <div class="stack">
       {GROUPS.map(({ name: group, title }) => {
         const members = all.filter(({ entry }) => (entry?.group ?? '') === group);
         if (members.length === 0) return null;
         return (
-          <section key={group} class="fault-group" aria-label={title}>
+          <section key={group} class="fault-group stack" aria-label={title}>
             <h3>{title}</h3>
             <ul>
               {members.map((fault) => (
@@ -183,12 +183,12 @@ export function FaultsView() {
   if (all.length === 0) return null;
   const isOfFirst = ({ key }: Fault): boolean => FIRST.includes(key.replace(/^fault\./, ''));
   return (
-    <section class="faults" aria-label="Faults">
+    <section class="faults stack" aria-label="Faults">
       <h2>Faults</h2>
       {showsAll.value ? (
         <FaultTable all={all} />
       ) : (
-        <div class="chips">
+        <div class="row">
           {all
             .filter((each) => isOfFirst(each) || each.isActive)
             .map((fault) => (
@@ -196,7 +196,7 @@ export function FaultsView() {
             ))}
         </div>
       )}
-      <div class="buttons">
+      <div class="row">
         <button type="button" class="plain" onClick={() => (showsAll.value = !showsAll.value)}>
           {showsAll.value ? 'Fewer' : `All ${all.length}, how long and how strong`}
         </button>

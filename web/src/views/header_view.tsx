@@ -63,12 +63,12 @@ function Notes() {
   return (
     <div aria-live="polite">
       {otherRun.value && link.value === 'live' && (
-        <div class="note" data-testid="other-run">
+        <div class="note row apart" data-testid="other-run">
           <p>
             <b>Another run.</b> The program was started again with its own choice. Before, this page showed{' '}
             {inWords(otherRun.value)}.
           </p>
-          <div class="buttons">
+          <div class="row">
             {canSet('track') && (
               <button type="button" onClick={() => void chooseBefore()}>
                 Drive that again
@@ -81,7 +81,7 @@ function Notes() {
         </div>
       )}
       {notice.value !== null && (
-        <div class="note" data-testid="notice">
+        <div class="note row apart" data-testid="notice">
           <p>{notice.value}</p>
           <button type="button" onClick={() => (notice.value = null)}>
             Dismiss

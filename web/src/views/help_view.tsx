@@ -29,13 +29,14 @@ export function Dialog({
   return (
     // biome-ignore lint/a11y/useKeyWithClickEvents: the browser closes a dialog on Escape
     <dialog
+      class="sheet"
       ref={element}
       aria-label={title}
       onClose={onClose}
       onClick={(event) => event.target === element.current && onClose()}
     >
       {isOpen && (
-        <div class="dialog-body">
+        <div class="dialog-body stack">
           <h2>{title}</h2>
           {children}
         </div>
@@ -54,7 +55,7 @@ export function HelpView() {
         {GROUPS.map((group) => (
           <section key={group} aria-label={group}>
             <h3>{group}</h3>
-            <dl class="keys-list">
+            <dl class="rows">
               {allShortcuts()
                 .filter((each) => each.group === group)
                 .map(({ label, does }) => (
@@ -80,7 +81,7 @@ export function HelpView() {
           Foxglove, Lichtblick, your own scripts.
         </p>
       )}
-      <div class="buttons end">
+      <div class="row end">
         <button type="button" class="primary" onClick={close}>
           Close
         </button>

@@ -27,7 +27,7 @@ export function Meaning({ of, children }: { of: ComponentChildren; children: Com
       </button>
       <span
         id={id}
-        class="meaning-box"
+        class="meaning-box sheet"
         popover="auto"
         role="note"
         onBeforeToggle={(event) => place(event.currentTarget, document.querySelector(`[data-meaning="${id}"]`))}

@@ -61,7 +61,7 @@ export function MenuView() {
         </svg>
         chicane<span class="sr-only">: menu</span>
       </button>
-      <div class="menu" id="menu" popover="auto" ref={box}>
+      <div class="menu sheet" id="menu" popover="auto" ref={box}>
         {services.value.has('/reset') && (
           <Item act={() => call('/reset')} name="R" off={!can('/reset')}>
             Start again

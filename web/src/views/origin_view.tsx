@@ -80,7 +80,7 @@ function Found({ values }: { values: readonly Identified[] }) {
         </tbody>
       </table>
       {assumed.length > 0 && (
-        <p class="note">
+        <p class="soft">
           Assumed, because the log does not excite it: {assumed.map(({ key }) => label(key)).join(', ')}.
         </p>
       )}
@@ -94,7 +94,7 @@ export function OriginView() {
   if (!now || (now.car_notes.length === 0 && now.track_kind === '')) return null;
   const identified = identifiedOf(now);
   return (
-    <section class="block origin" aria-label="Car and road" data-testid="origin">
+    <section class="stack origin" aria-label="Car and road" data-testid="origin">
       <h2>
         Car <span class="unit">{now.car}</span>
       </h2>

@@ -1,11 +1,14 @@
 import { onThemeChange, tokenColour } from '../draw/theme';
 import { store } from '../lib/store';
-import { LIMITERS } from '../lib/words';
+
+/** Tokens of curves, by number. */
+const SERIES = ['ink', 'other', 'plan', 'lost', 'won', 'quiet', 'act', 'edge', 'quiet', 'rule'] as const;
+/** Of a curve, as a style has it. */
+export const toneOf = (series: number): string => `var(--${SERIES[series] ?? 'quiet'})`;
 
 /** The colours of the style sheet that charts need. */
 export interface ChartColours {
   readonly series: readonly string[];
-  readonly limiter: readonly string[];
   readonly good: string;
   readonly warning: string;
   readonly bad: string;
@@ -18,8 +21,7 @@ export interface ChartColours {
 }
 
 const read = (): ChartColours => ({
-  series: Array.from({ length: 10 }, (_, i) => tokenColour(`series-${i + 1}`)),
-  limiter: Array.from({ length: LIMITERS.length }, (_, i) => tokenColour(`limiter-${i}`)),
+  series: SERIES.map(tokenColour),
   good: tokenColour('won'),
   warning: tokenColour('plan'),
   bad: tokenColour('lost'),
@@ -35,15 +37,3 @@ const known = store.data('page', () => ({ colours: null as ChartColours | null }
 onThemeChange(() => (known.colours = null));
 
 export const chartColours = (): ChartColours => (known.colours ??= read());
-
-/** Clears a canvas and fits it to its box [CSS pixels] and the screen's resolution; null without a visible canvas. */
-export function fitCanvas(canvas: HTMLCanvasElement, width: number, height: number): CanvasRenderingContext2D | null {
-  const ratio = Math.min(devicePixelRatio, 2);
-  const context = canvas.getContext('2d');
-  if (!context || width === 0 || height === 0) return null;
-  const [wide, high] = [Math.round(width * ratio), Math.round(height * ratio)];
-  if (canvas.width !== wide || canvas.height !== high) [canvas.width, canvas.height] = [wide, high];
-  context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  context.clearRect(0, 0, width, height);
-  return context;
-}

@@ -16,8 +16,7 @@ import {
   zoomed,
 } from '../state/plot_view';
 import { run } from '../state/run';
-import { GgView } from './gg_view';
-import { drawStatusStrip } from './status_strip';
+import { drawStatusStrip } from './plot_bands';
 import { type PlotSpec, TimePlot } from './time_plot';
 
 /** Colours with the same meaning in all plots: applied ink, requested violet, sent ochre. */
@@ -126,7 +125,7 @@ function costSpec(names: readonly string[]): PlotSpec {
 
 function Toolbar() {
   return (
-    <div class="toolbar" role="group" aria-label="Plots">
+    <div class="row" role="group" aria-label="Plots">
       <button
         type="button"
         aria-pressed={isFrozen.value}
@@ -156,7 +155,7 @@ function Toolbar() {
           Reset zoom
         </button>
       ) : (
-        <span class="hint wide-only">Drag to zoom</span>
+        <span class="soft wide-only">Drag to zoom</span>
       )}
     </div>
   );
@@ -179,14 +178,13 @@ export function PlotsView() {
   const speed = useComputed(() => speedSpec(speedUnit()));
   const cost = useComputed(() => costSpec(names.value === '' ? [] : names.value.split('\n')));
   return (
-    <div class="plots-view">
+    <div class="plots-view stack">
       <Toolbar />
       <div class="plots">
         <TimePlot spec={speed.value} />
         {BEFORE_COST.map((spec) => (
           <TimePlot key={spec.title} spec={spec} />
         ))}
-        <GgView />
         <TimePlot spec={cost.value} />
         {AFTER_COST.map((spec) => (
           <TimePlot key={spec.title} spec={spec} />

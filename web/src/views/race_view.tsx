@@ -9,7 +9,7 @@ function Standing() {
   const { winner, text } = standingOf(now);
   const settings = raced.value.map(({ key, value }) => `${key} ${typeof value === 'number' ? tidy(value) : value}`);
   return (
-    <section class="race" aria-label="The race" data-testid="race">
+    <section class="race stack" aria-label="The race" data-testid="race">
       <p class="soft">
         A is the car of this run, B the ghost{settings.length > 0 ? `: ${settings.join(', ')}` : ''}. Faults, grip,
         latency and noise act on both.
@@ -20,7 +20,7 @@ function Standing() {
         {(now.state === 'ended' || now.state === 'failed') && `B drives no more: ${now.why}.`}
       </p>
       <p class="soft">Understand compares any lap of A with any of B.</p>
-      <div class="toolbar">
+      <div class="row">
         {winner && raced.value.length > 0 && (
           <button type="button" class="primary" onClick={() => void keepWinner(winner)}>
             Keep {winner}, the winner
@@ -39,7 +39,7 @@ export function RaceView() {
   if (!canRace()) return null;
   return (
     <>
-      <div class="toolbar">
+      <div class="row">
         <button
           type="button"
           disabled={wishes.value.length === 0}

@@ -11,7 +11,7 @@ export function RestartView() {
         plots are cleared.
       </p>
       <p class="soft">You will not be asked again.</p>
-      <div class="buttons end">
+      <div class="row end">
         <button type="button" onClick={() => confirm(false)}>
           Keep driving
         </button>

@@ -11,12 +11,15 @@ export interface Situation {
 const sentenceOf = (text: string): string =>
   text === '' || text.endsWith('.') ? text : `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
 
+/** The remedy by keys: beside an alarm stand the buttons with these keys. */
+const KEYS_REMEDY = / ?On the dashboard, [^.]*\./;
+
 /** What the program says of the frame that is shown; null without one. */
 export function situationNow(): Situation | null {
   const now = situation.value;
   if (!now) return null;
   const kind = now.severity === 'alarm' ? 'alarm' : now.driver === 'person' ? 'manual' : 'driving';
-  const why = [sentenceOf(now.reason), now.ends_it].filter(Boolean).join(' ');
+  const why = [sentenceOf(now.reason), now.ends_it.replace(KEYS_REMEDY, '')].filter(Boolean).join(' ');
   return { kind, text: sentenceOf(now.sentence), why };
 }
 

@@ -107,7 +107,6 @@ function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
     return (
       <input
         type="checkbox"
-        class="switch"
         // biome-ignore lint/a11y/useAriaPropsForRole: the checkbox itself tells whether it is checked
         role="switch"
         aria-label={label}

@@ -70,7 +70,7 @@ function Offer() {
           <Copied id="share-command" label="Command" text={commandOf(shared)} />
         </>
       )}
-      <div class="buttons end">
+      <div class="row end">
         <button type="button" class="primary" onClick={close}>
           Close
         </button>
@@ -104,7 +104,7 @@ function Question() {
           ) : (
             <>
               <p>The run that goes on ends, and this one begins from standstill:</p>
-              <ul class="link-differences" data-testid="wanted">
+              <ul class="link-differences stack" data-testid="wanted">
                 {request.differences.map(({ key, from, to }) => (
                   <li key={key}>
                     <code>{key}</code> <span class="was">{asText(from)}</span>{' '}
@@ -120,7 +120,7 @@ function Question() {
           {request.unknown.length > 0 && (
             <p class="soft">Left out, since a link cannot set it here: {request.unknown.join(', ')}.</p>
           )}
-          <div class="buttons end">
+          <div class="row end">
             <button type="button" onClick={decline}>
               {isSame ? 'Close' : 'Keep this run'}
             </button>

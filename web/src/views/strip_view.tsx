@@ -52,7 +52,7 @@ function Bars() {
   const throttle = frame?.throttle_applied ?? NaN;
   const fullBrake = run.value?.brake_throttle_limit ?? NaN;
   return (
-    <div class="bars">
+    <div class="bars stack">
       {/* Left is positive in the data and on the left on the screen. */}
       <Bar
         id="wheels"
@@ -146,13 +146,13 @@ function Driving() {
         <p class="true">{run.value ? 'Waiting for the car.' : 'Waiting for a run.'}</p>
       )}
       {isAlarm && (
-        <div class="keys">
+        <div class="keys row">
           <Wheel />
           <Key label="Start again" name="R" isPossible={can('/reset')} act={() => call('/reset')} />
         </div>
       )}
       {isByHand && (
-        <div class="keys">
+        <div class="keys row">
           <Key label="Hand back" name="Esc" isPossible={true} act={toggleManual} />
         </div>
       )}
@@ -172,7 +172,7 @@ function Lost() {
           The picture is the last one received. Reconnecting{attempt.value > 1 ? ` (attempt ${attempt.value})` : ''} …
         </small>
       </div>
-      <div class="keys">
+      <div class="keys row">
         <Key label="Connect now" name="Space" isPossible={true} act={() => oneButton.value?.act()} />
       </div>
     </section>
@@ -239,7 +239,7 @@ function Ended() {
           </Cell>
         )}
       </div>
-      <div class="keys">
+      <div class="keys row">
         <button type="button" disabled={!canReplay()} onClick={startReplay}>
           Replay the last {REPLAY_S} s
         </button>

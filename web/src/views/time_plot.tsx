@@ -23,14 +23,14 @@ import {
 import { shown } from '../state/shown';
 import { LONGEST_SILENCE_S } from '../state/silence';
 import { everyFrame } from '../state/ticker';
-import { drawFaultBands } from './fault_bands';
-import { type ChartColours, chartColours } from './plot_colours';
+import { drawFaultBands } from './plot_bands';
+import { type ChartColours, chartColours, toneOf } from './plot_colours';
 
 export interface Series {
   readonly column: number; // one of them, or
   readonly compute?: (history: History, first: number, end: number) => Float64Array; // from rows of all
   readonly label: string;
-  readonly colour: number; // of --series-…, from 0
+  readonly colour: number; // of plot_colours.ts, from 0
   readonly isDashed?: boolean;
   readonly isFilled?: boolean; // down to the previous series, or to 0
   readonly factor?: number; // from the column's unit to the plot's
@@ -285,17 +285,14 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
   void shown.value; // updates the numbers in the title as often as other text
   return (
     <section class="plot" aria-label={spec.title}>
-      <header>
+      <header class="row">
         <h2>
           {spec.title} <span class="unit">{spec.unit}</span>
         </h2>
-        <p>
+        <p class="row">
           {spec.series.map((series) => (
             <span key={series.label} class="key">
-              <span
-                class={series.isDashed ? 'stroke dashed' : 'stroke'}
-                style={{ borderColor: `var(--series-${series.colour + 1})` }}
-              />
+              <span class={series.isDashed ? 'stroke dashed' : 'stroke'} style={{ '--tone': toneOf(series.colour) }} />
               {spec.series.length > 1 ? `${series.label} ` : ''}
               {spec.series.some(({ isFilled }) => isFilled) ? null : <b>{readout(series, spec.decimals)}</b>}
             </span>

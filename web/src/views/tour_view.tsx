@@ -68,7 +68,7 @@ function Heading({ text }: { text: string }) {
 
 function Tasks({ of }: { of: Step }) {
   return (
-    <ol class="tour-tasks">
+    <ol class="tour-tasks row">
       {of.tasks.map((task, i) => (
         <li key={task} class={done.value[i] ? 'done' : ''}>
           <span class="tick" aria-hidden="true">
@@ -84,7 +84,7 @@ function Tasks({ of }: { of: Step }) {
   );
 }
 
-/** What a screen reader is told when a task is done. */
+/** Sentence for screen readers when a task is done. */
 function announcement({ tasks }: Step): string {
   const next = done.value.indexOf(false);
   if (next < 0) return 'All done: go on to the next step.';
@@ -102,7 +102,7 @@ function StepCard({ of }: { of: Step }) {
     <>
       <p>{isPossible ? of.text : 'This run does not offer it.'}</p>
       {isPossible && <Tasks of={of} />}
-      <div class="buttons">
+      <div class="row">
         {isPossible && !isThere && (
           <button type="button" onClick={showWhere}>
             Show me where
@@ -140,7 +140,7 @@ function StepCard({ of }: { of: Step }) {
 
 function ListCard() {
   return (
-    <ul class="tour-list">
+    <ul class="tour-list row">
       {TOURS.map(({ name, title, steps }) => (
         <li key={name}>
           <button
@@ -166,7 +166,7 @@ function EndCard({ of }: { of: Tour }) {
         {names.length === 0 ? of.end : `Left out: ${names.join(', ')}.`} Understand (2) tells where the time goes,{' '}
         <kbd>?</kbd> lists all keys.
       </p>
-      <div class="buttons">
+      <div class="row">
         <button type="button" onClick={putBack}>
           Put everything back
         </button>
@@ -188,8 +188,8 @@ export function TourView() {
   const now = step.value;
   const heading = now && taken ? `${stepNumber.value + 1} of ${taken.steps.length}: ${now.title}` : 'The tour is over';
   return (
-    <section class="tour" aria-label="Tour" data-testid="tour">
-      <header class="with-button">
+    <section class="tour stack" aria-label="Tour" data-testid="tour">
+      <header class="row apart">
         <Heading text={taken ? heading : 'Tours'} />
         {now && (
           <button type="button" class="small" title="Choose another tour" onClick={() => chooseTour('')}>

@@ -115,7 +115,7 @@ const planAhead = (car: Scene['car']): Line =>
 
 const pointsOf = ({ x, y }: Line): Point[] => Array.from(x, (each, i) => ({ x: each, y: y[i] ?? NaN }));
 
-/** Paints the track from above; holds what is kept from one picture to the next. */
+/** Paints the track from above; keeps state from one picture to the next. */
 class Painter {
   readonly #paper: Paper;
   readonly #road = new Road();
@@ -327,7 +327,7 @@ function describePicture(): string {
 function Corner() {
   const ghost = ghostLabel.value;
   return (
-    <div class="corner">
+    <div class="corner row">
       <select
         class="camera"
         aria-label="Camera"
@@ -345,7 +345,7 @@ function Corner() {
       {live.plan !== null && <span class="line-key plan">plan</span>}
       {layers.racingLine.value && limit.value && <span class="line-key">the limit's line</span>}
       {layers.hindsight.value && <span class="line-key past">plan 1 s ago</span>}
-      {ghost !== null && <span class="line-key">{ghost}</span>}
+      {ghost !== null && <span class="line-key ghost">{ghost}</span>}
       {obstacle.value !== null && <span role="status">{obstacle.value}</span>}
     </div>
   );

@@ -126,8 +126,8 @@ const asText = (value: Setting): string => (typeof value === 'number' ? tidy(val
 function Changes() {
   const changes = settingChanges.value;
   return (
-    <section class="changes" aria-label="Changes" data-testid="changes">
-      <header>
+    <section class="changes stack" aria-label="Changes" data-testid="changes">
+      <header class="row apart">
         <h2>{changes.length === 0 ? 'No changes' : changes.length === 1 ? '1 change' : `${changes.length} changes`}</h2>
         {changes.length > 0 && (
           <button type="button" onClick={() => changes.forEach(({ key, from }) => set(key, from))}>
@@ -138,7 +138,7 @@ function Changes() {
       {changes.length > 0 && (
         <ul>
           {changes.map(({ key, from, to }) => (
-            <li key={key}>
+            <li key={key} class="row">
               <code>{key}</code> <span class="was">{asText(from)}</span>{' '}
               <span role="img" aria-label="to">
                 →
@@ -174,7 +174,7 @@ function Settings() {
   const shown = words === '' ? tenSettings.value : found(words);
   return (
     <>
-      <div class="find">
+      <div class="find row">
         <input
           id="search"
           ref={takeFocus}
@@ -222,16 +222,16 @@ export function TryView() {
   const isSettable = schema.value.length > 0 || askedLog.value !== null;
   return (
     <>
-      <div class="say">
+      <div class="say row apart">
         <RunSentence />
         {canDriveBoth() && <DriveBothButton />}
       </div>
-      <div class="future" tabIndex={0} role="region" aria-label="Both futures">
+      <div class="future stack" tabIndex={0} role="region" aria-label="Both futures">
         {canDriveBoth() ? <WhenView /> : <WhyNotBoth />}
         <AnswerView />
         {!askedLog.value && <RaceView />}
       </div>
-      <div class="knobs" tabIndex={0} role="region" aria-label="Settings and faults">
+      <div class="knobs stack" tabIndex={0} role="region" aria-label="Settings and faults">
         {isSettable ? <Settings /> : <NothingToSet />}
         {!askedLog.value && <FaultsView />}
         <details>

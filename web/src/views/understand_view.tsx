@@ -46,7 +46,7 @@ async function addRecordings(files: readonly File[]): Promise<void> {
 
 function EngineerSwitch() {
   return (
-    <label class="switch" title="Plan, solver, guard and estimates (E)">
+    <label class="switch row" title="Plan, solver, guard and estimates (E)">
       <input
         type="checkbox"
         role="switch"
@@ -98,7 +98,7 @@ function Causes({ both }: { both: Comparison }) {
   const isToLimit = both.b.id === 'limit';
   const text = limit.value && isToLimit ? causesText(causesOf(limit.value, bestLap.value)) : '';
   return (
-    <div class="causes">
+    <div class="causes stack">
       {text !== '' && <p data-testid="causes">{text}</p>}
       {text === '' && isToLimit && (
         <p>
@@ -126,7 +126,7 @@ function AllLaps({ both }: { both: Comparison | null }) {
           pick={(number) => (chosen.value = [`lap ${number}`, chosen.value[1]])}
         />
       )}
-      <div class="toolbar">
+      <div class="row">
         <button
           type="button"
           disabled={laps.value.length === 0}
@@ -174,7 +174,7 @@ export function UnderstandView() {
   const at = cursorAlong.value;
   return (
     <section class={isEngineer.value ? 'understand with-engineer' : 'understand'} aria-label="Understand">
-      <div class="headline-row">
+      <div class="headline-row row apart">
         {both ? (
           <Headline
             comparison={both}
@@ -190,7 +190,7 @@ export function UnderstandView() {
       </div>
       {both && (
         <>
-          <div class="where">
+          <div class="where stack">
             <LossMap comparison={both} at={at} />
             <CornerTable comparison={both} at={at} pick={moveCursor} />
             <Causes both={both} />

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { stepSeverity } from './status_strip';
+import { stepSeverity } from './plot_bands';
 
 it('a control step is as severe as its worst part', () => {
   expect(stepSeverity(0, 0, 0)).toBe(0);
