@@ -76,7 +76,7 @@ TEST(LearnedGrip, TakesALittleMoreForWhatWasTold) {
 // docs/limit.md, eq. 19.
 TEST(LearnedGrip, LetsACarSlideThatIsAsToldAndAnsweredSoon) {
   LearnedGrip learned = driven_with(1.0, 20.0);
-  learned.tell(model::udacity_params());
+  learned.configure(model::udacity_params());
   const double longest = model::SlidingBound::longest_delay(model::udacity_params());
   const double most = longest - 0.04 - 0.005;  // less the period, and what the test's car is unsure by
   EXPECT_TRUE(learned.may_slide(1.0, most, false));
@@ -89,12 +89,12 @@ TEST(LearnedGrip, LetsACarSlideThatIsAsToldAndAnsweredSoon) {
   EXPECT_FALSE(learned.may_slide(1.0, longest, true));
   for (const double other : {0.94, 1.06}) {
     LearnedGrip otherwise = driven_with(other, 20.0);
-    otherwise.tell(model::udacity_params());
+    otherwise.configure(model::udacity_params());
     EXPECT_FALSE(otherwise.may_slide(1.0, most, false)) << "another car than told";
   }
-  learned.tell(model::road_car_params());
+  learned.configure(model::road_car_params());
   EXPECT_FALSE(learned.may_slide(1.0, 0.0, false)) << "its tyres share their force";
-  learned.tell(model::udacity_params());
+  learned.configure(model::udacity_params());
   learned.forget();
   EXPECT_FALSE(learned.may_slide(1.0, most, false)) << "before its tyres have shown anything";
 }

@@ -204,14 +204,14 @@ void bag(std::string_view bytes) {
   static const DiskFile file;
   const auto rows = identify::read_sqlite_rows(file.holding(bytes), {});
   if (!rows) return check(rows.error());
-  promise(!rows->samples.empty() && !rows->told.empty());
+  promise(!rows->samples.empty() && !rows->commands.empty());
 }
 
 void log(std::string_view bytes) {
   const auto logs = identify::parse_csv_log(std::string(bytes), "f.csv", {});
   if (!logs) return check(logs.error());
   for (const identify::DriveLog& log : *logs) {
-    promise(!log.samples.empty() && !log.told.empty());
+    promise(!log.samples.empty() && !log.commands.empty());
     for (std::size_t i = 1; i < log.samples.size(); ++i)
       promise(log.samples[i].time > log.samples[i - 1].time && std::isfinite(log.samples[i].psi));
   }

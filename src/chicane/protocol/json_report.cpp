@@ -54,11 +54,11 @@ Json to_object(const std::vector<road::Corner>& corners) {
   return json;
 }
 
-/// "corners [s]         1 left 10.44   2 right 3.80", four a line.
+/// "corners [s]         1 left 10.44   2 right 3.80", three a line.
 std::string corner_lines(const RunSummary& run, const LapSummary& lap) {
   std::string text;
   for (std::size_t i = 0; i < lap.corner_times.size() && i < run.corners.size(); ++i) {
-    if (i % 4 == 0) text += i == 0 ? "\ncorners [s]     " : "\n                ";
+    if (i % 3 == 0) text += i == 0 ? "\ncorners [s]     " : "\n                ";
     text += fmt::format("{:>5} {:<5}{:6.2f}", i + 1, run.corners[i].turn > 0.0 ? "left" : "right",
                         lap.corner_times[i]);
   }

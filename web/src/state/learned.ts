@@ -22,10 +22,10 @@ function learned(
   return [{ label, text: `${sign}${fixed(value, digits)} ± ${fixed(2 * deviation, digits)}${unit}` }];
 }
 
-/** Estimates of the car relative to its configuration; empty where nothing is estimated. */
+/** What the run has found out about its car, over the configuration; empty where nothing is estimated. */
 export function learnedOf(frame: Frame): Learned[] {
   return [
-    ...learned('Delay beyond the told one', ' ms', 0, frame.learned_delay_s * 1e3, frame.learned_delay_sd_s * 1e3, 0),
+    ...learned('Delay over configured', ' ms', 0, frame.learned_delay_s * 1e3, frame.learned_delay_sd_s * 1e3, 0),
     ...learned('Steering gain', '', 2, frame.learned_steer_gain, frame.learned_steer_gain_sd, 1),
     ...learned(
       'Steering offset, left positive',
@@ -35,6 +35,6 @@ export function learnedOf(frame: Frame): Learned[] {
       frame.learned_steer_offset_sd_rad * DEGREES,
       0,
     ),
-    ...learned('Grip over the told one', '', 2, frame.learned_grip, frame.learned_grip_sd, 1),
+    ...learned('Grip over configured', '', 2, frame.learned_grip, frame.learned_grip_sd, 1),
   ];
 }
