@@ -13,19 +13,17 @@
 #include "chicane/lap_time/detail/plan_driver.hpp"
 #include "chicane/lap_time/plant_limit.hpp"
 #include "chicane/sim/plant_registry.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::lap_time {
 namespace {
 
 /// Corners to both sides, some of them tight.
 road::Track road() {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i < 160; ++i) {
-    const double angle = kTwoPi * i / 160.0;
-    const double radius = 70.0 + 20.0 * std::cos(2.0 * angle) + 5.0 * std::sin(5.0 * angle);
-    points.push_back({{radius * std::cos(angle), radius * std::sin(angle)}, 4.0, 4.0});
-  }
-  return *road::Track::create("clover", points, true);
+  const auto radius = [](double angle) {
+    return 70.0 + 20.0 * std::cos(2.0 * angle) + 5.0 * std::sin(5.0 * angle);
+  };
+  return *road::Track::create("clover", test::with_widths(test::points_round(160, radius), 4.0, 4.0), true);
 }
 
 /// Numbers in [low, high] that are the same on every machine.

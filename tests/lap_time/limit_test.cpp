@@ -7,22 +7,14 @@
 #include <vector>
 
 #include "chicane/base/angle.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::lap_time {
 namespace {
 
 constexpr double kRadius = 50.0, kInside = 2.0, kSpeed = 20.0;
 
-road::Track ring(double start_s) {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i < 90; ++i) {
-    const double angle = kTwoPi * i / 90;
-    points.push_back({kRadius * Vec2{std::cos(angle), std::sin(angle)}, 5.0, 5.0});
-  }
-  road::TrackOptions options;
-  options.start_s = start_s;
-  return road::Track::create("ring", points, true, options).value();
-}
+road::Track ring(double start_s) { return test::circle_road(kRadius, 90, 5.0, 5.0, {.start_s = start_s}); }
 
 /// A lap at a constant distance inside of the ring's centre line, at one speed.
 PlantLimit inner_lap(const road::Track& track) {

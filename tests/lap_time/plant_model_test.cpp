@@ -10,18 +10,12 @@
 #include "chicane/lap_time/detail/limit_model.hpp"
 #include "chicane/lap_time/detail/udacity_model.hpp"
 #include "lap_time/derivatives.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::lap_time {
 namespace {
 
-road::Track circle() {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i < 120; ++i) {
-    const double angle = kTwoPi * i / 120.0;
-    points.push_back({{60.0 * std::cos(angle), 60.0 * std::sin(angle)}, 5.0, 4.0});
-  }
-  return *road::Track::create("circle", points, true, {.smoothing_sigma = 0.0});
-}
+road::Track circle() { return test::circle_road(60.0, 120, 5.0, 4.0); }
 
 class PlantModel : public testing::TestWithParam<const char*> {
  protected:

@@ -13,6 +13,7 @@
 #include "chicane/base/angle.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/make.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::live {
 namespace {
@@ -23,11 +24,7 @@ scenario::Scenario on(const std::string& track) {
   return scenario.value_or(scenario::Scenario{});
 }
 
-road::Track open_road() {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i <= 30; ++i) points.push_back({Vec2{10.0 * i, 0.0}, 5.0, 5.0});
-  return road::Track::create("open", points, false).value();
-}
+road::Track open_road() { return test::straight_road(30, 5.0, 5.0, {}); }
 
 telemetry::RunSummary one_lap(double time) {
   telemetry::RunSummary run;

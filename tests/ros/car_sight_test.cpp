@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/car_sight.hpp"
+#include "support/roads.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,15 +15,6 @@ scenario::Scenario scenario() {
   scenario.vehicle.rear_axle = 1.5;
   scenario.latency = 0.1;
   return scenario;
-}
-
-std::vector<Vec2> circle(int count, double radius) {
-  std::vector<Vec2> points;
-  for (int i = 0; i < count; ++i) {
-    const double angle = 2.0 * 3.14159265358979 * i / count;
-    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
-  }
-  return points;
 }
 
 TEST(CarSight, MovesOdometryFromTheRearAxleToTheCentreOfMass) {
@@ -57,7 +49,7 @@ TEST(CarSight, RefusesNumbersThatAreNotFinite) {
 TEST(CarSight, SeesWaypointsOfAPathThatIsALap) {
   CarSight sight(scenario(), nullptr, true);
   EXPECT_FALSE(sight.has_road());
-  ASSERT_TRUE(sight.use_path(circle(100, 100.0)));
+  ASSERT_TRUE(sight.use_path(test::circle_points(100.0, 100)));
   EXPECT_TRUE(sight.has_road());
   // On the last stretch of the lap: the waypoints go on over its beginning.
   const auto seen = sight.measure({.pose = {.x = 100.0, .y = -8.0, .psi = 1.57}}, 0.0);
@@ -69,7 +61,7 @@ TEST(CarSight, SeesWaypointsOfAPathThatIsALap) {
 /// Planners repeat the first point of a lap as its last one, or do not.
 TEST(CarSight, SeesTheSameRoadOfALapThatEndsWhereItBegan) {
   CarSight sight(scenario(), nullptr, true), repeating(scenario(), nullptr, true);
-  std::vector<Vec2> lap = circle(100, 100.0);
+  std::vector<Vec2> lap = test::circle_points(100.0, 100);
   ASSERT_TRUE(sight.use_path(lap));
   lap.push_back(lap.front());
   ASSERT_TRUE(repeating.use_path(lap));
@@ -85,7 +77,7 @@ TEST(CarSight, SeesTheSameRoadOfALapThatEndsWhereItBegan) {
 
 TEST(CarSight, KeepsTheRoadWhenAPathIsNone) {
   CarSight sight(scenario(), nullptr, true);
-  ASSERT_TRUE(sight.use_path(circle(100, 100.0)));
+  ASSERT_TRUE(sight.use_path(test::circle_points(100.0, 100)));
   EXPECT_FALSE(sight.use_path({{0.0, 0.0}}));
   EXPECT_TRUE(sight.has_road());
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "protocol/hostile_telemetry.hpp"
+#include "support/roads.hpp"
 #include "wire/served.hpp"
 
 namespace chicane::wire {
@@ -17,14 +18,7 @@ using test::Served;
 using test::steer_of;
 
 /// A circle about the origin, 5 m to each edge.
-road::Track circle(double radius) {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i < 100; ++i) {
-    const double angle = 2.0 * 3.14159265358979 * i / 100;
-    points.push_back({Vec2{radius * std::cos(angle), radius * std::sin(angle)}, 5.0, 5.0});
-  }
-  return road::Track::create("circle", points, true).value();
-}
+road::Track circle(double radius) { return test::circle_road(radius, 100, 5.0, 5.0, {}); }
 
 TEST(Serve, SaysOnceThatTheToldRoadIsAnotherOneAndJudgesNothingByIt) {
   const road::Track track = circle(60.0);  // the message's waypoints are 118 m from the origin and less

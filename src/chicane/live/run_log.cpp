@@ -39,8 +39,10 @@ recording::RecordedStep recorded_of(const RunLog::Step& note) {
 
 }  // namespace
 
-RunLog::RunLog(bool has_checkpoints)
-    : has_checkpoints_{has_checkpoints}, worker_{[this] { follow(); }, kCollectEvery} {}
+RunLog::RunLog(bool has_checkpoints, std::size_t most_events)
+    : has_checkpoints_{has_checkpoints},
+      most_events_{most_events},
+      worker_{[this] { follow(); }, kCollectEvery} {}
 
 void RunLog::begin(const scenario::Scenario& scenario) {
   put(std::make_shared<const scenario::Scenario>(scenario));
@@ -90,7 +92,7 @@ void RunLog::take(const telemetry::Change& change) {
 
 void RunLog::add(Event event) {
   events_.push_back(std::move(event));
-  if (events_.size() <= kMostEvents) return;
+  if (events_.size() <= most_events_) return;
   events_.pop_front();
   ++first_.event;
 }
@@ -115,9 +117,7 @@ void RunLog::start_anew(const Step& first) {
 }
 
 RunLog::Place RunLog::last() const {
-  Place place = first_;
-  place.event += events_.size();
-  return place;
+  return {.scenario = first_.scenario, .start = first_.start, .event = first_.event + events_.size()};
 }
 
 telemetry::Change RunLog::Change::as_recorded() const {
@@ -160,14 +160,12 @@ RunLog::Place RunLog::end() {
 
 /// The worker: the events since the last time, and the shadow run behind them.
 void RunLog::follow() {
+  if (!has_checkpoints_) return static_cast<void>(end());
   const Result<Excerpt> news = since(followed_);
-  if (!has_checkpoints_ || !news) return;
+  if (!news) return;
   const bool is_another = news->begin != followed_;
   followed_ = news->end;
-  if (is_another) {
-    const std::lock_guard lock(mutex_);
-    checkpoints_.clear();
-  }
+  if (const std::lock_guard lock(mutex_); is_another) checkpoints_.clear();
   if (is_another && !shadow_.emplace().begin(*news->scenario)) shadow_.reset();
   Place place = news->begin;
   for (const Event& event : *news->events) {

@@ -29,7 +29,7 @@ namespace chicane::live {
 /// served_futures.hpp) and the second car (rival.hpp).
 ///
 /// The control thread notes through one ring; it neither waits nor allocates, but in begin(). A thread of low
-/// priority collects. The log keeps the newest kMostEvents events. After an overflow of the ring the run is
+/// priority collects. The log keeps the newest `most_events` events. After an overflow of the ring the run is
 /// unknown until its next start: since() says so.
 ///
 /// With checkpoints the same thread computes the run a second time, at the cost of the run's own control
@@ -41,7 +41,7 @@ class RunLog {
   static constexpr std::size_t kMostEvents = 200'000;  ///< two hours with 25 steps a second
   static constexpr double kSpacing = 10.0;             ///< of the newest checkpoints [s]
 
-  explicit RunLog(bool has_checkpoints);
+  explicit RunLog(bool has_checkpoints, std::size_t most_events = kMostEvents);
 
   /// The control thread: another run begins.
   void begin(const scenario::Scenario& scenario);
@@ -126,6 +126,7 @@ class RunLog {
 
   // The worker's:
   const bool has_checkpoints_;
+  const std::size_t most_events_;
   std::optional<recording::ShadowRun> shadow_;  ///< none: a run that cannot be followed
   Place followed_;
 
