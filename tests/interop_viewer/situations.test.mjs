@@ -108,7 +108,7 @@ async function whenPlanned(url) {
 
 it('no page contradicts what acted on the car', { timeout: 3_600_000 }, async () => {
   const found = new Map();
-  const most = { alarms: 0 };
+  const most = { alarms: 0, name: 'none' };
   let [looks, compared, alarms] = [0, 0, 0];
   for (const { preset, car, fault } of combinations()) {
     const name = `${preset} ${car} ${fault}`;
@@ -123,12 +123,13 @@ it('no page contradicts what acted on the car', { timeout: 3_600_000 }, async ()
       if (i % 20 === 0) await dashboard.startAgain();
       await dashboard.page.waitForTimeout(50);
     }
+    const earlier = [...other.frames.values()]; // the page may still show one of them
     other.frames.clear();
     await dashboard.page.evaluate(keepLooks, LOOK_EVERY_MS);
     await dashboard.until(time, (seconds) => seconds >= UNTIL_S, `${name}: its ${UNTIL_S} s`);
     const seen = await dashboard.page.evaluate(() => globalThis.looks);
     const fullBrake = other.fullBrake();
-    const frames = [...other.frames.values()];
+    const frames = [...earlier, ...other.frames.values()];
     let onsets = 0;
     seen.forEach((look, i) => {
       ++looks;
@@ -143,14 +144,14 @@ it('no page contradicts what acted on the car', { timeout: 3_600_000 }, async ()
       if (!isRecorded(look, then, fullBrake)) found.set(`not recorded: ${look.pedal} ${look.wheels}`, `${name} ${at}`);
     });
     alarms += onsets;
-    most.alarms = Math.max(most.alarms, onsets);
+    if (onsets > most.alarms) Object.assign(most, { alarms: onsets, name });
     other.close();
     await dashboard.leave();
     await drive.stop();
   }
   console.log(
     `${looks} looks at ${COUNT} runs, ${compared} of them beside the recorded frame, ${found.size} contradictions; ` +
-      `${alarms} alarms, at most ${most.alarms} in a run`,
+      `${alarms} alarms, at most ${most.alarms} in a run (${most.name})`,
   );
   assert.deepEqual(Object.fromEntries(found), {});
   assert.ok(compared > 5 * COUNT, `${compared} looks beside recorded frames`);

@@ -87,6 +87,10 @@ describe('nothing lies over the car and its plan', () => {
         await dashboard.page.waitForTimeout(600); // two pictures
         await lookAtDriving(dashboard, `${camera} at ${width} x ${height}`, 4);
       }
+      await dashboard.show('try');
+      await dashboard.page.waitForTimeout(600);
+      await lookAtDriving(dashboard, `Try at ${width} x ${height}`, 3);
+      await dashboard.show('watch');
       const { across, down } = await dashboard.overflow();
       assert.ok(across <= 0 && down <= 0, `${across} ${down} at ${width} x ${height}`);
       const strip = (await box(dashboard, '.strip')).height;
