@@ -139,7 +139,11 @@ def main():
                 continue
             with tempfile.TemporaryDirectory() as place:
                 file = Path(place) / Path(name).name
-                file.write_bytes(git(folder, "show", f"{commit}:{name}").stdout)
+                content = git(folder, "show", f"{commit}:{name}")
+                if content.returncode != 0:
+                    print(f"skipped: {repository}/{name}: its content cannot be had", flush=True)
+                    continue
+                file.write_bytes(content.stdout)
                 text = file.read_text(encoding="utf-8", errors="replace")
                 for image in re.findall(r"^image: *['\"]?([^'\"\n]+?)['\"]? *$", text, re.M):
                     shown = git(folder, "show", f"{commit}:{Path(name).parent / image}")
