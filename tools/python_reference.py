@@ -19,8 +19,9 @@ import chicane as ch
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs/reference/python_reference.md"
 PARTS = (
-    ("Runs", ("drive", "read", "verify", "view", "sweep", "limit", "Run", "Frames", "Recording", "Limit")),
+    ("Runs", ("drive", "read", "verify", "report", "view", "sweep", "limit", "Run", "Frames", "Recording", "Limit")),
     ("Parts of your own", ("Controller", "Measurement", "Command", "Plant", "CarState", "Track", "TrackReader", "use_track_reader")),
+    ("By the program", ("road", "Road", "identify", "league")),
     ("Environments", ("Env", "VecEnv")),
     ("Optimal control problems", ("Problem", "Solution", "Solutions", "Feedback", "Iterations", "TraceError")),
     ("Functions for problems", ("rk4", "implicit_euler", "gauss_legendre", "table", "where", "minimum", "maximum", "clip", "hypot", "norm2", "atan2")),

@@ -58,9 +58,8 @@ Rows limit_rows(Options& o) {
 Rows import_rows(Options& o) {
   Options::Import& import = o.import_;
   return {
-      {"file", "FILE",
-       "Map (.yaml with its image), table, cones, JSON, GPX, KML, OSM, OpenDRIVE or CommonRoad", &import.file,
-       kRequired},
+      {"file", "FILE", "Map (.yaml with its image), table, cones, JSON, GPX, KML, OSM or OpenDRIVE",
+       &import.file, kRequired},
       {"-o,--output", "NAME.csv", "Write the road into this file; an older one is replaced", &o.output_file},
       {"--preview", "FILE.html", "Draw what was recognised into this page; an older one is replaced",
        &import.preview},

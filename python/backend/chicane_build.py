@@ -85,10 +85,6 @@ def files_of(package: Path) -> dict[str, bytes]:
         for file in sorted((ROOT / "data" / folder).iterdir()):
             if file.is_file():
                 files[f"chicane/share/chicane/{folder}/{file.name}"] = file.read_bytes()
-    source = ROOT / "src"                                     # what Problem.compile() needs
-    for file in sorted([*source.glob("chicane/solver/**/*.hpp"), *source.glob("chicane/base/**/*.hpp"), source / "chicane/base/math.cpp",
-                        source / "chicane/solver.h", source / "chicane/version.hpp"]):
-        files[f"chicane/share/chicane/include/{file.relative_to(source)}"] = file.read_bytes()
     return files
 
 
@@ -108,6 +104,7 @@ def descriptions() -> dict[str, bytes]:
     """The files that say what a wheel is, but for its record."""
     return {"METADATA": metadata().encode(),
             "WHEEL": f"Wheel-Version: 1.0\nGenerator: chicane\nRoot-Is-Purelib: false\nTag: {tag()}\n".encode(),
+            "entry_points.txt": b"[gymnasium.envs]\n__root__ = chicane:register_environments\n",
             "LICENSE": (ROOT / "LICENSE").read_bytes()}
 
 

@@ -14,6 +14,7 @@ any thread may call them. An Env, VecEnv or Controller belongs to one thread at 
 """
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING, Any
 
 from . import _interpreter
@@ -28,6 +29,7 @@ from ._known import cars, faults, frame_fields, parameters, presets, scenarios, 
 from ._limit import Limit, limit  # noqa: E402
 from ._plant import Plant  # noqa: E402
 from ._problem import Problem  # noqa: E402
+from ._program import Road, identify, league, road  # noqa: E402
 from ._run import Frames, Recording, Run  # noqa: E402
 from ._solution import Feedback, Solution, Solutions  # noqa: E402
 from ._sweep import sweep  # noqa: E402
@@ -36,18 +38,30 @@ from ._symbols import (  # noqa: E402
 )
 from ._track import Track, TrackReader, use_track_reader  # noqa: E402
 from ._iterations import Iterations  # noqa: E402
-from ._view import view  # noqa: E402
+from ._view import report, view  # noqa: E402
 
 if TYPE_CHECKING:
     from ._env import Env, VecEnv
 
 __all__ = [
-    "CarState", "Command", "Controller", "Env", "Feedback", "Frames", "Iterations", "Limit", "NO_ANSWER", "Plant", "Problem", "Recording", "Run",
+    "CarState", "Command", "Controller", "Env", "Feedback", "Frames", "Iterations", "Limit", "NO_ANSWER", "Plant", "Problem", "Recording", "Road", "Run",
     "Measurement", "Solution", "Solutions", "Symbol", "TraceError", "Track", "TrackReader", "VecEnv", "__version__", "acos", "asin", "atan", "atan2",
-    "cars", "clip", "cos", "drive", "exp", "faults", "frame_fields", "gauss_legendre", "hypot", "implicit_euler", "limit", "log",
-    "maximum", "minimum", "norm2", "parameters", "presets", "read", "rk4", "scenarios", "sin", "sqrt", "sweep", "table", "tan", "tanh",
+    "cars", "clip", "cos", "drive", "exp", "faults", "frame_fields", "gauss_legendre", "hypot", "identify", "implicit_euler", "league", "limit", "log",
+    "maximum", "minimum", "norm2", "parameters", "presets", "read", "report", "rk4", "road", "scenarios", "sin", "sqrt", "sweep", "table", "tan", "tanh",
     "tracks", "use_track_reader", "verify", "view", "where",
 ]
+
+
+def register_environments() -> None:
+    """Makes chicane/Race-v0 known to gymnasium.make(). Done by `import gymnasium` where the package is installed, and by `import chicane` after
+    it; call it in a build folder where chicane is imported first."""
+    from gymnasium.envs.registration import register, registry
+    if "chicane/Race-v0" not in registry:
+        register(id="chicane/Race-v0", entry_point="chicane:Env")
+
+
+if "gymnasium.envs.registration" in sys.modules:
+    register_environments()
 
 
 def __getattr__(name: str) -> Any:

@@ -18,7 +18,7 @@ from ._track import AnyTrack
 
 def drive(track: AnyTrack | None = None, *, car: str | None = None, preset: str | None = None, scenario: str = "",
           controller: str | Controller | None = None, plant: str | Plant | None = None, laps: int | None = None, latency_ms: float | None = None,
-          seed: int | None = None, speed_mps: float | None = None, settings: Settings = {}, faults: Iterable[str] = (),
+          seed: int | None = None, speed_mps: float | None = None, settings: Settings | None = None, faults: Iterable[str] = (),
           record: str | os.PathLike[str] = "", frames: bool = True, step_limit_s: float = 10.0) -> Run:
     """Drives a car round a track, in virtual time, and returns what came of it: the run of `chicane drive --fast`.
 
@@ -46,7 +46,7 @@ def drive(track: AnyTrack | None = None, *, car: str | None = None, preset: str 
     if error is not None:
         print(f"chicane: {type(own).__name__} failed at {reply['error_time']:.2f} s; the guard stops the car:\n{error}",
               end="", file=sys.stderr)
-    again = None if own is not None or own_plant is not None else dict(named=named, settings=dict(settings), faults=_listed(faults), scenario=scenario,
+    again = None if own is not None or own_plant is not None else dict(named=named, settings=dict(settings or {}), faults=_listed(faults), scenario=scenario,
                                               speed_mps=speed_mps)
     return Run(json.loads(reply["report"]), reply["table"], Frames(reply["frames"]), reply["situations"], reply["road"], error,
                os.fspath(record), again)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,7 @@ NOISE = {"sensor.position_noise_m": 0.05, "sensor.heading_noise_deg": 0.3, "sens
 
 
 def _request(track: AnyTrack | None, car: str | None, rate_hz: float, noise: bool | Settings, seed: int, faults: Iterable[str],
-             settings: Settings) -> _chicane.Request:
+             settings: Settings | None) -> _chicane.Request:
     if not 1.0 <= rate_hz <= 200.0:
         raise ValueError(f"rate_hz: got {rate_hz}, expected a number in [1, 200]")
     sensors = {key: value for key, value in (NOISE.items() if noise is True else noise.items() if noise else ())}
@@ -31,12 +32,13 @@ def _request(track: AnyTrack | None, car: str | None, rate_hz: float, noise: boo
     return make_request(named, settings, faults)
 
 
-def _options(observation: str, randomise: Mapping[str, tuple[float, float]], random_faults: Iterable[str], starts_anywhere: bool,
+def _options(observation: str, randomise: Mapping[str, tuple[float, float]] | None, random_faults: Iterable[str], starts_anywhere: bool,
              ends_off_road: bool, off_road_cost: float, episode_s: float) -> dict[str, Any]:
+    randomise = dict(randomise or {})
     for key, (low, high) in randomise.items():
         if not low <= high:
             raise ValueError(f"randomise: {key}: got ({low}, {high}), expected (low, high)")
-    return {"observation": observation, "randomise": dict(randomise), "random_faults": list(random_faults),
+    return {"observation": observation, "randomise": randomise, "random_faults": list(random_faults),
             "starts_anywhere": starts_anywhere, "ends_off_road": ends_off_road, "off_road_cost": float(off_road_cost),
             "episode_s": float(episode_s)}
 
@@ -49,7 +51,8 @@ class Env(BaseEnv):
         observation, reward, terminated, truncated, info = env.step([steer, throttle])
 
     It is a gymnasium.Env where gymnasium can be imported, made by gymnasium.make("chicane/Race-v0") too, and has the same
-    methods where not. It cannot be pickled or copied: a run has no copy; make another one with the same arguments and seed.
+    methods where not. A pickle or a copy is another one with the same arguments, whose first episode begins: a run has no
+    copy.
 
     action: array of shape (2,): steer [rad], left positive, and throttle in [-1, 1], negative brakes. It answers the
         observation before it, acts `latency_ms` later, and is limited to what the car can do.
@@ -59,6 +62,8 @@ class Env(BaseEnv):
         "waypoints", shape (3 + 2 n,): speed [m/s], steer [rad], throttle, and n waypoints seen from the car, x ahead and
             y to the left [m]; n is settings["waypoints_sent"], 6 unless said otherwise.
         "pose", shape (7,): time [s], x, y [m], yaw [rad], speed [m/s], steer [rad], throttle.
+        "scan", shape (3 + 1080): speed [m/s], steer [rad], throttle, and a laser as F1TENTH has it: distances [m] to walls
+            along the edges of the road, from -135° on the right to 135° on the left, at most 30 m, without noise and delay.
     reward: metres gained along the centre line; less `off_road_cost` when a tyre leaves the road. A function of
         observation and info takes its place: reward=lambda observation, info: info["speed_mps"].
     terminated: a tyre has left the road (unless ends_off_road=False), or settings["laps"] laps are driven.
@@ -78,9 +83,10 @@ class Env(BaseEnv):
 
     def __init__(self, track: AnyTrack | None = None, car: str | None = None, rate_hz: float = 20.0, noise: bool | Settings = False,
                  seed: int = 1, *, observation: str = "track", reward: Reward | None = None, faults: Iterable[str] = (),
-                 random_faults: Iterable[str] = (), randomise: Mapping[str, tuple[float, float]] = {},
+                 random_faults: Iterable[str] = (), randomise: Mapping[str, tuple[float, float]] | None = None,
                  starts_anywhere: bool = False, ends_off_road: bool = True, off_road_cost: float = 10.0, episode_s: float = 0.0,
-                 settings: Settings = {}, render_mode: str | None = None) -> None:
+                 settings: Settings | None = None, render_mode: str | None = None) -> None:
+        self._arguments = {name: value for name, value in locals().items() if name not in ("self", "__class__")}
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode: got {render_mode!r}, expected None or \"rgb_array\"")
         options = _options(observation, randomise, random_faults, starts_anywhere, ends_off_road, off_road_cost, episode_s)
@@ -130,7 +136,7 @@ class Env(BaseEnv):
         return _picture(self._core.edges(), *self._core.pose()) if self.render_mode else None
 
     def __reduce__(self) -> Any:
-        raise TypeError("Env: got a copy or pickle of a run, expected another Env with the same arguments and seed")
+        return partial(type(self), **self._arguments), ()
 
     def close(self) -> None:
         """Nothing to give back."""
@@ -149,19 +155,21 @@ class VecEnv(BaseVecEnv):
     Arguments are those of Env, and `count`, `threads` (0: as many as processors). Shapes have `count` in front. The bits
     do not depend on `threads`: environment i begins with seed + i, and each episode that ends is followed at once by one
     with the next seed. Then infos["final_obs"] has the last observations of all environments, and infos["_final_obs"] says
-    of which the episode has ended (gymnasium's AutoresetMode.SAME_STEP)."""
+    of which the episode has ended (gymnasium's AutoresetMode.SAME_STEP). `reward` is called for each environment, as Env's,
+    with its last observation and the truth there."""
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AUTORESET}
 
     def __init__(self, count: int, track: AnyTrack | None = None, car: str | None = None, rate_hz: float = 20.0,
                  noise: bool | Settings = False, seed: int = 1, *, threads: int = 0, observation: str = "track",
-                 faults: Iterable[str] = (), random_faults: Iterable[str] = (),
-                 randomise: Mapping[str, tuple[float, float]] = {}, starts_anywhere: bool = False, ends_off_road: bool = True,
-                 off_road_cost: float = 10.0, episode_s: float = 0.0, settings: Settings = {}) -> None:
+                 reward: Reward | None = None, faults: Iterable[str] = (), random_faults: Iterable[str] = (),
+                 randomise: Mapping[str, tuple[float, float]] | None = None, starts_anywhere: bool = False, ends_off_road: bool = True,
+                 off_road_cost: float = 10.0, episode_s: float = 0.0, settings: Settings | None = None) -> None:
         if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 1:
             raise ValueError(f"count: got {count!r}, expected a whole number of environments from 1 on: VecEnv(16, \"oval\")")
         options = _options(observation, randomise, random_faults, starts_anywhere, ends_off_road, off_road_cost, episode_s)
         self._core = _chicane.Batch(_request(track, car, rate_hz, noise, seed, faults, settings), options, count, threads)
+        self._reward = reward
         self._seed = seed
         self.num_envs = count
         self.single_action_space: Box = _action_space(self._core.at(0))
@@ -178,7 +186,9 @@ class VecEnv(BaseVecEnv):
 
     def step(self, actions: npt.ArrayLike) -> tuple[Array, Array, npt.NDArray[np.bool_], npt.NDArray[np.bool_], Info]:
         """One control period in each; `actions` of shape (count, 2)."""
-        observations, rewards, terminated, truncated, last = self._core.step(actions)
+        observations, rewards, terminated, truncated, last, truths = self._core.step(actions, self._reward is not None)
+        if self._reward is not None:
+            rewards = np.array([self._reward(*told) for told in zip(last, truths)], float)
         ended = terminated | truncated
         infos: Info = {"final_obs": last, "_final_obs": ended} if ended.any() else {}
         return observations, rewards, terminated, truncated, infos

@@ -131,8 +131,8 @@ def _bounds(problem: Problem) -> str:
     return text
 
 
-def header(problem: Problem, name: str, with_hidden: bool = False) -> str:
-    """The header's text. with_hidden: parameters of the problem's own are among kParameters, and its cost is the residuals'."""
+def header(problem: Problem, name: str) -> str:
+    """The header's text."""
     if not _IDENTIFIER.fullmatch(name):
         raise ValueError(f"export: got the name {name!r}, expected a C++ identifier")
     rows = problem.all_rows()
@@ -162,9 +162,9 @@ def header(problem: Problem, name: str, with_hidden: bool = False) -> str:
 struct {name} {{
   static constexpr int {", ".join(sizes)};
   static constexpr const char* kName = "{name}";
-  static constexpr int kHorizon = {n}, kParameters = {count if with_hidden else problem.parameters};
+  static constexpr int kHorizon = {n}, kParameters = {problem.parameters};
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static constexpr double kCostOffset = {number(0.0 if with_hidden else problem.cost_offset())};  ///< the solver's cost lacks this
+  static constexpr double kCostOffset = {number(problem.cost_offset())};  ///< the solver's cost lacks this
 
   std::array<chicane::solver::StageData<kHorizon + 1>, {max(count, 1)}> p{{}};  ///< p[i][k]: parameter i of stage k
   std::array<std::array<double, kNu>, kHorizon> lower{{}}, upper{{}};
@@ -177,9 +177,9 @@ struct {name} {{
 """
 
 
-def c_source(problem: Problem, name: str, with_hidden: bool = False) -> str:
+def c_source(problem: Problem, name: str) -> str:
     """A C++ source with the problem behind the C function `name`."""
-    return "// clang-format off\n" + header(problem, f"Exported_{name}", with_hidden).replace("#pragma once\n", "", 1) + f"""
+    return "// clang-format off\n" + header(problem, f"Exported_{name}").replace("#pragma once\n", "", 1) + f"""
 #include "chicane/solver/c_interface.hpp"
 
 extern "C" [[gnu::visibility("default")]] const chicane_problem* {name}(void) {{ return chicane::solver::c_problem<Exported_{name}>(); }}

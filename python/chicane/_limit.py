@@ -32,12 +32,11 @@ class Limit:
         return f"<Limit: {self.bound_s:.3f} s{witness}>"
 
 
-def limit(track: AnyTrack | None = None, *, car: str | None = None, settings: Settings = {}, quick: bool = False,
+def limit(track: AnyTrack | None = None, *, car: str | None = None, settings: Settings | None = None,
           witness: bool = True) -> Limit:
     """Finds the fastest lap of a car on a closed road: 1 to 60 s, as `chicane limit` does.
 
-    quick: the same as witness=False; goes with the next version.
     witness: also drives it, which takes most of the time.
     ValueError for an open road, a model car, or a road too narrow or with a bend too tight for the car."""
     request = make_request({"track": track, "car": car}, settings)
-    return Limit(_chicane.limit(request, witness and not quick))
+    return Limit(_chicane.limit(request, witness))

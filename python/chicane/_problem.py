@@ -14,7 +14,7 @@ from . import _chicane, _cost
 from ._arguments import Array, array_of, number_of, state_of
 from ._integrators import Implicit
 from ._solution import Feedback, Solution, Solutions
-from ._symbols import Graph, Objects, Symbol, TraceError, refuse, where
+from ._symbols import Graph, Objects, Symbol, TraceError, line_of, refuse, where
 from ._types import npt
 
 Function = Callable[..., Any]
@@ -62,7 +62,6 @@ class Problem:
         self._numbers = {"residual": 0.0, "terminal_residual": 0.0}
         self._at_least = {"residual": 0.0, "terminal_residual": 0.0}
         self._interpreter: _chicane.Interpreter | None = None
-        self._compiled: Any = None
         self._last: Solution | None = None
         self._prepared: Any = None
         self._solved_by: Any = None
@@ -144,7 +143,7 @@ class Problem:
         u: inputs to start from, (horizon, nu); x: states to start from, (horizon + 1, nx); else inputs of 0, simulated.
         start: an earlier solution, in the place of both, with its multipliers.
         tolerance: of the conditions of optimality, (0, 1e-2]. budget_s: when to stop, best answer so far [s]; 0: never.
-        log: the iterations are in the solution's log, one row each (Iterations); the problem is interpreted then."""
+        log: the iterations are in the solution's log, one row each (Iterations)."""
         state = state_of(x0, self.nx)
         inputs = array_of("u", 0.0 if start is None and u is None else start.u if start is not None else u, (self.horizon, self.nu))
         has_states = start is not None or x is not None
@@ -161,7 +160,7 @@ class Problem:
         iterations = 2 * int(max_iterations) + 1000 if log else 0
         for shift in self._shifts():
             full = self._with_shifts(values, shift)
-            solver = self._solver(options, must_interpret=log)
+            solver = self._solver(options)
             reply = solver.solve(state, full, states, inputs, start is not None and start is self._last, iterations)
             if reply["status"] >= 0 or not self.has_expression_cost:
                 break
@@ -242,15 +241,6 @@ class Problem:
         from . import _export
         _export.write_c(self, Path(path))
 
-    def compile(self, wait: bool = False) -> bool:
-        """Compiles the problem by g++ in the background, to solve it faster from the next solve after that on: seconds the
-        first time, then found in $XDG_CACHE_HOME/chicane by its content. Says whether it is compiled; `wait` waits for it.
-        RuntimeError where g++ or the library's headers are missing."""
-        from . import _compiled
-        if self._compiled is None:
-            self._compiled = _compiled.Compilation(self)
-        return bool(self._compiled.is_done(wait))
-
     # ---- inside
 
     def _symbols(self, op: str, numbers: range) -> Objects:
@@ -260,7 +250,7 @@ class Problem:
         return symbols
 
     def _change(self) -> None:
-        self._interpreter = self._compiled = self._last = self._prepared = self._course = None
+        self._interpreter = self._last = self._prepared = self._course = None
 
     def _call(self, function: Function, kind: str) -> Any:
         """What a function returns when it is called with symbols."""
@@ -274,6 +264,11 @@ class Problem:
                              f"({'x, p, k' if is_end else 'x, u, p, k'})")
         try:
             result = function(*(part.copy() if isinstance(part, np.ndarray) else part for part in given[:len(wanted)]))
+        except TypeError as error:
+            if "Symbol" not in str(error):
+                raise
+            raise TraceError(f"{line_of(error)}: got {error}, expected what docs/python_problems.md lists: arithmetic, ch.where, and functions that "
+                             "have a derivative") from error
         except IndexError as error:
             raise ValueError(f"{kind}: {error}: expected x of {self.nx} entries, u of {self.nu}, p of {self.parameters}") from error
         if result is None:
@@ -436,14 +431,11 @@ class Problem:
         return _chicane.Interpreter(self.nx, self.all_inputs + (count if with_parameters else 0), 0 if with_parameters else count, self.horizon, ops,
                                     operands, numbers, outputs, not with_parameters)
 
-    def _solver(self, options: dict[str, Any], must_interpret: bool = False) -> Any:
+    def _solver(self, options: dict[str, Any]) -> _chicane.Interpreter:
         if self._interpreter is None:
             self._interpreter = self.make_interpreter()
-        solver: Any = self._interpreter
-        if self.speed == "compiled" and not must_interpret:
-            solver = self._compiled.solver
-        solver.set(*self.input_bounds, np.array(self.penalties, float).reshape(-1, 3), self.is_hard, options)
-        return solver
+        self._interpreter.set(*self.input_bounds, np.array(self.penalties, float).reshape(-1, 3), self.is_hard, options)
+        return self._interpreter
 
     @property
     def full_count(self) -> int:
@@ -471,18 +463,13 @@ class Problem:
         """Inputs, and unknowns inside intervals behind them."""
         return self.nu + self.unknowns
 
-    @property
-    def speed(self) -> str:
-        """How it is solved: "interpreted" or "compiled"."""
-        return "compiled" if self._compiled is not None and self._compiled.solver is not None else "interpreted"
-
     def __repr__(self) -> str:
         parts = [f"nx {self.nx}, nu {self.nu}, horizon {self.horizon}"]
         for name, word in (("constraint", "constraints"), ("equality", "equalities"), ("terminal_equality", "equalities at the end"),
                            ("terminal_constraint", "constraints at the end")):
             if self.rows[name]:
                 parts.append(f"{len(self.rows[name])} {word}")
-        return f"<Problem: {', '.join(parts)}, {self.speed}>"
+        return f"<Problem: {', '.join(parts)}>"
 
     def _repr_html_(self) -> str:
         return f"<code>{repr(self)[1:-1]}</code>"

@@ -22,10 +22,10 @@ def text_of(value: Any) -> str:
     return str(value)
 
 
-def make_request(named: Settings, settings: Settings, faults: Iterable[str] = (), scenario: str = "",
+def make_request(named: Settings, settings: Settings | None, faults: Iterable[str] = (), scenario: str = "",
                  speed_mps: float | None = None) -> _chicane.Request:
     """The experiment asked for. `settings` win over `named`; None is left out."""
     if isinstance(faults, str):
         faults = [faults]
-    pairs = [(key, file_of(value) if key == "track" else text_of(value)) for key, value in [*named.items(), *settings.items()] if value is not None]
+    pairs = [(key, file_of(value) if key == "track" else text_of(value)) for key, value in [*named.items(), *(settings or {}).items()] if value is not None]
     return _chicane.Request(scenario, pairs, "" if speed_mps is None else text_of(speed_mps), list(faults))

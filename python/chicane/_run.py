@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
@@ -15,6 +15,11 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = npt.NDArray[Any]
+Text = Literal["track", "car", "controller", "preset", "end_reason", "state_hash", "arithmetic", "step_time_is"]
+Count = Literal["seed", "laps_completed", "off_track_events", "cycles", "fallbacks", "gate_interventions", "deadline_misses"]
+Number = Literal["latency_ms", "out_of_track_time_s", "duration_s", "wall_time_s"]
+Rows = Literal["laps", "corners"]
+Part = Literal["guard", "total", "step_time_us", "solve_time_us", "solver", "guard_reasons", "learned"]
 
 
 class Frames(Mapping[str, Array]):
@@ -80,6 +85,21 @@ class Run(Mapping[str, Any]):
         self.road = road
         self.error = error
         self.file = file
+
+    @overload
+    def __getitem__(self, key: Text) -> str: ...
+    @overload
+    def __getitem__(self, key: Count) -> int: ...
+    @overload
+    def __getitem__(self, key: Number) -> float: ...
+    @overload
+    def __getitem__(self, key: Literal["completed"]) -> bool: ...
+    @overload
+    def __getitem__(self, key: Rows) -> list[dict[str, Any]]: ...
+    @overload
+    def __getitem__(self, key: Part) -> dict[str, Any]: ...
+    @overload
+    def __getitem__(self, key: str) -> Any: ...
 
     def __getitem__(self, key: str) -> Any:
         try:

@@ -66,7 +66,6 @@ if TYPE_CHECKING:
 else:
     try:
         from gymnasium import Env as BaseEnv
-        from gymnasium import register
         from gymnasium.spaces import Box
         from gymnasium.vector import AutoresetMode
         from gymnasium.vector import VectorEnv as BaseVecEnv
@@ -74,7 +73,6 @@ else:
         Box, BaseEnv, BaseVecEnv = PlainBox, PlainEnv, PlainEnv
     else:
         AUTORESET = AutoresetMode.SAME_STEP
-        register(id="chicane/Race-v0", entry_point="chicane:Env")
 
 
 def box(low: Array, high: Array) -> Box:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-def plan_of(axes: Mapping[str, Any], settings: Settings = {}, keep: Iterable[str] = (), name: str = "sweep") -> str:
+def plan_of(axes: Mapping[str, Any], settings: Settings | None = None, keep: Iterable[str] = (), name: str = "sweep") -> str:
     """The plan of a sweep as YAML, a line for each part (docs/sweep.md): what `chicane sweep` reads from a file."""
     lines = [f"name: {_json(name)}"]
     if settings:
@@ -28,7 +28,7 @@ def plan_of(axes: Mapping[str, Any], settings: Settings = {}, keep: Iterable[str
     return "\n".join(lines) + "\n"
 
 
-def sweep(axes: Mapping[str, Any], *, settings: Settings = {}, keep: Iterable[str] = (), jobs: int = 0, name: str = "sweep",
+def sweep(axes: Mapping[str, Any], *, settings: Settings | None = None, keep: Iterable[str] = (), jobs: int = 0, name: str = "sweep",
           output: str | os.PathLike[str] = "") -> pd.DataFrame:
     """Drives one run for each combination of the axes' values, on threads, and returns a table (needs python3-pandas).
 
@@ -48,6 +48,7 @@ def sweep(axes: Mapping[str, Any], *, settings: Settings = {}, keep: Iterable[st
     import tempfile  # here, because importing chicane shall be quick
 
     import pandas as pd
+    settings = settings or {}
     if "track" in settings:
         settings = {**settings, "track": file_of(settings["track"])}
     if isinstance(axes.get("track"), list):

@@ -6,6 +6,7 @@ import linecache
 import math
 import operator
 import sys
+import traceback
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -25,10 +26,24 @@ class TraceError(ValueError):
 def caller() -> str:
     """File, line and text of the innermost line that is neither of this package nor of numpy."""
     frame = sys._getframe(1)
-    while frame.f_back is not None and frame.f_code.co_filename.startswith((*_OWN_FOLDERS, "<__array_function__")):
+    while frame.f_back is not None and _is_own(frame.f_code.co_filename):
         frame = frame.f_back
-    text = linecache.getline(frame.f_code.co_filename, frame.f_lineno).strip()
-    return f"{frame.f_code.co_filename}:{frame.f_lineno}: {text}" if text else f"{frame.f_code.co_filename}:{frame.f_lineno}"
+    return _place(frame.f_code.co_filename, frame.f_lineno)
+
+
+def line_of(error: BaseException) -> str:
+    """The same of an error that was raised."""
+    at = [(frame.f_code.co_filename, line) for frame, line in traceback.walk_tb(error.__traceback__)]
+    return _place(*next((place for place in reversed(at) if not _is_own(place[0])), at[-1]))
+
+
+def _is_own(file: str) -> bool:
+    return file.startswith((*_OWN_FOLDERS, "<__array_function__"))
+
+
+def _place(file: str, line: int) -> str:
+    text = linecache.getline(file, line).strip()
+    return f"{file}:{line}: {text}" if text else f"{file}:{line}"
 
 
 def refuse(got: str, expected: str) -> TraceError:

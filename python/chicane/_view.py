@@ -28,25 +28,32 @@ class Page:
         return f'<iframe width="100%" height="{self._height}" style="border: 0" srcdoc="{page}"></iframe>'
 
 
-def view(run: Run | Recording | str | os.PathLike[str], *, page: str | os.PathLike[str] = "", height: int = 700,
-         open_browser: bool | None = None) -> Page:
-    """Shows a run in the dashboard: in a notebook in its cell, elsewhere in a tab of the browser.
+def report(run: Run | Recording | str | os.PathLike[str], output: str | os.PathLike[str], *, height: int = 700) -> Page:
+    """Writes the dashboard with a run as one HTML file that needs no network, as `chicane report` does.
 
     run: of drive() or read(), or a recording's file. A run that was not recorded is driven once more.
-    page: where to write the page, one HTML file without network; a temporary file when left out.
-    height: of the cell [px].
-    open_browser: None: unless in a notebook.
-    ValueError for a run with a Controller of your own that was not recorded (drive(..., record=...)), and where the
-    module was built without Node.js, which the dashboard needs."""
+    output: page to write; an older one is replaced.
+    height: of the cell of a notebook that shows the answer [px].
+
+    ValueError for a run with a Controller of your own that was not recorded (drive(..., record=...)), and where the module was
+    built without Node.js, which the dashboard needs."""
     import tempfile  # here, because importing chicane shall be quick
-    import webbrowser
-    file = os.fspath(page) or tempfile.mkstemp(prefix="chicane-", suffix=".html")[1]
+    file = os.fspath(output)
     with tempfile.TemporaryDirectory(prefix="chicane-") as folder:
         recording = _recording_of(run, folder)
         _chicane.write_page(recording, Path(recording).name, file)
-    if open_browser or (open_browser is None and not _is_notebook()):
-        webbrowser.open(Path(file).resolve().as_uri())
     return Page(file, height)
+
+
+def view(run: Run | Recording | str | os.PathLike[str], *, height: int = 700) -> Page:
+    """Shows the page of report(), with the same arguments and errors: in a notebook in its cell, elsewhere in a tab of the
+    browser."""
+    import tempfile
+    import webbrowser
+    page = report(run, tempfile.mkstemp(prefix="chicane-", suffix=".html")[1], height=height)
+    if not _is_notebook():
+        webbrowser.open(Path(page.file).resolve().as_uri())
+    return page
 
 
 def _recording_of(run: Run | Recording | str | os.PathLike[str], folder: str) -> str:
@@ -55,7 +62,7 @@ def _recording_of(run: Run | Recording | str | os.PathLike[str], folder: str) ->
     if run.file:
         return run.file
     if isinstance(run, Recording) or run._request is None:
-        raise ValueError("view: got a run with a controller of your own that was not recorded, expected drive(..., record=\"run.mcap\")")
+        raise ValueError("run: got one with a controller of your own that was not recorded, expected drive(..., record=\"run.mcap\")")
     file = str(Path(folder) / "run.mcap")
     _chicane.drive(make_request(**run._request), None, None, file, False, 0.0)
     return file

@@ -24,7 +24,8 @@ Observation observation_named(const std::string& name) {
   if (name == "track") return Observation::kTrack;
   if (name == "waypoints") return Observation::kWaypoints;
   if (name == "pose") return Observation::kPose;
-  throw py::value_error("observation: got \"" + name + "\", expected one of track, waypoints, pose");
+  if (name == "scan") return Observation::kScan;
+  throw py::value_error("observation: got \"" + name + "\", expected one of track, waypoints, pose, scan");
 }
 
 EnvironmentOptions options_of(const py::dict& given) {
@@ -120,10 +121,10 @@ int repeat(Environment& environment, const Numbers& actions) {
   const double* const commands = actions.data();
   const auto count = static_cast<int>(actions.shape(0));
   return unlocked([&] {
-    std::array<double, Environment::kMostSize> seen{};
+    std::vector<double> seen(environment.size());
     for (int n = 0; n < count; ++n) {
       const StepOutcome outcome = environment.step({commands[2 * n], commands[2 * n + 1]});
-      environment.observe({seen.data(), environment.size()});
+      environment.observe(seen);
       if (outcome.terminated || outcome.truncated) return n + 1;
     }
     return count;
@@ -150,9 +151,9 @@ class Batch {
     return observations;
   }
 
-  /// Observation, reward, terminated, truncated and the last observation of episodes that ended: those begin
-  /// anew at once.
-  py::tuple step(const Numbers& actions) {
+  /// Observation, reward, terminated, truncated, the last observation of episodes that ended (those begin
+  /// anew at once), and the truth at the last observations where it is wanted.
+  py::tuple step(const Numbers& actions, bool wants_truth) {
     check_shape(actions, size());
     for (py::ssize_t i = 0; i < actions.shape(0); ++i)
       check_command("actions", {actions.at(i, 0), actions.at(i, 1)});
@@ -166,14 +167,17 @@ class Batch {
       environments_[i]->observe({seen + i * width, width});
     };
     unlocked([&] { crew_.run(size(), step); });
+    py::list truths;
+    if (wants_truth)
+      for (const auto& environment : environments_) truths.append(info_of(*environment));
     const bool has_ended = std::any_of(outcomes.begin(), outcomes.end(), [](const StepOutcome& outcome) {
       return outcome.terminated || outcome.truncated;
     });
-    if (!has_ended) return told(last, outcomes, last);
+    if (!has_ended) return told(last, outcomes, last, truths);
     begin_anew(outcomes);
     Numbers observations = make_observations();
     write(observations);
-    return told(observations, outcomes, last);
+    return told(observations, outcomes, last, truths);
   }
 
  private:
@@ -191,7 +195,7 @@ class Batch {
       environments_[i]->observe({to.mutable_data() + i * width, width});
   }
   static py::tuple told(const Numbers& observations, const std::vector<StepOutcome>& outcomes,
-                        const Numbers& last) {
+                        const Numbers& last, const py::list& truths) {
     const auto count = static_cast<py::ssize_t>(outcomes.size());
     py::array_t<double> rewards(count);
     py::array_t<bool> terminated(count), truncated(count);
@@ -201,7 +205,7 @@ class Batch {
       terminated.mutable_at(i) = outcome.terminated;
       truncated.mutable_at(i) = outcome.truncated;
     }
-    return py::make_tuple(observations, rewards, terminated, truncated, last);
+    return py::make_tuple(observations, rewards, terminated, truncated, last, truths);
   }
 
   Crew crew_;
@@ -242,7 +246,7 @@ void add_environment(py::module_& module) {
       .def(py::init<const protocol::Request&, const py::dict&, int, int>(), py::arg("request"),
            py::arg("options"), py::arg("count"), py::arg("threads"))
       .def("reset", &Batch::reset, py::arg("seed"))
-      .def("step", &Batch::step, py::arg("actions"))
+      .def("step", &Batch::step, py::arg("actions"), py::arg("wants_truth"))
       .def("at", &Batch::at, py::return_value_policy::reference_internal)
       .def_property_readonly("threads", &Batch::threads)
       .def("__len__", &Batch::size);

@@ -2,6 +2,7 @@
 #include "environment.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -18,8 +19,10 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kOfEpisodes = 0x65706973;  // keeps the draws apart from the noise of the same seed
 constexpr double kCrossing = 10.0;                 // [m] within which roads that cross are told apart
-constexpr double kNear = 5.0;       // [m] of road that are searched first, beyond what is driven
-constexpr double kRounding = 1e-6;  // [m]
+constexpr double kNear = 5.0;                  // [m] of road that are searched first, beyond what is driven
+constexpr double kRounding = 1e-6;             // [m]
+constexpr double kLaserAhead = 0.275 / 0.307;  // of the rear axle, in wheelbases, as of F1TENTH
+constexpr double kWallSpacing = 0.5;  // between points of the walls [m], times the scale of a model car
 
 std::size_t size_of(Observation observation, const scenario::Scenario& scenario) {
   const auto waypoints = static_cast<std::size_t>(scenario.waypoints_sent);
@@ -28,6 +31,8 @@ std::size_t size_of(Observation observation, const scenario::Scenario& scenario)
       return 5 + Environment::kCurvatures;
     case Observation::kWaypoints:
       return 3 + 2 * waypoints;
+    case Observation::kScan:
+      return 3 + static_cast<std::size_t>(sim::RangeScannerOptions{}.beams);
     case Observation::kPose:
       break;
   }
@@ -68,6 +73,12 @@ Result<std::unique_ptr<Environment>> Environment::create(const scenario::Scenari
   std::unique_ptr<Environment> made(new Environment(scenario, std::move(options), std::move(roads)));
   made->scenario_.controller = made->scenario_.preset = "agent";
   if (const Result<void> begun = made->reset(scenario.seed); !begun) return fail(begun.error());
+  if (made->options_.observation == Observation::kScan) {
+    auto scanner = sim::RangeScanner::create(
+        made->loop_->track(), {.spacing = std::max(0.05, kWallSpacing * scenario.vehicle.scale)});
+    if (!scanner) return fail(scanner.error());
+    made->scanner_ = std::move(*scanner);
+  }
   return made;
 }
 
@@ -176,6 +187,8 @@ void Environment::observe(std::span<double> to) const noexcept {
       return observe_waypoints(to);
     case Observation::kPose:
       return observe_pose(to);
+    case Observation::kScan:
+      return observe_scan(to);
   }
 }
 
@@ -211,6 +224,22 @@ void Environment::observe_pose(std::span<double> to) const noexcept {
   const std::array<double, 7> numbers{seen_.time,  seen_.x,     seen_.y,       seen_.psi,
                                       seen_.speed, seen_.steer, seen_.throttle};
   std::copy(numbers.begin(), numbers.end(), to.begin());
+}
+
+/// The laser has no noise and no delay. What is further away than it reaches is at its range.
+void Environment::observe_scan(std::span<double> to) const noexcept {
+  constexpr std::size_t kBeams = sim::RangeScannerOptions{}.beams;
+  std::array<float, kBeams> ranges{};
+  const model::State& car = loop_->car();
+  const model::VehicleParams& vehicle = loop_->scenario().vehicle;
+  const double ahead = kLaserAhead * vehicle.wheelbase() - vehicle.rear_axle;
+  scanner_->scan({car.x + ahead * chicane::cos(car.psi), car.y + ahead * chicane::sin(car.psi), car.psi},
+                 ranges);
+  to[0] = seen_.speed;
+  to[1] = seen_.steer;
+  to[2] = seen_.throttle;
+  const double most = scanner_->options().range_max;
+  for (std::size_t i = 0; i < kBeams; ++i) to[3 + i] = std::min(static_cast<double>(ranges[i]), most);
 }
 
 Result<void> Environment::set(const std::string& key, const std::string& text) {

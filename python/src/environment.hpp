@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/roads.hpp"
 #include "chicane/scenario/scenario.hpp"
+#include "chicane/sim/range_scanner.hpp"
 
 namespace chicane::python {
 
@@ -24,6 +26,7 @@ enum class Observation : std::uint8_t {
   kTrack,      ///< place on the road, which the agent knows, and the curvature ahead
   kWaypoints,  ///< the waypoints of telemetry, seen from the car
   kPose,       ///< the measurement as it is
+  kScan,       ///< what a laser on the car sees of the walls along the road
 };
 
 /// A setting that is drawn evenly from [low, high] at the beginning of each episode.
@@ -55,7 +58,6 @@ class Environment {
  public:
   static constexpr int kCurvatures = 10;   ///< ahead, of Observation::kTrack
   static constexpr double kSpacing = 5.0;  ///< between them [m], times the car's scale
-  static constexpr std::size_t kMostSize = 3 + 2 * model::Measurement::kMaxWaypoints;
 
   /// Fails as run::ClosedLoop::create() does, and for a draw whose key or range is none of the schema.
   /// `roads` may be shared by environments that are made and reset on one thread.
@@ -93,6 +95,7 @@ class Environment {
   void observe_track(std::span<double> to) const noexcept;
   void observe_waypoints(std::span<double> to) const noexcept;
   void observe_pose(std::span<double> to) const noexcept;
+  void observe_scan(std::span<double> to) const noexcept;
 
   scenario::Scenario scenario_;
   EnvironmentOptions options_;
@@ -101,7 +104,8 @@ class Environment {
   std::unique_ptr<run::ClosedLoop> loop_;
   Agent* agent_ = nullptr;  ///< the controller of loop_
   model::Measurement seen_;
-  road::Projection foot_;  ///< seen place on the track, where kTrack asks for it
+  road::Projection foot_;                     ///< seen place on the track, where kTrack asks for it
+  std::optional<sim::RangeScanner> scanner_;  ///< where kScan asks for it
   double progress_ = 0.0;
   int off_track_events_ = 0;
   bool has_ended_ = true;

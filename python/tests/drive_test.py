@@ -78,7 +78,7 @@ class Drive(unittest.TestCase):
 
     def test_is_shown_in_the_dashboard(self):
         page = str(Path(self.folder.name) / "run.html")
-        shown = ch.view(self.file, page=page, open_browser=False)
+        shown = ch.report(self.file, page)
         self.assertEqual(shown.file, page)
         self.assertIn("run.mcap", Path(page).read_text(encoding="utf-8"))
         self.assertIn("<iframe", shown._repr_html_())

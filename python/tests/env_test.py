@@ -26,13 +26,16 @@ sys.modules["gymnasium"].Env = type("Env", (Base,), {})
 sys.modules["gymnasium.vector"].VectorEnv = type("VectorEnv", (Base,), {})
 sys.modules["gymnasium.spaces"].Box = Box
 sys.modules["gymnasium.vector"].AutoresetMode = types.SimpleNamespace(SAME_STEP="same")
-ids = []
-sys.modules["gymnasium"].register = lambda id, entry_point: ids.append((id, entry_point))
+for name in ("gymnasium.envs", "gymnasium.envs.registration"):
+    sys.modules[name] = types.ModuleType(name)
+registration = sys.modules["gymnasium.envs.registration"]
+registration.registry = {}
+registration.register = lambda id, entry_point: registration.registry.update({id: entry_point})
 import chicane as ch
+assert registration.registry == {"chicane/Race-v0": "chicane:Env"}, registration.registry
 env = ch.Env("oval")
 assert isinstance(env, sys.modules["gymnasium"].Env) and isinstance(env.action_space, Box), ch.Env.__mro__
 assert issubclass(ch.VecEnv, sys.modules["gymnasium.vector"].VectorEnv)
-assert ids == [("chicane/Race-v0", "chicane:Env")], ids
 env.reset(seed=3)
 assert env.seeded == 3
 env.step([0.0, 1.0])
@@ -46,9 +49,9 @@ sys.path.insert(0, sys.argv[1]) if sys.argv[1] else None
 import gymnasium, numpy as np, chicane as ch
 from gymnasium.utils.env_checker import check_env
 from gymnasium.wrappers.vector import RecordEpisodeStatistics
-check_env(ch.Env("oval"), skip_render_check=True)
 env = gymnasium.make("chicane/Race-v0", track="oval", render_mode="rgb_array")
 check_env(env.unwrapped)
+check_env(ch.Env("oval", observation="scan"), skip_render_check=True)
 env.reset(seed=1)
 assert env.render().shape == (400, 400, 3)
 envs = RecordEpisodeStatistics(ch.VecEnv(3, "oval", episode_s=0.5))
@@ -165,10 +168,23 @@ class Environment(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "render_mode: got 'human', expected None or"):
             ch.Env("oval", render_mode="human")
 
-    def test_refuses_copies(self):
-        for take in (copy.deepcopy, pickle.dumps):
-            with self.assertRaisesRegex(TypeError, "expected another Env with the same arguments and seed"):
-                take(ch.Env("oval"))
+    def test_a_copy_is_another_one_with_the_same_arguments(self):
+        env = ch.Env("oval", noise=True, seed=7, settings={"laps": 1})
+        first = env.reset()[0]
+        env.step([0.0, 1.0])
+        for take in (copy.deepcopy, lambda each: pickle.loads(pickle.dumps(each))):
+            np.testing.assert_array_equal(take(env).reset()[0], first)
+
+    def test_scans_the_walls_along_the_road(self):
+        env = ch.Env("oval", car="f1tenth", observation="scan")
+        observation, info = env.reset()
+        ranges = observation[3:]
+        self.assertEqual(ranges.shape, (1080,))
+        right, left = ranges[180], ranges[-181]                          # 90 degrees to each side: beams are a quarter of a degree apart
+        self.assertAlmostEqual(right, left, delta=0.05)                  # on the centre line
+        self.assertGreater(min(right, left), info["edge_distance_m"])    # which counts from the tyres
+        self.assertTrue(np.all((ranges > 0.0) & (ranges <= 30.0)))
+        self.assertGreater(ranges[540], 2.0 * right)                     # along the road
 
 
 class Many(unittest.TestCase):
@@ -187,6 +203,18 @@ class Many(unittest.TestCase):
         ends, told = episodes(1)
         self.assertGreater(ends, 3)
         self.assertEqual(episodes(3), (ends, told))
+
+    def test_takes_a_reward_of_ones_own(self):
+        told = []
+
+        def reward(observation, info):
+            told.append((observation[0], info["time_s"]))
+            return info["time_s"]
+        envs = ch.VecEnv(2, "oval", reward=reward, episode_s=0.1)
+        envs.reset()
+        rewards = [list(envs.step(np.zeros((2, 2)))[1]) for _ in range(3)]
+        np.testing.assert_allclose(rewards, [[0.06] * 2, [0.11] * 2, [0.06] * 2], atol=0.011)      # the last of an episode, too
+        self.assertEqual(len(told), 6)
 
     def test_refuses_no_number_of_them(self):
         for count in ("oval", 0, 2.5):

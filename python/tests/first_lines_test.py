@@ -33,7 +33,7 @@ class FirstLines(unittest.TestCase):
         self.assertLess(limit.bound_s, run.best_lap_s)
         rec = ch.read("run.mcap")
         self.assertEqual(rec.laps[0]["lap_time_s"], run.best_lap_s)
-        ch.view(run, page="run.html", open_browser=False)
+        ch.report(run, "run.html")
         self.assertIn("<html", Path("run.html").read_text(encoding="utf-8")[:2000])
 
     def test_drive_with_a_controller(self):

@@ -389,31 +389,37 @@ class Compiled(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "export_c: got the name 'cart-pole', expected a C identifier"):
             families.cart_pole()[0].export_c("cart-pole")
 
-    def test_the_exported_header_has_the_same_optimum_and_is_kept(self):
-        with tempfile.TemporaryDirectory() as folder, mock.patch.dict(os.environ, {"XDG_CACHE_HOME": folder}):
-            ocp = double_integrator(parameters=1)
-            ocp.subject_to(lambda x, u, p, k: [p[0] - ch.where(x[1] < 0, x[1], 2.0 * x[1]), ch.where(k < 3.5, -1.0, -0.9 - x[1])], name="slow")
-            interpreted = ocp.solve([1.0, 0.0], [-0.4])
-            self.assertTrue(ocp.compile(wait=True))
-            compiled = ocp.solve([1.0, 0.0], [-0.4])
-            self.assertEqual((ocp.speed, compiled.status), ("compiled", "optimal"))
-            self.assertAlmostEqual(compiled.cost, interpreted.cost, delta=1e-9 * interpreted.cost)
-            np.testing.assert_allclose(compiled.u, interpreted.u, atol=1e-6)
-            prepared = ocp.prepare([1.0, 0.0], [-0.4])
-            self.assertAlmostEqual(prepared.cost, compiled.cost, delta=1e-5)
-            answer = ocp.feedback([1.0001, 0.0])
-            again = ocp.solve([1.0001, 0.0], [-0.4], log=True)     # interpreted, as a log wants it
-            np.testing.assert_allclose(answer.u, again.u, atol=1e-4)
-            self.assertGreater(again.log.count, 1)
-            many = ocp.solve_many([[1.0, 0.0], [0.5, 0.1]], [-0.4], threads=2)
-            self.assertEqual(many.cost[0], compiled.cost)
-            made = os.listdir(f"{folder}/chicane")
-            self.assertEqual(len(made), 1)
-            again = double_integrator(parameters=1)
-            self.assertNotEqual(again.solve([1.0, 0.0], [0.0]).cost, compiled.cost)
+    def test_the_exported_problem_has_the_same_optimum(self):
+        ocp = double_integrator(parameters=1)
+        ocp.subject_to(lambda x, u, p, k: [p[0] - ch.where(x[1] < 0, x[1], 2.0 * x[1]), ch.where(k < 3.5, -1.0, -0.9 - x[1])], name="slow")
+        ocp.cost(lambda x, u: ch.exp(0.1 * x[0]), at_least=0.0)
+        stages = ", ".join(["-0.4"] * (ocp.horizon + 1))
+        main = f"""
+            #include <stdio.h>
+            #include "slow.h"
+            int main(void) {{
+              static unsigned char memory[1 << 20];
+              chicane_solver* solver;
+              chicane_report report;
+              const double x0[] = {{1.0, 0.0}}, p[] = {{{stages}}};
+              if (chicane_create(slow(), memory, sizeof memory, &solver) != CHICANE_DONE) return 1;
+              if (chicane_set(solver, CHICANE_PARAMETERS, p, sizeof p / sizeof *p) != CHICANE_DONE) return 1;
+              if (chicane_solve(solver, x0, &report) != CHICANE_DONE) return 1;
+              printf("%.17g", report.cost);
+              return report.is_usable ? 0 : 1;
+            }}"""
+        with tempfile.TemporaryDirectory() as folder:
+            ocp.export_c(f"{folder}/slow")
             ocp.export(f"{folder}/slow.hpp", "Slow")
-            with open(f"{folder}/slow.hpp", encoding="utf-8") as file:
-                self.assertIn("struct Slow {", file.read())
+            header = Path(folder, "slow.hpp").read_text(encoding="utf-8")
+            self.assertIn("struct Slow {", header)
+            Path(folder, "main.cpp").write_text(main, encoding="utf-8")
+            source = Path(__file__).resolve().parents[2] / "src"
+            subprocess.run(["g++", "-std=c++20", "-O0", "-w", f"-I{source}", "main.cpp", "slow.cpp", str(source / "chicane/base/math.cpp"), "-o", "slow"],
+                           check=True, cwd=folder)
+            cost = float(subprocess.run([f"{folder}/slow"], check=True, capture_output=True, text=True).stdout)
+        solution = ocp.solve([1.0, 0.0], [-0.4])
+        self.assertAlmostEqual(cost, solution.cost, delta=1e-6 * abs(solution.cost))
 
 
 class Misuses(unittest.TestCase):
@@ -430,6 +436,10 @@ class Misuses(unittest.TestCase):
         self.refuse(here + r".*got a symbol where a number is needed", lambda: ocp.cost(lambda x, u: float(x[0])))
         self.refuse(here + r".*got a branch on a symbol", lambda: ocp.cost(lambda x, u: np.where(x[0] > 0.0, x[0], 0.0)))
         self.refuse(here + r".*not math\.sin, float\(\), np\.floor", lambda: ocp.cost(lambda x, u: np.floor(x[0])))
+        for cost in (lambda x, u: round(x[0]), lambda x, u: x[0] % 1.0, lambda x, u: np.mod(x[0], 2.0), lambda x, u: np.exp2(x[0])):
+            self.refuse(here + r".*Symbol.*, expected what docs/python_problems\.md lists", lambda: ocp.cost(cost))
+        with self.assertRaises(TypeError):                       # a mistake of another kind stays what it is
+            ocp.cost(lambda x, u: len(3))
         self.refuse(here + r".*got == of a symbol", lambda: ocp.cost(lambda x, u: x[0] == 1))
         self.refuse(here + r".*got a branch on a symbol", lambda: ocp.cost(lambda x, u: max(x[0], 0.0)))
         self.refuse(here + r".*got str beside a symbol", lambda: ocp.cost(lambda x, u: x[0] + "1"), TypeError)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Identifies cars from logs of driving them, and races with what was found: the tables of docs/measured/identification.md.
 
-    studies/tables/identification.py CHICANE [--keep FOLDER] [--seeds N] [--cars A,B] [--tracks A,B] [--no-race]
+    studies/tables/identification.py CHICANE [--keep FOLDER] [--seeds N] [--cars A,B] [--tracks A,B] [--noise X] [--no-race]
 
 Each car drives laps with sensor noise (0.05 m, 0.3 deg, 0.1 m/s of a car in full size) and another delay of 20 to 250 ms for each log:
 with odd seeds by the preset `default`, with even ones nearer to the limit (tracking_mpc.grip_share=1). The search begins with a car that is
@@ -91,8 +91,9 @@ class Campaign:
         log = self.folder / f"{name}.mcap"
         if not log.exists():
             part = self.folder / f"{name}.part.mcap"
-            words = [f"sensor.position_noise_m={0.05 * scale:.6g}", "sensor.heading_noise_deg=0.3",
-                     f"sensor.speed_noise_mps={0.1 * math.sqrt(scale):.6g}", *(["tracking_mpc.grip_share=1"] if seed % 2 == 0 else [])]
+            noise = self.options.noise
+            words = [f"sensor.position_noise_m={0.05 * scale * noise:.6g}", f"sensor.heading_noise_deg={0.3 * noise:.6g}",
+                     f"sensor.speed_noise_mps={0.1 * math.sqrt(scale) * noise:.6g}", *(["tracking_mpc.grip_share=1"] if seed % 2 == 0 else [])]
             told = run(self.chicane, "drive", "--fast", "--json", "--car", file, "--track", track, "--laps", self.options.laps, "--seed", seed,
                        "--latency-ms", f"{delay:.1f}", "--record", part, *(word for each in words for word in ("--set", each)))
             if not told.stdout.startswith("{"):
@@ -176,6 +177,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--laps", default="2")
+    parser.add_argument("--noise", type=float, default=1.0, help="of the sensors, times the one above; 0 shows what the model itself lacks")
     parser.add_argument("--cars", default=ALL_CARS)
     parser.add_argument("--tracks", default="hairpins,oval")
     parser.add_argument("--keep", default="", help="folder for logs and answers; a run that is started again goes on")

@@ -156,18 +156,6 @@ def networks():
     first = road(1, 2, [(*at(0), STRAIGHT, "<line/>"), (*at(STRAIGHT), bend, f'<arc curvature="{1 / RADIUS}"/>')])
     second = road(2, 1, [(*at(STRAIGHT + bend), STRAIGHT, "<line/>"), *halves])
     yield "course.xodr", f'<?xml version="1.0"?>\n<OpenDRIVE><header revMajor="1" revMinor="6"/>\n{first}{second}</OpenDRIVE>\n'
-    lanelets = ""
-    parts, steps = 6, 16
-    for k in range(parts):
-        bounds = ""
-        for name, d in (("leftBound", HALF), ("rightBound", -HALF)):
-            points = ""
-            for i in range(steps + 1):
-                x, y, _ = at(LENGTH * (k * steps + i) / (parts * steps), d)
-                points += f"<point><x>{x:.5f}</x><y>{y:.5f}</y></point>"
-            bounds += f"<{name}>{points}</{name}>\n"
-        lanelets += f'<lanelet id="{100 + k}">{bounds}<predecessor ref="{100 + (k - 1) % parts}"/><successor ref="{100 + (k + 1) % parts}"/></lanelet>\n'
-    yield "course.commonroad.xml", f'<?xml version="1.0"?>\n<commonRoad commonRoadVersion="2020a" timeStepSize="0.1">\n{lanelets}</commonRoad>\n'
 
 
 def open_map():

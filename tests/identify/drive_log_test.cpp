@@ -234,6 +234,9 @@ TEST(DriveLog, IsReadFromTheFolderThatRosbag2Writes) {
       std::filesystem::temp_directory_path() / ("chicane_bag_" + std::to_string(::getpid()));
   std::filesystem::create_directory(folder);
   EXPECT_THAT(read_log(folder.string(), {}).error().message, HasSubstr("got a folder without .mcap or .db3"));
+  std::ofstream(folder / "old.bag") << "#ROSBAG V2.0\n";
+  EXPECT_THAT(read_log((folder / "old.bag").string(), {}).error().message,
+              HasSubstr("got a bag of ROS 1, expected one of ROS 2"));
   std::ofstream(folder / "metadata.yaml") << "rosbag2_bagfile_information:\n";
   write_bag((folder / "bag_0.mcap").string(), false);
   const auto one = read_log(folder.string(), {});

@@ -82,6 +82,9 @@ TEST(Identification, FindsTheCarThatDrove) {
     EXPECT_LE(each.low, each.value) << each.key;
     EXPECT_GE(each.high, each.value) << each.key;
   }
+  const Estimate& rear = of(*found, "cornering_rear");
+  EXPECT_GT(rear.high - rear.low, 0.055 * rear.value)
+      << "a log without noise does not hide what the model lacks";
   ASSERT_EQ(found->held_out.size(), 3U);
   EXPECT_LT(found->held_out[0].position, 0.1);
   EXPECT_GT(found->held_out[0].kept_position, 0.1);
@@ -207,6 +210,7 @@ TEST(Identification, EndsWhenItIsAskedTo) {
   ASSERT_TRUE(found);
   EXPECT_EQ(asked, 2);
   EXPECT_TRUE(found->held_out.empty());
+  EXPECT_FALSE(of(*found, "steer_rate_limit_degps").is_excited) << "the first round holds it";
 }
 
 TEST(Identification, NeedsTenSecondsOfDriving) {

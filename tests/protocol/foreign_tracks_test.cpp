@@ -126,7 +126,6 @@ INSTANTIATE_TEST_SUITE_P(
         Kind{"course.geojson", kLength, 0.5, 6.0, 0.7, true, {}, "metres east and north of 48.2001"},
         // Its arcs of 20 m move inwards by 0.07 m where their ends are eased.
         Kind{"course.xodr", kLength, 0.5, 6.0, 0.1, true, {}, "lanes: those of type driving"},
-        Kind{"course.commonroad.xml", kLength, 0.3, 6.0, 0.1},
         // What is asked for.
         Kind{"course.xodr", kLength, 0.5, 6.0, 0.1, false, {.direction = Direction::kReversed}, "lanes"},
         Kind{"clockwise.csv",
@@ -183,16 +182,12 @@ TEST(ForeignTracks, NamesElementAndLineOfAFault) {
   const auto message = [](std::string_view text) { return parse_track(text, "f.xml").error().message; };
   EXPECT_THAT(message("<?xml version='1.0'?>\n<gpx>\n<trkpt lat='x' lon='1'/></gpx>"),
               HasSubstr("f.xml:3: latitude: got x, expected a finite number"));
-  EXPECT_THAT(
-      message("<svg>\n</svg>"),
-      HasSubstr("f.xml:1: root: got the element svg, expected gpx, kml, osm, OpenDRIVE, commonRoad or sdf"));
+  EXPECT_THAT(message("<svg>\n</svg>"),
+              HasSubstr("f.xml:1: root: got the element svg, expected gpx, kml, osm, OpenDRIVE or sdf"));
   EXPECT_THAT(message("<osm>\n<way id='1'><nd ref='1'/><nd ref='2'/></way></osm>"),
               HasSubstr("f.xml: way: got a node "));
   EXPECT_THAT(message("<OpenDRIVE>\n<road id='1'>\n</road></OpenDRIVE>"),
               HasSubstr("f.xml:2: road: got no planView and lanes, expected both"));
-  EXPECT_THAT(message("<commonRoad><lanelet "
-                      "id='1'>\n<leftBound><point><x>0</x></point></leftBound></lanelet></commonRoad>"),
-              HasSubstr("f.xml:2: y: got nothing, expected a finite number"));
   EXPECT_THAT(message("{\"type\": \"Feature\",\n oops"),
               HasSubstr("f.xml:2: file: got text that is no JSON"));
   EXPECT_THAT(message("{\"centerline_waypoints\": {\"wpnts\": [{\"x_m\": 1}]}}"),
@@ -248,14 +243,40 @@ TEST(OpenDrive, RefusesJumpsKinksAndJunctions) {
               HasSubstr("junction: got a network of 1 roads, expected one course without junctions"));
 }
 
+TEST(ForeignTracks, ReadsConesThatAreLinksOfOneModel) {
+  std::string cones = "<sdf><model name='course'>";
+  for (int i = 0; i < 24; ++i)
+    for (const auto& [radius, colour] : {std::pair(17.0, "blue"), std::pair(20.0, "yellow")})
+      cones += fmt::format(
+          "<link name='link_{0}'><pose>{1} {2} 0 0 0 "
+          "0</pose><visual><geometry><mesh><uri>cone_{3}.dae</uri></mesh>"
+          "</geometry></visual></link>",
+          i, radius * std::cos(kPi * i / 12), radius * std::sin(kPi * i / 12), colour);
+  const auto links = parse_track(cones + "</model></sdf>", "f", {});
+  ASSERT_TRUE(links) << links.error().message;
+  EXPECT_NEAR(make_track(*links)->length(), 37.0 * kPi, 1.5);
+}
+
+TEST(ForeignTracks, SaysThatARoadStatesAnotherLength) {
+  const auto longer = parse_track(
+      "<OpenDRIVE><road id='1' length='200'><planView><geometry s='0' x='0' y='0' hdg='0' "
+      "length='50'><line/></geometry></planView>"
+      "<lanes><laneSection s='0'><right><lane id='-1' type='driving'><width sOffset='0' a='6' b='0' c='0' "
+      "d='0'/></lane></right>"
+      "</laneSection></lanes></road></OpenDRIVE>",
+      "f", {});
+  ASSERT_TRUE(longer) << longer.error().message;
+  EXPECT_THAT(longer->warnings,
+              Contains(HasSubstr("length: road 1 states 200.0 m, and its planView of 50.0 m is taken")));
+}
+
 TEST(ForeignTracks, NamesFilesThatAreNoRoads) {
   const auto message = [](std::string_view text) { return parse_track(text, "f").error().message; };
   EXPECT_THAT(message("<osm><way id='1'><nd ref='1'/><nd ref='2'/></way><relation id='3'>\n"
                       "<tag k='type' v='lanelet'/></relation></osm>"),
               HasSubstr("f:1: relation: got a lanelet of a Lanelet2 map, expected ways of a course"));
-  EXPECT_THAT(
-      message("<commonRoad><lanelet id='1'><successor ref='2'/><successor ref='3'/></lanelet></commonRoad>"),
-      HasSubstr("lanelet: got a network with 1 forks, expected one course"));
+  EXPECT_THAT(message("<commonRoad>\n<lanelet id='1'/></commonRoad>"),
+              HasSubstr("f:1: root: got a scene of CommonRoad, expected one road"));
   EXPECT_THAT(message("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n"),
               HasSubstr("f:1: file: got a pointer of git-LFS, expected the file itself (git lfs pull)"));
   EXPECT_THAT(message(R"({"X": [0], "Y": [0], "X_i": [0], "Y_i": [0]})"),

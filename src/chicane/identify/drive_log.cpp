@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -141,6 +142,10 @@ Result<void> check(const Agreement& seen, const std::string& file) {
 }
 
 Result<LogRows> read_rows(const std::string& file, const LogOptions& options) {
+  std::string head(8, ' ');
+  std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  if (head == "#ROSBAG ")
+    return fail(ErrorCode::kParse, file + ": got a bag of ROS 1, expected one of ROS 2");
   if (file.ends_with(".mcap")) return read_mcap_rows(file, options);
   if (file.ends_with(".db3")) return read_sqlite_rows(file, options);
   const Result<std::string> text = protocol::read_file(file);

@@ -104,16 +104,22 @@ Result<TrackFile> parse_yaml_cones(std::string_view text, const std::string& fil
   return track_of_cones(rows);
 }
 
-/// Each cone is an `include` or a `model` whose URI or name has its colour.
+bool is_cone(const std::string& tag) { return lower(tag).find("cone") != std::string::npos; }
+
+/// Each cone is an `include` or a `model` whose URI or name has its colour, or a `link` of a whole course
+/// whose mesh has.
 Result<TrackFile> track_of_sdf(const XmlDocument& xml, const TrackReadOptions& options) {
   RoadRows rows = cone_rows(xml.file, options);
   for (const pugi::xml_node pose : xml.find_all("pose")) {
     const pugi::xml_node model = pose.parent();
     const std::string_view kind = model.name();
-    std::string tag = model.child_value("uri");
-    if (lower(tag).find("cone") == std::string::npos) tag += model.child_value("name");
+    const bool is_link = kind == "link" && !is_cone(model.parent().attribute("name").value());
+    if (!is_link && kind != "include" && kind != "model") continue;
+    std::string tag =
+        (is_link ? model.child("visual").child("geometry").child("mesh") : model).child_value("uri");
+    if (!is_cone(tag)) tag += model.child_value("name");
     if (tag.empty()) tag = model.attribute("name").value();
-    if ((kind != "include" && kind != "model") || lower(tag).find("cone") == std::string::npos) continue;
+    if (!is_cone(tag)) continue;
     std::vector<std::string_view> cells = split(trim(pose.child_value()), ' ');
     cells.resize(2);
     cells.push_back(tag);

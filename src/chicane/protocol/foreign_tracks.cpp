@@ -85,6 +85,11 @@ constexpr std::array kForeign{
     TrackFormat{"", &parse_csv_cones, &is_csv_cones},
 };
 
+Result<TrackFile> refuse_commonroad(const XmlDocument& xml, const TrackReadOptions&) {
+  return fail(fault_of(xml.file, xml.line_of(xml.root()), "root", "a scene of CommonRoad",
+                       "one road, such as points of its line: lanelets are not read"));
+}
+
 struct Dialect {
   std::string_view tag, kind;
   Result<TrackFile> (*read)(const XmlDocument&, const TrackReadOptions&);
@@ -94,7 +99,7 @@ constexpr std::array kDialects{
     Dialect{"<kml", "KML", &track_of_kml},
     Dialect{"<osm", "OpenStreetMap", &track_of_osm},
     Dialect{"<OpenDRIVE", "OpenDRIVE", &track_of_opendrive},
-    Dialect{"<commonRoad", "CommonRoad", &track_of_commonroad},
+    Dialect{"<commonRoad", "CommonRoad", &refuse_commonroad},
     Dialect{"<sdf", "cones (SDF)", &track_of_sdf},
 };
 
@@ -120,8 +125,7 @@ Result<TrackFile> parse_xml_track(std::string_view text, const std::string& file
   for (const Dialect& dialect : kDialects)
     if (root == dialect.tag.substr(1)) return dialect.read(*xml, options);
   return fail(fault_of(file, xml->line_of(xml->root()), "root",
-                       fmt::format("the element {}", printable(root)),
-                       "gpx, kml, osm, OpenDRIVE, commonRoad or sdf"));
+                       fmt::format("the element {}", printable(root)), "gpx, kml, osm, OpenDRIVE or sdf"));
 }
 
 }  // namespace chicane::protocol

@@ -27,7 +27,7 @@ namespace chicane::protocol {
 /// Way points of the ForzaETH race stack, and lines of GeoJSON.
 [[nodiscard]] Result<TrackFile> parse_json_track(std::string_view text, const std::string& file,
                                                  const TrackReadOptions& options);
-/// GPX, KML, OpenStreetMap, OpenDRIVE, CommonRoad, and cones in SDF, by the root element.
+/// GPX, KML, OpenStreetMap, OpenDRIVE, and cones in SDF, by the root element.
 [[nodiscard]] Result<TrackFile> parse_xml_track(std::string_view text, const std::string& file,
                                                 const TrackReadOptions& options);
 

@@ -17,7 +17,6 @@
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/csv_text.hpp"
 #include "chicane/protocol/detail/foreign_roads.hpp"
-#include "chicane/survey/sampled_line.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -238,6 +237,11 @@ void lay_out(const XmlDocument& xml, xml_node road, bool is_forward, RoadRows& r
     passed += geometry.length();
     end = samples.back();
   }
+  if (const double stated = number_at(road, "length", passed); std::fabs(stated - passed) > 0.01 * passed)
+    warn(rows.content,
+         fmt::format("length: road {} states {:.1f} m, and its planView of {:.1f} m is taken",
+                     printable(road.attribute("id").value()), stated, passed),
+         xml.line_of(road));
   if (!is_forward) std::reverse(points.begin(), points.end());
   for (const road::TrackPoint& point : points) {
     const std::vector<road::TrackPoint>& known = rows.content.points;
@@ -323,94 +327,6 @@ Result<TrackFile> track_of_opendrive(const XmlDocument& xml, const TrackReadOpti
                                roads.size(), printable(first)));
   content->points = eased(content->points, content->is_closed);
   content->options.smoothing_sigma = 0.002 * options.scale;
-  return content;
-}
-
-namespace {
-
-// CommonRoad: lanelets, each with a left and a right bound.
-
-/// A side of a lanelet; empty after a fault.
-std::vector<Vec2> bound_of(const XmlDocument& xml, xml_node lanelet, const char* name, RoadRows& rows) {
-  RoadRows bound{xml.file, {}, {{"x", Column::kX}, {"y", Column::kY}}};
-  for (const xml_node point : lanelet.child(name).children("point"))
-    bound.add(xml.line_of(point), {trim(point.child_value("x")), trim(point.child_value("y"))});
-  std::vector<Vec2> line;
-  for (const road::TrackPoint& point : bound.content.points) line.push_back(point.position);
-  if (line.size() < 2 || survey::length_of(line, false) < 1e-3)
-    bound.fault(xml.line_of(lanelet), name, "fewer than two points", "a line");
-  if (!rows.error) rows.error = bound.error;
-  return line;
-}
-
-/// Points between the sides of a lanelet.
-void lay_out(const XmlDocument& xml, xml_node lanelet, RoadRows& rows) {
-  std::vector<Vec2> left = bound_of(xml, lanelet, "leftBound", rows),
-                    right = bound_of(xml, lanelet, "rightBound", rows);
-  if (rows.error) return;
-  const double left_length = survey::length_of(left, false), right_length = survey::length_of(right, false);
-  if (left.size() != right.size()) {
-    const double spacing =
-        std::max(left_length, right_length) / static_cast<double>(std::max(left.size(), right.size()));
-    const double count = std::max(2.0, std::round(left_length / spacing));
-    left = survey::sampled(left, false, left_length / count);
-    right = survey::sampled(right, false, right_length / count);
-  }
-  for (std::size_t i = 0; i < std::min(left.size(), right.size()); ++i) {
-    const double half = 0.5 * (left[i] - right[i]).norm();
-    if (!(2.0 * half >= kLeastWidth && half <= kMaxTrackWidth))
-      return rows.fault(xml.line_of(lanelet), "lanelet", fmt::format("{:.2f} m of width", 2.0 * half),
-                        "0.5 to 1000 m");
-    const Vec2 middle = 0.5 * (left[i] + right[i]);
-    const std::vector<road::TrackPoint>& points = rows.content.points;
-    if (points.empty() || (points.back().position - middle).norm() >= 1e-3) rows.add({middle, half, half});
-  }
-}
-
-std::string reference(xml_node lanelet, const char* to) { return lanelet.child(to).attribute("ref").value(); }
-
-}  // namespace
-
-Result<TrackFile> track_of_commonroad(const XmlDocument& xml, const TrackReadOptions& options) {
-  std::map<std::string, xml_node> lanelets;
-  std::string first;
-  std::size_t forks = 0;
-  for (const xml_node node : xml.root().children("lanelet")) {
-    const std::string id = node.attribute("id").value();
-    lanelets.emplace(id, node);
-    if (first.empty()) first = id;
-    forks += node.child("successor").next_sibling("successor") ? 1U : 0U;
-  }
-  if (first.empty()) return fail(fault_of(xml.file, 0, "lanelet", "none", "at least one"));
-  if (forks > 0)
-    return fail(fault_of(xml.file, 0, "lanelet", fmt::format("a network with {} forks", forks),
-                         "one course: lanelets of at most one successor"));
-  // Back to where the chain begins; round a loop to where it was entered.
-  std::set<std::string> seen;
-  std::string begin = first;
-  while (seen.insert(begin).second) {
-    const std::string before = reference(lanelets.at(begin), "predecessor");
-    if (!lanelets.contains(before)) break;
-    begin = seen.contains(before) ? first : before;
-  }
-  first = begin;
-  RoadRows rows{xml.file, options};
-  std::set<std::string> driven;
-  std::string at = first;
-  while (lanelets.contains(at) && !rows.error && driven.insert(at).second) {
-    const xml_node lanelet = lanelets.at(at);
-    lay_out(xml, lanelet, rows);
-    at = reference(lanelet, "successor");
-  }
-  rows.expect_points(4);
-  if (at == first && !rows.closed) rows.closed = true;
-  Result<TrackFile> content = rows.build();
-  if (!content) return content;
-  if (driven.size() < lanelets.size())
-    warn(*content,
-         fmt::format("lanelet: {} of {} taken, from {} along successors; lanes beside them are no road",
-                     driven.size(), lanelets.size(), printable(first)));
-  content->options.smoothing_sigma = 0.05 * options.scale;
   return content;
 }
 

@@ -31,7 +31,6 @@ struct GeoLine {
 [[nodiscard]] Result<TrackFile> track_of_kml(const XmlDocument& xml, const TrackReadOptions& options);
 [[nodiscard]] Result<TrackFile> track_of_osm(const XmlDocument& xml, const TrackReadOptions& options);
 [[nodiscard]] Result<TrackFile> track_of_opendrive(const XmlDocument& xml, const TrackReadOptions& options);
-[[nodiscard]] Result<TrackFile> track_of_commonroad(const XmlDocument& xml, const TrackReadOptions& options);
 /// Cones of a world of Gazebo.
 [[nodiscard]] Result<TrackFile> track_of_sdf(const XmlDocument& xml, const TrackReadOptions& options);
 
