@@ -66,7 +66,7 @@ template <class P>
 struct KktResidual {
   double defect = 0.0;        ///< ‖x_{k+1} − f‖∞ / (1 + |x|)
   double stationarity = 0.0;  ///< ‖u − Proj(u − dL/du)‖∞
-  double subgradient = 0.0;   ///< how far each price is from belonging to its constraint's value
+  double subgradient = 0.0;   ///< how far each multiplier is from belonging to its constraint's value
   double outside = 0.0;       ///< of the bounds of inputs and of their changes
   double miss = 0.0;          ///< of what must hold
   double total = 0.0;         ///< sum of its misses
@@ -76,7 +76,7 @@ struct KktResidual {
 };
 
 /// The multipliers of what must hold: of the equalities of stages, and at the end.
-struct NoHardPrices {
+struct NoHardMultipliers {
   double equality_multiplier(int, int) const { return 0.0; }
   double terminal_equality_multiplier(int) const { return 0.0; }
   double terminal_constraint_multiplier(int) const { return 0.0; }
@@ -90,12 +90,12 @@ template <class D, std::size_t N>
   return result;
 }
 
-/// Checks a trajectory with the prices of its soft constraints, `price(k, c)`, and of what must hold.
-/// Everything else is computed here, by dual numbers, stage by stage: no line is shared with the solver.
-/// `gradient`, where given, gets dL/du of each stage.
-template <solver::OcpProblem P, int Capacity, class Price, class HardPrice = NoHardPrices>
+/// Checks a trajectory with the multipliers of its soft constraints, `multiplier(k, c)`, and of what must
+/// hold. Everything else is computed here, by dual numbers, stage by stage: no line is shared with the
+/// solver. `gradient`, where given, gets dL/du of each stage.
+template <solver::OcpProblem P, int Capacity, class Multiplier, class HardMultiplier = NoHardMultipliers>
 KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::kNx, P::kNu, Capacity>& t,
-                      const Price& price, const HardPrice& hard = {},
+                      const Multiplier& multiplier, const HardMultiplier& hard = {},
                       std::array<double, P::kNu>* gradient = nullptr) {
   constexpr int kNx = P::kNx, kNu = P::kNu, kNz = kNx + kNu;
   using D = Dual<kNz>;
@@ -161,7 +161,7 @@ KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::
     if constexpr (P::kNc > 0) {
       int c = -1;
       for (const D& value : problem.template constraint<D>(stage, x, u)) {
-        const double z = price(stage, ++c);
+        const double z = multiplier(stage, ++c);
         if (is_hard(problem, c)) {
           must_not_be_positive(value, z);
           continue;

@@ -95,8 +95,8 @@ class IpoptProblem : public SparseNlp<IpoptProblem<P>> {
     double value = 0.0;
     for (int k = 0; k <= horizon_; ++k) {
       each_residual<double>(w, k, [&](double r) { value += 0.5 * r * r; });
-      each_slack(k, [&](int at, const auto& price) {
-        value += w[at] * (price.linear + 0.5 * price.quadratic * w[at]);
+      each_slack(k, [&](int at, const auto& penalty) {
+        value += w[at] * (penalty.linear + 0.5 * penalty.quadratic * w[at]);
       });
     }
     return value;
@@ -106,8 +106,8 @@ class IpoptProblem : public SparseNlp<IpoptProblem<P>> {
       each_residual<First>(w, k, [&](const First& r) {
         each_slope(k, r, [&](int at, double slope) { gradient[at] += r.v * slope; });
       });
-      each_slack(k,
-                 [&](int at, const auto& price) { gradient[at] = price.linear + price.quadratic * w[at]; });
+      each_slack(
+          k, [&](int at, const auto& penalty) { gradient[at] = penalty.linear + penalty.quadratic * w[at]; });
     }
   }
   void set_equations(const Number* w, Number* g) const {
@@ -134,7 +134,7 @@ class IpoptProblem : public SparseNlp<IpoptProblem<P>> {
       each_row<Second>(w, k, [&](int row, const Second& value, int) {
         lagrangian += (multipliers == nullptr ? 0.0 : multipliers[row]) * value;
       });
-      each_slack(k, [&](int at, const auto& price) { put(at, at, factor * price.quadratic); });
+      each_slack(k, [&](int at, const auto& penalty) { put(at, at, factor * penalty.quadratic); });
       for (int a = 0; a < variables(k); ++a) {
         for (int b = 0; b <= a && position(k, a) >= 0; ++b) {
           if (position(k, b) < 0) continue;
@@ -177,7 +177,7 @@ class IpoptProblem : public SparseNlp<IpoptProblem<P>> {
       for (const T& r : problem_->terminal_residual(state<T>(w, k))) visit(r);
     }
   }
-  /// Calls visit(position, price) for the slacks of stage k.
+  /// Calls visit(position, penalty) for the slacks of stage k.
   template <class Visit>
   void each_slack([[maybe_unused]] int k, [[maybe_unused]] const Visit& visit) const {
     if constexpr (kNc > 0) {

@@ -35,8 +35,8 @@ double simulated_cost(const P& problem, const std::array<double, P::kNx>& x0,
     if constexpr (P::kNc > 0) {
       int c = 0;
       for (const double value : problem.constraint(k, x, u)) {
-        const auto price = problem.soft_penalty(c++);
-        if (value > 0.0) cost += value * (price.linear + 0.5 * price.quadratic * value);
+        const auto penalty = problem.soft_penalty(c++);
+        if (value > 0.0) cost += value * (penalty.linear + 0.5 * penalty.quadratic * value);
       }
     }
   }
@@ -53,7 +53,8 @@ std::vector<std::array<double, P::kNu>> simulated_gradient(
     const solver::Trajectory<P::kNx, P::kNu, Capacity>& t) {
   std::vector<std::array<double, P::kNu>> gradient(static_cast<std::size_t>(t.horizon));
   const auto no_price = [](int, int) { return 0.0; };
-  check_kkt(OverArrays<P>{problem}, simulated(problem, x0, t), no_price, NoHardPrices{}, gradient.data());
+  check_kkt(OverArrays<P>{problem}, simulated(problem, x0, t), no_price, NoHardMultipliers{},
+            gradient.data());
   return gradient;
 }
 

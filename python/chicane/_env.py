@@ -188,7 +188,7 @@ class VecEnv(BaseVecEnv):
         """One control period in each; `actions` of shape (count, 2)."""
         observations, rewards, terminated, truncated, last, truths = self._core.step(actions, self._reward is not None)
         if self._reward is not None:
-            rewards = np.array([self._reward(*told) for told in zip(last, truths)], float)
+            rewards = np.array([self._reward(*reply) for reply in zip(last, truths)], float)
         ended = terminated | truncated
         infos: Info = {"final_obs": last, "_final_obs": ended} if ended.any() else {}
         return observations, rewards, terminated, truncated, infos

@@ -27,10 +27,10 @@ class Road(os.PathLike[str]):
     numbers: is_closed, length_m, narrowest_m, widest_m, tightest_radius_m (None: straight), points of the file, and rms_m and
         max_m, their distance from the line."""
 
-    def __init__(self, file: str, told: dict[str, Any]) -> None:
+    def __init__(self, file: str, reply: dict[str, Any]) -> None:
         self.file = file
-        self.remarks: list[str] = told.pop("notices")
-        self.numbers = told
+        self.remarks: list[str] = reply.pop("notices")
+        self.numbers = reply
 
     def __fspath__(self) -> str:
         return self.file
@@ -71,7 +71,7 @@ def identify(logs: AnyFile | Sequence[AnyFile], output: AnyFile = "", *, setting
 
 
 def league(entries: AnyFile | Mapping[str, Any], output: AnyFile = "", **options: Any) -> pd.DataFrame:
-    """Compares controllers on tracks, in cars and under disturbances (docs/league.md), as `chicane league` does.
+    """Compares controllers on tracks, in cars and under disturbances (docs/sweep.md), as `chicane league` does.
 
     entries: a league's file, or its content: {"entries": {...}, "tracks": [...], ...}.
     output: page to write (.html); an older one is replaced.
@@ -106,6 +106,6 @@ def run(command: str, *words: Any, **options: Any) -> str:
             given += [f"--{name.replace('_', '-')}"] + ([] if value is True else [text])
     done = subprocess.run([program(), command, *given], capture_output=True, text=True)
     if done.returncode != 0:
-        told = [line for line in done.stderr.splitlines() if line and not line.startswith("See `")]
-        raise ValueError(told[-1] if told else f"chicane {command}: exit code {done.returncode}")
+        reply = [line for line in done.stderr.splitlines() if line and not line.startswith("See `")]
+        raise ValueError(reply[-1] if reply else f"chicane {command}: exit code {done.returncode}")
     return done.stdout

@@ -335,9 +335,9 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
       noise[kind] = std::max(fit.residual[kind], least[kind]);
   }
   for (std::size_t i = 0; i < rows.size() && round < 2 && !goes_on; ++i) {
-    if (first.deviation[i] == beliefs.deviation[i]) continue;  // else held by the first round, not found
-    fit.theta[i] = beliefs.mean[i];
-    fit.deviation[i] = beliefs.deviation[i];
+    if (first.deviation[i] == prior.deviation[i]) continue;  // else held by the first round, not found
+    fit.theta[i] = prior.mean[i];
+    fit.deviation[i] = prior.deviation[i];
   }
   found.loss = fit.loss;
   found.correlation = fit.correlation;
