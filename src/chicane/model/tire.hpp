@@ -29,12 +29,14 @@ struct MagicFormula {
 
 /// sin(C atan(x/C)) over x, by the square of the slip x > 0: the magic formula's secant. For C = 3/2 without
 /// an angle, cos θ = 1/√(1 + (x/C)²) and sin(3θ/2) = sin θ (1 + 2 cos θ) / (2 cos(θ/2)).
-[[nodiscard]] inline double magic_secant(double shape, double square) noexcept {
+/// T is double or a Pack.
+template <class T>
+[[nodiscard]] T magic_secant(double shape, const T& square) noexcept {
   if (shape != 1.5) {
-    const double size = sqrt(square);
+    const T size = sqrt(square);
     return sin(shape * atan(size / shape)) / size;
   }
-  const double cosine = 1.0 / sqrt(1.0 + square / (shape * shape));
+  const T cosine = 1.0 / sqrt(1.0 + square / (shape * shape));
   return cosine * (1.0 + 2.0 * cosine) / (2.0 * shape * sqrt(0.5 * (1.0 + cosine)));
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "chicane/base/math.hpp"
+#include "chicane/base/math_pack.hpp"
 #include "chicane/model/tire.hpp"
 
 namespace chicane::safety {
@@ -27,7 +28,21 @@ void StopCar::set_vehicle(const model::VehicleParams& vehicle) noexcept {
   const model::VehicleParams& p = vehicle;
   has_wheels_ = p.friction_coupling > 0.0 && p.tire_shape > 0.0 && !(p.steer_helper > 0.0);
   axles_ = p.axles();
-  cornering_ = {p.cornering_front / p.friction, p.cornering_rear / p.friction};
+  for (std::size_t i = 0; i < EachWheel::kLanes; ++i) {
+    const bool is_front = i < 2;
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    const model::Axle& axle = axles_[i / 2];
+    wheels_.x.set(i, axle.x);
+    wheels_.y.set(i, side * axle.half_track);
+    wheels_.is_front.set(i, is_front ? 1.0 : 0.0);
+    wheels_.pitches.set(i, is_front ? -1.0 : 1.0);
+    wheels_.rolls.set(i, side * axle.roll_share);
+    wheels_.rest.set(i, axle.rest * p.load_constant);
+    wheels_.down.set(i, 2.0 * axle.rest);
+    wheels_.drive.set(i, axle.drive_share);
+    wheels_.brake.set(i, axle.brake_share);
+    wheels_.cornering.set(i, (is_front ? p.cornering_front : p.cornering_rear) / p.friction);
+  }
 }
 
 StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
@@ -39,26 +54,25 @@ StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
   const double down = 0.5 * (p.load(m.vx) - p.load_constant);
   const double pitch = 0.5 * p.height / p.wheelbase() * at.load_along;
   const double roll = p.height / p.track_width * at.load_across;
-  const auto secant = [&p](double square) {
-    return model::magic_secant(p.tire_shape, square + kLeastSquare);
+  const auto secant = [&p](const EachWheel& square) {
+    return model::magic_secant(p.tire_shape, EachWheel(square + kLeastSquare));
   };
-  const auto force_of = [&](std::size_t i, const model::Axle& axle, const model::Planar<double>& v) {
-    const bool is_front = i < 2;
-    const double side = i % 2 == 0 ? 1.0 : -1.0;
-    const double asked = 0.5 * pedal * (pedal > 0.0 ? axle.drive_share : axle.brake_share);
-    const double rest = axle.rest * p.load_constant;
-    const double moved =
-        std::max((is_front ? -pitch : pitch) - side * axle.roll_share * roll, (kLeastLoad - 1.0) * rest);
-    const double load = rest + moved + 2.0 * axle.rest * down;
-    const double most = p.friction * (1.0 - p.load_sensitivity * moved / rest) * load;
-    const double forward = std::max(v.x, 0.25 * m.vx);  // of a car that spins, too
-    const double slip = (is_front ? m.steer : 0.0) - v.y / forward;
-    // The slip along that gives the force asked for beside the slip across, by similarity.
-    const double use = std::clamp((asked - rolling * load) / most, -kMostAlong, kMostAlong);
-    const double z = cornering_[i / 2] * slip;
-    const double square = use * use;
-    const double first = secant(z * z + square / std::sqrt(1.0 - square * square));
-    return model::Planar<double>{most * use, most * z * secant(z * z + square / (first * first))};
+  const Wheels& w = wheels_;
+  const EachWheel asked = 0.5 * pedal * (pedal > 0.0 ? w.drive : w.brake);
+  const EachWheel moved = max(w.pitches * pitch - w.rolls * roll, (kLeastLoad - 1.0) * w.rest);
+  const EachWheel load = w.rest + moved + w.down * down;
+  const EachWheel most = p.friction * (1.0 - p.load_sensitivity * moved / w.rest) * load;
+  const EachWheel forward = max(m.vx - m.r * w.y, EachWheel(0.25 * m.vx));  // of a car that spins, too
+  const EachWheel slip = w.is_front * m.steer - (m.vy + m.r * w.x) / forward;
+  // The slip along that gives the force asked for beside the slip across, by similarity.
+  const EachWheel use =
+      min(max((asked - rolling * load) / most, EachWheel(-kMostAlong)), EachWheel(kMostAlong));
+  const EachWheel z = w.cornering * slip;
+  const EachWheel square = use * use;
+  const EachWheel first = secant(z * z + square / sqrt(1.0 - square * square));
+  const EachWheel along = most * use, across = most * z * secant(z * z + square / (first * first));
+  const auto force_of = [&](std::size_t i, const model::Axle&, const model::Planar<double>&) {
+    return model::Planar<double>{along[i], across[i]};
   };
   const double air = p.drag_constant - drag;
   const auto sum =

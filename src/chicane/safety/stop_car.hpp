@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "chicane/base/pack.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/model/wheel_forces.hpp"
@@ -56,10 +57,23 @@ class StopCar {
 
   static constexpr double kSlowest = 12.0;  ///< [m/s] stiff tyres would need shorter steps
 
+  using EachWheel = Pack<arch::Baseline, 4>;  ///< front left, front right, rear left, rear right
+  /// Constants of the wheels.
+  struct Wheels {
+    EachWheel x, y;          ///< place, ahead and to the left of the centre of mass [m]
+    EachWheel is_front;      ///< 1 or 0
+    EachWheel pitches;       ///< 1 where braking unloads the wheel, -1 where it loads it
+    EachWheel rolls;         ///< share of the load that leaves the wheel in a bend to the left
+    EachWheel rest;          ///< load at rest over the car's mass [m/s²]
+    EachWheel down;          ///< twice the share of the load at rest
+    EachWheel drive, brake;  ///< shares of an axle's force
+    EachWheel cornering;     ///< over friction [1/rad]
+  };
+
   model::PredictionModel model_;
   bool has_wheels_ = false;
   std::array<model::Axle, 2> axles_{};
-  std::array<double, 2> cornering_{};  ///< over friction, of the axles [1/rad]
+  Wheels wheels_{};
 };
 
 }  // namespace chicane::safety
