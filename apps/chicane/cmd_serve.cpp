@@ -38,6 +38,7 @@ Result<wire::ServeSummary> serve_until_stopped(const Options& options) {
       [](std::uint16_t port) { return fmt::format("a simulator on port {}", port); }, stop,
       [&options](wire::ServeOptions serving, auto&&... rest) {
         serving.clock.lock_step = 1e-3 * options.lock_step_ms;
+        serving.time_field = options.sim_time;
         return wire::serve(serving, std::forward<decltype(rest)>(rest)...);
       });
 }

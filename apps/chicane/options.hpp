@@ -32,6 +32,7 @@ struct Options {
   bool is_fast = false;  ///< as fast as possible, no sockets
   bool is_json = false;
   std::optional<double> pace;  ///< drive: run seconds per second of the clock
+  std::string sim_time;        ///< serve: field of telemetry with the simulator's time; empty: none
   double lock_step_ms = 0.0;   ///< serve: time of the simulator with each answer; 0: the measurements show it
   std::optional<double> step_budget_ms;  ///< drive: bound of a control step; 0 = none
   bool is_manual = false;                ///< drive: a person has the wheel

@@ -200,7 +200,10 @@ Rows serve_rows(Options& o) {
          Setting{"track"}},
         {"--lock-step-ms", "X",
          "Time that the simulator advances with each answer; else the measurements show its clock",
-         &o.lock_step_ms, between(1.0, 1000.0)}},
+         &o.lock_step_ms, between(1.0, 1000.0)},
+        {"--sim-time", "FIELD",
+         "Field of the telemetry with the simulator's time [s]: the run is counted by it", &o.sim_time,
+         without({"--lock-step-ms"})}},
        port_rows(o),
        record_rows(o),
        {json_at_end_row(o), set_row(o)}});

@@ -307,6 +307,14 @@ TEST(UdacityReplyFromController, SaysWhatWasClamped) {
   EXPECT_EQ(clamped("0.25"), "");
 }
 
+TEST(UdacityTelemetry, CarriesTheSimulatorsTimeInTheFieldThatIsNamed) {
+  const std::string text =
+      R"(42["telemetry",{"t":12.5,"ptsx":[],"ptsy":[],"psi":0,"x":0,"y":0,"steering_angle":0,"throttle":0,"speed":9}])";
+  EXPECT_EQ(std::get<model::Measurement>(parse_telemetry(text, "t")).time, 12.5);
+  EXPECT_EQ(std::get<model::Measurement>(parse_telemetry(text)).time, 0.0);
+  EXPECT_EQ(std::get<UdacityBroken>(parse_telemetry(text, "time")).reason, "time: missing");
+}
+
 TEST(UdacityTelemetry, RoundingBeyondABorderIsTheBorder) {
   const auto read = [](const std::string& throttle, const std::string& speed) {
     return std::get<model::Measurement>(parse_telemetry(

@@ -72,7 +72,7 @@ TEST_F(PlantClockTest, CountsByTheWallWhateverAMachineDelaysAndASensorErrs) {
       EXPECT_FALSE(advance(clock, cycle, cycle, 1.0, is_noisy ? 0.15 : 0.0));
     }
     EXPECT_EQ(clock.ratio(), 1.0);
-    EXPECT_NEAR(clock.at(wall(wall_)), wall_, 1e-6);
+    EXPECT_NEAR(clock.at(wall(wall_)), wall_, 0.0201) << "a physics step, and no drift";
   }
 }
 
@@ -132,6 +132,23 @@ TEST_F(PlantClockTest, TakesNoSpeedInAnotherUnitForAClock) {
   x_ = v_ = wall_ = 0.0;
   PlantClock clock = estimated();
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(advance(clock, 0.12, 0.12, i < 50 ? 1.0 : 0.5)) << i;
+}
+
+TEST_F(PlantClockTest, CountsByTheTimeThatASimulatorTells) {
+  PlantClock clock({.is_measured = true}, car_, wall(0.0));
+  model::Measurement told{.time = 1234.5};
+  double waited = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    told.time += 0.05;
+    EXPECT_FALSE(clock.advance(wall(waited += chance_.uniform(0.0, 1.0)), i % 10 == 5 ? nullptr : &told, {}));
+  }
+  EXPECT_NEAR(clock.at(wall(waited)), 99 * 0.05, 1e-9);
+  EXPECT_NEAR(clock.at(wall(waited + 10.0)), 100 * 0.05, 1e-6) << "no more until the next answer";
+  EXPECT_NEAR(clock.delay(0.3), 0.05, 0.001);
+  told.time = 0.0;
+  EXPECT_TRUE(clock.advance(wall(waited), &told, {})) << "it began again";
+  EXPECT_THAT(clock.news(), HasSubstr("time went back"));
+  EXPECT_NEAR(clock.at(wall(waited)), 100 * 0.05, 1e-6) << "the run's time goes on";
 }
 
 TEST_F(PlantClockTest, ATimeThatIsGivenIsNotEstimated) {

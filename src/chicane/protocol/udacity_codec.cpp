@@ -194,7 +194,7 @@ class FieldReader {
  public:
   explicit FieldReader(const Json& data) : data_{data} {}
 
-  double number(const char* key, const Range& range) {
+  double number(const std::string& key, const Range& range) {
     const Json* value = find(key);
     return value == nullptr ? 0.0 : checked(key, *value, range);
   }
@@ -269,7 +269,7 @@ class FieldReader {
   [[nodiscard]] const std::optional<UdacityBroken>& broken() const { return broken_; }
 
  private:
-  const Json* find(const char* key) {
+  const Json* find(const std::string& key) {
     const auto found = data_.find(key);
     if (found != data_.end()) return &*found;
     refuse({fmt::format("{}: missing", key)});
@@ -291,7 +291,7 @@ class FieldReader {
   std::optional<UdacityBroken> broken_;
 };
 
-UdacityTelemetry read_measurement(const Json& data) {
+UdacityTelemetry read_measurement(const Json& data, const std::string& time_field) {
   FieldReader fields(data);
   const std::vector<double> xs = fields.numbers("ptsx", model::Measurement::kMaxWaypoints, kPosition);
   const std::vector<double> ys = fields.numbers("ptsy", model::Measurement::kMaxWaypoints, kPosition);
@@ -302,6 +302,7 @@ UdacityTelemetry read_measurement(const Json& data) {
   measurement.steer = 0.0 - fields.number("steering_angle", kSteer);
   measurement.throttle = fields.number("throttle", kThrottle);
   measurement.speed = mph_to_mps(fields.number("speed", kSpeed));
+  if (!time_field.empty()) measurement.time = fields.number(time_field, {0.0, 1e10});
   if (xs.size() != ys.size())
     fields.refuse({fmt::format("ptsx has {} points, ptsy {}", xs.size(), ys.size())});
   if (fields.broken()) return *fields.broken();
@@ -398,7 +399,7 @@ std::string as_float(double value) { return fmt::format("{:.7G}", static_cast<fl
 
 }  // namespace
 
-UdacityTelemetry parse_telemetry(std::string_view text) {
+UdacityTelemetry parse_telemetry(std::string_view text, const std::string& time_field) {
   if (auto packet = parse_packet(text)) {
     return std::visit([](auto& alternative) -> UdacityTelemetry { return std::move(alternative); }, *packet);
   }
@@ -410,7 +411,7 @@ UdacityTelemetry parse_telemetry(std::string_view text) {
   if (event->payload.is_discarded()) return UdacityBroken{"telemetry: without data"};
   if (!event->payload.is_object()) return unexpected("telemetry", event->payload, "an object or null");
   if (auto foreign = foreign_scene(event->payload)) return *foreign;
-  return read_measurement(event->payload);
+  return read_measurement(event->payload, time_field);
 }
 
 std::string encode_steer(const model::Command& command, const controller::Plan& plan, const model::Pose& pose,

@@ -52,11 +52,11 @@ struct UdacityBroken {
   bool is_event = true;  ///< false: not even an event (`42…`), so no answer is expected
 };
 
-/// From the simulator. The measurement lacks `time` and `delay`, which the receiver knows. Waypoints may be 0
-/// to 32.
+/// From the simulator. The measurement lacks `delay`, which the receiver knows, and `time`, unless
+/// `time_field` names the field that carries the simulator's time [s]. Waypoints may be 0 to 32.
 using UdacityTelemetry =
     std::variant<model::Measurement, UdacityManual, UdacityPacket, UdacityForeign, UdacityBroken>;
-[[nodiscard]] UdacityTelemetry parse_telemetry(std::string_view text);
+[[nodiscard]] UdacityTelemetry parse_telemetry(std::string_view text, const std::string& time_field = {});
 
 /// The answer to telemetry: command, plan (green) and reference (yellow). The lines are given in W and sent
 /// in the frame of the car at `pose_at_receipt`, because the original draws them from where the car is when

@@ -154,8 +154,9 @@ Result<telemetry::McapReport> check_recording(const std::string& path) {
     steps += message.channel.topic == kFrameTopic ? 1U : 0U;
   };
   const Result<telemetry::McapReport> read = telemetry::read_mcap(path, visitor);
+  const bool is_cut = read && !read->is_complete && read->messages == 0;
   if (read && steps == 0)
-    return fail(refusal(path, "no control step",
+    return fail(refusal(path, is_cut ? "a file that was cut in its first chunk" : "no control step",
                         "a recording of ours, or a bag with nav_msgs/msg/Odometry in CDR",
                         ErrorCode::kParse));
   return read;

@@ -27,10 +27,11 @@ constexpr double kPedalMemory = 3.0;    // [s]
 constexpr double kLeastAsked = 1.0;     // [m/s] after which a pedal tells a clock from a speed
 constexpr double kSteadier = 0.5;       // share of the other's deviation with which one explanation is better
 constexpr double kLeastDeviation = 0.02;
-constexpr double kFollowed = 0.1;  // share of a difference that is made up for with each leg
-constexpr double kBurst = 0.5;     // share by which a step in lock step differs that had to wait
-constexpr double kOfStep = 0.15;   // share by which its time differs from the others'
-constexpr double kSame = 0.03;     // logarithm of a ratio that counts as 1
+constexpr double kFollowed = 0.1;   // share of a difference that is made up for with each leg
+constexpr double kBurst = 0.5;      // share by which a step in lock step differs that had to wait
+constexpr double kOfStep = 0.15;    // share by which its time differs from the others'
+constexpr double kSampling = 0.02;  // [s] by which a state may be younger or older: a usual physics step
+constexpr double kSame = 0.03;      // logarithm of a ratio that counts as 1
 
 double in_seconds(PlantClock::Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
@@ -62,7 +63,7 @@ void PlantClock::forget() {
   is_speed_known_ = false;
   count_ = 0;
   leg_ = {};
-  asked_ = gained_ = 0.0;
+  asked_ = gained_ = sampled_ = 0.0;
 }
 
 double PlantClock::at(Clock::time_point wall) const {
@@ -74,6 +75,7 @@ bool PlantClock::advance(Clock::time_point received, const model::Measurement* m
                          const model::Command& acting) {
   const double wall = in_seconds(received - wall_);
   wall_ = received;
+  if (options_.is_measured) return follow(measured);
   Leg step;
   const bool is_whole = measured != nullptr && is_finite(*measured);
   if (is_whole && has_last_ && options_.is_estimated && wall > 0.0 && wall < kLongestStep)
@@ -84,14 +86,34 @@ bool PlantClock::advance(Clock::time_point received, const model::Measurement* m
   return step.steps > 0 && add(step) && take_up();
 }
 
-/// Where one message of a simulator in lock step had to wait, its displacement tells the time.
-double PlantClock::time_of(double wall, const Leg& step) const {
+/// By the simulator's own time: the amount of each answer is measured. True: it went back.
+bool PlantClock::follow(const model::Measurement* measured) {
+  if (measured == nullptr) {
+    time_ += step_;
+    return false;
+  }
+  const double gap = has_last_ ? measured->time - last_.time : 0.0;
+  if (!has_last_ || gap < 0.0) ahead_ = time_ + step_ - measured->time;
+  if (gap > 0.0) step_ += (step_ > 0.0 ? kFollowed : 1.0) * (gap - step_);
+  time_ = std::max(time_, ahead_ + measured->time);
+  last_ = *measured;
+  has_last_ = true;
+  return gap < 0.0;
+}
+
+/// Where one message of a simulator in lock step had to wait, its displacement tells the time. It also tells
+/// at which of its own steps a simulator was sampled.
+double PlantClock::time_of(double wall, const Leg& step) {
   if (step_ > 0.0) return step_;
   const double expected = ratio_ * wall;
   if (step.way < kLegWay * size_ || count_ < kLeastLegs) return expected;
   const double usual = fit([](const Leg& leg) { return leg.steps; }).value;
   const bool has_waited = std::fabs(step.plant - expected) > kBurst * expected;
-  return has_waited && std::fabs(step.plant - usual) < kOfStep * usual ? step.plant : expected;
+  if (has_waited && std::fabs(step.plant - usual) < kOfStep * usual) return step.plant;
+  const double counted =
+      std::clamp(step.plant, expected - sampled_ - kSampling, expected - sampled_ + kSampling);
+  sampled_ += counted - expected;
+  return counted;
 }
 
 /// The time that the simulator advanced by since the measurement before; no steps where that does not show.
@@ -134,10 +156,15 @@ template <class Base>
 PlantClock::Fit PlantClock::fit(const Base& base) const {
   const std::size_t size = std::min(count_, kLegs);
   std::array<double, kLegs> values{};
-  for (std::size_t i = 0; i < size; ++i) values[i] = log(legs_[i].plant / base(legs_[i]));
+  double plant = 0.0, counted = 0.0;
+  for (std::size_t i = 0; i < size; ++i) {
+    values[i] = log(legs_[i].plant / base(legs_[i]));
+    plant += legs_[i].plant;
+    counted += base(legs_[i]);
+  }
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(size / 2);
   std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(size));
-  Fit fit{.value = exp(*middle)};
+  Fit fit{.value = plant / counted};
   for (std::size_t i = 0; i < size; ++i)
     fit.deviation += std::fabs(values[i] - *middle) / static_cast<double>(size);
   return fit;
@@ -198,6 +225,7 @@ bool PlantClock::take_up() {
 }
 
 std::string PlantClock::news() const {
+  if (options_.is_measured) return "the simulator's time went back: the run begins again";
   const std::string counted = step_ > 0.0
                                   ? fmt::format("the simulator advances {:.3g} s with each answer", step_)
                                   : fmt::format("the simulator's clock runs at {:.2f} of the wall's", ratio_);

@@ -14,6 +14,7 @@ namespace chicane::run {
 /// What the time of a car is counted by that another program simulates.
 struct PlantClockOptions {
   bool is_estimated = false;  ///< false: by arrival; true: by the ratio that the measurements show
+  bool is_measured = false;   ///< true: by Measurement::time, the simulator's own
   double lock_step = 0.0;     ///< time that the simulator advances with each answer [s]; 0: by its own clock
 };
 
@@ -21,6 +22,8 @@ struct PlantClockOptions {
 /// displacement over its speed is the time that the simulator has advanced by. Over the last measurements of
 /// a car that drives it tells whether the simulator runs at a ratio of the wall's time, or in lock step: by
 /// the same time with each answer. Noise and delays of a busy machine change neither.
+///
+/// A simulator that tells its own time needs none of that.
 ///
 /// A speed in another unit looks like another clock, but for the acceleration that a pedal gives: no ratio is
 /// taken up that contradicts it. No allocation but in news(); one thread.
@@ -57,12 +60,14 @@ class PlantClock {
     int steps = 0;
   };
   static constexpr std::size_t kLegs = 12;
-  /// Median of the legs' ratios, and the mean deviation of their logarithms from it.
+  /// Ratio of the legs' sums, of which whole physics steps change only the last, and the mean deviation of the
+  /// logarithms of their ratios from the median.
   struct Fit {
     double value = 0.0, deviation = 0.0;
   };
 
   void forget();
+  [[nodiscard]] bool follow(const model::Measurement* measured);
   [[nodiscard]] Leg step_of(double wall, const model::Measurement& now, const model::Command& acting);
   [[nodiscard]] bool add(const Leg& step);
   [[nodiscard]] bool take_up();
@@ -70,7 +75,7 @@ class PlantClock {
   [[nodiscard]] bool agrees_with_pedal() const;
   template <class Base>
   [[nodiscard]] Fit fit(const Base& base) const;
-  [[nodiscard]] double time_of(double wall, const Leg& step) const;
+  [[nodiscard]] double time_of(double wall, const Leg& step);
 
   PlantClockOptions options_;
   model::VehicleParams vehicle_;
@@ -85,6 +90,8 @@ class PlantClock {
   Leg leg_;
   std::array<Leg, kLegs> legs_{};
   std::size_t count_ = 0;
+  double sampled_ = 0.0;               ///< time that is counted beyond the ratio's [s]
+  double ahead_ = 0.0;                 ///< of the simulator's own time, the run's is [s]
   double asked_ = 0.0, gained_ = 0.0;  ///< speed that the pedal should have given lately, and has [m/s]
 };
 

@@ -66,10 +66,12 @@ struct Request {
   bool wants_stop_plan = false;
 };
 
-/// Telemetry carries no time: the simulator's clock shows in how far the car has moved.
-run::ExternalDriveOptions by_simulator_clock(run::ExternalDriveOptions options) {
-  options.clock.is_estimated = true;
-  return options;
+/// Without a time in telemetry the simulator's clock shows in how far the car has moved.
+run::ExternalDriveOptions by_simulator_clock(const ServeOptions& options) {
+  run::ExternalDriveOptions counted = options;
+  counted.clock.is_measured = !options.time_field.empty();
+  counted.clock.is_estimated = !counted.clock.is_measured;
+  return counted;
 }
 
 /// Whether the query of a request's target ("/path?a=1&b=2") has this item.
@@ -288,7 +290,7 @@ void UdacityEndpoint::on_close(net::ConnectionId id, std::string_view why) {
 void UdacityEndpoint::hear_telemetry(std::string_view bytes) {
   Request request{.from = session_.id, .received = session_.last_word};
   request.wants_stop_plan = session_.knows_stop_plan;
-  const protocol::UdacityTelemetry message = protocol::parse_telemetry(bytes);
+  const protocol::UdacityTelemetry message = protocol::parse_telemetry(bytes, options_.time_field);
   if (const auto* packet = std::get_if<protocol::UdacityPacket>(&message)) return hear_packet(*packet);
   if (const auto* measurement = std::get_if<model::Measurement>(&message)) {
     request.measurement = *measurement;

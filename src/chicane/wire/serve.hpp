@@ -29,6 +29,7 @@ struct ServeOptions : run::ExternalDriveOptions {
   ServeOptions() { step_budget = std::chrono::milliseconds{50}; }
 
   net::ServerOptions server;
+  std::string time_field{};  ///< of telemetry, that carries the simulator's time [s]; empty: none
   /// Artificial, between the end of a control step and its answer, as the original controller sleeps. [0, 0.5
   /// s]
   std::chrono::nanoseconds latency = std::chrono::milliseconds{100};
