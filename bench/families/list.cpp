@@ -34,6 +34,10 @@ Family tanks_family();
 Family brachistochrone_family();
 Family orbit_raising_family();
 Family tube_family();
+// Nearly possible and conflicting ones.
+Family point_mass_family();
+Family hanging_chain_family();
+Family slow_turn_family();
 
 std::span<const Family> all_families() {
   static const std::array families{cart_pole_family(),
@@ -62,7 +66,10 @@ std::span<const Family> all_families() {
                                    tanks_family(),
                                    brachistochrone_family(),
                                    orbit_raising_family(),
-                                   tube_family()};
+                                   tube_family(),
+                                   point_mass_family(),
+                                   hanging_chain_family(),
+                                   slow_turn_family()};
   return families;
 }
 

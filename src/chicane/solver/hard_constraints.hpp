@@ -23,7 +23,7 @@ namespace chicane::solver {
 ///         terminal_constraint_name(int) const;                                          // optional
 ///
 /// written like constraint() and terminal_residual(). OcpSolver then solves it by a primal-dual interior
-/// point method (docs/solver_hard.md), and its report says by how much and where they are missed. Choose
+/// point method (docs/solver.md), and its report says by how much and where they are missed. Choose
 /// units in which a miss of `tolerance` is one that you do not mind. The soft penalty of a hard constraint is
 /// the price that it starts with.
 
@@ -69,6 +69,13 @@ struct HardPrices {
   std::array<double, P::kNc> price_factor{};  ///< of hard constraints' first prices
   bool is_known = false;                      ///< false: a solve begins without
 
+  /// All multipliers times `factor`.
+  void scale(double factor) noexcept {
+    for (auto& row : equality) {
+      for (double& value : row.values) value *= factor;
+    }
+    for (double& value : terminal) value *= factor;
+  }
   /// The same for a horizon that begins `steps` stages later; the last ones are repeated.
   void shift(int steps, int horizon) noexcept {
     for (auto& row : equality) {

@@ -354,6 +354,7 @@ class OcpSolver {
     return may_grow() ? start_short(problem, trajectory) : go_back(problem);
   }
   bool begin_filter(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept;
+  void break_symmetry() noexcept;
   bool filter_iteration(const P& problem, const Deadline& deadline, SolveReport& report) noexcept;
   void record_filter_iteration(const SolveReport& report) noexcept;
   void take_cheapest(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept;

@@ -19,7 +19,7 @@ struct StepLengths {
   double dual = 1.0;
 };
 
-/// The bounds on inputs as barriers (docs/solver_filter.md, eq. 30–33): each has a slack
+/// The bounds on inputs as barriers (docs/solver.md, eq. 30–33): each has a slack
 /// t > 0 and a multiplier z > 0, kept from iterate to iterate of the nonlinear problem. Eight stages at a
 /// time; what does not exist has z = 0 and t = 1, and counts for nothing.
 template <class Solver, std::size_t Capacity, class Arch>

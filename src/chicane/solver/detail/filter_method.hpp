@@ -18,6 +18,7 @@
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/linearisation.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
+#include "chicane/solver/detail/progress.hpp"
 #include "chicane/solver/detail/soft_steps.hpp"
 #include "chicane/solver/detail/steps.hpp"
 #include "chicane/solver/problem.hpp"
@@ -26,7 +27,7 @@
 namespace chicane::solver {
 
 /// A primal-dual interior point method with a filter line search over multiple shooting
-/// (docs/solver_filter.md, eq. 30–37; after Wächter, Biegler 2006). States, inputs, slacks and prices of the
+/// (docs/solver.md, eq. 30–37; after Wächter, Biegler 2006). States, inputs, slacks and prices of the
 /// dynamics are all unknowns; Hessians are exact, and shifted until the quadratic program is convex. Slower
 /// than full steps with a working set, and works from where those fail.
 template <OcpProblem P, std::size_t Capacity, class Arch>
@@ -86,7 +87,7 @@ class FilterMethod {
     if constexpr (kHasHardRows<P>) {
       if (rows_ != nullptr) {
         rows_->hard_price = kHardPrice * unit_;
-        now.hard.weigh(*rows_, kRowWeight * unit_);
+        now.hard.weigh(kRowWeight * unit_, rows_->violation_price);
       }
     }
     last_shift_ = forced_shift_ = 0.0;
@@ -94,6 +95,7 @@ class FilterMethod {
     stops_at_barriers_ = false;
     candidate_ = t;
     short_steps_ = leaps_ = 0;
+    floor_ = {};
   }
   /// Before start(): rows that must hold are unknowns' equations, with slacks and multipliers of their own,
   /// and `rows`, the problem itself, keeps them. Null: they are residuals like others.
@@ -120,6 +122,7 @@ class FilterMethod {
     constexpr double kLeast = 1e-13;
     if (final_mu_ <= kLeast * unit_) return false;
     final_mu_ = std::max(kLeast * unit_, 1e-2 * final_mu_);
+    floor_ = {};
     t = candidate_;
     for (std::size_t i = 0; i < kNx; ++i) std::copy(prices_[i], prices_[i] + t.horizon, now.adjoint[i]);
     slacks.set_mu(mu_);
@@ -142,9 +145,11 @@ class FilterMethod {
     if (are_sides_new_) bounds_.start(lq, t.horizon, mu_);
     are_sides_new_ = false;
     const double error = residual(now, lq, t, report);
-    if (error <= (stops_at_barriers_ ? 1.0 : kSolvedAt) * mu_) {
+    const bool is_solved = error <= (stops_at_barriers_ ? 1.0 : kSolvedAt) * mu_;
+    if (is_solved || floor_.is_reached(error, kFloor * unit_)) {
       candidate_ = t;
-      if (mu_ <= final_mu_ || stops_at_barriers_) return Outcome::kSolved;
+      if (mu_ <= final_mu_ || stops_at_barriers_)
+        return is_solved || error <= kFloor * unit_ ? Outcome::kSolved : Outcome::kStuck;
       const double last = mu_;
       lower_barrier(slacks);
       follow_barrier(problem, last, now, lq, slacks, t.horizon);
@@ -180,6 +185,7 @@ class FilterMethod {
   static constexpr double kRowWeight = 1e6;  ///< ρ of rows that must hold, and the price of hard limits, in
   static constexpr double kHardPrice = 1e6;  ///< the unit of costs
   static constexpr double kSolvedAt = 10.0;  ///< a barrier's problem is solved at this many times the barrier
+  static constexpr double kFloor = 1e-5;     ///< most that rounding may leave, in the unit of costs
 
   static constexpr std::size_t z(std::size_t i) noexcept { return i < kNx ? i : i + 1; }
 
@@ -189,13 +195,15 @@ class FilterMethod {
   void linearise(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, const Point& t,
                  SolveReport& report) noexcept {
     if constexpr (kHasHardRows<P>) {
-      if (rows_ != nullptr && is_fresh_) now.hard.centre(*rows_, end_rows(problem, t), mu_);
+      if (rows_ != nullptr && is_fresh_ && now.hard.is_ready()) centre_rows(problem, now, t);
     }
     now.state_residual = has_prices_ ? residual_ : nullptr;
     now.template linearise<Order>(problem, t, is_fresh_, 1.0, slacks, lq.lq, report);
     now.state_residual = nullptr;
     is_fresh_ = false;
   }
+  /// Rows that must hold begin on their central path.
+  void centre_rows(const P& problem, Linearised& now, const Point& t) noexcept;
   /// With exact Hessians once there are prices for them.
   void linearise(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, const Point& t,
                  SolveReport& report) noexcept {
@@ -241,6 +249,7 @@ class FilterMethod {
     here_.cost += (last - mu_) * here_.logs;
     slacks.set_mu(mu_);
     is_new_barrier_ = true;
+    floor_ = {};
   }
 
   /// The linearisation of the present point with the barrier lowered from `last`: slopes alone change, by
@@ -251,7 +260,11 @@ class FilterMethod {
       lq.lq.set_cost(k, z(j), Layout::kOne, lq.lq.cost(k, z(j), Layout::kOne) + pull);
     });
     if constexpr (kHasHardRows<P>) {
-      if (rows_ != nullptr) now.hard.set_ends(*rows_, mu_, lq.lq.terminal[kNx]);
+      if (rows_ == nullptr) return;
+      now.hard.set_rows(*rows_, mu_, horizon, lq.lq.terminal[kNx],
+                        [&](std::size_t k, std::size_t j, double pull) {
+                          lq.lq.set_cost(k, z(j), Layout::kOne, lq.lq.cost(k, z(j), Layout::kOne) + pull);
+                        });
     }
   }
 
@@ -339,6 +352,7 @@ class FilterMethod {
       if (length >= 0.05 || there.miss <= 0.9 * here.miss) failures_ = 0;
       short_steps_ = length < kShort ? short_steps_ + 1 : 0;
       moved_ = longest_move(t, candidate_);
+      floor_.note_step(stays(t, candidate_));
       t = candidate_;
       here_ = there;
       is_here_known_ = true;
@@ -405,7 +419,7 @@ class FilterMethod {
     return values;
   }
   static auto end_rows(const P& problem, const Point& t) noexcept {
-    double residuals[P::kNe + 1];
+    double residuals[P::kNe + 1]{};
     Evaluate::end_cost(problem, t, residuals);
     return unshifted(problem, residuals);
   }
@@ -466,7 +480,8 @@ class FilterMethod {
   bool stops_at_barriers_ = false;
   int short_steps_ = 0;  ///< in succession
   int leaps_ = 0;        ///< whole steps that the filter had refused
-  P* rows_ = nullptr;    ///< the problem, where its rows that must hold are unknowns' equations
+  FloorWatch floor_;
+  P* rows_ = nullptr;  ///< the problem, where its rows that must hold are unknowns' equations
   double moved_ = 0.0;
   Merit here_{};                ///< of the present point
   bool is_here_known_ = false;  ///< from the line search that found it

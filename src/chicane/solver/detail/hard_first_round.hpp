@@ -27,7 +27,9 @@ bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& tra
     if (has_path && measure(*problem_.problem, trajectory, nullptr).worst() <= enough)
       return round(x0, trajectory, deadline, left, report);
     begin_again(trajectory, 1.0);
-    is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report);
+    if (!is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report) &&
+        follow(x0, trajectory, deadline, left, report))
+      return round(x0, trajectory, deadline, left, report);
     begin_again(trajectory, 1.0);
     trial_ = most_of_a_trial();
   }

@@ -18,7 +18,7 @@ namespace chicane::solver {
 
 /// OcpSolver for problems with something that must hold beside dynamics and bounds (hard_constraints.hpp):
 /// the primal-dual method of detail/hard_rows.hpp, then full steps from its multipliers
-/// (docs/solver_hard.md). Where that gets nowhere, the misses alone are minimised: what cannot hold is
+/// (docs/solver.md). Where that gets nowhere, the misses alone are minimised: what cannot hold is
 /// reported. Else the method begins again from the point that keeps everything, and then an augmented
 /// Lagrangian: each round is one solve and an update of multipliers, weights and prices.
 template <HardProblem P, int Capacity, class Arch>
@@ -99,8 +99,7 @@ class HardSolver {
     std::array<double, kNh> equality{};
     std::array<double, kEnd> terminal{};
     std::array<double, kNc> constraint{};
-    double cost = 0.0;       ///< the problem's own, with its first prices
-    double violation = 0.0;  ///< of (55), misses in multiples of least_unit_
+    double cost = 0.0;  ///< the problem's own, with its first prices
 
     [[nodiscard]] double worst() const noexcept {
       double worst = 0.0;
@@ -128,7 +127,7 @@ class HardSolver {
     RoundProgress progress;
     bool is_replaced = false;  // by a point that `report` is not of
     Misses before;
-    const auto is_spent = [&] { return left <= 0 || deadline.spent() || report.rounds >= kMostRounds; };
+    const auto is_spent = [&] { return left <= 0 || deadline.spent(); };
     for (;;) {
       const bool converged = has_begun ? round(x0, trajectory, deadline, left, report)
                                        : first_round(x0, trajectory, deadline, left, report);
@@ -140,7 +139,8 @@ class HardSolver {
       if (is_spent()) break;
       progress.note(now.worst(), converged, last_iterations_);
       before = now;
-      if (trial_ == kTrialSpent) {
+      const bool is_last = report.rounds >= kMostRounds;
+      if (trial_ == kTrialSpent && !is_last) {
         trial_ = 0;
         if (progress.is_good()) continue;
         begin_again(trajectory, kHeavier);
@@ -148,19 +148,19 @@ class HardSolver {
         continue;
       }
       if (converged && last_iterations_ == 0 && ask_for_more()) progress.excuse();
-      if (converged && !progress.is_lost(now.worst(), first_.worst(), last_iterations_)) continue;
-      if (may_start_again) {  // by another way: misses count from the start
+      if (converged && !is_last && !progress.is_lost(now.worst(), first_.worst(), last_iterations_)) continue;
+      if (may_start_again && !is_last) {  // by another way: misses count from the start
         may_start_again = false;
         kept_ = trajectory;
         kept_miss_ = now.worst();
         begin_again(trajectory, kHeavy);
         progress = {};
-      } else if (is_replaced = take_better(now.worst(), trajectory); !converged) {
+      } else if (is_replaced = take_better(now.worst(), trajectory); !converged && !is_last) {
         break;
       } else if (is_certified_ ||
                  (is_replaced = is_infeasible(problem, x0, trajectory, deadline, left, report))) {
         break;
-      } else if (is_spent()) {
+      } else if (is_spent() || is_last) {
         break;
       }
       is_replaced = false;
@@ -277,7 +277,6 @@ class HardSolver {
   void start(const P& problem, const State& x0, Trajectory& trajectory) noexcept {
     problem_.problem = &problem;
     problem_.cost_root = 1.0;
-    problem_.square_price = 0.0;
     can_go_on_ = false;
     ask_for(round_tolerance());
     if (!options_.start_from_states) roll_out(problem, x0, trajectory);
@@ -296,7 +295,7 @@ class HardSolver {
     problem_.price_factor.fill(1.0);
     for (std::size_t n = 0; n < kNh; ++n) {
       problem_.equality_shift[n].values.fill(0.0);
-      problem_.equality_weight[n].set(factor * first_weight(first_.equality[n] * horizon));
+      problem_.set_weight(n, factor * first_weight(first_.equality[n] * horizon));
     }
     for (std::size_t n = 0; n < kEnd; ++n) {
       problem_.terminal_shift[n] = 0.0;
@@ -323,6 +322,7 @@ class HardSolver {
     for (std::size_t n = 0; n < kNh; ++n) {
       const double share =
           raise(problem_.equality_weight[n], now.equality[n], before != nullptr ? before->equality[n] : 0.0);
+      problem_.set_weight(n, problem_.equality_weight[n].rho);
       for (int k = 0; k < horizon; ++k) {
         const auto stage = static_cast<std::size_t>(k);
         problem_.equality_shift[n][stage] = share * (problem_.equality_shift[n][stage] + equality_[n][stage]);
@@ -363,7 +363,7 @@ class HardSolver {
   }
   void put_prices(int horizon) noexcept {
     for (std::size_t n = 0; n < kNh; ++n) {
-      problem_.equality_weight[n].set(prices_.equality_weight[n]);
+      problem_.set_weight(n, prices_.equality_weight[n]);
       for (std::size_t k = 0; k < static_cast<std::size_t>(horizon); ++k)
         problem_.equality_shift[n][k] = prices_.equality[n][k] / prices_.equality_weight[n];
     }
@@ -377,7 +377,6 @@ class HardSolver {
   // ---- what cannot hold (detail/hard_infeasible.hpp)
   bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
                      int& left, HardReport& report) noexcept;
-  bool leads_downhill(const P& problem, const State& x0, Trajectory& trajectory, HardReport& report) noexcept;
   HardReport tell_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                              HardReport report) noexcept;
   double finest_tolerance(const P& problem, int horizon) const noexcept;
@@ -393,8 +392,6 @@ class HardSolver {
     Misses misses;
     double worst = 0.0;
     const auto note = [&](double& miss, double value, Kind kind, int stage, std::size_t row) {
-      const double share = value / least_unit_;
-      misses.violation += kind == Kind::kConstraint ? share : 0.5 * share * share;
       miss = value > miss ? value : miss;
       if (report == nullptr || !(value > worst)) return;
       worst = value;
@@ -473,10 +470,11 @@ class HardSolver {
   Trajectory guess_;
   Trajectory kept_;          ///< of the first weights, where others were tried as well
   double kept_miss_ = 0.0;   ///< largest of its misses
-  Trajectory downhill_;      ///< a step from there that is tried
+  Trajectory downhill_;      ///< a copy for reports
   Trajectory least_;         ///< where misses have a local minimum above zero, with is_certified_
   double tolerance_ = 0.0;   ///< of the next round
   int last_iterations_ = 0;  ///< of the last round
+  Prices least_prices_;      ///< there, of the violation alone
   double least_unit_ = 1.0;  ///< what misses are multiples of there
   bool is_certified_ = false;
   int trial_ = 0;           ///< iterations that are left for the first weights, kTrialSpent; 0: all of them

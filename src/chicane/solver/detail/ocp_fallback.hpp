@@ -27,9 +27,27 @@ bool OcpSolver<P, Capacity, Arch>::begin_filter(const P& problem, const Trajecto
     fill_inputs(0);
     hold_states();
   }
+  if (!is_again_) break_symmetry();
   filter_.start(problem, final_barrier(problem), options_.second_order, is_again_, now_, lq_, barrier_, t_,
                 report);
   return true;
+}
+
+/// Moves states and inputs by at most 1e-8 of their size, each by another amount, the same in each solve:
+/// where a start is symmetric, as with an obstacle dead ahead, steps would never choose a side.
+template <OcpProblem P, int Capacity, class Arch>
+void OcpSolver<P, Capacity, Arch>::break_symmetry() noexcept {
+  constexpr double kMove = 1e-8, kGolden = 0.6180339887498949;
+  double share = 0.0;  // equidistributed in [0, 1)
+  const auto move = [&](double& value) {
+    share += kGolden;
+    share -= share >= 1.0 ? 1.0 : 0.0;
+    value += kMove * (share - 0.5) * (1.0 + std::fabs(value));
+  };
+  for (std::size_t k = 0; k < t_.horizon; ++k) {
+    for (auto& row : t_.u) move(row[k]);
+    for (auto& row : t_.x) move(row[k + 1]);
+  }
 }
 
 /// One iteration of it. Near the solution its working set goes to full steps, which converge faster. False at
@@ -77,7 +95,11 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(const P& problem, P* rows, con
   filter_.take_rows(nullptr);
   is_filtering_ = false;
   if constexpr (kHasHardRows<P>) {
-    if (rows != nullptr) now_.hard.end(*rows);
+    if (rows != nullptr) {
+      now_.hard.end(*rows, t_.horizon, rows->cost_root * rows->cost_root);
+      // What rounding ended outside of its bounds is no certificate.
+      if (now_.hard.is_elastic() && bring_inside()) is_solved = false;
+    }
   }
   if (!is_solved) return false;
   t_.write(trajectory);

@@ -47,6 +47,26 @@ class Progress {
   int idle_ = 0;
 };
 
+/// Watches for the floor of rounding: residuals that no longer fall, steps that move nothing.
+class FloorWatch {
+ public:
+  /// Takes note of a residual. Whether rounding keeps it, `small` or less, from falling, or steps from
+  /// moving.
+  bool is_reached(double residual, double small) noexcept {
+    idle_ = residual < kFalls * least_ ? 0 : idle_ + 1;
+    least_ = std::fmin(least_, residual);
+    return (idle_ >= kMostIdle && residual <= small) || tiny_ >= kMostTiny;
+  }
+  void note_step(bool is_tiny) noexcept { tiny_ = is_tiny ? tiny_ + 1 : 0; }
+
+ private:
+  static constexpr double kFalls = 0.9;
+  static constexpr int kMostIdle = 6, kMostTiny = 2;
+  double least_ = std::numeric_limits<double>::infinity();
+  int idle_ = 0;  ///< residuals since it fell
+  int tiny_ = 0;  ///< steps in succession
+};
+
 /// Watches cost and defects of full steps: those that make both worse lead to a local optimum that nobody
 /// wants, or to none.
 class Course {

@@ -14,7 +14,7 @@
 namespace chicane::solver {
 
 /// Directions of the slacks and multipliers of a barrier's soft constraints, to be followed by as much as a
-/// line search finds good (docs/solver_constraints.md, eq. 18–20).
+/// line search finds good (docs/solver.md, eq. 18–20).
 template <OcpProblem P, std::size_t Capacity, class Arch>
 class SoftSteps {
  public:

@@ -53,6 +53,21 @@ void add_step(const Point& from, double length, const Point& step, Point& to) no
   }
 }
 
+/// Whether nothing moves by more than rounding between two points.
+template <class Point>
+bool stays(const Point& from, const Point& to) noexcept {
+  constexpr double kTiny = 1e-15;
+  const auto keeps = [&](const auto& a, const auto& b, std::size_t count) {
+    for (std::size_t i = 0; i < std::size(a); ++i) {
+      for (std::size_t k = 0; k < count; ++k) {
+        if (std::fabs(a[i][k] - b[i][k]) > kTiny * (1.0 + std::fabs(a[i][k]))) return false;
+      }
+    }
+    return true;
+  };
+  return keeps(from.u, to.u, from.horizon) && keeps(from.x, to.x, from.horizon + 1);
+}
+
 /// The longest move of an input between two points.
 template <class Point>
 CHICANE_INLINE inline double longest_move(const Point& from, const Point& to) noexcept {
