@@ -70,7 +70,7 @@ void expect_infeasible() {
   const Endings endings = solve<P>(8, [](Random& random) { return P::make(random, true); });
   EXPECT_EQ(endings.usable, 0);
   EXPECT_EQ(endings.infeasible, endings.solves);
-  EXPECT_LE(endings.most_iterations, 400);
+  EXPECT_LE(endings.most_iterations, 800);  // rounds from the guess come after the proof
 }
 TEST(Impossible, ChainsTooShortForTheirPeakAreInfeasible) { expect_infeasible<HangingChain>(); }
 TEST(Impossible, CartsThatTurnTooSlowlyAreInfeasible) { expect_infeasible<SlowTurn>(); }

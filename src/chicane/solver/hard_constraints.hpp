@@ -69,14 +69,7 @@ struct HardPrices {
   std::array<double, P::kNc> price_factor{};  ///< of hard constraints' first prices
   bool is_known = false;                      ///< false: a solve begins without
 
-  /// All multipliers times `factor`.
-  void scale(double factor) noexcept {
-    for (auto& row : equality) {
-      for (double& value : row.values) value *= factor;
-    }
-    for (double& value : terminal) value *= factor;
-  }
-  /// The same for a horizon that begins `steps` stages later; the last ones are repeated.
+  /// Of a horizon that begins `steps` stages later; the last ones are repeated.
   void shift(int steps, int horizon) noexcept {
     for (auto& row : equality) {
       for (int k = 0; k < horizon; ++k)

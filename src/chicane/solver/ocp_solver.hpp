@@ -13,7 +13,6 @@
 #include "chicane/base/inlining.hpp"
 #include "chicane/solver/detail/barrier.hpp"
 #include "chicane/solver/detail/descent.hpp"
-#include "chicane/solver/detail/endings.hpp"
 #include "chicane/solver/detail/evaluation.hpp"
 #include "chicane/solver/detail/filter_method.hpp"
 #include "chicane/solver/detail/iterate.hpp"
@@ -22,7 +21,6 @@
 #include "chicane/solver/detail/problem_pattern.hpp"
 #include "chicane/solver/detail/progress.hpp"
 #include "chicane/solver/detail/roll_out.hpp"
-#include "chicane/solver/detail/steps.hpp"
 #include "chicane/solver/detail/working_set_qp.hpp"
 #include "chicane/solver/iteration_log.hpp"
 #include "chicane/solver/problem.hpp"
@@ -97,28 +95,13 @@ class OcpSolver {
   /// From the next solve on, iterations are added to `log`, which must live as long; null: none.
   void record_iterations(IterationLog* log) noexcept { log_ = log; }
 
-  // ---- the filter method from barrier to barrier, for who changes the problem on the way
-
-  /// Begins it at a guess. False when that is of no use.
-  bool begin_path(const P& problem, const State& x0, const Trajectory& trajectory) noexcept;
-  /// At most `most` iterations, counted in `report`. True when the problem of the present barrier is solved:
-  /// `trajectory` is where.
-  bool follow_path(const P& problem, Trajectory& trajectory, const Deadline& deadline, int most,
-                   SolveReport& report) noexcept;
-  /// To the next barrier; `centre`: prices of soft constraints have changed.
-  void lower_path(bool centre) noexcept { filter_.go_on(barrier_, centre); }
-  [[nodiscard]] double path_barrier() const noexcept { return filter_.mu(); }
-  [[nodiscard]] bool is_path_done() const noexcept { return filter_.is_at_last_barrier(); }
-  /// There: solve_again() goes on with full steps.
-  void end_path(const P& problem) noexcept;
-
   // ---- the filter method alone, for HardSolver
 
   /// Follows the barrier from a guess to its end, in at most `most` iterations, counted in `report`. True
-  /// where it gets there: solve_again() goes on with full steps. `rows`: the problem itself, whose rows that
-  /// must hold are equations then (detail/hard_rows.hpp), and which gets their multipliers; null: residuals.
-  bool follow_barrier(const P& problem, P* rows, const State& x0, Trajectory& trajectory,
-                      const Deadline& deadline, int most, SolveReport& report) noexcept;
+  /// where it gets there: solve_again() goes on with full steps. Rows that must hold are equations then
+  /// (detail/hard_rows.hpp), and `problem` gets their multipliers.
+  bool follow_barrier(P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline, int most,
+                      SolveReport& report) noexcept;
   /// Slacks of hard constraints to prices that have changed.
   void reprice(const P& problem) noexcept { barrier_.reprice(problem, t_.horizon); }
 
@@ -424,14 +407,7 @@ class OcpSolver {
   void look_at_best(const P& problem, SolveReport& report) noexcept;
   SolveReport finish(SolveStatus status, const P& problem, Trajectory& trajectory,
                      SolveReport report) noexcept;
-
-  /// The data are not finite: leaves admissible inputs and finite states behind.
-  SolveReport give_up(const P& problem, const State& x0, Trajectory& trajectory,
-                      SolveReport report) noexcept {
-    leave_admissible(problem, x0, static_cast<int>(target_), trajectory);
-    report.status = SolveStatus::kNotFinite;
-    return report;
-  }
+  SolveReport give_up(const P& problem, const State& x0, Trajectory& trajectory, SolveReport report) noexcept;
 
   SolverOptions options_;
   Linearisation<P, kSize, Arch> now_;  ///< of the present iterate

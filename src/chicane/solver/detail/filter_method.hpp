@@ -11,16 +11,14 @@
 #include "chicane/base/deadline.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/solver/detail/barrier.hpp"
-#include "chicane/solver/detail/bound_barrier.hpp"
 #include "chicane/solver/detail/evaluation.hpp"
 #include "chicane/solver/detail/filter.hpp"
+#include "chicane/solver/detail/filter_slacks.hpp"
 #include "chicane/solver/detail/hard_rows.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/linearisation.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
 #include "chicane/solver/detail/progress.hpp"
-#include "chicane/solver/detail/soft_steps.hpp"
-#include "chicane/solver/detail/steps.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/solution.hpp"
 
@@ -92,7 +90,6 @@ class FilterMethod {
     }
     last_shift_ = forced_shift_ = 0.0;
     failures_ = simulations_ = 0;
-    stops_at_barriers_ = false;
     candidate_ = t;
     short_steps_ = leaps_ = 0;
     floor_ = {};
@@ -100,17 +97,7 @@ class FilterMethod {
   /// Before start(): rows that must hold are unknowns' equations, with slacks and multipliers of their own,
   /// and `rows`, the problem itself, keeps them. Null: they are residuals like others.
   void take_rows(P* rows) noexcept { rows_ = rows; }
-  /// After start(): iteration() returns kSolved at the solution of each barrier's problem.
-  void stop_at_barriers() noexcept { stops_at_barriers_ = true; }
-  /// Goes on from there with the next barrier; the problem may have changed, with `centre` also the prices of
-  /// soft constraints.
-  void go_on(Slacks& slacks, bool centre) noexcept {
-    lower_barrier(slacks);
-    is_fresh_ = centre;
-    is_here_known_ = false;
-  }
   [[nodiscard]] double mu() const noexcept { return mu_; }
-  [[nodiscard]] bool is_at_last_barrier() const noexcept { return mu_ <= final_mu_; }
   /// The working set of the present point; what is needed to go on should that not be enough.
   void hand_over(const Linearised& now, Lq& lq) noexcept {
     bounds_.choose_working_set(lq);
@@ -145,11 +132,10 @@ class FilterMethod {
     if (are_sides_new_) bounds_.start(lq, t.horizon, mu_);
     are_sides_new_ = false;
     const double error = residual(now, lq, t, report);
-    const bool is_solved = error <= (stops_at_barriers_ ? 1.0 : kSolvedAt) * mu_;
+    const bool is_solved = error <= kSolvedAt * mu_;
     if (is_solved || floor_.is_reached(error, kFloor * unit_)) {
       candidate_ = t;
-      if (mu_ <= final_mu_ || stops_at_barriers_)
-        return is_solved || error <= kFloor * unit_ ? Outcome::kSolved : Outcome::kStuck;
+      if (mu_ <= final_mu_) return is_solved || error <= kFloor * unit_ ? Outcome::kSolved : Outcome::kStuck;
       const double last = mu_;
       lower_barrier(slacks);
       follow_barrier(problem, last, now, lq, slacks, t.horizon);
@@ -477,9 +463,8 @@ class FilterMethod {
   bool is_fresh_ = true;        ///< the slacks of soft constraints go to their central path
   bool is_new_barrier_ = true;  ///< the filter is of another problem
   bool are_sides_new_ = true;   ///< the slacks of bounds do not belong to the present point
-  bool stops_at_barriers_ = false;
-  int short_steps_ = 0;  ///< in succession
-  int leaps_ = 0;        ///< whole steps that the filter had refused
+  int short_steps_ = 0;         ///< in succession
+  int leaps_ = 0;               ///< whole steps that the filter had refused
   FloorWatch floor_;
   P* rows_ = nullptr;  ///< the problem, where its rows that must hold are unknowns' equations
   double moved_ = 0.0;

@@ -10,8 +10,8 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/math_pack.hpp"
-#include "chicane/solver/detail/bound_barrier.hpp"
 #include "chicane/solver/detail/filter.hpp"
+#include "chicane/solver/detail/filter_slacks.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/sparse_row.hpp"
 
@@ -289,17 +289,16 @@ class HardRows {
     }
     set_rows(problem, mu, horizon);
   }
-  /// Back to an augmented Lagrangian, with the multipliers that were found over `scale`.
-  void end(P& problem, std::size_t horizon, double scale) noexcept {
+  /// Back to an augmented Lagrangian, with the multipliers that were found.
+  void end(P& problem, std::size_t horizon) noexcept {
     problem.is_primal_dual = false;
     for (std::size_t n = 0; n < kStageRows; ++n) {
       problem.set_weight(n, rho_);
-      for (std::size_t k = 0; k < horizon; ++k)
-        problem.equality_shift[n].values[k] = stage_[n].y[k] / (scale * rho_);
+      for (std::size_t k = 0; k < horizon; ++k) problem.equality_shift[n].values[k] = stage_[n].y[k] / rho_;
     }
     for (std::size_t n = 0; n < kEndRows; ++n) {
       problem.terminal_weight[n].set(rho_);
-      problem.terminal_shift[n] = is_there_[n] ? end_[n].y / (scale * rho_) : 0.0;
+      problem.terminal_shift[n] = is_there_[n] ? end_[n].y / rho_ : 0.0;
     }
   }
 

@@ -10,17 +10,17 @@
 #include "chicane/base/deadline.hpp"
 #include "chicane/solver/detail/augmented.hpp"
 #include "chicane/solver/detail/evaluation.hpp"
-#include "chicane/solver/detail/round_progress.hpp"
+#include "chicane/solver/detail/progress.hpp"
 #include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 
 namespace chicane::solver {
 
 /// OcpSolver for problems with something that must hold beside dynamics and bounds (hard_constraints.hpp):
-/// the primal-dual method of detail/hard_rows.hpp, then full steps from its multipliers
-/// (docs/solver.md). Where that gets nowhere, the misses alone are minimised: what cannot hold is
-/// reported. Else the method begins again from the point that keeps everything, and then an augmented
-/// Lagrangian: each round is one solve and an update of multipliers, weights and prices.
+/// the primal-dual method of detail/hard_rows.hpp, then full steps from its multipliers (docs/solver.md).
+/// Where that gets nowhere, restoration (detail/hard_restoration.hpp) proves that no point nearby holds, or
+/// finds one, from where the method begins again. Else rounds of an augmented Lagrangian: each is one solve
+/// and an update of multipliers, weights and prices.
 template <HardProblem P, int Capacity, class Arch>
 class HardSolver {
  public:
@@ -92,14 +92,15 @@ class HardSolver {
   static constexpr int kTrialSpent = -1;
   static constexpr double kFirstShare = 10.0;  ///< of the guess's cost in its misses
   static constexpr double kLeastWeight = 1e-2, kMostFirstWeight = 10.0, kMostWeight = 1e9;
-  static constexpr double kHeavier = 10.0, kHeavy = 1e3;  ///< times these, where the first ones lead nowhere
+  static constexpr std::array kHeavier{10.0, 1e3};  ///< times these, where the first ones lead nowhere
 
   /// What a trajectory misses, by rows: the largest of each.
   struct Misses {
     std::array<double, kNh> equality{};
     std::array<double, kEnd> terminal{};
     std::array<double, kNc> constraint{};
-    double cost = 0.0;  ///< the problem's own, with its first prices
+    double cost = 0.0;   ///< the problem's own, with its first prices
+    double total = 0.0;  ///< of all rows of all stages
 
     [[nodiscard]] double worst() const noexcept {
       double worst = 0.0;
@@ -117,17 +118,14 @@ class HardSolver {
                  const Deadline& deadline) noexcept {
     HardReport report;
     guess_ = trajectory;
-    kept_miss_ = std::numeric_limits<double>::infinity();
     trial_ = 0;
-    is_certified_ = false;
+    is_certified_ = is_possible_ = false;
     start(problem, x0, trajectory);
     int left = options_.max_iterations;
     bool has_begun = prices_.is_known;
-    bool may_start_again = !prices_.is_known;
+    std::size_t restarts = has_begun ? kHeavier.size() : 0;
     RoundProgress progress;
-    bool is_replaced = false;  // by a point that `report` is not of
     Misses before;
-    const auto is_spent = [&] { return left <= 0 || deadline.spent(); };
     for (;;) {
       const bool converged = has_begun ? round(x0, trajectory, deadline, left, report)
                                        : first_round(x0, trajectory, deadline, left, report);
@@ -136,42 +134,26 @@ class HardSolver {
       if (report.status == SolveStatus::kNotFinite) return report;
       update(now, progress.is_first() ? nullptr : &before, trajectory.horizon);
       if (converged && now.worst() <= options_.tolerance) return finish(report.status, now, report);
-      if (is_spent()) break;
+      if (left <= 0 || deadline.spent() || report.rounds >= kMostRounds) break;
       progress.note(now.worst(), converged, last_iterations_);
       before = now;
-      const bool is_last = report.rounds >= kMostRounds;
-      if (trial_ == kTrialSpent && !is_last) {
-        trial_ = 0;
-        if (progress.is_good()) continue;
-        begin_again(trajectory, kHeavier);
+      const bool is_trial_over = trial_ == kTrialSpent;
+      if (is_trial_over) trial_ = 0;
+      const bool is_lost = progress.is_lost(now.worst(), first_.worst(), last_iterations_);
+      if (is_trial_over ? progress.is_good() : converged && !is_lost) continue;
+      if (restarts < kHeavier.size()) {  // misses count from the start
+        begin_again(trajectory, kHeavier[restarts++]);
+        trial_ = is_certified_ ? most_of_a_trial() : 0;
         progress = {};
         continue;
       }
-      if (converged && last_iterations_ == 0 && ask_for_more()) progress.excuse();
-      if (converged && !is_last && !progress.is_lost(now.worst(), first_.worst(), last_iterations_)) continue;
-      if (may_start_again && !is_last) {  // by another way: misses count from the start
-        may_start_again = false;
-        kept_ = trajectory;
-        kept_miss_ = now.worst();
-        begin_again(trajectory, kHeavy);
-        progress = {};
-      } else if (is_replaced = take_better(now.worst(), trajectory); !converged && !is_last) {
+      if (!converged || is_certified_ || is_infeasible(problem, x0, trajectory, deadline, left, report))
         break;
-      } else if (is_certified_ ||
-                 (is_replaced = is_infeasible(problem, x0, trajectory, deadline, left, report))) {
-        break;
-      } else if (is_spent() || is_last) {
-        break;
-      }
-      is_replaced = false;
-      before = measure(problem, trajectory, nullptr);
-      if (!progress.is_first()) progress.begin_at(before.worst());
+      progress = {};
     }
-    is_replaced |= take_better(measure(problem, trajectory, nullptr).worst(), trajectory);
-    if (is_replaced) assess(x0, trajectory, true, report);
     Misses now = measure(problem, trajectory, &report);
     for (std::size_t n = kNeh; n < kEnd; ++n) count_distance(now, n);
-    const bool is_close = !is_replaced && usable(report.status) && now.worst() <= options_.tolerance;
+    const bool is_close = usable(report.status) && now.worst() <= options_.tolerance;
     if (is_close) return finish(SolveStatus::kBudgetSpent, now, report);
     if (is_certified_) return tell_infeasible(problem, x0, trajectory, report);
     if (take_guess(problem, x0, trajectory, report)) now = measure(problem, trajectory, &report);
@@ -185,8 +167,6 @@ class HardSolver {
   }
   bool first_round(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
                    HardReport& report) noexcept;
-  bool track(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
-             HardReport& report) noexcept;
   bool follow(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
               HardReport& report) noexcept;
   /// From the guess, with the first weights times `factor`.
@@ -198,13 +178,13 @@ class HardSolver {
   bool take_guess(const P& problem, const State& x0, Trajectory& trajectory, HardReport& report) noexcept {
     if (!roll_out(problem, x0, guess_)) return false;
     const Misses guess = measure(problem, guess_, nullptr);
-    kept_ = trajectory;
-    if (roll_out(problem, x0, kept_)) {
-      const Misses own = measure(problem, kept_, nullptr);
+    copy_ = trajectory;
+    if (roll_out(problem, x0, copy_)) {
+      const Misses own = measure(problem, copy_, nullptr);
       if (!(guess.worst() < own.worst() && guess.cost < own.cost)) return false;
     }
-    kept_ = trajectory = guess_;
-    assess(x0, kept_, false, report);
+    copy_ = trajectory = guess_;
+    assess(x0, copy_, false, report);
     return true;
   }
   /// `report` becomes one of `trajectory`, simulated or with its states; its status and its counts stay.
@@ -216,14 +196,6 @@ class HardSolver {
     report.status = kept.status;
     report.iterations = kept.iterations;
     report.sweeps = kept.sweeps;
-  }
-
-  /// The point that the first weights led to, if it misses less than `miss`: true then.
-  bool take_better(double miss, Trajectory& trajectory) noexcept {
-    if (!(kept_miss_ < miss)) return false;
-    trajectory = kept_;
-    kept_miss_ = std::numeric_limits<double>::infinity();
-    return !(can_go_on_ = false);
   }
 
   /// One solve. True when it converged.
@@ -257,28 +229,15 @@ class HardSolver {
     const int c = report.worst_constraint;
     return c >= 0 && report.violation > price_of(problem_, static_cast<std::size_t>(c)).cap;
   }
-  /// The next round converges further: where bounds are close to each other, or slopes flat, a step that the
-  /// tolerance takes for none is what a miss needs. False when that is at an end.
-  bool ask_for_more() noexcept {
-    constexpr double kFiner = 1e-2, kLeast = 1e-13;
-    if (tolerance_ <= kLeast) return false;
-    ask_for(std::max(kLeast, kFiner * tolerance_));
-    return true;
-  }
   /// Of rounds: multipliers are as good as the round that they come from, so that loose ones lead astray.
   [[nodiscard]] double round_tolerance() const noexcept { return std::min(options_.tolerance, 1e-6); }
-  void ask_for(double tolerance) noexcept {
-    if (tolerance != tolerance_) can_go_on_ = false;
-    tolerance_ = tolerance;
-    inner_.ask_for(tolerance);
-  }
 
   // ---- weights and multipliers
   void start(const P& problem, const State& x0, Trajectory& trajectory) noexcept {
     problem_.problem = &problem;
     problem_.cost_root = 1.0;
     can_go_on_ = false;
-    ask_for(round_tolerance());
+    inner_.ask_for(round_tolerance());
     if (!options_.start_from_states) roll_out(problem, x0, trajectory);
     first_ = measure(problem, trajectory, nullptr);
     unit_ = std::isfinite(first_.cost) ? std::max(1.0, first_.cost) : 1.0;
@@ -289,7 +248,7 @@ class HardSolver {
   /// No multipliers, and the first weights of the guess, times `factor` (eq. 58).
   void start_with_weights(int horizon, double factor) noexcept {
     can_go_on_ = false;
-    ask_for(round_tolerance());
+    inner_.ask_for(round_tolerance());
     inner_.start_from_states(options_.start_from_states);
     problem_.cost_root = 1.0;
     problem_.price_factor.fill(1.0);
@@ -307,9 +266,8 @@ class HardSolver {
     return std::isfinite(weight) ? std::min(std::max(weight, kLeastWeight), kMostFirstWeight) : 1.0;
   }
 
-  /// y ← y + ρ h; a weight or price whose row has not come down enough rises (eq. 57). `mu`: the barrier,
-  /// which leaves soft constraints a violation of mu over their price.
-  void update(Misses& now, const Misses* before, int horizon, double mu = 0.0) noexcept {
+  /// y ← y + ρ h; a weight or price whose row has not come down enough rises (eq. 57).
+  void update(Misses& now, const Misses* before, int horizon) noexcept {
     constexpr double kEnough = 0.1, kRise = 10.0;
     const auto rises = [&](double miss, double last) {
       return before != nullptr && miss > options_.tolerance && miss > kEnough * last;
@@ -337,8 +295,7 @@ class HardSolver {
           raise(problem_.terminal_weight[n], now.terminal[n], before != nullptr ? before->terminal[n] : 0.0);
     }
     for (std::size_t c = 0; c < kNc; ++c) {
-      const double price = std::max(1e-12, price_of(problem_, c).linear);
-      if (now.constraint[c] <= std::max(options_.tolerance, 10.0 * mu / price)) continue;
+      if (now.constraint[c] <= options_.tolerance) continue;
       problem_.price_factor[c] *= kRise;
       can_go_on_ = false;
     }
@@ -374,12 +331,12 @@ class HardSolver {
     problem_.price_factor = prices_.price_factor;
   }
 
-  // ---- what cannot hold (detail/hard_infeasible.hpp)
+  // ---- what cannot hold (detail/hard_restoration.hpp)
   bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
                      int& left, HardReport& report) noexcept;
   HardReport tell_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                              HardReport report) noexcept;
-  double finest_tolerance(const P& problem, int horizon) const noexcept;
+  bool is_proven(const P& problem, const Trajectory& least, double violation) const noexcept;
   void weigh_misses(double share, double unit) noexcept;
 
   // ---- values
@@ -392,6 +349,7 @@ class HardSolver {
     Misses misses;
     double worst = 0.0;
     const auto note = [&](double& miss, double value, Kind kind, int stage, std::size_t row) {
+      misses.total += value;
       miss = value > miss ? value : miss;
       if (report == nullptr || !(value > worst)) return;
       worst = value;
@@ -468,17 +426,15 @@ class HardSolver {
   Misses first_;       ///< of the guess
   IterationLog* log_ = nullptr;
   Trajectory guess_;
-  Trajectory kept_;          ///< of the first weights, where others were tried as well
-  double kept_miss_ = 0.0;   ///< largest of its misses
-  Trajectory downhill_;      ///< a copy for reports
+  Trajectory copy_;          ///< for reports, which may change it
   Trajectory least_;         ///< where misses have a local minimum above zero, with is_certified_
-  double tolerance_ = 0.0;   ///< of the next round
   int last_iterations_ = 0;  ///< of the last round
   Prices least_prices_;      ///< there, of the violation alone
-  double least_unit_ = 1.0;  ///< what misses are multiples of there
+  double least_unit_ = 1.0;  ///< unit of the misses there
   bool is_certified_ = false;
-  int trial_ = 0;           ///< iterations that are left for the first weights, kTrialSpent; 0: all of them
-  bool can_go_on_ = false;  ///< the next round differs little from the last one
+  bool is_possible_ = false;  ///< a point without misses has been found
+  int trial_ = 0;             ///< iterations that are left for the first weights, kTrialSpent; 0: all of them
+  bool can_go_on_ = false;    ///< the next round differs little from the last one
   std::array<std::array<double, Capacity>, kNh> equality_{};  ///< values at the last measure()
   std::array<double, kEnd> terminal_{};
 };
@@ -493,5 +449,4 @@ class OcpSolver<P, Capacity, Arch> : public HardSolver<P, Capacity, Arch> {
 
 }  // namespace chicane::solver
 
-#include "chicane/solver/detail/hard_first_round.hpp"
-#include "chicane/solver/detail/hard_infeasible.hpp"
+#include "chicane/solver/detail/hard_restoration.hpp"

@@ -136,7 +136,10 @@ class Linearisation {
         add_end_row(r, value, weight, lq);
       }
     });
-    std::copy(lq.terminal[kNx], lq.terminal[kNx] + kNx, lambda);
+    for (std::size_t i = 0; i < kNx; ++i) {
+      lambda[i] = lq.terminal[kNx][i];
+      if constexpr (kHasHardRows<P>) lambda[i] -= problem.is_primal_dual ? hard.excess(problem, i) : 0.0;
+    }
     return cost;
   }
 

@@ -75,65 +75,36 @@ bool OcpSolver<P, Capacity, Arch>::filter_iteration(const P& problem, const Dead
 }
 
 template <OcpProblem P, int Capacity, class Arch>
-bool OcpSolver<P, Capacity, Arch>::follow_barrier(const P& problem, P* rows, const State& x0,
-                                                  Trajectory& trajectory, const Deadline& deadline, int most,
+bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, Trajectory& trajectory,
+                                                  const Deadline& deadline, int most,
                                                   SolveReport& report) noexcept {
   using Outcome = typename Filter::Outcome;
-  const int patience = rows != nullptr ? 6 : most;  // short steps in succession
-  filter_.take_rows(rows);
+  constexpr int kPatience = 6;  // short steps in succession
+  filter_.take_rows(&problem);
   SolveReport unused;
   bool is_solved = false;
   if (start(problem, x0, trajectory) && begin_filter(problem, trajectory, unused)) {
     for (; report.iterations < most && !is_solved; ++report.iterations) {
       const Outcome outcome = filter_.iterate(problem, now_, lq_, barrier_, t_, deadline, report);
       record_filter_iteration(report);
-      if (outcome == Outcome::kGoing && filter_.short_steps() < patience) continue;
+      if (outcome == Outcome::kGoing && filter_.short_steps() < kPatience) continue;
       is_solved = outcome == Outcome::kSolved;
       break;
     }
   }
   filter_.take_rows(nullptr);
   is_filtering_ = false;
-  if constexpr (kHasHardRows<P>) {
-    if (rows != nullptr) {
-      now_.hard.end(*rows, t_.horizon, rows->cost_root * rows->cost_root);
-      // What rounding ended outside of its bounds is no certificate.
-      if (now_.hard.is_elastic() && bring_inside()) is_solved = false;
-    }
+  if (now_.hard.is_elastic()) {  // slopes of the violation alone, by an exact adjoint
+    is_solved = is_solved && !bring_inside();
+    problem.cost_root = 0.0;
+    now_.template linearise<1>(problem, t_, false, 1.0, barrier_, lq_.lq, unused);
   }
+  now_.hard.end(problem, t_.horizon);
   if (!is_solved) return false;
   t_.write(trajectory);
   filter_.hand_over(now_, lq_);
   barrier_.set_mu(std::max(barrier_.mu(), final_barrier(problem)));
   return true;
-}
-
-template <OcpProblem P, int Capacity, class Arch>
-bool OcpSolver<P, Capacity, Arch>::begin_path(const P& problem, const State& x0,
-                                              const Trajectory& trajectory) noexcept {
-  SolveReport unused;
-  if (!start(problem, x0, trajectory) || !begin_filter(problem, trajectory, unused)) return false;
-  filter_.stop_at_barriers();
-  return true;
-}
-template <OcpProblem P, int Capacity, class Arch>
-bool OcpSolver<P, Capacity, Arch>::follow_path(const P& problem, Trajectory& trajectory,
-                                               const Deadline& deadline, int most,
-                                               SolveReport& report) noexcept {
-  using Outcome = typename Filter::Outcome;
-  for (; report.iterations < most; ++report.iterations) {
-    const Outcome outcome = filter_.iterate(problem, now_, lq_, barrier_, t_, deadline, report);
-    record_filter_iteration(report);
-    if (outcome == Outcome::kGoing) continue;
-    if (outcome == Outcome::kSolved) t_.write(trajectory);
-    return outcome == Outcome::kSolved;
-  }
-  return false;
-}
-template <OcpProblem P, int Capacity, class Arch>
-void OcpSolver<P, Capacity, Arch>::end_path(const P& problem) noexcept {
-  filter_.hand_over(now_, lq_);
-  barrier_.set_mu(std::max(barrier_.mu(), final_barrier(problem)));
 }
 
 /// The second rung: a short horizon first.
