@@ -65,16 +65,19 @@ void print(const FamilyRow& row) {
               row.ratio, row.least_ratio);
   std::fflush(stdout);
 }
-/// Counts of infeasible answers where Ipopt has them, and of points with larger misses than its point.
+/// Counts of infeasible and of usable answers of problems without a solution, and of points with larger
+/// misses than Ipopt's.
 void print_infeasible(const std::vector<FamilyRow>& rows) {
   bool is_first = true;
   for (const FamilyRow& row : rows) {
-    if (row.reference_infeasible == 0) continue;
     if (is_first)
-      std::printf("\n| family | from | infeasible | of Ipopt's | further |\n|---|---|--:|--:|--:|\n");
+      std::printf(
+          "\n| family | from | infeasible | usable | iterations | of Ipopt's | further "
+          "|\n|---|---|--:|--:|--:|--:|--:|\n");
     is_first = false;
-    std::printf("| %s | %s | %d of %d | %d of %d | %d |\n", row.family.data(), to_string(row.start).data(),
-                row.infeasible, row.instances, row.both_infeasible, row.reference_infeasible, row.further);
+    std::printf("| %s | %s | %d of %d | %d | %.0f | %d of %d | %d |\n", row.family.data(),
+                to_string(row.start).data(), row.infeasible, row.instances, row.usable, row.iterations,
+                row.both_infeasible, row.reference_infeasible, row.further);
   }
 }
 

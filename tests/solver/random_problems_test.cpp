@@ -73,6 +73,10 @@ TEST(RandomProblems, AreSolvedBetweenBoundsCloserThanTheTolerance) {
 TEST(RandomProblems, AreInfeasibleOnlyWhereNoLargeChangeHelps) {
   expect_confirmed<bench::RandomHard<2, 1, 1, 0, 1, 0>>(20003996, 12, 2);
 }
+// One was "infeasible" by a second restoration: the first one had found a point where everything holds.
+TEST(RandomProblems, AreNotInfeasibleOnceAFeasiblePointIsFound) {
+  expect_confirmed<bench::RandomHard<2, 1, 1, 0, 1, 0>>(14810, 12, 3);
+}
 // One was "at the floor" with the residuals of its inputs' simulation, 20 times what that allows.
 TEST(RandomProblems, AreAtTheFloorWithResidualsOfTheAnswer) {
   expect_confirmed<bench::RandomStructured<1, 1, 0>>(21003901, 10, 3);

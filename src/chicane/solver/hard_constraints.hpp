@@ -23,7 +23,7 @@ namespace chicane::solver {
 ///         terminal_constraint_name(int) const;                                          // optional
 ///
 /// written like constraint() and terminal_residual(). OcpSolver then solves it by a primal-dual interior
-/// point method (docs/solver_hard.md), and its report says by how much and where they are missed. Choose
+/// point method (docs/solver.md), and its report says by how much and where they are missed. Choose
 /// units in which a miss of `tolerance` is one that you do not mind. The soft penalty of a hard constraint is
 /// the penalty that it starts with.
 
@@ -69,7 +69,7 @@ struct HardMultipliers {
   std::array<double, P::kNc> penalty_factor{};  ///< of hard constraints' first penalties
   bool is_known = false;                        ///< false: a solve begins without
 
-  /// The same for a horizon that begins `steps` stages later; the last ones are repeated.
+  /// Of a horizon that begins `steps` stages later; the last ones are repeated.
   void shift(int steps, int horizon) noexcept {
     for (auto& row : equality) {
       for (int k = 0; k < horizon; ++k)

@@ -13,7 +13,6 @@
 #include "chicane/base/inlining.hpp"
 #include "chicane/solver/detail/barrier.hpp"
 #include "chicane/solver/detail/descent.hpp"
-#include "chicane/solver/detail/endings.hpp"
 #include "chicane/solver/detail/evaluation.hpp"
 #include "chicane/solver/detail/filter_method.hpp"
 #include "chicane/solver/detail/iterate.hpp"
@@ -22,7 +21,6 @@
 #include "chicane/solver/detail/problem_pattern.hpp"
 #include "chicane/solver/detail/progress.hpp"
 #include "chicane/solver/detail/roll_out.hpp"
-#include "chicane/solver/detail/steps.hpp"
 #include "chicane/solver/detail/working_set_qp.hpp"
 #include "chicane/solver/iteration_log.hpp"
 #include "chicane/solver/problem.hpp"
@@ -42,7 +40,7 @@ namespace chicane::solver {
 ///
 /// One plain object holding its workspace; no allocation, lock, exception, and no clock but the deadline's.
 /// Nothing is remembered from solve to solve: the trajectory is the warm start, so a failure cannot poison
-/// the next call. Problem and trajectory are used during the call only; multipliers are valid until
+/// the next call. Problem and trajectory are used during the call only; prices and multipliers are those of
 /// the last solve. One thread at a time; objects share nothing, so different threads may each use their own.
 /// `Arch`: the instruction set that its translation unit is compiled for.
 template <OcpProblem P, int Capacity, class Arch = arch::Native>
@@ -73,8 +71,8 @@ class OcpSolver {
     return run(problem, x0, trajectory, deadline, report);
   }
   /// The same after a small change of the problem's functions, from where the last solve ended: iterate,
-  /// slacks, multipliers and working set are kept. Pre: that was usable; horizon, bounds and penalties are
-  /// the same; `trajectory` is its answer.
+  /// slacks, multipliers and working set are kept. Pre: that was usable; horizon, bounds and prices are the
+  /// same; `trajectory` is its answer.
   SolveReport solve_again(const P& problem, const State& x0, Trajectory& trajectory,
                           Deadline deadline = Deadline::never()) noexcept {
     begin();
@@ -97,32 +95,17 @@ class OcpSolver {
   /// From the next solve on, iterations are added to `log`, which must live as long; null: none.
   void record_iterations(IterationLog* log) noexcept { log_ = log; }
 
-  // ---- the filter method from barrier to barrier, for who changes the problem on the way
-
-  /// Begins it at a guess. False when that is of no use.
-  bool begin_path(const P& problem, const State& x0, const Trajectory& trajectory) noexcept;
-  /// At most `most` iterations, counted in `report`. True when the problem of the present barrier is solved:
-  /// `trajectory` is where.
-  bool follow_path(const P& problem, Trajectory& trajectory, const Deadline& deadline, int most,
-                   SolveReport& report) noexcept;
-  /// To the next barrier; `centre`: penalties of soft constraints have changed.
-  void lower_path(bool centre) noexcept { filter_.go_on(barrier_, centre); }
-  [[nodiscard]] double path_barrier() const noexcept { return filter_.mu(); }
-  [[nodiscard]] bool is_path_done() const noexcept { return filter_.is_at_last_barrier(); }
-  /// There: solve_again() goes on with full steps.
-  void end_path(const P& problem) noexcept;
-
   // ---- the filter method alone, for HardSolver
 
   /// Follows the barrier from a guess to its end, in at most `most` iterations, counted in `report`. True
-  /// where it gets there: solve_again() goes on with full steps. `rows`: the problem itself, whose rows that
-  /// must hold are equations then (detail/hard_rows.hpp), and which gets their multipliers; null: residuals.
-  bool follow_barrier(const P& problem, P* rows, const State& x0, Trajectory& trajectory,
-                      const Deadline& deadline, int most, SolveReport& report) noexcept;
-  /// Slacks of hard constraints to penalties that have changed.
-  void update_penalties(const P& problem) noexcept { barrier_.update_penalties(problem, t_.horizon); }
+  /// where it gets there: solve_again() goes on with full steps. Rows that must hold are equations then
+  /// (detail/hard_rows.hpp), and `problem` gets their multipliers.
+  bool follow_barrier(P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline, int most,
+                      SolveReport& report) noexcept;
+  /// Slacks of hard constraints to prices that have changed.
+  void reprice(const P& problem) noexcept { barrier_.reprice(problem, t_.horizon); }
 
-  /// After a solve: the multiplier of state i of x_{k+1}, i.e. d(cost)/dx of what follows; k < horizon.
+  /// After a solve: the price of state i of x_{k+1}, i.e. d(cost)/dx of what follows; k < horizon.
   [[nodiscard]] double adjoint(int k, int i) const noexcept { return now_.adjoint[i][k]; }
   /// The multiplier of the bounds of input m of stage k: d(cost)/d(bound), 0 between them.
   [[nodiscard]] double bound_multiplier(int k, int m) const noexcept { return now_.slope[m][k]; }
@@ -354,6 +337,7 @@ class OcpSolver {
     return may_grow() ? start_short(problem, trajectory) : go_back(problem);
   }
   bool begin_filter(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept;
+  void break_symmetry() noexcept;
   bool filter_iteration(const P& problem, const Deadline& deadline, SolveReport& report) noexcept;
   void record_filter_iteration(const SolveReport& report) noexcept;
   void take_cheapest(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept;
@@ -423,14 +407,7 @@ class OcpSolver {
   void look_at_best(const P& problem, SolveReport& report) noexcept;
   SolveReport finish(SolveStatus status, const P& problem, Trajectory& trajectory,
                      SolveReport report) noexcept;
-
-  /// The data are not finite: leaves admissible inputs and finite states behind.
-  SolveReport give_up(const P& problem, const State& x0, Trajectory& trajectory,
-                      SolveReport report) noexcept {
-    leave_admissible(problem, x0, static_cast<int>(target_), trajectory);
-    report.status = SolveStatus::kNotFinite;
-    return report;
-  }
+  SolveReport give_up(const P& problem, const State& x0, Trajectory& trajectory, SolveReport report) noexcept;
 
   SolverOptions options_;
   Linearisation<P, kSize, Arch> now_;  ///< of the present iterate

@@ -58,7 +58,8 @@ struct SparseRow {
     for (std::uint32_t n = 0; n < curvature_count; ++n)
       visit(curvatures[n].i, curvatures[n].j, scale * slots[curvatures[n].slot * stride]);
   }
-  CHICANE_INLINE friend SparseRow operator*(double factor, SparseRow row) noexcept {
+  template <class S>
+  CHICANE_INLINE friend SparseRow operator*(const S& factor, SparseRow row) noexcept {
     row.v = factor * row.v;
     row.scale = factor * row.scale;
     return row;

@@ -53,7 +53,7 @@ CHICANE_INLINE inline std::array<T, N + M> join(const std::array<T, N>& a, const
 }  // namespace detail
 
 /// A problem whose equalities and terminal constraints are residuals √ρ (h + y/ρ) beside its own: its
-/// augmented Lagrangian, up to a constant (docs/solver_hard.md, eq. 56). Everything else is as the problem
+/// augmented Lagrangian, up to a constant (docs/solver.md, eq. 56). Everything else is as the problem
 /// has it.
 template <HardProblem P, int Capacity>
 class Augmented {
@@ -69,7 +69,6 @@ class Augmented {
   static constexpr bool kRealTime = !has_filter_method<P>();
   static constexpr bool kHasSparseRows = solver::kHasSparseRows<P>;
 
-  static constexpr double kNearlyNone = 1e-6;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   /// One row that must hold: √ρ, ρ and y/ρ.
   struct Weight {
@@ -83,14 +82,19 @@ class Augmented {
   const P* problem = nullptr;
   double cost_root = 1.0;  ///< root of the weight of the problem's own cost
   std::array<Weight, kEqualities> equality_weight{};
+  std::array<StageData<Capacity>, kEqualities> equality_root{};  ///< the same of each stage
   std::array<StageData<Capacity>, kEqualities> equality_shift{};
   std::array<Weight, kEndEqualities + kEndConstraints> terminal_weight{};
   std::array<double, kEndEqualities + kEndConstraints> terminal_shift{};
-  std::array<double, kNc> penalty_factor{};  ///< of soft constraints, hard ones among them
-  double violation_penalty = 0.0;  ///< of hard ones in their place, if any: of their violation alone
-  double square_penalty = 0.0;     ///< of hard ones in their place, if any: of ½ violation²
-  double hard_penalty = 0.0;       ///< of hard ones in their place, if any: so high that none is violated
-  bool is_primal_dual = false;     ///< rows are those of the primal-dual method (detail/hard_rows.hpp)
+  std::array<double, kNc> price_factor{};  ///< of soft constraints, hard ones among them
+  double violation_price = 0.0;            ///< of whatever must hold, if any: of its violation alone
+  double hard_price = 0.0;      ///< of hard ones in their place, if any: so high that none is violated
+  bool is_primal_dual = false;  ///< rows are those of the primal-dual method (detail/hard_rows.hpp)
+
+  void set_weight(std::size_t n, double weight) noexcept {
+    equality_weight[n].set(weight);
+    equality_root[n].values.fill(equality_weight[n].root);
+  }
 
   template <class K, class X, class U>
   requires requires(const P& p, K k, const X& x, const U& u) { p.dynamics(k, x, u); }
@@ -103,7 +107,7 @@ class Augmented {
         problem->residual(k, x, u), [&](std::size_t, const auto& r) CHICANE_INLINE { return cost_root * r; });
     if constexpr (kEqualities > 0) {
       const auto shifted = [&](std::size_t n, const auto& h) CHICANE_INLINE {
-        return equality_weight[n].root * (h + equality_shift[n].at(k));
+        return equality_root[n].at(k) * (h + equality_shift[n].at(k));
       };
       return detail::join(own, detail::map_row(problem->equality(k, x, u), shifted));
     } else {
@@ -125,23 +129,23 @@ class Augmented {
   }
 
   [[nodiscard]] bool keeps(std::size_t c) const noexcept {
-    if constexpr (detail::SaysWhatIsHard<P>) return problem->is_hard(static_cast<int>(c));
+    if constexpr (detail::SaysWhatIsHard<P>)
+      return violation_price == 0.0 && problem->is_hard(static_cast<int>(c));
     return false;
   }
   [[nodiscard]] std::size_t constraint_count() const noexcept { return solver::constraint_count(*problem); }
   [[nodiscard]] SoftPenalty soft_penalty(int c) const requires(kNc > 0) {
-    SoftPenalty penalty = problem->soft_penalty(c);
-    penalty.linear *= penalty_factor[static_cast<std::size_t>(c)];
-    penalty.quadratic *= penalty_factor[static_cast<std::size_t>(c)];
+    SoftPenalty price = problem->soft_penalty(c);
+    price.linear *= price_factor[static_cast<std::size_t>(c)];
+    price.quadratic *= price_factor[static_cast<std::size_t>(c)];
     if constexpr (detail::SaysWhatIsHard<P>) {
       if (problem->is_hard(c)) {
-        penalty.cap = 1e30;
-        if (is_primal_dual) penalty = {hard_penalty, 0.0, SoftConstraint<>::kMustHold};
-        if (violation_penalty > 0.0) penalty = {violation_penalty, 0.0, penalty.cap};
-        if (square_penalty > 0.0) penalty = {kNearlyNone * square_penalty, square_penalty, penalty.cap};
+        price.cap = 1e30;
+        if (is_primal_dual) price = {hard_price, 0.0, SoftConstraint<>::kMustHold};
+        if (violation_price > 0.0) price = {violation_price, 0.0, 1e30};
       }
     }
-    return penalty;
+    return price;
   }
   [[nodiscard]] auto input_lower(int k) const { return problem->input_lower(k); }
   [[nodiscard]] auto input_upper(int k) const { return problem->input_upper(k); }

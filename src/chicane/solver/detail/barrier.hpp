@@ -22,7 +22,7 @@ template <OcpProblem P>
   return {};
 }
 
-/// All soft constraints of a horizon and their common barrier μ (docs/solver_constraints.md, eq. 14–21).
+/// All soft constraints of a horizon and their common barrier μ (docs/solver.md, eq. 14–21).
 /// Without constraints there is nothing to it.
 template <OcpProblem P, std::size_t Capacity, class Arch>
 class Barrier {

@@ -12,7 +12,6 @@
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/linearisation.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
-#include "chicane/solver/detail/steps.hpp"
 #include "chicane/solver/problem.hpp"
 
 namespace chicane::solver {

@@ -29,10 +29,11 @@ Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]
       miss += select(live, abs(values.next[i] - V::load_unaligned(point.x[i] + k + 1)), V(0.0));
     if constexpr (Evaluate::kHardRows > 0) {
       for (std::size_t n = 0; n < Evaluate::kHardRows; ++n) {
-        const V missed = rows_ != nullptr ? Linearised::Hard::miss(problem, n, k, values.hard[n]) : V(0.0);
-        const V square = rows_ != nullptr ? V(0.0) : 0.5 * values.hard[n] * values.hard[n];
-        miss += select(live, missed, V(0.0));
-        cost += select(live, square, V(0.0));
+        if (rows_ != nullptr) {
+          now.hard.measure(problem, n, k, values.hard[n], length, live, miss, cost, logs);
+        } else {
+          cost += select(live, 0.5 * values.hard[n] * values.hard[n], V(0.0));
+        }
       }
     }
   }
@@ -55,6 +56,20 @@ Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]
   }
   merit.cost -= mu_ * merit.logs;
   return merit;
+}
+
+template <OcpProblem P, std::size_t Capacity, class Arch>
+void FilterMethod<P, Capacity, Arch>::centre_rows(const P& problem, Linearised& now,
+                                                  const Point& t) noexcept {
+  if constexpr (Evaluate::kHardRows > 0) {
+    for (std::size_t k = 0; now.hard.is_elastic() && k < t.horizon; k += 8) {
+      const auto values = Evaluate::values(problem, t, k);
+      for (std::size_t n = 0; n < Evaluate::kHardRows; ++n)
+        now.hard.centre(n, k, Linearised::Hard::row_value(problem, n, k, values.hard[n]), mu_);
+    }
+  }
+  now.hard.centre_end(end_rows(problem, t), mu_);
+  now.hard.set_rows(*rows_, mu_, t.horizon);
 }
 
 template <OcpProblem P, std::size_t Capacity, class Arch>

@@ -5,12 +5,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <type_traits>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/math_pack.hpp"
-#include "chicane/solver/detail/bound_barrier.hpp"
 #include "chicane/solver/detail/filter.hpp"
+#include "chicane/solver/detail/filter_slacks.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/sparse_row.hpp"
 
@@ -28,9 +29,12 @@ template <class P>
   return P::kNr;
 }
 
-/// Rows that must hold inside the primal-dual method (docs/solver_hard.md, eq. 50–54): equalities of stages
-/// and end with multipliers y, inequalities of the end with slacks t > 0 and multipliers z > 0. The problem's
-/// functions return them as residuals √ρ (h + shift); linearisations store those here with their derivatives.
+/// Rows that must hold inside the primal-dual method (docs/solver.md, eq. 50–55): h − p + n = 0 with a
+/// multiplier y between two prices. p ≥ 0 exists where the upper price is finite, with μ = p (high − y), n ≥
+/// 0 where the lower one is, with μ = n (y − low). An equality that holds has no prices, an inequality that
+/// holds has 0 below, whose n is its slack. Elastic rows may give way: prices −ρ₁, ρ₁ of an equality, 0, ρ₁
+/// of an inequality. The problem's functions return rows as residuals √w (h + shift), in which p and n are
+/// eliminated; linearisations store those here with their derivatives.
 template <class P, std::size_t Capacity, class Arch>
 class HardRows {
  public:
@@ -66,10 +70,10 @@ class HardRows {
 
   // ---- the method
 
-  /// No multipliers yet, and equalities of hardly any weight: of the guess the costs alone are to be seen.
+  /// No multipliers yet, and hardly any weight: of the guess the costs alone are to be seen.
   void begin(P& problem) noexcept {
     problem.is_primal_dual = true;
-    for (auto& weight : problem.equality_weight) weight.set(kNearlyNone);
+    for (std::size_t n = 0; n < kStageRows; ++n) problem.set_weight(n, kNearlyNone);
     for (auto& weight : problem.terminal_weight) weight.set(kNearlyNone);
     for (auto& shift : problem.equality_shift) shift.values.fill(0.0);
     problem.terminal_shift.fill(0.0);
@@ -78,124 +82,174 @@ class HardRows {
     for (auto& row : end_row_) std::fill(std::begin(row), std::end(row), 0.0);
     value_ = {};
     row_ = {};
+    stage_ = {};
+    end_ = {};
+    is_ready_ = false;
   }
-  /// From now on with ρ, multipliers as they are.
-  void weigh(P& problem, double rho) noexcept {
+  [[nodiscard]] bool is_ready() const noexcept { return is_ready_; }
+  /// From now on with weights of at most `rho`; rows give way at `price`, where that is above zero.
+  void weigh(double rho, double price) noexcept {
     rho_ = rho;
-    const auto set = [&](auto& weight, auto& shifts) {
-      for (double& shift : shifts) shift *= weight.rho / rho;
-      weight.set(rho);
-    };
-    for (std::size_t n = 0; n < kStageRows; ++n)
-      set(problem.equality_weight[n], problem.equality_shift[n].values);
-    for (std::size_t n = 0; n < kEqualities; ++n) {
-      problem.terminal_shift[n] *= problem.terminal_weight[n].rho / rho;
-      problem.terminal_weight[n].set(rho);
+    is_ready_ = true;
+    const double most = price > 0.0 ? price : kInfinity;
+    equality_ = {-most, most, price > 0.0 ? 0.0 : 1.0 / rho};
+    inequality_ = {0.0, most, 0.0};
+  }
+  [[nodiscard]] bool is_elastic() const noexcept { return equality_.has_p(); }
+  /// p, n and multipliers of the rows of eight stages from k on, whose values are `h`, on the central path.
+  void centre(std::size_t n, std::size_t k, const V& h, double mu) noexcept {
+    alignas(64) double values[8];
+    h.store(values);
+    for (std::size_t lane = 0; lane < 8; ++lane) {
+      const Row<double> row = centred(equality_, values[lane], 0.0, mu);
+      Rows& rows = stage_[n];
+      rows.y[k + lane] = row.y;
+      rows.p[k + lane] = row.p, rows.n[k + lane] = row.n;
+      rows.above[k + lane] = row.above, rows.below[k + lane] = row.below;
     }
   }
-  /// Slacks of the end's inequalities, whose values are `g`, with some room; multipliers on the central path.
+  /// The same of the end; slacks of inequalities that must hold get some room.
   template <class Values>
-  void centre(P& problem, const Values& g, double mu) noexcept {
-    for (std::size_t n = kEqualities; n < kEndRows; ++n) {
-      t_[n] = std::max(-g[n], kPush * std::max(1.0, std::fabs(g[n])));
-      z_[n] = mu / t_[n];
-    }
-    set_ends(problem, mu);
+  void centre_end(const Values& h, double mu) noexcept {
+    for (std::size_t n = 0; n < kEndRows; ++n)
+      end_[n] = centred(prices(n), h[n], n < kEqualities ? end_[n].y : 0.0, mu);
   }
-  /// After a change of t, z or μ: residuals √ρ (g + shift) with ρ = z/t that pull as much as the eliminated
-  /// slack (eq. 53).
-  void set_ends(P& problem, double mu) noexcept {
-    for (std::size_t n = kEqualities; n < kEndRows; ++n) {
-      problem.terminal_weight[n].set(z_[n] / t_[n]);
-      problem.terminal_shift[n] = t_[n] + mu / z_[n];
+  /// After a change of rows or μ: weights and shifts whose residuals pull as much as what is eliminated.
+  void set_rows(P& problem, double mu, std::size_t horizon) noexcept {
+    for (std::size_t n = 0; n < kStageRows; ++n) {
+      for (std::size_t k = 0; k < horizon; k += 8) {
+        const auto [root, shift] = stage_[n].load(k).residual(equality_, mu);
+        root.store(problem.equality_root[n].values.data() + k);
+        shift.store(problem.equality_shift[n].values.data() + k);
+      }
     }
-  }
-
-  /// The same after a change of μ alone; `slope`, the gradient of the end, follows.
-  void set_ends(P& problem, double mu, double* slope) noexcept {
-    for (std::size_t n = kEqualities; n < kEndRows; ++n) {
-      if (!is_there_[n]) continue;
-      const double shift = t_[n] + mu / z_[n];
-      const double change = problem.terminal_weight[n].root * (shift - problem.terminal_shift[n]);
+    for (std::size_t n = 0; n < kEndRows; ++n) {
+      const auto [root, shift] = end_[n].residual(prices(n), mu);
+      problem.terminal_weight[n] = {root, root * root};
       problem.terminal_shift[n] = shift;
+    }
+  }
+  /// The same after a change of μ alone; `slope`, the gradient of the end, follows, and `pull(k, j, amount)`
+  /// those of the stages.
+  template <class Pull>
+  void set_rows(P& problem, double mu, std::size_t horizon, double* slope, const Pull& pull) noexcept {
+    const auto old_end = problem.terminal_shift;
+    const auto old_stage = problem.equality_shift;
+    set_rows(problem, mu, horizon);
+    for (std::size_t n = 0; n < kEndRows; ++n) {
+      if (!is_there_[n]) continue;
+      const double change = problem.terminal_weight[n].root * (problem.terminal_shift[n] - old_end[n]);
       end_value_[n] += change;
       for (std::size_t i = 0; i < kNx; ++i) slope[i] += change * end_row_[n][i];
     }
+    if (!is_elastic()) return;
+    for (std::size_t n = 0; n < kStageRows; ++n) {
+      for (std::size_t k = 0; k < horizon; ++k) {
+        const double change = problem.equality_root[n].values[k] *
+                              (problem.equality_shift[n].values[k] - old_stage[n].values[k]);
+        value_[n][k] += change;
+        for (std::size_t j = 0; j < kNz; ++j) pull(k, j, change * row_[n][j][k]);
+      }
+    }
   }
 
-  /// Multipliers, and how far they and slacks may be followed, of a step from the present iterate.
+  /// Directions of all rows that belong to a step from the present iterate; how far they may be followed.
   StepLengths find(const P& problem, const Step& step, double mu, double fraction) noexcept {
     slope_ = 0.0;
+    V primal(0.0), dual(0.0);
     for (std::size_t n = 0; n < kStageRows; ++n) {
-      const double root = problem.equality_weight[n].root;
       V slope(0.0);
       for (std::size_t k = 0; k < step.horizon; k += 8) {
         V change(0.0);
         for (std::size_t i = 0; i < kNx; ++i) change += V::load(row_[n][i] + k) * V::load(step.x[i] + k);
         for (std::size_t m = 0; m < kNu; ++m)
           change += V::load(row_[n][kNx + m] + k) * V::load(step.u[m] + k);
-        const V value = V::load(value_[n] + k);
+        const V value = V::load(value_[n] + k),
+                root = problem.equality_root[n].at(StageLanes<V>{static_cast<int>(k)});
         const auto live =
             stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(step.horizon));
-        slope += select(live, value * change, V(0.0));
-        const V shift = problem.equality_shift[n].at(StageLanes<V>{static_cast<int>(k)});
-        select(live, (value + change) * (1.0 / root) - shift, V(0.0)).store(dshift_[n] + k);
+        const Row<V> row = stage_[n].load(k);
+        const Row<V> d = row.step(equality_, root * (value + change), mu);
+        stage_step_[n].store(k, d);
+        slope += select(live, row.slope(equality_, d, mu) - value * change, V(0.0));
+        const auto [by_primal, by_dual] = row.shares(equality_, d);
+        primal = max(primal, select(live, by_primal, V(0.0)));
+        dual = max(dual, select(live, by_dual, V(0.0)));
       }
-      slope_ -= sum(slope);
+      slope_ += sum(slope);
     }
-    StepLengths lengths;
+    double most_primal = largest(primal), most_dual = largest(dual);
     for (std::size_t n = 0; n < kEndRows; ++n) {
+      if (!is_there_[n]) continue;
       double change = 0.0;
       for (std::size_t i = 0; i < kNx; ++i) change += end_row_[n][i] * step.x[i][step.horizon];
-      const double root = problem.terminal_weight[n].root, shift = problem.terminal_shift[n];
-      if (!is_there_[n]) continue;
-      slope_ -= end_value_[n] * change;
-      const double linear = (end_value_[n] + change) / root - shift;  // h + J δx
-      dend_[n] = linear;
-      if (n < kEqualities) continue;
-      dt_[n] = -linear - t_[n];
-      dz_[n] = root * (end_value_[n] + change) - z_[n];
-      slope_ -= mu * dt_[n] / t_[n];
-      lengths.primal = std::min(lengths.primal, fraction / std::max(-dt_[n] / t_[n], 1e-30));
-      lengths.dual = std::min(lengths.dual, fraction / std::max(-dz_[n] / z_[n], 1e-30));
+      const double root = problem.terminal_weight[n].root;
+      end_step_[n] = end_[n].step(prices(n), root * (end_value_[n] + change), mu);
+      slope_ += end_[n].slope(prices(n), end_step_[n], mu) - end_value_[n] * change;
+      const auto [by_primal, by_dual] = end_[n].shares(prices(n), end_step_[n]);
+      most_primal = std::max(most_primal, by_primal);
+      most_dual = std::max(most_dual, by_dual);
     }
-    return lengths;
+    return {fraction / std::max(most_primal, 1e-30), fraction / std::max(most_dual, 1e-30)};
   }
   /// Slope along the direction of what the rows cost, less what the stages' gradients have of them.
   [[nodiscard]] double slope() const noexcept { return slope_; }
 
-  /// What eight stages from k on miss of row n, whose residual is `value`.
-  [[nodiscard]] static V miss(const P& problem, std::size_t n, std::size_t k, const V& value) noexcept {
-    const V shift = problem.equality_shift[n].at(StageLanes<V>{static_cast<int>(k)});
-    return abs(value * (1.0 / problem.equality_weight[n].root) - shift);
+  /// The value of row n of eight stages from k on, whose residual is `value`.
+  [[nodiscard]] static V row_value(const P& problem, std::size_t n, std::size_t k, const V& value) noexcept {
+    const StageLanes<V> lanes{static_cast<int>(k)};
+    return value / problem.equality_root[n].at(lanes) - problem.equality_shift[n].at(lanes);
   }
-  /// Adds miss and logarithms of the end, whose rows are `h`, at `length` of the direction.
+  /// Adds miss, cost and logarithms of row n of the stages from k on, whose residual is `value`, at `length`
+  /// of the direction.
+  template <class Mask>
+  void measure(const P& problem, std::size_t n, std::size_t k, const V& value, double length,
+               const Mask& live, V& miss, V& cost, V& logs) noexcept {
+    const V h = row_value(problem, n, k, value);
+    Row<V> at = stage_[n].load(k);
+    if (length > 0.0) at.go(length, stage_step_[n].load(k));
+    at.p.store(stage_at_[n].p + k);
+    at.n.store(stage_at_[n].n + k);
+    at.measure(equality_, h, [&](const V& missed, const V& costs, const V& logarithms) {
+      miss += select(live, missed, V(0.0));
+      cost += select(live, costs, V(0.0));
+      logs += select(live, logarithms, V(0.0));
+    });
+  }
+  /// The same of the end, whose rows are `h`.
   template <class Values>
   void measure_end(const Values& h, double length, Merit& merit) noexcept {
-    for (std::size_t n = 0; n < kEqualities; ++n) merit.miss += std::fabs(h[n]);
-    for (std::size_t n = kEqualities; n < kEndRows; ++n) {
+    for (std::size_t n = 0; n < kEndRows; ++n) {
       if (!is_there_[n]) continue;
-      t_at_[n] = t_[n];
-      if (length > 0.0) t_at_[n] = std::max(t_[n] + length * dt_[n], -h[n]);  // more room costs nothing
-      merit.miss += std::fabs(h[n] + t_at_[n]);
-      merit.logs += log(t_at_[n]);
+      Row<double> at = end_[n];
+      if (length > 0.0) {
+        at.go(length, end_step_[n]);
+        if (n >= kEqualities) at.n = std::max(at.n, at.p - h[n]);  // more room costs nothing
+      }
+      end_at_[n] = at;
+      at.measure(prices(n), h[n], [&](double missed, double costs, double logarithms) {
+        merit.miss += missed;
+        merit.cost += costs;
+        merit.logs += logarithms;
+      });
     }
   }
   /// Largest residual of the rows and of their complementarity at the present iterate.
   [[nodiscard]] double residual(const P& problem, double mu, double unit,
                                 std::size_t horizon) const noexcept {
-    double worst = 0.0;
+    V all(0.0);
     for (std::size_t n = 0; n < kStageRows; ++n) {
-      for (std::size_t k = 0; k < horizon; ++k) {
-        const double h = value_[n][k] / problem.equality_weight[n].root - problem.equality_shift[n].values[k];
-        worst = std::max(worst, unit * std::fabs(h));
+      for (std::size_t k = 0; k < horizon; k += 8) {
+        const auto live = stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(horizon));
+        const V h = row_value(problem, n, k, V::load(value_[n] + k));
+        all = max(all, select(live, stage_[n].load(k).worst(equality_, h, mu, unit), V(0.0)));
       }
     }
+    double worst = largest(all);
     for (std::size_t n = 0; n < kEndRows; ++n) {
       if (!is_there_[n]) continue;
       const double h = end_value_[n] / problem.terminal_weight[n].root - problem.terminal_shift[n];
-      worst = std::max(worst, unit * std::fabs(n < kEqualities ? h : h + t_[n]));
-      if (n >= kEqualities) worst = std::max(worst, std::fabs(t_[n] * z_[n] - mu));
+      worst = std::max(worst, end_[n].worst(prices(n), h, mu, unit));
     }
     return worst;
   }
@@ -206,34 +260,45 @@ class HardRows {
       sum += (end_value_[n] - end_weight(problem, n)) * end_row_[n][i];
     return sum;
   }
-  /// The multiplier of row n of the end over √ρ.
+  /// The multiplier of row n of the end over √w; of the stages from k on.
   [[nodiscard]] double end_weight(const P& problem, std::size_t n) const noexcept {
-    const auto& weight = problem.terminal_weight[n];
-    return n < kEqualities ? weight.root * problem.terminal_shift[n] : z_[n] / weight.root;
+    return end_[n].y / problem.terminal_weight[n].root;
+  }
+  [[nodiscard]] V stage_weight(const P& problem, std::size_t n, std::size_t k) const noexcept {
+    return V::load(stage_[n].y + k) / problem.equality_root[n].at(StageLanes<V>{static_cast<int>(k)});
   }
 
-  /// Multipliers of equalities by `length` of their direction, slacks to where the last measure() was, their
-  /// multipliers by `dual_length`.
+  /// To where the last measure() was; multipliers of equalities that must hold by `length` of their
+  /// direction, others by `dual_length`.
   void move(P& problem, double length, double dual_length, double mu, std::size_t horizon) noexcept {
     constexpr double kFar = 1e10;
+    const double by = is_elastic() ? dual_length : length;
     for (std::size_t n = 0; n < kStageRows; ++n) {
-      for (std::size_t k = 0; k < horizon; ++k) problem.equality_shift[n].values[k] += length * dshift_[n][k];
+      for (std::size_t k = 0; k < horizon; k += 8) {
+        Row<V> row = stage_[n].load(k);
+        row.move(by, stage_step_[n].load(k), V::load(stage_at_[n].p + k), V::load(stage_at_[n].n + k));
+        stage_[n].store(k, row);
+      }
     }
-    for (std::size_t n = 0; n < kEqualities; ++n) problem.terminal_shift[n] += length * dend_[n];
-    for (std::size_t n = kEqualities; n < kEndRows; ++n) {
+    for (std::size_t n = 0; n < kEndRows; ++n) {
       if (!is_there_[n]) continue;
-      t_[n] = t_at_[n];
-      const double z = z_[n] + dual_length * dz_[n];
-      z_[n] = std::min(std::max(z, mu / (kFar * t_[n])), kFar * mu / t_[n]);
+      Row<double>& row = end_[n];
+      row.move(n < kEqualities ? by : dual_length, end_step_[n], end_at_[n].p, end_at_[n].n);
+      if (n >= kEqualities && !is_elastic())
+        row.y = row.below = std::min(std::max(row.y, mu / (kFar * row.n)), kFar * mu / row.n);
     }
-    set_ends(problem, mu);
+    set_rows(problem, mu, horizon);
   }
   /// Back to an augmented Lagrangian, with the multipliers that were found.
-  void end(P& problem) noexcept {
+  void end(P& problem, std::size_t horizon) noexcept {
     problem.is_primal_dual = false;
-    for (std::size_t n = kEqualities; n < kEndRows; ++n) {
+    for (std::size_t n = 0; n < kStageRows; ++n) {
+      problem.set_weight(n, rho_);
+      for (std::size_t k = 0; k < horizon; ++k) problem.equality_shift[n].values[k] = stage_[n].y[k] / rho_;
+    }
+    for (std::size_t n = 0; n < kEndRows; ++n) {
       problem.terminal_weight[n].set(rho_);
-      problem.terminal_shift[n] = is_there_[n] ? z_[n] / rho_ : 0.0;
+      problem.terminal_shift[n] = is_there_[n] ? end_[n].y / rho_ : 0.0;
     }
   }
 
@@ -241,6 +306,7 @@ class HardRows {
   static constexpr std::size_t kStride = kStageStride<Capacity>;
   static constexpr double kPush = 1e-2;
   static constexpr double kNearlyNone = 1e-12;
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   template <class T, std::size_t N>
   using Of = std::array<T, (N > 0 ? N : 1)>;
   struct alignas(64) Line {
@@ -248,16 +314,121 @@ class HardRows {
     operator double*() noexcept { return values; }
     operator const double*() const noexcept { return values; }
   };
+  /// Between which a multiplier is; `soft`: what a multiplier leaves of its row.
+  struct Prices {
+    double low = 0.0, high = 0.0, soft = 0.0;
+    [[nodiscard]] bool has_p() const noexcept { return high < kInfinity; }
+    [[nodiscard]] bool has_n() const noexcept { return low > -kInfinity; }
+  };
+  /// One row, or one of eight stages: `above` = high − y, `below` = y − low. Also a direction of it.
+  template <class T>
+  struct Row {
+    T y{0.0}, p{0.0}, n{0.0}, above{1.0}, below{1.0};
 
-  Of<Line, kStageRows> value_{}, dshift_{};
+    [[nodiscard]] auto residual(const Prices& prices, double mu) const noexcept {
+      T give(prices.soft), shift(0.0);
+      if (prices.has_p()) give += p / above, shift -= mu / above;
+      if (prices.has_n()) give += n / below, shift += mu / below;
+      return std::array<T, 2>{1.0 / sqrt(give), y * give + shift};
+    }
+    /// Towards multiplier `next`.
+    [[nodiscard]] Row step(const Prices& prices, const T& next, double mu) const noexcept {
+      Row d;
+      d.y = next - y;
+      d.above = -d.y;
+      d.below = d.y;
+      d.p = prices.has_p() ? mu / above - p + p / above * d.y : T(0.0);
+      d.n = prices.has_n() ? mu / below - n - n / below * d.y : T(0.0);
+      return d;
+    }
+    [[nodiscard]] T slope(const Prices& prices, const Row& d, double mu) const noexcept {
+      T sum(0.0);
+      if (prices.has_p()) sum += (prices.high - mu / p) * d.p;
+      if (prices.has_n()) sum += (-prices.low - mu / n) * d.n;
+      return sum;
+    }
+    /// Of what is left of p and n, and of multipliers' distances, the share that a whole step takes.
+    [[nodiscard]] std::array<T, 2> shares(const Prices& prices, const Row& d) const noexcept {
+      T primal(0.0), dual(0.0);
+      if (prices.has_p()) primal = larger(primal, -d.p / p), dual = larger(dual, -d.above / above);
+      if (prices.has_n()) primal = larger(primal, -d.n / n), dual = larger(dual, -d.below / below);
+      return {primal, dual};
+    }
+    void go(double length, const Row& d) noexcept {
+      p += length * d.p;
+      n += length * d.n;
+    }
+    void move(double length, const Row& d, const T& p_at, const T& n_at) noexcept {
+      y += length * d.y;
+      above += length * d.above;
+      below += length * d.below;
+      p = p_at;
+      n = n_at;
+    }
+    template <class Add>
+    void measure(const Prices& prices, const T& h, const Add& add) const noexcept {
+      T cost(0.0), logs(0.0);
+      if (prices.has_p()) cost += prices.high * p, logs += log(p);
+      if (prices.has_n()) cost -= prices.low * n, logs += log(n);
+      add(magnitude(h - p + n), cost, logs);
+    }
+    [[nodiscard]] T worst(const Prices& prices, const T& h, double mu, double unit) const noexcept {
+      T result = unit * magnitude(h - p + n);
+      if (prices.has_p()) result = larger(result, magnitude(p * above - mu));
+      if (prices.has_n()) result = larger(result, magnitude(n * below - mu));
+      return result;
+    }
+    static T larger(const T& a, const T& b) noexcept { return select(a > b, a, b); }
+    static T magnitude(const T& a) noexcept { return larger(a, -a); }
+  };
+  /// Rows of all stages.
+  struct Rows {
+    Line y, p, n, above, below;
+    [[nodiscard]] Row<V> load(std::size_t k) const noexcept {
+      return {V::load(y + k), V::load(p + k), V::load(n + k), V::load(above + k), V::load(below + k)};
+    }
+    void store(std::size_t k, const Row<V>& row) noexcept {
+      row.y.store(y + k);
+      row.p.store(p + k);
+      row.n.store(n + k);
+      row.above.store(above + k);
+      row.below.store(below + k);
+    }
+  };
+  [[nodiscard]] const Prices& prices(std::size_t n) const noexcept {
+    return n < kEqualities ? equality_ : inequality_;
+  }
+  /// A row of value h: elastic ones on the central path, h = μ/(high − y) − μ/(y − low); slacks of others
+  /// with some room, and multiplier `y` of equalities.
+  static Row<double> centred(const Prices& prices, double h, double y, double mu) noexcept {
+    Row<double> row;
+    row.y = y;
+    if (prices.has_p()) {
+      const double half = 0.5 * (prices.high - prices.low), by = half * std::fabs(h);
+      const double root = std::sqrt(mu * mu + by * by), off = half * by / (mu + root);  // |y − middle|
+      const double near = half * mu * (1.0 + mu / (root + by)) / (mu + root), far = half + off;
+      row.y = 0.5 * (prices.high + prices.low) + (h > 0.0 ? off : -off);
+      row.above = h > 0.0 ? near : far;
+      row.below = h > 0.0 ? far : near;
+      row.p = mu / row.above;
+      row.n = mu / row.below;
+    } else if (prices.has_n()) {
+      row.n = std::max(-h, kPush * std::max(1.0, std::fabs(h)));
+      row.y = row.below = mu / row.n;
+    }
+    return row;
+  }
+
+  Of<Line, kStageRows> value_{};
   Of<std::array<Line, kNz>, kStageRows> row_{};
+  Of<Rows, kStageRows> stage_{}, stage_step_{}, stage_at_{};
   double end_value_[kEndRows + 1]{}, end_row_[kEndRows + 1][kNx]{};
-  double dend_[kEndRows + 1]{};
-  double t_[kEndRows + 1]{}, z_[kEndRows + 1]{}, dt_[kEndRows + 1]{}, dz_[kEndRows + 1]{},
-      t_at_[kEndRows + 1]{};
+  std::array<Row<double>, kEndRows + 1> end_{}, end_step_{}, end_at_{};
   bool is_there_[kEndRows + 1]{};  ///< sparse rows may be absent: rows that the problem does not have
+  Prices equality_{}, inequality_{};
   double slope_ = 0.0;
   double rho_ = 1.0;
+  bool is_ready_ = false;  ///< weigh() has been called
 };
 
 /// In its place for problems without.

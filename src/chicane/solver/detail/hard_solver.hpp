@@ -10,23 +10,23 @@
 #include "chicane/base/deadline.hpp"
 #include "chicane/solver/detail/augmented.hpp"
 #include "chicane/solver/detail/evaluation.hpp"
-#include "chicane/solver/detail/round_progress.hpp"
+#include "chicane/solver/detail/progress.hpp"
 #include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 
 namespace chicane::solver {
 
 /// OcpSolver for problems with something that must hold beside dynamics and bounds (hard_constraints.hpp):
-/// the primal-dual method of detail/hard_rows.hpp, then full steps from its multipliers
-/// (docs/solver_hard.md). Where that gets nowhere, the misses alone are minimised: what cannot hold is
-/// reported. Else the method begins again from the point that keeps everything, and then an augmented
-/// Lagrangian: each round is one solve and an update of multipliers, weights and penalties.
+/// the primal-dual method of detail/hard_rows.hpp, then full steps from its multipliers (docs/solver.md).
+/// Where that gets nowhere, restoration (detail/hard_restoration.hpp) proves that no point nearby holds, or
+/// finds one, from where the method begins again. Else rounds of an augmented Lagrangian: each is one solve
+/// and an update of multipliers, weights and prices.
 template <HardProblem P, int Capacity, class Arch>
 class HardSolver {
  public:
   using State = std::array<double, P::kNx>;
   using Trajectory = solver::Trajectory<P::kNx, P::kNu, Capacity>;
-  using Multipliers = HardMultipliers<P, Capacity>;
+  using Prices = HardPrices<P, Capacity>;
 
   explicit HardSolver(const SolverOptions& options = {}) noexcept : options_{options}, inner_{options} {}
 
@@ -41,15 +41,15 @@ class HardSolver {
   /// with kBudgetSpent; kInfeasible: the misses have a local minimum above zero here.
   HardReport solve(const P& problem, const State& x0, Trajectory& trajectory,
                    Deadline deadline = Deadline::never()) noexcept {
-    multipliers_.is_known = false;
+    prices_.is_known = false;
     return run(problem, x0, trajectory, deadline);
   }
   /// The same from multipliers and weights of an earlier solve, if they are known; then those of this one.
-  HardReport solve(const P& problem, const State& x0, Trajectory& trajectory, Multipliers& multipliers,
+  HardReport solve(const P& problem, const State& x0, Trajectory& trajectory, Prices& prices,
                    Deadline deadline = Deadline::never()) noexcept {
-    multipliers_ = multipliers;
+    prices_ = prices;
     const HardReport report = run(problem, x0, trajectory, deadline);
-    multipliers = multipliers_;
+    prices = prices_;
     return report;
   }
 
@@ -65,13 +65,13 @@ class HardSolver {
 
   /// After a solve: multipliers, d(cost)/d(right-hand side).
   [[nodiscard]] double equality_multiplier(int k, int n) const noexcept {
-    return multipliers_.equality[static_cast<std::size_t>(n)].at(k);
+    return prices_.equality[static_cast<std::size_t>(n)].at(k);
   }
   [[nodiscard]] double terminal_equality_multiplier(int n) const noexcept {
-    return multipliers_.terminal[static_cast<std::size_t>(n)];
+    return prices_.terminal[static_cast<std::size_t>(n)];
   }
   [[nodiscard]] double terminal_constraint_multiplier(int n) const noexcept {
-    return multipliers_.terminal[static_cast<std::size_t>(kNeh + n)];
+    return prices_.terminal[static_cast<std::size_t>(kNeh + n)];
   }
   /// As of problems without.
   [[nodiscard]] double adjoint(int k, int i) const noexcept { return inner_.adjoint(k, i); }
@@ -92,15 +92,15 @@ class HardSolver {
   static constexpr int kTrialSpent = -1;
   static constexpr double kFirstShare = 10.0;  ///< of the guess's cost in its misses
   static constexpr double kLeastWeight = 1e-2, kMostFirstWeight = 10.0, kMostWeight = 1e9;
-  static constexpr double kHeavier = 10.0, kHeavy = 1e3;  ///< times these, where the first ones lead nowhere
+  static constexpr std::array kHeavier{10.0, 1e3};  ///< times these, where the first ones lead nowhere
 
   /// What a trajectory misses, by rows: the largest of each.
   struct Misses {
     std::array<double, kNh> equality{};
     std::array<double, kEnd> terminal{};
     std::array<double, kNc> constraint{};
-    double cost = 0.0;       ///< the problem's own, with its first penalties
-    double violation = 0.0;  ///< of (55), misses in multiples of least_unit_
+    double cost = 0.0;   ///< the problem's own, with its first prices
+    double total = 0.0;  ///< of all rows of all stages
 
     [[nodiscard]] double worst() const noexcept {
       double worst = 0.0;
@@ -118,17 +118,14 @@ class HardSolver {
                  const Deadline& deadline) noexcept {
     HardReport report;
     guess_ = trajectory;
-    kept_miss_ = std::numeric_limits<double>::infinity();
     trial_ = 0;
-    is_certified_ = false;
+    is_certified_ = is_possible_ = false;
     start(problem, x0, trajectory);
     int left = options_.max_iterations;
-    bool has_begun = multipliers_.is_known;
-    bool may_start_again = !multipliers_.is_known;
+    bool has_begun = prices_.is_known;
+    std::size_t restarts = has_begun ? kHeavier.size() : 0;
     RoundProgress progress;
-    bool is_replaced = false;  // by a point that `report` is not of
     Misses before;
-    const auto is_spent = [&] { return left <= 0 || deadline.spent() || report.rounds >= kMostRounds; };
     for (;;) {
       const bool converged = has_begun ? round(x0, trajectory, deadline, left, report)
                                        : first_round(x0, trajectory, deadline, left, report);
@@ -137,41 +134,26 @@ class HardSolver {
       if (report.status == SolveStatus::kNotFinite) return report;
       update(now, progress.is_first() ? nullptr : &before, trajectory.horizon);
       if (converged && now.worst() <= options_.tolerance) return finish(report.status, now, report);
-      if (is_spent()) break;
+      if (left <= 0 || deadline.spent() || report.rounds >= kMostRounds) break;
       progress.note(now.worst(), converged, last_iterations_);
       before = now;
-      if (trial_ == kTrialSpent) {
-        trial_ = 0;
-        if (progress.is_good()) continue;
-        begin_again(trajectory, kHeavier);
+      const bool is_trial_over = trial_ == kTrialSpent;
+      if (is_trial_over) trial_ = 0;
+      const bool is_lost = progress.is_lost(now.worst(), first_.worst(), last_iterations_);
+      if (is_trial_over ? progress.is_good() : converged && !is_lost) continue;
+      if (restarts < kHeavier.size()) {  // misses count from the start
+        begin_again(trajectory, kHeavier[restarts++]);
+        trial_ = is_certified_ ? most_of_a_trial() : 0;
         progress = {};
         continue;
       }
-      if (converged && last_iterations_ == 0 && ask_for_more()) progress.excuse();
-      if (converged && !progress.is_lost(now.worst(), first_.worst(), last_iterations_)) continue;
-      if (may_start_again) {  // by another way: misses count from the start
-        may_start_again = false;
-        kept_ = trajectory;
-        kept_miss_ = now.worst();
-        begin_again(trajectory, kHeavy);
-        progress = {};
-      } else if (is_replaced = take_better(now.worst(), trajectory); !converged) {
+      if (!converged || is_certified_ || is_infeasible(problem, x0, trajectory, deadline, left, report))
         break;
-      } else if (is_certified_ ||
-                 (is_replaced = is_infeasible(problem, x0, trajectory, deadline, left, report))) {
-        break;
-      } else if (is_spent()) {
-        break;
-      }
-      is_replaced = false;
-      before = measure(problem, trajectory, nullptr);
-      if (!progress.is_first()) progress.begin_at(before.worst());
+      progress = {};
     }
-    is_replaced |= take_better(measure(problem, trajectory, nullptr).worst(), trajectory);
-    if (is_replaced) assess(x0, trajectory, true, report);
     Misses now = measure(problem, trajectory, &report);
     for (std::size_t n = kNeh; n < kEnd; ++n) count_distance(now, n);
-    const bool is_close = !is_replaced && usable(report.status) && now.worst() <= options_.tolerance;
+    const bool is_close = usable(report.status) && now.worst() <= options_.tolerance;
     if (is_close) return finish(SolveStatus::kBudgetSpent, now, report);
     if (is_certified_) return tell_infeasible(problem, x0, trajectory, report);
     if (take_guess(problem, x0, trajectory, report)) now = measure(problem, trajectory, &report);
@@ -185,8 +167,6 @@ class HardSolver {
   }
   bool first_round(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
                    HardReport& report) noexcept;
-  bool track(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
-             HardReport& report) noexcept;
   bool follow(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
               HardReport& report) noexcept;
   /// From the guess, with the first weights times `factor`.
@@ -198,13 +178,13 @@ class HardSolver {
   bool take_guess(const P& problem, const State& x0, Trajectory& trajectory, HardReport& report) noexcept {
     if (!roll_out(problem, x0, guess_)) return false;
     const Misses guess = measure(problem, guess_, nullptr);
-    kept_ = trajectory;
-    if (roll_out(problem, x0, kept_)) {
-      const Misses own = measure(problem, kept_, nullptr);
+    copy_ = trajectory;
+    if (roll_out(problem, x0, copy_)) {
+      const Misses own = measure(problem, copy_, nullptr);
       if (!(guess.worst() < own.worst() && guess.cost < own.cost)) return false;
     }
-    kept_ = trajectory = guess_;
-    assess(x0, kept_, false, report);
+    copy_ = trajectory = guess_;
+    assess(x0, copy_, false, report);
     return true;
   }
   /// `report` becomes one of `trajectory`, simulated or with its states; its status and its counts stay.
@@ -216,14 +196,6 @@ class HardSolver {
     report.status = kept.status;
     report.iterations = kept.iterations;
     report.sweeps = kept.sweeps;
-  }
-
-  /// The point that the first weights led to, if it misses less than `miss`: true then.
-  bool take_better(double miss, Trajectory& trajectory) noexcept {
-    if (!(kept_miss_ < miss)) return false;
-    trajectory = kept_;
-    kept_miss_ = std::numeric_limits<double>::infinity();
-    return !(can_go_on_ = false);
   }
 
   /// One solve. True when it converged.
@@ -255,48 +227,34 @@ class HardSolver {
   }
   [[nodiscard]] bool exceeds_a_cap(const SolveReport& report) const noexcept {
     const int c = report.worst_constraint;
-    return c >= 0 && report.violation > penalty_of(problem_, static_cast<std::size_t>(c)).cap;
-  }
-  /// The next round converges further: where bounds are close to each other, or slopes flat, a step that the
-  /// tolerance takes for none is what a miss needs. False when that is at an end.
-  bool ask_for_more() noexcept {
-    constexpr double kFiner = 1e-2, kLeast = 1e-13;
-    if (tolerance_ <= kLeast) return false;
-    ask_for(std::max(kLeast, kFiner * tolerance_));
-    return true;
+    return c >= 0 && report.violation > price_of(problem_, static_cast<std::size_t>(c)).cap;
   }
   /// Of rounds: multipliers are as good as the round that they come from, so that loose ones lead astray.
   [[nodiscard]] double round_tolerance() const noexcept { return std::min(options_.tolerance, 1e-6); }
-  void ask_for(double tolerance) noexcept {
-    if (tolerance != tolerance_) can_go_on_ = false;
-    tolerance_ = tolerance;
-    inner_.ask_for(tolerance);
-  }
 
   // ---- weights and multipliers
   void start(const P& problem, const State& x0, Trajectory& trajectory) noexcept {
     problem_.problem = &problem;
     problem_.cost_root = 1.0;
-    problem_.square_penalty = 0.0;
     can_go_on_ = false;
-    ask_for(round_tolerance());
+    inner_.ask_for(round_tolerance());
     if (!options_.start_from_states) roll_out(problem, x0, trajectory);
     first_ = measure(problem, trajectory, nullptr);
     unit_ = std::isfinite(first_.cost) ? std::max(1.0, first_.cost) : 1.0;
-    if (!multipliers_.is_known) return start_with_weights(trajectory.horizon, 1.0);
+    if (!prices_.is_known) return start_with_weights(trajectory.horizon, 1.0);
     inner_.start_from_states(options_.start_from_states);
-    put_multipliers(trajectory.horizon);
+    put_prices(trajectory.horizon);
   }
   /// No multipliers, and the first weights of the guess, times `factor` (eq. 58).
   void start_with_weights(int horizon, double factor) noexcept {
     can_go_on_ = false;
-    ask_for(round_tolerance());
+    inner_.ask_for(round_tolerance());
     inner_.start_from_states(options_.start_from_states);
     problem_.cost_root = 1.0;
-    problem_.penalty_factor.fill(1.0);
+    problem_.price_factor.fill(1.0);
     for (std::size_t n = 0; n < kNh; ++n) {
       problem_.equality_shift[n].values.fill(0.0);
-      problem_.equality_weight[n].set(factor * first_weight(first_.equality[n] * horizon));
+      problem_.set_weight(n, factor * first_weight(first_.equality[n] * horizon));
     }
     for (std::size_t n = 0; n < kEnd; ++n) {
       problem_.terminal_shift[n] = 0.0;
@@ -308,9 +266,8 @@ class HardSolver {
     return std::isfinite(weight) ? std::min(std::max(weight, kLeastWeight), kMostFirstWeight) : 1.0;
   }
 
-  /// y ← y + ρ h; a weight or penalty whose row has not come down enough rises (eq. 57). `mu`: the barrier,
-  /// which leaves soft constraints a violation of mu over their penalty.
-  void update(Misses& now, const Misses* before, int horizon, double mu = 0.0) noexcept {
+  /// y ← y + ρ h; a weight or price whose row has not come down enough rises (eq. 57).
+  void update(Misses& now, const Misses* before, int horizon) noexcept {
     constexpr double kEnough = 0.1, kRise = 10.0;
     const auto rises = [&](double miss, double last) {
       return before != nullptr && miss > options_.tolerance && miss > kEnough * last;
@@ -323,6 +280,7 @@ class HardSolver {
     for (std::size_t n = 0; n < kNh; ++n) {
       const double share =
           raise(problem_.equality_weight[n], now.equality[n], before != nullptr ? before->equality[n] : 0.0);
+      problem_.set_weight(n, problem_.equality_weight[n].rho);
       for (int k = 0; k < horizon; ++k) {
         const auto stage = static_cast<std::size_t>(k);
         problem_.equality_shift[n][stage] = share * (problem_.equality_shift[n][stage] + equality_[n][stage]);
@@ -337,50 +295,48 @@ class HardSolver {
           raise(problem_.terminal_weight[n], now.terminal[n], before != nullptr ? before->terminal[n] : 0.0);
     }
     for (std::size_t c = 0; c < kNc; ++c) {
-      const double penalty = std::max(1e-12, penalty_of(problem_, c).linear);
-      if (now.constraint[c] <= std::max(options_.tolerance, 10.0 * mu / penalty)) continue;
-      problem_.penalty_factor[c] *= kRise;
+      if (now.constraint[c] <= options_.tolerance) continue;
+      problem_.price_factor[c] *= kRise;
       can_go_on_ = false;
     }
-    keep_multipliers(horizon);
+    keep_prices(horizon);
   }
   /// An inequality whose multiplier is not zero has to hold with equality: its distance counts as a miss.
   void count_distance(Misses& misses, std::size_t n) const noexcept {
     if (problem_.terminal_shift[n] > 0.0) misses.terminal[n] = std::fabs(terminal_[n]);
   }
-  void keep_multipliers(int horizon) noexcept {
-    multipliers_.is_known = true;
+  void keep_prices(int horizon) noexcept {
+    prices_.is_known = true;
     for (std::size_t n = 0; n < kNh; ++n) {
-      multipliers_.equality_weight[n] = problem_.equality_weight[n].rho;
+      prices_.equality_weight[n] = problem_.equality_weight[n].rho;
       for (std::size_t k = 0; k < static_cast<std::size_t>(horizon); ++k)
-        multipliers_.equality[n][k] = problem_.equality_weight[n].rho * problem_.equality_shift[n][k];
+        prices_.equality[n][k] = problem_.equality_weight[n].rho * problem_.equality_shift[n][k];
     }
     for (std::size_t n = 0; n < kEnd; ++n) {
-      multipliers_.terminal_weight[n] = problem_.terminal_weight[n].rho;
-      multipliers_.terminal[n] = problem_.terminal_weight[n].rho * problem_.terminal_shift[n];
+      prices_.terminal_weight[n] = problem_.terminal_weight[n].rho;
+      prices_.terminal[n] = problem_.terminal_weight[n].rho * problem_.terminal_shift[n];
     }
-    multipliers_.penalty_factor = problem_.penalty_factor;
+    prices_.price_factor = problem_.price_factor;
   }
-  void put_multipliers(int horizon) noexcept {
+  void put_prices(int horizon) noexcept {
     for (std::size_t n = 0; n < kNh; ++n) {
-      problem_.equality_weight[n].set(multipliers_.equality_weight[n]);
+      problem_.set_weight(n, prices_.equality_weight[n]);
       for (std::size_t k = 0; k < static_cast<std::size_t>(horizon); ++k)
-        problem_.equality_shift[n][k] = multipliers_.equality[n][k] / multipliers_.equality_weight[n];
+        problem_.equality_shift[n][k] = prices_.equality[n][k] / prices_.equality_weight[n];
     }
     for (std::size_t n = 0; n < kEnd; ++n) {
-      problem_.terminal_weight[n].set(multipliers_.terminal_weight[n]);
-      problem_.terminal_shift[n] = multipliers_.terminal[n] / multipliers_.terminal_weight[n];
+      problem_.terminal_weight[n].set(prices_.terminal_weight[n]);
+      problem_.terminal_shift[n] = prices_.terminal[n] / prices_.terminal_weight[n];
     }
-    problem_.penalty_factor = multipliers_.penalty_factor;
+    problem_.price_factor = prices_.price_factor;
   }
 
-  // ---- what cannot hold (detail/hard_infeasible.hpp)
+  // ---- what cannot hold (detail/hard_restoration.hpp)
   bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
                      int& left, HardReport& report) noexcept;
-  bool leads_downhill(const P& problem, const State& x0, Trajectory& trajectory, HardReport& report) noexcept;
   HardReport tell_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                              HardReport report) noexcept;
-  double finest_tolerance(const P& problem, int horizon) const noexcept;
+  bool is_proven(const P& problem, const Trajectory& least, double violation) const noexcept;
   void weigh_misses(double share, double unit) noexcept;
 
   // ---- values
@@ -393,8 +349,7 @@ class HardSolver {
     Misses misses;
     double worst = 0.0;
     const auto note = [&](double& miss, double value, Kind kind, int stage, std::size_t row) {
-      const double share = value / least_unit_;
-      misses.violation += kind == Kind::kConstraint ? share : 0.5 * share * share;
+      misses.total += value;
       miss = value > miss ? value : miss;
       if (report == nullptr || !(value > worst)) return;
       worst = value;
@@ -427,8 +382,8 @@ class HardSolver {
           if (is_hard(problem, n)) {
             note(misses.constraint[n], beyond, Kind::kConstraint, k, n);
           } else {
-            const SoftPenalty penalty = penalty_of(problem, n);
-            misses.cost += beyond * (penalty.linear + 0.5 * penalty.quadratic * beyond);
+            const SoftPenalty price = price_of(problem, n);
+            misses.cost += beyond * (price.linear + 0.5 * price.quadratic * beyond);
           }
         }
       }
@@ -466,27 +421,26 @@ class HardSolver {
   SolverOptions options_;
   OcpSolver<Problem, Capacity, Arch> inner_;
   Problem problem_;
-  Multipliers multipliers_;
+  Prices prices_;
   double unit_ = 1.0;  ///< of costs
   Misses first_;       ///< of the guess
   IterationLog* log_ = nullptr;
   Trajectory guess_;
-  Trajectory kept_;          ///< of the first weights, where others were tried as well
-  double kept_miss_ = 0.0;   ///< largest of its misses
-  Trajectory downhill_;      ///< a step from there that is tried
+  Trajectory copy_;          ///< for reports, which may change it
   Trajectory least_;         ///< where misses have a local minimum above zero, with is_certified_
-  double tolerance_ = 0.0;   ///< of the next round
   int last_iterations_ = 0;  ///< of the last round
-  double least_unit_ = 1.0;  ///< what misses are multiples of there
+  Prices least_prices_;      ///< there, of the violation alone
+  double least_unit_ = 1.0;  ///< unit of the misses there
   bool is_certified_ = false;
-  int trial_ = 0;           ///< iterations that are left for the first weights, kTrialSpent; 0: all of them
-  bool can_go_on_ = false;  ///< the next round differs little from the last one
+  bool is_possible_ = false;  ///< a point without misses has been found
+  int trial_ = 0;             ///< iterations that are left for the first weights, kTrialSpent; 0: all of them
+  bool can_go_on_ = false;    ///< the next round differs little from the last one
   std::array<std::array<double, Capacity>, kNh> equality_{};  ///< values at the last measure()
   std::array<double, kEnd> terminal_{};
 };
 
-/// A class of its own does the work: compilers differ in how they distinguish members of a constrained
-/// specialisation from members of the class itself.
+/// A class of its own does the work: compilers differ in how members of a constrained specialisation are told
+/// from those of the class itself.
 template <HardProblem P, int Capacity, class Arch>
 class OcpSolver<P, Capacity, Arch> : public HardSolver<P, Capacity, Arch> {
  public:
@@ -495,5 +449,4 @@ class OcpSolver<P, Capacity, Arch> : public HardSolver<P, Capacity, Arch> {
 
 }  // namespace chicane::solver
 
-#include "chicane/solver/detail/hard_first_round.hpp"
-#include "chicane/solver/detail/hard_infeasible.hpp"
+#include "chicane/solver/detail/hard_restoration.hpp"

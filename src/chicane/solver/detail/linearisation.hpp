@@ -23,7 +23,7 @@
 namespace chicane::solver {
 
 /// Linearises an iterate: values and derivatives of every stage, exact adjoint, optimality measures, and the
-/// stages of the quadratic program (docs/solver.md, eq. 4–13; docs/solver_constraints.md, eq. 22). From the
+/// stages of the quadratic program (docs/solver.md, eq. 4–13, 22). From the
 /// horizon's end, eight stages at a time: evaluate them in lanes, run the adjoint through them, add up costs.
 template <OcpProblem P, std::size_t Capacity, class Arch>
 class Linearisation {
@@ -136,7 +136,10 @@ class Linearisation {
         add_end_row(r, value, weight, lq);
       }
     });
-    std::copy(lq.terminal[kNx], lq.terminal[kNx] + kNx, lambda);
+    for (std::size_t i = 0; i < kNx; ++i) {
+      lambda[i] = lq.terminal[kNx][i];
+      if constexpr (kHasHardRows<P>) lambda[i] -= problem.is_primal_dual ? hard.excess(problem, i) : 0.0;
+    }
     return cost;
   }
 
@@ -166,14 +169,11 @@ class Linearisation {
     });
   }
   /// What the curvature of residual n counts by: its value, or a multiplier.
-  static V curvature_weight([[maybe_unused]] const P& problem, [[maybe_unused]] std::size_t n,
-                            [[maybe_unused]] std::size_t k0, const V& value) noexcept {
+  V curvature_weight([[maybe_unused]] const P& problem, [[maybe_unused]] std::size_t n,
+                     [[maybe_unused]] std::size_t k0, const V& value) const noexcept {
     if constexpr (kHasHardRows<P>) {
-      if (n >= own_residuals<P>() && problem.is_primal_dual) {
-        const std::size_t row = n - own_residuals<P>();
-        return problem.equality_weight[row].root *
-               problem.equality_shift[row].at(StageLanes<V>{static_cast<int>(k0)});
-      }
+      if (n >= own_residuals<P>() && problem.is_primal_dual)
+        return hard.stage_weight(problem, n - own_residuals<P>(), k0);
     }
     return value;
   }

@@ -8,7 +8,6 @@
 
 #include "chicane/base/inlining.hpp"
 #include "chicane/base/pack.hpp"
-#include "chicane/solver/detail/input_block.hpp"
 #include "chicane/solver/detail/pattern.hpp"
 #include "chicane/solver/detail/small_qp.hpp"
 #include "chicane/solver/detail/stage_algebra.hpp"

@@ -27,9 +27,27 @@ bool OcpSolver<P, Capacity, Arch>::begin_filter(const P& problem, const Trajecto
     fill_inputs(0);
     hold_states();
   }
+  if (!is_again_) break_symmetry();
   filter_.start(problem, final_barrier(problem), options_.second_order, is_again_, now_, lq_, barrier_, t_,
                 report);
   return true;
+}
+
+/// Moves states and inputs by at most 1e-8 of their size, each by another amount, the same in each solve:
+/// where a start is symmetric, as with an obstacle dead ahead, steps would never choose a side.
+template <OcpProblem P, int Capacity, class Arch>
+void OcpSolver<P, Capacity, Arch>::break_symmetry() noexcept {
+  constexpr double kMove = 1e-8, kGolden = 0.6180339887498949;
+  double share = 0.0;  // equidistributed in [0, 1)
+  const auto move = [&](double& value) {
+    share += kGolden;
+    share -= share >= 1.0 ? 1.0 : 0.0;
+    value += kMove * (share - 0.5) * (1.0 + std::fabs(value));
+  };
+  for (std::size_t k = 0; k < t_.horizon; ++k) {
+    for (auto& row : t_.u) move(row[k]);
+    for (auto& row : t_.x) move(row[k + 1]);
+  }
 }
 
 /// One iteration of it. Near the solution its working set goes to full steps, which converge faster. False at
@@ -57,61 +75,36 @@ bool OcpSolver<P, Capacity, Arch>::filter_iteration(const P& problem, const Dead
 }
 
 template <OcpProblem P, int Capacity, class Arch>
-bool OcpSolver<P, Capacity, Arch>::follow_barrier(const P& problem, P* rows, const State& x0,
-                                                  Trajectory& trajectory, const Deadline& deadline, int most,
+bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, Trajectory& trajectory,
+                                                  const Deadline& deadline, int most,
                                                   SolveReport& report) noexcept {
   using Outcome = typename Filter::Outcome;
-  const int patience = rows != nullptr ? 6 : most;  // short steps in succession
-  filter_.take_rows(rows);
+  constexpr int kPatience = 6;  // short steps in succession
+  filter_.take_rows(&problem);
   SolveReport unused;
   bool is_solved = false;
   if (start(problem, x0, trajectory) && begin_filter(problem, trajectory, unused)) {
     for (; report.iterations < most && !is_solved; ++report.iterations) {
       const Outcome outcome = filter_.iterate(problem, now_, lq_, barrier_, t_, deadline, report);
       record_filter_iteration(report);
-      if (outcome == Outcome::kGoing && filter_.short_steps() < patience) continue;
+      if (outcome == Outcome::kGoing && filter_.short_steps() < kPatience) continue;
       is_solved = outcome == Outcome::kSolved;
       break;
     }
   }
   filter_.take_rows(nullptr);
   is_filtering_ = false;
-  if constexpr (kHasHardRows<P>) {
-    if (rows != nullptr) now_.hard.end(*rows);
+  if (now_.hard.is_elastic()) {  // slopes of the violation alone, by an exact adjoint
+    is_solved = is_solved && !bring_inside();
+    problem.cost_root = 0.0;
+    now_.template linearise<1>(problem, t_, false, 1.0, barrier_, lq_.lq, unused);
   }
+  now_.hard.end(problem, t_.horizon);
   if (!is_solved) return false;
   t_.write(trajectory);
   filter_.hand_over(now_, lq_);
   barrier_.set_mu(std::max(barrier_.mu(), final_barrier(problem)));
   return true;
-}
-
-template <OcpProblem P, int Capacity, class Arch>
-bool OcpSolver<P, Capacity, Arch>::begin_path(const P& problem, const State& x0,
-                                              const Trajectory& trajectory) noexcept {
-  SolveReport unused;
-  if (!start(problem, x0, trajectory) || !begin_filter(problem, trajectory, unused)) return false;
-  filter_.stop_at_barriers();
-  return true;
-}
-template <OcpProblem P, int Capacity, class Arch>
-bool OcpSolver<P, Capacity, Arch>::follow_path(const P& problem, Trajectory& trajectory,
-                                               const Deadline& deadline, int most,
-                                               SolveReport& report) noexcept {
-  using Outcome = typename Filter::Outcome;
-  for (; report.iterations < most; ++report.iterations) {
-    const Outcome outcome = filter_.iterate(problem, now_, lq_, barrier_, t_, deadline, report);
-    record_filter_iteration(report);
-    if (outcome == Outcome::kGoing) continue;
-    if (outcome == Outcome::kSolved) t_.write(trajectory);
-    return outcome == Outcome::kSolved;
-  }
-  return false;
-}
-template <OcpProblem P, int Capacity, class Arch>
-void OcpSolver<P, Capacity, Arch>::end_path(const P& problem) noexcept {
-  filter_.hand_over(now_, lq_);
-  barrier_.set_mu(std::max(barrier_.mu(), final_barrier(problem)));
 }
 
 /// The second rung: a short horizon first.

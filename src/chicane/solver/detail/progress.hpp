@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -47,6 +48,26 @@ class Progress {
   int idle_ = 0;
 };
 
+/// Watches for the floor of rounding: residuals that no longer fall, steps that move nothing.
+class FloorWatch {
+ public:
+  /// Takes note of a residual. Whether rounding keeps it, `small` or less, from falling, or steps from
+  /// moving.
+  bool is_reached(double residual, double small) noexcept {
+    idle_ = residual < kFalls * least_ ? 0 : idle_ + 1;
+    least_ = std::fmin(least_, residual);
+    return (idle_ >= kMostIdle && residual <= small) || tiny_ >= kMostTiny;
+  }
+  void note_step(bool is_tiny) noexcept { tiny_ = is_tiny ? tiny_ + 1 : 0; }
+
+ private:
+  static constexpr double kFalls = 0.9;
+  static constexpr int kMostIdle = 6, kMostTiny = 2;
+  double least_ = std::numeric_limits<double>::infinity();
+  int idle_ = 0;  ///< residuals since it fell
+  int tiny_ = 0;  ///< steps in succession
+};
+
 /// Watches cost and defects of full steps: those that make both worse lead to a local optimum that nobody
 /// wants, or to none.
 class Course {
@@ -65,6 +86,36 @@ class Course {
   static constexpr double kDearer = 5.0;
   double least_cost_ = std::numeric_limits<double>::infinity();
   double its_defect_ = 0.0;
+};
+
+/// Watches what is missed from round to round of an augmented Lagrangian.
+class RoundProgress {
+ public:
+  /// No round yet: there is nothing that misses could have come down from.
+  [[nodiscard]] bool is_first() const noexcept { return first_ == kInfinity; }
+  /// Takes note of a round of `iterations` that left `miss`; one that has not `converged` is not blamed. It
+  /// should leave half of the least miss before, or nine tenths if it was short.
+  void note(double miss, bool converged, int iterations) noexcept {
+    const bool is_enough = miss <= (iterations <= kShort ? 0.9 : 0.5) * best_;
+    idle_ = is_enough ? 0 : idle_ + (converged ? 1 : 0);
+    if (is_first()) first_ = miss;
+    best_ = std::min(best_, miss);
+  }
+  /// The last rounds have come closer than the first one.
+  [[nodiscard]] bool is_good() const noexcept { return idle_ == 0 && best_ < first_; }
+  /// Three rounds in turn were not enough; short ones with a `miss` that is small beside that of the `guess`
+  /// may be eight.
+  [[nodiscard]] bool is_lost(double miss, double guess, int iterations) const noexcept {
+    return idle_ >= (miss <= kSmall * guess && iterations <= kShort ? 8 : 3);
+  }
+
+ private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  static constexpr double kSmall = 1e-2;
+  static constexpr int kShort = 10;  ///< iterations
+  double first_ = kInfinity;
+  double best_ = kInfinity;
+  int idle_ = 0;
 };
 
 }  // namespace chicane::solver

@@ -7,14 +7,51 @@
 #include "chicane/base/inlining.hpp"
 #include "chicane/solver/detail/evaluation.hpp"
 #include "chicane/solver/detail/iterate.hpp"
+#include "chicane/solver/detail/pattern.hpp"
 #include "chicane/solver/detail/problem_pattern.hpp"
-#include "chicane/solver/detail/stage_order.hpp"
 #include "chicane/solver/problem.hpp"
 
 namespace chicane::solver {
 
+/// In which order the states of a whole horizon can be simulated, one after the other instead of stage after
+/// stage. That is possible where no state needs itself but as a sum, x_i⁺ = x_i + g_i(other states, u), and
+/// no two need each other: then the first ones follow from the inputs alone, at all stages, the next ones
+/// from those, and so on. A car's speed is the sum of its accelerations, its heading that of its turns, its
+/// position that of where it was headed.
+template <class Pattern>
+struct StageOrder {
+  static constexpr std::size_t kNx = Pattern::kNx;
+
+  /// 0: depends on inputs at most; n: on states below n.
+  static constexpr std::array<std::size_t, kNx> kLevel = [] {
+    std::array<std::size_t, kNx> level{};
+    for (std::size_t pass = 0; pass <= kNx; ++pass) {
+      for (std::size_t i = 0; i < kNx; ++i) {
+        for (std::size_t j = 0; j < kNx; ++j) {
+          if (i != j && Pattern::kF[i][j] != Entry::kZero && level[i] <= level[j]) level[i] = level[j] + 1;
+        }
+      }
+    }
+    return level;
+  }();
+  static constexpr std::size_t kLevels = [] {
+    std::size_t count = 0;
+    for (const std::size_t level : kLevel) count = level >= count ? level + 1 : count;
+    return count;
+  }();
+  /// Whether x_i⁺ = x_i + …
+  static constexpr bool is_sum(std::size_t i) noexcept { return Pattern::kF[i][i] == Entry::kOne; }
+  /// Whether there is such an order: in a circle of states levels rise for ever.
+  static constexpr bool kExists = [] {
+    for (std::size_t i = 0; i < kNx; ++i) {
+      if (Pattern::kF[i][i] == Entry::kValue) return false;
+    }
+    return kLevels <= kNx;
+  }();
+};
+
 /// Simulates inputs. Where the pattern allows it one state after the other with eight stages in lanes
-/// (stage_order.hpp), else stage after stage.
+/// (StageOrder), else stage after stage.
 ///
 /// Both ways add in the same order: where x_i + … is the last thing that a function does for a state, they
 /// give the same bits. What a pattern cannot show is a branch by select() on a state that no derivative

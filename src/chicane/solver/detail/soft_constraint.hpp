@@ -9,7 +9,7 @@ namespace chicane::solver {
 
 /// One soft constraint c <= 0 inside the interior-point method: violation s >= 0 and distance t = s − c >= 0
 /// with multipliers n and z. Both slacks are eliminated in closed form, so a stage sees only a multiplier and
-/// a curvature (docs/solver_constraints.md, eq. 14–21):
+/// a curvature (docs/solver.md, eq. 14–21):
 ///
 ///     min  linear · s + ½ quadratic · s² − μ log s − μ log t   over s, t = s − c
 ///

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "chicane/base/deadline.hpp"
+#include "chicane/solver/detail/hard_solver.hpp"
+
+namespace chicane::solver {
+
+// How the solver of HardProblems begins, and what it does where the primal-dual method gets nowhere.
+
+/// The primal-dual method; where that gets nowhere, restoration, and the same from there. What is proven to
+/// have no solution nearby is the answer unless rounds from the guess find one.
+template <HardProblem P, int Capacity, class Arch>
+bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& trajectory,
+                                                const Deadline& deadline, int& left,
+                                                HardReport& report) noexcept {
+  if constexpr (has_filter_method<P>()) {
+    if (!options_.may_start_short) return round(x0, trajectory, deadline, left, report);
+    if (follow(x0, trajectory, deadline, left, report)) return round(x0, trajectory, deadline, left, report);
+    begin_again(trajectory, 1.0);
+    if (!is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report) &&
+        follow(x0, trajectory, deadline, left, report))
+      return round(x0, trajectory, deadline, left, report);
+    begin_again(trajectory, 1.0);
+    trial_ = most_of_a_trial();
+  }
+  return round(x0, trajectory, deadline, left, report);
+}
+/// The primal-dual method (eq. 50–54). True when it has got to the end of its barrier: multipliers and prices
+/// are those of its point, and full steps may go on from there.
+template <HardProblem P, int Capacity, class Arch>
+bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajectory, const Deadline& deadline,
+                                           int& left, HardReport& report) noexcept {
+  constexpr int kMostIterations = 60;
+  constexpr double kDearer = 4.0;  // than the highest multiplier: the constraint is kept
+  SolveReport seen;
+  const int most = std::max(1, std::min({left, kMostIterations, options_.max_iterations / 4}));
+  const bool is_solved = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, seen);
+  report.iterations += seen.iterations;
+  report.sweeps += seen.sweeps;
+  left -= seen.iterations;
+  if (!is_solved) return false;
+  for (std::size_t c = 0; c < kNc; ++c) {
+    if (!is_hard(*problem_.problem, c)) continue;
+    double highest = 0.0;
+    for (int k = 0; k < trajectory.horizon; ++k)
+      highest = std::max(highest, inner_.constraint_multiplier(k, static_cast<int>(c)));
+    const double price = std::max(1e-12, price_of(problem_, c).linear);
+    problem_.price_factor[c] *= std::max(1.0, kDearer * highest / price);
+  }
+  inner_.reprice(problem_);
+  keep_prices(trajectory.horizon);
+  return can_go_on_ = true;
+}
+/// Restoration: the primal-dual method with elastic rows and next to nothing of the cost (docs/solver.md, eq.
+/// 55), once more where a small share of the misses is left. True where a minimum above zero is proven:
+/// `trajectory` is there. Else weights and multipliers are those of the point that was found.
+template <HardProblem P, int Capacity, class Arch>
+bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
+                                                  const Deadline& deadline, int& left,
+                                                  HardReport& report) noexcept {
+  constexpr double kShare = 1e-8, kTolerance = 1e-8, kFirstUnit = 0.1;
+  constexpr double kMuch = 0.1;  // of the misses is left: they count in the same unit
+  if (left <= 0) return false;
+  const auto factors = problem_.price_factor;
+  for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
+  problem_.terminal_shift.fill(0.0);
+  inner_.ask_for(kTolerance);
+  Misses misses = measure(problem, trajectory, nullptr);
+  least_unit_ = std::max(kFirstUnit, misses.worst());  // states of a guess may miss nothing but the dynamics
+  bool converged = true, is_less = true;
+  while (converged && is_less && left > 0) {
+    const double cost = std::isfinite(misses.cost) ? std::max(unit_, misses.cost) : unit_;
+    weigh_misses(kShare / (cost * std::max(1.0, least_unit_)), least_unit_);
+    SolveReport seen;
+    const int most = std::max(1, std::min(left, most_of_a_trial()));
+    converged = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, seen);
+    inner_.start_from_states(true);
+    report.iterations += seen.iterations;
+    report.sweeps += seen.sweeps;
+    left -= seen.iterations;
+    misses = measure(problem, trajectory, &report);
+    const double worst = misses.worst();
+    is_possible_ = is_possible_ || (converged && worst <= options_.tolerance);
+    is_less = !is_possible_ && worst < kMuch * least_unit_;
+    if (is_less) least_unit_ = worst;
+  }
+  is_certified_ =
+      converged && !is_less && !is_possible_ && is_proven(problem, trajectory, misses.total / least_unit_);
+  least_ = trajectory;
+  problem_.violation_price = 0.0;
+  inner_.ask_for(round_tolerance());
+  keep_prices(trajectory.horizon);
+  least_prices_ = prices_;
+  if (is_certified_) return true;
+  report.status = SolveStatus::kStalled;  // it converged, but not with the whole cost
+  can_go_on_ = false;
+  problem_.cost_root = 1.0;
+  problem_.price_factor = factors;
+  return false;
+}
+/// Whether no inputs within their bounds are free of violation, by the slopes at those of the least: all
+/// slopes together, each times the distance to the bound that it points to, are next to nothing beside
+/// `violation` (docs/solver.md, eq. 55a). Infinite bounds count as kFarthest times the input away.
+template <HardProblem P, int Capacity, class Arch>
+bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const Trajectory& least,
+                                              double violation) const noexcept {
+  constexpr double kFarthest = 1e3, kNextToNothing = 1e-3;
+  double gain = 0.0;
+  for (int k = 0; k < least.horizon; ++k) {
+    const auto low = problem.input_lower(k), high = problem.input_upper(k);
+    for (std::size_t m = 0; m < low.size(); ++m) {
+      const double u = least.u[static_cast<std::size_t>(k)][m];
+      const double slope = inner_.bound_multiplier(k, static_cast<int>(m));
+      const double room = slope > 0.0 ? u - low[m] : high[m] - u;
+      gain += std::fabs(slope) * (std::isfinite(room) ? room : kFarthest * (1.0 + std::fabs(u)));
+    }
+  }
+  return gain <= kNextToNothing * violation;
+}
+/// The answer is the point of least violation, with the multipliers of the violation alone: its certificate.
+template <HardProblem P, int Capacity, class Arch>
+HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, const State& x0,
+                                                          Trajectory& trajectory,
+                                                          HardReport report) noexcept {
+  constexpr double kLight = 1e-9;  // beside their multipliers rows themselves count for nothing
+  prices_ = least_prices_;
+  prices_.equality_weight.fill(kLight);
+  prices_.terminal_weight.fill(kLight);
+  put_prices(trajectory.horizon);
+  weigh_misses(0.0, least_unit_);
+  trajectory = least_;
+  HardReport seen;
+  copy_ = least_;
+  assess(x0, copy_, true, seen);
+  prices_ = least_prices_;
+  const Misses now = measure(problem, trajectory, &report);
+  problem_.violation_price = 0.0;
+  return finish(SolveStatus::kInfeasible, now, report);
+}
+/// The cost by `share`; misses cost their multiples of `unit`.
+template <HardProblem P, int Capacity, class Arch>
+void HardSolver<P, Capacity, Arch>::weigh_misses(double share, double unit) noexcept {
+  problem_.cost_root = std::sqrt(share);
+  problem_.price_factor.fill(share);
+  problem_.violation_price = 1.0 / unit;
+}
+
+}  // namespace chicane::solver
