@@ -40,7 +40,7 @@ namespace chicane::solver {
 ///
 /// One plain object holding its workspace; no allocation, lock, exception, and no clock but the deadline's.
 /// Nothing is remembered from solve to solve: the trajectory is the warm start, so a failure cannot poison
-/// the next call. Problem and trajectory are used during the call only; prices and multipliers are those of
+/// the next call. Problem and trajectory are used during the call only; multipliers are valid until
 /// the last solve. One thread at a time; objects share nothing, so different threads may each use their own.
 /// `Arch`: the instruction set that its translation unit is compiled for.
 template <OcpProblem P, int Capacity, class Arch = arch::Native>
@@ -71,8 +71,8 @@ class OcpSolver {
     return run(problem, x0, trajectory, deadline, report);
   }
   /// The same after a small change of the problem's functions, from where the last solve ended: iterate,
-  /// slacks, multipliers and working set are kept. Pre: that was usable; horizon, bounds and prices are the
-  /// same; `trajectory` is its answer.
+  /// slacks, multipliers and working set are kept. Pre: that was usable; horizon, bounds and penalties are
+  /// the same; `trajectory` is its answer.
   SolveReport solve_again(const P& problem, const State& x0, Trajectory& trajectory,
                           Deadline deadline = Deadline::never()) noexcept {
     begin();
@@ -102,10 +102,10 @@ class OcpSolver {
   /// (detail/hard_rows.hpp), and `problem` gets their multipliers.
   bool follow_barrier(P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline, int most,
                       SolveReport& report) noexcept;
-  /// Slacks of hard constraints to prices that have changed.
-  void reprice(const P& problem) noexcept { barrier_.reprice(problem, t_.horizon); }
+  /// Slacks of hard constraints to penalties that have changed.
+  void update_penalties(const P& problem) noexcept { barrier_.update_penalties(problem, t_.horizon); }
 
-  /// After a solve: the price of state i of x_{k+1}, i.e. d(cost)/dx of what follows; k < horizon.
+  /// After a solve: the multiplier of state i of x_{k+1}, i.e. d(cost)/dx of what follows; k < horizon.
   [[nodiscard]] double adjoint(int k, int i) const noexcept { return now_.adjoint[i][k]; }
   /// The multiplier of the bounds of input m of stage k: d(cost)/d(bound), 0 between them.
   [[nodiscard]] double bound_multiplier(int k, int m) const noexcept { return now_.slope[m][k]; }

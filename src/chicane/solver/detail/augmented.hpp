@@ -86,9 +86,9 @@ class Augmented {
   std::array<StageData<Capacity>, kEqualities> equality_shift{};
   std::array<Weight, kEndEqualities + kEndConstraints> terminal_weight{};
   std::array<double, kEndEqualities + kEndConstraints> terminal_shift{};
-  std::array<double, kNc> price_factor{};  ///< of soft constraints, hard ones among them
-  double violation_price = 0.0;            ///< of whatever must hold, if any: of its violation alone
-  double hard_price = 0.0;      ///< of hard ones in their place, if any: so high that none is violated
+  std::array<double, kNc> penalty_factor{};  ///< of soft constraints, hard ones among them
+  double violation_penalty = 0.0;            ///< of whatever must hold, if any: of its violation alone
+  double hard_penalty = 0.0;    ///< of hard ones in their place, if any: so high that none is violated
   bool is_primal_dual = false;  ///< rows are those of the primal-dual method (detail/hard_rows.hpp)
 
   void set_weight(std::size_t n, double weight) noexcept {
@@ -130,22 +130,22 @@ class Augmented {
 
   [[nodiscard]] bool keeps(std::size_t c) const noexcept {
     if constexpr (detail::SaysWhatIsHard<P>)
-      return violation_price == 0.0 && problem->is_hard(static_cast<int>(c));
+      return violation_penalty == 0.0 && problem->is_hard(static_cast<int>(c));
     return false;
   }
   [[nodiscard]] std::size_t constraint_count() const noexcept { return solver::constraint_count(*problem); }
   [[nodiscard]] SoftPenalty soft_penalty(int c) const requires(kNc > 0) {
-    SoftPenalty price = problem->soft_penalty(c);
-    price.linear *= price_factor[static_cast<std::size_t>(c)];
-    price.quadratic *= price_factor[static_cast<std::size_t>(c)];
+    SoftPenalty penalty = problem->soft_penalty(c);
+    penalty.linear *= penalty_factor[static_cast<std::size_t>(c)];
+    penalty.quadratic *= penalty_factor[static_cast<std::size_t>(c)];
     if constexpr (detail::SaysWhatIsHard<P>) {
       if (problem->is_hard(c)) {
-        price.cap = 1e30;
-        if (is_primal_dual) price = {hard_price, 0.0, SoftConstraint<>::kMustHold};
-        if (violation_price > 0.0) price = {violation_price, 0.0, 1e30};
+        penalty.cap = 1e30;
+        if (is_primal_dual) penalty = {hard_penalty, 0.0, SoftConstraint<>::kMustHold};
+        if (violation_penalty > 0.0) penalty = {violation_penalty, 0.0, 1e30};
       }
     }
-    return price;
+    return penalty;
   }
   [[nodiscard]] auto input_lower(int k) const { return problem->input_lower(k); }
   [[nodiscard]] auto input_upper(int k) const { return problem->input_upper(k); }

@@ -25,9 +25,9 @@
 namespace chicane::solver {
 
 /// A primal-dual interior point method with a filter line search over multiple shooting
-/// (docs/solver.md, eq. 30–37; after Wächter, Biegler 2006). States, inputs, slacks and prices of the
-/// dynamics are all unknowns; Hessians are exact, and shifted until the quadratic program is convex. Slower
-/// than full steps with a working set, and works from where those fail.
+/// (docs/solver.md, eq. 30–37; after Wächter, Biegler 2006). States, inputs, slacks and dynamics_multipliers
+/// of the dynamics are all unknowns; Hessians are exact, and shifted until the quadratic program is convex.
+/// Slower than full steps with a working set, and works from where those fail.
 template <OcpProblem P, std::size_t Capacity, class Arch>
 class FilterMethod {
  public:
@@ -58,7 +58,7 @@ class FilterMethod {
       for (std::size_t k = 0; k < t.horizon; ++k)
         t.u[m][k] = Bounds::inside(t.u[m][k], now.lower[m][k], now.upper[m][k]);
     }
-    has_prices_ = false;
+    has_multipliers_ = false;
     is_exact_ = is_exact;
     is_fresh_ = is_new_barrier_ = are_sides_new_ = true;
     is_here_known_ = false;
@@ -66,7 +66,7 @@ class FilterMethod {
     slacks.set_mu(kFirstBarrier);
     if constexpr (kHasHardRows<P>) {
       if (rows_ != nullptr) {
-        rows_->hard_price = kHardPrice;
+        rows_->hard_penalty = kHardPenalty;
         now.hard.begin(*rows_);
       }
     }
@@ -84,8 +84,8 @@ class FilterMethod {
     is_fresh_ = true;
     if constexpr (kHasHardRows<P>) {
       if (rows_ != nullptr) {
-        rows_->hard_price = kHardPrice * unit_;
-        now.hard.weigh(kRowWeight * unit_, rows_->violation_price);
+        rows_->hard_penalty = kHardPenalty * unit_;
+        now.hard.weigh(kRowWeight * unit_, rows_->violation_penalty);
       }
     }
     last_shift_ = forced_shift_ = 0.0;
@@ -102,7 +102,7 @@ class FilterMethod {
   void hand_over(const Linearised& now, Lq& lq) noexcept {
     bounds_.choose_working_set(lq);
     for (std::size_t i = 0; i < kNx; ++i)
-      std::copy(now.adjoint[i], now.adjoint[i] + candidate_.horizon, prices_[i]);
+      std::copy(now.adjoint[i], now.adjoint[i] + candidate_.horizon, multipliers_[i]);
   }
   /// Goes on with a lower barrier from where it left off. False when there is none.
   bool resume(Linearised& now, Slacks& slacks, Point& t) noexcept {
@@ -111,7 +111,8 @@ class FilterMethod {
     final_mu_ = std::max(kLeast * unit_, 1e-2 * final_mu_);
     floor_ = {};
     t = candidate_;
-    for (std::size_t i = 0; i < kNx; ++i) std::copy(prices_[i], prices_[i] + t.horizon, now.adjoint[i]);
+    for (std::size_t i = 0; i < kNx; ++i)
+      std::copy(multipliers_[i], multipliers_[i] + t.horizon, now.adjoint[i]);
     slacks.set_mu(mu_);
     is_fresh_ = is_new_barrier_ = true;
     is_here_known_ = false;
@@ -168,8 +169,8 @@ class FilterMethod {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr double kShort = 0.1;
   static constexpr int kShortInSuccession = 3, kMostLeaps = 4;
-  static constexpr double kRowWeight = 1e6;  ///< ρ of rows that must hold, and the price of hard limits, in
-  static constexpr double kHardPrice = 1e6;  ///< the unit of costs
+  static constexpr double kRowWeight = 1e6;  ///< ρ of rows that must hold, and the penalty of hard limits, in
+  static constexpr double kHardPenalty = 1e6;  ///< the unit of costs
   static constexpr double kSolvedAt = 10.0;  ///< a barrier's problem is solved at this many times the barrier
   static constexpr double kFloor = 1e-5;     ///< most that rounding may leave, in the unit of costs
 
@@ -183,18 +184,18 @@ class FilterMethod {
     if constexpr (kHasHardRows<P>) {
       if (rows_ != nullptr && is_fresh_ && now.hard.is_ready()) centre_rows(problem, now, t);
     }
-    now.state_residual = has_prices_ ? residual_ : nullptr;
+    now.state_residual = has_multipliers_ ? residual_ : nullptr;
     now.template linearise<Order>(problem, t, is_fresh_, 1.0, slacks, lq.lq, report);
     now.state_residual = nullptr;
     is_fresh_ = false;
   }
   /// Rows that must hold begin on their central path.
   void centre_rows(const P& problem, Linearised& now, const Point& t) noexcept;
-  /// With exact Hessians once there are prices for them.
+  /// With exact Hessians once there are multipliers for them.
   void linearise(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, const Point& t,
                  SolveReport& report) noexcept {
     if constexpr (has_hessians<P>()) {
-      if (has_prices_ && is_exact_) return linearise<2>(problem, now, lq, slacks, t, report);
+      if (has_multipliers_ && is_exact_) return linearise<2>(problem, now, lq, slacks, t, report);
     }
     linearise<1>(problem, now, lq, slacks, t, report);
   }
@@ -202,13 +203,13 @@ class FilterMethod {
   /// How far from solving the barrier problem (eq. 34).
   double residual(const Linearised& now, const Lq& lq, const Point& t,
                   const SolveReport& report) const noexcept {
-    if (!has_prices_) return std::numeric_limits<double>::infinity();
+    if (!has_multipliers_) return std::numeric_limits<double>::infinity();
     double dual = 0.0;
-    double prices = 0.0;
+    double dynamics_multipliers = 0.0;
     for (std::size_t i = 0; i < kNx; ++i) {
       for (std::size_t k = 1; k < t.horizon; ++k) {
         dual = std::max(dual, std::fabs(residual_[i][k]));
-        prices += std::fabs(now.adjoint[i][k]);
+        dynamics_multipliers += std::fabs(now.adjoint[i][k]);
       }
       double end = lq.lq.terminal[kNx][i] - now.adjoint[i][t.horizon - 1];
       if constexpr (kHasHardRows<P>) end -= rows_ != nullptr ? now.hard.excess(*rows_, i) : 0.0;
@@ -222,7 +223,8 @@ class FilterMethod {
     }
     const auto sides = bounds_.residual(mu_);
     const double count = static_cast<double>(t.horizon * kNx) + sides.count;
-    const double scale = std::max(kSteep, (prices + sides.multipliers) / count / unit_) / kSteep;
+    const double scale =
+        std::max(kSteep, (dynamics_multipliers + sides.multipliers) / count / unit_) / kSteep;
     double missed = report.defect * unit_;
     if constexpr (kHasHardRows<P>) {
       if (rows_ != nullptr) missed = std::max(missed, now.hard.residual(*rows_, mu_, unit_, t.horizon));
@@ -344,12 +346,12 @@ class FilterMethod {
       is_here_known_ = true;
       bounds_.move(dual, mu_);
       soft_.move(slacks, t.horizon, dual);
-      const double share = has_prices_ ? length : 1.0;
+      const double share = has_multipliers_ ? length : 1.0;
       if constexpr (kHasHardRows<P>) {
         if (rows_ != nullptr) now.hard.move(*rows_, share, dual, mu_, t.horizon);
       }
-      take_prices(lq, now, t.horizon, share);
-      has_prices_ = true;
+      take_multipliers(lq, now, t.horizon, share);
+      has_multipliers_ = true;
       return Outcome::kGoing;
     }
     last_shift_ = shift_;
@@ -381,11 +383,11 @@ class FilterMethod {
     }
     return std::max(0.05 * least, 1e-10);
   }
-  void take_prices(const Lq& lq, Linearised& now, std::size_t horizon, double length) noexcept {
+  void take_multipliers(const Lq& lq, Linearised& now, std::size_t horizon, double length) noexcept {
     for (std::size_t k = 0; k < horizon; ++k) {
       for (std::size_t i = 0; i < kNx; ++i) {
-        double& price = now.adjoint[i][k];
-        price += length * (lq.price(k + 1, i) - price);
+        double& multiplier = now.adjoint[i][k];
+        multiplier += length * (lq.multiplier(k + 1, i) - multiplier);
       }
     }
   }
@@ -412,7 +414,7 @@ class FilterMethod {
 
   // ---- when no step is good
 
-  /// First a larger shift, then prices and slacks anew, then a simulation, which has no defects.
+  /// First a larger shift, then new multipliers and slacks, then a simulation, which has no defects.
   Outcome recover(const P& problem, const Lq& lq, Point& t) noexcept {
     constexpr int kMostSimulations = 8;
     candidate_ = t;
@@ -422,7 +424,7 @@ class FilterMethod {
       return Outcome::kGoing;
     }
     is_new_barrier_ = is_fresh_ = true;
-    has_prices_ = false;
+    has_multipliers_ = false;
     if (failures_ == 2) return Outcome::kGoing;
     failures_ = 1;
     if (++simulations_ > kMostSimulations) return Outcome::kStuck;
@@ -449,7 +451,7 @@ class FilterMethod {
   Point step_;
   Point candidate_;  ///< of the line search; between iterations the present point
   alignas(64) double residual_[kNx][kStageStride<Capacity>]{};  ///< of optimality in the states
-  double prices_[kNx][Capacity]{};                              ///< of the dynamics, at the last hand-over
+  double multipliers_[kNx][Capacity]{};                         ///< of the dynamics, at the last hand-over
   double gradient_[Capacity][kNz]{};                            ///< of the stages' costs
   double mu_ = kFirstBarrier;
   double final_mu_ = 1e-6;
@@ -457,14 +459,14 @@ class FilterMethod {
   double small_miss_ = 0.0;  ///< below it the cost has to fall
   double shift_ = 0.0;       ///< of this iteration's Hessians
   double last_shift_ = 0.0;
-  double forced_shift_ = 0.0;   ///< least shift of the next iteration
-  bool is_exact_ = true;        ///< Hessians
-  bool has_prices_ = false;     ///< of the dynamics
-  bool is_fresh_ = true;        ///< the slacks of soft constraints go to their central path
-  bool is_new_barrier_ = true;  ///< the filter is of another problem
-  bool are_sides_new_ = true;   ///< the slacks of bounds do not belong to the present point
-  int short_steps_ = 0;         ///< in succession
-  int leaps_ = 0;               ///< whole steps that the filter had refused
+  double forced_shift_ = 0.0;     ///< least shift of the next iteration
+  bool is_exact_ = true;          ///< Hessians
+  bool has_multipliers_ = false;  ///< of the dynamics
+  bool is_fresh_ = true;          ///< the slacks of soft constraints go to their central path
+  bool is_new_barrier_ = true;    ///< the filter is of another problem
+  bool are_sides_new_ = true;     ///< the slacks of bounds do not belong to the present point
+  int short_steps_ = 0;           ///< in succession
+  int leaps_ = 0;                 ///< whole steps that the filter had refused
   FloorWatch floor_;
   P* rows_ = nullptr;  ///< the problem, where its rows that must hold are unknowns' equations
   double moved_ = 0.0;

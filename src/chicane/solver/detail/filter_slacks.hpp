@@ -269,14 +269,14 @@ class SoftSteps {
       const auto live =
           stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(step.horizon));
       for (std::size_t c = 0; c < slacks.count(); ++c) {
-        const SoftPenalty price = price_of(problem, c);
+        const SoftPenalty penalty = penalty_of(problem, c);
         const SoftConstraint<V> soft = slacks.load(c, k);
         const V change = slacks.change(step, c, k);
-        const SoftConstraint<V> d = soft.step(price, mu, change);
+        const SoftConstraint<V> d = soft.step(penalty, mu, change);
         primal = max(select(live, max(-d.s / soft.s, -d.t / soft.t), V(0.0)), primal);
         dual = max(select(live, max(-d.z / soft.z, -d.n / soft.n), V(0.0)), dual);
-        const V pulled = soft.model(price, mu).slope * change;  // what the stage's gradient has of it
-        const V own = (price.linear + price.quadratic * soft.s - mu / soft.s) * d.s - mu / soft.t * d.t;
+        const V pulled = soft.model(penalty, mu).slope * change;  // what the stage's gradient has of it
+        const V own = (penalty.linear + penalty.quadratic * soft.s - mu / soft.s) * d.s - mu / soft.t * d.t;
         slope += select(live, own - pulled, V(0.0));
         d.s.store(s_[c] + k);
         d.t.store(t_[c] + k);
@@ -294,7 +294,7 @@ class SoftSteps {
   /// Adds miss, cost without barriers and logarithms of constraint c of the stages from k on, which has
   /// `value` there, at `length` of the direction.
   template <class Mask>
-  void measure(const SoftPenalty& price, const Slacks& slacks, std::size_t c, std::size_t k, const V& value,
+  void measure(const SoftPenalty& penalty, const Slacks& slacks, std::size_t c, std::size_t k, const V& value,
                double length, const Mask& live, V& miss, V& cost, V& logs) noexcept {
     const SoftConstraint<V> soft = slacks.load(c, k);
     V s = soft.s;
@@ -307,7 +307,7 @@ class SoftSteps {
     s.store(s_at_[c] + k);
     t.store(t_at_[c] + k);
     miss += select(live, abs(s - value - t), V(0.0));
-    cost += select(live, s * (price.linear + 0.5 * price.quadratic * s), V(0.0));
+    cost += select(live, s * (penalty.linear + 0.5 * penalty.quadratic * s), V(0.0));
     logs += select(live, log(s) + log(t), V(0.0));
   }
   /// To where the last measure() was; multipliers by `dual_length` of their direction.

@@ -32,8 +32,8 @@ bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& tra
   }
   return round(x0, trajectory, deadline, left, report);
 }
-/// The primal-dual method (eq. 50–54). True when it has got to the end of its barrier: multipliers and prices
-/// are those of its point, and full steps may go on from there.
+/// The primal-dual method (eq. 50–54). True when it has got to the end of its barrier: multipliers and
+/// penalties are those of its point, and full steps may go on from there.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajectory, const Deadline& deadline,
                                            int& left, HardReport& report) noexcept {
@@ -51,11 +51,11 @@ bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajecto
     double highest = 0.0;
     for (int k = 0; k < trajectory.horizon; ++k)
       highest = std::max(highest, inner_.constraint_multiplier(k, static_cast<int>(c)));
-    const double price = std::max(1e-12, price_of(problem_, c).linear);
-    problem_.price_factor[c] *= std::max(1.0, kDearer * highest / price);
+    const double penalty = std::max(1e-12, penalty_of(problem_, c).linear);
+    problem_.penalty_factor[c] *= std::max(1.0, kDearer * highest / penalty);
   }
-  inner_.reprice(problem_);
-  keep_prices(trajectory.horizon);
+  inner_.update_penalties(problem_);
+  keep_multipliers(trajectory.horizon);
   return can_go_on_ = true;
 }
 /// Restoration: the primal-dual method with elastic rows and next to nothing of the cost (docs/solver.md, eq.
@@ -68,7 +68,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   constexpr double kShare = 1e-8, kTolerance = 1e-8, kFirstUnit = 0.1;
   constexpr double kMuch = 0.1;  // of the misses is left: they count in the same unit
   if (left <= 0) return false;
-  const auto factors = problem_.price_factor;
+  const auto factors = problem_.penalty_factor;
   for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
   problem_.terminal_shift.fill(0.0);
   inner_.ask_for(kTolerance);
@@ -94,15 +94,15 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   is_certified_ =
       converged && !is_less && !is_possible_ && is_proven(problem, trajectory, misses.total / least_unit_);
   least_ = trajectory;
-  problem_.violation_price = 0.0;
+  problem_.violation_penalty = 0.0;
   inner_.ask_for(round_tolerance());
-  keep_prices(trajectory.horizon);
-  least_prices_ = prices_;
+  keep_multipliers(trajectory.horizon);
+  least_prices_ = multipliers_;
   if (is_certified_) return true;
   report.status = SolveStatus::kStalled;  // it converged, but not with the whole cost
   can_go_on_ = false;
   problem_.cost_root = 1.0;
-  problem_.price_factor = factors;
+  problem_.penalty_factor = factors;
   return false;
 }
 /// Whether no inputs within their bounds are free of violation, by the slopes at those of the least: all
@@ -130,26 +130,26 @@ HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, cons
                                                           Trajectory& trajectory,
                                                           HardReport report) noexcept {
   constexpr double kLight = 1e-9;  // beside their multipliers rows themselves count for nothing
-  prices_ = least_prices_;
-  prices_.equality_weight.fill(kLight);
-  prices_.terminal_weight.fill(kLight);
-  put_prices(trajectory.horizon);
+  multipliers_ = least_prices_;
+  multipliers_.equality_weight.fill(kLight);
+  multipliers_.terminal_weight.fill(kLight);
+  put_multipliers(trajectory.horizon);
   weigh_misses(0.0, least_unit_);
   trajectory = least_;
   HardReport seen;
   copy_ = least_;
   assess(x0, copy_, true, seen);
-  prices_ = least_prices_;
+  multipliers_ = least_prices_;
   const Misses now = measure(problem, trajectory, &report);
-  problem_.violation_price = 0.0;
+  problem_.violation_penalty = 0.0;
   return finish(SolveStatus::kInfeasible, now, report);
 }
 /// The cost by `share`; misses cost their multiples of `unit`.
 template <HardProblem P, int Capacity, class Arch>
 void HardSolver<P, Capacity, Arch>::weigh_misses(double share, double unit) noexcept {
   problem_.cost_root = std::sqrt(share);
-  problem_.price_factor.fill(share);
-  problem_.violation_price = 1.0 / unit;
+  problem_.penalty_factor.fill(share);
+  problem_.violation_penalty = 1.0 / unit;
 }
 
 }  // namespace chicane::solver

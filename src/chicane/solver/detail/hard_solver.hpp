@@ -20,13 +20,13 @@ namespace chicane::solver {
 /// the primal-dual method of detail/hard_rows.hpp, then full steps from its multipliers (docs/solver.md).
 /// Where that gets nowhere, restoration (detail/hard_restoration.hpp) proves that no point nearby holds, or
 /// finds one, from where the method begins again. Else rounds of an augmented Lagrangian: each is one solve
-/// and an update of multipliers, weights and prices.
+/// and an update of multipliers, weights and multipliers.
 template <HardProblem P, int Capacity, class Arch>
 class HardSolver {
  public:
   using State = std::array<double, P::kNx>;
   using Trajectory = solver::Trajectory<P::kNx, P::kNu, Capacity>;
-  using Prices = HardPrices<P, Capacity>;
+  using Multipliers = HardMultipliers<P, Capacity>;
 
   explicit HardSolver(const SolverOptions& options = {}) noexcept : options_{options}, inner_{options} {}
 
@@ -41,15 +41,15 @@ class HardSolver {
   /// with kBudgetSpent; kInfeasible: the misses have a local minimum above zero here.
   HardReport solve(const P& problem, const State& x0, Trajectory& trajectory,
                    Deadline deadline = Deadline::never()) noexcept {
-    prices_.is_known = false;
+    multipliers_.is_known = false;
     return run(problem, x0, trajectory, deadline);
   }
   /// The same from multipliers and weights of an earlier solve, if they are known; then those of this one.
-  HardReport solve(const P& problem, const State& x0, Trajectory& trajectory, Prices& prices,
+  HardReport solve(const P& problem, const State& x0, Trajectory& trajectory, Multipliers& multipliers,
                    Deadline deadline = Deadline::never()) noexcept {
-    prices_ = prices;
+    multipliers_ = multipliers;
     const HardReport report = run(problem, x0, trajectory, deadline);
-    prices = prices_;
+    multipliers = multipliers_;
     return report;
   }
 
@@ -65,13 +65,13 @@ class HardSolver {
 
   /// After a solve: multipliers, d(cost)/d(right-hand side).
   [[nodiscard]] double equality_multiplier(int k, int n) const noexcept {
-    return prices_.equality[static_cast<std::size_t>(n)].at(k);
+    return multipliers_.equality[static_cast<std::size_t>(n)].at(k);
   }
   [[nodiscard]] double terminal_equality_multiplier(int n) const noexcept {
-    return prices_.terminal[static_cast<std::size_t>(n)];
+    return multipliers_.terminal[static_cast<std::size_t>(n)];
   }
   [[nodiscard]] double terminal_constraint_multiplier(int n) const noexcept {
-    return prices_.terminal[static_cast<std::size_t>(kNeh + n)];
+    return multipliers_.terminal[static_cast<std::size_t>(kNeh + n)];
   }
   /// As of problems without.
   [[nodiscard]] double adjoint(int k, int i) const noexcept { return inner_.adjoint(k, i); }
@@ -99,7 +99,7 @@ class HardSolver {
     std::array<double, kNh> equality{};
     std::array<double, kEnd> terminal{};
     std::array<double, kNc> constraint{};
-    double cost = 0.0;   ///< the problem's own, with its first prices
+    double cost = 0.0;   ///< the problem's own, with its first penalties
     double total = 0.0;  ///< of all rows of all stages
 
     [[nodiscard]] double worst() const noexcept {
@@ -122,7 +122,7 @@ class HardSolver {
     is_certified_ = is_possible_ = false;
     start(problem, x0, trajectory);
     int left = options_.max_iterations;
-    bool has_begun = prices_.is_known;
+    bool has_begun = multipliers_.is_known;
     std::size_t restarts = has_begun ? kHeavier.size() : 0;
     RoundProgress progress;
     Misses before;
@@ -227,7 +227,7 @@ class HardSolver {
   }
   [[nodiscard]] bool exceeds_a_cap(const SolveReport& report) const noexcept {
     const int c = report.worst_constraint;
-    return c >= 0 && report.violation > price_of(problem_, static_cast<std::size_t>(c)).cap;
+    return c >= 0 && report.violation > penalty_of(problem_, static_cast<std::size_t>(c)).cap;
   }
   /// Of rounds: multipliers are as good as the round that they come from, so that loose ones lead astray.
   [[nodiscard]] double round_tolerance() const noexcept { return std::min(options_.tolerance, 1e-6); }
@@ -241,9 +241,9 @@ class HardSolver {
     if (!options_.start_from_states) roll_out(problem, x0, trajectory);
     first_ = measure(problem, trajectory, nullptr);
     unit_ = std::isfinite(first_.cost) ? std::max(1.0, first_.cost) : 1.0;
-    if (!prices_.is_known) return start_with_weights(trajectory.horizon, 1.0);
+    if (!multipliers_.is_known) return start_with_weights(trajectory.horizon, 1.0);
     inner_.start_from_states(options_.start_from_states);
-    put_prices(trajectory.horizon);
+    put_multipliers(trajectory.horizon);
   }
   /// No multipliers, and the first weights of the guess, times `factor` (eq. 58).
   void start_with_weights(int horizon, double factor) noexcept {
@@ -251,7 +251,7 @@ class HardSolver {
     inner_.ask_for(round_tolerance());
     inner_.start_from_states(options_.start_from_states);
     problem_.cost_root = 1.0;
-    problem_.price_factor.fill(1.0);
+    problem_.penalty_factor.fill(1.0);
     for (std::size_t n = 0; n < kNh; ++n) {
       problem_.equality_shift[n].values.fill(0.0);
       problem_.set_weight(n, factor * first_weight(first_.equality[n] * horizon));
@@ -266,7 +266,7 @@ class HardSolver {
     return std::isfinite(weight) ? std::min(std::max(weight, kLeastWeight), kMostFirstWeight) : 1.0;
   }
 
-  /// y ← y + ρ h; a weight or price whose row has not come down enough rises (eq. 57).
+  /// y ← y + ρ h; a weight or penalty whose row has not come down enough rises (eq. 57).
   void update(Misses& now, const Misses* before, int horizon) noexcept {
     constexpr double kEnough = 0.1, kRise = 10.0;
     const auto rises = [&](double miss, double last) {
@@ -296,39 +296,39 @@ class HardSolver {
     }
     for (std::size_t c = 0; c < kNc; ++c) {
       if (now.constraint[c] <= options_.tolerance) continue;
-      problem_.price_factor[c] *= kRise;
+      problem_.penalty_factor[c] *= kRise;
       can_go_on_ = false;
     }
-    keep_prices(horizon);
+    keep_multipliers(horizon);
   }
   /// An inequality whose multiplier is not zero has to hold with equality: its distance counts as a miss.
   void count_distance(Misses& misses, std::size_t n) const noexcept {
     if (problem_.terminal_shift[n] > 0.0) misses.terminal[n] = std::fabs(terminal_[n]);
   }
-  void keep_prices(int horizon) noexcept {
-    prices_.is_known = true;
+  void keep_multipliers(int horizon) noexcept {
+    multipliers_.is_known = true;
     for (std::size_t n = 0; n < kNh; ++n) {
-      prices_.equality_weight[n] = problem_.equality_weight[n].rho;
+      multipliers_.equality_weight[n] = problem_.equality_weight[n].rho;
       for (std::size_t k = 0; k < static_cast<std::size_t>(horizon); ++k)
-        prices_.equality[n][k] = problem_.equality_weight[n].rho * problem_.equality_shift[n][k];
+        multipliers_.equality[n][k] = problem_.equality_weight[n].rho * problem_.equality_shift[n][k];
     }
     for (std::size_t n = 0; n < kEnd; ++n) {
-      prices_.terminal_weight[n] = problem_.terminal_weight[n].rho;
-      prices_.terminal[n] = problem_.terminal_weight[n].rho * problem_.terminal_shift[n];
+      multipliers_.terminal_weight[n] = problem_.terminal_weight[n].rho;
+      multipliers_.terminal[n] = problem_.terminal_weight[n].rho * problem_.terminal_shift[n];
     }
-    prices_.price_factor = problem_.price_factor;
+    multipliers_.penalty_factor = problem_.penalty_factor;
   }
-  void put_prices(int horizon) noexcept {
+  void put_multipliers(int horizon) noexcept {
     for (std::size_t n = 0; n < kNh; ++n) {
-      problem_.set_weight(n, prices_.equality_weight[n]);
+      problem_.set_weight(n, multipliers_.equality_weight[n]);
       for (std::size_t k = 0; k < static_cast<std::size_t>(horizon); ++k)
-        problem_.equality_shift[n][k] = prices_.equality[n][k] / prices_.equality_weight[n];
+        problem_.equality_shift[n][k] = multipliers_.equality[n][k] / multipliers_.equality_weight[n];
     }
     for (std::size_t n = 0; n < kEnd; ++n) {
-      problem_.terminal_weight[n].set(prices_.terminal_weight[n]);
-      problem_.terminal_shift[n] = prices_.terminal[n] / prices_.terminal_weight[n];
+      problem_.terminal_weight[n].set(multipliers_.terminal_weight[n]);
+      problem_.terminal_shift[n] = multipliers_.terminal[n] / multipliers_.terminal_weight[n];
     }
-    problem_.price_factor = prices_.price_factor;
+    problem_.penalty_factor = multipliers_.penalty_factor;
   }
 
   // ---- what cannot hold (detail/hard_restoration.hpp)
@@ -382,8 +382,8 @@ class HardSolver {
           if (is_hard(problem, n)) {
             note(misses.constraint[n], beyond, Kind::kConstraint, k, n);
           } else {
-            const SoftPenalty price = price_of(problem, n);
-            misses.cost += beyond * (price.linear + 0.5 * price.quadratic * beyond);
+            const SoftPenalty penalty = penalty_of(problem, n);
+            misses.cost += beyond * (penalty.linear + 0.5 * penalty.quadratic * beyond);
           }
         }
       }
@@ -421,16 +421,16 @@ class HardSolver {
   SolverOptions options_;
   OcpSolver<Problem, Capacity, Arch> inner_;
   Problem problem_;
-  Prices prices_;
+  Multipliers multipliers_;
   double unit_ = 1.0;  ///< of costs
   Misses first_;       ///< of the guess
   IterationLog* log_ = nullptr;
   Trajectory guess_;
-  Trajectory copy_;          ///< for reports, which may change it
-  Trajectory least_;         ///< where misses have a local minimum above zero, with is_certified_
-  int last_iterations_ = 0;  ///< of the last round
-  Prices least_prices_;      ///< there, of the violation alone
-  double least_unit_ = 1.0;  ///< unit of the misses there
+  Trajectory copy_;           ///< for reports, which may change it
+  Trajectory least_;          ///< where misses have a local minimum above zero, with is_certified_
+  int last_iterations_ = 0;   ///< of the last round
+  Multipliers least_prices_;  ///< there, of the violation alone
+  double least_unit_ = 1.0;   ///< unit of the misses there
   bool is_certified_ = false;
   bool is_possible_ = false;  ///< a point without misses has been found
   int trial_ = 0;             ///< iterations that are left for the first weights, kTrialSpent; 0: all of them
@@ -439,8 +439,8 @@ class HardSolver {
   std::array<double, kEnd> terminal_{};
 };
 
-/// A class of its own does the work: compilers differ in how members of a constrained specialisation are told
-/// from those of the class itself.
+/// A class of its own does the work: compilers differ in how they distinguish members of a constrained
+/// specialisation from members of the class itself.
 template <HardProblem P, int Capacity, class Arch>
 class OcpSolver<P, Capacity, Arch> : public HardSolver<P, Capacity, Arch> {
  public:

@@ -34,7 +34,7 @@ void tell_violation(const P& problem, const Slacks& slacks, std::size_t horizon,
   WorstViolation worst;
   for (std::size_t k = 0; k < horizon; ++k) {
     for (std::size_t c = 0; c < static_cast<std::size_t>(P::kNc); ++c)
-      worst.consider(slacks.value(c, k), price_of(problem, c).cap, k, c);
+      worst.consider(slacks.value(c, k), penalty_of(problem, c).cap, k, c);
   }
   worst.tell(report);
   report.gap = slacks.gap(horizon);
@@ -48,7 +48,7 @@ SolveReport OcpSolver<P, Capacity, Arch>::give_up(const P& problem, const State&
   report.status = SolveStatus::kNotFinite;
   return report;
 }
-/// Constraints and prices are to be of the answer, and the report of both.
+/// Constraints and multipliers are to be of the answer, and the report of both.
 template <OcpProblem P, int Capacity, class Arch>
 void OcpSolver<P, Capacity, Arch>::look_at_best(const P& problem, SolveReport& report) noexcept {
   is_exact_ = false;

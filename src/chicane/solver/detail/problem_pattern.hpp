@@ -139,7 +139,7 @@ struct StructuredPattern {
       l[in_z<P>(i)][kNx] = l[kNx][in_z<P>(i)] = contains(first, i);
     }
     for (std::size_t m = 0; m < kNu && has_filter_method<P>();
-         ++m) {  // barriers of bounds (bound_barrier.hpp)
+         ++m) {  // barriers of bounds (filter_slacks.hpp)
       const std::size_t u = kNx + 1 + m;
       l[u][u] = l[u][kNx] = l[kNx][u] = true;
     }
