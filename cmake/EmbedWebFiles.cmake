@@ -88,7 +88,7 @@ function(write_source)
     string(APPEND functions "recording::ReportBundle ${bundle}_bundle() { return {${views}}; }\n\n")
   endforeach()
   file(WRITE ${BUILD}/web_assets.cpp "// Generated from web/ by cmake/EmbedWebFiles.cmake: do not edit.
-#include \"chicane/live/assets.hpp\"
+#include \"chicane/live/description.hpp\"
 
 namespace chicane::live {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <tuple>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 
 // The structured form: each variable has a type of its own, with the variables that it depends on, so zeros

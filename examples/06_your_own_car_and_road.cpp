@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/protocol/library.hpp"

@@ -3,7 +3,7 @@
 """Breaks a module on purpose, one operator, number or statement at a time, and asks whether its unit tests notice.
 
     tools/mutate.py --sample 100 --seed 1              # a hundred mutants of the guard chosen by chance; without --sample: all of them
-    tools/mutate.py --module road --files speed_plan.cpp
+    tools/mutate.py --module road --files line_planner.cpp
     tools/mutate.py --module all --sample 200          # over all modules whose test program is built
 
 Each mutant is one file compiled anew and the module's test program, MODULE_test, linked and run with it; the sources stay as

@@ -10,7 +10,7 @@
 #include <array>
 #include <utility>
 
-#include "chicane/net/token.hpp"
+#include "chicane/net/http_response.hpp"
 
 namespace chicane::apps {
 namespace {

@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "access.hpp"
-#include "chicane/live/assets.hpp"
+#include "chicane/base/file.hpp"
 #include "chicane/live/description.hpp"
 #include "chicane/live/live_run.hpp"
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/laps_without.hpp"
+#include "chicane/run/make.hpp"
 #include "chicane/run/plan_cache.hpp"
 #include "chicane/run/realtime_loop.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
-#include "guard_notice.hpp"
-#include "interrupt.hpp"
-#include "limit_report.hpp"
-#include "plan_wait.hpp"
+#include "program.hpp"
 #include "progress.hpp"
 #include "record.hpp"
 
@@ -175,6 +175,38 @@ ExitCode drive(const Options& options) {
   if (!outcome->kept) return report(outcome->kept.error());
   const bool is_success = stays_up(options) ? summary.off_track_events == 0 : completed_on_road(summary);
   return is_success ? kSuccess : kRunFailed;
+}
+
+namespace {
+
+Result<void> print_limit(const Options& options) {
+  static std::atomic<bool> wants_stop{false};  // static: must outlive the last signal
+  catch_interrupts(wants_stop);
+  const Result<scenario::Scenario> scenario = experiment(options);
+  if (!scenario) return fail(scenario.error());
+  const Result<road::Track> track = run::make_track(*scenario);
+  if (!track) return fail(track.error());
+  print_notices(*scenario);
+  if (!options.csv_file.empty()) {
+    if (Result<void> writable = check_writable(options.csv_file); !writable) return writable;
+  }
+  LimitRun limit_run{.track = track->name(), .car = scenario->car};
+  const Result<lap_time::PlantLimit> limit =
+      limit_of(*scenario, *track, {.budget = options.limit_budget}, wants_stop, limit_run.wall_time);
+  if (!limit) return fail(limit.error());
+  if (!options.csv_file.empty()) {
+    if (Result<void> kept = write_file(options.csv_file, to_csv(limit_run, *track, *limit)); !kept)
+      return kept;
+  }
+  fmt::print("{}", options.is_json ? to_json(limit_run, *limit) : to_table(limit_run, *limit));
+  return {};
+}
+
+}  // namespace
+
+ExitCode limit(const Options& options) {
+  const Result<void> done = print_limit(options);
+  return done ? kSuccess : report(done.error());
 }
 
 }  // namespace chicane::apps

@@ -3,8 +3,6 @@
 
 #include <cstdio>
 
-#include "command_options.hpp"
-
 namespace chicane::apps {
 namespace {
 

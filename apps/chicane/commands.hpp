@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "chicane/base/result.hpp"
@@ -47,11 +49,11 @@ using LogConverter = Result<void> (*)(const std::string& file, const Options& op
 /// The same with logs of other programs, which `convert` reads; null: there are none.
 [[nodiscard]] ExitCode replay_logs(const Options& options, LogConverter convert);
 
-/// Becomes the program chicane-ros (ros_main.cpp); kUsage where that is not installed.
+/// Becomes the program chicane-ros (ros/main.cpp); kUsage where that is not installed.
 [[nodiscard]] ExitCode ros(const Options& options);
 /// Becomes the program chicane-bench (bench/program); kEnvironment where that is not built.
 [[nodiscard]] ExitCode bench(const Options& options);
-/// Becomes the program chicane-lab (lab_main.cpp); kEnvironment where that is not built.
+/// Becomes the program chicane-lab (lab/main.cpp); kEnvironment where that is not built.
 [[nodiscard]] ExitCode in_lab(const Options& options);
 
 /// The commands of chicane-lab: many runs, logs and reports.
@@ -70,5 +72,48 @@ using LogConverter = Result<void> (*)(const std::string& file, const Options& op
 
 /// Says the error on stderr; which exit code it is.
 [[nodiscard]] ExitCode report(const Error& error);
+
+// The options of each command as rows whose targets are in `options`.
+
+[[nodiscard]] Rows drive_rows(Options& options);
+[[nodiscard]] Rows serve_rows(Options& options);
+[[nodiscard]] Rows simulate_rows(Options& options);
+[[nodiscard]] Rows ros_rows(Options& options);
+[[nodiscard]] Rows limit_rows(Options& options);
+[[nodiscard]] Rows replay_rows(Options& options);
+[[nodiscard]] Rows report_rows(Options& options);
+[[nodiscard]] Rows video_rows(Options& options);
+[[nodiscard]] Rows sweep_rows(Options& options);
+[[nodiscard]] Rows league_rows(Options& options);
+[[nodiscard]] Rows claims_rows(Options& options);
+[[nodiscard]] Rows tune_rows(Options& options);
+[[nodiscard]] Rows merge_rows(Options& options);
+[[nodiscard]] Rows campaign_rows(Options& options);
+[[nodiscard]] Rows recover_rows(Options& options);
+[[nodiscard]] Rows lane_change_rows(Options& options);
+[[nodiscard]] Rows import_rows(Options& options);
+[[nodiscard]] Rows identify_rows(Options& options);
+[[nodiscard]] Rows check_rows(Options& options);
+[[nodiscard]] Rows list_rows(Options& options);
+[[nodiscard]] Rows bench_rows(Options& options);
+[[nodiscard]] Rows completion_rows(Options& options);
+
+/// Rows of several groups, one after the other.
+[[nodiscard]] inline Rows joined(std::initializer_list<Rows> groups) {
+  Rows all;
+  for (const Rows& group : groups) all.insert(all.end(), group.begin(), group.end());
+  return all;
+}
+
+/// Rows of preset, controller, car and speed.
+[[nodiscard]] Rows controller_rows(Options& options);
+/// Rows of track, laps and seed.
+[[nodiscard]] Rows world_rows();
+/// --set, behind all other settings: the last one wins.
+[[nodiscard]] OptionRow set_row(Options& options);
+[[nodiscard]] OptionRow json_row(Options& options);
+[[nodiscard]] OptionRow track_row();
+/// --jobs.
+[[nodiscard]] OptionRow jobs_row(Options& options);
 
 }  // namespace chicane::apps

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: MIT
+// Commands that are programs of their own, so that no other command waits for what they need.
 #include "program.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <memory>
@@ -14,7 +22,9 @@
 #include <vector>
 
 #include "chicane/base/instruction_set.hpp"
+#include "chicane/protocol/data_folders.hpp"
 #include "chicane/run/plan_cache.hpp"
+#include "commands.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -77,6 +87,142 @@ int program(int count, const char* const* words, ExitCode (*run)(const Options&)
     std::fprintf(stderr, "chicane: unknown error\n");
   }
   return kEnvironment;
+}
+
+namespace {
+
+// The globals: a signal handler can reach nothing else.
+std::atomic<std::atomic<bool>*> wanted{nullptr};
+std::atomic<std::int64_t> first_ns{0};  // when the first signal came [ns]; 0: none yet
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free &&
+              std::atomic<std::atomic<bool>*>::is_always_lock_free);
+
+/// Time since the machine started [ns]; may be asked in a signal handler, unlike the clocks of C++.
+std::int64_t monotonic_ns() {
+  std::timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+void interrupt(int signal) {
+  const std::int64_t now = monotonic_ns();
+  std::int64_t first = 0;
+  if (first_ns.compare_exchange_strong(first, now)) {
+    if (std::atomic<bool>* flag = wanted.load()) *flag = true;
+  } else if (now - first > std::chrono::nanoseconds(kOneInterrupt).count()) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);  // delivered when this handler returns
+  }
+}
+
+}  // namespace
+
+void let_interrupts_end() {
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
+void catch_interrupts(std::atomic<bool>& flag) {
+  wanted = &flag;
+  run::stop_planning_by(flag);
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Seen from the folder of this program: a build folder, bin and libexec/chicane of an installation.
+constexpr const char* kPlaces[] = {"", "../libexec/chicane", "../../bin"};
+
+bool is_program(const fs::path& file) {
+  std::error_code error;
+  return fs::is_regular_file(file, error) && ::access(file.c_str(), X_OK) == 0;
+}
+
+}  // namespace
+
+std::string own_folder() {
+  const std::string program = protocol::data_origins().program;
+  return program.empty() ? "" : fs::path(program).parent_path().string();
+}
+
+std::string other_program(const std::string& name, bool is_on_path) {
+  const fs::path folder = own_folder();
+  for (const char* place : kPlaces) {
+    const fs::path file = folder / place / name;
+    if (!folder.empty() && is_program(file)) return file.lexically_normal().string();
+  }
+  const char* path = is_on_path ? std::getenv("PATH") : nullptr;
+  for (std::string_view left = path == nullptr ? "" : path; !left.empty();) {
+    const std::size_t end = std::min(left.find(':'), left.size());
+    const fs::path file = fs::path(left.substr(0, end)) / name;
+    if (file.is_absolute() && is_program(file)) return file.string();
+    left.remove_prefix(std::min(end + 1, left.size()));
+  }
+  return "";
+}
+
+std::string become(const std::string& program, std::vector<std::string> words) {
+  words.insert(words.begin(), program);
+  std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execv(program.c_str(), arguments.data());
+  return program + " cannot be started: " + std::strerror(errno);
+}
+
+namespace {
+
+/// The options in full, as bench/program/request.hpp reads them.
+std::vector<std::string> words_for_bench(const Options& options) {
+  std::vector<std::string> words{"--instances", std::to_string(options.instances), "--horizons",
+                                 fmt::format("{}", fmt::join(options.horizons, ","))};
+  if (!options.reference_folder.empty()) words.insert(words.end(), {"--reference", options.reference_folder});
+  if (options.is_json) words.emplace_back("--json");
+  return words;
+}
+
+ExitCode become_or_say_why(const std::string& program, std::vector<std::string> words) {
+  fmt::print(stderr, "{}\n", become(program, std::move(words)));
+  return kEnvironment;
+}
+
+ExitCode say_how_to_build(const std::string& command, std::string_view program, std::string_view meaning,
+                          std::string_view target) {
+  fmt::print(stderr,
+             "chicane {0}: {1}, the program {2}, is not built (looked in {4}).\n"
+             "In a clone `./run.sh {0}` builds it; in a build folder `cmake --build . --target {3}`.\n",
+             command, program, meaning, target, own_folder());
+  return kEnvironment;
+}
+
+}  // namespace
+
+ExitCode ros(const Options& options) {
+  const std::string program = other_program("chicane-ros", true);
+  if (!program.empty()) return become_or_say_why(program, options.words);
+  fmt::print(stderr,
+             "chicane ros: the program chicane-ros is not there: install it (apt install "
+             "./chicane-ros_*.deb, in a clone ./run.sh ros)\n");
+  return kUsage;
+}
+
+ExitCode bench(const Options& options) {
+  const std::string program = other_program("chicane-bench", false);
+  if (!program.empty()) return become_or_say_why(program, words_for_bench(options));
+  return say_how_to_build("bench", "chicane-bench", "that measures", "chicane_bench");
+}
+
+ExitCode in_lab(const Options& options) {
+  const std::string program = other_program("chicane-lab", false);
+  if (program.empty())
+    return say_how_to_build(options.command, "chicane-lab", "of many runs, logs and reports", "chicane_lab");
+  std::vector<std::string> words{options.command};
+  words.insert(words.end(), options.words.begin(), options.words.end());
+  return become_or_say_why(program, std::move(words));
 }
 
 }  // namespace chicane::apps

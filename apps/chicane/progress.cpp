@@ -4,12 +4,69 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <string>
+#include <utility>
 
-#include "chicane/base/angle.hpp"
+#include "access.hpp"
+#include "chicane/base/math.hpp"
 
 namespace chicane::apps {
+namespace {
+
+using telemetry::Situation;
+
+bool is_replaced(const Situation& now) {
+  return now.rung != controller::Rung::kController && now.driver != Situation::Driver::kPerson;
+}
+
+bool is_stuck(const Situation& now, double time) {
+  return now.stands_since >= 0.0 && time - now.stands_since >= telemetry::kStuckAfter;
+}
+
+}  // namespace
+
+std::vector<std::string> RunNotices::look_at(const telemetry::Frame& frame) {
+  if (frame.time < last_time_) *this = {};  // another run
+  last_time_ = frame.time;
+  const Situation& now = frame.situation;
+  if (now.driver == Situation::Driver::kPerson) said_.clear();
+  if (!is_replaced(now) && severity_of(now) != Severity::kError) {
+    std::string line = ended(frame.time);
+    return line.empty() ? std::vector<std::string>{} : std::vector{std::move(line)};
+  }
+  const bool begins = said_.empty();
+  if (begins) {
+    began_ = frame.time;
+    replaced_ = 0;
+  }
+  goes_on_ = true;
+  if (is_replaced(now)) ++replaced_;
+  const bool is_held = now.kind == telemetry::SituationKind::kGuardHolds;
+  if (is_held && !is_stuck(now, frame.time) && !begins) return {};  // a stop that is said, and has ended
+  std::string text = sentence_of(now);
+  if (const auto reason = reason_of(now); !reason.empty() && (begins || !is_held))
+    text.append(": ").append(reason);
+  if (is_stuck(now, frame.time)) text.append(". ").append(what_ends(now));
+  if (text == said_ || (!begins && frame.time - said_at_ < telemetry::kAlarmPause)) return {};
+  said_ = std::move(text);
+  said_at_ = frame.time;
+  return {fmt::format("{:.1f} s: {}", frame.time, said_)};
+}
+
+/// The line that says so, once, after a pause.
+std::string RunNotices::ended(double time) {
+  if (std::exchange(goes_on_, false)) ended_ = time;
+  if (said_.empty() || time - ended_ < telemetry::kAlarmPause) return "";
+  said_.clear();
+  const double lasted = ended_ - began_;
+  if (replaced_ == 0) return fmt::format("{:.1f} s: the car moves again, after {:.1f} s", ended_, lasted);
+  return fmt::format("{:.1f} s: the controller drives again, after {:.1f} s and {} replaced {}", ended_,
+                     lasted, replaced_, replaced_ == 1 ? "command" : "commands");
+}
+
 namespace {
 
 constexpr std::chrono::milliseconds kTerminalPeriod{100};
@@ -60,6 +117,115 @@ void Progress::show(const telemetry::Frame& frame) {
 
 void Progress::say(std::string_view line) {
   fmt::print(stderr, "{}{}\n", has_line_.exchange(false) ? "\n" : "", line);
+}
+
+namespace {
+
+constexpr std::chrono::milliseconds kRedrawPeriod{100};
+constexpr std::chrono::seconds kReportPeriod{10};
+constexpr std::chrono::milliseconds kGoodbyeOfPage{50};
+
+net::Content waiting_page(const std::string& line) {
+  return {.content_type = "text/html; charset=utf-8",
+          .bytes = fmt::format(
+              "<!doctype html><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" "
+              "content=\"1\"><title>chicane</title>"
+              "<body style=\"color-scheme:light dark;margin:24px;font:14px/1.4 system-ui,sans-serif;"
+              "background:light-dark(#f6f7f8,#0f1419);color:light-dark(#17202a,#e8edf2)\">"
+              "<b>chicane</b><h1 style=\"font-size:28px;font-weight:500\">{}</h1><p>The dashboard follows "
+              "here.</p>",
+              line)};
+}
+
+}  // namespace
+
+/// What the network thread answers while this one plans.
+struct PlanWait::Page {
+  std::mutex mutex;
+  std::string line;
+  std::unique_ptr<net::Server> server;  // last: it ends first
+};
+
+std::string plan_line(const lap_time::PlanProgress& now, double elapsed, double budget) {
+  const double per_work = now.work > 0.0 ? elapsed / now.work : 0.0;
+  if (now.work < now.expected)
+    return fmt::format("planning the lap: {:.0f} %, about {:.0f} s left", 100.0 * now.work / now.expected,
+                       std::ceil(per_work * (now.expected - now.work)));
+  const double seconds = std::ceil(elapsed);
+  if (!std::isfinite(budget))
+    return fmt::format("planning the lap: {:.0f} s so far, more than estimated", seconds);
+  return fmt::format("planning the lap: {:.0f} s so far, at most {:.0f} s left", seconds,
+                     std::ceil(per_work * std::max(budget - now.work, 0.0)));
+}
+
+PlanWait::PlanWait(double budget, std::optional<net::ServerOptions>* server)
+    : budget_{budget}, server_{server}, is_terminal_{isatty(STDERR_FILENO) == 1} {}
+
+PlanWait::~PlanWait() {
+  clear_line();
+  if (page_ && page_->server) (*server_)->port = page_->server->port();
+}
+
+run::PlanHooks PlanWait::hooks() {
+  return {.on_progress = [this](const lap_time::PlanProgress& now) { show(now); },
+          .say =
+              [this](std::string_view line) {
+                clear_line();
+                fmt::print(stderr, "{}\n", line);
+              }};
+}
+
+void PlanWait::open() {
+  if (server_ == nullptr || !server_->has_value()) return;
+  page_ = std::make_unique<Page>();
+  net::ServerOptions options = **server_;
+  options.goodbye = kGoodbyeOfPage;
+  net::ServerHandlers handlers;
+  handlers.on_upgrade = [](const net::UpgradeRequest&) {
+    return net::UpgradeAnswer{.status = 503, .reason = "the lap is being planned: try again in some seconds"};
+  };
+  handlers.on_open = [](net::ConnectionId, int) {};
+  handlers.on_message = [](net::ConnectionId, int, std::string_view, bool) {};
+  handlers.on_close = [](net::ConnectionId, int, std::string_view) {};
+  handlers.on_get = [page = page_.get()](std::string_view path) -> std::optional<net::Content> {
+    if (path != "/") return {};
+    const std::lock_guard lock(page->mutex);
+    return waiting_page(page->line);
+  };
+  auto server = net::Server::create(options, std::move(handlers), {});
+  if (!server) {
+    opened_ = fail(server.error());
+    page_.reset();
+    return;
+  }
+  page_->server = std::move(*server);
+  fmt::print(stderr, "the lap is planned first; then the dashboard will be at {} (Ctrl-C ends)\n",
+             link(options, page_->server->port()));
+}
+
+void PlanWait::show(const lap_time::PlanProgress& now) {
+  const Clock::time_point time = Clock::now();
+  const std::string line = plan_line(now, std::chrono::duration<double>(time - begin_).count(), budget_);
+  if (!shown_) open();
+  if (page_) {
+    const std::lock_guard lock(page_->mutex);
+    page_->line = line;
+  }
+  const Clock::duration period = is_terminal_ ? Clock::duration(kRedrawPeriod) : kReportPeriod;
+  if (shown_ && time - *shown_ < period) return;
+  const bool is_first = !shown_.has_value();
+  shown_ = time;
+  if (is_terminal_) {
+    has_line_ = true;
+    fmt::print(stderr, "\r{}\x1b[K", line);
+    std::fflush(stderr);
+  } else if (!is_first) {
+    fmt::print(stderr, "{}\n", line);
+  }
+}
+
+void PlanWait::clear_line() {
+  if (std::exchange(has_line_, false)) fmt::print(stderr, "\r\x1b[K");
 }
 
 }  // namespace chicane::apps

@@ -9,9 +9,9 @@
 
 #include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
-#include "chicane/live/assets.hpp"
-#include "chicane/recording/bag_metadata.hpp"
+#include "chicane/live/description.hpp"
 #include "chicane/recording/html_report.hpp"
+#include "chicane/recording/log_files.hpp"
 
 namespace chicane::apps {
 

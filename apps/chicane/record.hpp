@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "chicane/protocol/ros_messages.hpp"
+#include "chicane/recording/log_files.hpp"
 #include "chicane/recording/recorder.hpp"
-#include "chicane/recording/temporary_file.hpp"
 #include "options.hpp"
 
 namespace chicane::apps {

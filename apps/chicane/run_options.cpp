@@ -4,11 +4,11 @@
 
 #include <string>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "command_options.hpp"
+#include "commands.hpp"
 
 namespace chicane::apps {
 namespace {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Options of the other commands.
+// Options of the commands that drive many runs.
 #include <fmt/format.h>
 
 #include <string>
 
 #include "chicane/base/text.hpp"
-#include "command_options.hpp"
+#include "chicane/run/fault_campaign.hpp"
+#include "chicane/run/shard.hpp"
 #include "commands.hpp"
 
 namespace chicane::apps {
@@ -117,6 +119,187 @@ Rows list_rows(Options& o) {
 
 Rows completion_rows(Options& o) {
   return {{"shell", "SHELL", "Shell", &o.shell, one_of({"bash", "zsh", "fish"}) | kRequired}};
+}
+
+namespace {
+
+OptionRow results_row(Options& o, std::string_view each) {
+  return {"--results", "FILE.jsonl",
+          fmt::format("File with a line for each {}; one that is there is completed", each), &o.results_file};
+}
+
+OptionRow names_row(std::string name, std::vector<std::string>& names, std::string meaning) {
+  return {std::move(name), "NAME,...", std::move(meaning), &names, kShown};
+}
+
+OptionRow count_row(std::string name, int& count, Interval within, std::string meaning) {
+  return {std::move(name), "N", std::move(meaning), &count, between(within.least, within.most) | kShown};
+}
+
+OptionRow seed_row(std::string name, std::uint64_t& seed, std::string meaning) {
+  return {std::move(name), "N", std::move(meaning), &seed, kShown};
+}
+
+OptionRow output_row(Options& o, std::string_view value, std::string meaning, bool is_required = false) {
+  return {"-o,--output", value, std::move(meaning), &o.output_file, {.is_required = is_required}};
+}
+
+OptionRow file_row(std::string name, std::string_view value, std::string meaning, std::string& file) {
+  return {std::move(name), value, std::move(meaning), &file, kRequired};
+}
+
+OptionRow shard_row(std::string& shard) {
+  const auto take = [&shard](const std::string& text) -> std::string {
+    if (!run::parse_shard(text)) return "I/N with 1 <= I <= N, like 3/7";
+    shard = text;
+    return "";
+  };
+  return {"--shard", "I/N",
+          "Drive part I of N, into FILE.I-of-N.jsonl; in a Slurm array or under MPI it is known "
+          "without it",
+          take, kOnce};
+}
+
+/// "2", or "inf" for a fault that lasts.
+OptionRow durations_row(std::vector<double>& durations) {
+  const auto take = [&durations](const std::string& text) -> std::string {
+    const auto seconds =
+        text == "inf" ? Result<double>(run::kLasting) : number_in("--for-s", text, 0.001, run::kLasting);
+    if (!seconds) return "a number in [0.001, 1000000] or inf";
+    durations.push_back(*seconds);
+    return "";
+  };
+  return {"--for-s", "S,...",
+          "Durations of the faults [s], with commas; inf: to the end; each fault's own when left out", take};
+}
+
+/// On which tracks, in which cars, with which settings many runs are driven.
+template <class Runs>
+Rows where_rows(Runs& runs, Options& o) {
+  return {names_row("--tracks", runs.tracks, "Names or files, with commas"),
+          names_row("--cars", runs.cars, "Names or files, with commas"), jobs_row(o), json_row(o),
+          set_row(o)};
+}
+
+}  // namespace
+
+OptionRow jobs_row(Options& o) {
+  return count_row("--jobs", o.jobs, {0, 1024}, "Threads; 0: as many as cores");
+}
+
+Rows sweep_rows(Options& o) {
+  return {
+      file_row("plan", "PLAN.yaml", "Plan of what to drive (docs/sweep.md)", o.sweep.plan_file),
+      output_row(o, "FILE.jsonl",
+                 "Results, a line for each run; a file that is there is completed. PLAN.jsonl when left out"),
+      jobs_row(o),
+      shard_row(o.sweep.shard),
+      {"--show", "RUN", "Drive nothing: print the command that drives this run, counted from 0",
+       &o.sweep.shown, between(0.0, 1e9)}};
+}
+
+Rows league_rows(Options& o) {
+  Options::League& league = o.league;
+  return {file_row("league", "LEAGUE.yaml", "League of who drives where (docs/sweep.md)", league.file),
+          output_row(o, "FILE.html", "Page to write; an older one is replaced"),
+          {"--results", "FILE.jsonl",
+           "File with a line for each run; one that is there is completed. LEAGUE.jsonl when left out",
+           &o.results_file},
+          {"--csv", "FILE.csv", "Write a table with a row for each run, too", &o.csv_file},
+          {"--json", "", "Print a JSON list on stdout, too", &o.is_json},
+          {"--server", "CMD",
+           "Command that starts a program of your own, which joins. {port}, {latency_ms}, {track} and "
+           "{chicane} in it are filled in; without {port} it listens on 4567",
+           &league.servers},
+          {"--patience-s", "S", "Patience with a program that does not connect or answer [s]",
+           &league.patience, between(0.1, 600.0) | kShown},
+          {"--no-programs", "", "Start no programs, also none of the file", Off{&league.wants_programs}},
+          {"--page", "FILE.md", "Write the tables into this page, below its marker", &league.page},
+          jobs_row(o)};
+}
+
+Rows claims_rows(Options& o) {
+  Options::Claims& claims = o.claims;
+  return {{"ids", "ID", "Claims to try, with figures and commands; all when left out", &claims.ids},
+          {"--folder", "FOLDER", "Folder with the claims, *.yaml", &claims.folder, kShown},
+          {"--page", "FILE.md", "Write the verdicts into this page, below its marker", &claims.page},
+          {"--check", "", "Compare with the page only; exit code 1 where a row differs", &claims.is_check,
+           with("--page")},
+          results_row(o, "run"),
+          jobs_row(o)};
+}
+
+Rows merge_rows(Options& o) {
+  return {{"files", "FILE.jsonl", "Results of the parts of one sweep", &o.files, kRequired},
+          output_row(o, "FILE.jsonl", "File for all of them, in the order of the plan", true),
+          {"--csv", "FILE.csv", "Write a table with a column for each setting and result, too", &o.csv_file}};
+}
+
+Rows tune_rows(Options& o) {
+  Options::Tune& tune = o.tune;
+  return joined(
+      {controller_rows(o),
+       {track_row(),
+        {"--latency-ms", "X", "Actuation delay of the simulated car [ms]", Setting{"latency_ms"}},
+        {"--over", "KEY,...",
+         "Keys of numbers to change, with commas; weights, horizon and speed when left out", &tune.over},
+        {"--objective", "NAME", "Objective, besides a clean lap with no less margin", &tune.objective,
+         one_of({"lap", "comfort", "robust"}) | kShown},
+        {"--optimizer", "NAME", "Optimizer of NLopt: random search, DIRECT, or Subplex from the preset on",
+         &tune.optimizer, one_of({"crs", "direct", "sbplx"}) | kShown},
+        count_row("--evaluations", tune.evaluations, {1, 10000000},
+                  "Number of tunings to judge, up to six trials each"),
+        seed_row("--search-seed", tune.seed, "Seed of the random search"),
+        {"--log", "FILE.jsonl",
+         "File with a line for each evaluation; a search that was ended goes on with it", &tune.log},
+        json_row(o),
+        output_row(o, "FILE.yaml", "Keep what was found as a preset"),
+        jobs_row(o),
+        set_row(o)}});
+}
+
+Rows campaign_rows(Options& o) {
+  Options::Campaign& campaign = o.campaign;
+  return joined(
+      {{{"--faults", "NAME,...", "Faults, with commas; all when left out", &campaign.faults,
+         from_shelf("faults")},
+        {"--pairs", "",
+         "Add each two of them at once; without --faults: the faults of measurement, link, computer",
+         &campaign.has_pairs},
+        durations_row(campaign.durations),
+        {"--every-s", "S", "Time between the moments of the flying lap [s]", &campaign.step,
+         between(0.02, 1000.0) | kShown},
+        {"--onsets", "N",
+         "Number of moments by chance, for each fault, duration, track, car and preset; replaces "
+         "--every-s",
+         &campaign.onsets, between(1, 10000)},
+        seed_row("--seed", campaign.seed, "Seed of these moments"),
+        results_row(o, "fault, duration, track, car and preset"),
+        {"--markdown", "", "Print the table of docs/safety.md on stdout", &o.is_markdown},
+        names_row("--preset", campaign.presets,
+                  "Controllers and their settings; as --tracks and --cars: all stands for those that ship")},
+       where_rows(campaign, o)});
+}
+
+Rows recover_rows(Options& o) {
+  Options::Recover& recover = o.recover;
+  return joined(
+      {{count_row("--starts", recover.starts, {1, 100000},
+                  "Starts for each car and track: standing, rolling, sliding, backwards, spun"),
+        seed_row("--seed", recover.seed, "Seed of the starts"),
+        {"--only", "I", "Number of the only start to drive", &recover.only, between(1, 100000)},
+        results_row(o, "start"),
+        {"--preset", "NAME", "Controller and its settings", Setting{"preset"}, from_shelf("presets")}},
+       where_rows(recover, o)});
+}
+
+Rows lane_change_rows(Options& o) {
+  return {names_row("--cars", o.lane_change.cars, "Names or files, with commas"),
+          names_row("--presets", o.lane_change.presets, "Presets that steer: names or files, with commas"),
+          results_row(o, "car and preset"),
+          jobs_row(o),
+          json_row(o),
+          set_row(o)};
 }
 
 }  // namespace chicane::apps

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // In the place of protocol/foreign_tracks.cpp: the page has no library for images and XML, and reads its own
 // files.
-#include "chicane/protocol/foreign_tracks.hpp"
+#include "chicane/protocol/track_codec.hpp"
 
 namespace chicane::protocol {
 

@@ -6,8 +6,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "chicane/base/angle.hpp"
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/solver/hard_constraints.hpp"

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 #include "problems/corridor_problem.hpp"

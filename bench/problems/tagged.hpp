@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 #include "problems/structured_solver.hpp"
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 

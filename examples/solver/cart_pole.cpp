@@ -6,7 +6,7 @@
 #include <memory>
 #include <tuple>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 
 namespace solver = chicane::solver;

@@ -7,10 +7,9 @@
 #include <limits>
 #include <utility>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/schema.hpp"
+#include "chicane/protocol/schema_json.hpp"
 #include "chicane/run/setting.hpp"
 
 namespace chicane::python {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "chicane/base/math.hpp"
-#include "chicane/lap_time/plant_limit.hpp"
+#include "chicane/lap_time/limit.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/plan_cache.hpp"

@@ -98,7 +98,7 @@ void PythonController::fail(double time, py::error_already_set& error, bool is_l
                       " s (step_limit_s) and was ended\n";
 }
 
-/// A model car is seen in full size by controllers (model/similarity.hpp); here it is as it is.
+/// A model car is seen in full size by controllers (model/vehicle.hpp); here it is as it is.
 model::Measurement PythonController::as_it_is(model::Measurement now) const noexcept {
   now.time /= similarity_.time();
   now.delay /= similarity_.time();

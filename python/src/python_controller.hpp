@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "chicane/controller/controller.hpp"
-#include "chicane/model/similarity.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "step_watch.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chicane/recording/detail/ros_message.hpp"
-#include "chicane/telemetry/mcap_reader.hpp"
+#include "chicane/telemetry/mcap.hpp"
 #include "conversion.hpp"
 #include "faces.hpp"
 

@@ -11,7 +11,7 @@
 #include <memory>
 #include <string>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/sim/double_track.hpp"
 #include "chicane/sim/plant_registry.hpp"

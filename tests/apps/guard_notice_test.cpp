@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "guard_notice.hpp"
+#include "experiment.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

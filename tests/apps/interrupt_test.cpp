@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "interrupt.hpp"
+#include "program.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -144,7 +144,7 @@ std::set<std::string> quoted_words(const std::string& file, const std::string& b
 }
 
 TEST(Lab, IsBuiltByRunShForEachOfItsCommands) {
-  std::set<std::string> commands = quoted_words("/apps/chicane/lab_main.cpp", "    {\"", '"');
+  std::set<std::string> commands = quoted_words("/apps/chicane/lab/main.cpp", "    {\"", '"');
   commands.erase("replay");  // of recordings it needs no other program
   EXPECT_EQ(commands.size(), 12U);
   std::set<std::string> built = quoted_words("/run.sh", "  ' campaign '", '\'');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "run_notices.hpp"
+#include "progress.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "apps/program_outcome.hpp"
-#include "plan_wait.hpp"
 
 namespace chicane::apps {
 namespace {

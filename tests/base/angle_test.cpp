@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 
 #include <gtest/gtest.h>
 
-#include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 
 namespace chicane {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/base/assert.hpp"
+#include "chicane/base/compiler.hpp"
 
 #include <gtest/gtest.h>
 

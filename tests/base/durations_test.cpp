@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/base/durations.hpp"
+#include "chicane/base/deadline.hpp"
 
 #include <gtest/gtest.h>
 

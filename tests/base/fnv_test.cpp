@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/base/fnv.hpp"
+#include "chicane/base/random.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/base/jet_functions.hpp"
+#include "chicane/base/jet.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "chicane/base/math_pack.hpp"
+#include "chicane/base/pack.hpp"
 #include "chicane/base/random.hpp"
 
 namespace models {  // as users write them: nothing of chicane is in scope

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "chicane/base/math_pack.hpp"
+#include "chicane/base/pack.hpp"
 #include "chicane/base/random.hpp"
 
 namespace chicane {

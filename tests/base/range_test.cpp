@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/base/range.hpp"
+#include "chicane/base/option.hpp"
 
 #include <gtest/gtest.h>
 

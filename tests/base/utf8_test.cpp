@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/base/utf8.hpp"
+#include "chicane/base/text.hpp"
 
 #include <gtest/gtest.h>
 

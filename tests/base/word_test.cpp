@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/base/word.hpp"
+#include "chicane/base/text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 
 #include "chicane/base/random.hpp"
 #include "chicane/controller/controller.hpp"
-#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
 
 /// Controllers that try to drive the car off the road, for attacks on the guard.

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "closed_loop/drive.hpp"
 
 namespace chicane::run {

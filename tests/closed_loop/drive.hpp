@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "support/slow_tests.hpp"

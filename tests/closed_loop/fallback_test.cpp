@@ -8,7 +8,6 @@
 #include "chicane/controller/cubic_mpc.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/run/make.hpp"
-#include "chicane/sim/actuation_delay.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
 #include "closed_loop/drive.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 
 namespace chicane::attack {
 namespace {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "chicane/base/random.hpp"
-#include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/run/closed_loop.hpp"
 

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/external_drive.hpp"

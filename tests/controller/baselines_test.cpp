@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "controller/sample_road.hpp"
 #include "support/guarded.hpp"
 

@@ -7,7 +7,6 @@
 #include <limits>
 #include <tuple>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/local_fit.hpp"
 

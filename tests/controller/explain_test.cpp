@@ -10,7 +10,7 @@
 #include "chicane/controller/baselines.hpp"
 #include "chicane/controller/cubic_mpc.hpp"
 #include "chicane/controller/tracking_mpc.hpp"
-#include "chicane/road/speed_plan.hpp"
+#include "chicane/road/line_planner.hpp"
 #include "controller/sample_road.hpp"
 
 namespace chicane::controller {

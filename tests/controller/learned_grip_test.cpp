@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "chicane/base/math.hpp"
-#include "chicane/model/grip.hpp"
+#include "chicane/model/vehicle.hpp"
 
 namespace chicane::controller {
 namespace {

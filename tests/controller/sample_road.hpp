@@ -2,7 +2,7 @@
 #pragma once
 
 #include "chicane/base/math.hpp"
-#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
 
 namespace chicane::controller {
 

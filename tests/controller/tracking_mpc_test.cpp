@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "controller/sample_road.hpp"

@@ -25,7 +25,7 @@
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
-#include "chicane/recording/reader.hpp"
+#include "chicane/recording/replay.hpp"
 #include "chicane/survey/free_space.hpp"
 #include "chicane/survey/image.hpp"
 #include "chicane/sweep/claim.hpp"

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "chicane/base/instruction_set.hpp"
-#include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/library.hpp"
+#include "chicane/protocol/schema_json.hpp"
 #include "chicane/run/closed_loop.hpp"
 
 namespace chicane {

@@ -14,7 +14,7 @@
 
 #include "chicane/base/random.hpp"
 #include "chicane/protocol/car_messages.hpp"
-#include "chicane/telemetry/mcap_writer.hpp"
+#include "chicane/telemetry/mcap.hpp"
 
 namespace chicane::identify {
 namespace {

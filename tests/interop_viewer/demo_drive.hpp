@@ -7,7 +7,6 @@
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/telemetry/frame.hpp"
-#include "chicane/telemetry/situation.hpp"
 
 namespace chicane::demo {
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
-#include "chicane/lap_time/detail/plan_driver.hpp"
-#include "chicane/lap_time/plant_limit.hpp"
+#include "chicane/base/math.hpp"
+#include "chicane/lap_time/detail/plan_search.hpp"
+#include "chicane/lap_time/limit.hpp"
 #include "chicane/sim/plant_registry.hpp"
 #include "support/roads.hpp"
 

@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "chicane/lap_time/detail/symmetric_block.hpp"
-
 namespace chicane::lap_time {
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/lap_time/lap_times.hpp"
+#include "chicane/lap_time/limit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::lap_time {

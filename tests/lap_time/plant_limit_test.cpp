@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/lap_time/plant_limit.hpp"
+#include "chicane/lap_time/limit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 
 namespace chicane::lap_time {
 namespace {

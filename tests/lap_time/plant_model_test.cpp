@@ -5,10 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
-#include "chicane/lap_time/detail/double_track_model.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/lap_time/detail/limit_model.hpp"
-#include "chicane/lap_time/detail/udacity_model.hpp"
+#include "chicane/lap_time/detail/plant_models.hpp"
 #include "lap_time/derivatives.hpp"
 #include "support/roads.hpp"
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
-#include "chicane/lap_time/detail/vehicle_model.hpp"
-#include "chicane/lap_time/plant_limit.hpp"
+#include "chicane/base/math.hpp"
+#include "chicane/lap_time/detail/plant_models.hpp"
+#include "chicane/lap_time/limit.hpp"
 #include "lap_time/derivatives.hpp"
 
 namespace chicane::lap_time {

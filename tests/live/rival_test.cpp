@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/live/rival.hpp"
+#include "chicane/live/what_if.hpp"
 
 #include <gtest/gtest.h>
 

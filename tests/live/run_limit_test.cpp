@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/make.hpp"
 #include "support/roads.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "chicane/protocol/fault_codec.hpp"
+#include "chicane/protocol/schema_json.hpp"
 
 namespace chicane::live {
 namespace {

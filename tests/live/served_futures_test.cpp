@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/live/served_futures.hpp"
+#include "chicane/live/served_run.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/live/worker_server.hpp"
+#include "chicane/live/worker_run.hpp"
 
 #include <gtest/gtest.h>
 

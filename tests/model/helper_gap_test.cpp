@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/model/helper_gap.hpp"
+#include "chicane/model/actuator.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "chicane/base/random.hpp"
-#include "chicane/model/tire.hpp"
+#include "chicane/model/wheel_forces.hpp"
 
 namespace chicane::model {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/model/similarity.hpp"
+#include "chicane/model/vehicle.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/model/tire.hpp"
+#include "chicane/model/wheel_forces.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/jet.hpp"
+#include "chicane/base/math.hpp"
 
 namespace chicane::model {
 namespace {

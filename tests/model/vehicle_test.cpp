@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "chicane/base/random.hpp"
-#include "chicane/model/similarity.hpp"
 
 namespace chicane::model {
 namespace {

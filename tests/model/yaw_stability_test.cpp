@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/model/yaw_stability.hpp"
+#include "chicane/model/stability.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The table of docs/security.md: every combination of address, token, Host, Origin, path and proof.
-#include "chicane/net/detail/admission.hpp"
+#include "chicane/net/detail/connections.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/net/token.hpp"
+#include "chicane/net/http_response.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/protocol/build_id.hpp"
+#include "chicane/protocol/data_folders.hpp"
 
 #include <gtest/gtest.h>
 

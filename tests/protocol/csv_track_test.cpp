@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/protocol/csv_track.hpp"
+#include "chicane/protocol/track_codec.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "support/comma_locale.hpp"
 
 namespace chicane::protocol {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/protocol/fault_codec.hpp"
+#include "chicane/protocol/schema_json.hpp"
 
 #include <gmock/gmock.h>
 

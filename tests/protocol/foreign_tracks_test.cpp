@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/protocol/foreign_tracks.hpp"
+#include "chicane/protocol/track_codec.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -14,10 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/library.hpp"
-#include "chicane/road/point_fit.hpp"
+#include "chicane/road/track.hpp"
 #include "support/stadium.hpp"
 
 namespace chicane::protocol {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/protocol/guard_facts.hpp"
+#include "chicane/protocol/json_report.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include <sstream>
 #include <string>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
+#include "chicane/base/math.hpp"
 
 namespace chicane::protocol {
 namespace {

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "chicane/base/utf8.hpp"
+#include "chicane/base/text.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/track_codec.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/protocol/parameter_messages.hpp"
+#include "chicane/protocol/car_messages.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

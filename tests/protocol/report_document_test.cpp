@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/protocol/report_document.hpp"
+#include "chicane/protocol/json.hpp"
 
 #include <gtest/gtest.h>
 

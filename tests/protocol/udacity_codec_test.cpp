@@ -10,7 +10,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "protocol/hostile_telemetry.hpp"
 #include "support/comma_locale.hpp"
 

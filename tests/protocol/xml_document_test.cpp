@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/protocol/detail/xml_document.hpp"
+#include "chicane/protocol/detail/foreign_roads.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

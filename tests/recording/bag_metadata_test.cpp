@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/recording/bag_metadata.hpp"
+#include "chicane/recording/log_files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/recording/branch.hpp"
+#include "chicane/recording/shadow_run.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include "chicane/protocol/step_codec.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/recording/replay.hpp"
-#include "chicane/telemetry/mcap_reader.hpp"
+#include "chicane/telemetry/mcap.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/recording/driven_lap.hpp"
+#include "chicane/recording/lap_picture.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "chicane/protocol/library.hpp"
-#include "chicane/recording/indexed_copy.hpp"
+#include "chicane/recording/log_files.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/telemetry/mcap_reader.hpp"
+#include "chicane/telemetry/mcap.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {

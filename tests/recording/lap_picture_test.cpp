@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "chicane/recording/detail/canvas.hpp"
-#include "chicane/recording/detail/stroke_font.hpp"
 
 namespace chicane::recording {
 namespace {

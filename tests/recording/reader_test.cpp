@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/recording/reader.hpp"
+#include "chicane/recording/replay.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,11 +10,11 @@
 #include <map>
 #include <string>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/replay.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/telemetry/mcap_reader.hpp"
+#include "chicane/telemetry/mcap.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {

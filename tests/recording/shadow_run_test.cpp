@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
-#include "chicane/recording/branch.hpp"
 
 namespace chicane::recording {
 namespace {

@@ -17,7 +17,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/telemetry/mcap_reader.hpp"
+#include "chicane/telemetry/mcap.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/recording/temporary_file.hpp"
+#include "chicane/recording/log_files.hpp"
 
 #include <gtest/gtest.h>
 

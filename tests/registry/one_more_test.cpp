@@ -10,10 +10,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "chicane/base/angle.hpp"
-#include "chicane/protocol/fault_codec.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
+#include "chicane/protocol/schema_json.hpp"
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/sim/plant_registry.hpp"

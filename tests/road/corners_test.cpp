@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/road/corners.hpp"
+#include "chicane/road/track.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::road {

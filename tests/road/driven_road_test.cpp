@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/road/driven_road.hpp"
+#include "chicane/road/racing_road.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/road/instalments.hpp"
+#include "chicane/road/line_planner.hpp"
 
 #include <gtest/gtest.h>
 

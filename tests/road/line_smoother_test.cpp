@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/road/line_smoother.hpp"
+#include "chicane/road/line_planner.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/road/point_fit.hpp"
+#include "chicane/road/track.hpp"
 
 #include <gtest/gtest.h>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 
 namespace chicane::road {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/road/road_data.hpp"
+#include "chicane/road/racing_road.hpp"
 
 #include <gtest/gtest.h>
 #include <cmath>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::road {

@@ -5,9 +5,8 @@
 
 #include <vector>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
 #include "chicane/road/road.hpp"
 
 namespace chicane::road {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/road/speed_plan.hpp"
+#include "chicane/road/line_planner.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "chicane/model/grip.hpp"
+#include "chicane/model/vehicle.hpp"
 #include "road/sample_loop.hpp"
 
 namespace chicane::road {

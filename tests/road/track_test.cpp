@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "support/roads.hpp"
 

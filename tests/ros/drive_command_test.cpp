@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/ros/drive_command.hpp"
+#include "chicane/ros/car_topics.hpp"
 
 #include <gtest/gtest.h>
 
-#include "chicane/ros/node_options.hpp"
+#include "chicane/ros/nodes.hpp"
 
 namespace chicane::ros {
 namespace {

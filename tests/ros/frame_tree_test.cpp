@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/ros/frame_tree.hpp"
+#include "chicane/ros/car_sight.hpp"
 
 #include <gtest/gtest.h>
 

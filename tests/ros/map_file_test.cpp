@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/ros/map_file.hpp"
+#include "chicane/ros/nodes.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "chicane/protocol/car_messages.hpp"
-#include "chicane/protocol/parameter_messages.hpp"
 
 namespace chicane::protocol {
 namespace {

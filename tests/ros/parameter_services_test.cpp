@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/ros/parameter_services.hpp"
+#include "chicane/ros/run_publisher.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <chrono>
 #include <map>
 
-#include "chicane/protocol/parameter_messages.hpp"
+#include "chicane/protocol/car_messages.hpp"
 
 namespace chicane::ros {
 namespace {

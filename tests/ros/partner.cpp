@@ -26,7 +26,6 @@
 #include <vector>
 
 #include "chicane/protocol/car_messages.hpp"
-#include "chicane/protocol/parameter_messages.hpp"
 #include "chicane/ros/dds.hpp"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/ros/partner_watch.hpp"
+#include "chicane/ros/car_topics.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/sim/plant_registry.hpp"
 
 namespace chicane::run {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 
 namespace chicane::run {
 namespace {

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/protocol/library.hpp"
 
 namespace chicane::run {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"

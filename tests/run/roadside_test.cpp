@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "support/alloc_guard.hpp"
 
 namespace chicane::run {

@@ -9,7 +9,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/sim/fault.hpp"
-#include "chicane/telemetry/situation.hpp"
+#include "chicane/telemetry/frame.hpp"
 
 namespace chicane::run {
 namespace {

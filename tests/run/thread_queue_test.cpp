@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "chicane/telemetry/change.hpp"
+#include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::run {
 namespace {

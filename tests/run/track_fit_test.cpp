@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 
 namespace chicane::run {
 namespace {

@@ -6,10 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
-#include "chicane/model/grip.hpp"
+#include "chicane/model/vehicle.hpp"
 
 namespace chicane::safety {
 namespace {

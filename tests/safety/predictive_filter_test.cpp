@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "support/alloc_guard.hpp"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 
 namespace chicane::safety {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "support/alloc_guard.hpp"
 
 namespace chicane::safety {

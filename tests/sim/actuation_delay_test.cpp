@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/sim/actuation_delay.hpp"
+#include "chicane/sim/sensor.hpp"
 
 #include <gtest/gtest.h>
 

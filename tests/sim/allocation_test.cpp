@@ -4,8 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
-#include "chicane/sim/actuation_delay.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/sim/plant_registry.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "sim/plant_experiment.hpp"
 
 namespace chicane::sim {
@@ -197,7 +197,7 @@ TEST(DoubleTrack, TractionControlKeepsTheDrivenWheelsFromSpinning) {
   EXPECT_GT(controlled.output().speed, spinning.output().speed);
 }
 
-// model/similarity.hpp: a quarter of the length, half of the time, the same acceleration.
+// model/vehicle.hpp: a quarter of the length, half of the time, the same acceleration.
 TEST(DoubleTrack, AModelCarMovesAsTheCarItIsAModelOf) {
   constexpr double kScale = 0.25;
   DoubleTrackParams p;

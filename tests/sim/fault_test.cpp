@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 
 namespace chicane::sim {
 namespace {

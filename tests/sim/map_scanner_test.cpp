@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/sim/map_scanner.hpp"
+#include "chicane/sim/range_scanner.hpp"
 
 #include <gtest/gtest.h>
 

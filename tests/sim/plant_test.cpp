@@ -8,7 +8,6 @@
 #include <limits>
 #include <string>
 
-#include "chicane/base/fnv.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/model/vehicle.hpp"

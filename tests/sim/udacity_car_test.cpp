@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "sim/plant_experiment.hpp"
 
 namespace chicane::sim {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/sim/plant_registry.hpp"
 #include "support/roads.hpp"
 

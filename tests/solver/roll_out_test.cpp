@@ -6,7 +6,7 @@
 #include <limits>
 #include <memory>
 
-#include "chicane/base/math_pack.hpp"
+#include "chicane/base/pack.hpp"
 #include "chicane/base/random.hpp"
 #include "problems/described_problem.hpp"
 

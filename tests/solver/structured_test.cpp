@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include "chicane/base/math_pack.hpp"
+#include "chicane/base/pack.hpp"
 #include "chicane/solver/problem.hpp"
 #include "problems/described_problem.hpp"
 

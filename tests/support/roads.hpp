@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/road/track.hpp"
 
 namespace chicane::test {

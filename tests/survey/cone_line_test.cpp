@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/survey/cone_line.hpp"
+#include "chicane/survey/sampled_line.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 
 namespace chicane::survey {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/survey/distance_field.hpp"
+#include "chicane/survey/image.hpp"
 
 #include <gtest/gtest.h>
 

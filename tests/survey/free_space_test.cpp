@@ -9,7 +9,7 @@
 #include <numeric>
 #include <vector>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 
 namespace chicane::survey {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/survey/geodesy.hpp"
+#include "chicane/survey/sampled_line.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "chicane/sweep/league_results.hpp"
+#include "chicane/sweep/league.hpp"
 #include "chicane/sweep/sweep.hpp"
 
 namespace chicane::sweep {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/sweep/sampling.hpp"
+#include "chicane/sweep/plan.hpp"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,6 @@
 #include <thread>
 
 #include "chicane/base/text.hpp"
-#include "chicane/sweep/outcome.hpp"
 #include "chicane/sweep/plan_codec.hpp"
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/result_table.hpp"

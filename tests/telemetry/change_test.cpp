@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/telemetry/change.hpp"
+#include "chicane/telemetry/metrics.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/telemetry/mcap_format.hpp"
+#include "chicane/telemetry/mcap.hpp"
 
 #include <gtest/gtest.h>
 

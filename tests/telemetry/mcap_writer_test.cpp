@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/telemetry/mcap_writer.hpp"
+#include "chicane/telemetry/mcap.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

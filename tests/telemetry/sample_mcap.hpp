@@ -12,8 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "chicane/telemetry/mcap_reader.hpp"
-#include "chicane/telemetry/mcap_writer.hpp"
+#include "chicane/telemetry/mcap.hpp"
 
 namespace chicane::telemetry {
 

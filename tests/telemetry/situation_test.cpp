@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/telemetry/situation.hpp"
+#include "chicane/telemetry/frame.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
-
-#include "chicane/telemetry/frame.hpp"
 
 namespace chicane::telemetry {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
-#include "chicane/model/grip.hpp"
+#include "chicane/model/vehicle.hpp"
 
 namespace chicane::tracking {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/wire/command_receiver.hpp"
+#include "chicane/wire/simulate.hpp"
 
 #include <gtest/gtest.h>
 

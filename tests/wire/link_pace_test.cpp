@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/wire/link_pace.hpp"
+#include "chicane/wire/run_memory.hpp"
 
 #include <gtest/gtest.h>
 

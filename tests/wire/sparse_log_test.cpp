@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/wire/sparse_log.hpp"
+#include "chicane/wire/endpoint.hpp"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,7 @@
 #include "chicane/run/make.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
-#include "chicane/wire/command_receiver.hpp"
+#include "chicane/wire/simulate.hpp"
 #include "support/slow_tests.hpp"
 
 namespace chicane::wire {

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "chicane/base/inlining.hpp"
-#include "chicane/base/math_pack.hpp"
+#include "chicane/base/compiler.hpp"
+#include "chicane/base/pack.hpp"
 #include "traced/program.hpp"
 
 namespace chicane::python {

@@ -1,21 +1,34 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <variant>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/base/result.hpp"
 
-/// What can be set: each options struct has a table of its fields with name, unit, range and meaning, beside
-/// the code that uses them. Configuration keys, command line, range checks and
-/// docs/reference/configuration.md follow from these rows.
 namespace chicane {
+
+/// `value` in [low, high]; nothing when it is outside. What lies beyond a border by no more than the rounding
+/// of single precision, a millionth of the larger border (or of 1), is the border: programs that compute with
+/// floats mean it. Not-a-number is outside. Requires finite low <= high.
+[[nodiscard]] inline std::optional<double> within(double value, double low, double high) noexcept {
+  const double rounding = 1e-6 * std::max({1.0, std::fabs(low), std::fabs(high)});
+  if (!(value >= low - rounding && value <= high + rounding)) return std::nullopt;
+  return std::clamp(value, low, high);
+}
+
+// What can be set: each options struct has a table of its fields with name, unit, range and meaning, beside
+// the code that uses them. Configuration keys, command line, range checks and
+// docs/reference/configuration.md follow from these rows.
 
 /// Inside C++ all is SI; outside, every number carries its unit in the key's suffix. SI value = value outside
 /// · factor / divisor.

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/controller/controller_list.hpp"

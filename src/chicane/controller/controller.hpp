@@ -11,7 +11,6 @@
 #include "chicane/base/deadline.hpp"
 #include "chicane/base/vec2.hpp"
 #include "chicane/controller/guard_words.hpp"
-#include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/reference_line.hpp"

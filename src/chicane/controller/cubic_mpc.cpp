@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/owned.hpp"

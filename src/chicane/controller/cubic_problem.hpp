@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <tuple>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/cubic_mpc.hpp"
 #include "chicane/controller/described_model.hpp"

@@ -3,10 +3,9 @@
 
 #include <tuple>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/controller/cubic_mpc.hpp"
-#include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 
 namespace chicane::controller {

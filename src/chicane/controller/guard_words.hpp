@@ -7,12 +7,12 @@
 #include <string>
 #include <string_view>
 
-#include "chicane/base/word.hpp"
+#include "chicane/base/text.hpp"
 
 /// The tables of Rung and GuardReason. A row makes the enumerator, its name in JSON, its constant in the
 /// messages, its sentence in terminal and dashboard, and its severity in /diagnostics. Rows are numbered in
 /// order; recordings keep the numbers, so a new row goes to the end.
-/// Columns: enumerator, name, severity, sentence (base/word.hpp).
+/// Columns: enumerator, name, severity, sentence (base/text.hpp).
 // clang-format off
 #define CHICANE_RUNGS(ROW)                                                                                       \
   ROW(kController, "controller", kOk, "the controller drives")                                                   \

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "chicane/controller/controller.hpp"
-#include "chicane/model/sliding.hpp"
+#include "chicane/model/stability.hpp"
 #include "chicane/tracking/grip_estimator.hpp"
 
 namespace chicane::controller {

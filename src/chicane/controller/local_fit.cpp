@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chicane/base/assert.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::controller {

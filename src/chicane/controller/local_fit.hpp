@@ -5,7 +5,6 @@
 #include <span>
 
 #include "chicane/base/vec2.hpp"
-#include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 
 namespace chicane::controller {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/controller/controller.hpp"
-#include "chicane/model/helper_gap.hpp"
+#include "chicane/model/actuator.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/reference_line.hpp"
 #include "chicane/tracking/tracking_problem.hpp"

@@ -5,15 +5,15 @@
 #include <cmath>
 #include <limits>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/base/owned.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/learned_grip.hpp"
 #include "chicane/controller/tracking_guess.hpp"
-#include "chicane/model/grip.hpp"
-#include "chicane/road/driven_road.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/road/racing_road.hpp"
 #include "chicane/tracking/state_estimator.hpp"
 #include "chicane/tracking/tracking_solver.hpp"
 #include "chicane/tracking/way_back.hpp"

@@ -11,7 +11,6 @@
 #include <limits>
 #include <utility>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/identify/detail/log_rows.hpp"
 #include "chicane/protocol/library.hpp"

@@ -17,7 +17,7 @@
 #include "chicane/base/vec2.hpp"
 #include "chicane/identify/detail/window_fit.hpp"
 #include "chicane/model/prediction.hpp"
-#include "chicane/model/similarity.hpp"
+#include "chicane/model/vehicle.hpp"
 
 namespace chicane::identify {
 namespace {
@@ -46,7 +46,7 @@ struct Row {
   double model_error = 0.0;
 };
 
-/// What numbers with this unit are in the car as it is, over those in full size (model/similarity.hpp).
+/// What numbers with this unit are in the car as it is, over those in full size (model/vehicle.hpp).
 double per_full_size(std::string_view unit, const model::Similarity& to) {
   const double length = to.length(), time = to.time();
   if (unit == "ms") return 1.0 / time;

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "chicane/lap_time/detail/plan_search.hpp"
-#include "chicane/lap_time/detail/vehicle_model.hpp"
+#include "chicane/lap_time/detail/plant_models.hpp"
 
 namespace chicane::lap_time {
 namespace {

@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "chicane/base/result.hpp"
-#include "chicane/lap_time/plan_progress.hpp"
-#include "chicane/model/sliding.hpp"
+#include "chicane/lap_time/limit.hpp"
+#include "chicane/model/stability.hpp"
 #include "chicane/model/vehicle.hpp"
-#include "chicane/road/road_data.hpp"
+#include "chicane/road/racing_road.hpp"
 #include "chicane/road/track.hpp"
 
 namespace chicane::lap_time {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/description.hpp"
 
-#include "chicane/protocol/fault_codec.hpp"
+#include "chicane/protocol/schema_json.hpp"
 
 namespace chicane::live {
 

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <vector>
+
+#include "chicane/net/server.hpp"
 #include "chicane/protocol/ros_messages.hpp"
+#include "chicane/recording/html_report.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/run/closed_loop.hpp"
 
@@ -15,5 +19,13 @@ void describe(const scenario::Scenario& scenario, protocol::Run& run);
 
 /// A run with our simulator, for viewers and recordings; without its limit.
 [[nodiscard]] protocol::Run description(const run::ClosedLoop& loop);
+
+/// The files of the dashboard, gzip-compressed inside the program (target chicane_web_assets,
+/// cmake/EmbedWeb.cmake). A program built without Node holds one plain page that says so.
+[[nodiscard]] std::vector<net::Asset> embedded_assets();
+
+/// The page that draws reports of recordings (recording/html_report.hpp) and documents
+/// (protocol/json.hpp).
+[[nodiscard]] recording::ReportBundle document_bundle();
 
 }  // namespace chicane::live

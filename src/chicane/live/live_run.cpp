@@ -7,7 +7,7 @@
 
 #include "chicane/live/description.hpp"
 #include "chicane/live/pages.hpp"
-#include "chicane/protocol/fault_codec.hpp"
+#include "chicane/protocol/schema_json.hpp"
 
 namespace chicane::live {
 namespace {

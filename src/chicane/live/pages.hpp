@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "chicane/live/live_settings.hpp"
-#include "chicane/live/rival.hpp"
 #include "chicane/live/what_if.hpp"
 #include "chicane/wire/endpoint.hpp"
 

@@ -15,18 +15,17 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/live/worker.hpp"
-#include "chicane/recording/branch.hpp"
 #include "chicane/recording/shadow_run.hpp"
 #include "chicane/run/thread_queue.hpp"
 #include "chicane/scenario/scenario.hpp"
-#include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::live {
 
 /// Events of the current run, in memory, about 130 bytes a step: scenario, changes, laps, and of each control
 /// step all that a bit-identical computation needs. Readers are other futures (what_if.hpp,
-/// served_futures.hpp) and the second car (rival.hpp).
+/// served_run.hpp) and the second car (what_if.hpp).
 ///
 /// The control thread notes through one ring; it neither waits nor allocates, but in begin(). A thread of low
 /// priority collects. The log keeps the newest `most_events` events. After an overflow of the ring the run is

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "chicane/protocol/fault_codec.hpp"
+#include "chicane/protocol/schema_json.hpp"
 #include "chicane/run/lap_planner.hpp"
 
 namespace chicane::live {

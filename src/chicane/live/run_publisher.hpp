@@ -13,7 +13,6 @@
 #include "chicane/protocol/schema_json.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/run/realtime_loop.hpp"
-#include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
 #include "chicane/wire/viewer.hpp"

@@ -3,18 +3,172 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
+#include <variant>
 
+#include "chicane/base/math.hpp"
 #include "chicane/live/description.hpp"
 #include "chicane/live/live_settings.hpp"
 #include "chicane/live/pages.hpp"
 #include "chicane/live/run_limit.hpp"
-#include "chicane/live/served_futures.hpp"
 #include "chicane/live/what_if.hpp"
 #include "chicane/wire/viewer.hpp"
 
 namespace chicane::live {
+namespace {
+
+constexpr double kLeast = 1.0;       // [s] of a run before anything can be said of it
+constexpr double kLongestGap = 0.5;  // [s] between measurements of one car
+constexpr double kShortestPeriod = 0.02, kLongestPeriod = 0.2;  // [s] of the control cycle
+constexpr double kMostDelay = 0.5;                              // [s]
+
+/// The middle one of the times between the newest measurements.
+double usual_period(const std::vector<Seen>& seen, std::size_t to, double otherwise) {
+  constexpr std::size_t kLooked = 100;
+  std::vector<double> periods;
+  for (std::size_t i = to; i > 0 && periods.size() < kLooked; --i)
+    periods.push_back(seen[i].time - seen[i - 1].time);
+  if (periods.empty()) return otherwise;
+  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
+  std::nth_element(periods.begin(), middle, periods.end());
+  return std::clamp(*middle, kShortestPeriod, kLongestPeriod);
+}
+
+/// Where the car was at `time` [s], which the run has come to.
+Vec2 place_at(const std::vector<Seen>& seen, double time) {
+  const auto after =
+      std::find_if(seen.begin() + 1, seen.end() - 1, [&](const Seen& each) { return each.time >= time; });
+  const Seen &b = *after, &a = *(after - 1);
+  const double share = (time - a.time) / (b.time - a.time);
+  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
+}
+
+}  // namespace
+
+model::State moving(const std::vector<Seen>& seen, std::size_t i) {
+  const Seen &now = seen[i], &before = seen[i - 1];
+  const double elapsed = now.time - before.time;
+  const double turned = angle_difference(now.psi, before.psi);
+  const Vec2 way{now.x - before.x, now.y - before.y};
+  constexpr double kSlow = 3.0;  // [m/s] below it the direction of the way is not known well enough
+  const double slip =
+      now.speed < kSlow ? 0.0 : angle_difference(atan2(way.y(), way.x()), before.psi + 0.5 * turned);
+  constexpr double kMostSlip = 0.5;  // [rad] more is the car put elsewhere
+  const double kept = std::fabs(slip) < kMostSlip ? slip : 0.0;
+  return {.x = now.x,
+          .y = now.y,
+          .psi = now.psi,
+          .vx = now.speed * cos(kept),
+          .vy = now.speed * sin(kept),
+          .r = turned / elapsed,
+          .steer = before.sent.steer};
+}
+
+void ServedFutures::assume(const scenario::Scenario& scenario) {
+  const std::lock_guard lock(mutex_);
+  scenario_ = scenario;
+}
+
+void ServedFutures::give_up(std::string why) {
+  const std::lock_guard lock(mutex_);
+  why_not_ = std::move(why);
+}
+
+Result<ServedFutures::Known> ServedFutures::known_at(double time) {
+  const Result<RunLog::Excerpt> excerpt = log_.since({});
+  if (!excerpt) return fail(excerpt.error());
+  Known known;
+  std::vector<Seen>& seen = known.seen;
+  for (const RunLog::Event& event : *excerpt->events) {
+    const auto* step = std::get_if<RunLog::Step>(&event);
+    if (step == nullptr) continue;
+    const auto& [x, y, psi, speed, steer, throttle] = step->seen;
+    if (!std::isfinite(x + y + psi + speed)) continue;
+    if (!seen.empty() && step->time <= seen.back().time) continue;
+    // Another car, or one that was put elsewhere.
+    if (!seen.empty() && step->time - seen.back().time > kLongestGap) seen.clear();
+    seen.push_back({.time = step->time,
+                    .delay = std::clamp(step->delay, 0.0, kMostDelay),
+                    .x = x,
+                    .y = y,
+                    .psi = psi,
+                    .speed = speed,
+                    .sent = {.steer = step->sent[0], .throttle = step->sent[1]}});
+  }
+  const auto after = std::find_if(known.seen.begin(), known.seen.end(),
+                                  [&](const Seen& each) { return each.time > time + 1e-9; });
+  const auto count = static_cast<std::size_t>(after - known.seen.begin());
+  if (count < 2 || known.seen[count - 1].time - known.seen.front().time < kLeast)
+    return fail(ErrorCode::kInvalidArgument,
+                "there is no second of this car's run before that moment that is known without a gap");
+  known.at = count - 1;
+  return known;
+}
+
+/// Begins `car` as a run of ours that has seen what this one saw up to `to`, and goes on from there.
+Result<void> ServedFutures::follow(recording::ShadowRun& car, scenario::Scenario scenario,
+                                   const std::vector<Seen>& seen, std::size_t to) {
+  scenario.laps = 0;
+  scenario.time_limit = 0.0;
+  scenario.faults.clear();
+  scenario.control_period = usual_period(seen, to, scenario.control_period);
+  scenario.latency = seen[to].delay;
+  auto loop = run::ClosedLoop::create(scenario, roads_);
+  if (!loop) return fail(loop.error());
+  (*loop)->drive_on();
+  std::size_t from = to;
+  while (from > 1 && seen[to].time - seen[from].time < kFollowed) --from;
+  (*loop)->restart_at(moving(seen, from));
+  for (std::size_t i = from; i <= to; ++i)
+    (*loop)->follow(seen[i].time, moving(seen, i), seen[i].delay, seen[i].sent);
+  car.begin(std::move(*loop));
+  return {};
+}
+
+Result<recording::BranchReport> ServedFutures::branch(const recording::BranchOptions& options,
+                                                      const recording::BranchHooks& hooks) {
+  std::unique_lock lock(mutex_);
+  if (!why_not_.empty()) return fail(ErrorCode::kInvalidArgument, why_not_);
+  if (!scenario_) return fail(ErrorCode::kInvalidArgument, "the simulator's road is not known");
+  const scenario::Scenario scenario = *scenario_;
+  lock.unlock();
+  const Result<Known> known = known_at(options.at);
+  if (!known) return fail(known.error());
+  const std::vector<Seen>& seen = known->seen;
+
+  recording::StandIn stand_in{.plant = scenario.plant};
+  std::size_t before = known->at;
+  while (before > 1 && seen[known->at].time - seen[before].time < kCompared) --before;
+  recording::ShadowRun check({.on_step = [&](const run::ClosedLoop& loop) {
+    const telemetry::Frame& frame = loop.frame();
+    const Vec2 driven = place_at(seen, frame.time);
+    stand_in.apart = std::max(stand_in.apart, hypot(frame.truth.x - driven.x(), frame.truth.y - driven.y()));
+  }});
+  if (Result<void> begun = follow(check, scenario, seen, before); !begun) return fail(begun.error());
+  stand_in.compared = seen[known->at].time - seen[before].time;
+  bool goes_on = true;
+  check.drive([&] {
+    const double time = check.loop().time();
+    goes_on = !hooks.go_on || hooks.go_on(time);
+    return !goes_on || time >= seen[known->at].time;
+  });
+  if (!goes_on) return fail(ErrorCode::kInvalidArgument, "given up");
+
+  const auto from = std::make_shared<recording::ShadowRun>();
+  if (Result<void> begun = follow(*from, scenario, seen, known->at); !begun) return fail(begun.error());
+  recording::BranchOptions from_there = options;
+  from_there.at = seen[known->at].time + 1.0;  // behind all that is recorded: the futures begin where it ends
+  from_there.drives_both = true;
+  from_there.from = from;
+  const recording::RunEvents nothing = [](const auto&) { return Result<void>{}; };
+  auto report = recording::branch_run(nothing, from_there, hooks);
+  if (report) report->stand_in = std::move(stand_in);
+  return report;
+}
+
 namespace {
 
 constexpr const char* kUnknownRoad = "the simulator's road is not known: --track FILE tells it";

@@ -5,15 +5,21 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
+#include "chicane/live/run_log.hpp"
 #include "chicane/live/run_publisher.hpp"
+#include "chicane/model/state.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/recording/recorder.hpp"
+#include "chicane/recording/shadow_run.hpp"
 #include "chicane/road/track.hpp"
+#include "chicane/run/roads.hpp"
 #include "chicane/run/setting.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/wire/serve.hpp"
@@ -21,7 +27,7 @@
 namespace chicane::live {
 
 /// Serves a car of another simulator until it is stopped: wire::serve, or the same in another dialect
-/// (ros/drive_node.hpp). The hooks are called on one thread, but for `log`.
+/// (ros/nodes.hpp). The hooks are called on one thread, but for `log`.
 using ServeFunction = std::function<Result<wire::ServeSummary>(
     const wire::ServeOptions&, std::unique_ptr<controller::Controller>, wire::ServeHooks, wire::Endpoint*,
     std::vector<net::Asset>, const std::atomic<bool>&)>;
@@ -58,6 +64,56 @@ class ServedRun {
   protocol::Run description_;
   wire::ServeOptions options_;
   std::vector<net::Asset> assets_;
+};
+
+/// A moment of a car that others simulate, as it was measured.
+struct Seen {
+  double time = 0.0;   ///< [s]
+  double delay = 0.0;  ///< from the measurement to the actuators [s]
+  double x = 0.0, y = 0.0, psi = 0.0, speed = 0.0;
+  model::Command sent;
+};
+/// How it moved at `seen[i]`, with what is not measured, sideslip and yaw rate, from where it was before.
+/// Pre: i > 0.
+[[nodiscard]] model::State moving(const std::vector<Seen>& seen, std::size_t i);
+
+/// Futures of a run whose car others simulate: both are driven by the simulator that we have of that car, on
+/// the road that is known, from where the car was. Our controller sees the minutes before once more, so that
+/// it knows what it knew: the road that it learned, and the commands on their way. How far our car is to be
+/// trusted is measured: over the ten seconds before the moment it is driven, too, and compared with the one
+/// that was driven.
+class ServedFutures {
+ public:
+  static constexpr double kFollowed = 150.0;  ///< of the run before the moment [s]
+  static constexpr double kCompared = 10.0;   ///< [s]
+
+  /// `log` must outlive it.
+  explicit ServedFutures(RunLog& log) : log_{log} {}
+
+  /// Any thread: the settings that hold from now on; the scenario's track is the simulator's road.
+  void assume(const scenario::Scenario& scenario);
+  /// Any thread: the road is not the simulator's; branch() says why from now on.
+  void give_up(std::string why);
+
+  /// One thread at a time: both futures from `options.at` on, with the settings that hold now, and with those
+  /// of `options`. Fails as recording::branch_run() does, and while less than a second is known.
+  [[nodiscard]] Result<recording::BranchReport> branch(const recording::BranchOptions& options,
+                                                       const recording::BranchHooks& hooks);
+
+ private:
+  struct Known {
+    std::vector<Seen> seen;  ///< of the newest car
+    std::size_t at = 0;      ///< the moment
+  };
+  [[nodiscard]] Result<Known> known_at(double time);
+  [[nodiscard]] Result<void> follow(recording::ShadowRun& car, scenario::Scenario scenario,
+                                    const std::vector<Seen>& seen, std::size_t to);
+
+  RunLog& log_;
+  run::Roads roads_;
+  std::mutex mutex_;  ///< of all below
+  std::optional<scenario::Scenario> scenario_;
+  std::string why_not_;
 };
 
 }  // namespace chicane::live

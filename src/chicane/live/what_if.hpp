@@ -1,18 +1,27 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "chicane/base/result.hpp"
-#include "chicane/live/newest_task.hpp"
-#include "chicane/recording/branch.hpp"
+#include "chicane/live/run_log.hpp"
+#include "chicane/live/worker.hpp"
+#include "chicane/recording/shadow_run.hpp"
+#include "chicane/run/closed_loop.hpp"
+#include "chicane/scenario/scenario.hpp"
+#include "chicane/telemetry/frame.hpp"
 
 namespace chicane::live {
 
@@ -57,6 +66,92 @@ class WhatIf {
   std::atomic<double> share_{0.0};  ///< of the question that is being computed
   std::string answer_ = R"({"id":0,"state":"none"})";
   NewestTask<Request, std::string> task_;  // last
+};
+
+/// What a lap of one of two cars was like, third by third.
+struct LapNotes {
+  telemetry::CompletedLap lap;
+  std::array<double, 3> slowest{}, fastest{};  ///< [m/s]
+  std::array<double, 3> largest_error{};       ///< from the track's line [m]
+};
+
+/// Makes the notes of each lap of one car from its control cycles. Fixed memory but for a lap's rows.
+class LapNoter {
+ public:
+  void begin() { rows_.clear(); }
+  void add(double time, double speed, double lateral_error);
+  /// The lap that ended with the last row.
+  [[nodiscard]] LapNotes finish(const telemetry::CompletedLap& lap);
+
+ private:
+  static constexpr std::size_t kMostRows = 30'000;  ///< 20 minutes with 25 cycles a second
+  struct Row {
+    double time, speed, lateral_error;
+  };
+  std::deque<Row> rows_;
+};
+
+/// A second car on the stage of a live run: a shadow run on the same track, with the same car, seed and
+/// faults and other settings, from the start line on. It is driven on a thread of its own, of low priority,
+/// up to where the run is by its log; the run's thread does nothing for it.
+///
+/// What acts on the world (faults, and settings of plant, sensor and latency) acts on both at the same cycle;
+/// settings of the controller that change meanwhile act on the run's own car alone. The race ends when the
+/// run begins with other choices, or when the rival is lost.
+class Rival {
+ public:
+  static constexpr std::size_t kMostLaps = 100;  ///< reported of each car, the newest
+  static constexpr std::size_t kTrace = 125;     ///< poses reported of the rival, the newest: five seconds
+
+  /// `log` outlives this. `begin_anew` is called on the rival's thread when it is ready: both begin at the
+  /// line.
+  Rival(RunLog& log, std::function<void()> begin_anew);
+
+  /// The network thread: {"settings":{"latency_ms":60}} begins a race of `scenario`, {} ends it. The number
+  /// of the race, as a text. kInvalidArgument in a sentence for viewers: for a setting that is unknown, out
+  /// of range, or cannot change while a run goes on.
+  [[nodiscard]] Result<std::string> ask(std::string_view json, const scenario::Scenario& scenario);
+  /// GET /rival.json (docs/viewer_laps.md). Any thread.
+  [[nodiscard]] std::string answer() const;
+
+ private:
+  enum class State { kNone, kBuilding, kWaiting, kRacing, kEnded, kFailed };
+  struct Request {
+    scenario::Scenario scenario;
+    std::vector<std::pair<std::string, std::string>> settings;
+  };
+  static constexpr std::array kColumns{"time_s",    "x_m",       "y_m",       "yaw_rad",
+                                       "steer_rad", "speed_mps", "distance_m"};
+
+  void work();
+  void build(const Request& request);
+  void catch_up();
+  void take(const RunLog::Step& step);
+  void take(const RunLog::Change& change);
+  void take(const telemetry::CompletedLap& lap) { keep(laps_of_run_, run_laps_.finish(lap)); }
+  void note(const run::ClosedLoop& loop);
+  void begin();
+  void end(State state, std::string why);
+  void keep(std::vector<LapNotes>& laps, const LapNotes& notes) const;
+  [[nodiscard]] bool is_racing() const;
+
+  RunLog& log_;
+  std::function<void()> begin_anew_;
+
+  // The rival's thread:
+  std::optional<recording::ShadowRun> car_;
+  RunLog::Place place_;  ///< of the run, up to which it has come
+  LapNoter own_laps_, run_laps_;
+
+  mutable std::mutex mutex_;  ///< of all below
+  std::optional<Request> request_;
+  std::uint64_t newest_ = 0;
+  State state_ = State::kNone;
+  std::string why_;
+  std::vector<std::pair<std::string, std::string>> settings_;
+  std::vector<LapNotes> laps_of_run_, laps_;
+  std::deque<std::array<double, kColumns.size()>> trace_;
+  Worker worker_;  // last
 };
 
 }  // namespace chicane::live

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/model/vehicle.hpp"
 

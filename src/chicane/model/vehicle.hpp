@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <string>
 
 #include "chicane/base/option.hpp"
 #include "chicane/base/result.hpp"
+#include "chicane/model/state.hpp"
 
 namespace chicane::model {
 
@@ -80,7 +82,7 @@ struct VehicleParams : CarBody {
   std::string name = "udacity";
 
   double scale = 1.0;  ///< of a model car, 0.1 for 1:10: settings of controller and guard in metres and
-                       ///< seconds are those of the car in full size (model/similarity.hpp)
+                       ///< seconds are those of the car in full size (model/vehicle.hpp)
 
   // Geometry.
   double length = 4.47;            ///< body [m]
@@ -100,7 +102,7 @@ struct VehicleParams : CarBody {
   double steer_helper =
       0.768;  ///< share of each yaw change by which the car turns its velocity along; 0 = a real car
   double helper_gap =
-      0.0;  ///< for which the helper does nothing when the heading passes +y [s] (helper_gap.hpp)
+      0.0;  ///< for which the helper does nothing when the heading passes +y [s] (actuator.hpp)
 
   // Longitudinal: a = drive_acceleration · throttle − drag_linear · v − drag_quadratic · v² for throttle >=
   // 0, and − brake_acceleration · |throttle| − drag for throttle < 0 (reverse_acceleration below
@@ -170,5 +172,67 @@ inline constexpr double kRestTime = 0.4;  ///< [s]
 [[nodiscard]] VehicleParams udacity_params();
 /// An ordinary car: 1300 kg, about 1.2 g, proportional brakes, 90°/s steering.
 [[nodiscard]] VehicleParams road_car_params();
+
+/// The same car on another surface: its tyres give `share` of their forces at the same slip. Pre: share > 0.
+[[nodiscard]] inline VehicleParams with_grip(VehicleParams car, double share) {
+  car.friction *= share;
+  car.cornering_front *= share;
+  car.cornering_rear *= share;
+  return car;
+}
+
+/// A model car and the same car in full size (docs/cars.md, "Model cars"). With lengths by λ = 1 / scale and
+/// times by √λ, speeds are by √λ, accelerations stay, and with forces by λ³ so do friction and gravity: the
+/// two move alike. What controllers and guard hold in metres and seconds is stated for the car in full size;
+/// a model car is seen by them as that. Factors are exactly 1 where the scale is.
+class Similarity {
+ public:
+  explicit Similarity(double scale = 1.0) noexcept : length_{1.0 / scale}, time_{std::sqrt(1.0 / scale)} {}
+  explicit Similarity(const VehicleParams& car) noexcept : Similarity{car.scale} {}
+
+  [[nodiscard]] bool is_identity() const noexcept { return length_ == 1.0; }
+  [[nodiscard]] double length() const noexcept { return length_; }  ///< in full size over that of the model
+  [[nodiscard]] double time() const noexcept { return time_; }
+  [[nodiscard]] double speed() const noexcept { return time_; }
+
+  /// The car in full size; its own scale is 1. Ratios, angles and accelerations stay.
+  [[nodiscard]] VehicleParams full_size(VehicleParams car) const noexcept {
+    for (double* length : {&car.front_axle, &car.rear_axle, &car.track_width, &car.tire_width, &car.length,
+                           &car.width, &car.kinematic_length, &car.height})
+      *length *= length_;
+    const double mass = length_ * length_ * length_;
+    car.scale = 1.0;
+    car.mass *= mass;
+    car.yaw_inertia *= mass * length_ * length_;
+    car.steer_rate_limit /= time_;
+    car.steer_lag *= time_;
+    car.drive_lag *= time_;
+    car.helper_gap *= time_;
+    car.load_per_speed /= speed();
+    car.load_quadratic /= length_;
+    car.drive_power_per_mass *= speed();
+    car.valid_speed *= speed();
+    car.drag_linear /= time_;
+    car.drag_quadratic /= length_;
+    car.reverse_speed *= speed();
+    car.brake_latch_speed *= speed();
+    return car;
+  }
+
+  /// The measurement for the controller of the car in full size.
+  [[nodiscard]] Measurement full_size(Measurement seen) const noexcept {
+    seen.time *= time_;
+    seen.x *= length_;
+    seen.y *= length_;
+    seen.speed *= speed();
+    seen.delay *= time_;
+    for (int i = 0; i < seen.waypoint_count; ++i) seen.waypoints[static_cast<std::size_t>(i)] *= length_;
+    return seen;
+  }
+
+ private:
+  double length_;
+  double time_;
+};
 
 }  // namespace chicane::model

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/net/http_response.hpp"
 
+#include <fmt/format.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <cstring>
 
-#include <fmt/format.h>
-
-#include "chicane/base/fnv.hpp"
+#include "chicane/base/random.hpp"
 #include "chicane/base/text.hpp"
 
 namespace chicane::net {
@@ -194,6 +196,25 @@ HttpResponse Site::answer(std::string_view target, const HttpRequest& asked) con
   if (asset == assets_.end()) return HttpResponse::in_words("404 Not Found", "no such page");
   const std::string& tag = tags_[static_cast<std::size_t>(asset - assets_.begin())];
   return HttpResponse::of_asset(asset->content, asset->content_type, asset->gzip, tag, asked);
+}
+
+Result<std::string> make_token() {
+  constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+  static_assert(kLetters.size() == 64);  // 6 bits each
+  std::array<unsigned char, 32> bytes{};
+  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+    return fail(ErrorCode::kIo, std::string("token: no random bytes: ") + std::strerror(errno));
+  std::string token;
+  for (const unsigned char byte : bytes) token += kLetters[byte & 63U];
+  return token;
+}
+
+bool is_token(std::string_view given, std::string_view token) noexcept {
+  if (token.empty() || given.size() != token.size()) return false;
+  unsigned difference = 0;
+  for (std::size_t i = 0; i < token.size(); ++i)
+    difference |= static_cast<unsigned char>(given[i]) ^ static_cast<unsigned char>(token[i]);
+  return difference == 0;
 }
 
 }  // namespace chicane::net

@@ -24,9 +24,7 @@
 
 #include <fmt/format.h>
 
-#include "chicane/net/detail/admission.hpp"
-#include "chicane/net/detail/port_holder.hpp"
-#include "chicane/net/detail/send_queue.hpp"
+#include "chicane/net/detail/connections.hpp"
 #include "chicane/net/http_response.hpp"
 
 namespace chicane::net {

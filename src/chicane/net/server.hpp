@@ -72,7 +72,7 @@ struct ServerOptions {
   std::vector<std::string> allowed_hosts{};    ///< further names without port, e.g. "car.local"
   std::vector<std::string> allowed_origins{};  ///< pages beside our own, e.g. "https://app.foxglove.dev"
   /// What a visitor must show who wants to change something, or see something on an address that other
-  /// machines reach (token.hpp, docs/security.md); empty: nothing.
+  /// machines reach (http_response.hpp, docs/security.md); empty: nothing.
   std::string token{};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/protocol/csv_track.hpp"
+#include "chicane/protocol/track_codec.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 #include <optional>
 #include <utility>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/csv_text.hpp"

@@ -6,6 +6,7 @@
 #include <vector>
 
 /// The folders that hold the shipped files: presets, cars, tracks, scenarios.
+
 namespace chicane::protocol {
 
 /// What the search for folders starts from. Empty where it is unknown.
@@ -41,3 +42,11 @@ extern "C" {
 [[gnu::used]] inline constexpr char chicane_installed_header[] = __FILE__;
 }
 #endif
+
+namespace chicane::protocol {
+
+/// The GNU build ids of this program and of its shared libraries, one after the other: another code, other
+/// bytes. Empty where the program has none (`-Wl,--build-id=none`). Takes some 10 µs.
+[[nodiscard]] std::string build_ids();
+
+}  // namespace chicane::protocol

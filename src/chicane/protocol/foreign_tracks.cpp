@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/protocol/foreign_tracks.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/csv_text.hpp"
 #include "chicane/protocol/detail/foreign_roads.hpp"
+#include "chicane/protocol/json.hpp"
+#include "chicane/protocol/track_codec.hpp"
+#include "chicane/protocol/yaml_tree.hpp"
+#include "chicane/survey/sampled_line.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -126,6 +131,237 @@ Result<TrackFile> parse_xml_track(std::string_view text, const std::string& file
     if (root == dialect.tag.substr(1)) return dialect.read(*xml, options);
   return fail(fault_of(file, xml->line_of(xml->root()), "root",
                        fmt::format("the element {}", printable(root)), "gpx, kml, osm, OpenDRIVE or sdf"));
+}
+
+namespace {
+
+constexpr std::size_t kMostNamed = 5;  // gaps in warnings
+
+RoadRows cone_rows(const std::string& file, const TrackReadOptions& options) {
+  return {file, options, {{"x", Column::kX}, {"y", Column::kY}, {"tag", Column::kTag}}};
+}
+
+/// Cones by what files call them: "blue", "cone_yellow", "big_orange", "left".
+struct ConeMap {
+  survey::Cones cones;
+  std::optional<Vec2> start{};
+  int unknown = 0;  ///< cones whose colour names no side
+
+  void add(std::string_view tag, const Vec2& place) {
+    const auto has = [&](std::string_view word) { return tag.find(word) != std::string_view::npos; };
+    if (has("orange")) {
+      cones.either.push_back(place);
+    } else if (has("blue") || tag == "left" || tag == "b") {
+      cones.left.push_back(place);
+    } else if (has("yellow") || tag == "right" || tag == "y") {
+      cones.right.push_back(place);
+    } else if (has("start")) {
+      start = place;
+    } else {
+      ++unknown;
+    }
+  }
+};
+
+/// The road between cones; gaps are named.
+Result<TrackFile> track_of_cones(const RoadRows& rows) {
+  if (rows.error) return fail(*rows.error);
+  ConeMap map;
+  for (std::size_t i = 0; i < rows.tags.size(); ++i) map.add(rows.tags[i], rows.content.points[i].position);
+  const std::string& file = rows.content.file;
+  Result<survey::ConeRoad> road = survey::line_between(map.cones);
+  if (!road) return fail(road.error().code, file + ": " + road.error().message);
+  TrackFile content = RoadRows{file, rows.options}.content;
+  content.points = std::move(road->points);
+  content.is_closed = road->is_closed;
+  content.options.smoothing_sigma = std::min(0.1, 0.05 * road->median_width);
+  content.options.spacing = std::clamp(0.2 * road->median_width, 0.05, 2.0);
+  for (std::size_t i = 0; i < road->gaps.size() && i < kMostNamed; ++i) {
+    const survey::ConeGap& gap = road->gaps[i];
+    warn(content,
+         fmt::format(
+             "cones: none on the {} side for {:.1f} m round ({:.2f}, {:.2f}): joined by a straight fence",
+             gap.is_left ? "left" : "right", gap.length, gap.place.x(), gap.place.y()));
+  }
+  if (road->gaps.size() > kMostNamed)
+    warn(content, fmt::format("cones: {} gaps more", road->gaps.size() - kMostNamed));
+  if (map.unknown > 0) warn(content, fmt::format("cones: {} of other colours ignored", map.unknown));
+  if (!content.is_closed) warn(content, "cones: no loop, read as an open road");
+  if (map.start) {
+    begin_near(content, *map.start);
+  } else if (!rows.options.start) {
+    warn(content, fmt::format("start: not in the file, ({:.2f}, {:.2f}) taken (import --start sets it)",
+                              content.points.front().position.x(), content.points.front().position.y()));
+  }
+  return content;
+}
+
+}  // namespace
+
+Result<TrackFile> parse_csv_cones(std::string_view text, const std::string& file,
+                                  const TrackReadOptions& options) {
+  return track_of_cones(read_table(text, file, options, true));
+}
+
+Result<TrackFile> parse_yaml_cones(std::string_view text, const std::string& file,
+                                   const TrackReadOptions& options) {
+  const Result<YamlTree> tree = parse_yaml(text, file);
+  if (!tree) return fail(tree.error());
+  RoadRows rows = cone_rows(file, options);
+  for (const YamlEntry& entry : tree->root->entries()) {
+    const std::string& key = entry.key.text;
+    const bool is_start = key == "starting_pose_front_wing";
+    if (!key.starts_with("cones_") && !is_start) continue;
+    std::vector<const YamlNode*> places = entry.value.children;
+    if (is_start) places = {&entry.value};
+    for (const YamlNode* place : places) {
+      std::vector<std::string_view> cells;
+      for (const YamlNode* each : place->children) cells.push_back(each->text);
+      cells.resize(2);
+      cells.push_back(is_start ? std::string_view("start") : std::string_view(key).substr(6));
+      rows.add(place->line, cells);
+    }
+  }
+  return track_of_cones(rows);
+}
+
+bool is_cone(const std::string& tag) { return lower(tag).find("cone") != std::string::npos; }
+
+/// Each cone is an `include` or a `model` whose URI or name has its colour, or a `link` of a whole course
+/// whose mesh has.
+Result<TrackFile> track_of_sdf(const XmlDocument& xml, const TrackReadOptions& options) {
+  RoadRows rows = cone_rows(xml.file, options);
+  for (const pugi::xml_node pose : xml.find_all("pose")) {
+    const pugi::xml_node model = pose.parent();
+    const std::string_view kind = model.name();
+    const bool is_link = kind == "link" && !is_cone(model.parent().attribute("name").value());
+    if (!is_link && kind != "include" && kind != "model") continue;
+    std::string tag =
+        (is_link ? model.child("visual").child("geometry").child("mesh") : model).child_value("uri");
+    if (!is_cone(tag)) tag += model.child_value("name");
+    if (tag.empty()) tag = model.attribute("name").value();
+    if (!is_cone(tag)) continue;
+    std::vector<std::string_view> cells = split(trim(pose.child_value()), ' ');
+    cells.resize(2);
+    cells.push_back(tag);
+    rows.add(xml.line_of(pose), cells);
+  }
+  return track_of_cones(rows);
+}
+
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{16} << 20U;
+
+/// A member of an object or an element of a list; null where there is none.
+template <typename Key>
+const Json& at(const Json& json, const Key& key) {
+  static const Json kNone;
+  if constexpr (std::is_integral_v<Key>) {
+    return json.is_array() && key < json.size() ? json[key] : kNone;
+  } else {
+    const auto found = json.is_object() ? json.find(key) : json.end();
+    return found != json.end() ? *found : kNone;
+  }
+}
+
+/// Rows of the elements of a list: of each the values behind `keys`, which name the columns.
+template <typename Key>
+void add_rows(const Json& list, const std::vector<Key>& keys, RoadRows& rows) {
+  for (const Json& each : list) {
+    std::vector<std::string> texts;
+    for (const Key& key : keys) {
+      const Json& value = at(each, key);
+      texts.push_back(value.is_number() ? json_text(value) : value.is_null() ? "" : "something else");
+    }
+    rows.add(0, std::vector<std::string_view>(texts.begin(), texts.end()));
+  }
+}
+
+/// ROS's messages of way points: {"centerline_waypoints": {"wpnts": [{"x_m": 1.0, …}, …]}, …}.
+Result<TrackFile> track_of_way_points(const Json& root, const std::string& file,
+                                      const TrackReadOptions& options) {
+  RoadRows rows{
+      file,
+      options,
+      {{"x_m", Column::kX}, {"y_m", Column::kY}, {"d_left", Column::kLeft}, {"d_right", Column::kRight}}};
+  for (const char* key : {"centerline_waypoints", "global_traj_wpnts_iqp", "global_traj_wpnts_sp"}) {
+    const Json& list = at(at(root, key), "wpnts");
+    if (!list.is_array() || list.empty()) continue;
+    rows.list = fmt::format("{}.wpnts", key);
+    add_rows(list, std::vector<const char*>{"x_m", "y_m", "d_left", "d_right"}, rows);
+    Result<TrackFile> content = rows.build();
+    if (!content) return content;
+    double width = 0.0;
+    for (const road::TrackPoint& point : content->points)
+      width += (point.left + point.right) / static_cast<double>(content->points.size());
+    content->options.spacing = std::clamp(0.1 * width, 0.05, 2.0);
+    content->options.smoothing_sigma = std::min(0.02, 0.01 * width);
+    warn(*content, fmt::format("{}: taken of the file's lines", key));
+    return content;
+  }
+  if (root.contains("X_i"))
+    return fail(fault_of(file, 0, "X_i", "a track.json of MPCC, with its edges as lists of their own",
+                         "a table of x_m, y_m, w_tr_right_m, w_tr_left_m"));
+  return fail(fault_of(file, 0, "centerline_waypoints", "no wpnts",
+                       "a list of them there or in global_traj_wpnts_iqp"));
+}
+
+/// The lines of a geometry; others are marks.
+void find_lines(const Json& geometry, std::vector<const Json*>& lines) {
+  const Json& type = at(geometry, "type");
+  const Json& list = at(geometry, "coordinates");
+  if (!list.is_array()) return;
+  if (type == "LineString") lines.push_back(&list);
+  if (type == "Polygon" || type == "MultiLineString")
+    for (const Json& each : list)
+      if (each.is_array()) lines.push_back(&each);
+}
+
+Result<TrackFile> track_of_geojson(const Json& root, const std::string& file,
+                                   const TrackReadOptions& options) {
+  std::vector<const Json*> lines;
+  GeoLine line{file, options};
+  const auto add_feature = [&](const Json& feature) {
+    find_lines(at(feature, "geometry"), lines);
+    const Json& width = at(at(feature, "properties"), "width");
+    if (line.width == 0.0 && width.is_number()) line.width = width.get<double>();
+  };
+  if (const Json& features = at(root, "features"); features.is_array()) {
+    for (const Json& feature : features) add_feature(feature);
+  } else if (root.contains("geometry")) {
+    add_feature(root);
+  } else {
+    find_lines(root, lines);
+  }
+  if (lines.empty()) return fail(fault_of(file, 0, "geometry", "no line", "a LineString or Polygon"));
+  const auto longest = std::max_element(lines.begin(), lines.end(),
+                                        [](const Json* a, const Json* b) { return a->size() < b->size(); });
+  line.rows.list = "coordinates";
+  add_rows(**longest, std::vector<std::size_t>{1, 0}, line.rows);  // latitude comes second
+  Result<TrackFile> content = track_of_line(std::move(line));
+  if (content && lines.size() > 1)
+    warn(*content, fmt::format("geometry: the longest of {} lines taken", lines.size()));
+  return content;
+}
+
+}  // namespace
+
+Result<TrackFile> parse_json_track(std::string_view text, const std::string& file,
+                                   const TrackReadOptions& options) {
+  if (text.size() > kMostBytes)
+    return fail(fault_of(file, 0, "file", fmt::format("{} bytes of JSON", text.size()), "at most 16 MiB"));
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  const auto root = read_json(text);
+  if (!root) {
+    const std::string_view read = text.substr(0, root.error().byte.value_or(0));
+    return fail(fault_of(file, static_cast<int>(1 + std::count(read.begin(), read.end(), '\n')), "file",
+                         "text that is no JSON", "way points or GeoJSON"));
+  }
+  if (!root->is_object()) return fail(fault_of(file, 1, "file", "no object", "way points or GeoJSON"));
+  return root->contains("type") && !root->contains("centerline_waypoints")
+             ? track_of_geojson(*root, file, options)
+             : track_of_way_points(*root, file, options);
 }
 
 }  // namespace chicane::protocol

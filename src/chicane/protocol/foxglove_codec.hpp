@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
-#include "chicane/telemetry/change.hpp"
+#include "chicane/telemetry/metrics.hpp"
 
 /// The server's side of the Foxglove WebSocket protocol, version 1 (github.com/foxglove/ws-protocol,
 /// docs/spec.md), as pure functions between structs and bytes. Both of its sub-protocol names mean the same

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <variant>
 
-#include "chicane/base/word.hpp"
+#include "chicane/base/text.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/telemetry/frame.hpp"
 

@@ -15,7 +15,6 @@
 #include "chicane/protocol/csv_text.hpp"
 #include "chicane/protocol/detail/foreign_roads.hpp"
 #include "chicane/road/smooth_line.hpp"
-#include "chicane/survey/geodesy.hpp"
 #include "chicane/survey/sampled_line.hpp"
 
 namespace chicane::protocol {

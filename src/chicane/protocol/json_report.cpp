@@ -7,11 +7,11 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <string_view>
 #include <variant>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/instruction_set.hpp"
-#include "chicane/protocol/guard_facts.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/protocol/json.hpp"
 
 namespace chicane::protocol {
@@ -383,6 +383,21 @@ std::string to_table(const RunSummary& run) {
   for (const auto& [reason, steps] : reasons.items())
     text += fmt::format("guard              {}: {} steps\n", reason, steps.get<std::uint64_t>());
   return text + outcome(run);
+}
+
+namespace {
+
+std::string text_of(std::string_view name, const safety::GuardOptions& guard) {
+  const auto rows = safety::guard_options();
+  const auto row =
+      std::find_if(rows.begin(), rows.end(), [&](const Option& each) { return each.name == name; });
+  return std::get<std::string>(get(*row, &guard));
+}
+
+}  // namespace
+
+GuardFacts guard_facts(const safety::GuardOptions& guard) {
+  return {.mode = text_of("mode", guard), .road = text_of("road", guard), .version = safety::kGuardVersion};
 }
 
 }  // namespace chicane::protocol

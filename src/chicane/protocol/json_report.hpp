@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "chicane/base/result.hpp"
+#include "chicane/safety/guard_options.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::protocol {
@@ -19,5 +20,16 @@ namespace chicane::protocol {
 
 /// The same for people: one line for each lap, then what the run was like.
 [[nodiscard]] std::string to_table(const telemetry::RunSummary& run);
+
+/// Names of a run's guard for results, recordings and viewers.
+struct GuardFacts {
+  std::string mode;  ///< "on", "observe", "off"; empty: not known
+  std::string road;  ///< "track", "waypoints"
+  int version = 0;   ///< safety::kGuardVersion of the program; 0: not known
+
+  friend bool operator==(const GuardFacts&, const GuardFacts&) = default;
+};
+
+[[nodiscard]] GuardFacts guard_facts(const safety::GuardOptions& guard);
 
 }  // namespace chicane::protocol

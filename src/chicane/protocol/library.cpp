@@ -13,10 +13,10 @@
 #include <optional>
 #include <span>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
-#include "chicane/protocol/fault_codec.hpp"
 #include "chicane/protocol/remembered_files.hpp"
+#include "chicane/protocol/schema_json.hpp"
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 

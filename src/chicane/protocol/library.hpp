@@ -48,7 +48,7 @@ struct Request {
   std::string scenario_file;
   std::vector<std::pair<std::string, std::string>> settings;
   std::string speed_mps{};            ///< reference of whichever controller drives; empty: its own
-  std::vector<std::string> faults{};  ///< NAME@S+S*X (fault_codec.hpp), beside those of the scenario file
+  std::vector<std::string> faults{};  ///< NAME@S+S*X (schema_json.hpp), beside those of the scenario file
   std::string speed_mph{};  ///< speed_mps as a user typed it in mph, for messages; empty: it was in m/s
 };
 

@@ -12,8 +12,8 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/detail/road_rows.hpp"
-#include "chicane/protocol/foreign_tracks.hpp"
 #include "chicane/protocol/library.hpp"
+#include "chicane/protocol/track_codec.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 
 namespace chicane::protocol {

@@ -8,10 +8,9 @@
 #include <optional>
 
 #include "chicane/base/text.hpp"
-#include "chicane/base/utf8.hpp"
 #include "chicane/protocol/csv_text.hpp"
-#include "chicane/protocol/foreign_tracks.hpp"
 #include "chicane/protocol/library.hpp"
+#include "chicane/protocol/track_codec.hpp"
 
 namespace chicane::protocol {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <bit>
 
-#include "chicane/telemetry/mcap_format.hpp"
+#include "chicane/telemetry/mcap.hpp"
 
 namespace chicane::protocol {
 namespace {

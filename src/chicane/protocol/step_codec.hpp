@@ -7,10 +7,9 @@
 #include <string_view>
 
 #include "chicane/controller/controller.hpp"
-#include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
-#include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
+#include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::protocol {
 

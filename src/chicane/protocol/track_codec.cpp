@@ -7,9 +7,7 @@
 #include <charconv>
 #include <filesystem>
 
-#include "chicane/protocol/csv_track.hpp"
 #include "chicane/protocol/detail/road_rows.hpp"
-#include "chicane/protocol/foreign_tracks.hpp"
 #include "chicane/protocol/library.hpp"
 
 namespace chicane::protocol {

@@ -12,6 +12,7 @@
 #include "chicane/road/track.hpp"
 
 /// Roads from files of any format in the list (docs/tracks.md).
+
 namespace chicane::protocol {
 
 struct TrackReadOptions {
@@ -67,7 +68,7 @@ struct TrackFormat {
 /// The format of a file by its name; null when there is none.
 [[nodiscard]] const TrackFormat* track_format_of(std::string_view file) noexcept;
 
-/// Whether a format of other programs recognises the text (foreign_tracks.hpp).
+/// Whether a format of other programs recognises the text.
 [[nodiscard]] bool is_foreign_track(std::string_view text) noexcept;
 
 /// What the file's format makes of the text: the format that recognises its content, else that of its name,
@@ -81,5 +82,46 @@ struct TrackFormat {
 
 /// Reads, parses and makes. Also kNotFound and kIo.
 [[nodiscard]] Result<road::Track> read_track(const std::string& file, const TrackReadOptions& options = {});
+
+// Roads as CSV files (docs/tracks.md): waypoints `x,y`, TUM centre lines `x_m,y_m,w_tr_right_m,w_tr_left_m`,
+// TUM race lines `s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2` with or without widths. Columns are
+// found by name.
+
+/// What TrackFormat::parse describes. Numbers have a decimal point in every locale; `;`, `,`, tab or blanks
+/// separate them; CRLF, a byte-order mark, blank lines and comments behind `#` or `%` are fine. Nothing is
+/// guessed but that two columns without names are x and y.
+[[nodiscard]] Result<TrackFile> parse_csv_track(std::string_view text, const std::string& file,
+                                                const TrackReadOptions& options);
+
+/// TUM centre-line format that parse_csv_track() reads back bit for bit, opening with `description` as a
+/// comment.
+[[nodiscard]] std::string write_csv_track(const TrackFile& content, std::string_view description);
+
+inline constexpr TrackFormat kCsvTrack{".csv", &parse_csv_track};
+
+// Roads as other programs keep them (docs/import.md), each recognised by its content. What a file cannot
+// tell is assumed, and said in TrackFile::warnings with the option of `chicane import` that sets it.
+
+/// All of them; the first that recognises a text reads it.
+[[nodiscard]] std::span<const TrackFormat> foreign_tracks() noexcept;
+
+/// What a file of a road is, by its content: "occupancy map", "GPX", "cones", "table of points".
+[[nodiscard]] std::string_view road_kind(std::string_view text) noexcept;
+
+/// ROS's map_server: free space of a map with walls. The image is read from beside the file.
+[[nodiscard]] Result<TrackFile> parse_map_track(std::string_view text, const std::string& file,
+                                                const TrackReadOptions& options);
+/// Cones in CSV: rows of x, y and a colour.
+[[nodiscard]] Result<TrackFile> parse_csv_cones(std::string_view text, const std::string& file,
+                                                const TrackReadOptions& options);
+/// Cones in YAML: lists `cones_left` and `cones_right` (FSSIM).
+[[nodiscard]] Result<TrackFile> parse_yaml_cones(std::string_view text, const std::string& file,
+                                                 const TrackReadOptions& options);
+/// Way points of the ForzaETH race stack, and lines of GeoJSON.
+[[nodiscard]] Result<TrackFile> parse_json_track(std::string_view text, const std::string& file,
+                                                 const TrackReadOptions& options);
+/// GPX, KML, OpenStreetMap, OpenDRIVE, and cones in SDF, by the root element.
+[[nodiscard]] Result<TrackFile> parse_xml_track(std::string_view text, const std::string& file,
+                                                const TrackReadOptions& options);
 
 }  // namespace chicane::protocol

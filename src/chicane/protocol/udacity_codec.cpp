@@ -9,10 +9,9 @@
 #include <fmt/format.h>
 #include <tl/expected.hpp>
 
-#include "chicane/base/angle.hpp"
-#include "chicane/base/assert.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/base/range.hpp"
+#include "chicane/base/option.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
 

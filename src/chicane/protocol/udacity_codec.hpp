@@ -9,7 +9,6 @@
 
 #include "chicane/base/vec2.hpp"
 #include "chicane/controller/controller.hpp"
-#include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/safety/stop_plan.hpp"
 

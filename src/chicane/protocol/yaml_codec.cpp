@@ -8,7 +8,7 @@
 #include <set>
 
 #include "chicane/base/text.hpp"
-#include "chicane/protocol/fault_codec.hpp"
+#include "chicane/protocol/schema_json.hpp"
 
 namespace chicane::protocol {
 namespace {

@@ -10,7 +10,7 @@
 #include <map>
 #include <sstream>
 
-#include "chicane/base/utf8.hpp"
+#include "chicane/base/text.hpp"
 
 namespace chicane::protocol {
 namespace {

@@ -14,8 +14,8 @@
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/recording/detail/ros_message.hpp"
-#include "chicane/recording/reader.hpp"
-#include "chicane/telemetry/mcap_reader.hpp"
+#include "chicane/recording/replay.hpp"
+#include "chicane/telemetry/mcap.hpp"
 
 namespace chicane::recording {
 namespace {

@@ -35,7 +35,7 @@ struct ReportSummary {
   double rate = 0.0;  ///< control steps per second that were kept, beside those where something changes [Hz]
 };
 
-/// Writes a document (protocol/report_document.hpp) as one HTML file that needs no network and no program.
+/// Writes a document (protocol/json.hpp) as one HTML file that needs no network and no program.
 /// `bundle`: live::document_bundle(). Bytes of the file; kNotFound when this program was built without its
 /// dashboard, kIo.
 [[nodiscard]] Result<std::size_t> write_document(const std::string& file, std::string document,

@@ -15,9 +15,8 @@
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/run/thread_queue.hpp"
 #include "chicane/scenario/scenario.hpp"
-#include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
-#include "chicane/telemetry/mcap_writer.hpp"
+#include "chicane/telemetry/mcap.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::recording {

@@ -1,19 +1,175 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/recording/replay.hpp"
 
+#include <array>
 #include <bit>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 
-#include "chicane/recording/reader.hpp"
+#include "chicane/base/instruction_set.hpp"
+#include "chicane/base/text.hpp"
+#include "chicane/protocol/car_messages.hpp"
+#include "chicane/protocol/yaml_codec.hpp"
+#include "chicane/recording/recorder.hpp"
 #include "chicane/run/control_cycle.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/racing.hpp"
 #include "chicane/run/setting.hpp"
 
 namespace chicane::recording {
+namespace {
+
+/// From now on controllers round as they did in the recording.
+Result<void> choose_arithmetic(const std::string& wanted, const std::string& path) {
+  if (wanted.empty() || arithmetic(chosen_instruction_set()) == wanted) return {};
+  using enum InstructionSet;
+  for (const InstructionSet set : {kAvx512, kAvx2, kNeon, kBaseline}) {
+    if (!is_available(set) || arithmetic(set) != wanted) continue;
+    choose_instruction_set(set);
+    return {};
+  }
+  for (const InstructionSet set : {kAvx512, kAvx2, kNeon, kBaseline}) {
+    if (!is_supported(set) || arithmetic(set) != wanted) continue;
+    return fail(ErrorCode::kInvalidArgument, path + ": arithmetic: got \"" + wanted + "\", which needs " +
+                                                 std::string(to_string(set)) + ": that was not built in. " +
+                                                 how_to_build(to_string(set)));
+  }
+  return fail(ErrorCode::kInvalidArgument,
+              path + ": arithmetic: got \"" + wanted + "\", expected \"" +
+                  std::string(arithmetic(chosen_instruction_set())) +
+                  "\", which is all that this processor has: use one like that it was recorded on");
+}
+
+Result<scenario::Scenario> parse_scenario(std::string_view yaml, const std::string& file) {
+  const Result<protocol::Document> document = protocol::parse_document(yaml, file);
+  if (!document) return fail(document.error());
+  scenario::Scenario scenario;
+  const std::array layers{*document};
+  if (Result<void> applied = protocol::apply_layers(layers, scenario); !applied) return fail(applied.error());
+  return scenario;
+}
+
+class RecordingReader {
+ public:
+  RecordingReader(const std::string& path, RecordingHead& head,
+                  const std::function<Result<void>(const RecordedEvent&)>& visit)
+      : path_{path}, head_{head}, visit_{visit} {}
+
+  Result<telemetry::McapReport> read() {
+    Result<telemetry::McapReport> report = telemetry::read_mcap(
+        path_,
+        {.on_message = [this](const telemetry::McapMessage& message) { take(message); },
+         .on_attachment = [this](std::string_view name, std::string_view bytes) { take(name, bytes); },
+         .on_metadata = [this](std::string_view name,
+                               const std::map<std::string, std::string>& entries) { take(name, entries); }});
+    if (!report) return report;
+    if (!state_) return fail(state_.error());
+    if (!has_scenario_) {
+      return fail(ErrorCode::kParse,
+                  path_ + ": " + kRecordedScenario + ": got none, expected a recording of chicane");
+    }
+    report->damaged += damaged_;
+    return report;
+  }
+
+ private:
+  void take(const telemetry::McapMessage& message) {
+    if (!state_ || !has_scenario_) return;
+    if (message.channel.topic == protocol::kChangeTopic) {
+      const auto change = protocol::decode_change(message.bytes);
+      if (!change) ++damaged_;
+      if (change) state_ = visit_(*change);
+    } else if (message.channel.topic == protocol::kStepTopic) {
+      const auto step = protocol::decode_step(message.bytes);
+      if (!step) ++damaged_;
+      if (step) state_ = visit_(RecordedStep{*step, 1e-9 * static_cast<double>(message.log_time)});
+    }
+  }
+
+  void take(std::string_view name, std::string_view bytes) {
+    if (name != kRecordedScenario || !state_) return;
+    const Result<scenario::Scenario> scenario = parse_scenario(bytes, path_ + ":" + kRecordedScenario);
+    has_scenario_ = true;
+    state_ = scenario ? visit_(*scenario) : fail(scenario.error());
+  }
+
+  void take(std::string_view name, const std::map<std::string, std::string>& entries) {
+    if (name != kRecordedRun || !state_) return;
+    head_.entries.clear();
+    head_.entries.insert(entries.begin(), entries.end());
+    state_ = choose_arithmetic(head_["arithmetic"], path_);
+    if (head_["mode"] == kSimulateMode) {
+      state_ = fail(ErrorCode::kInvalidArgument,
+                    path_ +
+                        ": mode: got simulate, expected drive or serve: the commands came from another "
+                        "program, and are not ours to compute");
+    }
+  }
+
+  const std::string& path_;
+  RecordingHead& head_;
+  const std::function<Result<void>(const RecordedEvent&)>& visit_;
+  Result<void> state_;
+  bool has_scenario_ = false;
+  std::uint64_t damaged_ = 0;
+};
+
+}  // namespace
+
+Result<telemetry::McapReport> read_recording(const std::string& path, RecordingHead& head,
+                                             const std::function<Result<void>(const RecordedEvent&)>& visit) {
+  return RecordingReader(path, head, visit).read();
+}
+
+Result<scenario::Scenario> recorded_scenario(const std::string& path) {
+  RecordingHead head;
+  std::optional<scenario::Scenario> first;
+  const auto read = read_recording(path, head, [&](const RecordedEvent& event) -> Result<void> {
+    if (const auto* scenario = std::get_if<scenario::Scenario>(&event)) first = *scenario;
+    return fail(ErrorCode::kInvalidArgument, path + ": read as far as needed");
+  });
+  if (!first) return fail(read ? Error{ErrorCode::kParse, path + ": scenario: got none"} : read.error());
+  if (head["mode"] == "serve") {
+    return fail(ErrorCode::kInvalidArgument, path + ": mode: got serve, expected drive");
+  }
+  return *first;
+}
+
+bool is_foreign_log(const std::string& file) {
+  std::error_code trouble;
+  if (std::filesystem::is_directory(file, trouble)) return true;  // a bag, as rosbag2 writes it
+  if (file.ends_with(".db3") || file.ends_with(".csv")) return true;
+  if (!file.ends_with(".mcap")) return false;
+  bool is_ours = false, has_odometry = false;
+  telemetry::McapVisitor visitor;
+  visitor.on_message = [&](const telemetry::McapMessage& message) {
+    is_ours |= message.channel.topic == kFrameTopic;
+    has_odometry = has_odometry || (message.channel.type == protocol::OdometryMessage::kType &&
+                                    message.channel.message_encoding == "cdr" &&
+                                    protocol::decode<protocol::OdometryMessage>(message.bytes).has_value());
+  };
+  return telemetry::read_mcap(file, visitor) && has_odometry && !is_ours;
+}
+
+Result<telemetry::McapReport> check_recording(const std::string& path) {
+  std::uint64_t steps = 0;
+  telemetry::McapVisitor visitor;
+  visitor.on_message = [&](const telemetry::McapMessage& message) {
+    steps += message.channel.topic == kFrameTopic ? 1U : 0U;
+  };
+  const Result<telemetry::McapReport> read = telemetry::read_mcap(path, visitor);
+  const bool is_cut = read && !read->is_complete && read->messages == 0;
+  if (read && steps == 0)
+    return fail(refusal(path, is_cut ? "a file that was cut in its first chunk" : "no control step",
+                        "a recording of ours, or a bag with nav_msgs/msg/Odometry in CDR",
+                        ErrorCode::kParse));
+  return read;
+}
+
 namespace {
 
 bool is_same(double a, double b) {

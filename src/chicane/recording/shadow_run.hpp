@@ -5,10 +5,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "chicane/base/result.hpp"
-#include "chicane/recording/reader.hpp"
+#include "chicane/recording/replay.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/lap_planner.hpp"
 #include "chicane/run/make.hpp"
@@ -78,5 +80,89 @@ class ShadowRun {
   std::uint64_t next_cycle_ = 0;
   std::optional<std::uint64_t> first_difference_;
 };
+
+/// A recorded run that goes on otherwise from a moment on.
+struct BranchOptions {
+  std::string log{};
+  double at = 0.0;                                              ///< on the recording's time line [s]
+  std::vector<std::pair<std::string, std::string>> settings{};  ///< as --set takes them; empty: no change
+  double duration = 0.0;  ///< from `at` on [s]; 0: to the end of the recording, or `laps`
+  int laps = 0;           ///< until so many laps of the run are completed; 0: no matter
+  int more_laps = 0;      ///< until the line was crossed so often from `at` on; 0: no matter
+  /// The first future is driven on, too, where what is known of it ends before the second one does.
+  bool drives_both = false;
+  /// Begins here instead of at the start, with the events behind it; before `at`. Null: at the start.
+  std::shared_ptr<const ShadowRun> from{};
+};
+
+/// The end of a third of a lap that was passed.
+struct Passage {
+  int lap = 0;        ///< from 1
+  int sector = 0;     ///< from 1
+  double time = 0.0;  ///< since the branch [s], interpolated
+};
+
+/// One future, from the moment of the branch on.
+struct Future {
+  double duration = 0.0;            ///< [s]
+  std::vector<double> lap_times{};  ///< of laps completed in it [s]
+  double max_lateral_error = 0.0;   ///< [m]
+  double min_edge_distance = 0.0;   ///< signed, of the outermost tyre [m]; NaN without a control step
+  double mean_speed = 0.0;          ///< [m/s]
+  double top_speed = 0.0;           ///< [m/s]
+  int off_track_events = 0;
+  std::uint64_t interventions = 0;  ///< control steps in which another command than the controller's was sent
+  std::vector<Passage> passages{};
+};
+
+/// A control step of a future.
+struct FutureStep {
+  const telemetry::Frame& frame;
+  double distance = 0.0;  ///< along the line, from the start line of the lap in which the branch begins [m]
+  bool is_branch = false;
+};
+
+/// The plant used in place of a car that others simulate.
+struct StandIn {
+  std::string plant;
+  double compared = 0.0;  ///< so long before the moment both drove from the same place [s]; 0: not compared
+  double apart = 0.0;     ///< and came so far from each other [m]
+};
+
+struct BranchReport {
+  double at = 0.0;                 ///< where it begins: the first control step from there on [s]
+  std::uint64_t cycle = 0;         ///< that control step, in its run
+  std::uint64_t steps_before = 0;  ///< computed again on the way to it
+  double known_until = 0.0;        ///< the last control step of the recording [s]
+  /// The first of all recorded steps that did not come out bit for bit as recorded: from there on the first
+  /// future is what this program computes, not what was.
+  std::optional<std::uint64_t> first_difference{};
+  Future recorded{};
+  Future branched{};
+  std::string end_reason{};  ///< why the branch ended before its time; empty when it did not
+  std::optional<StandIn> stand_in{};
+};
+
+/// What listens to the second future, whole: the recorded run up to the branch, and what comes then.
+struct BranchHooks {
+  std::function<Result<void>(const run::ClosedLoop&)> on_begin{};  ///< of each run in the recording
+  std::function<void(const telemetry::Change&)> on_change{};
+  std::function<void(const telemetry::Frame&)> on_frame{};
+  std::function<void(const telemetry::CompletedLap&)> on_lap{};
+  std::function<void(const FutureStep&)> on_future{};  ///< of both, from the branch on, one after the other
+  /// Asked at each control step that is computed, with the time [s] it has come to; false gives up.
+  std::function<bool(double time)> go_on{};
+};
+
+/// Computes a recorded run of `drive` again from its start, controller and plant, and drives on from
+/// `options.at` with other settings, in virtual time. Fails with kInvalidArgument when the moment is not in
+/// the recording, a setting is unknown, out of range or cannot change in a run that goes on, when
+/// BranchHooks::go_on gives up, or when the recording is not of our simulator.
+[[nodiscard]] Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks,
+                                                    const run::Factories& make = {});
+/// The same of a run that is not a file, whose events are visited once for each future; `options.log` is not
+/// used. Without `options.from` they are the events of the whole run.
+[[nodiscard]] Result<BranchReport> branch_run(const RunEvents& events, const BranchOptions& options,
+                                              const BranchHooks& hooks, const run::Factories& make = {});
 
 }  // namespace chicane::recording

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/reference_line.hpp"

@@ -3,11 +3,287 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::road {
+namespace {
+
+constexpr int kPasses = 10;            // over the weights
+constexpr double kLeastWeight = 1e-3;  // √w where there is room [1/m²]
+constexpr double kFirstWeight = 2e-3;  // √w of the first pass
+constexpr double kEndWeight = 5e-2;    // √w added at the ends of the line
+
+}  // namespace
+
+LineSmoother::LineSmoother(int capacity) {
+  curvature_.resize(static_cast<std::size_t>(capacity));
+  offset_.resize(static_cast<std::size_t>(capacity + kMargin));
+  rows_.resize(static_cast<std::size_t>(capacity + 2 * kMargin));
+}
+
+void LineSmoother::configure(double width, double slope_length) noexcept {
+  width_ = width;
+  slope_length_ = slope_length;
+}
+
+void LineSmoother::begin(int knots, double spacing, int period) noexcept {
+  knots_ = knots;
+  spacing_ = spacing;
+  period_ = period;
+  instalments_.restart();
+}
+
+bool LineSmoother::advance(int& work) noexcept {
+  constexpr int kLastPhase = 2 + 3 * kPasses;
+  if (instalments_.phase() == 0 && !(width_ > 0.0)) {
+    std::fill(offset_.begin(), offset_.begin() + knots_, 0.0);
+    instalments_.enter(kLastPhase);
+  }
+  while (work > 0 && instalments_.phase() < kLastPhase) {
+    const int phase = instalments_.phase();
+    if (phase == 0) {
+      for (int k = 0; k < kMargin; ++k) {
+        row(k - kMargin) = row(knots_ + k) = {};
+        offset_[static_cast<std::size_t>(knots_ + k)] = 0.0;
+      }
+      instalments_.loop(knots_, 1, work, [&](int k) {
+        row(k) = {};
+        row(k).root_weight = kFirstWeight;
+      });
+    } else if (phase == 1) {
+      instalments_.loop(knots_ - 2, 2, work, [&](int k) { assemble(k + 1); });
+    } else if ((phase - 2) % 3 == 0) {
+      instalments_.loop(knots_, 1, work, [&](int k) { eliminate(k); });
+    } else if ((phase - 2) % 3 == 1) {
+      instalments_.loop(knots_, 1, work, [&](int k) { substitute(knots_ - 1 - k); });
+    } else {
+      instalments_.loop(knots_, 1, work, [&](int k) { raise_weight(k); });
+    }
+  }
+  return instalments_.phase() == kLastPhase;
+}
+
+/// Bending at inner knot k, and its change to the next one.
+void LineSmoother::assemble(int k) noexcept {
+  add_bending(k);
+  if (k + 2 < knots_) add_slope(k);
+  if (k > 1 && k + 2 < knots_) return;
+  // The ends of the line are held a little, and come in along it.
+  const int end = k == 1 ? 0 : knots_ - 1;
+  const double lean = 0.1 / spacing_;
+  row(end).band[0] += kEndWeight * kEndWeight + lean * lean;
+  row(k).band[0] += lean * lean;
+  row(std::max(end, k)).band[1] -= lean * lean;
+}
+
+void LineSmoother::add_bending(int k) noexcept {
+  const double q = 1.0 / (spacing_ * spacing_);
+  const double kappa = curvature_[static_cast<std::size_t>(k)];
+  const std::array<double, 3> c{q, kappa * kappa - 2.0 * q, q};
+  for (int i = 0; i < 3; ++i) {
+    Row& to = row(k - 1 + i);
+    const double own = c[static_cast<std::size_t>(i)];
+    for (int j = 0; j <= i; ++j)
+      to.band[static_cast<std::size_t>(i - j)] += own * c[static_cast<std::size_t>(j)];
+    to.right -= own * kappa;
+  }
+}
+
+void LineSmoother::add_slope(int k) noexcept {
+  const double q = 1.0 / (spacing_ * spacing_);
+  const double per_meter = slope_length_ / spacing_;
+  const double here = curvature_[static_cast<std::size_t>(k)];
+  const double next = curvature_[static_cast<std::size_t>(k + 1)];
+  const std::array<double, 4> c{-q * per_meter, (3.0 * q - here * here) * per_meter,
+                                (next * next - 3.0 * q) * per_meter, q * per_meter};
+  for (int i = 0; i < 4; ++i) {
+    Row& to = row(k - 1 + i);
+    const double own = c[static_cast<std::size_t>(i)];
+    for (int j = 0; j <= i; ++j)
+      to.band[static_cast<std::size_t>(i - j)] += own * c[static_cast<std::size_t>(j)];
+    to.right -= own * per_meter * (next - here);
+  }
+}
+
+/// One row of A + w = L D Lᵀ, and of L y = right.
+void LineSmoother::eliminate(int k) noexcept {
+  Row& now = row(k);
+  const Row& one = row(k - 1);
+  const Row& two = row(k - 2);
+  const Row& three = row(k - 3);
+  const double u3 = now.band[3];
+  const double u2 = now.band[2] - u3 * two.factor[1];
+  const double u1 = now.band[1] - u3 * one.factor[2] - u2 * one.factor[1];
+  const double l3 = u3 * three.factor[0];
+  const double l2 = u2 * two.factor[0];
+  const double l1 = u1 * one.factor[0];
+  const double pivot = now.band[0] + now.root_weight * now.root_weight - u3 * l3 - u2 * l2 - u1 * l1;
+  now.factor = {1.0 / pivot, l1, l2, l3};
+  now.forward = now.right - u3 * three.forward - u2 * two.forward - u1 * one.forward;
+  now.forward *= now.factor[0];
+}
+
+void LineSmoother::substitute(int k) noexcept {
+  const auto i = static_cast<std::size_t>(k);
+  offset_[i] = row(k).forward - row(k + 1).factor[1] * offset_[i + 1] -
+               row(k + 2).factor[2] * offset_[i + 2] - row(k + 3).factor[3] * offset_[i + 3];
+}
+
+void LineSmoother::raise_weight(int k) noexcept {
+  // By place, not by knot: both ends of a closed line pay what the same places in the middle pay.
+  const int extra = (knots_ - period_) / 2;
+  int twin = k;
+  if (period_ > 0 && k < extra) twin = k + period_;
+  if (period_ > 0 && k >= extra + period_) twin = k - period_;
+  const double ratio = std::fabs(offset_[static_cast<std::size_t>(twin)]) / width_;
+  Row& now = row(k);
+  now.root_weight = std::max(kLeastWeight, now.root_weight * std::clamp(ratio, 0.4, 2.5));
+}
+
+namespace {
+
+constexpr double kSlopeReach = 3.0;   // [m] each way: shorter changes of curvature than a car are not felt
+constexpr double kLowestSpeed = 2.0;  // [m/s] the plan never asks to stop
+constexpr double kTraction = 0.85;    // of the grip: brakes are not all where the load is
+
+/// Largest v with v² demand <= share · friction · load(v).
+double speed_for(double demand, const model::VehicleParams& p, double share) {
+  const double grip = share * p.cornering_friction();
+  const double g0 = grip * p.load_constant;
+  const double g1 = grip * p.load_per_speed;
+  const double d = std::max(demand - grip * p.load_quadratic, 1e-6);
+  return (g1 + std::sqrt(g1 * g1 + 4.0 * d * g0)) / (2.0 * d);
+}
+
+/// Tyre force demanded per v² by curvature and its slope, at the axle that needs more (eq. 11) [1/m].
+double demand_of(double curvature, double slope, const model::VehicleParams& p) {
+  const double steady = (1.0 - p.steer_helper) * curvature;
+  const double front = std::fabs(steady + p.yaw_inertia / (p.mass * p.rear_axle) * slope);
+  const double rear = std::fabs(steady - p.yaw_inertia / (p.mass * p.front_axle) * slope);
+  return std::max(front, rear);
+}
+
+/// Share of the grip that is planned with which the tyres use sideways.
+double use_of(double v, double demand, const model::VehicleParams& p, double grip) {
+  return v * v * demand / (grip * p.cornering_friction() * p.load(v));
+}
+
+/// Share of the longitudinal force that the friction ellipse leaves beside it (1 for uncoupled tyres).
+double longitudinal_share(double use, const model::VehicleParams& p) {
+  if (p.friction_coupling == 0.0) return 1.0;
+  return std::sqrt(std::max(0.0, 1.0 - p.friction_coupling * std::min(1.0, use * use)));
+}
+
+/// Longitudinal force over mass that tyres which share it between the directions give on a straight road,
+/// whatever drive and brakes could: where the grip is less than the car is built for [m/s²].
+double traction(double v, const model::VehicleParams& p) {
+  if (p.friction_coupling == 0.0) return std::numeric_limits<double>::infinity();
+  return kTraction * p.cornering_friction() * p.load(v);
+}
+
+/// Lowers the speed to `limit` and remembers why.
+void limit_to(double limit, SpeedLimiter reason, ReferenceLine::Sample& sample) {
+  if (limit >= sample.speed) return;
+  sample.speed = limit;
+  sample.limiter = reason;
+}
+
+}  // namespace
+
+void SpeedPlan::begin(const model::VehicleParams& vehicle, const SpeedPlanOptions& options) noexcept {
+  vehicle_ = vehicle;
+  if (!(vehicle == stability_.vehicle())) stability_ = model::BrakingStability(vehicle);
+  options_ = options;
+  instalments_.restart();
+}
+
+bool SpeedPlan::advance(int& work, ReferenceLine& line) noexcept {
+  const int last = static_cast<int>(line.samples().size()) - 1;
+  if (instalments_.phase() == 0) {
+    instalments_.loop(last + 1, 4, work, [&](int i) { limit(line, i); });
+    if (instalments_.phase() == 1) finish_limits(line);
+  }
+  if (instalments_.phase() == 1) {
+    instalments_.loop(last, 4, work, [&](int turn) { accelerate(line, turn); });
+  }
+  if (instalments_.phase() == 2) {
+    instalments_.loop(last, 4, work, [&](int turn) { brake(line, turn); });
+  }
+  if (instalments_.phase() < 3) return false;
+  if (line.is_closed()) {
+    line.samples()[static_cast<std::size_t>(last)].speed = line.samples()[0].speed;
+    line.samples()[static_cast<std::size_t>(last)].limiter = line.samples()[0].limiter;
+  }
+  return true;
+}
+
+void SpeedPlan::limit(ReferenceLine& line, int i) noexcept {
+  const auto samples = line.samples();
+  const int last = static_cast<int>(samples.size()) - 1;
+  const int reach = std::max(1, static_cast<int>(std::lround(kSlopeReach / line.spacing())));
+  const auto curvature = [&](int at) {
+    if (line.is_closed()) at = at < 0 ? at + last : (at > last ? at - last : at);
+    return samples[static_cast<std::size_t>(std::clamp(at, 0, last))].curve.curvature;
+  };
+  const auto index = static_cast<std::size_t>(i);
+  const double slope = (curvature(i + reach) - curvature(i - reach)) / (2.0 * reach * line.spacing());
+  demand_[index] = demand_of(curvature(i), slope, vehicle_);
+  ReferenceLine::Sample& sample = samples[index];
+  sample.speed = std::min(options_.speed_limit, vehicle_.valid_speed);
+  sample.limiter = SpeedLimiter::kAsked;
+  limit_to(speed_for(demand_[index], vehicle_, options_.grip_share), SpeedLimiter::kCurvature, sample);
+  sample.speed = std::max(sample.speed, kLowestSpeed);
+  if (i == 0 || sample.speed < samples[static_cast<std::size_t>(slowest_)].speed) slowest_ = i;
+}
+
+void SpeedPlan::finish_limits(ReferenceLine& line) noexcept {
+  if (line.is_closed()) return;
+  slowest_ = 0;
+  const double end =
+      speed_for((1.0 - vehicle_.steer_helper) * options_.end_curvature, vehicle_, options_.grip_share);
+  limit_to(std::max(end, kLowestSpeed), SpeedLimiter::kSight, line.samples().back());
+}
+
+/// Once round a closed line from its slowest place, whose speed nothing lowers any more; an open one from its
+/// beginning.
+void SpeedPlan::accelerate(ReferenceLine& line, int turn) noexcept {
+  const int laps = static_cast<int>(line.samples().size()) - 1;
+  const int at = (slowest_ + turn) % laps;
+  const auto from = static_cast<std::size_t>(at);
+  const std::size_t to = line.is_closed() && at + 1 == laps ? 0 : from + 1;
+  const double v = line.samples()[from].speed;
+  const double share = longitudinal_share(use_of(v, demand_[from], vehicle_, options_.grip_share), vehicle_);
+  const double drag = longitudinal_acceleration(vehicle_, 0.0, v);
+  const double drive = std::min(longitudinal_acceleration(vehicle_, 1.0, v) - drag, traction(v, vehicle_));
+  const double a = options_.drive_share * share * drive + drag;
+  const double squared = std::max(kLowestSpeed * kLowestSpeed, v * v + 2.0 * a * line.spacing());
+  limit_to(std::sqrt(squared), SpeedLimiter::kPower, line.samples()[to]);
+}
+
+/// The same the other way round; an open line from its end.
+void SpeedPlan::brake(ReferenceLine& line, int turn) noexcept {
+  const int laps = static_cast<int>(line.samples().size()) - 1;
+  const int at = line.is_closed() ? (slowest_ + laps - turn) % laps : laps - turn;
+  const auto from = static_cast<std::size_t>(at);
+  const std::size_t to = at == 0 ? static_cast<std::size_t>(laps - 1) : from - 1;
+  const ReferenceLine::Sample& ahead = line.samples()[from];
+  const double v = ahead.speed;
+  const double use = use_of(v, demand_[from], vehicle_, options_.grip_share);
+  const double share = longitudinal_share(use, vehicle_);
+  const double drag = longitudinal_acceleration(vehicle_, 0.0, v);
+  const double force = std::min(drag - longitudinal_acceleration(vehicle_, -vehicle_.brake_throttle_limit, v),
+                                traction(v, vehicle_));
+  const double a =
+      std::min(options_.brake_share * share * force, stability_.most_braking(v, options_.grip_share * use)) -
+      drag;
+  // Braking for the end of sight is for want of sight.
+  const bool is_blind = ahead.limiter == SpeedLimiter::kSight;
+  limit_to(std::sqrt(v * v + 2.0 * a * line.spacing()),
+           is_blind ? SpeedLimiter::kSight : SpeedLimiter::kBraking, line.samples()[to]);
+}
+
 namespace {
 
 constexpr int kFewestIntervals = 5;  // the smoother needs six knots

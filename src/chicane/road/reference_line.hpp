@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
+#include "chicane/base/text.hpp"
 #include "chicane/base/vec2.hpp"
-#include "chicane/base/word.hpp"
 
 /// The table of SpeedLimiter. A row makes the enumerator, its constant in the messages and its sentence in
 /// the dashboard. Rows are numbered in order; recordings keep the numbers, so a new row goes to the end.
-/// Columns: enumerator, name, sentence (base/word.hpp).
+/// Columns: enumerator, name, sentence (base/text.hpp).
 // clang-format off
 #define CHICANE_SPEED_LIMITERS(ROW)                                                                  \
   ROW(kNone, "none", "the controller does not say what limits the speed")                            \

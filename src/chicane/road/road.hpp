@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/line_planner.hpp"
 #include "chicane/road/reference_line.hpp"

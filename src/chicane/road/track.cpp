@@ -3,15 +3,110 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "chicane/base/text.hpp"
-#include "chicane/road/detail/crossing.hpp"
+#include "chicane/base/vec2.hpp"
 #include "chicane/road/detail/point_text.hpp"
 #include "chicane/road/smooth_line.hpp"
 
 namespace chicane::road {
+
 namespace {
+
+/// Two pieces of a polyline that touch: from points[first] and points[second] to their next points, first <
+/// second.
+struct Crossing {
+  std::size_t first = 0;
+  std::size_t second = 0;
+  bool is_tangle = false;  ///< not looked at closely: there are too many pieces in one place
+};
+
+constexpr std::size_t kMostCrossings = 10'000;
+
+constexpr std::size_t kMaxPiecesPerCell = 300;
+
+double side(const Vec2& a, const Vec2& b, const Vec2& p) noexcept {
+  return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
+}
+
+bool touches(const Vec2& a0, const Vec2& a1, const Vec2& b0, const Vec2& b1) noexcept {
+  const Vec2 a_low = min(a0, a1);
+  const Vec2 a_high = max(a0, a1);
+  const Vec2 b_low = min(b0, b1);
+  const Vec2 b_high = max(b0, b1);
+  if (b_high.x() < a_low.x() || b_high.y() < a_low.y()) return false;
+  if (b_low.x() > a_high.x() || b_low.y() > a_high.y()) return false;
+  return side(a0, a1, b0) * side(a0, a1, b1) <= 0.0 && side(b0, b1, a0) * side(b0, b1, a1) <= 0.0;
+}
+
+struct Entry {
+  std::uint64_t cell = 0;
+  std::size_t piece = 0;
+};
+
+/// The places where the polyline through `points` crosses or touches itself (neighbours sharing a point do
+/// not count), by rising `second`. Grid of cells as wide as the longest piece: O(n log n) for evenly spaced
+/// points. A line that comes by the same cell hundreds of times is no road and is reported as crossing there,
+/// once for each such cell. Ends after kMostCrossings.
+std::vector<Crossing> find_crossings(std::span<const Vec2> points, bool closed) {
+  const std::size_t n = points.size();
+  const std::size_t pieces = closed ? n : n - 1;
+  const auto end_of = [&](std::size_t i) -> const Vec2& { return points[i + 1 == n ? 0 : i + 1]; };
+
+  Vec2 low = points[0];
+  double width = 0.0;
+  for (std::size_t i = 0; i < pieces; ++i) {
+    low = min(min(low, points[i]), end_of(i));
+    width = std::max(width, (end_of(i) - points[i]).norm());
+  }
+  if (!(width > 0.0)) return {};
+  std::vector<Entry> entries;
+  entries.reserve(2 * pieces);
+  for (std::size_t i = 0; i < pieces; ++i) {
+    const Vec2 from = (min(points[i], end_of(i)) - low) / width;
+    const Vec2 to = (max(points[i], end_of(i)) - low) / width;
+    for (auto x = static_cast<std::uint64_t>(from.x()); x <= static_cast<std::uint64_t>(to.x()); ++x) {
+      for (auto y = static_cast<std::uint64_t>(from.y()); y <= static_cast<std::uint64_t>(to.y()); ++y) {
+        entries.push_back({(x << 32U) + y, i});
+      }
+    }
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.cell != b.cell ? a.cell < b.cell : a.piece < b.piece;
+  });
+
+  std::vector<Crossing> found;
+  for (std::size_t start = 0, stop = 0; start < entries.size() && found.size() < kMostCrossings;
+       start = stop) {
+    while (stop < entries.size() && entries[stop].cell == entries[start].cell) ++stop;
+    if (stop - start > kMaxPiecesPerCell)
+      found.push_back({entries[start].piece, entries[start + kMaxPiecesPerCell].piece, true});
+    const std::size_t last = std::min(stop, start + kMaxPiecesPerCell);
+    for (std::size_t i = start; i < last; ++i) {
+      for (std::size_t j = i + 1; j < last; ++j) {
+        const std::size_t a = entries[i].piece;
+        const std::size_t b = entries[j].piece;
+        const bool are_neighbours = b - a <= 1 || (closed && a == 0 && b + 1 == n);
+        if (!are_neighbours && touches(points[a], end_of(a), points[b], end_of(b))) found.push_back({a, b});
+      }
+    }
+  }
+  if (found.size() >= kMostCrossings) found.back().is_tangle = true;
+  const auto by_place = [](const Crossing& a, const Crossing& b) {
+    return a.second != b.second ? a.second < b.second : a.first < b.first;
+  };
+  const auto is_same = [](const Crossing& a, const Crossing& b) {
+    return a.first == b.first && a.second == b.second;
+  };
+  std::sort(found.begin(), found.end(), by_place);
+  found.erase(std::unique(found.begin(), found.end(), is_same), found.end());  // seen from several cells
+  return found;
+}
 
 constexpr double kMaxWidth = 1000.0;        // [m]
 constexpr double kMaxGap = 10'000.0;        // from point to point [m]
@@ -229,6 +324,125 @@ double Track::width_at(const std::vector<double>& table, double s) const noexcep
 
 double Track::edge_distance(const Projection& foot) const noexcept {
   return std::min(left_width(foot.s) - foot.d, right_width(foot.s) + foot.d);
+}
+
+namespace {
+
+constexpr double kSpacing = 2.0;                 // between samples [m]
+constexpr int kHalfWindow = 3;                   // samples on each side that the curvature is averaged with
+constexpr double kLeastCurvature = 1.0 / 220.0;  // a larger radius is straight at racing speed [1/m]
+constexpr double kSameCorner = 20.0;             // straight between bends of one corner, at most [m]
+constexpr double kLeastTurn = 0.3;               // [rad]
+constexpr double kNarrowest = 6.0;               // road in full size [m]
+
+/// Over a road in full size.
+double size_of(const Track& track) {
+  constexpr int kSamples = 64;
+  double width = 0.0;
+  for (int i = 0; i < kSamples; ++i) {
+    const double s = track.length() * i / kSamples;
+    width += (track.left_width(s) + track.right_width(s)) / kSamples;
+  }
+  return std::min(width / kNarrowest, 1.0);
+}
+
+/// Mean curvature of a line at equal distances [1/m].
+struct Bends {
+  double spacing = 0.0;  ///< [m]
+  int count = 0;
+  bool is_closed = false;
+  std::vector<double> curvature{};
+
+  [[nodiscard]] double at(int i) const {
+    if (is_closed) return curvature[static_cast<std::size_t>(((i % count) + count) % count)];
+    return i < 0 || i >= count ? 0.0 : curvature[static_cast<std::size_t>(i)];
+  }
+  [[nodiscard]] double place(int i) const { return is_closed ? (i % count) * spacing : i * spacing; }
+};
+
+Bends bends_of(const Path& line, double size) {
+  Bends bends{.is_closed = line.is_closed()};
+  bends.count = static_cast<int>(std::lround(line.length() / (kSpacing * size)));
+  if (bends.count <= 2 * kHalfWindow + 1) return {};
+  bends.spacing = line.length() / bends.count;
+  bends.curvature.resize(static_cast<std::size_t>(bends.count));
+  for (int i = 0; i < bends.count; ++i) {
+    const double from = (i - kHalfWindow) * bends.spacing, to = (i + kHalfWindow + 1) * bends.spacing;
+    bends.curvature[static_cast<std::size_t>(i)] =
+        (line.at(to).heading - line.at(from).heading) / (to - from);
+  }
+  return bends;
+}
+
+}  // namespace
+
+std::vector<Corner> corners_of(const Track& track) {
+  const double size = size_of(track);
+  const Bends bends = bends_of(track.centre(), size);
+  const auto side = [&](int i) {
+    const double curvature = size * bends.at(i);
+    return std::fabs(curvature) < kLeastCurvature ? 0 : curvature > 0.0 ? 1 : -1;
+  };
+  // Begins where the road is straight or changes its side, so that no corner is cut in two.
+  int first = 0;
+  while (bends.is_closed && first < bends.count && side(first) != 0 && side(first - 1) == side(first))
+    ++first;
+  if (first == bends.count) return {};
+
+  struct Bend {
+    int from, to, side;
+  };
+  std::vector<Bend> found;
+  for (int i = first; i < first + bends.count; ++i) {
+    if (side(i) == 0) continue;
+    const bool goes_on = !found.empty() && found.back().side == side(i) &&
+                         (i - found.back().to) * bends.spacing < kSameCorner * size;
+    if (goes_on) {
+      found.back().to = i + 1;
+    } else {
+      found.push_back({i, i + 1, side(i)});
+    }
+  }
+
+  std::vector<Corner> corners;
+  for (const Bend& bend : found) {
+    int apex = bend.from;
+    double turn = 0.0;
+    for (int i = bend.from; i < bend.to; ++i) {
+      turn += bends.at(i) * bends.spacing;
+      if (std::fabs(bends.at(i)) > std::fabs(bends.at(apex))) apex = i;
+    }
+    if (std::fabs(turn) < kLeastTurn) continue;
+    corners.push_back({bends.place(bend.from), bends.place(apex), bends.place(bend.to), turn});
+  }
+  const auto from_start = [&](const Corner& corner) {
+    const double s = corner.apex - track.start_s();
+    return track.centre().is_closed() && s < 0.0 ? s + track.length() : s;
+  };
+  std::sort(corners.begin(), corners.end(),
+            [&](const Corner& a, const Corner& b) { return from_start(a) < from_start(b); });
+  if (!track.centre().is_closed()) {
+    std::erase_if(corners, [&](const Corner& each) {
+      return from_start(each) < 0.0 || from_start(each) > track.lap_length();
+    });
+  }
+  if (corners.size() > kMostCorners) corners.resize(kMostCorners);
+  return corners;
+}
+
+std::vector<double> corner_sectors(const Track& track, const std::vector<Corner>& corners) {
+  const double round = track.centre().is_closed() ? track.length() : 0.0;
+  const auto ahead = [&](double s, double of) { return s < of ? s - of + round : s - of; };
+  std::vector<double> ends;
+  for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+    const Corner& here = corners[i];
+    const Corner& next = corners[i + 1];
+    const double to_end = ahead(here.end, here.apex);
+    const double straight = ahead(next.apex, here.apex) - to_end - ahead(next.apex, next.begin);
+    ends.push_back(ahead(here.apex, track.start_s()) + to_end + 0.5 * straight);
+  }
+  if (!corners.empty()) ends.push_back(track.lap_length());
+  return ends;
 }
 
 }  // namespace chicane::road

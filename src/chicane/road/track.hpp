@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -89,5 +92,47 @@ class Track {
   std::vector<TrackPoint> raw_points_;
   std::vector<double> raw_places_;
 };
+
+/// Distance of a file's points from the line that was smoothed out of them [m].
+struct PointFit {
+  double rms = 0.0;
+  double most = 0.0;
+};
+
+[[nodiscard]] inline PointFit point_fit(const Track& track) {
+  const std::size_t count = std::min(track.raw_points().size(), track.raw_places().size());
+  PointFit fit;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double away =
+        (track.centre().at(track.raw_places()[i]).position - track.raw_points()[i].position).norm();
+    sum += away * away;
+    fit.most = std::max(fit.most, away);
+  }
+  fit.rms = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, count)));
+  return fit;
+}
+
+/// Bend of a road. Places are arc lengths of its line [m], within one lap.
+struct Corner {
+  double begin = 0.0;
+  double apex = 0.0;  ///< sharpest place of the line
+  double end = 0.0;   ///< less than `begin` where the corner crosses s = 0 of a closed road
+  double turn = 0.0;  ///< change of heading from begin to end [rad], left positive
+};
+
+/// Corners of a track in the order in which a lap from the start line meets their apexes; at most
+/// `kMostCorners`.
+///
+/// The curvature of the line is averaged over 14 m. It makes a corner where it is above 1/220 m and the road
+/// turns by 0.3 rad or more; bends to the same side with less than 20 m between them are one corner. Roads
+/// narrower than 6 m on average are taken for models, and these lengths are smaller in proportion. The
+/// dashboard finds the same corners (web/src/state/corners.ts). Allocates.
+[[nodiscard]] std::vector<Corner> corners_of(const Track& track);
+inline constexpr int kMostCorners = 128;
+
+/// Ends of each corner's part of a lap, as distances from the start line [m]: half-way along the straight
+/// to the next corner, the last one at the end of the lap. Empty without corners. Allocates.
+[[nodiscard]] std::vector<double> corner_sectors(const Track& track, const std::vector<Corner>& corners);
 
 }  // namespace chicane::road

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "chicane/base/vec2.hpp"
-#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
 #include "chicane/road/path.hpp"
 #include "chicane/road/reference_line.hpp"
 

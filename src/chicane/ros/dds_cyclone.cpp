@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "chicane/ros/dds.hpp"
-#include "chicane/ros/detail/cdr_type.hpp"
 #include "chicane/ros/type_hash.hpp"
 
 namespace chicane::ros {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/ros/drive_node.hpp"
+#include "chicane/ros/nodes.hpp"
 
 #include <fmt/format.h>
 
@@ -14,16 +14,12 @@
 
 #include "chicane/protocol/car_messages.hpp"
 #include "chicane/ros/car_sight.hpp"
-#include "chicane/ros/detail/car_topics.hpp"
-#include "chicane/ros/drive_command.hpp"
-#include "chicane/ros/frame_tree.hpp"
+#include "chicane/ros/car_topics.hpp"
 #include "chicane/ros/node_clock.hpp"
-#include "chicane/ros/parameter_services.hpp"
-#include "chicane/ros/partner_watch.hpp"
 #include "chicane/ros/run_publisher.hpp"
 #include "chicane/run/external_drive.hpp"
 #include "chicane/safety/stop_player.hpp"
-#include "chicane/wire/sparse_log.hpp"
+#include "chicane/wire/endpoint.hpp"
 
 namespace chicane::ros {
 namespace {

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/ros/sim_node.hpp"
-#include "chicane/ros/dds.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,21 +14,34 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/car_messages.hpp"
-#include "chicane/ros/drive_command.hpp"
-#include "chicane/ros/map_file.hpp"
-#include "chicane/ros/partner_watch.hpp"
+#include "chicane/protocol/occupancy_map.hpp"
+#include "chicane/ros/car_topics.hpp"
+#include "chicane/ros/dds.hpp"
+#include "chicane/ros/nodes.hpp"
 #include "chicane/run/account.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/observe.hpp"
 #include "chicane/safety/stop_player.hpp"
-#include "chicane/sim/actuation_delay.hpp"
-#include "chicane/sim/map_scanner.hpp"
 #include "chicane/sim/range_scanner.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
-#include "chicane/wire/sparse_log.hpp"
+#include "chicane/wire/endpoint.hpp"
 
 namespace chicane::ros {
+
+Result<sim::OccupancyGrid> read_map(const std::string& file) {
+  const Result<protocol::OccupancyMap> map = protocol::read_map(file);
+  if (!map) return fail(map.error());
+  sim::OccupancyGrid grid{.width = map->image.width,
+                          .height = map->image.height,
+                          .resolution = map->resolution,
+                          .origin = {.x = map->origin.x(), .y = map->origin.y(), .psi = map->yaw}};
+  grid.is_wall.reserve(map->image.values.size());
+  for (int y = map->image.height - 1; y >= 0; --y)  // the image begins at the top
+    for (int x = 0; x < map->image.width; ++x) grid.is_wall.push_back(map->darkness(x, y) > map->occupied);
+  return grid;
+}
+
 namespace {
 
 using Clock = std::chrono::steady_clock;

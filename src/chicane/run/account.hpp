@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "chicane/road/corners.hpp"
+#include "chicane/road/track.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/world.hpp"
 #include "chicane/telemetry/frame.hpp"

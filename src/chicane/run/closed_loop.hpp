@@ -20,12 +20,10 @@
 #include "chicane/run/setting.hpp"
 #include "chicane/safety/stop_player.hpp"
 #include "chicane/scenario/scenario.hpp"
-#include "chicane/sim/actuation_delay.hpp"
 #include "chicane/sim/fault.hpp"
 #include "chicane/sim/plant.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
-#include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "chicane/base/deadline.hpp"
 #include "chicane/controller/controller.hpp"
-#include "chicane/model/measurement.hpp"
-#include "chicane/model/similarity.hpp"
+#include "chicane/model/state.hpp"
+#include "chicane/model/vehicle.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/safety/guard.hpp"
@@ -36,7 +36,7 @@ struct CycleInput {
 ///     measurement → plausibility → controller → fallback → gate → what is sent → frame
 ///
 /// What is between measurement and gate is safety::Guard's. A model car is seen by it in full size
-/// (model/similarity.hpp); frames and stops are of the car as it is. No allocation; one thread; objects are
+/// (model/vehicle.hpp); frames and stops are of the car as it is. No allocation; one thread; objects are
 /// independent.
 class ControlCycle {
  public:

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "chicane/base/file.hpp"
-#include "chicane/base/fnv.hpp"
+#include "chicane/base/random.hpp"
 
 namespace chicane::run {
 namespace {

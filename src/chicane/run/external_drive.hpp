@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "chicane/controller/controller.hpp"
-#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/run/control_cycle.hpp"
@@ -18,7 +18,6 @@
 #include "chicane/run/setting.hpp"
 #include "chicane/safety/stop_plan.hpp"
 #include "chicane/scenario/scenario.hpp"
-#include "chicane/telemetry/change.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/telemetry/metrics.hpp"
 

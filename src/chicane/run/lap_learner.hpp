@@ -3,7 +3,7 @@
 
 #include "chicane/base/vec2.hpp"
 #include "chicane/model/state.hpp"
-#include "chicane/sim/judge.hpp"
+#include "chicane/sim/world.hpp"
 
 namespace chicane::run {
 

@@ -12,7 +12,7 @@
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/scenario/scenario.hpp"
-#include "chicane/telemetry/change.hpp"
+#include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::run {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
-#include "chicane/lap_time/lap_times.hpp"
+#include "chicane/lap_time/limit.hpp"
 #include "chicane/scenario/scenario.hpp"
 
 namespace chicane::run {

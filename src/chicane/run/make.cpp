@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "chicane/model/similarity.hpp"
+#include "chicane/model/vehicle.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/sim/plant_registry.hpp"

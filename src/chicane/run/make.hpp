@@ -17,7 +17,7 @@ namespace chicane::run {
 /// The parts of an experiment, built from its description. Each fails with the key and value that is wrong.
 [[nodiscard]] Result<std::unique_ptr<controller::Controller>> make_controller(
     const scenario::Scenario& scenario);
-/// The car that its controller assumes: a model car in full size (model/similarity.hpp).
+/// The car that its controller assumes: a model car in full size (model/vehicle.hpp).
 [[nodiscard]] model::VehicleParams full_size(const scenario::Scenario& scenario);
 /// Gives a controller of make_controller() the scenario's settings while it drives
 /// (controller/controller.hpp).

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
 

@@ -10,9 +10,9 @@
 
 #include <fmt/format.h>
 
-#include "chicane/base/fnv.hpp"
+#include "chicane/base/random.hpp"
 #include "chicane/model/vehicle.hpp"
-#include "chicane/protocol/build_id.hpp"
+#include "chicane/protocol/data_folders.hpp"
 #include "chicane/sim/double_track.hpp"
 
 namespace chicane::run {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "chicane/lap_time/plant_limit.hpp"
+#include "chicane/lap_time/limit.hpp"
 #include "chicane/lap_time/racing_plan.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/run/disk_cache.hpp"

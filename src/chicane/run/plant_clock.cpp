@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::run {

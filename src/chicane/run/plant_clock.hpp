@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string>
 
-#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
 
 namespace chicane::run {
@@ -60,8 +60,8 @@ class PlantClock {
     int steps = 0;
   };
   static constexpr std::size_t kLegs = 12;
-  /// Ratio of the legs' sums, of which whole physics steps change only the last, and the mean deviation of the
-  /// logarithms of their ratios from the median.
+  /// Ratio of the legs' sums, of which whole physics steps change only the last, and the mean deviation of
+  /// the logarithms of their ratios from the median.
   struct Fit {
     double value = 0.0, deviation = 0.0;
   };

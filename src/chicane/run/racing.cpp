@@ -10,9 +10,8 @@
 #include "chicane/controller/registry.hpp"
 #include "chicane/lap_time/limit.hpp"
 #include "chicane/lap_time/racing_plan.hpp"
-#include "chicane/model/grip.hpp"
-#include "chicane/model/similarity.hpp"
-#include "chicane/model/sliding.hpp"
+#include "chicane/model/stability.hpp"
+#include "chicane/model/vehicle.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/plan_cache.hpp"
 

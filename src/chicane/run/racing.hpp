@@ -7,7 +7,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
-#include "chicane/lap_time/plan_progress.hpp"
+#include "chicane/lap_time/limit.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/scenario/scenario.hpp"

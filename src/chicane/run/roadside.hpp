@@ -7,7 +7,7 @@
 #include "chicane/run/account.hpp"
 #include "chicane/run/lap_learner.hpp"
 #include "chicane/scenario/scenario.hpp"
-#include "chicane/sim/judge.hpp"
+#include "chicane/sim/world.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
 

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "chicane/base/text.hpp"
-#include "chicane/protocol/fault_codec.hpp"
+#include "chicane/protocol/schema_json.hpp"
 #include "chicane/run/lap_planner.hpp"
 
 namespace chicane::run {

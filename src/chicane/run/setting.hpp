@@ -9,7 +9,7 @@
 #include "chicane/run/thread_queue.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/fault.hpp"
-#include "chicane/telemetry/change.hpp"
+#include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::run {
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
 #include "chicane/road/track.hpp"
 
 namespace chicane::run {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "chicane/base/math.hpp"
-#include "chicane/model/grip.hpp"
 #include "chicane/model/prediction.hpp"
+#include "chicane/model/vehicle.hpp"
 
 namespace chicane::safety {
 namespace {

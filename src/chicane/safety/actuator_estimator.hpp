@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "chicane/controller/controller.hpp"
-#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/safety/actuator_answer.hpp"
 #include "chicane/tracking/command_history.hpp"

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "chicane/base/vec2.hpp"
-#include "chicane/model/measurement.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/safety/actuator_answer.hpp"

@@ -4,7 +4,6 @@
 #include <array>
 
 #include "chicane/controller/controller.hpp"
-#include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
 

@@ -6,9 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/model/grip.hpp"
+#include "chicane/model/vehicle.hpp"
 #include "chicane/safety/stop_player.hpp"
 
 namespace chicane::safety {

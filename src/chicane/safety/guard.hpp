@@ -8,7 +8,6 @@
 #include "chicane/base/deadline.hpp"
 #include "chicane/base/owned.hpp"
 #include "chicane/controller/controller.hpp"
-#include "chicane/model/measurement.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"

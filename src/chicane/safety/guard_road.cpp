@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/safety/guard.hpp"
 
 namespace chicane::safety {

@@ -3,7 +3,6 @@
 
 #include <array>
 
-#include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/safety/sensor_watch.hpp"
 

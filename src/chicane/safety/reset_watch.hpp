@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "chicane/model/measurement.hpp"
+#include "chicane/model/state.hpp"
 
 namespace chicane::safety {
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::safety {

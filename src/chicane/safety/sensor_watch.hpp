@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 
-#include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 
 namespace chicane::safety {

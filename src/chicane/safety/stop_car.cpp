@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "chicane/base/math.hpp"
-#include "chicane/base/math_pack.hpp"
-#include "chicane/model/tire.hpp"
+#include "chicane/base/pack.hpp"
+#include "chicane/model/wheel_forces.hpp"
 
 namespace chicane::safety {
 namespace {

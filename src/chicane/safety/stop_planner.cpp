@@ -7,11 +7,9 @@
 #include <cstddef>
 #include <limits>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/base/math_pack.hpp"
 #include "chicane/base/pack.hpp"
-#include "chicane/model/yaw_stability.hpp"
+#include "chicane/model/stability.hpp"
 #include "chicane/safety/stop_player.hpp"
 
 namespace chicane::safety {

@@ -34,7 +34,7 @@ struct StopCheck {
 /// How hard a stop may brake.
 struct Braking {
   double share = 0.8;      ///< of the useful braking, (0, 1]
-  double stability = 1.6;  ///< least static stability that it leaves (model/yaw_stability.hpp)
+  double stability = 1.6;  ///< least static stability that it leaves (model/stability.hpp)
   double foreseen = 1e9;   ///< the same where the bends ahead ask for harder braking
 };
 

@@ -6,7 +6,6 @@
 #include <string_view>
 #include <utility>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::sim {

@@ -10,7 +10,6 @@
 #include "chicane/base/option.hpp"
 #include "chicane/base/vec2.hpp"
 #include "chicane/model/actuator.hpp"
-#include "chicane/model/tire.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/model/wheel_forces.hpp"
 #include "chicane/sim/plant.hpp"

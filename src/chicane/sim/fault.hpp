@@ -11,7 +11,6 @@
 
 #include "chicane/base/random.hpp"
 #include "chicane/base/vec2.hpp"
-#include "chicane/model/measurement.hpp"
 #include "chicane/model/state.hpp"
 
 namespace chicane::sim {

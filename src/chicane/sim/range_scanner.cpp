@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::sim {
@@ -130,6 +129,134 @@ std::vector<std::vector<Vec2>> RangeScanner::walls() const {
                        points_.begin() + static_cast<std::ptrdiff_t>(piece.end));
   }
   return walls;
+}
+
+namespace {
+
+constexpr int kMostRoom = 255;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Where x0 + t u leaves [0, size], and enters it, as far as this axis is concerned.
+struct Interval {
+  double begin = -kInfinity, end = kInfinity;
+};
+Interval inside(double x0, double u, double size) {
+  if (u == 0.0) return x0 >= 0.0 && x0 <= size ? Interval{} : Interval{kInfinity, -kInfinity};
+  const double a = -x0 / u, b = (size - x0) / u;
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// Rounds down, without a call where the processor has no instruction for it.
+int cell(double at, int low, int high) {
+  const int cut = static_cast<int>(at);
+  return std::clamp(at < cut ? cut - 1 : cut, low, high);
+}
+
+}  // namespace
+
+Result<MapScanner> MapScanner::create(const OccupancyGrid& grid, const RangeScannerOptions& options) {
+  if (const Result<void> sound = check(options); !sound) return fail(sound.error());
+  const std::size_t cells = grid.width > 0 && grid.height > 0
+                                ? static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height)
+                                : 0;
+  const bool is_finite =
+      std::isfinite(grid.origin.x) && std::isfinite(grid.origin.y) && std::isfinite(grid.origin.psi);
+  if (cells == 0 || cells > OccupancyGrid::kMostCells || grid.is_wall.size() != cells || !is_finite ||
+      !(grid.resolution > 0.0 && grid.resolution < 1e6))
+    return fail(ErrorCode::kInvalidArgument,
+                "map: expected 1 to 64 million cells, as many values, a resolution > 0 and a finite origin");
+  MapScanner scanner;
+  scanner.options_ = options;
+  scanner.width_ = grid.width;
+  scanner.height_ = grid.height;
+  scanner.resolution_ = grid.resolution;
+  scanner.origin_ = grid.origin;
+  scanner.axis_ = {chicane::cos(grid.origin.psi), chicane::sin(grid.origin.psi)};
+  scanner.room_.resize(cells);
+  std::transform(grid.is_wall.begin(), grid.is_wall.end(), scanner.room_.begin(),
+                 [](bool is_wall) { return static_cast<std::uint8_t>(is_wall ? 0 : kMostRoom); });
+  scanner.measure_free_room();
+  for (int i = 0; i < options.beams; ++i) {
+    const double angle = options.first_angle() + options.increment() * i;
+    scanner.directions_.emplace_back(chicane::cos(angle), chicane::sin(angle));
+  }
+  return scanner;
+}
+
+/// The distance transform of the chessboard: a king's moves to the nearest wall, in two passes.
+void MapScanner::measure_free_room() {
+  const auto relax = [&](int x, int y, int dx, int dy) {
+    const int from_x = x + dx, from_y = y + dy;
+    if (from_x < 0 || from_y < 0 || from_x >= width_ || from_y >= height_) return;
+    const int through = room(from_x, from_y) + 1;
+    if (through < room(x, y)) room(x, y) = static_cast<std::uint8_t>(through);
+  };
+  for (int y = 0; y < height_; ++y)
+    for (int x = 0; x < width_; ++x) {
+      relax(x, y, -1, 0);
+      for (const int dx : {-1, 0, 1}) relax(x, y, dx, -1);
+    }
+  for (int y = height_ - 1; y >= 0; --y)
+    for (int x = width_ - 1; x >= 0; --x) {
+      relax(x, y, 1, 0);
+      for (const int dx : {-1, 0, 1}) relax(x, y, dx, 1);
+    }
+}
+
+Vec2 MapScanner::in_cells(const Vec2& place) const noexcept {
+  const double dx = place.x() - origin_.x, dy = place.y() - origin_.y;
+  return {(axis_.x() * dx + axis_.y() * dy) / resolution_, (axis_.x() * dy - axis_.y() * dx) / resolution_};
+}
+
+bool MapScanner::is_wall(const Vec2& place) const noexcept {
+  const Vec2 at = in_cells(place);
+  const bool is_inside = at.x() >= 0.0 && at.y() >= 0.0 && at.x() < width_ && at.y() < height_;
+  return is_inside && room(static_cast<int>(at.x()), static_cast<int>(at.y())) == 0;
+}
+
+/// Distance to the first wall [cells]; infinite where there is none.
+double MapScanner::cast(const Vec2& from, const Vec2& direction) const noexcept {
+  const Interval across = inside(from.x(), direction.x(), width_);
+  const Interval along = inside(from.y(), direction.y(), height_);
+  const double longest = std::min({across.end, along.end, options_.range_max / resolution_});
+  double t = std::max({across.begin, along.begin, 0.0});
+  if (t > longest) return kInfinity;
+  int x = cell(from.x() + t * direction.x(), 0, width_ - 1);
+  int y = cell(from.y() + t * direction.y(), 0, height_ - 1);
+  const double per_x = 1.0 / direction.x(), per_y = 1.0 / direction.y();  // infinite along an axis
+  while (t <= longest) {
+    const int free = room(x, y);
+    if (free == 0) return t;
+    // Out of the square of free cells around this one, into the cell next to it.
+    const int step_x = direction.x() > 0.0 ? free : -free, step_y = direction.y() > 0.0 ? free : -free;
+    const double to_x =
+        direction.x() == 0.0 ? kInfinity : (x + (step_x > 0 ? step_x : step_x + 1) - from.x()) * per_x;
+    const double to_y =
+        direction.y() == 0.0 ? kInfinity : (y + (step_y > 0 ? step_y : step_y + 1) - from.y()) * per_y;
+    if (to_x <= to_y) {
+      t = to_x;
+      y = cell(from.y() + t * direction.y(), y - free + 1, y + free - 1);
+      x += step_x;
+    } else {
+      t = to_y;
+      x = cell(from.x() + t * direction.x(), x - free + 1, x + free - 1);
+      y += step_y;
+    }
+    if (x < 0 || y < 0 || x >= width_ || y >= height_) return kInfinity;
+  }
+  return kInfinity;
+}
+
+void MapScanner::scan(const model::Pose& sensor, std::span<float> ranges) const noexcept {
+  const Vec2 here = in_cells({sensor.x, sensor.y});
+  const double c = chicane::cos(sensor.psi), s = chicane::sin(sensor.psi);
+  const Vec2 ahead{axis_.x() * c + axis_.y() * s, axis_.x() * s - axis_.y() * c};  // in the map's axes
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const Vec2& beam = directions_[i];
+    const Vec2 direction{ahead.x() * beam.x() - ahead.y() * beam.y(),
+                         ahead.y() * beam.x() + ahead.x() * beam.y()};
+    ranges[i] = static_cast<float>(resolution_ * cast(here, direction));
+  }
 }
 
 }  // namespace chicane::sim

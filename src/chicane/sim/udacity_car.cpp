@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/jet.hpp"
 #include "chicane/base/math.hpp"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "chicane/base/vec2.hpp"
-#include "chicane/model/tire.hpp"
+#include "chicane/model/wheel_forces.hpp"
 #include "chicane/sim/plant.hpp"
 
 namespace chicane::sim {

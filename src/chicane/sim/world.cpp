@@ -8,6 +8,179 @@
 #include "chicane/base/math.hpp"
 
 namespace chicane::sim {
+namespace {
+
+constexpr double kSearch = 6.0;           // reach of a local projection [m]
+constexpr double kLost = 8.0;             // farther off the road than this: look for the line everywhere [m]
+constexpr int kLostPatience = 10;         // sightings between such looks
+constexpr double kCoveredShare = 0.95;    // of the line that a lap has to cover
+constexpr double kBackOnTrack = 0.05;     // distance that ends an off-track event [m] ...
+constexpr double kBackOnTrackTime = 0.2;  // ... once held so long [s]
+constexpr double kFullSize = 1.5;         // between the axles [m]; all lengths are less for shorter cars
+
+/// Over a car in full size.
+double size_of(const Sighting& car) noexcept {
+  const double wheelbase = car.contact_points[0].x() - car.contact_points[2].x();
+  return wheelbase > 0.0 ? std::min(wheelbase / kFullSize, 1.0) : 1.0;
+}
+
+}  // namespace
+
+road::Projection project_anywhere(const road::Track& track, const model::Pose& car) noexcept {
+  const road::Path& line = track.centre();
+  const double s = line.project({car.x, car.y}).s;
+  return line.project_along({car.x, car.y}, car.psi, 0.5 * (track.left_width(s) + track.right_width(s)));
+}
+
+Judge::Judge(const road::Track& track)
+    : track_{&track},
+      lap_length_{track.lap_length()},
+      corners_{road::corners_of(track)},
+      corner_ends_{road::corner_sectors(track, corners_)},
+      corner_times_(corners_.size()),
+      last_corner_times_(corners_.size()) {}
+
+void Judge::reset(double time, const Sighting& car) noexcept {
+  covered_ = off_track_at_lap_start_ = back_on_track_ = 0.0;
+  lap_start_ = sector_start_ = corner_start_ = time;
+  corner_ = 0;
+  std::fill(last_corner_times_.begin(), last_corner_times_.end(), 0.0);
+  lost_for_ = 0;
+  state_ = {};
+  size_ = size_of(car);
+  state_.time = time;
+  // A start on the line is timed from standstill; any other first drives to the line.
+  constexpr double kOnTheLine = 1.0;  // [m]
+  const road::Path& line = track_->centre();
+  state_.s = project_anywhere(*track_, car.pose).s;
+  state_.progress = line.difference(state_.s, track_->start_s());
+  state_.is_timed = std::fabs(state_.progress) <= kOnTheLine * size_;
+  if (line.is_closed() && state_.progress > kOnTheLine * size_) state_.progress -= lap_length_;
+  next_line_ = state_.is_timed || state_.progress > kOnTheLine * size_ ? lap_length_ : 0.0;
+  locate(0.0, car);
+  state_.min_edge_distance = std::numeric_limits<double>::infinity();
+  measure_edges(0.0, car);
+}
+
+void Judge::see(double time, const Sighting& car) noexcept {
+  const double elapsed = time - state_.time;
+  const double progress_before = state_.progress;
+  state_.time = time;
+  locate(elapsed, car);
+  measure_edges(elapsed, car);
+  time_laps(progress_before, elapsed);
+}
+
+void Judge::locate(double elapsed, const Sighting& car) noexcept {
+  const road::Path& line = track_->centre();
+  const Vec2 position{car.pose.x, car.pose.y};
+  const double reachable = 2.0 * car.speed * elapsed + 0.01 * size_;
+  road::Projection nearest = line.project(position, state_.s, kSearch * size_ + reachable);
+  const bool is_far = nearest.distance >
+                      kLost * size_ + std::max(track_->left_width(nearest.s), track_->right_width(nearest.s));
+  lost_for_ = is_far ? lost_for_ + 1 : 0;
+  bool has_jumped = false;
+  if (lost_for_ % kLostPatience == 1) {
+    const road::Projection anywhere = project_anywhere(*track_, car.pose);
+    has_jumped = anywhere.distance < 0.5 * nearest.distance;
+    if (has_jumped) nearest = anywhere;
+  }
+  const road::PathPoint foot = line.at(nearest.s);
+  double advanced = line.difference(nearest.s, state_.s);
+  if (!line.is_closed()) {
+    // Beyond its ends an open line goes on straight.
+    const Vec2 tangent{cos(foot.heading), sin(foot.heading)};
+    const double beyond = (position - foot.position).dot(tangent);
+    const bool is_end = nearest.s <= 0.0 || nearest.s >= line.length();
+    advanced = nearest.s + (is_end ? beyond : 0.0) - track_->start_s() - state_.progress;
+  }
+  if (!has_jumped) covered_ += std::clamp(advanced, -reachable, reachable);
+  state_.progress += advanced;
+  state_.s = nearest.s;
+  state_.lateral_error = nearest.d;
+  state_.heading_error = wrap_angle(car.pose.psi - foot.heading);
+}
+
+void Judge::measure_edges(double elapsed, const Sighting& car) noexcept {
+  const model::Pose& pose = car.pose;
+  const double c = cos(pose.psi);
+  const double s = sin(pose.psi);
+  double edge = std::numeric_limits<double>::infinity();
+  for (const Vec2& patch : car.contact_points) {
+    const Vec2 point{pose.x + c * patch.x() - s * patch.y(), pose.y + s * patch.x() + c * patch.y()};
+    const road::Projection at = track_->centre().project(point, state_.s, kSearch * size_);
+    edge = std::min(edge, track_->edge_distance(at));
+  }
+  state_.edge_distance = edge + track_->kerb_width();
+  state_.min_edge_distance = std::min(state_.min_edge_distance, state_.edge_distance);
+  back_on_track_ = state_.edge_distance >= kBackOnTrack * size_ ? back_on_track_ + elapsed : 0.0;
+  if (state_.edge_distance < 0.0) {
+    state_.off_track_time += elapsed;
+    if (!state_.is_off_track) ++state_.off_track_events;
+    state_.is_off_track = true;
+  } else if (back_on_track_ >= kBackOnTrackTime) {
+    state_.is_off_track = false;
+  }
+}
+
+void Judge::time_laps(double progress_before, double elapsed) noexcept {
+  const double moved = state_.progress - progress_before;
+  const auto crossing = [&](double mark) {
+    const double share = moved > 0.0 ? std::clamp((mark - progress_before) / moved, 0.0, 1.0) : 1.0;
+    return state_.time - elapsed * (1.0 - share);
+  };
+  const double third = lap_length_ / WorldState::kSectors;
+  while (!state_.is_finished) {
+    const auto corner_end = [&] { return next_line_ - lap_length_ + corner_ends_[corner_]; };
+    while (state_.is_timed && corner_ + 1 < corner_ends_.size() && state_.progress >= corner_end())
+      end_corner(crossing(corner_end()));
+    const bool is_last = !state_.is_timed || state_.sector == WorldState::kSectors - 1;
+    const double mark = next_line_ - (is_last ? 0.0 : (WorldState::kSectors - 1 - state_.sector) * third);
+    if (state_.progress < mark) break;
+    if (is_last) {
+      cross_line(crossing(mark));
+    } else {
+      state_.sector_times[static_cast<std::size_t>(state_.sector)] = crossing(mark) - sector_start_;
+      sector_start_ = crossing(mark);
+      ++state_.sector;
+    }
+  }
+  state_.lap_time = state_.is_timed && !state_.is_finished ? state_.time - lap_start_ : 0.0;
+}
+
+void Judge::end_corner(double crossing_time) noexcept {
+  corner_times_[corner_++] = crossing_time - corner_start_;
+  corner_start_ = crossing_time;
+}
+
+void Judge::cross_line(double crossing_time) noexcept {
+  if (state_.is_timed && covered_ < kCoveredShare * lap_length_) {
+    ++state_.void_laps;
+  } else if (state_.is_timed) {
+    ++state_.lap;
+    state_.sector_times.back() = crossing_time - sector_start_;
+    state_.last_sector_times = state_.sector_times;
+    if (corner_ < corner_times_.size()) end_corner(crossing_time);
+    last_corner_times_ = corner_times_;
+    state_.last_lap_time = crossing_time - lap_start_;
+    const bool is_best = state_.lap == 1 || state_.last_lap_time < state_.best_lap_time;
+    if (is_best) state_.best_lap_time = state_.last_lap_time;
+    state_.last_lap_was_clean = state_.off_track_time == off_track_at_lap_start_;
+  }
+  state_.is_finished = !track_->centre().is_closed() && next_line_ > 0.0;
+  next_line_ += lap_length_;
+  start_lap(crossing_time);
+}
+
+void Judge::start_lap(double crossing_time) noexcept {
+  state_.is_timed = true;
+  state_.sector = 0;
+  state_.sector_times = {};
+  covered_ = 0.0;
+  lap_start_ = sector_start_ = corner_start_ = crossing_time;
+  corner_ = 0;
+  off_track_at_lap_start_ = state_.off_track_time;
+}
 
 namespace {
 
@@ -36,7 +209,7 @@ int nearest_waypoint(const road::Track& track, const model::Pose& pose) noexcept
 }  // namespace
 
 World::World(Plant& plant, const road::Track& track) : plant_{&plant}, judge_{track} {
-  // A model car lives faster: the time scale of its size (model/similarity.hpp).
+  // A model car lives faster: the time scale of its size (model/vehicle.hpp).
   const auto patches = plant.contact_points();
   const double pace = std::min(std::sqrt(patches[0].x() - patches[2].x()), 1.0);
   steps_per_judgement_ =

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/solver/solution.hpp"
 
 namespace chicane::solver {

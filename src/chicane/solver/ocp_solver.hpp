@@ -8,9 +8,8 @@
 #include <limits>
 #include <type_traits>
 
-#include "chicane/base/assert.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/deadline.hpp"
-#include "chicane/base/inlining.hpp"
 #include "chicane/solver/detail/barrier.hpp"
 #include "chicane/solver/detail/descent.hpp"
 #include "chicane/solver/detail/evaluation.hpp"

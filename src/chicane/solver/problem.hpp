@@ -7,10 +7,9 @@
 #include <type_traits>
 #include <utility>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/jet.hpp"
-#include "chicane/base/jet_functions.hpp"
-#include "chicane/base/math_pack.hpp"
+#include "chicane/base/pack.hpp"
 #include "chicane/solver/detail/problem_check.hpp"
 #include "chicane/solver/stage_data.hpp"
 
@@ -63,7 +62,7 @@ namespace chicane::solver {
 /// - data that differ from stage to stage: a StageData member and `.at(k)`; `stage_number(k)` is k as a
 /// number;
 /// - no branches on values: select(a > b, x, y), max, min, positive_part, abs instead; compile-time ones are
-/// fine. All functions of jet.hpp and jet_functions.hpp are found by their arguments; what variables cannot
+/// fine. All functions of jet.hpp are found by their arguments; what variables cannot
 /// do is refused in few lines (symbol.hpp);
 /// - model code over one type T (`struct Motion<T>`) runs on T = Common<A, B, …> of the variables it uses;
 /// - what is computed from x_k and u_k but needs no memory is an output, not a state: put it into residual();

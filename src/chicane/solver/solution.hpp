@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <string_view>
 
-#include "chicane/base/inlining.hpp"
-#include "chicane/base/word.hpp"
+#include "chicane/base/compiler.hpp"
+#include "chicane/base/text.hpp"
 
 namespace chicane::solver {
 
-/// The table of SolveStatus. Columns: enumerator, number, name, severity, sentence (base/word.hpp).
+/// The table of SolveStatus. Columns: enumerator, number, name, severity, sentence (base/text.hpp).
 // clang-format off
 #define CHICANE_SOLVE_STATUSES(ROW)                                                                              \
   /* all residuals <= tolerance */                                                                               \

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/pack.hpp"
 
 namespace chicane::solver {

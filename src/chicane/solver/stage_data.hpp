@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 
 namespace chicane::solver {
 

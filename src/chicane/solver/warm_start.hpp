@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/solver/problem.hpp"
 
 namespace chicane::solver {

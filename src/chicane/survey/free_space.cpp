@@ -10,8 +10,7 @@
 #include <utility>
 
 #include "chicane/base/math.hpp"
-#include "chicane/survey/detail/regions.hpp"
-#include "chicane/survey/distance_field.hpp"
+#include "chicane/survey/image.hpp"
 #include "chicane/survey/sampled_line.hpp"
 
 namespace chicane::survey {

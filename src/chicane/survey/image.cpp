@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 
 #include "chicane/base/text.hpp"
@@ -89,6 +90,119 @@ Result<GreyImage> read_image(std::string_view bytes, const std::string& file) {
   if (bytes.starts_with("\x89PNG")) return read_png(bytes, file);
   return fail(ErrorCode::kParse,
               fmt::format("{}: got other bytes, expected a PGM (P2, P5) or PNG image", file));
+}
+
+namespace {
+
+constexpr double kFar = 1e12;  // [cells²]
+
+/// Lower envelope of parabolas: squared distances along one line from those across it.
+class Envelope {
+ public:
+  explicit Envelope(std::size_t most) : from_(most), to_(most), vertex_(most), bound_(most + 1) {}
+
+  std::vector<double>& from() { return from_; }
+  const std::vector<double>& measure(std::size_t count) {
+    std::size_t top = 0;
+    vertex_[0] = 0;
+    bound_[0] = -kFar;
+    bound_[1] = kFar;
+    for (std::size_t q = 1; q < count; ++q) {
+      double meets = crossing(q, vertex_[top]);
+      while (top > 0 && meets <= bound_[top]) meets = crossing(q, vertex_[--top]);
+      if (meets <= bound_[top]) {
+        vertex_[top] = q;
+        continue;
+      }
+      vertex_[++top] = q;
+      bound_[top] = meets;
+      bound_[top + 1] = kFar;
+    }
+    std::size_t at = 0;
+    for (std::size_t q = 0; q < count; ++q) {
+      while (bound_[at + 1] < static_cast<double>(q)) ++at;
+      const double away = static_cast<double>(q) - static_cast<double>(vertex_[at]);
+      to_[q] = std::min(kFar, away * away + from_[vertex_[at]]);
+    }
+    return to_;
+  }
+
+ private:
+  [[nodiscard]] double crossing(std::size_t q, std::size_t v) const {
+    const double a = static_cast<double>(q), b = static_cast<double>(v);
+    return ((from_[q] + a * a) - (from_[v] + b * b)) / (2.0 * (a - b));
+  }
+
+  std::vector<double> from_, to_;
+  std::vector<std::size_t> vertex_;
+  std::vector<double> bound_;
+};
+
+}  // namespace
+
+std::vector<float> distance_field(const std::vector<std::uint8_t>& is_set, int width, int height) {
+  const auto columns = static_cast<std::size_t>(width);
+  const auto rows = static_cast<std::size_t>(height);
+  std::vector<float> field(columns * rows);
+  // Down the columns by two sweeps, distances in whole cells.
+  for (std::size_t x = 0; x < columns; ++x) {
+    float away = 1e6F;
+    for (std::size_t y = 0; y < rows; ++y) {
+      away = is_set[y * columns + x] != 0 ? 0.0F : std::min(away + 1.0F, 1e6F);
+      field[y * columns + x] = away;
+    }
+    for (std::size_t y = rows; y-- > 0;) {
+      away = std::min(away + 1.0F, field[y * columns + x]);
+      field[y * columns + x] = away;
+    }
+  }
+  Envelope envelope(columns);
+  for (std::size_t y = 0; y < rows; ++y) {
+    float* const row = field.data() + y * columns;
+    for (std::size_t x = 0; x < columns; ++x)
+      envelope.from()[x] = static_cast<double>(row[x]) * static_cast<double>(row[x]);
+    const std::vector<double>& squares = envelope.measure(columns);
+    for (std::size_t x = 0; x < columns; ++x) row[x] = static_cast<float>(std::sqrt(squares[x]));
+  }
+  return field;
+}
+
+std::vector<Region> regions_of(const Mask& mask, const Grid& grid, int neighbours, std::vector<int>& labels) {
+  std::vector<Region> regions;
+  labels.assign(grid.size(), 0);
+  std::vector<std::size_t> open;
+  for (std::size_t seed = 0; seed < grid.size(); ++seed) {
+    if (mask[seed] == 0 || labels[seed] != 0) continue;
+    const Place begin = grid.place(seed);
+    Region region{
+        .first = seed, .left = begin.x, .right = begin.x, .low = begin.y, .high = begin.y, .rightmost = seed};
+    const int label = static_cast<int>(regions.size()) + 1;
+    labels[seed] = label;
+    open.push_back(seed);
+    while (!open.empty()) {
+      const std::size_t index = open.back();
+      open.pop_back();
+      const Place at = grid.place(index);
+      ++region.count;
+      region.left = std::min(region.left, at.x);
+      region.low = std::min(region.low, at.y);
+      region.high = std::max(region.high, at.y);
+      if (at.x > region.right) region.rightmost = index;
+      region.right = std::max(region.right, at.x);
+      region.is_at_border =
+          region.is_at_border || at.x == 0 || at.y == 0 || at.x + 1 == grid.width || at.y + 1 == grid.height;
+      for (int n = 0; n < neighbours; ++n) {
+        const int x = at.x + kNeighbours[n].x, y = at.y + kNeighbours[n].y;
+        if (!grid.has(x, y)) continue;
+        const std::size_t next = grid.at(x, y);
+        if (mask[next] == 0 || labels[next] != 0) continue;
+        labels[next] = label;
+        open.push_back(next);
+      }
+    }
+    regions.push_back(region);
+  }
+  return regions;
 }
 
 }  // namespace chicane::survey

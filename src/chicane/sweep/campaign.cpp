@@ -14,8 +14,7 @@
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/fault_campaign.hpp"
-#include "chicane/sweep/detail/settings_reader.hpp"
-#include "chicane/sweep/detail/text_hash.hpp"
+#include "chicane/sweep/plan_codec.hpp"
 
 namespace chicane::sweep {
 namespace {

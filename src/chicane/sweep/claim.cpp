@@ -14,8 +14,7 @@
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/yaml_tree.hpp"
-#include "chicane/sweep/detail/settings_reader.hpp"
-#include "chicane/sweep/outcome.hpp"
+#include "chicane/sweep/plan_codec.hpp"
 #include "chicane/sweep/trial.hpp"
 #include "chicane/telemetry/metrics.hpp"
 

@@ -26,7 +26,7 @@ struct Condition {
   struct Value {
     std::string name{};  ///< of the case; empty: the number is `constant`
     std::string
-        column{};  ///< of outcome.hpp, "lap_times_s[-1]", or "clean": all laps driven, no tyre off the road
+        column{};  ///< of trial.hpp, "lap_times_s[-1]", or "clean": all laps driven, no tyre off the road
     double constant = 0.0;
   };
   std::string text{};

@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "chicane/base/text.hpp"
-#include "chicane/protocol/report_document.hpp"
-#include "chicane/sweep/outcome.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/sweep/result_table.hpp"
+#include "chicane/sweep/trial.hpp"
 
 namespace chicane::sweep {
 namespace {

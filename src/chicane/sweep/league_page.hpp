@@ -4,11 +4,10 @@
 #include <string>
 
 #include "chicane/sweep/league.hpp"
-#include "chicane/sweep/league_results.hpp"
 
 namespace chicane::sweep {
 
-/// A document (protocol/report_document.hpp): the standings, a table for each track and car, times that were
+/// A document (protocol/json.hpp): the standings, a table for each track and car, times that were
 /// measured, and the command of each run.
 [[nodiscard]] std::string league_document(const League& league, const LeagueResults& results);
 /// The same tables for a page of docs/, without the commands.

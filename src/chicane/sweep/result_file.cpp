@@ -16,7 +16,7 @@
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
-#include "chicane/sweep/outcome.hpp"
+#include "chicane/sweep/trial.hpp"
 
 namespace chicane::sweep {
 namespace {

@@ -14,9 +14,8 @@
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
-#include "chicane/protocol/report_document.hpp"
-#include "chicane/sweep/detail/heat_map.hpp"
 #include "chicane/sweep/result_file.hpp"
+#include "chicane/sweep/result_table.hpp"
 #include "chicane/sweep/trial.hpp"
 
 namespace chicane::sweep {

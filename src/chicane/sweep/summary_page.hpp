@@ -9,7 +9,7 @@
 
 namespace chicane::sweep {
 
-/// The results of a sweep as a document (protocol/report_document.hpp).
+/// The results of a sweep as a document (protocol/json.hpp).
 struct SummaryDocument {
   std::uint64_t runs = 0;
   std::string text{};

@@ -14,8 +14,7 @@
 #include "chicane/protocol/schema.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/parallel.hpp"
-#include "chicane/sweep/detail/settings_reader.hpp"
-#include "chicane/sweep/outcome.hpp"
+#include "chicane/sweep/plan_codec.hpp"
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/trial.hpp"
 

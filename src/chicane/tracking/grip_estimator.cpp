@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "chicane/model/grip.hpp"
+#include "chicane/model/vehicle.hpp"
 
 namespace chicane::tracking {
 namespace {

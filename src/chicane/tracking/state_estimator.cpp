@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "chicane/base/angle.hpp"
-#include "chicane/model/helper_gap.hpp"
+#include "chicane/base/math.hpp"
+#include "chicane/model/actuator.hpp"
 
 namespace chicane::tracking {
 namespace {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "chicane/model/measurement.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/tracking/command_history.hpp"
@@ -123,7 +122,7 @@ class StateEstimator {
     heading_gains_.estimate_disturbance(is_on);
     now_.disturbance = {};
   }
-  /// Whether what the steer helper leaves out is counted from now on (model/helper_gap.hpp); off at first.
+  /// Whether what the steer helper leaves out is counted from now on (model/actuator.hpp); off at first.
   void mind_helper_gap(bool is_on) noexcept { minds_gap_ = is_on; }
   /// Innovations are averaged over `time` [s] from now on (InnovationGains).
   void average_over(double time) noexcept {

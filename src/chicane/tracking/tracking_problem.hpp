@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <tuple>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/jet.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/model/actuator.hpp"

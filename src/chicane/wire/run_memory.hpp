@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <string>
+#include <utility>
 
 #include "chicane/telemetry/frame.hpp"
 
@@ -56,6 +60,69 @@ class RunMemory {
   std::deque<KeptLap> laps_;
   std::deque<KeptMessage> changes_;
   std::uint64_t next_ = 1;
+};
+
+/// How much may be on its way to a reader that acknowledges what it reads, so that what is sent next arrives
+/// soon: congestion control by delay, after LEDBAT (RFC 6817). The window grows while acknowledgements come
+/// soon after the message, and shrinks to what the link carries in that time where they come later. It covers
+/// everything between the two programs: sockets, proxies, and a reader that is busy for long. One thread.
+class LinkPace {
+ public:
+  static constexpr double kDelayAimed = 0.15;  ///< in queues on the way, beside the shortest round trip [s]
+  static constexpr std::size_t kLeast = std::size_t{12} << 10U;  ///< window [byte]
+  static constexpr std::size_t kFirst = std::size_t{24} << 10U;  ///< window at the beginning [byte]
+  static constexpr std::size_t kMost = std::size_t{1} << 20U;    ///< window [byte]
+
+  /// A message of so many bytes was sent at `now` [s].
+  void sent(std::size_t bytes, double now) {
+    sent_ += bytes;
+    on_way_.push_back({sent_, in_flight(), now});
+  }
+
+  /// The reader has read `total` bytes since it came. Numbers that were never sent, or go back, change
+  /// nothing.
+  void received(std::uint64_t total, double now) {
+    if (total <= received_ || total > sent_) return;
+    const auto newly = static_cast<std::size_t>(total - received_);
+    received_ = total;
+    Sent last{};
+    while (!on_way_.empty() && on_way_.front().total <= total) {
+      last = on_way_.front();
+      on_way_.pop_front();
+    }
+    if (last.total == 0) return;  // a part of a message
+    // One that was held up by a busy machine says nothing of the way: two in a row do.
+    const double newest = now - last.at;
+    const double round_trip = std::min(newest, std::exchange(before_, newest));
+    shortest_ = std::min(shortest_, newest);
+    if (newest - shortest_ < kDelayAimed) {
+      if (last.in_flight * 2 >= window_) window_ = std::min(kMost, window_ + newly);
+    } else if (round_trip - shortest_ >= kDelayAimed) {
+      const double carried = static_cast<double>(last.in_flight) * (shortest_ + kDelayAimed) / round_trip;
+      window_ = std::clamp(static_cast<std::size_t>(carried), kLeast, std::max(kLeast, window_));
+    }
+  }
+
+  /// Bytes that were sent and not acknowledged.
+  [[nodiscard]] std::size_t in_flight() const { return static_cast<std::size_t>(sent_ - received_); }
+  /// Bytes that the reader has acknowledged.
+  [[nodiscard]] std::uint64_t received() const { return received_; }
+  [[nodiscard]] std::size_t window() const { return window_; }
+  /// `reserve`: beyond the window, for what must not wait behind other things [byte].
+  [[nodiscard]] bool has_room(std::size_t reserve = 0) const { return in_flight() < window_ + reserve; }
+
+ private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  struct Sent {
+    std::uint64_t total = 0;    ///< bytes sent up to its end
+    std::size_t in_flight = 0;  ///< with it [byte]
+    double at = 0.0;            ///< [s]
+  };
+  std::deque<Sent> on_way_;
+  std::uint64_t sent_ = 0, received_ = 0;  ///< [byte]
+  std::size_t window_ = kFirst;
+  double before_ = kInfinity;    ///< the round trip before the newest [s]
+  double shortest_ = kInfinity;  ///< round trip [s]
 };
 
 }  // namespace chicane::wire

@@ -20,7 +20,6 @@
 #include "chicane/run/external_drive.hpp"
 #include "chicane/telemetry/metrics.hpp"
 #include "chicane/wire/endpoint.hpp"
-#include "chicane/wire/sparse_log.hpp"
 
 namespace chicane::wire {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "chicane/wire/sparse_log.hpp"
+#include "chicane/wire/endpoint.hpp"
 
 namespace chicane::wire {
 

@@ -1,19 +1,68 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "chicane/base/result.hpp"
+#include "chicane/model/state.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/protocol/udacity_codec.hpp"
+#include "chicane/safety/stop_player.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::wire {
+
+/// What the actuators do at the simulator's end of the connection (docs/protocol.md §5): the
+/// answers are picked up one telemetry later, and when they cease the car is stopped (safety/stop_player.hpp)
+/// by what came with the last one. All times are the simulated world's [s]; they do not decrease. One thread.
+///
+/// A controller that sends no stop plan is waited for max(0.25 s, 3 times the median of its last nine
+/// cycles): what it answers so slowly as a rule is no silence.
+class CommandReceiver {
+ public:
+  CommandReceiver(const model::VehicleParams& vehicle, safety::Receiver receiver) noexcept
+      : player_{vehicle, 0.0, receiver} {}
+
+  /// Telemetry is sampled at `time`, and the answer to the one before acts from now on. An answer that came
+  /// after the command timeout is too old for that: it is not used; false says so.
+  bool sampled(double time) noexcept;
+  /// The answer to the last telemetry has come.
+  void answered(const protocol::UdacitySteer& steer) noexcept;
+  /// The connection has ended: no answer is waited for.
+  void disconnected() noexcept;
+
+  /// What the actuators do at `time`; `speed` is their own [m/s].
+  [[nodiscard]] model::Command act(double time, double speed) noexcept;
+  /// What act() has said last.
+  [[nodiscard]] const model::Command& acting() const noexcept { return acting_; }
+  /// Command timeout: no command has come for longer than usual, and the receiver stops the car, or has. A
+  /// stop by the controller's guard, repeated with each of its commands, does not count.
+  [[nodiscard]] bool is_timed_out() const noexcept { return is_timed_out_; }
+
+ private:
+  void add_cycle(double length) noexcept;
+
+  safety::StopPlayer player_;
+  std::optional<protocol::UdacitySteer> waiting_;
+  bool has_any_ = false;    ///< a command has been picked up; until then the car stands
+  double sampled_ = 0.0;    ///< the telemetry that was sent last
+  double picked_up_ = 0.0;  ///< the command that acts
+  double patience_ = safety::StopPlayer::kPatience;
+  bool is_timed_out_ = false;
+  double timed_out_since_ = -1.0;  ///< [s]
+  model::Command received_, acting_;
+  std::array<double, 9> cycles_{};  ///< [s]
+  int cycle_count_ = 0;
+};
 
 /// How the simulator meets a controller program. What it simulates is the scenario's.
 struct SimulateOptions {
@@ -55,7 +104,7 @@ struct SimulateReport {
 /// (docs/protocol.md §5). Physics never waits; each answer is picked up `scenario.turn_around`
 /// after it came, when the next telemetry is sampled, and acts from there until the next one. A broken answer
 /// is named, counted, and driven past with the command that was. When commands cease the car is stopped as
-/// `scenario.guard.receiver` says (command_receiver.hpp); when they come again it drives on.
+/// `scenario.guard.receiver` says; when they come again it drives on.
 ///
 /// Uses of the scenario: track, car, plant_options, vehicle, guard.receiver, sensor, seed, laps, time_limit,
 /// turn_around, waypoints_sent. Ends when the laps are driven, the car is lost, time is up, the controller

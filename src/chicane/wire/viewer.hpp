@@ -19,7 +19,6 @@
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
 #include "chicane/wire/endpoint.hpp"
-#include "chicane/wire/link_pace.hpp"
 #include "chicane/wire/run_memory.hpp"
 
 namespace chicane::wire {
@@ -54,7 +53,7 @@ struct ViewerOptions {
 /// Laps and changes of the run are sent from its beginning to whoever subscribes. The query of a viewer's
 /// address may ask for more: "past" offers the topic "/chicane/past", the frames of the last minutes before
 /// it came (run_memory.hpp), the newest first, behind the present; "paced" sends no more than the viewer
-/// acknowledges in time (link_pace.hpp, foxglove::Received), the newest frame before everything else.
+/// acknowledges in time (run_memory.hpp, foxglove::Received), the newest frame before everything else.
 ///
 /// Must outlive the server it is started with.
 class ViewerEndpoint final : public Endpoint {

@@ -2,7 +2,7 @@
 #include "puck_solver.hpp"
 
 #include <array>
-#include <chicane/base/inlining.hpp>
+#include <chicane/base/compiler.hpp>
 #include <chicane/solver/ocp_solver.hpp>
 #include <tuple>
 

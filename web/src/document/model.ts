@@ -1,7 +1,7 @@
 import type { Plot } from '../parts/plot';
 import type { Table } from '../parts/table';
 
-// What the program writes of its results: src/chicane/protocol/report_document.hpp.
+// What the program writes of its results: src/chicane/protocol/json.hpp.
 
 export interface ReportDocument {
   readonly kind: 'sweep' | 'league' | 'identify' | 'import';

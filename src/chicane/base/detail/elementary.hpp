@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <limits>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/math.hpp"
 
 namespace chicane::elementary {
 
-/// The algorithms behind math.hpp (double) and math_pack.hpp (packs): one text for both, without branches, so
+/// The algorithms behind math.hpp (double) and pack.hpp (packs): one text for both, without branches, so
 /// that a lane has the bits of the scalar call. After fdlibm (Sun Microsystems, 1993, freely distributable).
 /// Plain IEEE operations in a fixed order; never fused.
 

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/instruction_set.hpp"
 
 // Longer than other headers because every processor has its own names for the same dozen operations.

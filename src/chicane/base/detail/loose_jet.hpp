@@ -6,9 +6,8 @@
 #include <concepts>
 #include <cstddef>
 
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/detail/jet_rules.hpp"
-#include "chicane/base/detail/variable_sets.hpp"
-#include "chicane/base/inlining.hpp"
 
 namespace chicane {
 

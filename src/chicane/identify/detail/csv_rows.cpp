@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "chicane/base/angle.hpp"
+#include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/identify/detail/log_rows.hpp"
 #include "chicane/protocol/csv_text.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "chicane/base/math.hpp"
-#include "chicane/model/tire.hpp"
+#include "chicane/model/wheel_forces.hpp"
 
 namespace chicane::identify {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/identify/detail/ros_rows.hpp"
 #include "chicane/protocol/step_codec.hpp"
-#include "chicane/telemetry/mcap_reader.hpp"
+#include "chicane/telemetry/mcap.hpp"
 
 namespace chicane::identify {
 

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "chicane/lap_time/detail/double_track_model.hpp"
-#include "chicane/lap_time/detail/udacity_model.hpp"
+#include "chicane/lap_time/detail/plant_models.hpp"
 
 namespace chicane::lap_time {
 namespace {

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <functional>
 #include <limits>
 #include <string_view>
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/lap_time/detail/limit_model.hpp"
 #include "chicane/lap_time/detail/plan_model.hpp"
-#include "chicane/lap_time/plan_progress.hpp"
-#include "chicane/road/road_data.hpp"
+#include "chicane/lap_time/limit.hpp"
+#include "chicane/road/racing_road.hpp"
 #include "chicane/road/track.hpp"
+#include "chicane/sim/plant.hpp"
 
 namespace chicane::lap_time {
 
@@ -73,5 +76,37 @@ class PlanSearch {
   bool is_stopped_ = false;
   bool is_out_of_budget_ = false;
 };
+
+/// Linear feedback towards a plan, for each of its nodes: the periodic linear-quadratic regulator of the
+/// model's derivatives along it (docs/limit.md, section 5).
+class RingFeedback {
+ public:
+  /// `z`: the plan's nodes.
+  RingFeedback(const LimitModel& model, const RoadNodes& road, const std::vector<double>& z,
+               const Tuning& tuning);
+
+  /// Gains at node k: two rows of `driven` numbers; inputs = the plan's − gains · error.
+  [[nodiscard]] const double* gains(std::size_t k) const noexcept {
+    return gains_.data() + k * 2 * static_cast<std::size_t>(driven_);
+  }
+
+ private:
+  int driven_;
+  std::vector<double> gains_;
+};
+
+/// What came of driving a plan.
+struct DrivenLaps {
+  bool is_clean = false;  ///< all laps, without a boundary event since the start
+  int laps = 0;
+  double best = 0.0;  ///< lap time [s]
+  double worst = 0.0;
+  double least_edge = 0.0;  ///< of a contact patch to the edge [m]
+  double event_s = 0.0;     ///< where the first boundary event was [m]
+};
+
+/// Drives a plan in the plant with full state and without latency: what the plan asks for, and feedback.
+[[nodiscard]] DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePlan& plan,
+                                    sim::Plant& plant, const Tuning& tuning, int laps);
 
 }  // namespace chicane::lap_time

@@ -1,23 +1,174 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "chicane/base/math.hpp"
 #include "chicane/model/state.hpp"
-#include "chicane/protocol/detail/cdr_source.hpp"
-#include "chicane/protocol/detail/cdr_writer.hpp"
+#include "chicane/protocol/frame_fields.hpp"
+#include "chicane/protocol/ros_messages.hpp"
 
-/// A message names its fields once, in order, in `fields(archive, message)`. One archive writes them, one
-/// reads them.
 namespace chicane::protocol {
+
+/// Reads one message of a stranger: CDR (XCDR1) of either byte order with its four-byte header. What lies
+/// beyond the end reads as zero, and ok() is false from then on.
+class CdrSource {
+ public:
+  explicit CdrSource(std::string_view bytes) : bytes_{bytes} {
+    ok_ = bytes.size() >= kHeader && bytes[0] == '\0' && (bytes[1] == '\0' || bytes[1] == '\1');
+    swaps_ = ok_ && bytes[1] == '\0';
+  }
+
+  /// Everything so far was there.
+  [[nodiscard]] bool ok() const { return ok_; }
+
+  template <class T>
+  T get() {
+    static_assert(std::is_arithmetic_v<T>);
+    const std::size_t past = (at_ - kHeader) % sizeof(T);
+    skip(past == 0 ? 0 : sizeof(T) - past);
+    std::array<char, sizeof(T)> raw{};
+    if (!take(raw.data(), sizeof(T))) return T{};
+    if (swaps_) std::reverse(raw.begin(), raw.end());
+    return std::bit_cast<T>(raw);
+  }
+  double number() { return get<double>(); }
+  /// A boolean, of which any byte but zero is true.
+  bool flag() { return get<std::uint8_t>() != 0; }
+
+  /// A string, without the zero at its end.
+  std::string_view text() {
+    const auto size = get<std::uint32_t>();
+    if (!ok_ || size > bytes_.size() - at_) return fail();
+    const std::string_view value = bytes_.substr(at_, size);
+    at_ += size;
+    if (value.empty()) return value;  // some writers send no zero for an empty string
+    if (value.back() != '\0') return fail();
+    return value.substr(0, value.size() - 1);
+  }
+
+  /// The number of elements of a sequence that have at least `smallest` bytes each; 0 where so many cannot
+  /// follow.
+  std::uint32_t count(std::size_t smallest) {
+    const auto value = get<std::uint32_t>();
+    if (ok_ && value <= (bytes_.size() - at_) / smallest) return value;
+    ok_ = ok_ && value == 0;
+    return 0;
+  }
+
+  /// builtin_interfaces/Time in nanoseconds.
+  std::int64_t stamp() {
+    const auto seconds = get<std::int32_t>();
+    return std::int64_t{seconds} * 1'000'000'000 + get<std::uint32_t>();
+  }
+
+ private:
+  static constexpr std::size_t kHeader = 4;
+
+  std::string_view fail() {
+    ok_ = false;
+    return {};
+  }
+  void skip(std::size_t size) {
+    if (ok_ && size <= bytes_.size() - at_) {
+      at_ += size;
+    } else {
+      ok_ = false;
+    }
+  }
+  bool take(char* to, std::size_t size) {
+    if (!ok_ || size > bytes_.size() - at_) return ok_ = false;
+    std::memcpy(to, bytes_.data() + at_, size);
+    at_ += size;
+    return true;
+  }
+
+  std::string_view bytes_;
+  std::size_t at_ = kHeader;
+  bool ok_ = false;
+  bool swaps_ = false;
+};
+
+/// A time of a message [ns].
+struct StampNs {
+  std::int64_t nanoseconds = 0;
+};
+
+/// One message under construction: XCDR1 with its header, each primitive aligned to its size counted from the
+/// end of the header (OMG DDSI-RTPS 2.3, chapter 10). Padding is zero, so equal messages have equal bytes.
+class CdrWriter {
+ public:
+  static_assert(std::endian::native == std::endian::little);
+
+  explicit CdrWriter(std::size_t expected_size = 512) { bytes_.reserve(expected_size); }
+
+  template <class... Values>
+  CdrWriter& put(Values... values) {
+    (append(values), ...);
+    return *this;
+  }
+  CdrWriter& text(std::string_view value) {
+    count(value.size() + 1);
+    bytes_.append(value).push_back('\0');
+    return *this;
+  }
+  CdrWriter& count(std::size_t value) { return put(static_cast<std::uint32_t>(value)); }
+  CdrWriter& texts(const std::vector<std::string>& values) {
+    count(values.size());
+    for (const std::string& value : values) text(value);
+    return *this;
+  }
+  CdrWriter& stamp(double seconds) { return put(Stamp{seconds}); }
+  CdrWriter& stamp_ns(std::int64_t nanoseconds) {
+    const std::int64_t ns = nanoseconds < 0 ? 0 : nanoseconds;
+    return put(static_cast<std::int32_t>(ns / 1'000'000'000), static_cast<std::uint32_t>(ns % 1'000'000'000));
+  }
+  CdrWriter& orientation(double yaw) {
+    return put(0.0, 0.0, chicane::sin(0.5 * yaw), chicane::cos(0.5 * yaw));
+  }
+  CdrWriter& zeros(int number) {
+    for (int i = 0; i < number; ++i) append(0.0);
+    return *this;
+  }
+  [[nodiscard]] std::string bytes() { return std::move(bytes_); }
+
+ private:
+  static constexpr std::size_t kHeader = 4;
+
+  template <class T>
+  void append(T value) {
+    static_assert(std::is_arithmetic_v<T>);
+    while ((bytes_.size() - kHeader) % sizeof(T) != 0) bytes_.push_back('\0');
+    bytes_.append(std::bit_cast<std::array<char, sizeof(T)>>(value).data(), sizeof(T));
+  }
+  void append(Stamp stamp) {
+    const std::uint64_t ns = to_nanoseconds(stamp.seconds);
+    append(static_cast<std::int32_t>(ns / 1'000'000'000U));
+    append(static_cast<std::uint32_t>(ns % 1'000'000'000U));
+  }
+  void append(StampNs stamp) { stamp_ns(stamp.nanoseconds); }
+  void append(std::span<const double> values) {
+    count(values.size());
+    for (const double value : values) append(value);
+  }
+
+  std::string bytes_{'\0', '\1', '\0', '\0'};
+};
+
+// A message names its fields once, in order, in `fields(archive, message)`. One archive writes them, one
+// reads them.
 
 class WritingArchive {
  public:

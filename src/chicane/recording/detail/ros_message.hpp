@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
-#include "chicane/telemetry/mcap_reader.hpp"
+#include "chicane/telemetry/mcap.hpp"
 
 namespace chicane::recording {
 

@@ -3,7 +3,6 @@
 
 #include <limits>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/sim/fault.hpp"
 

@@ -9,9 +9,9 @@
 #include <type_traits>
 #include <utility>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/base/math_pack.hpp"
+#include "chicane/base/pack.hpp"
 #include "chicane/solver/detail/problem_pattern.hpp"
 #include "chicane/solver/detail/soft_constraint.hpp"
 #include "chicane/solver/hard_constraints.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/problem_pattern.hpp"
 #include "chicane/solver/detail/soft_constraint.hpp"

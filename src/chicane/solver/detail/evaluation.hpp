@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/solver/detail/hard_rows.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/problem_pattern.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "chicane/base/math_pack.hpp"
+#include "chicane/base/pack.hpp"
 #include "chicane/solver/detail/barrier.hpp"
 #include "chicane/solver/detail/filter.hpp"
 #include "chicane/solver/detail/iterate.hpp"

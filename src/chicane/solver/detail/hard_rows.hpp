@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "chicane/base/math.hpp"
-#include "chicane/base/math_pack.hpp"
+#include "chicane/base/pack.hpp"
 #include "chicane/solver/detail/filter.hpp"
 #include "chicane/solver/detail/filter_slacks.hpp"
 #include "chicane/solver/detail/iterate.hpp"

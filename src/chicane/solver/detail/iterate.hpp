@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "chicane/base/inlining.hpp"
-#include "chicane/base/math_pack.hpp"
+#include "chicane/base/compiler.hpp"
+#include "chicane/base/pack.hpp"
 #include "chicane/solver/problem.hpp"
 
 namespace chicane::solver {

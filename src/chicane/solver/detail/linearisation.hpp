@@ -9,7 +9,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/solver/detail/barrier.hpp"
 #include "chicane/solver/detail/evaluation.hpp"
 #include "chicane/solver/detail/hard_rows.hpp"

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/pack.hpp"
 #include "chicane/solver/detail/pattern.hpp"
 #include "chicane/solver/detail/small_qp.hpp"

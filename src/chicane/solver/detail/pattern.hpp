@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/pack.hpp"
 
 namespace chicane::solver {

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/jet.hpp"
 #include "chicane/base/pack.hpp"
 #include "chicane/solver/detail/pattern.hpp"

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/solver/detail/evaluation.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/pattern.hpp"

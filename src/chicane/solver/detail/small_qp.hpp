@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/pack.hpp"
 

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/jet.hpp"
 #include "chicane/solver/detail/pattern.hpp"
 #include "chicane/solver/detail/problem_pattern.hpp"

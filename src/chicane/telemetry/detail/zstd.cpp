@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/telemetry/detail/zstd.hpp"
 
-#include "chicane/base/assert.hpp"
+#include "chicane/base/compiler.hpp"
 
 #ifdef CHICANE_HAVE_ZSTD
 #include <zstd.h>

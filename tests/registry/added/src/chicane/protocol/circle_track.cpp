@@ -3,7 +3,6 @@
 
 #include <charconv>
 
-#include "chicane/base/angle.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
 

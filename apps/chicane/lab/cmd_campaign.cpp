@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "chicane/base/text.hpp"
+#include "chicane/protocol/json.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/protocol/schema_json.hpp"
+#include "chicane/run/fault_campaign.hpp"
+#include "chicane/run/parallel.hpp"
+#include "chicane/sweep/campaign.hpp"
+#include "chicane/sweep/trial.hpp"
+#include "commands.hpp"
+#include "lab/many_runs.hpp"
+
+namespace chicane::apps {
+namespace {
+
+using sweep::CampaignGroup;
+using sweep::CampaignTrial;
+
+/// All trials of one fault or pair and duration, with one car and preset, the tracks together.
+struct Row {
+  std::string car{}, preset{}, fault{}, lasts{};
+  std::int64_t trials = 0, off = 0, off_anyway = 0, lasting = 0, standing = 0;
+  double least_edge = std::numeric_limits<double>::infinity();  ///< [m]
+  double duration = 0.0;                                        ///< duration of the faults [s]
+  std::string worst{};                                          ///< the command that drives that trial
+  bool is_worst_anyway = false;                                 ///< it is off the road without the fault, too
+
+  [[nodiscard]] auto key() const { return std::tie(car, preset, fault, lasts); }
+
+  /// Off the road by the fault comes before off the road anyway.
+  void add(const CampaignTrial& trial, const std::string& command) {
+    ++trials;
+    duration = trial.duration;
+    if (trial.least_edge < 0.0) ++(trial.is_off_anyway ? off_anyway : off);
+    if (trial.duration >= run::kLasting) {
+      ++lasting;
+      if (trial.stands) ++standing;
+    }
+    const bool is_first_by_fault = is_worst_anyway && trial.least_edge < 0.0 && !trial.is_off_anyway;
+    const bool is_hidden = trial.is_off_anyway && off > 0;
+    if (!is_hidden && (is_first_by_fault || trial.least_edge < least_edge)) {
+      least_edge = trial.least_edge;
+      worst = command;
+      is_worst_anyway = trial.is_off_anyway;
+    }
+  }
+  [[nodiscard]] std::string standing_text() const {
+    return lasting == 0 ? std::string("–") : fmt::format("{} of {}", standing, lasting);
+  }
+  [[nodiscard]] std::string name() const { return fmt::format("{} {} {} {}", car, preset, fault, words()); }
+  [[nodiscard]] bool is_lasting() const { return duration >= run::kLasting; }
+  [[nodiscard]] std::string words() const {
+    return is_lasting() ? std::string("lasting") : number_text(duration) + " s";
+  }
+};
+
+std::vector<Row> rows_of(const std::vector<CampaignGroup>& groups, const sweep::Settings& settings) {
+  std::vector<Row> rows;
+  for (const CampaignGroup& group : groups) {
+    if (group.trials.empty()) continue;
+    const Row key{group.car, group.preset, group.fault, group.lasts};
+    const auto found =
+        std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.key() == key.key(); });
+    const auto place = static_cast<std::size_t>(found - rows.begin());
+    if (found == rows.end()) rows.push_back(key);
+    for (const CampaignTrial& trial : group.trials)
+      rows[place].add(trial, sweep::command_of(sweep::settings_of(settings, group, trial)));
+  }
+  return rows;
+}
+
+void print_table(const std::vector<Row>& rows) {
+  fmt::print("{:<10} {:<10} {:<36} {:>8} {:>7} {:>5} {:>7} {:>11} {:>11}\n", "car", "preset", "fault", "for",
+             "trials", "off", "anyway", "standing", "to edge [m]");
+  for (const Row& row : rows) {
+    fmt::print("{:<10} {:<10} {:<36} {:>8} {:>7} {:>5} {:>7} {:>11} {:>11.2f}\n", row.car, row.preset,
+               row.fault, row.words(), row.trials, row.off, row.off_anyway, row.standing_text(),
+               row.least_edge);
+  }
+  for (const Row& row : rows) {
+    if (row.off + row.off_anyway == 0) continue;
+    fmt::print("\n{}: off the road {} of {} times{}; the worst:\n  {}\n", row.name(), row.off, row.trials,
+               row.off_anyway > 0 ? fmt::format(", {} more also without the fault", row.off_anyway) : "",
+               row.worst);
+  }
+}
+
+/// The durations of all rows, in their order.
+std::vector<std::string> durations_of(const std::vector<Row>& rows) {
+  std::vector<std::string> durations;
+  for (const Row& row : rows)
+    if (std::find(durations.begin(), durations.end(), row.lasts) == durations.end())
+      durations.push_back(row.lasts);
+  return durations;
+}
+
+std::string column_words(const std::string& lasts) {
+  if (lasts == "inf") return "lasting";
+  return lasts == "own" ? "own duration" : lasts + " s";
+}
+
+void print_markdown_head(const std::vector<std::string>& durations) {
+  fmt::print("| car | preset | fault |");
+  for (const std::string& lasts : durations)
+    fmt::print(" {}: off the road | to the edge [m] |", column_words(lasts));
+  fmt::print(" standing at the end |\n|---|---|---|");
+  for (std::size_t i = 0; i < durations.size(); ++i) fmt::print("--:|--:|");
+  fmt::print("--:|\n");
+}
+
+/// One line for each car, preset and fault; then the rows in which the road was left.
+void print_markdown(const std::vector<Row>& rows) {
+  const std::vector<std::string> durations = durations_of(rows);
+  print_markdown_head(durations);
+  for (std::size_t i = 0; i < rows.size();) {
+    const Row& first = rows[i];
+    const auto is_of_line = [&](const Row& row) {
+      return row.car == first.car && row.preset == first.preset && row.fault == first.fault;
+    };
+    fmt::print("| `{}` | `{}` | `{}` |", first.car, first.preset, first.fault);
+    std::string standing;
+    for (const std::string& lasts : durations) {
+      if (i == rows.size() || !is_of_line(rows[i]) || rows[i].lasts != lasts) {
+        fmt::print(" – | – |");
+        continue;
+      }
+      const Row& row = rows[i++];
+      fmt::print(" {} of {}{} | {:.2f} |", row.off, row.trials,
+                 row.off_anyway > 0 ? fmt::format(" (+{} anyway)", row.off_anyway) : "", row.least_edge);
+      if (row.lasting > 0) standing = row.standing_text();
+    }
+    fmt::print(" {} |\n", standing);
+  }
+  for (const Row& row : rows) {
+    if (row.off + row.off_anyway > 0)
+      fmt::print("\n`{}` with `{}`, `{}` {}: {} of {}\n\n    {}\n", row.car, row.preset, row.fault,
+                 row.words(), row.off, row.trials, row.worst);
+  }
+}
+
+void print_json(const std::vector<Row>& rows) {
+  protocol::Json all = protocol::Json::array();
+  for (const Row& row : rows) {
+    protocol::Json json{{"car", row.car}, {"preset", row.preset}, {"fault", row.fault}};
+    json["for_s"] = row.is_lasting() ? protocol::Json() : protocol::Json(row.duration);
+    json["trials"] = row.trials;
+    json["off_road"] = row.off;
+    json["off_road_anyway"] = row.off_anyway;
+    json["standing"] = row.lasting == 0 ? protocol::Json() : protocol::Json(row.standing);
+    json["least_edge_m"] = row.least_edge;
+    json["worst"] = row.worst;
+    all.push_back(std::move(json));
+  }
+  print_rows(std::move(all));
+}
+
+/// The names themselves, or all that ship for the one name "all". Fails as protocol::locate() does.
+Result<std::vector<std::string>> names_on(protocol::Shelf shelf, const std::vector<std::string>& names) {
+  std::vector<std::string> all;
+  if (names != std::vector<std::string>{"all"}) {
+    for (const std::string& name : names)
+      if (const auto file = protocol::locate(shelf, name); !file) return fail(file.error());
+    return names;
+  }
+  for (const protocol::Entry& entry : protocol::entries(shelf)) all.push_back(entry.name);
+  return all;
+}
+
+Result<std::vector<std::string>> chosen_faults(const Options::Campaign& campaign) {
+  std::vector<std::string> names = campaign.faults;
+  if (names.empty() && campaign.has_pairs) return sweep::signal_faults();
+  if (names.empty())
+    for (const sim::FaultKind& kind : sim::fault_kinds()) names.emplace_back(kind.name);
+  for (const std::string& name : names) {
+    if (!sim::fault_named(name)) return fail(refusal("--faults", name, protocol::expected_fault(name)));
+  }
+  return names;
+}
+
+Result<sweep::Campaign> campaign_of(const Options& options) {
+  const Options::Campaign& asked = options.campaign;
+  Result<std::vector<std::string>> faults = chosen_faults(asked);
+  Result<std::vector<std::string>> tracks = names_on(protocol::Shelf::kTrack, asked.tracks);
+  Result<std::vector<std::string>> cars = names_on(protocol::Shelf::kCar, asked.cars);
+  Result<std::vector<std::string>> presets = names_on(protocol::Shelf::kPreset, asked.presets);
+  for (const auto* const names : {&faults, &tracks, &cars, &presets})
+    if (!*names) return fail(names->error());
+  return sweep::Campaign{.tracks = std::move(*tracks),
+                         .cars = std::move(*cars),
+                         .presets = std::move(*presets),
+                         .faults = std::move(*faults),
+                         .has_pairs = asked.has_pairs,
+                         .durations = asked.durations,
+                         .onsets = asked.onsets,
+                         .seed = asked.seed,
+                         .step = asked.step,
+                         .settings = options.settings};
+}
+
+/// Says on stderr which places could not be driven, each once.
+void tell_errors(const std::vector<CampaignGroup>& groups) {
+  std::vector<std::string> reported;
+  for (const CampaignGroup& group : groups) {
+    if (group.error.empty() || std::find(reported.begin(), reported.end(), group.error) != reported.end())
+      continue;
+    reported.push_back(group.error);
+    fmt::print(stderr, "not tried: {}\n", group.error);
+  }
+}
+
+}  // namespace
+
+ExitCode campaign(const Options& options) {
+  const std::atomic<bool>& wants_stop = begin_many_runs();
+  const Result<sweep::Campaign> campaign = campaign_of(options);
+  if (!campaign) return report(campaign.error());
+  const int jobs = run::threads_for(options.jobs);
+  const PlanRuns runs{.plan = sweep::plan_of(*campaign),
+                      .rule = sweep::rule_of(*campaign, jobs, wants_stop),
+                      .what = "groups of trials",
+                      .keeps_failed = true};
+  const Result<RunLines> driven = drive_runs(runs, 1, options.results_file, wants_stop);
+  if (!driven) return report(driven.error());
+  std::vector<CampaignGroup> groups;
+  for (const auto& [run, line] : driven->lines) {
+    Result<CampaignGroup> group = sweep::group_of(line);
+    if (!group) return report(group.error());
+    groups.push_back(std::move(*group));
+  }
+  const std::vector<Row> rows = rows_of(groups, campaign->settings);
+  if (options.is_json) {
+    print_json(rows);
+  } else if (options.is_markdown) {
+    print_markdown(rows);
+  } else {
+    print_table(rows);
+  }
+  tell_errors(groups);
+  const bool is_kept =
+      std::none_of(rows.begin(), rows.end(), [](const Row& row) { return row.off + row.off_anyway > 0; });
+  const bool are_tried = driven->progress.is_complete() &&
+                         std::all_of(groups.begin(), groups.end(),
+                                     [](const CampaignGroup& group) { return group.error.empty(); });
+  return is_kept && are_tried ? kSuccess : kRunFailed;
+}
+
+}  // namespace chicane::apps

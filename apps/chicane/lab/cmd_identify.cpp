@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <limits>
+
+#include "chicane/base/file.hpp"
+#include "chicane/base/text.hpp"
+#include "chicane/identify/identification.hpp"
+#include "chicane/live/description.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/protocol/origin.hpp"
+#include "chicane/protocol/schema.hpp"
+#include "chicane/recording/html_report.hpp"
+#include "chicane/sim/double_track.hpp"
+#include "commands.hpp"
+#include "lab/identify_page.hpp"
+#include "program.hpp"
+#include "record.hpp"
+
+namespace chicane::apps {
+namespace {
+
+using identify::Estimate;
+using identify::Identification;
+
+constexpr std::size_t kMostColumns = 1000;
+
+Result<identify::LogOptions> log_options(const Options::Identify& options) {
+  identify::LogOptions log{.odom_topic = options.odom_topic, .drive_topic = options.drive_topic};
+  for (const std::string& column : options.columns) {
+    const std::size_t equals = column.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == column.size())
+      return fail(refusal("--columns", column,
+                          "MEANING=NAME such as steer=delta_rad, or POSITION=MEANING such as 0=time"));
+    const std::string left = column.substr(0, equals);
+    std::size_t position = 0;
+    const auto end = std::from_chars(left.data(), left.data() + left.size(), position);
+    if (end.ec == std::errc{} && end.ptr == left.data() + left.size() && position < kMostColumns)
+      log.positions[position] = column.substr(equals + 1);
+    else
+      log.columns[left] = column.substr(equals + 1);
+  }
+  if (!log.positions.empty() && !log.columns.empty())
+    return fail(refusal("--columns", fmt::format("{}", fmt::join(options.columns, ",")),
+                        "names or positions for all columns"));
+  return log;
+}
+
+/// Progress on a terminal: a line that renews itself. Ends at an interrupt and at the end of a time budget.
+class Share {
+ public:
+  bool operator()(double done) {
+    if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\ridentify: {:3.0f} %", 100.0 * done);
+    return goes_on();
+  }
+  [[nodiscard]] bool goes_on() const { return !wants_stop_ && !is_late(); }
+  [[nodiscard]] bool is_late() const { return std::chrono::steady_clock::now() > end_; }
+  Share(const std::atomic<bool>& wants_stop, double budget_s)
+      : wants_stop_{wants_stop},
+        end_{std::chrono::steady_clock::now() +
+             std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                 std::chrono::duration<double>(budget_s))} {}
+  void clear() const {
+    if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r               \r");
+  }
+
+ private:
+  const std::atomic<bool>& wants_stop_;
+  std::chrono::steady_clock::time_point end_;
+};
+
+std::string interval(const Estimate& each) {
+  return fmt::format("{} to {}", number_text(each.low, 3), number_text(each.high, 3));
+}
+
+/// Why the car should not be driven by; empty where its predictions hold.
+std::string doubt(const Identification& found) {
+  if (found.predicts()) return {};
+  const identify::PredictionError& error = found.held_out.front();
+  constexpr double kDegrees = 180.0 / kPi;
+  return fmt::format(
+      "held-out prediction: got {:.2f} m and {:.1f} deg off after {:.2g} s, expected less than the {:.2f} m "
+      "and "
+      "{:.1f} deg of a car that keeps its speed and yaw rate",
+      error.position, kDegrees * error.yaw, error.ahead, error.kept_position, kDegrees * error.kept_yaw);
+}
+
+std::string advice(const Identification& found) {
+  std::string text;
+  if (!found.has_pedal)
+    text += "The log has no pedal: drive, brakes and drag are those of the car it began with.\n";
+  if (!found.knows_tires())
+    text += fmt::format(
+        "The tyres reached {:.0f} % (front) and {:.0f} % (rear) of their peak: grip is not known, and race "
+        "refuses\n"
+        "this car. Drive bends nearer to the limit, at least {:.0f} % at one axle, or state the friction "
+        "that you know it to have{}.\n",
+        100.0 * found.use_front, 100.0 * found.use_rear, 100.0 * identify::kRaceUse,
+        found.shown_friction() > 0.1
+            ? fmt::format(":\nthe log shows --set friction_low={}", number_text(found.shown_friction(), 2))
+            : " (friction_low)");
+  if (found.correlation > identify::kWrongModel)
+    text += fmt::format(
+        "What is left unexplained is not noise ({:.0f} samples tell as much as one that is): the model lacks "
+        "something of\nthis car. The intervals hold for the model, and may miss the car's own numbers.\n",
+        found.correlation);
+  for (const Estimate& each : found.estimates) {
+    if (each.key == "steer_offset_deg" && each.is_excited && (each.low > 0.1 || each.high < -0.1))
+      text += fmt::format("The wheels point {} deg {} when 0 is asked: correct it where commands are sent.\n",
+                          number_text(std::fabs(each.value), 2), each.value > 0.0 ? "left" : "right");
+  }
+  return text;
+}
+
+std::string table_of(const Identification& found, const std::string& logs) {
+  std::string text = fmt::format("{:.0f} s of driving from {}\n\n{:<28} {:>10} {:>22}  {:>10}\n",
+                                 found.driven, logs, "", "found", "95 % interval", "assumed");
+  for (const Estimate& each : found.estimates)
+    text += fmt::format(
+        "{:<28} {:>10} {:>22}  {:>10} {}{}\n", each.key, number_text(each.value, 4), interval(each),
+        number_text(each.assumed, 4), each.unit,
+        each.is_excited ? "" : (each.unit.empty() ? "not excited by the log" : ", not excited by the log"));
+  text += fmt::format(
+      "\ntyres used           {:.0f} % of the peak at the front, {:.0f} % at the rear\n"
+      "left unexplained     {:.3f} m, {:.2f} deg, {:.3f} m/s\n",
+      100.0 * found.use_front, 100.0 * found.use_rear, found.residual[0], found.residual[1] * 180.0 / kPi,
+      found.residual[2]);
+  for (const identify::PredictionError& error : found.held_out)
+    text += fmt::format("predicted {:.2g} s ahead  {:.2f} m, {:.1f} deg, {:.2f} m/s off (held-out part)\n",
+                        error.ahead, error.position, error.yaw * 180.0 / kPi, error.speed);
+  const std::string words = advice(found);
+  return words.empty() ? text : text + "\n" + words;
+}
+
+std::string json_of(const Identification& found) {
+  nlohmann::ordered_json json;
+  json["driven_s"] = found.driven;
+  json["delay_ms"] = 1e3 * found.delay;
+  for (const Estimate& each : found.estimates)
+    json["estimates"].push_back({{"key", each.key},
+                                 {"unit", each.unit},
+                                 {"value", each.value},
+                                 {"low", each.low},
+                                 {"high", each.high},
+                                 {"assumed", each.assumed},
+                                 {"is_excited", each.is_excited}});
+  json["residual_m"] = found.residual[0];
+  json["correlation"] = found.correlation;
+  json["tire_use"] = {found.use_front, found.use_rear};
+  json["knows_tires"] = found.knows_tires();
+  json["predicts"] = found.predicts();
+  json["friction_low"] = found.least_friction();
+  json["friction_shown"] = found.shown_friction();
+  json["held_out"] = nlohmann::ordered_json::array();
+  for (const identify::PredictionError& error : found.held_out)
+    json["held_out"].push_back({{"ahead_s", error.ahead},
+                                {"position_m", error.position},
+                                {"yaw_rad", error.yaw},
+                                {"speed_mps", error.speed}});
+  return json.dump(2) + "\n";
+}
+
+bool has_wheels(const scenario::Scenario& scenario) {
+  return scenario.plant == sim::DoubleTrack::kName || scenario.plant == sim::DoubleTrack::kRoadCar;
+}
+
+/// A plant of four wheels becomes one with the model that was found; what turns by a helper stays the
+/// start's.
+void take_plant(scenario::Scenario& scenario, const identify::Wheels& wheels) {
+  if (!has_wheels(scenario) || scenario.vehicle.steer_helper > 0.0) return;
+  scenario.plant = sim::DoubleTrack::kName;
+  scenario.plant_params = sim::plant_of(scenario.vehicle, scenario.plant_params);
+  scenario.plant_params.relaxation_across = wheels.relaxation;
+  scenario.plant_params.load_lag = wheels.load_lag;
+}
+
+/// The car file: the model as it was found, and a plant that has it.
+std::string to_car(const Identification& found, scenario::Scenario scenario, const std::string& logs) {
+  std::string text =
+      fmt::format("# {}, identified from {:.0f} s of {}\n", scenario.vehicle.name, found.driven, logs);
+  if (!found.knows_tires())
+    text +=
+        "# Grip is not known: the tyres were used too little. Race by it only with a friction_low of "
+        "yours.\n";
+  if (!found.predicts()) text += "# Written by --force: " + doubt(found) + "\n";
+  text +=
+      "# [log] 95 % interval in brackets; [assumed] as the car it began with, because the log does not "
+      "excite it.\n";
+  const scenario::Scenario fresh;
+  scenario.vehicle = found.vehicle;
+  scenario.friction_low = found.least_friction();
+  take_plant(scenario, found.wheels);
+  std::string group;
+  for (const protocol::Parameter& row : protocol::list()) {
+    const bool is_vehicle = row.group == "vehicle";
+    if (row.key == "latency_ms") {
+      text += fmt::format("latency_ms: {}\n", number_text(std::round(1e4 * found.delay) / 10.0));
+      continue;
+    }
+    if (row.key == "friction_low") {
+      text += fmt::format("friction_low: {}  # least friction that the log shows; 0: none, no race\n",
+                          number_text(scenario.friction_low, 4));
+      continue;
+    }
+    if (row.key != "plant" && row.key != "control_period_ms" && !is_vehicle && row.group != "plant_params")
+      continue;
+    if (!is_vehicle && row.key != "plant" &&
+        protocol::get_text(scenario, row) == protocol::get_text(fresh, row))
+      continue;
+    if (row.group != group) text += fmt::format("{}:\n", row.group);
+    group = row.group;
+    const std::string_view key = row.key.substr(row.group.empty() ? 0 : row.group.size() + 1);
+    std::string value = protocol::get_text(scenario, row);
+    std::string remark;
+    for (const Estimate& each : found.estimates) {
+      if (!is_vehicle || each.key != key) continue;
+      value = number_text(each.value, 5);
+      remark = fmt::format("  # {}", each.is_excited ? protocol::band_remark(each.low, each.high)
+                                                     : std::string{protocol::kAssumedRemark});
+    }
+    text += fmt::format("{}{}: {}{}\n", row.group.empty() ? "" : "  ", key, value, remark);
+  }
+  return text;
+}
+
+struct ShelfCar {
+  std::string name;
+  model::VehicleParams vehicle;
+  double ratio = 0.0;  ///< logarithm of its wheelbase over the logs'
+};
+
+/// Slow steering of a shelf car says nothing of another one, and the search does not get away from it: at
+/// least what an ordinary car has, in full size.
+void forget_slow_steering(model::VehicleParams& car) {
+  constexpr double kUsualRate = 90.0 * kPi / 180.0;  // [rad/s]
+  car.steer_rate_limit = std::max(car.steer_rate_limit, kUsualRate * model::Similarity(car).time());
+}
+
+/// Those of the shelf, the nearest by their wheelbase first.
+std::vector<ShelfCar> shelf_by_wheelbase(double wheelbase) {
+  std::vector<ShelfCar> cars;
+  for (const protocol::Entry& entry : protocol::entries(protocol::Shelf::kCar)) {
+    auto car = protocol::compose({.scenario_file = {}, .settings = {{"car", entry.name}}});
+    // A helper turns the car along: its wheelbase says little of how it turns, and only simulators have one.
+    if (!car || car->vehicle.steer_helper > 0.0) continue;
+    forget_slow_steering(car->vehicle);
+    cars.push_back({entry.name, car->vehicle, std::fabs(std::log(car->vehicle.wheelbase() / wheelbase))});
+  }
+  std::stable_sort(cars.begin(), cars.end(), [](const auto& a, const auto& b) { return a.ratio < b.ratio; });
+  return cars;
+}
+
+/// The car of the shelf that the search begins with where nobody says: of those that turn as the logs do, the
+/// one from which a rough search explains them best.
+Result<std::string> car_for(const std::vector<identify::DriveLog>& logs, const std::function<bool()>& go_on) {
+  constexpr double kNear = 0.35;  // logarithm of the ratio of wheelbases
+  constexpr std::size_t kMostTried = 4;
+  const double wheelbase = identify::turning_wheelbase(logs);
+  const std::vector<ShelfCar> cars =
+      std::isfinite(wheelbase) ? shelf_by_wheelbase(wheelbase) : std::vector<ShelfCar>{};
+  if (cars.empty())
+    return fail(ErrorCode::kInvalidArgument,
+                "--car: got none, and too few bends in the log to tell the car's size by, expected a car");
+  const ShelfCar* best = &cars.front();
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t tried = 0;
+  while (tried < std::min(cars.size(), kMostTried) && (tried == 0 || cars[tried].ratio < kNear)) ++tried;
+  for (std::size_t i = 0; i < tried && tried > 1; ++i) {
+    const auto rough =
+        identify::identify(logs, cars[i].vehicle,
+                           {.hold_out = 0.0, .is_rough = true, .progress = [&](double) { return go_on(); }});
+    if (!rough || !(rough->loss < least)) continue;
+    least = rough->loss;
+    best = &cars[i];
+  }
+  fmt::print(
+      stderr,
+      "identify: without --car the search begins with {} ({:.3g} m between the axles): the log turns as "
+      "{:.3g} m would{}\n",
+      best->name, best->vehicle.wheelbase(), wheelbase,
+      tried > 1 ? fmt::format(", and of the {} cars nearest to that this one explains it best", tried) : "");
+  return best->name;
+}
+
+/// Logs of other programs do not say whose they are; recordings of ours are of the car of the settings.
+bool is_nobodys(const std::vector<identify::DriveLog>& logs, const Options& options) {
+  const bool is_given = std::any_of(options.settings.begin(), options.settings.end(),
+                                    [](const auto& each) { return each.first == "car"; });
+  return !is_given && std::none_of(logs.begin(), logs.end(),
+                                   [](const identify::DriveLog& log) { return log.is_centre_of_mass; });
+}
+
+/// Wheels that are expected: those of the plant that the search begins with, where it has four.
+identify::Wheels wheels_of(const scenario::Scenario& start) {
+  if (!has_wheels(start)) return {};
+  const sim::DoubleTrackParams plant =
+      start.plant == sim::DoubleTrack::kRoadCar ? sim::DoubleTrackParams{} : start.plant_params;
+  const double turning = 4.0 * plant.wheel_inertia / (plant.wheel_radius * plant.wheel_radius);
+  return {.relaxation = plant.relaxation_across,
+          .load_lag = plant.load_lag,
+          .rotating = 1.0 + turning / plant.mass,
+          .brakes = {plant.abs_slip_start, plant.abs_slip_end},
+          .drive = {plant.traction_slip_start, plant.traction_slip_end}};
+}
+
+Result<void> identify_and_tell(const Options& options) {
+  static std::atomic<bool> wants_stop{false};  // static: must outlive the last signal
+  catch_interrupts(wants_stop);
+  Result<scenario::Scenario> start = protocol::compose({.scenario_file = {}, .settings = options.settings});
+  if (!start) return fail(start.error());
+  const auto how = log_options(options.identify);
+  if (!how) return fail(how.error());
+  if (Result<void> named = check_page_name("--report", options.report_file); !named) return named;
+  for (const std::string& file : {options.output_file, options.report_file})
+    if (Result<void> writable = check_writable(file); !writable) return writable;
+  std::vector<identify::DriveLog> logs;
+  std::string names;
+  for (const std::string& file : options.log_files) {
+    auto parts = identify::read_log(file, *how);
+    if (!parts) return fail(parts.error());
+    std::move(parts->begin(), parts->end(), std::back_inserter(logs));
+    names += (names.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
+  }
+  Share share(wants_stop, options.identify.budget_s);
+  if (is_nobodys(logs, options)) {
+    const Result<std::string> car = car_for(logs, [&] { return share.goes_on(); });
+    if (!car) return fail(car.error());
+    auto settings = options.settings;
+    settings.insert(settings.begin(), {"car", *car});
+    start = protocol::compose({.scenario_file = {}, .settings = settings});
+    if (!start) return fail(start.error());
+    forget_slow_steering(start->vehicle);
+  }
+  const auto found = identify::identify(logs, start->vehicle,
+                                        {.hold_out = options.identify.hold_out,
+                                         .wheels = wheels_of(*start),
+                                         .progress = [&](double done) { return share(done); }});
+  share.clear();
+  if (!found) return fail(found.error());
+  if (wants_stop) fmt::print(stderr, "identify: interrupted, these are the values so far\n");
+  if (!wants_stop && share.is_late())
+    fmt::print(stderr, "identify: {:g} s (--budget-s) are over, these are the values so far\n",
+               options.identify.budget_s);
+  const bool is_kept = !options.output_file.empty() && (found->predicts() || options.identify.is_forced);
+  if (is_kept) {
+    if (Result<void> kept = write_file(options.output_file, to_car(*found, *start, names)); !kept)
+      return kept;
+  }
+  const bool may_race = found->knows_tires() && found->predicts();
+  const std::string command = !is_kept ? ""
+                                       : fmt::format("chicane drive --car {}{}", options.output_file,
+                                                     may_race ? " --preset race" : "");
+  if (!options.report_file.empty()) {
+    const auto kept = recording::write_document(
+        options.report_file,
+        identify_document(*found, {.logs = names, .advice = advice(*found), .command = command}),
+        live::document_bundle());
+    if (!kept) return fail(kept.error());
+  }
+  fmt::print("{}", options.is_json ? json_of(*found) : table_of(*found, names));
+  if (!command.empty() && !options.is_json) fmt::print("\n{}: {}\n", options.output_file, command);
+  if (!options.output_file.empty() && !is_kept)
+    return fail(ErrorCode::kInvalidArgument, doubt(*found) + ": no car is written (--force writes it)");
+  return {};
+}
+
+}  // namespace
+
+ExitCode identify_car(const Options& options) {
+  const Result<void> done = identify_and_tell(options);
+  return done ? kSuccess : report(done.error());
+}
+
+}  // namespace chicane::apps

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <list>
+#include <optional>
+
+#include "chicane/base/text.hpp"
+#include "chicane/live/description.hpp"
+#include "chicane/recording/html_report.hpp"
+#include "chicane/recording/lap_picture.hpp"
+#include "chicane/recording/log_files.hpp"
+#include "chicane/recording/replay.hpp"
+#include "chicane/recording/video_encoder.hpp"
+#include "chicane/sweep/result_table.hpp"
+#include "chicane/sweep/summary_page.hpp"
+#include "commands.hpp"
+#include "lab/foreign_log.hpp"
+#include "lab/many_runs.hpp"
+#include "program.hpp"
+#include "record.hpp"
+
+namespace chicane::apps {
+namespace {
+
+/// The results of a sweep are lines of JSON, recordings are MCAP.
+bool are_results(const std::vector<std::string>& files) {
+  return std::all_of(files.begin(), files.end(), [](const std::string& file) {
+    return std::filesystem::path(file).extension() == ".jsonl";
+  });
+}
+
+/// Prints runs that differ in one setting beside each other.
+ExitCode report_comparison(const Options& options) {
+  const std::size_t equals = options.comparison.find('=');
+  if (equals == std::string::npos || !are_results(options.log_files))
+    return report(Error{ErrorCode::kInvalidArgument,
+                        fmt::format("--compare: got {}, expected KEY=VALUE and results of a sweep",
+                                    printable(options.comparison))});
+  const auto compared = sweep::compare(options.log_files, options.comparison.substr(0, equals),
+                                       options.comparison.substr(equals + 1));
+  if (!compared) return report(compared.error());
+  fmt::print("{}", compared->table);
+  fmt::print(stderr, "{} of {} are worse than with {}; {} have no run to compare with\n", compared->worse,
+             compared->pairs, options.comparison, compared->missing);
+  return compared->worse == 0 ? kSuccess : kRunFailed;
+}
+
+ExitCode report_sweep(const Options& options) {
+  if (!options.maps_page.empty()) {
+    const auto maps = sweep::write_maps(options.log_files, options.maps_page);
+    if (!maps) return report(maps.error());
+    fmt::print(stderr, "{}: maps of {} runs\n", options.maps_page, *maps);
+    if (options.output_file.empty()) return kSuccess;
+  }
+  const auto summary = sweep::summary_document(options.log_files);
+  if (!summary) return report(summary.error());
+  const auto bytes = recording::write_document(options.output_file, summary->text, live::document_bundle());
+  if (!bytes) return report(bytes.error());
+  fmt::print("{}: {} runs, {:.1f} MB; open it in a browser\n", options.output_file, summary->runs,
+             1e-6 * static_cast<double>(*bytes));
+  return kSuccess;
+}
+
+}  // namespace
+
+ExitCode report_logs(const Options& options) {
+  if (!options.comparison.empty()) return report_comparison(options);
+  if (options.output_file.empty() && options.maps_page.empty())
+    return report(Error{ErrorCode::kInvalidArgument,
+                        "report: got none of --output, --page and --compare, expected one"});
+  const Result<void> named = check_page_name("--output", options.output_file);
+  if (are_results(options.log_files)) return named ? report_sweep(options) : report(named.error());
+  if (!options.maps_page.empty())
+    return report(Error{ErrorCode::kInvalidArgument, "--page: got recordings, expected results of a sweep"});
+  recording::ReportOptions reporting{
+      .output = options.output_file, .logs = {}, .bundle = live::document_bundle()};
+  std::list<recording::TemporaryFile> copies;
+  for (const std::string& file : options.log_files) {
+    std::error_code error;  // of a file that is not there: no reason to stop
+    if (std::filesystem::equivalent(file, options.output_file, error)) {
+      return report(Error{ErrorCode::kInvalidArgument,
+                          fmt::format("--output: got {}, expected another file than a recording that is read",
+                                      options.output_file)});
+    }
+    std::string read = file;
+    if (named && recording::is_foreign_log(file)) {
+      copies.emplace_back(".mcap");
+      read = copies.back().path();
+      if (const Result<void> made = convert_foreign_log(file, options, read); !made)
+        return report(made.error());
+    }
+    reporting.logs.push_back({std::filesystem::path(file).filename().string(), read});
+  }
+  if (!named) return report(named.error());
+  const Result<recording::ReportSummary> written = recording::write_report(reporting);
+  if (!written) return report(written.error());
+  fmt::print("{}: {:.1f} MB, {:g} control steps a second; open it in a browser\n", options.output_file,
+             1e-6 * static_cast<double>(written->bytes), written->rate);
+  return kSuccess;
+}
+
+namespace {
+
+using recording::DrivenMoment;
+using recording::DrivenRun;
+
+/// The moments of the lap that was asked for: -1 means the last whole one, or all where there is none.
+Result<std::vector<DrivenMoment>> chosen(const DrivenRun& run, const Options::Video& video,
+                                         const std::string& file) {
+  const int lap = video.lap < 0 ? run.last_lap : video.lap;
+  std::vector<DrivenMoment> moments = run.of_lap(lap);
+  if (moments.size() < 2)
+    return fail(ErrorCode::kInvalidArgument,
+                fmt::format("--lap: got {}, expected a lap of {}, from 1 to {}, or 0 for all", lap, file,
+                            run.moments.back().lap + 1));
+  const double begin = moments.front().time + video.from;
+  std::erase_if(moments, [&](const DrivenMoment& moment) {
+    return moment.time < begin || (video.length > 0.0 && moment.time > begin + video.length);
+  });
+  if (moments.size() >= 2) return moments;
+  return fail(ErrorCode::kInvalidArgument, "--from-s: got a moment behind the end of what is shown");
+}
+
+/// The number of pictures; nothing when it was stopped.
+Result<std::optional<std::uint64_t>> film(const Options& options) {
+  static std::atomic<bool> stop{false};  // as long as signals may come
+  catch_interrupts(stop);
+  const Options::Video& video = options.video;
+  recording::PictureOptions picture{
+      .width = video.width, .height = video.width * 9 / 16 / 2 * 2, .shows_whole = video.is_whole};
+  if (const auto named = recording::check_video_name(options.output_file); !named) return fail(named.error());
+  const auto run = recording::read_run(options.log_files.front());
+  if (!run) return fail(run.error());
+  const auto shown = chosen(*run, video, options.log_files.front());
+  if (!shown) return fail(shown.error());
+  std::vector<DrivenMoment> ghost;
+  if (!video.ghost.empty()) {
+    const auto other = recording::read_run(video.ghost);
+    if (!other) return fail(other.error());
+    const auto moments = chosen(*other, video, video.ghost);
+    if (!moments) return fail(moments.error());
+    ghost = *moments;
+  }
+  recording::LapPicture drawing(*run, *shown, ghost, picture);
+  auto encoder = recording::VideoEncoder::start({.output = options.output_file,
+                                                 .width = picture.width,
+                                                 .height = picture.height,
+                                                 .rate = video.rate,
+                                                 .quality = video.quality});
+  if (!encoder) return fail(encoder.error());
+  const double step = video.speed / video.rate;
+  const auto pictures = static_cast<std::uint64_t>(std::floor(drawing.duration() / step)) + 1;
+  RunCounter counter("pictures");
+  for (std::uint64_t i = 0; i < pictures; ++i) {
+    if (stop) return std::optional<std::uint64_t>{};
+    if (const auto added = encoder->add(drawing.at(static_cast<double>(i) * step).bytes()); !added)
+      return fail(added.error());
+    counter.show(i + 1, pictures, i + 1);
+  }
+  counter.end();
+  const auto finished = encoder->finish();
+  return finished ? Result<std::optional<std::uint64_t>>(pictures) : fail(finished.error());
+}
+
+}  // namespace
+
+ExitCode make_video(const Options& options) {
+  const auto done = film(options);
+  if (!done) {
+    const ExitCode code = report(done.error());
+    return done.error().message.starts_with("ffmpeg") ? kEnvironment : code;
+  }
+  if (!*done) {
+    fmt::print(stderr, "stopped: nothing was written\n");
+    return kRunFailed;
+  }
+  fmt::print("{}: {} pictures\n", options.output_file, **done);
+  return kSuccess;
+}
+
+}  // namespace chicane::apps

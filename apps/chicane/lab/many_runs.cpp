@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "lab/many_runs.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "chicane/base/file.hpp"
+#include "chicane/protocol/library.hpp"
+#include "chicane/recording/log_files.hpp"
+#include "chicane/run/parallel.hpp"
+#include "chicane/sweep/result_file.hpp"
+#include "chicane/sweep/trial.hpp"
+#include "program.hpp"
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+namespace chicane::apps {
+namespace {
+
+std::string time_left(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  return fmt::format("{:.1f} h", seconds / 3600.0);
+}
+
+Result<sweep::Progress> drive(const PlanRuns& runs, const sweep::SweepOptions& options,
+                              const std::atomic<bool>& stop) {
+  return runs.rule ? sweep::drive_plan(runs.plan, {}, options, runs.rule, stop)
+                   : sweep::drive_plan(runs.plan, {}, options, stop);
+}
+
+/// The command that drives a run, or what makes it different.
+std::string name_of(const PlanRuns& runs, std::uint64_t run) {
+  if (!runs.rule) return sweep::command_of(runs.plan.settings_of(run));
+  std::string name;
+  for (const auto& [key, text] : runs.plan.at(run)) name += (name.empty() ? "" : ", ") + text;
+  return name;
+}
+
+}  // namespace
+
+std::atomic<bool>& begin_many_runs() {
+  static std::atomic<bool> stop{false};  // static: must outlive the last signal
+#ifdef __GLIBC__
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
+  catch_interrupts(stop);
+  return stop;
+}
+
+Result<void> write_below(const std::string& page, std::string_view marker, const std::string& text) {
+  const std::string older = protocol::read_file(page).value_or("");
+  const std::size_t end = older.find(marker);
+  const std::string above = end == std::string::npos ? "" : older.substr(0, end);
+  return write_file(page, above + std::string(marker) + text);
+}
+
+RunCounter::RunCounter(const char* what) : what_{what}, is_terminal_{isatty(STDERR_FILENO) == 1} {
+  next_ = started_ + (is_terminal_ ? std::chrono::milliseconds{0} : std::chrono::milliseconds{10000});
+}
+
+void RunCounter::show(std::uint64_t done, std::uint64_t runs, std::uint64_t driven) {
+  const Clock::time_point now = Clock::now();
+  if (now < next_) return;
+  next_ = now + (is_terminal_ ? std::chrono::milliseconds{200} : std::chrono::milliseconds{10000});
+  const double seconds = std::chrono::duration<double>(now - started_).count();
+  const double speed = seconds > 0.0 ? static_cast<double>(driven) / seconds : 0.0;
+  const std::string left = speed > 0.0 ? time_left(static_cast<double>(runs - done) / speed) : "?";
+  fmt::print(stderr, "{}{} of {} {}, {:.1f} a second, {} left{}", is_terminal_ ? "\r" : "", done, runs, what_,
+             speed, left, is_terminal_ ? "\x1b[K" : "\n");
+  std::fflush(stderr);
+  has_line_ = is_terminal_;
+}
+
+void RunCounter::end() {
+  if (has_line_) fmt::print(stderr, "\n");
+  has_line_ = false;
+}
+
+std::function<void(const sweep::Progress&)> RunCounter::follow() {
+  return [this](const sweep::Progress& progress) {
+    show(progress.found + progress.driven, progress.runs, progress.driven);
+  };
+}
+
+Result<RunLines> drive_runs(const PlanRuns& runs, int jobs, const std::string& results,
+                            const std::atomic<bool>& stop) {
+  const recording::TemporaryFile unnamed(".jsonl");
+  const std::string& file = results.empty() ? unnamed.path() : results;
+  RunCounter counter(runs.what);
+  const auto done =
+      drive(runs, {.jobs = run::threads_for(jobs), .file = file, .on_progress = counter.follow()}, stop);
+  counter.end();
+  if (!done) return fail(done.error());
+  RunLines found{.lines = {}, .progress = *done};
+  const auto keep = [&](std::uint64_t run, const protocol::Json& line) -> Result<void> {
+    found.lines[run] = line;
+    return {};
+  };
+  const auto read = sweep::read_runs(
+      file, [](const sweep::Header&) { return Result<void>{}; }, keep);
+  if (!read) return fail(read.error());
+  for (const auto& [run, line] : found.lines)
+    if (!runs.keeps_failed && line.contains("error"))
+      return fail(ErrorCode::kInvalidArgument,
+                  fmt::format("{}: {}", name_of(runs, run), line["error"].get<std::string>()));
+  if (!done->is_complete())
+    fmt::print(stderr, "stopped after {} of {} {}{}\n", done->found + done->driven, done->runs, runs.what,
+               results.empty() ? "" : ": the same command goes on with what is missing");
+  return found;
+}
+
+void print_rows(protocol::Json rows) {
+  fmt::print("{}\n",
+             protocol::json_text(protocol::Json{{"rows", std::move(rows)}}, protocol::JsonLayout::kIndented));
+}
+
+}  // namespace chicane::apps

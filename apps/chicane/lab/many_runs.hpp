@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "chicane/base/result.hpp"
+#include "chicane/protocol/json.hpp"
+#include "chicane/sweep/sweep.hpp"
+
+namespace chicane::apps {
+
+/// Begins a command that drives many runs. Each takes some megabytes and gives them back: the process keeps
+/// them for the next one. Ctrl-C and SIGTERM set the flag that is returned (program.hpp).
+[[nodiscard]] std::atomic<bool>& begin_many_runs();
+
+/// Replaces what a page has behind `marker`; a page without one is replaced. kIo.
+[[nodiscard]] Result<void> write_below(const std::string& page, std::string_view marker,
+                                       const std::string& text);
+
+/// Tells on stderr how many of many runs are done, how fast, and how long the rest will take: on a terminal
+/// one line that renews itself, otherwise a line every ten seconds. One thread at a time.
+class RunCounter {
+ public:
+  /// `what`: the word for what is counted.
+  explicit RunCounter(const char* what = "runs");
+  /// `driven`: of the `done` ones since the start, for the speed.
+  void show(std::uint64_t done, std::uint64_t runs, std::uint64_t driven);
+  /// Leaves the cursor at the beginning of a line.
+  void end();
+  /// Observer for SweepOptions::on_progress, valid as long as this counter.
+  [[nodiscard]] std::function<void(const sweep::Progress&)> follow();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const char* what_;
+  bool is_terminal_;
+  bool has_line_ = false;
+  Clock::time_point started_ = Clock::now();
+  Clock::time_point next_;
+};
+
+/// The runs of a command: a plan, and what drives each of them.
+struct PlanRuns {
+  sweep::Plan plan;
+  sweep::RunRule rule{};      ///< empty: as a sweep does
+  const char* what = "runs";  ///< the word for what is counted
+  bool keeps_failed = false;  ///< a run that cannot be driven is a line with the reason, and no failure
+};
+
+/// Lines of results by number; stopped runs are missing.
+struct RunLines {
+  std::map<std::uint64_t, protocol::Json> lines;
+  sweep::Progress progress;
+};
+
+/// Drives them with `jobs` threads, 0: as many as there are processors, and tells on stderr how far it is.
+/// The lines are kept in `results`, where an older file is completed; empty: nowhere. Fails as
+/// sweep::drive_plan() does, and with the first line of a run that cannot be driven.
+[[nodiscard]] Result<RunLines> drive_runs(const PlanRuns& runs, int jobs, const std::string& results,
+                                          const std::atomic<bool>& stop);
+
+/// Prints `{"rows": [...]}` on stdout.
+void print_rows(protocol::Json rows);
+
+}  // namespace chicane::apps

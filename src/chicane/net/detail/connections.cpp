@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+#include "chicane/net/detail/connections.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "chicane/net/http_response.hpp"
+
+namespace chicane::net {
+namespace {
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+bool equal(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](char x, char y) { return lower(x) == lower(y); });
+}
+
+/// "name:port" or "[::1]:port" without the port and the brackets; empty when the port is not a number.
+std::string_view without_port(std::string_view host) {
+  std::string_view name = host;
+  std::string_view port;
+  if (host.starts_with('[')) {
+    const std::size_t end = host.find(']');
+    if (end == std::string_view::npos) return {};
+    name = host.substr(1, end - 1);
+    port = host.substr(end + 1);
+  } else if (const std::size_t colon = host.find(':'); colon != std::string_view::npos) {
+    name = host.substr(0, colon);
+    port = host.substr(colon);
+  }
+  if (!port.empty() && (port[0] != ':' || port.find_first_not_of("0123456789", 1) != std::string_view::npos))
+    return {};
+  return name;
+}
+
+bool is_numeric_address(std::string_view name) {
+  std::array<unsigned char, sizeof(in6_addr)> bytes{};
+  const std::string text(name);
+  return inet_pton(AF_INET, text.c_str(), bytes.data()) == 1 ||
+         inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1;
+}
+
+bool is_loopback(std::string_view name) {
+  return name == "::1" || (name.starts_with("127.") && is_numeric_address(name));
+}
+
+Admission refuse(unsigned status, std::string words) { return {.status = status, .words = std::move(words)}; }
+
+/// The value of `name` in "name=value" parts between `separator`s; none when it is not there.
+std::optional<std::string_view> value_of(std::string_view parts, char separator, std::string_view name) {
+  while (!parts.empty()) {
+    const std::size_t end = std::min(parts.find(separator), parts.size());
+    std::string_view part = parts.substr(0, end);
+    parts.remove_prefix(std::min(parts.size(), end + 1));
+    while (part.starts_with(' ')) part.remove_prefix(1);
+    if (part.starts_with(name) && part.substr(name.size()).starts_with('='))
+      return part.substr(name.size() + 1);
+  }
+  return std::nullopt;
+}
+
+/// Where a link with a token leads; never to another server, as "//host" would.
+std::string page_of(std::string_view path) {
+  return path.starts_with('/') && !path.starts_with("//") && path.find('\\') == std::string_view::npos
+             ? std::string(path)
+             : "/";
+}
+
+}  // namespace
+
+bool address_is_loopback(std::string_view address) { return is_loopback(address); }
+
+bool host_is_loopback(std::string_view host) {
+  const std::string_view name = without_port(host);
+  return equal(name, "localhost") || is_loopback(name);
+}
+
+bool host_is_allowed(std::string_view host, std::string_view address,
+                     const std::vector<std::string>& allowed) {
+  const std::string_view name = without_port(host);
+  if (name.empty()) return false;
+  if (equal(name, "localhost") || is_loopback(name) || name == address) return true;
+  if (!is_loopback(address) && is_numeric_address(name)) return true;
+  return std::any_of(allowed.begin(), allowed.end(),
+                     [&](const std::string& entry) { return equal(entry, name); });
+}
+
+bool origin_is_allowed(std::string_view origin, std::string_view host,
+                       const std::vector<std::string>& allowed) {
+  if (std::find(allowed.begin(), allowed.end(), origin) != allowed.end()) return true;
+  constexpr std::string_view kScheme = "http://";  // the only one that is served
+  return origin.starts_with(kScheme) && equal(origin.substr(kScheme.size()), host);
+}
+
+Admission Doorkeeper::admit(const Visitor& visitor) const {
+  if (visitor.hosts != 1) return refuse(400, "one Host header is needed");
+  if (!host_is_allowed(visitor.host, address, allowed_hosts))
+    return refuse(
+        403,
+        fmt::format("host '{}' is not allowed here: use a numeric address, or start with --allow-host {}",
+                    visitor.host, visitor.host.substr(0, visitor.host.find(':'))));
+  const bool is_foreign = !visitor.origin.empty() && !is_own(visitor.origin, visitor.host);
+  const bool is_let_in =
+      std::find(allowed_origins.begin(), allowed_origins.end(), visitor.origin) != allowed_origins.end();
+  if (visitor.is_upgrade && is_foreign && !is_let_in)
+    return refuse(403, fmt::format("pages of '{0}' may not connect here: start with --allow-origin {0}",
+                                   visitor.origin));
+
+  const std::size_t question = std::min(visitor.target.find('?'), visitor.target.size());
+  const std::string_view path = visitor.target.substr(0, question);
+  const auto asked =
+      value_of(visitor.target.substr(std::min(question + 1, visitor.target.size())), '&', "token");
+  const bool has_link = asked && is_token(*asked, token);
+  if (asked && !token.empty() && !has_link)
+    return refuse(403, "the token is not the one that the program printed");
+  const auto kept = value_of(visitor.cookies, ';', cookie_name());
+  const bool has_token = token.empty() || has_link || (kept && is_token(*kept, token));
+
+  Admission admission;
+  const bool is_local = address_is_loopback(address) && host_is_loopback(visitor.host);
+  // A browser says which page asks, and one of ours was loaded from this machine.
+  const bool is_local_page = is_local && !visitor.origin.empty() && !is_foreign;
+  admission.may_watch = is_local || has_token;
+  admission.may_control = has_token || is_local_page;
+  if (!visitor.is_upgrade && !admission.may_watch)
+    return refuse(403, "open the link that the program printed: it has the token that is needed here");
+  if (!visitor.is_upgrade && is_foreign && !is_let_in)
+    return refuse(403, "pages of other servers may not read this");
+  if (has_link && !visitor.is_upgrade && path.find('.', path.rfind('/') + 1) == std::string_view::npos) {
+    admission.status = 303;
+    admission.location = page_of(path);
+  }
+  return admission;
+}
+
+bool Doorkeeper::is_own(std::string_view origin, std::string_view host) const {
+  return origin_is_allowed(origin, host, {});
+}
+
+// Browsers keep cookies by host, not by port: the name tells programs on one machine apart.
+std::string Doorkeeper::cookie_name() const { return fmt::format("chicane-{}", port); }
+
+std::string Doorkeeper::cookie() const {
+  return fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict", cookie_name(), token);
+}
+
+namespace {
+
+/// Socket inodes that listen on `port`, from one of the tables of proc(5): columns sl, local_address (hex
+/// address:port), rem_address, st (0A = listening), queues, timer, retransmits, uid, timeout, inode.
+void add_listeners(const char* table, std::uint16_t port, std::set<std::string>& inodes) {
+  std::ifstream file(table);
+  std::string line;
+  std::getline(file, line);
+  while (std::getline(file, line)) {
+    std::istringstream columns(line);
+    std::string slot, local, remote, state, queues, timer, retransmits, uid, timeout, inode;
+    columns >> slot >> local >> remote >> state >> queues >> timer >> retransmits >> uid >> timeout >> inode;
+    const std::size_t colon = local.rfind(':');
+    if (state != "0A" || colon == std::string::npos) continue;
+    unsigned found = 0;
+    std::from_chars(local.data() + colon + 1, local.data() + local.size(), found, 16);
+    if (found == port) inodes.insert("socket:[" + inode + "]");
+  }
+}
+
+bool holds(const std::filesystem::path& process, const std::set<std::string>& inodes) {
+  std::error_code ec;
+  for (std::filesystem::directory_iterator it(process / "fd", ec), end; !ec && it != end; it.increment(ec)) {
+    std::error_code unreadable;
+    const std::filesystem::path target = std::filesystem::read_symlink(it->path(), unreadable);
+    if (!unreadable && inodes.contains(target.string())) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string port_holder(std::uint16_t port) {
+  std::set<std::string> inodes;
+  add_listeners("/proc/net/tcp", port, inodes);
+  add_listeners("/proc/net/tcp6", port, inodes);
+  if (inodes.empty()) return "a connection that is just ending";
+  std::error_code ec;
+  for (std::filesystem::directory_iterator it("/proc", ec), end; !ec && it != end; it.increment(ec)) {
+    const std::string pid = it->path().filename().string();
+    const bool is_process = std::all_of(pid.begin(), pid.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (!is_process || !holds(it->path(), inodes)) continue;
+    std::string name;
+    std::getline(std::ifstream(it->path() / "comm"), name);
+    return fmt::format("{} (pid {})", name, pid);
+  }
+  return "another program";
+}
+
+Error cannot_listen(const std::string& address, std::uint16_t port, bool is_in_use,
+                    const std::string& words) {
+  if (is_in_use) return {ErrorCode::kIo, fmt::format("port {} is in use by {}", port, port_holder(port))};
+  return {ErrorCode::kIo, fmt::format("cannot listen on {}:{}: {}", address, port, words)};
+}
+
+}  // namespace chicane::net
