@@ -38,7 +38,7 @@ std::string synopsis(const Command& command, const Rows& rows) {
   return line + (has_options ? "[\\fIOPTION\\fR]...\n" : "") + positionals;
 }
 
-std::string entry(const OptionRow& row) {
+std::string manual_entry(const OptionRow& row) {
   std::string names;
   for (const std::string& name : row.typed_names())
     names += fmt::format("{}\\fB{}\\fR", names.empty() ? "" : ", ", plain(name));
@@ -91,7 +91,7 @@ std::string manual_page() {
       "everything else to the\nstandard error.\n.SH COMMANDS\n";
   for (const Command& command : commands()) {
     page += fmt::format(".SS chicane {}\n{}.\n", plain(command.name), plain(command.summary));
-    for (const OptionRow& row : options_of(command, scratch)) page += entry(row);
+    for (const OptionRow& row : options_of(command, scratch)) page += manual_entry(row);
     page += fmt::format(".PP\nExample:\n.B {}\n", plain(command.example));
   }
   return page.append(kTail);

@@ -172,7 +172,7 @@ Result<telemetry::McapReport> check_recording(const std::string& path) {
 
 namespace {
 
-bool is_same(double a, double b) {
+bool is_same_number(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
@@ -227,8 +227,8 @@ class Recomputation {
                  .manual = step.manual},
                 frame_);
     const controller::StepResult& result = frame_.result;
-    return is_same(result.command.steer, step.command.steer) &&
-           is_same(result.command.throttle, step.command.throttle) && frame_.guard.rung == step.rung &&
+    return is_same_number(result.command.steer, step.command.steer) &&
+           is_same_number(result.command.throttle, step.command.throttle) && frame_.guard.rung == step.rung &&
            frame_.guard.gated == step.gated;
   }
 

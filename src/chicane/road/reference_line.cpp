@@ -10,7 +10,7 @@
 namespace chicane::road {
 namespace {
 
-constexpr double kBetterFit = 0.1;  // by which another pass has to fit better than the nearest [rad]
+constexpr double kBetterPass = 0.1;  // by which another pass has to fit better than the nearest [rad]
 
 }  // namespace
 
@@ -111,7 +111,7 @@ ReferenceLine::Projection ReferenceLine::project_along(const Vec2& point, double
       }
     } else if (pass != count_) {
       const Projection there = refine(point, pass);
-      if (misfit(there) < least - kBetterFit) {
+      if (misfit(there) < least - kBetterPass) {
         least = misfit(there);
         best = there;
       }

@@ -337,11 +337,11 @@ constexpr double kNarrowest = 6.0;               // road in full size [m]
 
 /// Over a road in full size.
 double size_of(const Track& track) {
-  constexpr int kSamples = 64;
+  constexpr int kPlaces = 64;
   double width = 0.0;
-  for (int i = 0; i < kSamples; ++i) {
-    const double s = track.length() * i / kSamples;
-    width += (track.left_width(s) + track.right_width(s)) / kSamples;
+  for (int i = 0; i < kPlaces; ++i) {
+    const double s = track.length() * i / kPlaces;
+    width += (track.left_width(s) + track.right_width(s)) / kPlaces;
   }
   return std::min(width / kNarrowest, 1.0);
 }

@@ -26,11 +26,12 @@ constexpr double kPedalMemory = 3.0;    // [s]
 constexpr double kLeastAsked = 1.0;     // [m/s] after which a pedal tells a clock from a speed
 constexpr double kSteadier = 0.5;       // share of the other's deviation with which one explanation is better
 constexpr double kLeastDeviation = 0.02;
-constexpr double kFollowed = 0.1;   // share of a difference that is made up for with each leg
-constexpr double kBurst = 0.5;      // share by which a step in lock step differs that had to wait
-constexpr double kOfStep = 0.15;    // share by which its time differs from the others'
-constexpr double kSampling = 0.02;  // [s] by which a state may be younger or older: a usual physics step
-constexpr double kSame = 0.03;      // logarithm of a ratio that counts as 1
+constexpr double kFollowed = 0.1;    // share of a difference that is made up for with each leg
+constexpr double kBurst = 0.5;       // share by which a step in lock step differs that had to wait
+constexpr double kOfStep = 0.15;     // share by which its time differs from the others'
+constexpr double kSampling = 0.02;   // [s] by which a state may be younger or older: a usual physics step
+constexpr double kOtherClock = 0.5;  // logarithm of a leg's ratio to the median, from another clock
+constexpr double kSame = 0.03;       // logarithm of a ratio that counts as 1
 
 double in_seconds(PlantClock::Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
@@ -89,6 +90,7 @@ bool PlantClock::advance(Clock::time_point received, const model::Measurement* m
 bool PlantClock::follow(const model::Measurement* measured) {
   if (measured == nullptr) {
     time_ += step_;
+    last_.time += step_;
     return false;
   }
   const double gap = has_last_ ? measured->time - last_.time : 0.0;
@@ -155,17 +157,20 @@ template <class Base>
 PlantClock::Fit PlantClock::fit(const Base& base) const {
   const std::size_t size = std::min(count_, kLegs);
   std::array<double, kLegs> values{};
+  const auto value_of = [&](std::size_t i) { return log(legs_[i].plant / base(legs_[i])); };
+  for (std::size_t i = 0; i < size; ++i) values[i] = value_of(i);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(size / 2);
+  std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(size));
+  Fit fit;
   double plant = 0.0, counted = 0.0;
   for (std::size_t i = 0; i < size; ++i) {
-    values[i] = log(legs_[i].plant / base(legs_[i]));
+    const double off = std::fabs(value_of(i) - *middle);
+    fit.deviation += off / static_cast<double>(size);
+    if (!(off < kOtherClock)) continue;
     plant += legs_[i].plant;
     counted += base(legs_[i]);
   }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(size / 2);
-  std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(size));
-  Fit fit{.value = plant / counted};
-  for (std::size_t i = 0; i < size; ++i)
-    fit.deviation += std::fabs(values[i] - *middle) / static_cast<double>(size);
+  fit.value = plant / counted;
   return fit;
 }
 

@@ -60,8 +60,7 @@ class PlantClock {
     int steps = 0;
   };
   static constexpr std::size_t kLegs = 12;
-  /// Ratio of the legs' sums, of which whole physics steps change only the last, and the mean deviation of
-  /// the logarithms of their ratios from the median.
+  /// Ratio of the sums of the legs near the median, and the mean deviation of their logarithms from it.
   struct Fit {
     double value = 0.0, deviation = 0.0;
   };
