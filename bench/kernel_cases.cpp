@@ -7,8 +7,8 @@
 #include "chicane/base/random.hpp"
 #include "chicane/solver/detail/linearisation.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
-#include "chicane/solver/detail/problem_pattern.hpp"
 #include "chicane/solver/detail/roll_out.hpp"
+#include "chicane/solver/detail/stage_entries.hpp"
 #include "problems/described_problem.hpp"
 
 namespace chicane::bench {

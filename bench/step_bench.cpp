@@ -17,7 +17,6 @@
 #include "chicane/road/road.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"
-#include "chicane/tracking/command_history.hpp"
 #include "chicane/tracking/state_estimator.hpp"
 #include "problems/cpu_time.hpp"
 

@@ -58,11 +58,11 @@ struct Assign {
  private:
   template <class Number, class To>
   std::string number(const std::optional<Number>& read, To& to) const {
-    using Value = std::conditional_t<std::is_integral_v<To>, To, double>;
+    using Kind = std::conditional_t<std::is_integral_v<To>, To, double>;
     const bool fits = read && is_within(row, static_cast<double>(*read)) &&
-                      static_cast<double>(*read) <= static_cast<double>(std::numeric_limits<Value>::max());
+                      static_cast<double>(*read) <= static_cast<double>(std::numeric_limits<Kind>::max());
     if (!fits) return row.expectation();
-    to = static_cast<Value>(*read);
+    to = static_cast<Kind>(*read);
     return "";
   }
 };

@@ -11,7 +11,6 @@
 #include "chicane/base/random.hpp"
 #include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/problem.hpp"
-#include "chicane/solver/stage_data.hpp"
 
 // The vocabulary of problems, for the headers of families.
 

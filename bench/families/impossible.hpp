@@ -10,7 +10,6 @@
 #include "chicane/base/math.hpp"
 #include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/problem.hpp"
-#include "chicane/solver/stage_data.hpp"
 #include "families/family.hpp"
 
 namespace chicane::bench {

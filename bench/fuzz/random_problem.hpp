@@ -12,7 +12,6 @@
 #include "chicane/base/random.hpp"
 #include "chicane/solver/hard_constraints.hpp"
 #include "chicane/solver/problem.hpp"
-#include "chicane/solver/stage_data.hpp"
 
 namespace chicane::bench {
 

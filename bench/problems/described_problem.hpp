@@ -9,8 +9,7 @@
 #include "chicane/base/compiler.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
-#include "chicane/controller/described_model.hpp"
-#include "chicane/controller/local_fit.hpp"
+#include "chicane/controller/cubic_problem.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/warm_start.hpp"
 #include "problems/dual.hpp"
@@ -79,7 +78,7 @@ struct DescribedProblem : DescribedData {
   }
 };
 
-/// The same problem in the solver's structured form, by the equations of controller/described_model.hpp:
+/// The same problem in the solver's structured form, by the equations of controller/cubic_problem.hpp:
 /// cte_{k+1} depends on stage k alone, an output, not a state. State (x, y, ψ, v, eψ, previous δ, previous
 /// a), with the constant 1 as wide as one 512-bit vector. Over its numbers.
 template <class Real>

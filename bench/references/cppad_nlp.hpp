@@ -30,7 +30,7 @@ struct DescribedTerms {
   double turn_per_metre = 0.0;        ///< ± 1 / L_f [1/m]
   double speed_reference = 0.0;       ///< as the model's v
   double error_sign = 1.0;            ///< of the last term of cte
-  double heading_reach = 1.0;         ///< of the desired yaw (controller/described_model.hpp)
+  double heading_reach = 1.0;         ///< of the desired yaw (controller/cubic_problem.hpp)
   bool is_lateral_recursive = false;  ///< cte⁺ = cte + v sin eψ dt
   std::array<double, 8> weights{};    ///< of cte, eψ, v, δ, a, Δδ, Δa, v δ
   std::array<double, 4> line{};       ///< coefficients, from the constant on

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/controller/described_model.hpp"
+#include "chicane/controller/cubic_problem.hpp"
 
 #include <gtest/gtest.h>
 #include <array>
@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "chicane/base/math.hpp"
-#include "chicane/controller/local_fit.hpp"
 
 namespace chicane::controller {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/controller/learned_grip.hpp"
+#include "chicane/controller/tracking_guess.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/controller/local_fit.hpp"
+#include "chicane/controller/cubic_problem.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/identify/detail/four_wheels.hpp"
+#include "chicane/identify/detail/car_motion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/run/lap_learner.hpp"
+#include "chicane/run/account.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/run/lap_planner.hpp"
+#include "chicane/run/racing.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,6 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"
-#include "chicane/run/racing.hpp"
 #include "chicane/run/setting.hpp"
 
 namespace chicane::run {

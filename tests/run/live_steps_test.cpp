@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/run/live_steps.hpp"
+#include "chicane/run/realtime_loop.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/run/roadside.hpp"
+#include "chicane/run/account.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/run/track_fit.hpp"
+#include "chicane/run/roads.hpp"
 
 #include <gtest/gtest.h>
 

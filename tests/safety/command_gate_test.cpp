@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/safety/command_gate.hpp"
+#include "chicane/safety/fallback.hpp"
 
 #include <gtest/gtest.h>
 

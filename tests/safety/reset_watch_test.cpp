@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/safety/reset_watch.hpp"
+#include "chicane/safety/measurement_monitor.hpp"
 
 #include <gtest/gtest.h>
 

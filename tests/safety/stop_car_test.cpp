@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/safety/stop_car.hpp"
+#include "chicane/safety/stop_planner.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/tracking/grip_estimator.hpp"
+#include "chicane/tracking/state_estimator.hpp"
 
 #include <gtest/gtest.h>
 

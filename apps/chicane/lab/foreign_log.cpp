@@ -13,8 +13,8 @@
 #include "chicane/live/description.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/recorder.hpp"
+#include "chicane/run/account.hpp"
 #include "chicane/run/make.hpp"
-#include "chicane/run/roadside.hpp"
 
 namespace chicane::apps {
 namespace {

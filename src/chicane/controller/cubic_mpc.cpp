@@ -14,9 +14,7 @@
 #include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/cubic_problem.hpp"
 #include "chicane/controller/cubic_solver.hpp"
-#include "chicane/controller/described_model.hpp"
 #include "chicane/controller/explain.hpp"
-#include "chicane/controller/local_fit.hpp"
 #include "chicane/solver/warm_start.hpp"
 
 namespace chicane::controller {

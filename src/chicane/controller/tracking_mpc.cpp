@@ -10,7 +10,6 @@
 #include "chicane/controller/controller.hpp"
 #include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/explain.hpp"
-#include "chicane/controller/learned_grip.hpp"
 #include "chicane/controller/tracking_guess.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/racing_road.hpp"

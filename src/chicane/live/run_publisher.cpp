@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "chicane/protocol/schema_json.hpp"
-#include "chicane/run/lap_planner.hpp"
+#include "chicane/run/racing.hpp"
 
 namespace chicane::live {
 

@@ -13,7 +13,7 @@
 #include "chicane/model/state.hpp"
 #include "chicane/protocol/detail/cdr_archive.hpp"
 #include "chicane/protocol/foxglove_codec.hpp"
-#include "chicane/safety/stop_plan.hpp"
+#include "chicane/safety/stop_player.hpp"
 
 /// Messages that a controller and a car exchange as ROS 2 programs, and that the topics of ros_messages.hpp
 /// consist of. CDR as there. Each message names its fields once, for both directions. Stamps are nanoseconds

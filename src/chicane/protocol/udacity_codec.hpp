@@ -10,7 +10,7 @@
 #include "chicane/base/vec2.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/state.hpp"
-#include "chicane/safety/stop_plan.hpp"
+#include "chicane/safety/stop_player.hpp"
 
 /// The dialect of the Udacity Term-2 simulator's MPC scene (v1.45), from both ends. All of its signs and
 /// units live here: on the wire steering is positive to the right, speed is in mph, a steering command is a

@@ -12,8 +12,8 @@
 #include "chicane/base/result.hpp"
 #include "chicane/recording/replay.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/lap_planner.hpp"
 #include "chicane/run/make.hpp"
+#include "chicane/run/racing.hpp"
 #include "chicane/run/setting.hpp"
 #include "chicane/telemetry/frame.hpp"
 

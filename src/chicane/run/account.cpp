@@ -5,7 +5,11 @@
 #include <cmath>
 #include <utility>
 
+#include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
+#include "chicane/model/vehicle.hpp"
+#include "chicane/run/observe.hpp"
+#include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::run {
 namespace {
@@ -173,5 +177,149 @@ telemetry::RunSummary Account::summary(std::optional<double> duration) const {
   if (!run.completed && run.end_reason.empty()) run.end_reason = "stopped";
   return run;
 }
+
+namespace {
+
+constexpr double kShare = 0.9;        // of the first lap that a lap has to be long
+constexpr double kMostTurned = 0.45;  // against the first time [rad]: roads cross at 30° or more
+constexpr double kSlack = 5.0;        // [m] that a car may be farther than its speed tells
+
+Vec2 direction_of(double heading) noexcept { return {cos(heading), sin(heading)}; }
+
+}  // namespace
+
+void LapLearner::reset() noexcept { *this = {}; }
+
+void LapLearner::start(double time, const model::Pose& car) noexcept {
+  reset();
+  has_line_ = true;
+  line_ = last_ = {car.x, car.y};
+  direction_ = direction_of(car.psi);
+  lap_start_ = state_.time = time;
+  state_.is_timed = true;
+}
+
+void LapLearner::see(double time, const model::Pose& car, double speed) noexcept {
+  const Vec2 position{car.x, car.y};
+  const double moved = (position - last_).norm();
+  const double elapsed = time - state_.time;
+  if (!has_line_ || moved > 2.0 * speed * elapsed + kSlack) return start(time, car);
+  const double before = (last_ - line_).dot(direction_);
+  const Vec2 from_line = position - line_;
+  const double after = from_line.dot(direction_);
+  const double beside = direction_.x() * from_line.y() - direction_.y() * from_line.x();
+  driven_ += moved;
+  last_ = position;
+  state_.time = time;
+  state_.lap_time = time - lap_start_;
+  if ((before < 0.0) == (after < 0.0) || std::fabs(beside) > kReach) return;
+  // A road that crosses the line's own goes over the line as well, in another direction.
+  const double turned = angle_difference(car.psi, atan2(direction_.y(), direction_.x()));
+  const double back =
+      std::min(std::fabs(turned), kPi - std::fabs(turned));  // also a car that has turned round
+  if ((after > 0.0 ? std::fabs(turned) : back) > kMostTurned) return;
+  if (after < 0.0) {
+    ++backward_;
+  } else if (backward_ > 0) {
+    --backward_;
+  } else {
+    cross_line(time - elapsed * after / (after - before));
+  }
+}
+
+void LapLearner::cross_line(double crossing) noexcept {
+  const bool is_lap = driven_ >= std::max(kLeast, kShare * lap_length_);
+  if (is_lap) count_lap(crossing);
+  state_.lap_time = state_.time - crossing;
+  lap_start_ = crossing;
+  driven_ = 0.0;
+}
+
+void LapLearner::count_lap(double crossing) noexcept {
+  if (lap_length_ == 0.0) lap_length_ = driven_;
+  ++state_.lap;
+  state_.last_lap_time = crossing - lap_start_;
+  state_.last_sector_times.fill(telemetry::kNotMeasured);
+  const bool is_best = state_.lap == 1 || state_.last_lap_time < state_.best_lap_time;
+  if (is_best) state_.best_lap_time = state_.last_lap_time;
+  state_.last_lap_was_clean = true;  // nothing is known to its discredit
+}
+
+namespace {
+
+AccountTerms terms(const road::Track* track, const scenario::Scenario& scenario) {
+  AccountTerms terms = terms_of(scenario, track);
+  terms.car = scenario.vehicle.name;
+  terms.laps = 0;
+  terms.time_limit = 0.0;
+  terms.remedy = telemetry::kSimulatorRemedy;
+  return terms;
+}
+
+/// The measurement, with the wheels where they are assumed.
+sim::Sighting sighting_of(const model::Measurement& seen, const model::VehicleParams& car) {
+  const double edge = 0.5 * (car.track_width + car.tire_width);
+  return {.pose = {.x = seen.x, .y = seen.y, .psi = seen.psi},
+          .speed = std::fabs(seen.speed),
+          .contact_points = {Vec2{car.front_axle, edge}, Vec2{car.front_axle, -edge},
+                             Vec2{-car.rear_axle, edge}, Vec2{-car.rear_axle, -edge}}};
+}
+
+}  // namespace
+
+Roadside::Roadside(const road::Track* track, const scenario::Scenario& scenario)
+    : scenario_{scenario}, account_{terms(track, scenario)} {
+  if (track != nullptr) judge_.emplace(*track);
+}
+
+void Roadside::resume() noexcept {
+  account_.resume();
+  if (judge_ && has_seen_) events_before_ += judge_->state().off_track_events;
+  learner_.reset();
+  has_seen_ = false;
+}
+
+void Roadside::forget_track() {
+  judge_.reset();
+  account_ = Account(terms(nullptr, scenario_));
+  events_before_ = 0;
+  has_seen_ = false;
+}
+
+void Roadside::judge(telemetry::Frame& frame) noexcept {
+  frame.is_judged = judge_ && frame.has_measurement;
+  if (frame.is_judged) look(frame);
+  account_.add(frame);
+  if (frame.is_judged) {
+    account_.add_sighting(judge_->state(), judge_->last_corner_times());
+    frame.lap = account_.laps_completed();
+  } else if (!judge_ && frame.has_measurement) {
+    learn(frame);
+  }
+  frame.completed_lap = account_.completed_lap();
+}
+
+void Roadside::look(telemetry::Frame& frame) noexcept {
+  const sim::Sighting car = sighting_of(frame.measurement, scenario_.vehicle);
+  if (has_seen_) {
+    judge_->see(frame.time, car);
+  } else {
+    judge_->reset(frame.time, car);
+  }
+  has_seen_ = true;
+  observe(judge_->state(), frame);
+  frame.off_track_events += events_before_;
+}
+
+void Roadside::learn(telemetry::Frame& frame) noexcept {
+  const model::Measurement& seen = frame.measurement;
+  learner_.see(frame.time, {.x = seen.x, .y = seen.y, .psi = seen.psi}, seen.speed);
+  account_.add_sighting(learner_.state());
+  frame.lap = account_.laps_completed();
+  frame.lap_time = learner_.state().lap_time;
+  frame.last_lap_time = learner_.state().last_lap_time;
+}
+
+telemetry::RunSummary Roadside::summary() const { return account_.summary(); }
 
 }  // namespace chicane::run

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "chicane/base/vec2.hpp"
+#include "chicane/model/state.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/world.hpp"
@@ -103,6 +105,74 @@ class Account {
   bool is_over_ = false;
   bool has_finished_ = false;  ///< an open road
   const char* end_reason_ = "";
+};
+
+/// Times the laps of a car on a road that is not known: its start line is the straight line across the car
+/// where it was first seen, kReach to each side. A lap counts when the car crosses that line again in the
+/// same direction, after kLeast of way and 90 % of the first lap's; crossing back and forth counts for
+/// nothing. What would need the road stays unknown: place, edges, sectors.
+///
+/// Between two sightings the car is taken to go evenly. Allocates nothing, cannot fail. One thread.
+class LapLearner {
+ public:
+  static constexpr double kReach = 15.0;  ///< [m]
+  static constexpr double kLeast = 50.0;  ///< way of a lap [m]
+
+  /// A new run from wherever the car is seen next.
+  void reset() noexcept;
+  /// Time rises from sighting to sighting; `speed` [m/s] tells a car that drives from one that was moved: the
+  /// running lap of the latter begins where it is.
+  void see(double time, const model::Pose& car, double speed) noexcept;
+
+  /// Laps and their times; all else at its default.
+  [[nodiscard]] const sim::WorldState& state() const noexcept { return state_; }
+
+ private:
+  void start(double time, const model::Pose& car) noexcept;
+  void cross_line(double crossing) noexcept;
+  void count_lap(double crossing) noexcept;
+
+  sim::WorldState state_;
+  bool has_line_ = false;
+  Vec2 line_{0.0, 0.0};
+  Vec2 direction_{1.0, 0.0};  ///< in which the line is crossed
+  Vec2 last_{0.0, 0.0};
+  int backward_ = 0;         ///< crossings that have to be made up for
+  double lap_start_ = 0.0;   ///< [s]
+  double driven_ = 0.0;      ///< since the line was crossed [m]
+  double lap_length_ = 0.0;  ///< of the first lap [m]; 0: none yet
+};
+
+/// Keeps the account of a run whose car is simulated by another program, over all its connections: counts,
+/// and where the road is known judges the car by the measured positions and by the car as it is
+/// assumed, as sim::World does with a plant of ours. Where it is not, laps are learnt from where the
+/// car has been (lap_learner.hpp). Lap times are as good as the clock that telemetry is received by: some
+/// milliseconds on one machine. One thread.
+class Roadside {
+ public:
+  /// `track` may be null: then laps are timed, and nothing is judged. It outlives this.
+  Roadside(const road::Track* track, const scenario::Scenario& scenario);
+
+  /// Another car, or the same one from another place: the running lap does not count, the rest stays.
+  void resume() noexcept;
+  /// The car drives on another road than configured: what was judged by it is forgotten.
+  void forget_track();
+  /// Writes place, edges and laps of what was measured into the frame, and counts it. Allocates nothing.
+  void judge(telemetry::Frame& frame) noexcept;
+  /// The lap that was just completed, once.
+  [[nodiscard]] std::optional<telemetry::CompletedLap> take_lap() noexcept { return account_.take_lap(); }
+  [[nodiscard]] telemetry::RunSummary summary() const;
+
+ private:
+  void look(telemetry::Frame& frame) noexcept;
+  void learn(telemetry::Frame& frame) noexcept;
+
+  scenario::Scenario scenario_;
+  std::optional<sim::Judge> judge_;  ///< none where the road is not known
+  LapLearner learner_;               ///< of laps, in its place
+  Account account_;
+  int events_before_ = 0;  ///< off the road, before this car
+  bool has_seen_ = false;
 };
 
 }  // namespace chicane::run

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "chicane/protocol/schema.hpp"
-#include "chicane/run/lap_planner.hpp"
 #include "chicane/run/observe.hpp"
 #include "chicane/run/racing.hpp"
 

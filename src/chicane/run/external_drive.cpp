@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "chicane/run/track_fit.hpp"
+#include "chicane/run/roads.hpp"
 
 namespace chicane::run {
 namespace {

@@ -18,7 +18,7 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/lap_planner.hpp"
+#include "chicane/run/racing.hpp"
 
 namespace chicane::run {
 namespace {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "chicane/base/result.hpp"
+#include "chicane/model/state.hpp"
 #include "chicane/protocol/remembered_files.hpp"
 #include "chicane/road/known_road.hpp"
 #include "chicane/road/racing_road.hpp"
@@ -15,6 +16,15 @@
 #include "chicane/scenario/scenario.hpp"
 
 namespace chicane::run {
+
+/// Waypoints may lie so far beyond a road's edge and still be its [m]: maps of one road differ.
+inline constexpr double kBesideRoad = 5.0;
+
+/// Whether the waypoints that are shown belong to another road than `track`: at least half of them, of two or
+/// more, lie more than kBesideRoad beyond its edges. Then the distance of the farthest from its line [m],
+/// otherwise nothing. Cost: a search of the whole line for each waypoint.
+[[nodiscard]] std::optional<double> distance_to_other_road(const road::Track& track,
+                                                           const model::Measurement& shown) noexcept;
 
 /// What many runs on a few roads have in common, made once: a track file is read, and its line is smoothed
 /// for the guard, in milliseconds; ten simulated seconds take no longer. Remembers the last kRemembered

@@ -7,7 +7,7 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/schema_json.hpp"
-#include "chicane/run/lap_planner.hpp"
+#include "chicane/run/racing.hpp"
 
 namespace chicane::run {
 namespace {

@@ -8,8 +8,7 @@
 #include "chicane/controller/controller.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
-#include "chicane/safety/actuator_answer.hpp"
-#include "chicane/tracking/command_history.hpp"
+#include "chicane/safety/actuator_watch.hpp"
 #include "chicane/tracking/state_estimator.hpp"
 
 namespace chicane::safety {

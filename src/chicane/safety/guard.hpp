@@ -15,16 +15,13 @@
 #include "chicane/road/track.hpp"
 #include "chicane/safety/actuator_estimator.hpp"
 #include "chicane/safety/actuator_watch.hpp"
-#include "chicane/safety/command_gate.hpp"
 #include "chicane/safety/fallback.hpp"
 #include "chicane/safety/guard_options.hpp"
 #include "chicane/safety/measurement_monitor.hpp"
 #include "chicane/safety/predictive_filter.hpp"
-#include "chicane/safety/reset_watch.hpp"
-#include "chicane/safety/stop_plan.hpp"
 #include "chicane/safety/stop_planner.hpp"
+#include "chicane/safety/stop_player.hpp"
 #include "chicane/safety/supervisor.hpp"
-#include "chicane/tracking/command_history.hpp"
 #include "chicane/tracking/state_estimator.hpp"
 
 namespace chicane::safety {

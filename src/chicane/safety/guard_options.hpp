@@ -2,11 +2,24 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "chicane/base/option.hpp"
+#include "chicane/controller/guard_words.hpp"
 
 namespace chicane::safety {
+
+/// What the guard did in a control cycle, and why.
+struct GuardReport {
+  controller::Rung rung = controller::Rung::kController;  ///< whose command was sent
+  bool gated = false;                                     ///< the command gate had to change it
+  /// The worst that was found; with GuardMode::kObserve also where nothing was done about it.
+  controller::GuardReason reason = controller::GuardReason::kNone;
+  /// Of the stop at hand: least distance of a tyre to the known edge [m]; not-a-number: none at hand.
+  double stop_edge = std::numeric_limits<double>::quiet_NaN();
+  double stop_distance = std::numeric_limits<double>::quiet_NaN();  ///< and its length [m]
+};
 
 /// Version of the guard, in results and recordings: raised when the guard may decide differently on the same
 /// input. Runs that name none are of version 1.

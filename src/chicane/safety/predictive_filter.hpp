@@ -9,9 +9,9 @@
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/road/known_road.hpp"
-#include "chicane/safety/guard_report.hpp"
-#include "chicane/safety/stop_plan.hpp"
+#include "chicane/safety/guard_options.hpp"
 #include "chicane/safety/stop_planner.hpp"
+#include "chicane/safety/stop_player.hpp"
 
 namespace chicane::safety {
 

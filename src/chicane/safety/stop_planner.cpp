@@ -10,9 +10,109 @@
 #include "chicane/base/math.hpp"
 #include "chicane/base/pack.hpp"
 #include "chicane/model/stability.hpp"
+#include "chicane/model/wheel_forces.hpp"
 #include "chicane/safety/stop_player.hpp"
 
 namespace chicane::safety {
+namespace {
+
+constexpr double kLoadLag = 0.06;      // [s] of the loads behind the accelerations: springs and dampers
+constexpr double kLeastLoad = 0.05;    // of a wheel's load at rest
+constexpr double kMostAlong = 0.95;    // of a tyre's peak: anti-lock leaves no more
+constexpr double kLeastSquare = 1e-8;  // of a slip: the curve's secant has a kink at 0
+constexpr double kShortestLag = 1e-4;  // [s]
+
+double left_of(double time_constant, double dt) noexcept {
+  return time_constant > kShortestLag ? exp(-dt / time_constant) : 0.0;
+}
+
+}  // namespace
+
+void StopCar::set_vehicle(const model::VehicleParams& vehicle) noexcept {
+  model_.set_vehicle(vehicle);
+  const model::VehicleParams& p = vehicle;
+  has_wheels_ = p.friction_coupling > 0.0 && p.tire_shape > 0.0 && !(p.steer_helper > 0.0);
+  axles_ = p.axles();
+  for (std::size_t i = 0; i < EachWheel::kLanes; ++i) {
+    const bool is_front = i < 2;
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    const model::Axle& axle = axles_[i / 2];
+    wheels_.x.set(i, axle.x);
+    wheels_.y.set(i, side * axle.half_track);
+    wheels_.is_front.set(i, is_front ? 1.0 : 0.0);
+    wheels_.pitches.set(i, is_front ? -1.0 : 1.0);
+    wheels_.rolls.set(i, side * axle.roll_share);
+    wheels_.rest.set(i, axle.rest * p.load_constant);
+    wheels_.down.set(i, 2.0 * axle.rest);
+    wheels_.drive.set(i, axle.drive_share);
+    wheels_.brake.set(i, axle.brake_share);
+    wheels_.cornering.set(i, (is_front ? p.cornering_front : p.cornering_rear) / p.friction);
+  }
+}
+
+StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
+  const model::VehicleParams& p = vehicle();
+  const model::BodyMotion<double>& m = at.body;
+  const double drag = -longitudinal_acceleration(p, 0.0, m.vx);
+  const double pedal = m.acceleration + drag;
+  const double rolling = p.drag_constant / p.load_constant;
+  const double down = 0.5 * (p.load(m.vx) - p.load_constant);
+  const double pitch = 0.5 * p.height / p.wheelbase() * at.load_along;
+  const double roll = p.height / p.track_width * at.load_across;
+  const auto secant = [&p](const EachWheel& square) {
+    return model::magic_secant(p.tire_shape, EachWheel(square + kLeastSquare));
+  };
+  const Wheels& w = wheels_;
+  const EachWheel asked = 0.5 * pedal * (pedal > 0.0 ? w.drive : w.brake);
+  const EachWheel moved = max(w.pitches * pitch - w.rolls * roll, (kLeastLoad - 1.0) * w.rest);
+  const EachWheel load = w.rest + moved + w.down * down;
+  const EachWheel most = p.friction * (1.0 - p.load_sensitivity * moved / w.rest) * load;
+  const EachWheel forward = max(m.vx - m.r * w.y, EachWheel(0.25 * m.vx));  // of a car that spins, too
+  const EachWheel slip = w.is_front * m.steer - (m.vy + m.r * w.x) / forward;
+  // The slip along that gives the force asked for beside the slip across, by similarity.
+  const EachWheel use =
+      min(max((asked - rolling * load) / most, EachWheel(-kMostAlong)), EachWheel(kMostAlong));
+  const EachWheel z = w.cornering * slip;
+  const EachWheel square = use * use;
+  const EachWheel first = secant(z * z + square / sqrt(1.0 - square * square));
+  const EachWheel along = most * use, across = most * z * secant(z * z + square / (first * first));
+  const auto force_of = [&](std::size_t i, const model::Axle&, const model::Planar<double>&) {
+    return model::Planar<double>{along[i], across[i]};
+  };
+  const double air = p.drag_constant - drag;
+  const auto sum =
+      model::wheel_forces<double>(axles_, {m.vx, m.vy}, m.r, 1.0, m.steer, {air, 0.0, 0.0}, force_of);
+  return {sum.x + m.r * m.vy, sum.y - m.r * m.vx, p.mass / p.yaw_inertia * sum.moment, sum.x, sum.y};
+}
+
+StopCar::Step StopCar::step(double dt) const noexcept {
+  const model::VehicleParams& p = vehicle();
+  const auto left = [&](double h) {
+    return Left{left_of(kLoadLag, h), left_of(p.steer_lag, h), left_of(p.drive_lag, h)};
+  };
+  return {dt, model_.lags(dt), left(0.5 * dt), left(dt)};
+}
+
+StopMotion StopCar::advance(const StopMotion& from, double steer_command, double acceleration_command,
+                            const Step& step) const noexcept {
+  const model::BodyMotion<double>& m = from.body;
+  if (!has_wheels_ || !(m.vx > kSlowest)) {
+    StopMotion to{.body = model_.advance(m, steer_command, acceleration_command, step.dt, step.lags)};
+    to.load_along = to.body.acceleration;
+    to.load_across = to.body.vx * to.body.r;
+    return to;
+  }
+  // The midpoint rule, with the lags' exact solutions.
+  const auto later = [&](double h, const Left& left, const Change& change) {
+    return StopMotion{.body = {m.vx + h * change.vx, m.vy + h * change.vy, m.r + h * change.r,
+                               steer_command + (m.steer - steer_command) * left.steer,
+                               acceleration_command + (m.acceleration - acceleration_command) * left.drive},
+                      .load_along = change.along + (from.load_along - change.along) * left.load,
+                      .load_across = change.across + (from.load_across - change.across) * left.load};
+  };
+  return later(step.dt, step.end, change(later(0.5 * step.dt, step.middle, change(from))));
+}
+
 namespace {
 
 constexpr double kStep = 0.05;     // [s] of the simulation

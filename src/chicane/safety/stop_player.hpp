@@ -3,13 +3,38 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <memory>
 
 #include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/safety/guard_options.hpp"
-#include "chicane/safety/stop_plan.hpp"
 
 namespace chicane::safety {
+
+/// One moment of a stop.
+struct StopPoint {
+  double time = 0.0;      ///< from which the command acts [s], clock of the run
+  double distance = 0.0;  ///< driven since the plan began [m]
+  double speed = 0.0;     ///< planned then [m/s]
+  model::Command command;
+};
+
+/// A way to standstill on the known road, to be driven without any further measurement (docs/safety.md). Data
+/// only; travels with each command to the receiver, which stops the car when commands cease.
+struct StopPlan {
+  static constexpr int kCapacity = 128;
+  int size = 0;  ///< points in use, by rising time; 0: no plan
+  std::array<StopPoint, kCapacity> points{};
+
+  /// One more point; nothing where the plan is full.
+  void add(const StopPoint& point) noexcept {
+    if (size < kCapacity) points[static_cast<std::size_t>(size++)] = point;
+  }
+};
+[[nodiscard]] inline std::unique_ptr<StopPlan> copy_of(const StopPlan& plan) {
+  return std::make_unique<StopPlan>(plan);
+}
 
 /// What the actuators do `distance` [m] after a stop began, at `speed` [m/s] by their own wheels: the planned
 /// steering of that place, and what meets the planned speed there again. Pre: stop.size > 0.

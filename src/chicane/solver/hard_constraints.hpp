@@ -8,7 +8,6 @@
 
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/solution.hpp"
-#include "chicane/solver/stage_data.hpp"
 
 namespace chicane::solver {
 

@@ -17,9 +17,9 @@
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/linearisation.hpp"
 #include "chicane/solver/detail/lq_solver.hpp"
-#include "chicane/solver/detail/problem_pattern.hpp"
 #include "chicane/solver/detail/progress.hpp"
 #include "chicane/solver/detail/roll_out.hpp"
+#include "chicane/solver/detail/stage_entries.hpp"
 #include "chicane/solver/detail/working_set_qp.hpp"
 #include "chicane/solver/iteration_log.hpp"
 #include "chicane/solver/problem.hpp"
@@ -442,6 +442,4 @@ class OcpSolver {
 }  // namespace chicane::solver
 
 #include "chicane/solver/detail/hard_solver.hpp"
-#include "chicane/solver/detail/ocp_endings.hpp"
 #include "chicane/solver/detail/ocp_fallback.hpp"
-#include "chicane/solver/detail/ocp_feedback.hpp"

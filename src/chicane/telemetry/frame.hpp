@@ -13,7 +13,7 @@
 #include "chicane/controller/guard_words.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/road/track.hpp"
-#include "chicane/safety/guard_report.hpp"
+#include "chicane/safety/guard_options.hpp"
 
 namespace chicane::telemetry {
 

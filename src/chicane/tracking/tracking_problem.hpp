@@ -11,7 +11,7 @@
 #include "chicane/base/math.hpp"
 #include "chicane/model/actuator.hpp"
 #include "chicane/model/prediction.hpp"
-#include "chicane/solver/stage_data.hpp"
+#include "chicane/solver/problem.hpp"
 #include "chicane/tracking/state_estimator.hpp"
 
 namespace chicane::tracking {

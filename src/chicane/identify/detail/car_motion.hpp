@@ -4,11 +4,64 @@
 #include <array>
 #include <vector>
 
-#include "chicane/identify/detail/four_wheels.hpp"
 #include "chicane/identify/drive_log.hpp"
+#include "chicane/identify/identification.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/model/wheel_forces.hpp"
 
 namespace chicane::identify {
+
+/// A car on four wheels as it is fitted (docs/identification_method.md, eq. 3, 4): the forces of the
+/// controllers' model, with what that model leaves out and a log near the limit shows. Tyres build up force
+/// over a way, load moves with a lag, angles are not small. Plain arithmetic, no allocation.
+///
+/// Pre: a tyre of the magic formula, no steering helper (has_four_wheels()).
+class FourWheels {
+ public:
+  /// At a moment. Slips and transfer are half a step older.
+  struct Motion {
+    double vx = 0.0, vy = 0.0;           ///< of the centre of mass, in axes of the car [m/s]
+    double r = 0.0;                      ///< [rad/s]
+    std::array<double, 4> slip{};        ///< across: front left, front right, rear left, rear right
+    std::array<double, 4> slip_along{};  ///< forward; of the last step
+    std::array<double, 4> rolling{};     ///< speeds of the wheels' centres a step ago [m/s]
+    double along = 0.0, across = 0.0;    ///< lagged accelerations that shift load [m/s²]
+    double resistance = 0.0;  ///< what turned front wheels took along the car in the last step [m/s²]
+    double forward = 0.0, sideways = 0.0;  ///< acceleration by all forces in the last step [m/s²]
+  };
+
+  FourWheels(const model::VehicleParams& vehicle, const Wheels& wheels, double dt) noexcept;
+
+  /// The motion of a car that has driven like that for a while, with `acceleration` along it.
+  [[nodiscard]] Motion steady(double vx, double vy, double r, double steer,
+                              double acceleration) const noexcept;
+  /// One step of dt. `steer` is the road-wheel angle at its begin, `steer_middle` in its middle; `force` what
+  /// drive and brakes ask of all wheels over mass, `drag` what holds the car back beside them [m/s²].
+  void advance(Motion& motion, double steer, double steer_middle, double force, double drag) const noexcept;
+
+ private:
+  struct Tire {
+    double cornering;   ///< over friction
+    double per_along;   ///< of a wheel's load at rest, for each m/s² along
+    double per_across;  ///< and across
+  };
+
+  model::VehicleParams vehicle_;
+  double dt_;
+  double per_relaxation_;  ///< [1/m]
+  double load_share_;      ///< by which load follows in one step
+  Wheels wheels_;
+  double rotating_;
+  double inertia_;  ///< of a wheel, over the square of its radius and the car's mass
+  double turn_;     ///< mass over yaw inertia [1/m²]
+  std::array<model::Axle, 2> axles_;
+  std::array<Tire, 2> tires_{};  ///< of the axles
+};
+
+/// Whether FourWheels can stand for that car.
+[[nodiscard]] inline bool has_four_wheels(const model::VehicleParams& vehicle) noexcept {
+  return vehicle.steer_helper == 0.0 && vehicle.tire_shape > 1.0 && vehicle.friction_coupling > 0.0;
+}
 
 /// A car as it is fitted: the controllers' model, and what lies between a command and the car.
 struct Car {

@@ -2,10 +2,18 @@
 #include "chicane/identify/detail/ros_rows.hpp"
 
 #include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/car_messages.hpp"
+#include "chicane/protocol/step_codec.hpp"
+#include "chicane/telemetry/mcap.hpp"
 
 namespace chicane::identify {
 namespace {
@@ -54,6 +62,128 @@ Result<LogRows> RosRows::rows(const std::string& file, const LogOptions& options
   auto commands = chosen(commands_, options.drive_topic, kDrive, "--drive-topic", file);
   if (!commands) return fail(commands.error());
   return LogRows{std::move(*samples), std::move(*commands), false};
+}
+
+Result<LogRows> read_mcap_rows(const std::string& file, const LogOptions& options) {
+  LogRows own;
+  RosRows foreign;
+  telemetry::McapVisitor visitor;
+  visitor.on_message = [&](const telemetry::McapMessage& message) {
+    const telemetry::McapChannel& channel = message.channel;
+    if (channel.topic == protocol::kStepTopic && channel.type == protocol::kStepType) {
+      const auto step = protocol::decode_step(message.bytes);
+      if (!step) return;
+      const model::Measurement& m = step->measurement;
+      if (step->has_measurement)
+        own.samples.push_back({.time = m.time, .x = m.x, .y = m.y, .psi = m.psi, .speed = m.speed});
+      own.commands.push_back({m.time, step->command.steer, step->command.throttle});
+    } else if (channel.message_encoding == "cdr") {
+      foreign.add(channel.topic, channel.type, message.bytes, message.log_time);
+    }
+  };
+  const auto read = telemetry::read_mcap(file, visitor);
+  if (!read) return fail(read.error());
+  if (own.commands.empty()) return foreign.rows(file, options);
+  own.is_centre_of_mass = true;
+  return own;
+}
+
+namespace {
+
+constexpr int kMostBytes = 16 << 20;  // of one message
+constexpr int kMostTopics = 10'000;
+constexpr long long kMostSteps = 2'000'000'000;  // of SQLite's machine: some minutes
+constexpr int kStepsBetween = 100'000;
+
+using Database = std::unique_ptr<sqlite3, decltype(&sqlite3_close)>;
+using Statement = std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)>;
+
+/// A database that is only read, and trusted in nothing: a file may have any schema and any bytes.
+class Bag {
+ public:
+  explicit Bag(std::string file) : file_{std::move(file)} {}
+
+  Result<LogRows> read(const LogOptions& options) {
+    if (const Result<void> opened = open(); !opened) return fail(opened.error());
+    std::map<long long, std::pair<std::string, std::string>> topics;  // name and type
+    const Result<void> named =
+        each("SELECT id, name, type FROM topics WHERE serialization_format = 'cdr'", [&](sqlite3_stmt* row) {
+          if (topics.size() < kMostTopics)
+            topics[sqlite3_column_int64(row, 0)] = {text(row, 1), text(row, 2)};
+        });
+    if (!named) return fail(named.error());
+    RosRows rows;
+    const Result<void> read =
+        each("SELECT topic_id, timestamp, data FROM messages ORDER BY timestamp", [&](sqlite3_stmt* row) {
+          const auto topic = topics.find(sqlite3_column_int64(row, 0));
+          if (topic == topics.end()) return;
+          const auto* const bytes = static_cast<const char*>(sqlite3_column_blob(row, 2));
+          const auto size = static_cast<std::size_t>(sqlite3_column_bytes(row, 2));
+          if (bytes != nullptr)
+            rows.add(topic->second.first, topic->second.second, {bytes, size},
+                     static_cast<std::uint64_t>(sqlite3_column_int64(row, 1)));
+        });
+    if (!read) return fail(read.error());
+    return rows.rows(file_, options);
+  }
+
+ private:
+  static std::string text(sqlite3_stmt* row, int column) {
+    const auto* const bytes = static_cast<const char*>(sqlite3_column_blob(row, column));
+    return bytes == nullptr ? ""
+                            : std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(row, column)));
+  }
+
+  Result<void> fault(ErrorCode code) const {
+    const std::string why = has_ended_ ? "too much work to read it" : sqlite3_errmsg(database_.get());
+    return fail(code, fmt::format("{}: got a bag that cannot be read: {}, expected a database of rosbag2",
+                                  file_, printable(why)));
+  }
+
+  Result<void> open() {
+    sqlite3* raw = nullptr;
+    const int opened =
+        sqlite3_open_v2(file_.c_str(), &raw, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX, nullptr);
+    database_.reset(raw);
+    if (opened != SQLITE_OK) return fault(ErrorCode::kIo);
+    sqlite3_limit(raw, SQLITE_LIMIT_LENGTH, kMostBytes);
+    sqlite3_limit(raw, SQLITE_LIMIT_VDBE_OP, 10'000);
+    sqlite3_db_config(raw, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+    sqlite3_db_config(raw, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+    sqlite3_db_config(raw, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+    sqlite3_db_config(raw, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
+    sqlite3_progress_handler(raw, kStepsBetween, &ends, this);
+    return {};
+  }
+
+  static int ends(void* self) {
+    Bag& bag = *static_cast<Bag*>(self);
+    bag.steps_ += kStepsBetween;
+    bag.has_ended_ = bag.steps_ > kMostSteps;
+    return bag.has_ended_ ? 1 : 0;
+  }
+
+  template <class Visit>
+  Result<void> each(const char* query, const Visit& visit) {
+    sqlite3_stmt* raw = nullptr;
+    if (sqlite3_prepare_v2(database_.get(), query, -1, &raw, nullptr) != SQLITE_OK)
+      return fault(ErrorCode::kParse);
+    const Statement statement(raw, &sqlite3_finalize);
+    int step = sqlite3_step(raw);
+    for (; step == SQLITE_ROW; step = sqlite3_step(raw)) visit(raw);
+    return step == SQLITE_DONE ? Result<void>{} : fault(ErrorCode::kParse);
+  }
+
+  std::string file_;
+  Database database_{nullptr, &sqlite3_close};
+  long long steps_ = 0;
+  bool has_ended_ = false;
+};
+
+}  // namespace
+
+Result<LogRows> read_sqlite_rows(const std::string& file, const LogOptions& options) {
+  return Bag(file).read(options);
 }
 
 }  // namespace chicane::identify

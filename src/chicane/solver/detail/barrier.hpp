@@ -8,8 +8,8 @@
 
 #include "chicane/base/compiler.hpp"
 #include "chicane/solver/detail/iterate.hpp"
-#include "chicane/solver/detail/problem_pattern.hpp"
 #include "chicane/solver/detail/soft_constraint.hpp"
+#include "chicane/solver/detail/stage_entries.hpp"
 #include "chicane/solver/sparse_row.hpp"
 
 namespace chicane::solver {

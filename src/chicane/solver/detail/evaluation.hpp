@@ -10,7 +10,7 @@
 #include "chicane/base/compiler.hpp"
 #include "chicane/solver/detail/hard_rows.hpp"
 #include "chicane/solver/detail/iterate.hpp"
-#include "chicane/solver/detail/problem_pattern.hpp"
+#include "chicane/solver/detail/stage_entries.hpp"
 #include "chicane/solver/problem.hpp"
 #include "chicane/solver/sparse_row.hpp"
 

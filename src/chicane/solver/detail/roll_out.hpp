@@ -8,7 +8,7 @@
 #include "chicane/solver/detail/evaluation.hpp"
 #include "chicane/solver/detail/iterate.hpp"
 #include "chicane/solver/detail/pattern.hpp"
-#include "chicane/solver/detail/problem_pattern.hpp"
+#include "chicane/solver/detail/stage_entries.hpp"
 #include "chicane/solver/problem.hpp"
 
 namespace chicane::solver {
