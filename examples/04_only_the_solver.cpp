@@ -89,7 +89,7 @@ int main() {
     std::printf("%4.1f s  cart %+5.2f m  pole %4.0f deg\n", CartPole::kStep * static_cast<double>(k),
                 t.x[k][0], chicane::radians_to_degrees(t.x[k][1]));
   }
-  std::printf("%s after %d turns, cost %.4f; the simple form: %s, cost %.4f\n",
+  std::printf("%s after %d iterations, cost %.4f; the simple form: %s, cost %.4f\n",
               to_string(report.status).data(), report.iterations, report.cost, to_string(plain.status).data(),
               plain.cost);
   const double miss = chicane::abs(t.x[50][1] - chicane::kPi);

@@ -124,7 +124,7 @@ def check_names(root):
             refused = {old: new for old, new, kinds in rows if any(path.suffix in KINDS[kind] for kind in kinds.split(", "))}
             words = {old: new for old, new, kinds in rows if "program text" in kinds and is_program(path.relative_to(root))}
             text = path.read_text(encoding="utf-8", errors="replace") if refused or words else ""
-            code = text if path.suffix == ".md" else re.sub("#.*", "", text) if path.suffix in HASHED else without_comments(text)
+            code = text if path.suffix == ".md" else re.sub("#.*", lambda match: " " * len(match[0]), text) if path.suffix in HASHED else without_comments(text)
             found = {(match.start(), match[0]): names[match[0].lower() if names is words else match[0]]
                      for names, where, flags in ((refused, code, 0), (words, text, re.IGNORECASE)) if names
                      for match in re.finditer(rf"\b(?:{'|'.join(names)})\b", where, flags)}

@@ -71,11 +71,12 @@ def git(folder, *words):
 def tree_of(repository, commit, options):
     """A git folder with that commit; None where it cannot be had."""
     folder = Path(getattr(options, "from") or options.cache) / repository.replace("/", "+")
-    if not folder.exists() and not getattr(options, "from"):
-        folder.mkdir(parents=True)
+    has_commit = folder.exists() and git(folder, "cat-file", "-e", f"{commit}^{{tree}}").returncode == 0
+    if not has_commit and not getattr(options, "from"):
+        folder.mkdir(parents=True, exist_ok=True)
         git(folder, "init", "-q")
-        git(folder, "fetch", "-q", "--depth", "1", f"https://github.com/{repository}", commit)
-    return folder if folder.exists() and git(folder, "cat-file", "-e", f"{commit}^{{tree}}").returncode == 0 else None
+        has_commit = git(folder, "fetch", "-q", "--depth", "1", f"https://github.com/{repository}", commit).returncode == 0
+    return folder if has_commit else None
 
 
 def places_of(text, name):

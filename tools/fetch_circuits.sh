@@ -14,7 +14,10 @@ mkdir -p "$folder"
 failed=0
 while read -r sum url; do
   file=$folder/$(basename "$url")
-  [ -e "$file" ] || curl --fail --silent --show-error --location --max-time 60 --output "$file" "$url" || { failed=1; continue; }
+  if [ ! -e "$file" ]; then
+    curl --fail --silent --show-error --location --max-time 60 --output "$file.part" "$url" || { failed=1; continue; }
+    mv "$file.part" "$file"
+  fi
   echo "$sum  $file" | sha256sum --check --quiet || { echo "$file: got other bytes than expected; delete it to fetch it again" >&2; failed=1; }
 done <<LIST
 a33b772c3cd93d2cbe9bc3da8a06b789dbf4a5e3783c99011afd91100a5f8f37 $github/udacity/CarND-MPC-Project/master/lake_track_waypoints.csv

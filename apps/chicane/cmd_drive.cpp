@@ -28,12 +28,15 @@
 namespace chicane::apps {
 namespace {
 
-/// Without a number of laps a run with a dashboard goes on until it is stopped.
-bool stays_up(const Options& options) {
+/// Whether a run with a dashboard may go on until it is stopped: nobody has asked for a number of laps.
+bool may_stay(const Options& options) {
   const bool has_laps = std::any_of(options.settings.begin(), options.settings.end(),
                                     [](const auto& setting) { return setting.first == "laps"; });
   return !has_laps && !options.is_fast && !options.is_json;
 }
+
+/// Whether somebody sees that a run has ended and can end the program.
+bool is_watched() { return isatty(STDOUT_FILENO) == 1 && isatty(STDERR_FILENO) == 1; }
 
 /// Command by which the program was started, for the page: run.sh sets it.
 net::Asset command_name() {
@@ -45,12 +48,14 @@ net::Asset command_name() {
 struct Outcome {
   telemetry::RunSummary summary;
   Result<void> kept;
+  bool was_stopped;  ///< the run had no end of its own, or stayed at it
 };
 
 Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop> loop,
                          net::ServerOptions server, run::RunControls& controls) {
-  live::LiveRunOptions living{
-      .stay_at_end = stays_up(options), .pace = options.pace, .is_manual = options.is_manual};
+  const bool drives_on = loop->scenario().laps == 0 && may_stay(options);
+  const bool stays = drives_on || (may_stay(options) && is_watched());
+  live::LiveRunOptions living{.stay_at_end = stays, .pace = options.pace, .is_manual = options.is_manual};
   living.assets = live::embedded_assets();
   living.assets.push_back(command_name());
   living.server = std::move(server);
@@ -68,7 +73,7 @@ Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop
                            {.on_frame = [&](const telemetry::Frame& frame) { progress.show(frame); },
                             .say = [&](std::string_view line) { progress.say(line); }});
   }
-  return Outcome{std::move(summary), (*kept)->finish()};
+  return Outcome{std::move(summary), (*kept)->finish(), stays};
 }
 
 constexpr const char* kNotAsked = "not asked for (--limit)";
@@ -128,7 +133,7 @@ Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const ru
   if (limit.found) telemetry::compare_with_limit(summary, limit.found->times);
   summary.why_no_limit = limit.why_not;
   summary.without = limit.without;
-  return Outcome{std::move(summary), (*kept)->finish()};
+  return Outcome{std::move(summary), (*kept)->finish(), false};
 }
 
 /// The run with its planned lap, shown while it is planned.
@@ -153,7 +158,7 @@ Result<Outcome> run(const Options& options) {
   }
   Result<std::unique_ptr<run::ClosedLoop>> loop = planned(*scenario, &server);
   if (!loop) return fail(loop.error());
-  if (stays_up(options) && options.scenario_file.empty() && (*loop)->track().centre().is_closed())
+  if (may_stay(options) && options.scenario_file.empty() && (*loop)->track().centre().is_closed())
     (*loop)->apply(telemetry::Change{.name = "laps", .value = "0"});
   print_guard_notice(options, (*loop)->scenario().guard);
   print_notices((*loop)->scenario());
@@ -173,7 +178,7 @@ ExitCode drive(const Options& options) {
   const telemetry::RunSummary& summary = outcome->summary;
   fmt::print("{}", options.is_json ? protocol::to_json(summary) : protocol::to_table(summary));
   if (!outcome->kept) return report(outcome->kept.error());
-  const bool is_success = stays_up(options) ? summary.off_track_events == 0 : completed_on_road(summary);
+  const bool is_success = outcome->was_stopped ? summary.off_track_events == 0 : completed_on_road(summary);
   return is_success ? kSuccess : kRunFailed;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Options of the other commands.
-// Options of the commands that drive many runs.
+// Options of the commands that drive many runs, and of the other commands.
 #include <fmt/format.h>
 
 #include <string>

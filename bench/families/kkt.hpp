@@ -109,18 +109,18 @@ KktResidual check_kkt(const OverArrays<P>& problem, const solver::Trajectory<P::
       noise[v] += kUnit * std::fabs(weight * row.d[v]);
     }
   };
-  const auto must_be_zero = [&](const D& h, double multiplier) {
+  const auto must_be_zero = [&](const D& h, double y) {
     if (std::isnan(h.v)) result.miss = HUGE_VAL;
     result.miss = std::max(result.miss, std::fabs(h.v));
     result.total += std::fabs(h.v);
-    add(h, multiplier);
+    add(h, y);
   };
-  const auto must_not_be_positive = [&](const D& g, double multiplier) {
+  const auto must_not_be_positive = [&](const D& g, double y) {
     const double beyond = std::max(g.v, 0.0), inside = -std::min(g.v, 0.0);
     result.miss = std::isnan(g.v) ? HUGE_VAL : std::max(result.miss, beyond);
     result.total += beyond;
-    result.subgradient = std::max({result.subgradient, -multiplier, std::min(inside, multiplier)});
-    add(g, multiplier);
+    result.subgradient = std::max({result.subgradient, -y, std::min(inside, y)});
+    add(g, y);
   };
   const auto end = variables_at<D>(t.x[static_cast<std::size_t>(t.horizon)], 0);
   for (const D& r : problem.template terminal_residual<D>(end)) {

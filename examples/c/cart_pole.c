@@ -44,7 +44,7 @@ int main(void) {
   for (int k = 0; k <= HORIZON; ++k) wanted[k] = 0.2;
   CHECK(chicane_set(solver, CHICANE_PARAMETERS, wanted, HORIZON + 1));
   CHECK(chicane_solve(solver, x, &report));
-  printf("%s: cost %.4f after %d turns, %zu bytes\n", chicane_status_text(report.status), report.cost, report.iterations, sizes.bytes);
+  printf("%s: cost %.4f after %d iterations, %zu bytes\n", chicane_status_text(report.status), report.cost, report.iterations, sizes.bytes);
   if (!report.is_usable) return 1;
 
   for (int cycle = 0; cycle < CYCLES; ++cycle) {
@@ -56,7 +56,7 @@ int main(void) {
     CHECK(chicane_shift(solver)); /* while the car moves: solve for where it will be */
     CHECK(chicane_get(solver, CHICANE_STATES, expected, (HORIZON + 1) * NX));
     CHECK(chicane_solve(solver, expected, &report));
-    if (cycle % 20 == 19) printf("%4.1f s: cart at %6.3f m, pole at %7.2f deg, %d turns\n", 0.04 * (cycle + 1), x[0], x[1] * 180 / pi, report.iterations);
+    if (cycle % 20 == 19) printf("%4.1f s: cart at %6.3f m, pole at %7.2f deg, %d iterations\n", 0.04 * (cycle + 1), x[0], x[1] * 180 / pi, report.iterations);
   }
   chicane_destroy(solver);
   return fabs(x[1] - pi) < 0.02 && fabs(x[0] - 0.2) < 0.05 ? 0 : 1;

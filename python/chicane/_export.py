@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A recorded problem as C++: a structured problem of the library (docs/solver.md, "Use")."""
+"""A recorded problem as C++: a structured problem of the library (docs/solver_guide.md)."""
 from __future__ import annotations
 
 import re
@@ -155,7 +155,7 @@ def header(problem: Problem, name: str) -> str:
 #include <string_view>
 #include <tuple>
 
-#include "chicane/base/inlining.hpp"
+#include "chicane/base/compiler.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 

@@ -85,6 +85,7 @@ def league(entries: AnyFile | Mapping[str, Any], output: AnyFile = "", **options
         if isinstance(entries, Mapping):
             file = Path(folder) / "league.yaml"
             file.write_text(json.dumps(entries), encoding="utf-8")     # JSON is YAML
+            options.setdefault("results", str(Path(folder) / "league.jsonl"))
         return pd.DataFrame(json.loads(run("league", file, output=output, json=True, **options)))
 
 
@@ -92,7 +93,7 @@ def program() -> str:
     """$CHICANE_PROGRAM, else the one of the build folder that this package is in, else the one in $PATH."""
     built = Path(os.path.abspath(__file__)).parents[2] / "apps/chicane/chicane"
     found = os.environ.get("CHICANE_PROGRAM") or (str(built) if built.is_file() else shutil.which("chicane"))
-    if not found:
+    if not found or not shutil.which(found):
         raise RuntimeError("chicane: got no program `chicane` in $PATH, expected it there or named by $CHICANE_PROGRAM (docs/packages.md)")
     return found
 

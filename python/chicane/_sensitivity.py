@@ -17,7 +17,7 @@ Array = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int_]
 _Entries = tuple[Integers, Integers, Array]
 _CLEAR = 3e-4
-"""Constraint and multiplier both below this: which of them is zero cannot be reply."""
+"""Constraint and multiplier both below this: which of them is zero cannot be decided."""
 
 
 class Sensitivity:

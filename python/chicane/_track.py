@@ -96,7 +96,7 @@ def use_track_reader(reader: TrackReader) -> None:
 
 
 def file_of(track: AnyTrack) -> str:
-    """What the library is reply of a track: a name, or a file that it reads."""
+    """The track as the library takes it: a name, or a file that it reads."""
     if isinstance(track, Track):
         return track.file()
     name = os.fspath(track)

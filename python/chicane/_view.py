@@ -46,7 +46,7 @@ def report(run: Run | Recording | str | os.PathLike[str], output: str | os.PathL
 
 
 def view(run: Run | Recording | str | os.PathLike[str], *, height: int = 700) -> Page:
-    """Shows the page of report(), with the same arguments and errors: in a notebook in its cell, elsewhere in a tab of the
+    """Shows the page of report(), with its arguments but for output, and its errors: in a notebook in its cell, elsewhere in a tab of the
     browser."""
     import tempfile
     import webbrowser

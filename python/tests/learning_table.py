@@ -4,7 +4,8 @@
 
     ./run.sh python python/tests/learning_table.py [STEPS]
 
-Needs gymnasium, stable-baselines3 and PyTorch. Eight environments, one thread, the learner's own defaults but for n_steps and log_std_init.
+Needs gymnasium, stable-baselines3 and PyTorch. Eight environments, one thread, the learner's own defaults but for n_steps, batch_size and
+log_std_init.
 Prints the mean return and the share of finished laps of the last 40 episodes over training, then five laps of the trained agent. Exit code 1
 where it does not finish one."""
 import sys

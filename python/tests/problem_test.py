@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Optimal control problems written in Python: traced, solved, exported, differentiated."""
 import math
-import os
 import pickle
 import subprocess
 import sys
@@ -9,7 +8,6 @@ import tempfile
 import time
 import unittest
 from pathlib import Path
-from unittest import mock
 
 import numpy as np
 

@@ -39,7 +39,7 @@ class Program(unittest.TestCase):
                               (lambda: ch.identify(self.file("bad.csv")), "bad.csv")):
             with self.subTest(message), self.assertRaisesRegex(ValueError, message):
                 call()
-        with mock.patch.dict(os.environ, {"CHICANE_PROGRAM": self.file("none")}), self.assertRaises(FileNotFoundError):
+        with mock.patch.dict(os.environ, {"CHICANE_PROGRAM": self.file("none")}), self.assertRaises(RuntimeError):
             ch.road(MAP)
 
     def test_identifies_a_car(self):

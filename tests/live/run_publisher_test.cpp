@@ -64,7 +64,7 @@ TEST_F(Publisher, TellsTheEndOnceForEachRun) {
   EXPECT_TRUE(publisher.end({}));
   EXPECT_FALSE(publisher.end({}));
   drive(false);
-  EXPECT_TRUE(publisher.has_told_end()) << "a run that is driven on stays over";
+  EXPECT_TRUE(publisher.has_reported_end()) << "a run that is driven on stays over";
   frame = {};
   frame.begins = true;
   publisher.frame(frame);

@@ -147,8 +147,26 @@ TEST_F(PlantClockTest, CountsByTheTimeThatASimulatorTells) {
   EXPECT_NEAR(clock.delay(0.3), 0.05, 0.001);
   told.time = 0.0;
   EXPECT_TRUE(clock.advance(wall(waited), &told, {})) << "it began again";
-  EXPECT_THAT(clock.news(), HasSubstr("time went back"));
+  EXPECT_THAT(clock.news(), HasSubstr("time jumped"));
   EXPECT_NEAR(clock.at(wall(waited)), 100 * 0.05, 1e-6) << "the run's time goes on";
+}
+
+TEST_F(PlantClockTest, ASilenceOfASimulatorIsNoStep) {
+  PlantClock clock({.is_measured = true}, car_, wall(0.0));
+  model::Measurement now{.time = 10.0};
+  const auto answer = [&](double step, bool is_usable = true) {
+    now.time += step;
+    return clock.advance(wall(0.0), is_usable ? &now : nullptr, {});
+  };
+  EXPECT_FALSE(answer(0.0));
+  EXPECT_FALSE(answer(3.0)) << "it was paused";
+  EXPECT_FALSE(answer(0.05));
+  EXPECT_NEAR(clock.delay(0.3), 0.05, 1e-9);
+  EXPECT_FALSE(answer(2.0));
+  EXPECT_FALSE(answer(0.05, false)) << "an unusable message after a stall";
+  EXPECT_FALSE(answer(0.05)) << "its time has not gone back";
+  EXPECT_NEAR(clock.delay(0.3), 0.05, 1e-6);
+  EXPECT_TRUE(answer(100.0)) << "another moment";
 }
 
 TEST_F(PlantClockTest, ATimeThatIsGivenIsNotEstimated) {

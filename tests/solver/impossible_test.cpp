@@ -41,8 +41,8 @@ Endings solve(int instances, const Make& make) {
   return endings;
 }
 
-// 61 % of all kinds were told, in up to 1000 iterations: filters that went on at the floor of rounding, and
-// conflicts without a certificate.
+// 61 % of all kinds were reported infeasible, in up to 1000 iterations: filters that went on at the floor of
+// rounding, and conflicts without a certificate.
 TEST(Impossible, PointMassesAreInfeasibleWhateverTheConflict) {
   int solves = 0, infeasible = 0;
   for (int kind = 0; kind < PointMass::kKinds; ++kind) {

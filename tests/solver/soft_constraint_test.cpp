@@ -154,7 +154,7 @@ TEST_F(SoftOcp, WhateverTheStatusTheReportIsOfTheAnswer) {
   EXPECT_GT(cut_short, 400);
 }
 
-/// A unit more room saves the penalty of the violation, and nothing where there is room.
+/// A unit more room saves the marginal penalty of the violation, and nothing where there is room.
 TEST_F(SoftOcp, KnowsTheMultiplierOfAConstraint) {
   problem.window_begin = 2;
   problem.window_end = 6;

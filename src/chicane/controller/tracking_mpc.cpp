@@ -28,7 +28,7 @@ using StageInput = std::array<double, Problem::kNu>;
 
 constexpr int kMostIterations = TrackingMpcOptions::kMostIterations;  // from a new guess, or with more time
 constexpr int kRacingIterations = 30;  // original curve of tyres, in a race (docs/limit.md, "The solver")
-constexpr double kTimePerIteration = 0.04;  // [s] that a step must come later for one turn more
+constexpr double kTimePerIteration = 0.04;  // [s] that a step must come later for one more iteration
 constexpr double kFarFromLine = 15.0;       // [m] further away it returns to the road
 constexpr double kLost = 100.0;             // [m] further away it does not return by itself
 constexpr double kSlow = 6.0;               // [m/s] below which it may turn round

@@ -82,7 +82,7 @@ struct VehicleParams : CarBody {
   std::string name = "udacity";
 
   double scale = 1.0;  ///< of a model car, 0.1 for 1:10: settings of controller and guard in metres and
-                       ///< seconds are those of the car in full size (model/vehicle.hpp)
+                       ///< seconds are those of the car in full size (Similarity)
 
   // Geometry.
   double length = 4.47;            ///< body [m]

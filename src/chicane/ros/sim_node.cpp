@@ -68,7 +68,7 @@ run::AccountTerms terms(const scenario::Scenario& scenario, const road::Track& t
   return terms;
 }
 
-std::vector<WantedPartner> wanted_partners(const NodeOptions& node) {
+std::vector<WantedPartner> partners_of_simulator(const NodeOptions& node) {
   return {{.topic = node.topics.drive,
            .type = std::string(protocol::DriveMessage::kType),
            .qos = {.is_reliable = false},
@@ -173,7 +173,7 @@ class SimNode {
         sensor_{scenario.sensor, scenario.seed},
         receiver_{scenario.vehicle, scenario.control_period, scenario.guard.receiver},
         account_{terms(scenario, parts.track)},
-        partners_{wanted_partners(node), node.network},
+        partners_{partners_of_simulator(node), node.network},
         scanner_ahead_{kScannerAhead * scenario.vehicle.wheelbase()},
         pace_{node.pace > 0.0 ? node.pace : 1.0},
         standing_{kStanding * std::sqrt(scenario.vehicle.scale)} {

@@ -146,7 +146,7 @@ class LapLearner {
 /// Keeps the account of a run whose car is simulated by another program, over all its connections: counts,
 /// and where the road is known judges the car by the measured positions and by the car as it is
 /// assumed, as sim::World does with a plant of ours. Where it is not, laps are learnt from where the
-/// car has been (lap_learner.hpp). Lap times are as good as the clock that telemetry is received by: some
+/// car has been (LapLearner). Lap times are as good as the clock that telemetry is received by: some
 /// milliseconds on one machine. One thread.
 class Roadside {
  public:

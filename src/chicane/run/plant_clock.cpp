@@ -14,6 +14,7 @@ namespace {
 constexpr double kFullSize = 4.5;       // [m] length of a car
 constexpr double kLegWay = 0.5;         // [m] of one leg, for a car in full size
 constexpr double kLeastSpeed = 0.5;     // [m/s] that tells a time, for a car in full size
+constexpr double kLongestCycle = 1.0;   // [s] between answers; longer ones are silences
 constexpr double kLongestStep = 5.0;    // [s] between measurements that say anything of each other
 constexpr std::size_t kLeastLegs = 5;   // that tell a clock
 constexpr double kLeastWallTime = 0.6;  // [s] of the wall's time that do
@@ -86,20 +87,23 @@ bool PlantClock::advance(Clock::time_point received, const model::Measurement* m
   return step.steps > 0 && add(step) && take_up();
 }
 
-/// By the simulator's own time: the amount of each answer is measured. True: it went back.
+/// By the simulator's own time: the amount of each answer is measured. True: it jumped.
 bool PlantClock::follow(const model::Measurement* measured) {
   if (measured == nullptr) {
     time_ += step_;
-    last_.time += step_;
+    ++unusable_;
     return false;
   }
   const double gap = has_last_ ? measured->time - last_.time : 0.0;
-  if (!has_last_ || gap < 0.0) ahead_ = time_ + step_ - measured->time;
-  if (gap > 0.0) step_ += (step_ > 0.0 ? kFollowed : 1.0) * (gap - step_);
+  const double step = gap / (1.0 + unusable_);
+  const bool is_jump = gap < 0.0 || step > kLongestStep;
+  if (!has_last_ || is_jump) ahead_ = time_ + step_ - measured->time;
+  if (step > 0.0 && step < kLongestCycle) step_ += (step_ > 0.0 ? kFollowed : 1.0) * (step - step_);
   time_ = std::max(time_, ahead_ + measured->time);
   last_ = *measured;
   has_last_ = true;
-  return gap < 0.0;
+  unusable_ = 0;
+  return is_jump;
 }
 
 /// Where one message of a simulator in lock step had to wait, its displacement tells the time. It also tells
@@ -229,7 +233,7 @@ bool PlantClock::take_up() {
 }
 
 std::string PlantClock::news() const {
-  if (options_.is_measured) return "the simulator's time went back: the run begins again";
+  if (options_.is_measured) return "the simulator's time jumped: the run begins again";
   const std::string counted = step_ > 0.0
                                   ? fmt::format("the simulator advances {:.3g} s with each answer", step_)
                                   : fmt::format("the simulator's clock runs at {:.2f} of the wall's", ratio_);

@@ -90,6 +90,7 @@ class PlantClock {
   std::array<Leg, kLegs> legs_{};
   std::size_t count_ = 0;
   double sampled_ = 0.0;               ///< time that is counted beyond the ratio's [s]
+  int unusable_ = 0;                   ///< messages since the last measurement
   double ahead_ = 0.0;                 ///< of the simulator's own time, the run's is [s]
   double asked_ = 0.0, gained_ = 0.0;  ///< speed that the pedal should have given lately, and has [m/s]
 };

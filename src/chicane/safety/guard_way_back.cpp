@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The guard with the road that it knows: its line, and where the car is on it (docs/safety.md, "Settings").
-// The guard with a car that stands, rolls back, is off its road or was put elsewhere (docs/safety.md, "The
-// way back").
+// The guard with the road that it knows (docs/safety.md, "Settings"), and with a car that stands, rolls back,
+// is off its road or was put elsewhere (docs/safety.md, "The way back").
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -39,7 +39,7 @@ namespace chicane::solver {
 ///
 /// One plain object holding its workspace; no allocation, lock, exception, and no clock but the deadline's.
 /// Nothing is remembered from solve to solve: the trajectory is the warm start, so a failure cannot poison
-/// the next call. Problem and trajectory are used during the call only; multipliers are valid until
+/// the next call. Problem and trajectory are used during the call only; multipliers are those of
 /// the last solve. One thread at a time; objects share nothing, so different threads may each use their own.
 /// `Arch`: the instruction set that its translation unit is compiled for.
 template <OcpProblem P, int Capacity, class Arch = arch::Native>

@@ -25,7 +25,7 @@
 namespace chicane::solver {
 
 /// A primal-dual interior point method with a filter line search over multiple shooting
-/// (docs/solver.md, eq. 30–37; after Wächter, Biegler 2006). States, inputs, slacks and dynamics_multipliers
+/// (docs/solver.md, eq. 30–37; after Wächter, Biegler 2006). States, inputs, slacks and multipliers
 /// of the dynamics are all unknowns; Hessians are exact, and shifted until the quadratic program is convex.
 /// Slower than full steps with a working set, and works from where those fail.
 template <OcpProblem P, std::size_t Capacity, class Arch>

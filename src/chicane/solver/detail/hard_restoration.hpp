@@ -59,7 +59,7 @@ bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajecto
   return can_go_on_ = true;
 }
 /// Restoration: the primal-dual method with elastic rows and next to nothing of the cost (docs/solver.md, eq.
-/// 55), once more where a small share of the misses is left. True where a minimum above zero is proven:
+/// 55), again as long as a small share of the misses is left. True where a minimum above zero is proven:
 /// `trajectory` is there. Else weights and multipliers are those of the point that was found.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
@@ -97,7 +97,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   problem_.violation_penalty = 0.0;
   inner_.ask_for(round_tolerance());
   keep_multipliers(trajectory.horizon);
-  least_prices_ = multipliers_;
+  least_multipliers_ = multipliers_;
   if (is_certified_) return true;
   report.status = SolveStatus::kStalled;  // it converged, but not with the whole cost
   can_go_on_ = false;
@@ -130,7 +130,7 @@ HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, cons
                                                           Trajectory& trajectory,
                                                           HardReport report) noexcept {
   constexpr double kLight = 1e-9;  // beside their multipliers rows themselves count for nothing
-  multipliers_ = least_prices_;
+  multipliers_ = least_multipliers_;
   multipliers_.equality_weight.fill(kLight);
   multipliers_.terminal_weight.fill(kLight);
   put_multipliers(trajectory.horizon);
@@ -139,7 +139,8 @@ HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, cons
   HardReport seen;
   copy_ = least_;
   assess(x0, copy_, true, seen);
-  multipliers_ = least_prices_;
+  multipliers_ = least_multipliers_;
+  multipliers_.is_known = false;  // of the violation alone: no start for another solve
   const Misses now = measure(problem, trajectory, &report);
   problem_.violation_penalty = 0.0;
   return finish(SolveStatus::kInfeasible, now, report);

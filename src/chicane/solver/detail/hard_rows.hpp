@@ -30,9 +30,9 @@ template <class P>
 }
 
 /// Rows that must hold inside the primal-dual method (docs/solver.md, eq. 50–55): h − p + n = 0 with a
-/// multiplier y between two multipliers. p ≥ 0 exists where the upper penalty is finite, with μ = p (high −
-/// y), n ≥ 0 where the lower one is, with μ = n (y − low). An equality that holds has no multipliers, an
-/// inequality that holds has 0 below, whose n is its slack. Elastic rows may give way: multipliers −ρ₁, ρ₁ of
+/// multiplier y between two limits. p ≥ 0 exists where the upper limit is finite, with μ = p (high −
+/// y), n ≥ 0 where the lower one is, with μ = n (y − low). An equality that holds has no limits, an
+/// inequality that holds has 0 below, whose n is its slack. Elastic rows may give way: limits −ρ₁, ρ₁ of
 /// an equality, 0, ρ₁ of an inequality. The problem's functions return rows as residuals √w (h + shift), in
 /// which p and n are eliminated; linearisations store those here with their derivatives.
 template <class P, std::size_t Capacity, class Arch>
@@ -112,7 +112,7 @@ class HardRows {
   template <class Values>
   void centre_end(const Values& h, double mu) noexcept {
     for (std::size_t n = 0; n < kEndRows; ++n)
-      end_[n] = centred(multipliers(n), h[n], n < kEqualities ? end_[n].y : 0.0, mu);
+      end_[n] = centred(limits(n), h[n], n < kEqualities ? end_[n].y : 0.0, mu);
   }
   /// After a change of rows or μ: weights and shifts whose residuals pull as much as what is eliminated.
   void set_rows(P& problem, double mu, std::size_t horizon) noexcept {
@@ -124,7 +124,7 @@ class HardRows {
       }
     }
     for (std::size_t n = 0; n < kEndRows; ++n) {
-      const auto [root, shift] = end_[n].residual(multipliers(n), mu);
+      const auto [root, shift] = end_[n].residual(limits(n), mu);
       problem.terminal_weight[n] = {root, root * root};
       problem.terminal_shift[n] = shift;
     }
@@ -184,9 +184,9 @@ class HardRows {
       double change = 0.0;
       for (std::size_t i = 0; i < kNx; ++i) change += end_row_[n][i] * step.x[i][step.horizon];
       const double root = problem.terminal_weight[n].root;
-      end_step_[n] = end_[n].step(multipliers(n), root * (end_value_[n] + change), mu);
-      slope_ += end_[n].slope(multipliers(n), end_step_[n], mu) - end_value_[n] * change;
-      const auto [by_primal, by_dual] = end_[n].shares(multipliers(n), end_step_[n]);
+      end_step_[n] = end_[n].step(limits(n), root * (end_value_[n] + change), mu);
+      slope_ += end_[n].slope(limits(n), end_step_[n], mu) - end_value_[n] * change;
+      const auto [by_primal, by_dual] = end_[n].shares(limits(n), end_step_[n]);
       most_primal = std::max(most_primal, by_primal);
       most_dual = std::max(most_dual, by_dual);
     }
@@ -227,7 +227,7 @@ class HardRows {
         if (n >= kEqualities) at.n = std::max(at.n, at.p - h[n]);  // more room costs nothing
       }
       end_at_[n] = at;
-      at.measure(multipliers(n), h[n], [&](double missed, double costs, double logarithms) {
+      at.measure(limits(n), h[n], [&](double missed, double costs, double logarithms) {
         merit.miss += missed;
         merit.cost += costs;
         merit.logs += logarithms;
@@ -249,7 +249,7 @@ class HardRows {
     for (std::size_t n = 0; n < kEndRows; ++n) {
       if (!is_there_[n]) continue;
       const double h = end_value_[n] / problem.terminal_weight[n].root - problem.terminal_shift[n];
-      worst = std::max(worst, end_[n].worst(multipliers(n), h, mu, unit));
+      worst = std::max(worst, end_[n].worst(limits(n), h, mu, unit));
     }
     return worst;
   }
@@ -315,7 +315,7 @@ class HardRows {
     operator const double*() const noexcept { return values; }
   };
   /// Between which a multiplier is; `soft`: what a multiplier leaves of its row.
-  struct Multipliers {
+  struct Limits {
     double low = 0.0, high = 0.0, soft = 0.0;
     [[nodiscard]] bool has_p() const noexcept { return high < kInfinity; }
     [[nodiscard]] bool has_n() const noexcept { return low > -kInfinity; }
@@ -325,33 +325,33 @@ class HardRows {
   struct Row {
     T y{0.0}, p{0.0}, n{0.0}, above{1.0}, below{1.0};
 
-    [[nodiscard]] auto residual(const Multipliers& multipliers, double mu) const noexcept {
-      T give(multipliers.soft), shift(0.0);
-      if (multipliers.has_p()) give += p / above, shift -= mu / above;
-      if (multipliers.has_n()) give += n / below, shift += mu / below;
+    [[nodiscard]] auto residual(const Limits& limits, double mu) const noexcept {
+      T give(limits.soft), shift(0.0);
+      if (limits.has_p()) give += p / above, shift -= mu / above;
+      if (limits.has_n()) give += n / below, shift += mu / below;
       return std::array<T, 2>{1.0 / sqrt(give), y * give + shift};
     }
     /// Towards multiplier `next`.
-    [[nodiscard]] Row step(const Multipliers& multipliers, const T& next, double mu) const noexcept {
+    [[nodiscard]] Row step(const Limits& limits, const T& next, double mu) const noexcept {
       Row d;
       d.y = next - y;
       d.above = -d.y;
       d.below = d.y;
-      d.p = multipliers.has_p() ? mu / above - p + p / above * d.y : T(0.0);
-      d.n = multipliers.has_n() ? mu / below - n - n / below * d.y : T(0.0);
+      d.p = limits.has_p() ? mu / above - p + p / above * d.y : T(0.0);
+      d.n = limits.has_n() ? mu / below - n - n / below * d.y : T(0.0);
       return d;
     }
-    [[nodiscard]] T slope(const Multipliers& multipliers, const Row& d, double mu) const noexcept {
+    [[nodiscard]] T slope(const Limits& limits, const Row& d, double mu) const noexcept {
       T sum(0.0);
-      if (multipliers.has_p()) sum += (multipliers.high - mu / p) * d.p;
-      if (multipliers.has_n()) sum += (-multipliers.low - mu / n) * d.n;
+      if (limits.has_p()) sum += (limits.high - mu / p) * d.p;
+      if (limits.has_n()) sum += (-limits.low - mu / n) * d.n;
       return sum;
     }
-    /// Of what is left of p and n, and of multipliers' distances, the share that a whole step takes.
-    [[nodiscard]] std::array<T, 2> shares(const Multipliers& multipliers, const Row& d) const noexcept {
+    /// Of what is left of p and n, and of limits' distances, the share that a whole step takes.
+    [[nodiscard]] std::array<T, 2> shares(const Limits& limits, const Row& d) const noexcept {
       T primal(0.0), dual(0.0);
-      if (multipliers.has_p()) primal = larger(primal, -d.p / p), dual = larger(dual, -d.above / above);
-      if (multipliers.has_n()) primal = larger(primal, -d.n / n), dual = larger(dual, -d.below / below);
+      if (limits.has_p()) primal = larger(primal, -d.p / p), dual = larger(dual, -d.above / above);
+      if (limits.has_n()) primal = larger(primal, -d.n / n), dual = larger(dual, -d.below / below);
       return {primal, dual};
     }
     void go(double length, const Row& d) noexcept {
@@ -366,16 +366,16 @@ class HardRows {
       n = n_at;
     }
     template <class Add>
-    void measure(const Multipliers& multipliers, const T& h, const Add& add) const noexcept {
+    void measure(const Limits& limits, const T& h, const Add& add) const noexcept {
       T cost(0.0), logs(0.0);
-      if (multipliers.has_p()) cost += multipliers.high * p, logs += log(p);
-      if (multipliers.has_n()) cost -= multipliers.low * n, logs += log(n);
+      if (limits.has_p()) cost += limits.high * p, logs += log(p);
+      if (limits.has_n()) cost -= limits.low * n, logs += log(n);
       add(magnitude(h - p + n), cost, logs);
     }
-    [[nodiscard]] T worst(const Multipliers& multipliers, const T& h, double mu, double unit) const noexcept {
+    [[nodiscard]] T worst(const Limits& limits, const T& h, double mu, double unit) const noexcept {
       T result = unit * magnitude(h - p + n);
-      if (multipliers.has_p()) result = larger(result, magnitude(p * above - mu));
-      if (multipliers.has_n()) result = larger(result, magnitude(n * below - mu));
+      if (limits.has_p()) result = larger(result, magnitude(p * above - mu));
+      if (limits.has_n()) result = larger(result, magnitude(n * below - mu));
       return result;
     }
     static T larger(const T& a, const T& b) noexcept { return select(a > b, a, b); }
@@ -395,24 +395,24 @@ class HardRows {
       row.below.store(below + k);
     }
   };
-  [[nodiscard]] const Multipliers& multipliers(std::size_t n) const noexcept {
+  [[nodiscard]] const Limits& limits(std::size_t n) const noexcept {
     return n < kEqualities ? equality_ : inequality_;
   }
   /// A row of value h: elastic ones on the central path, h = μ/(high − y) − μ/(y − low); slacks of others
   /// with some room, and multiplier `y` of equalities.
-  static Row<double> centred(const Multipliers& multipliers, double h, double y, double mu) noexcept {
+  static Row<double> centred(const Limits& limits, double h, double y, double mu) noexcept {
     Row<double> row;
     row.y = y;
-    if (multipliers.has_p()) {
-      const double half = 0.5 * (multipliers.high - multipliers.low), by = half * std::fabs(h);
+    if (limits.has_p()) {
+      const double half = 0.5 * (limits.high - limits.low), by = half * std::fabs(h);
       const double root = std::sqrt(mu * mu + by * by), off = half * by / (mu + root);  // |y − middle|
       const double near = half * mu * (1.0 + mu / (root + by)) / (mu + root), far = half + off;
-      row.y = 0.5 * (multipliers.high + multipliers.low) + (h > 0.0 ? off : -off);
+      row.y = 0.5 * (limits.high + limits.low) + (h > 0.0 ? off : -off);
       row.above = h > 0.0 ? near : far;
       row.below = h > 0.0 ? far : near;
       row.p = mu / row.above;
       row.n = mu / row.below;
-    } else if (multipliers.has_n()) {
+    } else if (limits.has_n()) {
       row.n = std::max(-h, kPush * std::max(1.0, std::fabs(h)));
       row.y = row.below = mu / row.n;
     }
@@ -425,7 +425,7 @@ class HardRows {
   double end_value_[kEndRows + 1]{}, end_row_[kEndRows + 1][kNx]{};
   std::array<Row<double>, kEndRows + 1> end_{}, end_step_{}, end_at_{};
   bool is_there_[kEndRows + 1]{};  ///< sparse rows may be absent: rows that the problem does not have
-  Multipliers equality_{}, inequality_{};
+  Limits equality_{}, inequality_{};
   double slope_ = 0.0;
   double rho_ = 1.0;
   bool is_ready_ = false;  ///< weigh() has been called

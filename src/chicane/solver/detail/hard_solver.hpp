@@ -20,7 +20,7 @@ namespace chicane::solver {
 /// the primal-dual method of detail/hard_rows.hpp, then full steps from its multipliers (docs/solver.md).
 /// Where that gets nowhere, restoration (detail/hard_restoration.hpp) proves that no point nearby holds, or
 /// finds one, from where the method begins again. Else rounds of an augmented Lagrangian: each is one solve
-/// and an update of multipliers, weights and multipliers.
+/// and an update of multipliers, weights and penalties.
 template <HardProblem P, int Capacity, class Arch>
 class HardSolver {
  public:
@@ -426,11 +426,11 @@ class HardSolver {
   Misses first_;       ///< of the guess
   IterationLog* log_ = nullptr;
   Trajectory guess_;
-  Trajectory copy_;           ///< for reports, which may change it
-  Trajectory least_;          ///< where misses have a local minimum above zero, with is_certified_
-  int last_iterations_ = 0;   ///< of the last round
-  Multipliers least_prices_;  ///< there, of the violation alone
-  double least_unit_ = 1.0;   ///< unit of the misses there
+  Trajectory copy_;                ///< for reports, which may change it
+  Trajectory least_;               ///< where misses have a local minimum above zero, with is_certified_
+  int last_iterations_ = 0;        ///< of the last round
+  Multipliers least_multipliers_;  ///< there, of the violation alone
+  double least_unit_ = 1.0;        ///< unit of the misses there
   bool is_certified_ = false;
   bool is_possible_ = false;  ///< a point without misses has been found
   int trial_ = 0;             ///< iterations that are left for the first weights, kTrialSpent; 0: all of them

@@ -330,7 +330,7 @@ void OcpSolver<P, Capacity, Arch>::take_cheapest(const P& problem, const Traject
   }
 }
 
-// Preparation and feedback of OcpSolver (docs/solver.md, "Preparation and feedback").
+// Preparation and feedback of OcpSolver (docs/solver_guide.md).
 
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::prepare(const P& problem) noexcept {
