@@ -105,7 +105,7 @@ void add_step(const Point& from, double length, const Point& step, Point& to) no
 }
 
 /// Whether nothing moves by more than rounding between two points.
-template <class Point>
+template <class Arch, class Point>
 bool stays(const Point& from, const Point& to) noexcept {
   constexpr double kTiny = 1e-15;
   const auto keeps = [&](const auto& a, const auto& b, std::size_t count) {
