@@ -146,7 +146,7 @@ Result<std::unique_ptr<run::ClosedLoop>> planned(const scenario::Scenario& scena
 }
 
 Result<Outcome> run(const Options& options) {
-  static run::RunControls controls;  // as long as signals may come
+  static run::RunControls controls;  // static: must outlive the last signal
   catch_interrupts(controls.wants_stop);
   const Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());

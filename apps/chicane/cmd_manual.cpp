@@ -104,10 +104,10 @@ ExitCode manual(const Options&) {
 
 namespace {
 
-/// What stands for the value of an option in all three shells.
+/// Placeholder for the value of an option, in all three shells.
 struct Value {
   std::string words;  ///< fixed ones
-  std::string shelf;  ///< of `chicane list`
+  std::string shelf;  ///< argument of `chicane list`
   bool is_file = false;
   bool is_assignment = false;  ///< KEY=VALUE: more is typed behind the word
 };
@@ -193,7 +193,7 @@ std::string zsh_action(const Value& value) {
   return action.empty() ? " " : "{" + action + "}";
 }
 
-/// In the words of _arguments, where brackets and colons mean something.
+/// Text quoted for zsh's _arguments, where brackets and colons mean something.
 std::string zsh_text(std::string_view text) {
   std::string result;
   for (const char c : text) result += (c == '[' || c == ']' || c == ':' ? "\\" : "") + std::string(1, c);

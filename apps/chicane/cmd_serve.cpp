@@ -140,7 +140,7 @@ Result<std::optional<road::Track>> chosen_track(const Options& options, const sc
 }
 
 Result<wire::ServeSummary> serve_until_stopped(const Options& options) {
-  static std::atomic<bool> stop{false};  // as long as signals may come
+  static std::atomic<bool> stop{false};  // static: must outlive the last signal
   let_interrupts_end();
   Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
@@ -171,7 +171,7 @@ ExitCode serve(const Options& options) {
 namespace {
 
 Result<wire::SimulateReport> connect_and_drive(const Options& options) {
-  static std::atomic<bool> stop{false};  // as long as signals may come
+  static std::atomic<bool> stop{false};  // static: must outlive the last signal
   catch_interrupts(stop);
   wire::SimulateOptions simulating;
   simulating.url = options.connect;

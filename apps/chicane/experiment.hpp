@@ -48,7 +48,7 @@ struct LimitQuestion {
                                                     const road::Track& track, const LimitQuestion& question,
                                                     const std::atomic<bool>& wants_stop, double& wall_time);
 
-/// For whom and what a limit was found, and how long that took.
+/// Names of track and car of a limit, and the time of the search.
 struct LimitRun {
   std::string track, car;
   double wall_time = 0.0;  ///< [s]

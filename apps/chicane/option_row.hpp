@@ -100,7 +100,7 @@ using Rows = std::vector<OptionRow>;
 /// Notes after the meaning of a row: " (0.05 to 20; default 1; with --simulate)"; empty where nothing.
 [[nodiscard]] std::string notes(const OptionRow& row);
 /// Words in lines of 80 columns that begin at column `indent`; the first word goes on at column `begun`, or
-/// in a new line where that is beyond `indent`. Ends with a line break.
+/// on a new line where that is beyond `indent`. Ends with a line break.
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t indent, std::size_t begun);
 /// The help of a command, at most 80 columns wide.
 [[nodiscard]] std::string command_help(std::string_view name, std::string_view summary, const Rows& rows,

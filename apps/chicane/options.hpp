@@ -27,7 +27,7 @@ struct Options {
   std::vector<std::pair<std::string, std::string>>
       settings;           ///< schema key and text, in the order of precedence
   std::string speed_mps;  ///< reference of whichever controller drives; empty: its own
-  std::string speed_mph;  ///< the same as it was typed in mph; empty: it was typed in m/s
+  std::string speed_mph;  ///< speed as typed in mph; empty: typed in m/s
 
   bool is_fast = false;  ///< as fast as possible, no sockets
   bool is_json = false;

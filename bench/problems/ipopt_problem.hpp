@@ -168,7 +168,7 @@ class IpoptProblem : public SparseNlp<IpoptProblem<P>> {
       if (const int at = position(k, v); at >= 0) visit(at, value.d[static_cast<std::size_t>(v)]);
     }
   }
-  /// Calls visit(residual) for those of stage k, or of the end.
+  /// Calls visit(residual) for each residual of stage k, or of the end.
   template <class T, class Visit>
   void each_residual(const Number* w, int k, const Visit& visit) const {
     if (k < horizon_) {

@@ -152,7 +152,7 @@ class Batch {
   }
 
   /// Observation, reward, terminated, truncated, the last observation of episodes that ended (those begin
-  /// anew at once), and the truth at the last observations where it is wanted.
+  /// again at once), and the truth at the last observations where it is wanted.
   py::tuple step(const Numbers& actions, bool wants_truth) {
     check_shape(actions, size());
     for (py::ssize_t i = 0; i < actions.shape(0); ++i)

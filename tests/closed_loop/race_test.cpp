@@ -153,7 +153,7 @@ TEST(Race, IsRarelyStoppedBecauseOfNoise) {
   EXPECT_LT(run.guard_reasons[static_cast<std::size_t>(controller::GuardReason::kNoWayToStop)], 60U);
 }
 
-// docs/measured/racing.md: nobody told it how much grip there is.
+// docs/measured/racing.md: the grip is not configured.
 TEST(Race, LearnsTheGripWithoutLeavingTheRoad) {
   const std::pair<const char*, double> grips[] = {{"0.8", 24.4}, {"1.1", 22.0}};
   for (const auto& [grip, lap_time] : grips) {

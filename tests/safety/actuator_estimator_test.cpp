@@ -19,7 +19,7 @@ using tracking::StateEstimator;
 constexpr double kPeriod = 0.04;
 constexpr double kConfiguredDelay = 0.1;  // [s] after which commands act, as commanded
 
-/// How a car is otherwise than commanded, and the noise of what is measured.
+/// How a car is otherwise than commanded, and the noise of its measurements.
 struct Otherwise {
   double delay = 0.0, gain = 1.0, offset = 0.0, grip = 1.0;
   double place_noise = 0.0, heading_noise = 0.0;

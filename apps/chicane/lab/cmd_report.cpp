@@ -127,7 +127,7 @@ Result<std::vector<DrivenMoment>> chosen(const DrivenRun& run, const Options::Vi
 
 /// The number of pictures; nothing when it was stopped.
 Result<std::optional<std::uint64_t>> film(const Options& options) {
-  static std::atomic<bool> stop{false};  // as long as signals may come
+  static std::atomic<bool> stop{false};  // static: must outlive the last signal
   catch_interrupts(stop);
   const Options::Video& video = options.video;
   recording::PictureOptions picture{

@@ -105,7 +105,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   problem_.penalty_factor = factors;
   return false;
 }
-/// Whether no inputs within their bounds are free of violation, by the slopes at those of the least: all
+/// Whether no inputs within their bounds are free of violation, by the slopes at the inputs of the least: all
 /// slopes together, each times the distance to the bound that it points to, are next to nothing beside
 /// `violation` (docs/solver.md, eq. 55a). Infinite bounds count as kFarthest times the input away.
 template <HardProblem P, int Capacity, class Arch>

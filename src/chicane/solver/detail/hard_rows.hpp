@@ -114,7 +114,7 @@ class HardRows {
     for (std::size_t n = 0; n < kEndRows; ++n)
       end_[n] = centred(limits(n), h[n], n < kEqualities ? end_[n].y : 0.0, mu);
   }
-  /// After a change of rows or μ: weights and shifts whose residuals pull as much as what is eliminated.
+  /// After a change of rows or μ: weights and shifts whose residuals pull as much as the eliminated p and n.
   void set_rows(P& problem, double mu, std::size_t horizon) noexcept {
     for (std::size_t n = 0; n < kStageRows; ++n) {
       for (std::size_t k = 0; k < horizon; k += 8) {
@@ -347,7 +347,7 @@ class HardRows {
       if (limits.has_n()) sum += (-limits.low - mu / n) * d.n;
       return sum;
     }
-    /// Of what is left of p and n, and of limits' distances, the share that a whole step takes.
+    /// Shares of p and n, and of the distances to the limits, that a whole step takes.
     [[nodiscard]] std::array<T, 2> shares(const Limits& limits, const Row& d) const noexcept {
       T primal(0.0), dual(0.0);
       if (limits.has_p()) primal = larger(primal, -d.p / p), dual = larger(dual, -d.above / above);
