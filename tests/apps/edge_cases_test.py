@@ -214,6 +214,14 @@ class Files(unittest.TestCase):
         process.send_signal(signal.SIGINT)
         self.assertIn("laps until stopped", process.communicate(timeout=30)[0])
 
+    def test_a_scenario_with_laps_ends_where_nobody_watches(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "one_lap.yaml"
+            file.write_text("track: oval\nlaps: 1\n")
+            done = subprocess.run([PROGRAM, "drive", file, "--port", "0", "--pace", "20"], cwd=DATA, text=True, capture_output=True, timeout=60,
+                                  env=environment())
+        self.assertEqual((done.returncode, done.stdout.splitlines()[-1][:11]), (0, "1 of 1 laps"))
+
     def test_ctrl_c_ends_planning(self):
         race = ("drive", "--fast", "--laps", "1", "--preset", "race")
         self.assert_ended_while_planning(signal.SIGINT, *race, "--track", "speedway")
