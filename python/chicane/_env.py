@@ -86,6 +86,7 @@ class Env(BaseEnv):
                  random_faults: Iterable[str] = (), randomise: Mapping[str, tuple[float, float]] | None = None,
                  starts_anywhere: bool = False, ends_off_road: bool = True, off_road_cost: float = 10.0, episode_s: float = 0.0,
                  settings: Settings | None = None, render_mode: str | None = None) -> None:
+        faults, random_faults = tuple(faults), tuple(random_faults)  # of generators, too: copies get the same
         self._arguments = {name: value for name, value in locals().items() if name not in ("self", "__class__")}
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode: got {render_mode!r}, expected None or \"rgb_array\"")

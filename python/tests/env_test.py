@@ -169,7 +169,8 @@ class Environment(unittest.TestCase):
             ch.Env("oval", render_mode="human")
 
     def test_a_copy_is_another_one_with_the_same_arguments(self):
-        env = ch.Env("oval", noise=True, seed=7, settings={"laps": 1})
+        env = ch.Env("oval", noise=True, seed=7, settings={"laps": 1}, faults=(each for each in ["half_grip@1+1"]))
+        self.assertEqual(copy.deepcopy(env)._arguments["faults"], ("half_grip@1+1",))
         first = env.reset()[0]
         env.step([0.0, 1.0])
         for take in (copy.deepcopy, lambda each: pickle.loads(pickle.dumps(each))):
