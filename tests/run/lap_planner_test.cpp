@@ -37,7 +37,7 @@ class Learner final : public controller::Controller {
     return result_;
   }
   [[nodiscard]] controller::LapRequest wants_lap() const noexcept override {
-    return {.is_wanted = is_wanted, .waypoints = waypoints_, .grip = grip, .slides = slides};
+    return {.is_wanted = is_wanted, .waypoints = waypoints_, .grip = grip, .slides = slides, .slip = slip};
   }
   void reset() noexcept override {}
   [[nodiscard]] std::string_view name() const noexcept override { return "learner"; }
@@ -47,6 +47,7 @@ class Learner final : public controller::Controller {
   bool is_wanted = true;
   double grip = 1.0;
   bool slides = false;
+  double slip = 1.0;
   double offset = 0.0;  ///< from any lap [m]
 
  private:
@@ -146,6 +147,7 @@ TEST(LapPlanner, PlansOnTheTrackWithTheGripThatIsWanted) {
 TEST(LapPlanner, TellsOfALapThatSlides) {
   Learner learner({});
   learner.slides = true;
+  learner.slip = 0.9;
   learner.grip = 0.97;
   const scenario::Scenario race = race_by_waypoints();
   const road::Track oval = make_track(race).value();
@@ -156,12 +158,14 @@ TEST(LapPlanner, TellsOfALapThatSlides) {
   EXPECT_TRUE(lap->slides());
   EXPECT_GT(lap->slips().rear, 1.0);
   const telemetry::Change change = LapPlanner::lap_change(*lap, 7, 1.0);
-  EXPECT_EQ(change.value.view(), "0.97, slides");
+  EXPECT_EQ(change.value.view(), "0.97, slip 0.9, slides");
   const Result<Setting> read = read_setting(change);
   ASSERT_TRUE(read) << read.error().message;
   const auto& learned = std::get<LearnedLap>(read->action);
   EXPECT_EQ(learned.grip, 0.97);
   EXPECT_TRUE(learned.slides);
+  EXPECT_EQ(learned.slip, 0.9);
+  EXPECT_FALSE(read_setting({.name = LapPlanner::kChange, .value = "0.97, slip 0"}));
 }
 
 TEST(LapPlanner, HasNoneWhereTheRoadHasNone) {

@@ -192,25 +192,6 @@ TEST_F(Estimating, IgnoresAMeasurementOfTheSameTime) {
   EXPECT_EQ(estimator.state().vx, before.vx);
 }
 
-TEST(InnovationGains, FallWithNoiseAndNotWithAModelThatIsWrong) {
-  InnovationGains noisy{2.0};
-  InnovationGains wrong{2.0};
-  Random random{4};
-  for (int i = 0; i < 100; ++i) {
-    noisy.note(0.3 * random.normal(), 0.3 * random.normal(), 0.04);
-    wrong.note(0.3, -0.1, 0.04);
-  }
-  EXPECT_LT(noisy.position(), 0.25);
-  EXPECT_LT(noisy.velocity(), 0.03);
-  EXPECT_EQ(wrong.position(), InnovationGains::kMostPosition);
-  EXPECT_EQ(wrong.velocity(), InnovationGains::kMostVelocity);
-  noisy.note_after_gap(1.0, 0.0);
-  EXPECT_EQ(noisy.position(), InnovationGains::kMostPosition);
-  noisy.reset();
-  noisy.note(1e-3, 0.0, 0.04);
-  EXPECT_EQ(noisy.position(), InnovationGains::kMostPosition) << "a millimetre is no noise";
-}
-
 TEST_F(Estimating, IsNotKickedByANoisySensor) {
   sent.add(-1.0, {.steer = 0.0, .throttle = 0.3});
   StateEstimator truth(model);
@@ -246,7 +227,7 @@ TEST_F(Estimating, TakesWhatItMissedWhileBlindForADriftNotForAKick) {
   const model::State counted = estimator.predict(1.0, sent).state;
   estimator.correct({.time = 1.0, .x = counted.x, .y = 1.0, .psi = counted.psi, .speed = counted.vx}, sent);
   EXPECT_NEAR(estimator.state().y, 0.8, 1e-6);
-  EXPECT_NEAR(estimator.state().vy, 0.2, 1e-6);
+  EXPECT_NEAR(estimator.state().vy, 0.0, 0.1) << "a heading that was wrong for a second explains a metre";
 }
 
 /// A car whose front tyres are softer than the model's in a bend that tightens, seen through its place and
@@ -312,10 +293,14 @@ TEST(StateEstimator, ForgetsADisturbanceThatIsNotMeasuredAnew) {
   const CommandHistory sent;
   estimator.estimate_disturbance(true);
   estimator.correct({.time = 0.0, .speed = 20.0}, sent);
-  estimator.correct({.time = 0.04, .x = 0.8, .psi = 0.01, .speed = 20.0}, sent);
+  for (int i = 1; i <= 10; ++i) {
+    const double time = 0.04 * i, psi = 0.5 * time * time;
+    estimator.correct(
+        {.time = time, .x = 20.0 * time, .y = 20.0 * psi * time / 3.0, .psi = psi, .speed = 20.0}, sent);
+  }
   const double yaw = estimator.disturbance().yaw;
-  ASSERT_GT(yaw, 0.5);
-  EXPECT_NEAR(estimator.predict(0.54, sent).disturbance.yaw, yaw * std::exp(-0.5 / Disturbance::kTime),
+  ASSERT_GT(yaw, 0.2);
+  EXPECT_NEAR(estimator.predict(0.9, sent).disturbance.yaw, yaw * std::exp(-0.5 / Disturbance::kTime),
               0.01 * yaw);
 }
 

@@ -43,6 +43,7 @@ Problem sample_problem(const model::PredictionModel& model, Random& random) {
     problem.road.speed[k] = random.uniform(5.0, 50.0);
     problem.road.speed_slope[k] = random.uniform(-0.3, 0.1);
     problem.road.left[k] = 1.0;
+    problem.road.steadiness[k] = 1.0;
     problem.road.right[k] = 1.5;
   }
   return problem;

@@ -139,6 +139,7 @@ struct LapRequest {
                                       ///< track's, which is known
   double grip = 1.0;                  ///< over the one that the vehicle's parameters tell
   bool slides = false;                ///< beyond the peak of the tyres, where that is stable
+  double slip = 1.0;                  ///< most slip of an axle, over what the options allow
 };
 
 /// The contract every controller fulfils: a measurement goes in, an answer or none comes out. What happens

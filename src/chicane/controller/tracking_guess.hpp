@@ -122,6 +122,44 @@ struct Absence {
   void reset() noexcept { *this = {.longest = longest}; }
 };
 
+/// How much slip of the rear tyres a lap keeps back for the error of the estimated slip (docs/racing.md, eq.
+/// 8): the controller steers for that error, and takes it back later by the delay and by the time that the
+/// steering needs. One thread; allocates nothing.
+class SlipReserve {
+ public:
+  static constexpr double kPerSecond = 67.0;  ///< deviations that are kept back, over that time [1/s]
+  static constexpr double kStep = 0.05;       ///< shares are multiples of it
+  static constexpr double kMost = 0.6;        ///< that is kept back
+  static constexpr double kNothing = 0.1;     ///< less is not kept back
+
+  void forget() noexcept { *this = {}; }
+  /// The estimate of this cycle; corners count. `delay`: from the measurement to its command's effect [s].
+  void see(const tracking::StateEstimator& car, double time, double delay) noexcept {
+    const double elapsed = time - std::exchange(time_, time);
+    const model::State& now = car.state();
+    if (!(std::fabs(now.vx * now.r) >= tracking::GripEstimator::kLeast) || !(elapsed > 0.0)) return;
+    const model::PredictionModel& model = car.model();
+    const double peak = model.peak_slip_rear();
+    const double late = delay + elapsed + 0.5 * peak / model.vehicle().steer_rate_limit;
+    const double deviation =
+        std::sqrt(car.errors().slide_variance(model.vehicle().rear_axle)) / (now.vx * peak);
+    seen_ = std::min(seen_ + elapsed, kMemory);
+    kept_ += std::min(elapsed / seen_, 1.0) * (kPerSecond * late * deviation - kept_);
+  }
+  /// The share of the tyres' slip to plan a lap with where there is one with `planned`.
+  [[nodiscard]] double for_plan(double planned) const noexcept {
+    const double share = kept_ < kNothing ? 1.0 : 1.0 - std::min(kept_, kMost);
+    const bool is_near = share > planned - kStep && share < planned + 2.0 * kStep;
+    return is_near ? planned : kStep * std::floor(share / kStep + 0.5);
+  }
+
+ private:
+  static constexpr double kMemory = 10.0;  ///< of cornering [s]
+  double kept_ = 0.0;                      ///< share of the slip that is kept back, mean over kMemory
+  double time_ = 0.0;                      ///< of the last cycle [s]
+  double seen_ = 0.0;                      ///< of cornering [s]
+};
+
 /// The grip that a car is raced with when nobody is sure of it: of the model, which begins as configured
 /// and follows what the tyres show, and of the plan, which is made for what may be relied on
 /// (docs/racing.md). Shares of the configured grip. One thread; allocates nothing.

@@ -34,6 +34,8 @@ constexpr double kLost = 100.0;             // [m] further away it does not retu
 constexpr double kSlow = 6.0;               // [m/s] below which it may turn round
 constexpr double kJoining = 0.2;            // [rad] to the road at which a car that returns has joined it
 constexpr double kSpeedAhead = 4.0;         // [m/s] wanted at most beyond what the last answer reaches
+constexpr double kSteadySpeed = 25.0;  // [m/s] from which on the weight on the steering rate grows as v²
+constexpr double kExcessSteerRate = 100.0;  // [s/rad] root weight on a rate that the actuator does not have
 constexpr double kLongestHold = 0.3;        // [s] the first command is assumed to be held at most this long
 constexpr double kBlindAfter = 0.3;         // [s] without a measurement, or a waypoint: stop
 constexpr double kPreview = 0.3;            // [s] the car answers the wheel about so late
@@ -67,6 +69,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     if (!road_.add(now)) shape_raced();
     estimator_.correct(now, sent_);
     if (options_.learns()) watch_grip(now);
+    reserve_.see(estimator_, now.time, now.delay);
     watch_sight(now);
     const Prediction start = estimator_.predict(act_time, sent_);
     is_returning_ = !place_on_line(now, start) || (is_returning_ && std::fabs(x0_[Problem::kE]) > kJoining);
@@ -107,10 +110,13 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const double grip = is_known ? shown : std::min(shown, 1.0);  // assumed edges: no more than configured
     const bool slides =
         options_.slide && is_known && grip_.may_slide(grip, result_.report.delay, lap->slides());
-    return {.is_wanted = lap == nullptr || grip != planned || slides != lap->slides(),
+    const double kept = lap != nullptr ? lap->slip() : 1.0;
+    const double slip = grip_.is_shown() || !options_.learns() ? reserve_.for_plan(kept) : kept;
+    return {.is_wanted = lap == nullptr || grip != planned || slides != lap->slides() || slip != kept,
             .waypoints = is_known ? std::span<const Vec2>{} : waypoints,
             .grip = grip,
-            .slides = slides};
+            .slides = slides,
+            .slip = slip};
   }
 
   [[nodiscard]] double beside(const road::RacingRoad& lap) const noexcept override {
@@ -121,6 +127,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     road_.reset();
     estimator_.reset();
     grip_.forget();
+    reserve_.forget();
     shape_raced();
     grip_.begin(estimator_, model_);
     sent_.clear();
@@ -152,7 +159,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
                        .jerk = std::sqrt(options_.weight_jerk),
                        .edge = std::sqrt(options_.weight_edge),
                        .slip = std::sqrt(options_.weight_slip),
-                       .excess_steer_rate = 10.0,
+                       .excess_steer_rate = kExcessSteerRate,
                        .friction = std::sqrt(options_.weight_slip)};
     shape_edges();
   }
@@ -372,6 +379,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     road.speed_slope[i] = is_reachable ? demand.speed_slope : 0.0;
     road.slide_front[i] = model::SlidingBound::share(demand.speed) * (slips_.front - 1.0);
     road.slide_rear[i] = model::SlidingBound::share(demand.speed) * (slips_.rear - 1.0);
+    road.steadiness[i] = std::max(1.0, v / kSteadySpeed);
     road.sideslip[i] = road_.is_raced() ? road_.lap()->sideslip(s_ + s) : 0.0;
     road.left[i] = room.left;
     road.right[i] = room.right;
@@ -459,6 +467,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   TrackingMpcOptions options_;
   model::VehicleParams configured_;  ///< whose grip may differ from the model's
   model::PredictionModel model_;
+  SlipReserve reserve_;
   LearnedGrip grip_{model_};
   road::DrivenRoad road_;
   tracking::StateEstimator estimator_;

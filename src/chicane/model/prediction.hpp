@@ -168,6 +168,10 @@ class PredictionModel {
            (m.vy + p.front_axle * m.r) * tires.inverse_speed;
   }
 
+  /// Slip angle of the rear tyres at the peak of their curve [rad].
+  [[nodiscard]] double peak_slip_rear() const noexcept {
+    return vehicle_.friction / (vehicle_.cornering_rear * per_peak_);
+  }
   /// Least speed that slip angles are computed with, about [m/s]: below it a car whose wheels are turned is
   /// braked and turned by more slip than it has.
   static constexpr double kSpeedFloor = 1.0;

@@ -195,6 +195,7 @@ class Recomputation {
       controller::LapRequest request = cycle_.controller().wants_lap();
       request.grip = learned->grip;
       request.slides = learned->slides;
+      request.slip = learned->slip;
       const auto lap = run::plan_wanted_lap(scenario_, track_ ? &*track_ : nullptr, request);
       if (lap) cycle_.use_line(*lap);
     }

@@ -113,6 +113,7 @@ class RacingRoad {
     bool is_learned = false;             ///< see is_learned()
     double grip = 1.0;                   ///< see grip()
     bool slides = false;                 ///< see slides()
+    double slip = 1.0;                   ///< see slip()
     bool is_closed = true;               ///< the road; else the car is planned to stop at its end ...
     double braking = 0.0;                ///< ... with this deceleration [m/s²]
     double room_behind = 0.0;            ///< the finish, to the end [m]
@@ -140,6 +141,8 @@ class RacingRoad {
   [[nodiscard]] double grip() const noexcept { return basis_.grip; }
   /// Whether it was asked to slide beyond the peak of the tyres.
   [[nodiscard]] bool slides() const noexcept { return basis_.slides; }
+  /// Most slip of an axle that it was planned with, over what the options allow.
+  [[nodiscard]] double slip() const noexcept { return basis_.slip; }
   /// Slip beyond which the controller's cost has a weight.
   [[nodiscard]] const Slips& slips() const noexcept { return basis_.slips; }
 

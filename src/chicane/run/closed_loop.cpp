@@ -163,6 +163,7 @@ void ClosedLoop::take(LearnedLap learned) noexcept {
   controller::LapRequest request = controller().wants_lap();
   request.grip = learned.grip;
   request.slides = learned.slides;
+  request.slip = learned.slip;
   const auto lap = plan_wanted_lap(scenario_, &track_, request);
   if (lap) use_line(*lap);
 }

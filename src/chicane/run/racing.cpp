@@ -44,7 +44,7 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const road::Track& track
   const controller::TrackingMpcOptions& options = options_of(scenario);
   lap_time::RacingPlanOptions planning{.margin = options.edge_margin,
                                        .grip_share = options.grip_share,
-                                       .slip_share = options.slip_share,
+                                       .slip_share = basis.slip * options.slip_share,
                                        .brake_share = options.brake_share,
                                        .slides = basis.slides,
                                        .delay = delay_of(scenario),
@@ -65,7 +65,7 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const road::Track& track
   road::RacingRoad::Basis planned = basis;
   const model::SlidingBound sliding(car, planning.delay);
   if (planning.slides && sliding.permits())
-    planned.slips = {options.slip_share * sliding.front(), options.slip_share * sliding.most_rear()};
+    planned.slips = {planning.slip_share * sliding.front(), planning.slip_share * sliding.most_rear()};
   planned.is_closed = track.centre().is_closed();
   if (planned.is_closed && !planned.is_learned) planned.corner_times = lap_time::corner_times(track, *lap);
   planned.room_behind = track.length() - track.start_s() - track.lap_length();
@@ -122,8 +122,10 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::
                                                                 const road::Track* track,
                                                                 const controller::LapRequest& request,
                                                                 const std::function<bool()>& go_on) {
-  const road::RacingRoad::Basis basis{
-      .is_learned = !request.waypoints.empty(), .grip = request.grip, .slides = request.slides};
+  const road::RacingRoad::Basis basis{.is_learned = !request.waypoints.empty(),
+                                      .grip = request.grip,
+                                      .slides = request.slides,
+                                      .slip = request.slip};
   if (!basis.is_learned && track == nullptr) return std::shared_ptr<const road::RacingRoad>{};
   if (!basis.is_learned) return plan_on(in_full_size(*track, scenario), scenario, basis, go_on, {});
   const model::VehicleParams car = full_size(scenario);
@@ -147,6 +149,7 @@ LapPlanner::~LapPlanner() {
 
 telemetry::Change LapPlanner::lap_change(const road::RacingRoad& lap, std::uint64_t cycle, double time) {
   std::string value = number_text(lap.grip());
+  if (lap.slip() != 1.0) value += std::string(kSlip) + number_text(lap.slip());
   if (lap.slides()) value += kSlides;
   return {.cycle = cycle, .time = time, .name = kChange, .value = value};
 }

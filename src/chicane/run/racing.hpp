@@ -99,11 +99,12 @@ class LapPlanner {
                                            const road::Track* track, double time);
 
   /// What recordings and viewers get where `lap` is used from control cycle `cycle` on: the grip that it
-  /// is planned with, and kSlides where it slides. Allocates.
+  /// is planned with, kSlip and its share where it keeps slip back, and kSlides where it slides. Allocates.
   [[nodiscard]] static telemetry::Change lap_change(const road::RacingRoad& lap, std::uint64_t cycle,
                                                     double time);
   static constexpr std::string_view kChange = "run.racing_line";
   static constexpr std::string_view kSlides = ", slides";
+  static constexpr std::string_view kSlip = ", slip ";
 
  private:
   void search(const scenario::Scenario& scenario, const road::Track* track,

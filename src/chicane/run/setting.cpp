@@ -56,9 +56,13 @@ Result<Action> read_action(std::string_view key, std::string_view value) {
   if (key == LapPlanner::kChange) {
     const bool slides = value.ends_with(LapPlanner::kSlides);
     if (slides) value.remove_suffix(LapPlanner::kSlides.size());
-    const Result<double> grip = number_in(key, value, 0.01, 2.0);
+    const std::size_t comma = value.find(LapPlanner::kSlip);
+    const Result<double> slip =
+        comma == value.npos ? 1.0 : number_in(key, value.substr(comma + LapPlanner::kSlip.size()), 0.01, 1.0);
+    if (!slip) return fail(slip.error());
+    const Result<double> grip = number_in(key, value.substr(0, comma), 0.01, 2.0);
     if (!grip) return fail(grip.error());
-    return LearnedLap{*grip, slides};
+    return LearnedLap{*grip, slides, *slip};
   }
   if (key != "run.pace") return read_field(key, value);
   const Result<double> pace = number_in(key, value, kSlowestPace, kFastestPace);

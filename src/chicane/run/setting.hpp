@@ -35,6 +35,7 @@ struct FaultSwitch {
 struct LearnedLap {
   double grip = 1.0;    ///< LapRequest::grip
   bool slides = false;  ///< LapRequest::slides
+  double slip = 1.0;    ///< LapRequest::slip
 };
 
 /// What a change of a setting does to a run that goes on. std::monostate: nothing that can be done to it,

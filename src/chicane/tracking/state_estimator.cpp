@@ -38,13 +38,9 @@ double CommandHistory::next_change(double time, double limit) const noexcept {
 
 namespace {
 
-constexpr double kMaxStep = 0.01;      // [s] integration step of the estimator
-constexpr double kLongestGap = 1.0;    // [s] after a longer silence the estimate starts anew
-constexpr double kLostPosition = 3.0;  // [m] a measurement further from the prediction starts anew
-constexpr double kForgetting = 0.1;    // of the means over innovations, in each measurement
-constexpr double kForgettingDisturbed =
-    0.03;  // noise must not pass for a disturbance, also where a few innovations agree by chance
-constexpr double kLeastVariance = 1e-12;
+constexpr double kMaxStep = 0.01;       // [s] integration step of the estimator
+constexpr double kLongestGap = 1.0;     // [s] after a longer silence the estimate starts anew
+constexpr double kLostPosition = 3.0;   // [m] a measurement further from the prediction starts anew
 constexpr double kAtRest = 0.3;         // [m/s] slower than that there is no direction
 constexpr double kMostlyAlong = 0.5;    // of the way, along the heading or against it
 constexpr double kMostDisplaced = 1.5;  // times the way that the speed says
@@ -57,37 +53,29 @@ bool is_finite(const model::Measurement& m) {
 
 }  // namespace
 
-void InnovationGains::note(double x, double y, double elapsed) noexcept {
-  if (time_ > 0.0) {
-    const double root = exp(-elapsed / time_);
-    position_ = 1.0 - root * root;
-    velocity_ = 2.0 * (1.0 - root) * (1.0 - root);
-    return;
-  }
-  // The first one says nothing of noise: the car may have started with any slide.
-  if (!has_last_) return note_after_gap(x, y);
-  const double forgetting = is_disturbed_ ? kForgettingDisturbed : kForgetting;
-  square_ += forgetting * (x * x + y * y - square_);
-  product_ += forgetting * (x * last_x_ + y * last_y_ - product_);
-  last_x_ = x;
-  last_y_ = y;
-  const double noise = std::sqrt(std::max((1.0 - position_) * square_ - product_, kLeastVariance));
-  const double index = acceleration_ * elapsed * elapsed / noise;
-  const double root = 0.25 * (4.0 + index - std::sqrt(index * (8.0 + index)));
-  position_ = std::min(1.0 - root * root, kMostPosition);
-  velocity_ = std::min(2.0 * (1.0 - root) * (1.0 - root), most_velocity());
+/// The covariance over a step of the state, by the model's slopes there.
+void StateEstimator::advance_errors(ErrorCovariance& errors, const model::BodyMotion<double>& from,
+                                    const model::BodyMotion<double>& to, double steer, double asked,
+                                    double dt, const model::PredictionModel::Lags& lags) const noexcept {
+  // Differences to the side that the car turns to: a mirrored car has mirrored slopes.
+  const double slide = std::copysign(0.01, from.r),
+               yaw_rate = std::copysign(0.001, from.r);  // [m/s], [rad/s]
+  model::BodyMotion<double> slid = from, turned = from;
+  slid.vy += slide;
+  turned.r += yaw_rate;
+  slid = model_.advance(slid, steer, asked, dt, lags);
+  turned = model_.advance(turned, steer, asked, dt, lags);
+  errors.advance(dt, from.vx,
+                 {.slide_by_slide = (slid.vy - to.vy) / slide,
+                  .slide_by_yaw_rate = (turned.vy - to.vy) / yaw_rate,
+                  .yaw_rate_by_slide = (slid.r - to.r) / slide,
+                  .yaw_rate_by_yaw_rate = (turned.r - to.r) / yaw_rate},
+                 Disturbance::kTime / (Disturbance::kTime + dt));
 }
 
-void InnovationGains::note_after_gap(double x, double y) noexcept {
-  last_x_ = x;
-  last_y_ = y;
-  has_last_ = true;
-  position_ = kMostPosition;
-  velocity_ = most_velocity();
-}
-
-void StateEstimator::advance(Prediction& at, double from, double to,
-                             const CommandHistory& sent) const noexcept {
+/// `errors`: advanced with the state, or null.
+void StateEstimator::advance(Prediction& at, double from, double to, const CommandHistory& sent,
+                             ErrorCovariance* errors) const noexcept {
   const model::VehicleParams& p = model_.vehicle();
   model::State& state = at.state;
   double now = from;
@@ -103,8 +91,9 @@ void StateEstimator::advance(Prediction& at, double from, double to,
     const double reach = p.steer_rate_limit * dt / (1.0 - lags.steer.end);  // the wheel's, behind its lag
     const double steer = std::clamp(command.steer, state.steer - reach, state.steer + reach);
     const double asked = longitudinal_acceleration(p, command.throttle, state.vx);
-    model::BodyMotion<double> body =
-        model_.advance({state.vx, state.vy, state.r, state.steer, at.acceleration}, steer, asked, dt, lags);
+    const model::BodyMotion<double> before{state.vx, state.vy, state.r, state.steer, at.acceleration};
+    model::BodyMotion<double> body = model_.advance(before, steer, asked, dt, lags);
+    if (errors != nullptr) advance_errors(*errors, before, body, steer, asked, dt, lags);
     body.vy += dt * at.disturbance.lateral;
     body.r += dt * at.disturbance.yaw;
     at.disturbance.fade(dt);
@@ -165,7 +154,7 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
   const bool goes_on = is_started_ && elapsed > 0.0 && elapsed < kLongestGap;
   if (!is_finite(now) && !goes_on) return;
   if (goes_on) {
-    advance(now_, time_, now.time, sent);
+    advance(now_, time_, now.time, sent, average_ > 0.0 ? nullptr : &errors_);
     const double dx = now.x - now_.state.x;
     const double dy = now.y - now_.state.y;
     const double dpsi = angle_difference(now.psi, now_.state.psi);
@@ -188,45 +177,55 @@ void StateEstimator::correct(const model::Measurement& now, const CommandHistory
                 .r = now.speed * tan(std::clamp(steer, -0.6, 0.6)) / model_.vehicle().wheelbase(),
                 .steer = steer};
   time_ = place_seen_ = heading_seen_ = now.time;
+  errors_.begin();
   is_started_ = true;
+}
+
+/// What the innovations of a place beside the car and of a heading add to the estimate; without a place it is
+/// the heading alone.
+StateEstimator::Correction StateEstimator::correction(double aside, double heading, double elapsed,
+                                                      bool is_after_gap) noexcept {
+  using Errors = ErrorCovariance;
+  if (!(average_ > 0.0)) {
+    const Errors::Vector by = errors_.correct({aside, heading, is_after_gap});
+    return {by, errors_.place_share()};
+  }
+  Errors::Vector by{};
+  const double root = exp(-elapsed / average_);
+  const double place = 1.0 - root * root, velocity = 2.0 * (1.0 - root) * (1.0 - root) / elapsed;
+  if (std::isfinite(aside)) by[Errors::kAside] = place * aside, by[Errors::kSlide] = velocity * aside;
+  by[Errors::kHeading] = place * heading;
+  by[Errors::kYawRate] = velocity * heading;
+  return {by, place};
 }
 
 /// The innovation of a measurement, docs/controller.md, eq. 21: of what there is of it. Where the speed
 /// is missing, the place says how fast the car is.
 void StateEstimator::take_over(const model::Measurement& now, double dx, double dy, double dpsi) noexcept {
+  using Errors = ErrorCovariance;
   const double before = std::exchange(time_, now.time);
-  const auto note = [&](InnovationGains& gains, double x, double y, double seen) {
-    if (before > seen) {
-      gains.note_after_gap(x, y);
-    } else {
-      gains.note(x, y, now.time - before);
-    }
-  };
   model::State& state = now_.state;
   Disturbance& more = now_.disturbance;
   if (std::isfinite(dpsi)) {
     const bool has_place = std::isfinite(dx) && std::isfinite(dy);
+    const auto [sine, cosine] = sine_cosine(state.psi);
+    const double along = dx * cosine + dy * sine, aside = dy * cosine - dx * sine,
+                 elapsed = now.time - before;
+    const bool is_after_gap = before > heading_seen_ || (has_place && before > place_seen_);
+    const auto [by, share] = correction(has_place ? aside : dx, dpsi, elapsed, is_after_gap);
+    heading_seen_ = now.time;
     if (has_place) {
-      note(place_gains_, dx, dy, place_seen_);
-      state.x += place_gains_.position() * dx;
-      state.y += place_gains_.position() * dy;
+      place_seen_ = now.time;
+      state.x += share * along * cosine - by[Errors::kAside] * sine;
+      state.y += share * along * sine + by[Errors::kAside] * cosine;
+      if (!std::isfinite(now.speed)) state.vx = std::max(0.0, state.vx + 0.25 * share * along / elapsed);
     }
-    note(heading_gains_, dpsi, 0.0, heading_seen_);
-    const double unturned = now.time - std::exchange(heading_seen_, now.time);
-    state.psi += heading_gains_.position() * dpsi;
-    state.r += heading_gains_.velocity() * dpsi / unturned;
-    more.yaw = std::clamp(more.yaw + heading_gains_.acceleration() * dpsi * (1.0 / (unturned * unturned)),
-                          -kMostYaw, kMostYaw);
-    if (has_place) {
-      const double unseen = now.time - std::exchange(place_seen_, now.time);
-      const double aside = dy * cos(state.psi) - dx * sin(state.psi);
-      state.vy += place_gains_.slide() * aside / unseen;
-      more.lateral =
-          std::clamp(more.lateral + place_gains_.acceleration() * aside * (1.0 / (unseen * unseen)),
-                     -kMostLateral, kMostLateral);
-      const double along = dx * cos(state.psi) + dy * sin(state.psi);
-      if (!std::isfinite(now.speed))
-        state.vx = std::max(0.0, state.vx + place_gains_.velocity() * along / unseen);
+    state.psi += by[Errors::kHeading];
+    state.vy += by[Errors::kSlide];
+    state.r += by[Errors::kYawRate];
+    if (is_disturbed_) {
+      more.lateral = std::clamp(more.lateral + by[Errors::kLateral], -kMostLateral, kMostLateral);
+      more.yaw = std::clamp(more.yaw + by[Errors::kYaw], -kMostYaw, kMostYaw);
     }
   }
   if (std::isfinite(now.speed))

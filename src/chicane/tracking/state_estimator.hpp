@@ -8,6 +8,7 @@
 #include "chicane/model/prediction.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/tracking/error_covariance.hpp"
 
 namespace chicane::tracking {
 
@@ -46,67 +47,6 @@ class CommandHistory {
   [[nodiscard]] const Entry& entry(int i) const noexcept {
     return entries_[static_cast<std::size_t>((first_ + i) % kCapacity)];
   }
-};
-
-/// How much of an innovation, measured minus predicted, is taken over (docs/controller.md, eq. 22 and
-/// 23): as much as a model that is a little wrong asks for, less the noisier the sensor is. That shows in the
-/// innovations themselves: a wrong model's agree from one to the next, noise does not.
-class InnovationGains {
- public:
-  static constexpr double kMostPosition = 0.8;
-  static constexpr double kMostVelocity = 0.25;
-  static constexpr double kMostSlide = 0.2;  ///< of a lateral velocity
-  /// With a disturbance: that which belongs to kMostPosition, 2 (1 − √(1 − 0.8))².
-  static constexpr double kMostVelocityDisturbed = 0.61;
-
-  /// `acceleration`: what the model may be wrong by [unit of the innovation per s²].
-  explicit InnovationGains(double acceleration) noexcept : acceleration_{acceleration} {}
-  void reset() noexcept {
-    const bool is_disturbed = is_disturbed_;
-    const double time = time_;
-    *this = InnovationGains{acceleration_};
-    estimate_disturbance(is_disturbed);
-    average_over(time);
-  }
-  /// Whether accelerations that the model lacks are estimated, too.
-  void estimate_disturbance(bool is_on) noexcept {
-    is_disturbed_ = is_on;
-    velocity_ = most_velocity();
-  }
-  /// The gains of a filter that forgets over `time` [s], whatever the noise; 0: by the noise, as at first.
-  void average_over(double time) noexcept { time_ = time; }
-  /// Takes in the innovation (x, y), `elapsed` [s] after the one before.
-  void note(double x, double y, double elapsed) noexcept;
-  /// The same after a time without measurements: it says how well the model counts on, not how noisy the
-  /// sensor is.
-  void note_after_gap(double x, double y) noexcept;
-
-  /// Share taken over at once; (0, kMostPosition].
-  [[nodiscard]] double position() const noexcept { return position_; }
-  /// Share per `elapsed` taken as an error of the velocity; (0, kMostVelocity].
-  [[nodiscard]] double velocity() const noexcept { return velocity_; }
-  /// The same for a lateral velocity: (0, kMostSlide] without a disturbance.
-  [[nodiscard]] double slide() const noexcept {
-    return is_disturbed_ ? velocity_ : std::min(velocity_, kMostSlide);
-  }
-  /// Share per `elapsed`² taken as an acceleration that the model lacks.
-  [[nodiscard]] double acceleration() const noexcept {
-    return is_disturbed_ ? 0.5 * velocity_ * velocity_ / position_ : 0.0;
-  }
-
- private:
-  [[nodiscard]] double most_velocity() const noexcept {
-    return is_disturbed_ ? kMostVelocityDisturbed : kMostVelocity;
-  }
-  double acceleration_;
-  double time_ = 0.0;     ///< average_over()
-  double square_ = 0.0;   ///< mean of innovation²
-  double product_ = 0.0;  ///< mean of innovation times the one before
-  double last_x_ = 0.0, last_y_ = 0.0;
-  bool has_last_ = false;
-  double position_ = kMostPosition;
-  double velocity_ = kMostVelocity;
-  bool is_disturbed_ = false;
 };
 
 /// Whether a car rolls backwards: its speed is measured without a sign, so that only its displacement tells.
@@ -151,22 +91,18 @@ class StateEstimator {
   void reset() noexcept {
     is_started_ = false;
     direction_.reset();
-    place_gains_.reset();
-    heading_gains_.reset();
+    errors_.reset();
   }
   /// Whether a disturbance is estimated from now on; off at first.
   void estimate_disturbance(bool is_on) noexcept {
-    place_gains_.estimate_disturbance(is_on);
-    heading_gains_.estimate_disturbance(is_on);
+    errors_.estimate_disturbance(is_on);
+    is_disturbed_ = is_on;
     now_.disturbance = {};
   }
   /// Whether what the steer helper leaves out is counted from now on (model/actuator.hpp); off at first.
   void mind_helper_gap(bool is_on) noexcept { minds_gap_ = is_on; }
-  /// Innovations are averaged over `time` [s] from now on (InnovationGains).
-  void average_over(double time) noexcept {
-    place_gains_.average_over(time);
-    heading_gains_.average_over(time);
-  }
+  /// Innovations are averaged over `time` [s] from now on, whatever the noise; 0: by the noise, as at first.
+  void average_over(double time) noexcept { average_ = time; }
   /// Another model from now on; the estimate stays.
   void set_model(const model::PredictionModel& model) noexcept { model_ = model; }
   [[nodiscard]] const model::PredictionModel& model() const noexcept { return model_; }
@@ -186,6 +122,7 @@ class StateEstimator {
     double heading = std::numeric_limits<double>::quiet_NaN();  ///< [rad]
   };
   [[nodiscard]] const Surprise& surprise() const noexcept { return surprise_; }
+  [[nodiscard]] const ErrorCovariance& errors() const noexcept { return errors_; }
   [[nodiscard]] const Disturbance& disturbance() const noexcept { return now_.disturbance; }
   /// What state() has for a speed forward is one backwards (DirectionWatch).
   [[nodiscard]] bool rolls_back() const noexcept { return direction_.rolls_back(); }
@@ -203,17 +140,26 @@ class StateEstimator {
   [[nodiscard]] double rolling_speed(double time, const CommandHistory& sent) const noexcept;
 
  private:
-  static constexpr double kPlaceAcceleration = 2.0;  ///< [m/s²] that the model may be wrong by
-  static constexpr double kYawAcceleration = 1.0;    ///< [rad/s²]
-  static constexpr double kMostLateral = 6.0;        ///< of a disturbance [m/s²]
-  static constexpr double kMostYaw = 6.0;            ///< [rad/s²]
+  static constexpr double kMostLateral = 6.0;  ///< of a disturbance [m/s²]
+  static constexpr double kMostYaw = 6.0;      ///< [rad/s²]
 
   void take_over(const model::Measurement& now, double dx, double dy, double dpsi) noexcept;
-  void advance(Prediction& at, double from, double to, const CommandHistory& sent) const noexcept;
+  struct Correction {
+    ErrorCovariance::Vector by;
+    double share;  ///< of an innovation of the place, also along the car
+  };
+  [[nodiscard]] Correction correction(double aside, double heading, double elapsed,
+                                      bool is_after_gap) noexcept;
+  void advance(Prediction& at, double from, double to, const CommandHistory& sent,
+               ErrorCovariance* errors = nullptr) const noexcept;
+  void advance_errors(ErrorCovariance& errors, const model::BodyMotion<double>& from,
+                      const model::BodyMotion<double>& to, double steer, double asked, double dt,
+                      const model::PredictionModel::Lags& lags) const noexcept;
 
   model::PredictionModel model_;
-  InnovationGains place_gains_{kPlaceAcceleration};
-  InnovationGains heading_gains_{kYawAcceleration};
+  ErrorCovariance errors_;
+  double average_ = 0.0;  ///< average_over() [s]
+  bool is_disturbed_ = false;
   bool minds_gap_ = false;
   bool is_started_ = false;
   double time_ = 0.0;

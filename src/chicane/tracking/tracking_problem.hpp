@@ -55,6 +55,7 @@ struct TrackingProblem {
     Data acceleration_max;
     Data slide_front;  ///< slip of the front tyres beyond their peak, over the peak's, without cost
     Data slide_rear;   ///< and of the rear tyres
+    Data steadiness;   ///< factor of the root weight on the steering rate, ≥ 1
     Data pushed_vy;    ///< what a disturbance adds to v_y over the stage [m/s]
     Data pushed_r;     ///< and to the yaw rate [rad/s]
   };
@@ -137,7 +138,7 @@ struct TrackingProblem {
     return std::make_tuple(
         weight.lateral * d, weight.heading * (e + road.sideslip.at(k)),
         weight.speed * (vx - (road.speed.at(k) + road.speed_slope.at(k) * (s - road.s.at(k)))),
-        weight.steer_rate * rate, (weight.jerk * per_length) * (a_command - a),
+        weight.steer_rate * (road.steadiness.at(k) * rate), (weight.jerk * per_length) * (a_command - a),
         weight.edge * positive_part(max(ahead - road.left.at(k), behind - road.tail_left.at(k))),
         weight.edge *
             positive_part(max(-1.0 * ahead - road.right.at(k), -1.0 * behind - road.tail_right.at(k))),
