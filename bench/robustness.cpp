@@ -7,7 +7,7 @@
 //   chicane-robustness --tolerances [-n INSTANCES] [NAME...]     statuses and residuals, without Ipopt
 //   chicane-robustness --closed-loop [-n INSTANCES] [NAME...]     20 cycles of a controller for each instance
 //
-// Prints the tables of docs/measured/solver_measured.md. FIRST: seed of the first instance.
+// Prints the tables of docs/measured/solver.md. FIRST: seed of the first instance.
 // IPOPT: it solves so many of each, and what is not solved; all without. NAME: families whose name contains
 // it; all without. FILE keeps what Ipopt finds, which takes minutes; without Ipopt (Debian:
 // coinor-libipopt-dev) FILE alone is compared with.

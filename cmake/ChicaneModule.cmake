@@ -11,7 +11,7 @@
 # Most of a small source file's compile time goes into the headers that it includes. UNITY compiles the module's sources as one file,
 # and chicane_unity(TARGET GROUP FILE...) some of a target's, so names in their anonymous namespaces must differ; files that no group
 # names, such as those of a new controller, are compiled alone. LIGHT is for what no control step waits for: -O1. Tests have -Og.
-# docs/measured/build_times.md says what this is good for.
+# docs/measured/program.md says what this is good for.
 option(CHICANE_UNITY "Compile groups of sources as one file; OFF, as in the preset dev: each alone" ON)
 
 function(chicane_unity target group)

@@ -193,7 +193,7 @@ int main(int argc, char** argv) {
 // again.
 //           kEpsi = 20000: 63.6 s, 0.9 m. kDdelta = 10000: 45.9 s, 2.2 m.
 // 4 latency kLatency = 0: weaves, off. 0.05: stays on. 0.2: weaves, off. Third argument 200: off, also
-//           with kLatency = 0.2: the wheels turn later still (docs/measured/latency.md).
+//           with kLatency = 0.2: the wheels turn later still (docs/measured/effects.md).
 // 5 units   car.speed in `now` and v_ref in m/s: off. In m/s and with kDdelta = 30000: 53.1 s, 0.8 m.
 // 6 sign    cte_next = f(x) - y - v sin(epsi) dt, the sign that fits cte = f(x) - y: 47.7 s, 1.3 m.
 // 7 states  measured-latency's recursion, cte_next = cte - v sin(epsi) dt and epsi_next = epsi -

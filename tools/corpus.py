@@ -4,7 +4,7 @@
 
     tools/corpus.py CHICANE [--from FOLDER] [--cache FOLDER] [--only WORD] [--all]
 
-Fetches the commits named below from GitHub into --cache (0.5 GB; docs/import.md); --from takes clones called OWNER+NAME there instead.
+Fetches the commits named below from GitHub into --cache (0.5 GB; docs/tracks.md); --from takes clones called OWNER+NAME there instead.
 What cannot be had is skipped with a line. A row is right where the file was imported, its length within 0.5 % of the file's own
 (the polyline of its points; of OpenDRIVE the length it states) and no point further from the line than its noise (six times
 `noise of X m`, at least a hundredth of the road's width), or where it was refused by a sentence that its row allows.

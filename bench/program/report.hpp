@@ -36,7 +36,7 @@ struct BenchReport {
   bool was_interrupted = false;
 };
 
-/// One target of docs/measured/benchmarks.md beside what was measured.
+/// One target of docs/benchmarks.md beside what was measured.
 struct Target {
   std::string what;
   double least = 0.0;  ///< to be kept

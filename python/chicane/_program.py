@@ -40,7 +40,7 @@ class Road(os.PathLike[str]):
 
 
 def road(file: AnyFile, output: AnyFile = "", **options: Any) -> Road:
-    """Makes a road of a map, cones, coordinates or another program's file (docs/import.md), as `chicane import` does.
+    """Makes a road of a map, cones, coordinates or another program's file (docs/tracks.md), as `chicane import` does.
 
     file: the content decides about the format.
     output: table to write (.csv), an older one is replaced; a temporary file when left out.

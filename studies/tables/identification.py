@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Identifies cars from logs of driving them, and races with what was found: the tables of docs/measured/identification.md.
+"""Identifies cars from logs of driving them, and races with what was found: the tables of docs/measured/plants.md.
 
     studies/tables/identification.py CHICANE [--keep FOLDER] [--seeds N] [--cars A,B] [--tracks A,B] [--noise X] [--no-race]
 

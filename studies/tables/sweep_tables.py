@@ -4,9 +4,9 @@
 
     chicane sweep studies/plans/numbers.yaml -o runs.jsonl
     studies/tables/sweep_tables.py runs.jsonl numbers    README: controllers on the same car, track and seed (studies/plans/numbers.yaml)
-    studies/tables/sweep_tables.py runs.jsonl pid        docs/measured/pid.md: presets by speed (studies/plans/pid.yaml)
-    studies/tables/sweep_tables.py runs.jsonl cars       docs/measured/cars.md: cars by track (studies/plans/cars.yaml)
-    studies/tables/sweep_tables.py runs.jsonl sensors    docs/measured/latency.md: presets by latency of the sensors (studies/plans/sensor-latency.yaml)
+    studies/tables/sweep_tables.py runs.jsonl pid        docs/measured/effects.md: presets by speed (studies/plans/pid.yaml)
+    studies/tables/sweep_tables.py runs.jsonl cars       docs/measured/racing.md: cars by track (studies/plans/cars.yaml)
+    studies/tables/sweep_tables.py runs.jsonl sensors    docs/measured/effects.md: presets by latency of the sensors (studies/plans/sensor-latency.yaml)
     studies/tables/sweep_tables.py runs.jsonl race       docs/measured/racing.md: `race` with the guard on and off, and `default` (studies/plans/racing.yaml)
     studies/tables/sweep_tables.py runs.jsonl race_cars  docs/measured/racing.md: `race` with the other cars (studies/plans/racing-cars.yaml)
     studies/tables/sweep_tables.py runs.jsonl waypoints  docs/measured/racing.md: laps from waypoints alone (studies/plans/racing-waypoints.yaml)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tunes each of the five presets by two optimisers, and writes the table of docs/measured/tuning.md: by hand, and what was found.
+"""Tunes each of the five presets by two optimisers, and writes the table of docs/measured/racing.md: by hand, and what was found.
 
     studies/tables/tune_presets.py LOGS [--evaluations N] [--presets NAME,...] [--program PROGRAM]
 
@@ -65,7 +65,7 @@ def main():
     options = parser.parse_args()
     Path(options.logs).mkdir(parents=True, exist_ok=True)
     new = table(options.program, options)
-    page = ROOT / "docs/measured/tuning.md"
+    page = ROOT / "docs/measured/racing.md"
     head, rest = page.read_text(encoding="utf-8").split(BEGIN)
     page.write_text(head + BEGIN + new + END + rest.split(END)[1], encoding="utf-8")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The walk of docs/import.md as a team takes it, from a map and a bag to a race lap: `walk_test.py PROGRAM`.
+"""The walk of docs/tracks.md as a team takes it, from a map and a bag to a race lap: `walk_test.py PROGRAM`.
 
 The team's cars (tests/apps/walk) are like no shipped one. A simulation of them drives, and of that only odometry and commands are kept,
 as a bag of ROS 2, and the map is drawn here. The commands are those of the page, word for word.
@@ -19,7 +19,7 @@ from pathlib import Path
 PROGRAM = sys.argv.pop(1)
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-PAGE = ROOT / "docs/import.md"
+PAGE = ROOT / "docs/tracks.md"
 MODEL = {"car": "team-1-10", "start": "f1tenth", "cell": 0.05, "width": 1.9, "laps": "3", "grip_share": "1",
          "corners": [(0, 0), (5, 0), (9, 2), (9, 6), (6, 8), (3, 6.2), (0, 6.2), (-3, 8), (-6, 6), (-6, 2), (-3, 0)],
          "noise": ("--position-noise-m", "0.005", "--heading-noise-deg", "0.2", "--speed-noise-mps", "0.02")}

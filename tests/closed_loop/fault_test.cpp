@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every fault, into each controller and each car at speed: what must hold then (docs/faults.md).
+// Every fault, into each controller and each car at speed: what must hold then (docs/safety.md).
 #include "chicane/sim/fault.hpp"
 
 #include <gtest/gtest.h>
@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Drivers, EveryFault, testing::ValuesIn(trials()), [](co
 });
 
 /// How far the outermost tyre may come beyond the edge [m]: not at all, but for what the controller is not
-/// told and cannot find out in time. Measured worst plus a fifth; docs/faults.md has the figures and says
+/// told and cannot find out in time. Measured worst plus a fifth; docs/safety.md has the figures and says
 /// why.
 double beyond_edge(std::string_view fault, std::string_view driver) {
   // The guard assumes the full grip, too.

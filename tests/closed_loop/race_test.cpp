@@ -42,7 +42,7 @@ TEST(Race, LapsCleanlyNearTheLimit) {
 }
 
 // At 48 m/s the rear tyres slip more than the front ones while a change of direction begins. What the model
-// has wrong of their force passed for other wheels there, for 7 s of a lap (docs/safety_watch.md), and for
+// has wrong of their force passed for other wheels there, for 7 s of a lap (docs/guard.md), and for
 // more grip.
 TEST(Race, IsSureOfTheCarInFastBends) {
   const std::filesystem::path circuit = std::filesystem::path(CHICANE_CIRCUITS) / "Monza.csv";
@@ -138,7 +138,7 @@ TEST(Race, NeedsNoTrack) {
 }
 
 // Noise of a good satellite receiver. A stop that overshot the planned lap was refused, and the one that was
-// driven instead took seconds of a lap: 88 steps in these laps (docs/safety_derivation.md, eq. 3).
+// driven instead took seconds of a lap: 88 steps in these laps (docs/guard.md, eq. 3).
 TEST(Race, IsRarelyStoppedBecauseOfNoise) {
   const auto run = drive({{"preset", "race"},
                           {"car", "udacity"},

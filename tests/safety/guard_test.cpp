@@ -265,7 +265,7 @@ TEST(GuardOnARoad, ForgetsTheRoadWithWhatWasLearnedOfIt) {
 }
 
 /// The original car keeps its brakes applied at rest until they are released.
-/// No prediction holds for a car whose driven wheels spin (docs/safety_watch.md, eq. 14).
+/// No prediction holds for a car whose driven wheels spin (docs/guard.md, eq. 14).
 TEST(GuardOnARoad, AsksForNoMoreDriveThanTheTyresHave) {
   const road::RoadData road = straight_road(100);
   Scripted scripted;

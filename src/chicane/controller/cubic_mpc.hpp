@@ -38,7 +38,7 @@ struct CubicMpcOptions {
   bool speed_in_mph = false;
   /// So does the roll-forward: the car is predicted 2.24 times as far along, as if the latency were longer.
   bool roll_forward_in_mph = false;
-  /// Write-up of `measured-latency`: equation 5 with cte = y − f(x) (docs/problem.md).
+  /// Write-up of `measured-latency`: equation 5 with cte = y − f(x) (docs/the_five_systems.md).
   bool lateral_error_to_left = false;
   /// The same write-up: equation 6 as eψ⁺ = eψ + v δ dt / L_f. The bend ahead is seen by cte alone.
   bool heading_error_integrated = false;

@@ -58,10 +58,10 @@ struct LocalPoints {
 /// LocalPoints' capacity.
 [[nodiscard]] bool fit_cubic(std::span<const Vec2> points, Cubic& fit, int order = 3) noexcept;
 
-/// The model of the five write-ups (docs/problem.md, equations 1 to 6): a kinematic bicycle by forward Euler
-/// beside a line y = f(x), in the car's frame. State x, y [m], ψ [rad], v [m/s], eψ [rad], and the inputs of
-/// the stage before; input δ [rad], a [m/s²]. The type of the states is the solver's: numbers, jets, or packs
-/// of either. A Line has at(x) [m] and slope(x).
+/// The model of the five write-ups (docs/the_five_systems.md, equations 1 to 6): a kinematic bicycle by
+/// forward Euler beside a line y = f(x), in the car's frame. State x, y [m], ψ [rad], v [m/s], eψ [rad], and
+/// the inputs of the stage before; input δ [rad], a [m/s²]. The type of the states is the solver's: numbers,
+/// jets, or packs of either. A Line has at(x) [m] and slope(x).
 ///
 /// The write-up of `measured-latency` has both errors in recursive form, cte⁺ = cte + v sin eψ dt and eψ⁺ =
 /// eψ + v δ dt / L_f. Since ψ_0 = 0, eψ_k = eψ_0 + ψ_k, and by equations 1 and 2 the sum is exact: cte_k =
@@ -111,7 +111,7 @@ struct Motion {
   double speed = 0.0;  ///< along the yaw [m/s]
 };
 
-/// x and y alone move on (docs/problem.md, equation 14).
+/// x and y alone move on (docs/the_five_systems.md, equation 14).
 [[nodiscard]] Motion roll_position(const Motion& from, double latency) noexcept;
 
 /// One Euler step of the kinematic model over the latency (equation 15): ψ += v δ L / L_f, v += a L, with
@@ -166,8 +166,8 @@ class RollForward {
   bool has_term_;
 };
 
-/// The optimal control problem of the five write-ups (docs/problem.md, equations 1 to 13), in the car's
-/// frame and the solver's structured form (solver/problem.hpp):
+/// The optimal control problem of the five write-ups (docs/the_five_systems.md, equations 1 to 13), in the
+/// car's frame and the solver's structured form (solver/problem.hpp):
 ///
 ///     state  x, y [m], ψ [rad], v [m/s, or mph with speed_in_mph], eψ [rad], and the inputs of the stage
 ///            before, δ⁻ [rad], a⁻

@@ -37,7 +37,7 @@ struct TrackingTerms {
        {10, Constraint::kFrictionEllipse}}};
 };
 
-/// Groups of CubicProblem's residuals: the terms of equation 7, in its order (docs/problem.md).
+/// Groups of CubicProblem's residuals: the terms of equation 7, in its order (docs/the_five_systems.md).
 struct CubicTerms {
   static constexpr std::array<std::string_view, 8> kNames{
       "lateral", "heading", "speed", "steer", "throttle", "steer_change", "throttle_change", "speed_steer"};

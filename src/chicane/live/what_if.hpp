@@ -51,7 +51,7 @@ class WhatIf {
 
   /// Begins, and does not wait; the number of the question, as a text.
   [[nodiscard]] Result<std::string> ask(std::string_view json);
-  /// The newest answer, or how far it is: GET /what_if.json (docs/viewer_laps.md).
+  /// The newest answer, or how far it is: GET /what_if.json (docs/viewer.md).
   [[nodiscard]] std::string answer();
 
  private:
@@ -111,7 +111,7 @@ class Rival {
   /// of the race, as a text. kInvalidArgument in a sentence for viewers: for a setting that is unknown, out
   /// of range, or cannot change while a run goes on.
   [[nodiscard]] Result<std::string> ask(std::string_view json, const scenario::Scenario& scenario);
-  /// GET /rival.json (docs/viewer_laps.md). Any thread.
+  /// GET /rival.json (docs/viewer.md). Any thread.
   [[nodiscard]] std::string answer() const;
 
  private:

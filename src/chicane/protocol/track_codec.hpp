@@ -99,7 +99,7 @@ struct TrackFormat {
 
 inline constexpr TrackFormat kCsvTrack{".csv", &parse_csv_track};
 
-// Roads as other programs keep them (docs/import.md), each recognised by its content. What a file cannot
+// Roads as other programs keep them (docs/tracks.md), each recognised by its content. What a file cannot
 // tell is assumed, and said in TrackFile::warnings with the option of `chicane import` that sets it.
 
 /// All of them; the first that recognises a text reads it.

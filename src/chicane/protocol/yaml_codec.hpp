@@ -94,7 +94,7 @@ struct Document {
 /// (`cubic_mpc.horizon_steps: 20`), with or without the wrapper of ROS 2 parameter files (`/**:
 /// {ros__parameters: ...}`). JSON is YAML.
 ///
-/// `faults:` is a list of {name, at_s, for_s, strength} (docs/faults.md); the last two may be left out.
+/// `faults:` is a list of {name, at_s, for_s, strength} (docs/safety.md); the last two may be left out.
 ///
 /// Numbers have a decimal point in every locale. kParse lists all faults of the file, one on each line,
 /// "presets/x.yaml:7: cubic_mpc.horizon_steps: got 500, expected an integer in [2, 200]": unknown, duplicate

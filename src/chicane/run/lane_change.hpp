@@ -19,7 +19,7 @@ namespace chicane::run {
 /// The cones of the severe double lane change of ISO 3888-2: an entry lane, a side lane to the left with 1 m
 /// between the two, an exit lane in line with the entry lane, as wide as the car makes them, and 13.5 m and
 /// 12.5 m between them. x runs along the course from the entry, y to the left from the entry lane's middle
-/// (docs/measured/lane_change.md).
+/// (docs/measured/racing.md).
 class LaneChangeCourse {
  public:
   struct Lane {
@@ -61,7 +61,7 @@ struct LaneChangeLimit {
   LaneChangeOutcome failed;  ///< 1 km/h above it
 };
 
-/// The severe double lane change (docs/measured/lane_change.md), for those who drive one car. All are shown
+/// The severe double lane change (docs/measured/racing.md), for those who drive one car. All are shown
 /// the same line: the fastest way through of a car whose grip lets it go just so fast as the car of the run;
 /// one that races knows the cones, too. Lines are planned once, in steps of 5 km/h. Deterministic.
 class LaneChange {

@@ -14,7 +14,7 @@
 namespace chicane::safety {
 
 /// How late and by how much the wheels answer, beyond the configuration, by which answer predicts the next
-/// measurement better (docs/identification_method.md, eq. 13 to 15). It is the method of
+/// measurement better (docs/identification.md, eq. 13 to 15). It is the method of
 /// tracking::GripEstimator for four unknowns at once: one state estimator counts with the estimate, four have
 /// one unknown changed each, and least squares over the last kMemory of driving finds the unknowns with their
 /// deviations. The grip is among them, so that tyres that give less do not pass for another steering.

@@ -39,7 +39,7 @@ struct ActuatorAnswer {
   }
 };
 
-/// Compares how the car turns and brakes with what was sent to it, by its model (docs/safety_watch.md,
+/// Compares how the car turns and brakes with what was sent to it, by its model (docs/guard.md,
 /// eq. 12 and 13). The answer is the usual one until the difference exceeds its band; then it is estimated,
 /// until it has been the usual one for kUsualFor. It judges a car that moves forward, faster than kSlowest,
 /// with grip to spare. No allocation; one thread.

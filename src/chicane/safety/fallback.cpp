@@ -103,7 +103,7 @@ void Fallback::drive_on(double elapsed, double measured_speed) noexcept {
   distance_ += elapsed * speed_;
 }
 
-/// Equation 4 of docs/faults.md.
+/// Equation 16 of docs/guard.md.
 double Fallback::steer_along_path() const noexcept {
   if (plan_size_ == 0 || plan_[static_cast<std::size_t>(plan_size_ - 1)].distance <= 0.0) return last_steer_;
   int i = 0;

@@ -16,7 +16,7 @@ namespace chicane::safety {
 ///     kBrake         otherwise: along its path, all useful braking
 ///
 /// Along its path: the wheel as planned for the distance driven since, scaled to the present speed
-/// (docs/faults.md, eq. 4); held where there was no plan. Braking gently: at least kGentleBraking, and enough
+/// (docs/guard.md, eq. 16); held where there was no plan. Braking gently: at least kGentleBraking, and enough
 /// to stop where the plan ends. A speed that is not measured is extrapolated from the last one with half of
 /// the braking asked for, so that a car without measurements brakes too long rather than too short.
 ///

@@ -18,7 +18,7 @@ constexpr double kTraction = 0.9;        // of the grip of a driven axle: beyond
 constexpr double kLeastTraction = 0.04;  // square of what is left of an axle that slides
 
 /// The acceleration [m/s²] that the driven axles can give beside the force that they carry sideways
-/// (docs/safety_watch.md, eq. 14). Infinite for cars whose tyres share nothing between the directions.
+/// (docs/guard.md, eq. 14). Infinite for cars whose tyres share nothing between the directions.
 double traction(const model::PredictionModel& model, const model::BodyMotion<double>& body) noexcept {
   const model::VehicleParams& car = model.vehicle();
   if (!(car.friction_coupling > 0.0)) return std::numeric_limits<double>::infinity();

@@ -18,7 +18,7 @@ struct Findings {
   bool position_jump = false;   ///< its place is not where the car can have moved to
 };
 
-/// Checks whether measurements are plausible (docs/safety_watch.md, eq. 7 and 8). What is not plausible
+/// Checks whether measurements are plausible (docs/guard.md, eq. 7 and 8). What is not plausible
 /// is handed on as not measured (NaN), the rest of the measurement stays: a car that knows two of place, yaw
 /// and speed can count on. A finding ends when the sensor agrees again with what is expected, that of a place
 /// when it jumps back, too; it is never accepted because it lasts. No allocation; one thread.

@@ -18,7 +18,7 @@ struct SensorDoubts {
 };
 
 /// Tells wrong signals from noise: place, heading and speed describe the same motion, each innovation and
-/// their sum over up to 10 s (docs/safety_watch.md, eq. 9 to 11). The limits follow the noise that was
+/// their sum over up to 10 s (docs/guard.md, eq. 9 to 11). The limits follow the noise that was
 /// seen before. They hold for a car that was measured calmly for kCalmTime; a car that slides or spins is
 /// not, and nothing is doubted by them there. A doubt ends when the signal has agreed for kAgreeing with
 /// where the car must be; never because it lasts. No allocation; one thread.

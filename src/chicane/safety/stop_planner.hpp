@@ -22,7 +22,7 @@ struct StopMotion {
   double load_across = 0.0;
 };
 
-/// The car that a stop is simulated with (docs/safety_derivation.md, eq. 3a). Nobody corrects what it has
+/// The car that a stop is simulated with (docs/guard.md, eq. 3a). Nobody corrects what it has
 /// wrong when the stop is played blindly, so it is closer to a car than PredictionModel: four wheels with
 /// their own loads, which follow the body's accelerations with a lag, and the yaw moment of forces that
 /// differ from left to right; second order in the step. Slower than kSlowest, and for cars whose tyres do not
@@ -134,7 +134,7 @@ struct DoubtCheck {
 };
 
 /// Simulates stops along a line: path-following steering and as much braking as the curve leaves, in the
-/// model of the car, until it stands (docs/safety_derivation.md, eq. 1–5). Bounded time, tens of µs for a
+/// model of the car, until it stands (docs/guard.md, eq. 1–5). Bounded time, tens of µs for a
 /// stop from 45 m/s; no allocation; one thread.
 class StopPlanner {
  public:

@@ -2,7 +2,7 @@ import { fixed } from '../lib/format';
 import { mod } from '../lib/math';
 import { type LapSamples, UNKNOWN_MOMENT } from './lap_samples';
 
-// A race of two settings, as GET /rival.json gives it (docs/viewer_laps.md): A is the run's own car, B the rival.
+// A race of two settings, as GET /rival.json gives it (docs/viewer.md): A is the run's own car, B the rival.
 
 const SAME_S = 0.005;
 

@@ -2,7 +2,7 @@ import { mix } from '../lib/math';
 import type { Course } from './comparison';
 import type { LapChannel } from './lap_samples';
 
-// Two futures of a run from one moment on, as GET /what_if.json gives them (docs/viewer_laps.md).
+// Two futures of a run from one moment on, as GET /what_if.json gives them (docs/viewer.md).
 
 export const TRACE_COLUMNS = [
   'time_s',

@@ -11,7 +11,7 @@
 
 namespace chicane::identify {
 
-/// A car on four wheels as it is fitted (docs/identification_method.md, eq. 3, 4): the forces of the
+/// A car on four wheels as it is fitted (docs/identification.md, eq. 3, 4): the forces of the
 /// controllers' model, with what that model leaves out and a log near the limit shows. Tyres build up force
 /// over a way, load moves with a lag, angles are not small. Plain arithmetic, no allocation.
 ///

@@ -38,7 +38,7 @@ struct WindowFit {
   int iterations = 0;
 };
 
-/// Multiple shooting (docs/identification_method.md, eq. 6–12): the numbers and the starts of all windows
+/// Multiple shooting (docs/identification.md, eq. 6–12): the numbers and the starts of all windows
 /// that explain the samples best, by Levenberg and Marquardt with the starts eliminated window by window.
 /// Huber's loss. Windows keep their fitted starts. Ends where a step is below `accuracy` of the prior's
 /// deviations.
