@@ -142,8 +142,7 @@ Result<recording::BranchReport> ServedFutures::branch(const recording::BranchOpt
   recording::StandIn stand_in{.plant = scenario.plant};
   std::size_t before = known->at;
   while (before > 1 && seen[known->at].time - seen[before].time < kCompared) --before;
-  recording::ShadowRun check({.on_step = [&](const run::ClosedLoop& loop) {
-    const telemetry::Frame& frame = loop.frame();
+  recording::ShadowRun check({.on_frame = [&](const telemetry::Frame& frame) {
     const Vec2 driven = place_at(seen, frame.time);
     stand_in.apart = std::max(stand_in.apart, hypot(frame.truth.x - driven.x(), frame.truth.y - driven.y()));
   }});

@@ -36,23 +36,31 @@ bool is_same(const telemetry::Frame& frame, const protocol::Step& step) noexcept
 Result<void> ShadowRun::begin(const scenario::Scenario& scenario) {
   auto loop = run::ClosedLoop::create(scenario, make_);
   if (!loop) return fail(loop.error());
-  loop_ = std::move(*loop);
+  take(std::move(*loop));
   loop_->drive_on();
   return {};
 }
 
 void ShadowRun::begin(std::unique_ptr<run::ClosedLoop> loop) {
-  loop_ = std::move(loop);
+  take(std::move(loop));
   time_ = loop_->frame().time;
   next_cycle_ = loop_->cycle();
 }
 
 bool ShadowRun::begin(const ShadowRun& other) {
-  loop_ = other.loop_->copy();
+  std::unique_ptr<run::ClosedLoop> copy = other.loop_->copy();
+  if (copy == nullptr) return false;
+  take(std::move(copy));
   time_ = other.time_;
   next_cycle_ = other.next_cycle_;
   first_difference_ = other.first_difference_;
-  return loop_ != nullptr;
+  return true;
+}
+
+void ShadowRun::take(std::unique_ptr<run::ClosedLoop> loop) {
+  steps_.reset();
+  loop_ = std::move(loop);
+  steps_.emplace(*loop_, hooks_);
 }
 
 Result<void> ShadowRun::follow(const RecordedEvent& event) {
@@ -69,7 +77,7 @@ Result<void> ShadowRun::take(const RecordedStep& recorded) {
   if (step.begins && loop_->cycle() > 0) loop_->restart();
   finish_cycle();
   loop_->advance({.delay = step.measurement.delay, .deadline_spent_at = step.deadline_spent_at});
-  tell_lap();
+  steps_->tell_lap();
   time_ = recorded.log_time;
   next_cycle_ = step.cycle + 1;
   if (!first_difference_ && !is_same(loop_->frame(), step)) first_difference_ = step.cycle;
@@ -87,25 +95,8 @@ void ShadowRun::apply(const run::Setting& setting) {
   loop_->apply(setting);
 }
 
-void ShadowRun::finish_cycle() {
-  while (!loop_->is_control_due()) {
-    loop_->advance();
-    tell_lap();
-  }
-}
-
 void ShadowRun::drive(const std::function<bool()>& is_enough) {
-  while (!loop_->is_over() && !is_enough()) {
-    const bool is_new = loop_->advance();
-    tell_lap();
-    if (!is_new) continue;
-    planner_.advance(*loop_);
-    if (observers_.on_step) observers_.on_step(*loop_);
-  }
-}
-
-void ShadowRun::tell_lap() {
-  if (const auto lap = loop_->take_lap(); lap && observers_.on_lap) observers_.on_lap(*lap);
+  while (!loop_->is_over() && !is_enough()) steps_->advance();
 }
 
 namespace {
@@ -238,8 +229,9 @@ class Branching {
         hooks_{hooks},
         is_branch_{is_branch},
         report_{report},
-        car_{{.on_step = [this](const run::ClosedLoop& loop) { step(loop); },
-              .on_lap = [this](const telemetry::CompletedLap& lap) { add(lap); }},
+        car_{{.on_frame = [this](const telemetry::Frame&) { step(car_.loop()); },
+              .on_lap = [this](const telemetry::CompletedLap& lap) { add(lap); },
+              .on_change = [this](const telemetry::Change& change) { tell(change); }},
              make} {}
 
   Result<Future> drive(const RunEvents& events) {

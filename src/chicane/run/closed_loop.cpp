@@ -11,13 +11,6 @@
 #include "chicane/run/racing.hpp"
 
 namespace chicane::run {
-namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-}  // namespace
 
 ClosedLoop::ClosedLoop(const scenario::Scenario& scenario, const Roads::Prepared& road,
                        std::unique_ptr<sim::Plant> plant, std::unique_ptr<controller::Controller> controller)
@@ -244,24 +237,6 @@ telemetry::RunSummary ClosedLoop::summary() const {
   telemetry::RunSummary run = account_.summary(world_.time());
   const bool is_full_size = scenario_.vehicle.scale == 1.0;  // else the plan has times of full size
   if (lap_ && is_full_size) run.planned_corner_times = lap_->corner_times();
-  return run;
-}
-
-telemetry::RunSummary run_closed_loop(ClosedLoop& loop, const RunHooks& hooks,
-                                      const std::function<bool()>& stop) {
-  const auto start = std::chrono::steady_clock::now();
-  LapPlanner planner(LapPlanner::Clock::kVirtual);
-  while (!loop.is_over()) {
-    const bool is_new = loop.advance();
-    if (const auto lap = loop.take_lap(); lap && hooks.on_lap) hooks.on_lap(*lap);
-    if (!is_new) continue;
-    if (hooks.on_frame) hooks.on_frame(loop.frame());
-    const std::optional<telemetry::Change> planned = planner.advance(loop);
-    if (planned && hooks.on_change) hooks.on_change(*planned);
-    if (stop && stop()) break;
-  }
-  telemetry::RunSummary run = loop.summary();
-  run.wall_time = seconds_since(start);
   return run;
 }
 

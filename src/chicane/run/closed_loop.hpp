@@ -44,7 +44,7 @@ struct Interceptor {
 };
 
 /// One experiment: controller against plant, in virtual time. The same object is run flat out
-/// (run_closed_loop) and paced by the clock (realtime_loop.hpp); given the same scenario it does the same,
+/// (run_closed_loop) and paced by the clock (run_realtime); given the same scenario it does the same,
 /// bit for bit, as long as no deadline is spent.
 ///
 /// Time advances by physics steps. Every control period the plant is measured, the controller asked, its
