@@ -152,10 +152,10 @@ TEST(ShadowRun, DrivesByItselfAndTakesChangesAndFaultsAgain) {
 // A recording of the future would not be computed the same again without it.
 TEST(ShadowRun, TellsOfALapThatIsPlannedMeanwhile) {
   std::vector<telemetry::Change> changes;
-  run::Factories make;
-  make.controller = [](const scenario::Scenario&) { return std::make_unique<WantsLap>(); };
-  ShadowRun shadow({.on_change = [&](const telemetry::Change& change) { changes.push_back(change); }}, make);
-  ASSERT_TRUE(shadow.begin(oval()));
+  ShadowRun shadow({.on_change = [&](const telemetry::Change& change) { changes.push_back(change); }});
+  shadow.begin(run::ClosedLoop::create(oval(), [](const scenario::Scenario&) {
+                 return std::make_unique<WantsLap>();
+               }).value());
   shadow.drive([&] { return shadow.loop().time() > run::LapPlanner::kPlanningTime + 1.0; });
   ASSERT_EQ(changes.size(), 1U);
   EXPECT_EQ(changes[0].name.view(), run::LapPlanner::kChange);

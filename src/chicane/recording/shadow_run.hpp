@@ -12,7 +12,6 @@
 #include "chicane/base/result.hpp"
 #include "chicane/recording/replay.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/make.hpp"
 #include "chicane/run/run_steps.hpp"
 #include "chicane/run/setting.hpp"
 #include "chicane/telemetry/frame.hpp"
@@ -28,8 +27,7 @@ using RunEvents = std::function<Result<void>(const std::function<Result<void>(co
 class ShadowRun {
  public:
   /// `hooks`: on_frame and on_change hear of drive(), on_lap of all laps.
-  explicit ShadowRun(run::RunHooks hooks = {}, run::Factories make = {})
-      : hooks_{std::move(hooks)}, make_{std::move(make)} {}
+  explicit ShadowRun(run::RunHooks hooks = {}) : hooks_{std::move(hooks)} {}
 
   /// Begins from a scenario, without an end after its laps. Fails as ClosedLoop::create() does.
   [[nodiscard]] Result<void> begin(const scenario::Scenario& scenario);
@@ -68,7 +66,6 @@ class ShadowRun {
   void take(std::unique_ptr<run::ClosedLoop> loop);
 
   run::RunHooks hooks_;
-  run::Factories make_;
   std::unique_ptr<run::ClosedLoop> loop_;
   std::optional<run::RunSteps> steps_;  ///< of loop_
   double time_ = 0.0;
@@ -149,15 +146,14 @@ struct BranchHooks {
   std::function<bool(double time)> go_on{};
 };
 
-/// Computes a recorded run of `drive` again from its start, controller and plant, and drives on from
-/// `options.at` with other settings, in virtual time. Fails with kInvalidArgument when the moment is not in
-/// the recording, a setting is unknown, out of range or cannot change in a run that goes on, when
+/// Computes a recorded run of `drive` again from its start, controller and plant, and drives a copy of it on
+/// from `options.at` with other settings, in virtual time. Fails with kInvalidArgument when the moment is not
+/// in the recording, a setting is unknown, out of range or cannot change in a run that goes on, when
 /// BranchHooks::go_on gives up, or when the recording is not of our simulator.
-[[nodiscard]] Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks,
-                                                    const run::Factories& make = {});
-/// The same of a run that is not a file, whose events are visited once for each future; `options.log` is not
-/// used. Without `options.from` they are the events of the whole run.
+[[nodiscard]] Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks);
+/// The same of a run that is not a file, whose events are visited once; `options.log` is not used. Without
+/// `options.from` they are the events of the whole run.
 [[nodiscard]] Result<BranchReport> branch_run(const RunEvents& events, const BranchOptions& options,
-                                              const BranchHooks& hooks, const run::Factories& make = {});
+                                              const BranchHooks& hooks);
 
 }  // namespace chicane::recording
