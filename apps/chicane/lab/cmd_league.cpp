@@ -27,7 +27,6 @@
 #include "chicane/sweep/sweep.hpp"
 #include "chicane/sweep/trial.hpp"
 #include "chicane/telemetry/metrics.hpp"
-#include "chicane/wire/server_process.hpp"
 #include "chicane/wire/simulate.hpp"
 #include "commands.hpp"
 #include "lab/many_runs.hpp"

@@ -111,9 +111,7 @@ Result<ServedFutures::Known> ServedFutures::known_at(double time) {
 /// Begins `car` as a run of ours that has seen what this one saw up to `to`, and goes on from there.
 Result<void> ServedFutures::follow(recording::ShadowRun& car, scenario::Scenario scenario,
                                    const std::vector<Seen>& seen, std::size_t to) {
-  scenario.laps = 0;
-  scenario.time_limit = 0.0;
-  scenario.faults.clear();
+  scenario = run::endless(std::move(scenario));
   scenario.control_period = usual_period(seen, to, scenario.control_period);
   scenario.latency = seen[to].delay;
   auto loop = run::ClosedLoop::create(scenario, roads_);

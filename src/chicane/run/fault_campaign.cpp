@@ -28,14 +28,6 @@ constexpr double kTimeToGetGoing = 5;  // [s] for a car that the fault has stopp
 constexpr double kRounding = 1e-9;     // [s] sums of step lengths round
 constexpr double kLongestLaps = 1800;  // [s] for the two laps without a fault; longer ones are not waited for
 
-scenario::Scenario endless(const scenario::Scenario& scenario) {
-  scenario::Scenario other = scenario;
-  other.laps = 0;
-  other.time_limit = 0.0;
-  other.faults.clear();
-  return other;
-}
-
 /// When a trial's faults begin, clock of the run, in whole milliseconds: short in `--fault NAME@at`.
 double onset_of(const FlyingLap& lap, const FaultTrial& trial) {
   return std::round(1e3 * (lap.begins + trial.onset)) / 1e3;
