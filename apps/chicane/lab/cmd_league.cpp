@@ -23,7 +23,6 @@
 #include "chicane/recording/html_report.hpp"
 #include "chicane/run/parallel.hpp"
 #include "chicane/sweep/league.hpp"
-#include "chicane/sweep/league_page.hpp"
 #include "chicane/sweep/sweep.hpp"
 #include "chicane/sweep/trial.hpp"
 #include "chicane/telemetry/metrics.hpp"
