@@ -18,7 +18,7 @@
 #include "chicane/run/laps_without.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/plan_cache.hpp"
-#include "chicane/run/realtime_loop.hpp"
+#include "chicane/run/run_steps.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "program.hpp"

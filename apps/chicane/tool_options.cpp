@@ -6,7 +6,7 @@
 
 #include "chicane/base/text.hpp"
 #include "chicane/run/fault_campaign.hpp"
-#include "chicane/run/shard.hpp"
+#include "chicane/run/parallel.hpp"
 #include "commands.hpp"
 
 namespace chicane::apps {

@@ -15,7 +15,7 @@
 #include "chicane/live/live_settings.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/realtime_loop.hpp"
+#include "chicane/run/run_steps.hpp"
 #include "support/alloc_guard.hpp"
 
 namespace chicane::run {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/protocol/remembered_files.hpp"
+#include "chicane/protocol/library.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -61,6 +61,21 @@ RunEvents told(const std::vector<RecordedEvent>& events, std::size_t from) {
   };
 }
 
+/// Stands, and wants a lap to race by.
+class WantsLap final : public controller::Controller {
+ public:
+  [[nodiscard]] const controller::StepResult& step(const model::Measurement& /*now*/,
+                                                   Deadline /*deadline*/) noexcept override {
+    return result_;
+  }
+  [[nodiscard]] controller::LapRequest wants_lap() const noexcept override { return {.is_wanted = true}; }
+  void reset() noexcept override {}
+  [[nodiscard]] std::string_view name() const noexcept override { return "wants-lap"; }
+
+ private:
+  controller::StepResult result_;
+};
+
 /// All that a branch comes to, number by number.
 std::vector<double> numbers(const std::vector<RecordedEvent>& events, std::size_t from,
                             const BranchOptions& options, std::uint64_t* steps_before = nullptr) {
@@ -120,7 +135,7 @@ TEST(ShadowRun, ComesOutTheSameToTheLastBitAndTellsItsLaps) {
 
 TEST(ShadowRun, DrivesByItselfAndTakesChangesAndFaultsAgain) {
   int steps = 0;
-  ShadowRun run({.on_step = [&](const run::ClosedLoop&) { ++steps; }});
+  ShadowRun run({.on_frame = [&](const telemetry::Frame&) { ++steps; }});
   ASSERT_TRUE(run.begin(oval()));
   run.drive([&] { return run.loop().time() >= 4.0 - 1e-9; });
   EXPECT_EQ(steps, 100);
@@ -132,6 +147,18 @@ TEST(ShadowRun, DrivesByItselfAndTakesChangesAndFaultsAgain) {
   EXPECT_FALSE(apply("fault.half_grip", "false"));
   EXPECT_TRUE(apply("fault.half_grip", "+2*0.9"));
   EXPECT_FALSE(apply("fault.half_grip", "false"));
+}
+
+// A recording of the future would not be computed the same again without it.
+TEST(ShadowRun, TellsOfALapThatIsPlannedMeanwhile) {
+  std::vector<telemetry::Change> changes;
+  ShadowRun shadow({.on_change = [&](const telemetry::Change& change) { changes.push_back(change); }});
+  shadow.begin(run::ClosedLoop::create(oval(), [](const scenario::Scenario&) {
+                 return std::make_unique<WantsLap>();
+               }).value());
+  shadow.drive([&] { return shadow.loop().time() > run::LapPlanner::kPlanningTime + 1.0; });
+  ASSERT_EQ(changes.size(), 1U);
+  EXPECT_EQ(changes[0].name.view(), run::LapPlanner::kChange);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
-#include "chicane/run/realtime_loop.hpp"
+#include "chicane/run/run_steps.hpp"
 #include "chicane/sim/plant_registry.hpp"
 
 namespace chicane::run {

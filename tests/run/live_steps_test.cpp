@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/run/realtime_loop.hpp"
+#include "chicane/run/run_steps.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/run/shard.hpp"
+#include "chicane/run/parallel.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/sweep/league_page.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/sweep/summary_page.hpp"
+#include "chicane/sweep/result_table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

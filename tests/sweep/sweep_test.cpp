@@ -18,7 +18,6 @@
 #include "chicane/sweep/plan_codec.hpp"
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/result_table.hpp"
-#include "chicane/sweep/summary_page.hpp"
 #include "chicane/sweep/trial.hpp"
 #include "chicane/version.hpp"
 

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "chicane/telemetry/detail/zstd.hpp"
 #include "sample_mcap.hpp"
 
 namespace chicane::telemetry {

@@ -16,7 +16,6 @@
 #include "chicane/recording/replay.hpp"
 #include "chicane/recording/video_encoder.hpp"
 #include "chicane/sweep/result_table.hpp"
-#include "chicane/sweep/summary_page.hpp"
 #include "commands.hpp"
 #include "lab/foreign_log.hpp"
 #include "lab/many_runs.hpp"

@@ -144,7 +144,8 @@ class SlipReserve {
     const double deviation =
         std::sqrt(car.errors().slide_variance(model.vehicle().rear_axle)) / (now.vx * peak);
     seen_ = std::min(seen_ + elapsed, kMemory);
-    kept_ += std::min(elapsed / seen_, 1.0) * (kPerSecond * late * deviation - kept_);
+    kept_ += std::min(elapsed / seen_, 1.0) *
+             (kPerSecond * late * std::min(now.vx / kFast, 1.0) * deviation - kept_);
   }
   /// The share of the tyres' slip to plan a lap with where there is one with `planned`.
   [[nodiscard]] double for_plan(double planned) const noexcept {

@@ -19,7 +19,7 @@
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/realtime_loop.hpp"
+#include "chicane/run/run_steps.hpp"
 #include "chicane/telemetry/metrics.hpp"
 #include "chicane/wire/endpoint.hpp"
 #include "chicane/wire/viewer.hpp"

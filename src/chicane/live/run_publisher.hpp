@@ -12,7 +12,7 @@
 #include "chicane/live/run_log.hpp"
 #include "chicane/protocol/schema_json.hpp"
 #include "chicane/recording/recorder.hpp"
-#include "chicane/run/realtime_loop.hpp"
+#include "chicane/run/run_steps.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
 #include "chicane/wire/viewer.hpp"

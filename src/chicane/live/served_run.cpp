@@ -111,9 +111,7 @@ Result<ServedFutures::Known> ServedFutures::known_at(double time) {
 /// Begins `car` as a run of ours that has seen what this one saw up to `to`, and goes on from there.
 Result<void> ServedFutures::follow(recording::ShadowRun& car, scenario::Scenario scenario,
                                    const std::vector<Seen>& seen, std::size_t to) {
-  scenario.laps = 0;
-  scenario.time_limit = 0.0;
-  scenario.faults.clear();
+  scenario = run::endless(std::move(scenario));
   scenario.control_period = usual_period(seen, to, scenario.control_period);
   scenario.latency = seen[to].delay;
   auto loop = run::ClosedLoop::create(scenario, roads_);
@@ -142,8 +140,7 @@ Result<recording::BranchReport> ServedFutures::branch(const recording::BranchOpt
   recording::StandIn stand_in{.plant = scenario.plant};
   std::size_t before = known->at;
   while (before > 1 && seen[known->at].time - seen[before].time < kCompared) --before;
-  recording::ShadowRun check({.on_step = [&](const run::ClosedLoop& loop) {
-    const telemetry::Frame& frame = loop.frame();
+  recording::ShadowRun check({.on_frame = [&](const telemetry::Frame& frame) {
     const Vec2 driven = place_at(seen, frame.time);
     stand_in.apart = std::max(stand_in.apart, hypot(frame.truth.x - driven.x(), frame.truth.y - driven.y()));
   }});

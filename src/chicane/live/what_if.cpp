@@ -309,8 +309,8 @@ void Rival::work() {
 }
 
 void Rival::build(const Request& request) {
-  car_.emplace(recording::ShadowObservers{
-      .on_step = [this](const run::ClosedLoop& loop) { note(loop); },
+  car_.emplace(run::RunHooks{
+      .on_frame = [this](const telemetry::Frame&) { note(car_->loop()); },
       .on_lap = [this](const telemetry::CompletedLap& lap) { keep(laps_, own_laps_.finish(lap)); }});
   const bool is_wanted = !request.settings.empty();
   const Result<void> built = is_wanted ? car_->begin(request.scenario) : Result<void>{};

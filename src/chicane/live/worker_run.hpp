@@ -16,7 +16,7 @@
 #include "chicane/live/run_publisher.hpp"
 #include "chicane/net/server.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/realtime_loop.hpp"
+#include "chicane/run/run_steps.hpp"
 #include "chicane/telemetry/metrics.hpp"
 #include "chicane/wire/viewer.hpp"
 

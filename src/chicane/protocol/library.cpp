@@ -15,7 +15,6 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
-#include "chicane/protocol/remembered_files.hpp"
 #include "chicane/protocol/schema_json.hpp"
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
@@ -447,6 +446,17 @@ Result<scenario::Scenario> compose(const Request& request, RememberedFiles& file
     return fail(noted.error());
   note_friction(scenario);
   return scenario;
+}
+
+Result<Document> RememberedFiles::document(Shelf shelf, const std::string& name,
+                                           const std::function<Result<Document>()>& read) {
+  const auto known = documents_.find({shelf, name});
+  if (known != documents_.end()) return known->second;
+  Result<Document> document = read();
+  if (!document) return document;
+  if (documents_.size() == kMost) documents_.clear();
+  documents_[{shelf, name}] = *document;
+  return document;
 }
 
 }  // namespace chicane::protocol

@@ -34,25 +34,33 @@ bool is_same(const telemetry::Frame& frame, const protocol::Step& step) noexcept
 }  // namespace
 
 Result<void> ShadowRun::begin(const scenario::Scenario& scenario) {
-  auto loop = run::ClosedLoop::create(scenario, make_);
+  auto loop = run::ClosedLoop::create(scenario);
   if (!loop) return fail(loop.error());
-  loop_ = std::move(*loop);
+  take(std::move(*loop));
   loop_->drive_on();
   return {};
 }
 
 void ShadowRun::begin(std::unique_ptr<run::ClosedLoop> loop) {
-  loop_ = std::move(loop);
+  take(std::move(loop));
   time_ = loop_->frame().time;
   next_cycle_ = loop_->cycle();
 }
 
 bool ShadowRun::begin(const ShadowRun& other) {
-  loop_ = other.loop_->copy();
+  std::unique_ptr<run::ClosedLoop> copy = other.loop_->copy();
+  if (copy == nullptr) return false;
+  take(std::move(copy));
   time_ = other.time_;
   next_cycle_ = other.next_cycle_;
   first_difference_ = other.first_difference_;
-  return loop_ != nullptr;
+  return true;
+}
+
+void ShadowRun::take(std::unique_ptr<run::ClosedLoop> loop) {
+  steps_.reset();
+  loop_ = std::move(loop);
+  steps_.emplace(*loop_, hooks_);
 }
 
 Result<void> ShadowRun::follow(const RecordedEvent& event) {
@@ -69,7 +77,7 @@ Result<void> ShadowRun::take(const RecordedStep& recorded) {
   if (step.begins && loop_->cycle() > 0) loop_->restart();
   finish_cycle();
   loop_->advance({.delay = step.measurement.delay, .deadline_spent_at = step.deadline_spent_at});
-  tell_lap();
+  steps_->tell_lap();
   time_ = recorded.log_time;
   next_cycle_ = step.cycle + 1;
   if (!first_difference_ && !is_same(loop_->frame(), step)) first_difference_ = step.cycle;
@@ -87,25 +95,8 @@ void ShadowRun::apply(const run::Setting& setting) {
   loop_->apply(setting);
 }
 
-void ShadowRun::finish_cycle() {
-  while (!loop_->is_control_due()) {
-    loop_->advance();
-    tell_lap();
-  }
-}
-
 void ShadowRun::drive(const std::function<bool()>& is_enough) {
-  while (!loop_->is_over() && !is_enough()) {
-    const bool is_new = loop_->advance();
-    tell_lap();
-    if (!is_new) continue;
-    planner_.advance(*loop_);
-    if (observers_.on_step) observers_.on_step(*loop_);
-  }
-}
-
-void ShadowRun::tell_lap() {
-  if (const auto lap = loop_->take_lap(); lap && observers_.on_lap) observers_.on_lap(*lap);
+  while (!loop_->is_over() && !is_enough()) steps_->advance();
 }
 
 namespace {
@@ -228,24 +219,16 @@ Result<run::Setting> read_live(const telemetry::Change& change) {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
-/// One of the two futures: the recorded run computed again, then the shadow run by itself. The first one is
-/// the recorded run for as long as there is one; the second one leaves it at the branch, with the settings.
+/// The recorded run computed again up to the branch, and two futures from there on: the run itself, which is
+/// the recorded one for as long as there is one, and a copy of it with the settings.
 class Branching {
  public:
-  Branching(const BranchOptions& options, const BranchHooks& hooks, const run::Factories& make,
-            bool is_branch, BranchReport& report)
-      : options_{options},
-        hooks_{hooks},
-        is_branch_{is_branch},
-        report_{report},
-        car_{{.on_step = [this](const run::ClosedLoop& loop) { step(loop); },
-              .on_lap = [this](const telemetry::CompletedLap& lap) { add(lap); }},
-             make} {}
+  Branching(const BranchOptions& options, const BranchHooks& hooks)
+      : options_{options}, hooks_{hooks}, was_{*this, false}, is_{*this, true} {}
 
-  Result<Future> drive(const RunEvents& events) {
-    if (options_.from && !car_.begin(*options_.from))
-      return fail(ErrorCode::kInvalidArgument, "this controller cannot be copied");
-    last_log_time_ = car_.time();
+  Result<BranchReport> drive(const RunEvents& events) {
+    if (options_.from && !was_.car.begin(*options_.from)) return cannot_copy();
+    last_log_time_ = was_.car.time();
     const Result<void> read = events([this](const RecordedEvent& event) {
       return std::visit([&](const auto& one) { return take(one, event); }, event);
     });
@@ -259,26 +242,47 @@ class Branching {
                               options_.at, last_log_time_));
     }
     report_.known_until = last_log_time_;
-    car_.finish_cycle();  // a recording ends with the last control step, a run may have gone on to a line
-    if (is_branch_ || (options_.drives_both && !is_over_)) drive_on();
+    was_.car.finish_cycle();  // a recording ends with the last control step, a run may have gone on to a line
+    if (options_.drives_both && !is_over_) drive_on(was_);
+    drive_on(is_);
     if (has_given_up_) return fail(ErrorCode::kInvalidArgument, "given up");
-    return meter_.future();
+    report_.first_difference = was_.car.first_difference();
+    report_.recorded = was_.meter.future();
+    report_.branched = is_.meter.future();
+    return report_;
   }
 
-  /// ShadowRun::first_difference() of all that was recorded, for the first future.
-  [[nodiscard]] std::optional<std::uint64_t> first_difference() const { return car_.first_difference(); }
-
  private:
+  /// One of the futures.
+  struct Side {
+    Side(Branching& of, bool is_second)
+        : is_branch{is_second},
+          car{{.on_frame = [&of, this](const telemetry::Frame&) { of.step(*this); },
+               .on_lap = [&of, this](const telemetry::CompletedLap& lap) { of.add(*this, lap); },
+               .on_change =
+                   [&of, this](const telemetry::Change& change) {
+                     if (is_branch) of.tell(change);
+                   }}} {}
+
+    bool is_branch;
+    ShadowRun car;
+    FutureMeter meter;
+  };
+
+  static tl::unexpected<Error> cannot_copy() {
+    return fail(ErrorCode::kInvalidArgument, "this controller cannot be copied");
+  }
+
   Result<void> take(const scenario::Scenario& /*scenario*/, const RecordedEvent& event) {
     if (is_left_behind(has_branched_)) return {};
-    Result<void> begun = car_.follow(event);
-    return begun && is_branch_ && hooks_.on_begin ? hooks_.on_begin(car_.loop()) : begun;
+    Result<void> begun = was_.car.follow(event);
+    return begun && !has_branched_ && hooks_.on_begin ? hooks_.on_begin(was_.car.loop()) : begun;
   }
 
   Result<void> take(const telemetry::Change& change, const RecordedEvent& event) {
     if (is_left_behind(false)) return {};
-    tell(change);
-    return car_.follow(event);
+    if (!has_branched_) tell(change);
+    return was_.car.follow(event);
   }
 
   Result<void> take(const RecordedStep& recorded, const RecordedEvent& event) {
@@ -291,38 +295,38 @@ class Branching {
     const bool is_seen = has_branched_ && is_within(recorded.log_time);
     // Of two futures that are compared, what follows is not needed, nor another run.
     if (is_left_behind(has_branched_ && !is_start && (!is_seen || recorded.step.begins))) return {};
-    if (Result<void> followed = car_.follow(event); !followed) return followed;
-    if (is_seen) add(car_.loop());
-    if (has_branched_ || !is_branch_) return {};
+    if (Result<void> followed = was_.car.follow(event); !followed) return followed;
+    if (is_seen) add(was_);
+    if (has_branched_) return {};
     ++report_.steps_before;
-    if (hooks_.on_frame) hooks_.on_frame(car_.loop().frame());
+    if (hooks_.on_frame) hooks_.on_frame(was_.car.loop().frame());
     return {};
   }
 
   /// From now on: what comes next is not known yet.
   Result<void> branch_at_end() {
-    if (!car_.has_begun() || car_.next_cycle() == 0)
+    if (!was_.car.has_begun() || was_.car.next_cycle() == 0)
       return fail(ErrorCode::kInvalidArgument, "the run has not begun: there is nothing to go on from");
     RecordedStep next;
-    next.step.cycle = car_.next_cycle();
-    car_.finish_cycle();
-    next.log_time = last_log_time_ + (car_.loop().time() - car_.loop().frame().time);
+    next.step.cycle = was_.car.next_cycle();
+    was_.car.finish_cycle();
+    next.log_time = last_log_time_ + (was_.car.loop().time() - was_.car.loop().frame().time);
     return branch(next);
   }
 
   Result<void> branch(const RecordedStep& recorded) {
-    car_.finish_cycle();
+    was_.car.finish_cycle();
     has_branched_ = true;
     report_.at = recorded.log_time;
     report_.cycle = recorded.step.cycle;
-    run::ClosedLoop& loop = car_.loop();
+    run::ClosedLoop& loop = was_.car.loop();
     if (recorded.step.begins && loop.cycle() > 0) loop.restart();
     start_ = loop.time();
-    return is_branch_ ? change() : Result<void>{};
+    return is_.car.begin(was_.car) ? change() : cannot_copy();
   }
 
   Result<void> change() {
-    const run::ClosedLoop& loop = car_.loop();
+    const run::ClosedLoop& loop = is_.car.loop();
     scenario::Scenario changed = loop.scenario();
     for (const auto& [key, text] : options_.settings) {
       if (!decltype(telemetry::Change::value)::fits(text))
@@ -334,7 +338,7 @@ class Branching {
       const Result<run::Setting> setting = read_live(change);
       if (!setting) return fail(setting.error());
       if (const auto* field = std::get_if<run::FieldValue>(&setting->action)) run::write(changed, *field);
-      car_.apply(*setting);
+      is_.car.apply(*setting);
       tell(change);
     }
     for (const protocol::Contradiction& found : protocol::contradictions(changed))
@@ -343,56 +347,54 @@ class Branching {
   }
 
   /// By itself, from where it has come to.
-  void drive_on() {
-    const run::ClosedLoop& loop = car_.loop();
+  void drive_on(Side& side) {
+    const run::ClosedLoop& loop = side.car.loop();
     const double rest = last_log_time_ - report_.at;
     const bool has_laps_only = options_.laps + options_.more_laps > 0 && options_.duration == 0.0;
     const double duration = options_.duration > 0.0 ? options_.duration : has_laps_only ? kForever : rest;
     const auto driven = [&] { return loop.time() - start_; };
-    car_.drive([&] {
-      if (has_given_up_ || has_all_laps() || driven() > kLongest) return true;
+    side.car.drive([&] {
+      if (has_given_up_ || has_all_laps(side) || driven() > kLongest) return true;
       if (options_.laps > 0 && (loop.world().lap >= options_.laps || loop.world().is_finished)) return true;
       return loop.is_control_due() && driven() > duration + 1e-6;
     });
-    if (!is_branch_) return;
+    if (!side.is_branch) return;
     if (loop.is_over()) report_.end_reason = "the car left the road and did not come back";
     if (driven() > kLongest) report_.end_reason = "the laps were not driven within an hour";
   }
 
-  void step(const run::ClosedLoop& loop) {
-    add(loop);
+  void step(Side& side) {
+    add(side);
+    const run::ClosedLoop& loop = side.car.loop();
     has_given_up_ = !may_go_on(report_.at + loop.time() - start_);
-    if (is_branch_ && hooks_.on_frame) hooks_.on_frame(loop.frame());
+    if (side.is_branch && hooks_.on_frame) hooks_.on_frame(loop.frame());
   }
 
   /// A control step behind the branch.
-  void add(const run::ClosedLoop& loop) {
-    const double distance = meter_.add(loop.frame(), loop.track());
+  void add(Side& side) {
+    const run::ClosedLoop& loop = side.car.loop();
+    const double distance = side.meter.add(loop.frame(), loop.track());
     if (hooks_.on_future)
-      hooks_.on_future({.frame = loop.frame(), .distance = distance, .is_branch = is_branch_});
+      hooks_.on_future({.frame = loop.frame(), .distance = distance, .is_branch = side.is_branch});
   }
 
-  void add(const telemetry::CompletedLap& lap) {
-    if (has_branched_ && (is_branch_ || is_within(last_log_time_))) meter_.add(lap);
-    if (is_branch_ && hooks_.on_lap) hooks_.on_lap(lap);
+  void add(Side& side, const telemetry::CompletedLap& lap) {
+    if (side.is_branch || (has_branched_ && is_within(last_log_time_))) side.meter.add(lap);
+    if ((side.is_branch || !has_branched_) && hooks_.on_lap) hooks_.on_lap(lap);
   }
   void tell(const telemetry::Change& change) {
-    if (is_branch_ && hooks_.on_change) hooks_.on_change(change);
+    if (hooks_.on_change) hooks_.on_change(change);
   }
 
-  /// Nothing more of what was recorded is computed: the second future has branched, or, of two that are
-  /// driven, the first `ends`.
-  bool is_left_behind(bool ends) {
-    is_over_ = is_over_ || (ends && options_.drives_both);
-    return is_branch_ ? has_branched_ : is_over_;
-  }
+  /// Nothing more of what was recorded is computed: of two futures that are driven, the first `ends`.
+  bool is_left_behind(bool ends) { return is_over_ = is_over_ || (ends && options_.drives_both); }
   [[nodiscard]] bool may_go_on(double time) const { return !hooks_.go_on || hooks_.go_on(time); }
-  [[nodiscard]] bool has_all_laps() const {
-    return options_.more_laps > 0 && meter_.crossings() >= options_.more_laps;
+  [[nodiscard]] bool has_all_laps(const Side& side) const {
+    return options_.more_laps > 0 && side.meter.crossings() >= options_.more_laps;
   }
   /// Of what was recorded: as long as the second future is asked to be.
   [[nodiscard]] bool is_within(double log_time) const {
-    if (has_all_laps()) return false;
+    if (has_all_laps(was_)) return false;
     return log_time - report_.at <= (options_.duration > 0.0 ? options_.duration : kForever) + 1e-9;
   }
 
@@ -400,10 +402,8 @@ class Branching {
 
   const BranchOptions& options_;
   const BranchHooks& hooks_;
-  bool is_branch_;
-  BranchReport& report_;
-  ShadowRun car_;
-  FutureMeter meter_;
+  BranchReport report_;
+  Side was_, is_;
   bool has_branched_ = false;
   bool is_over_ = false;  ///< the first future: what was recorded ends it
   bool has_given_up_ = false;
@@ -414,22 +414,11 @@ class Branching {
 }  // namespace
 
 Result<BranchReport> branch_run(const RunEvents& events, const BranchOptions& options,
-                                const BranchHooks& hooks, const run::Factories& make) {
-  BranchReport report;
-  Branching second(options, hooks, make, true, report);
-  auto branched = second.drive(events);
-  if (!branched) return fail(branched.error());
-  Branching first(options, hooks, make, false, report);
-  auto recorded = first.drive(events);
-  if (!recorded) return fail(recorded.error());
-  report.first_difference = first.first_difference();
-  report.recorded = std::move(*recorded);
-  report.branched = std::move(*branched);
-  return report;
+                                const BranchHooks& hooks) {
+  return Branching(options, hooks).drive(events);
 }
 
-Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks,
-                                      const run::Factories& make) {
+Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks) {
   RecordingHead head;
   const RunEvents events = [&](const auto& visit) -> Result<void> {
     const auto read = read_recording(options.log, head, [&](const RecordedEvent& event) -> Result<void> {
@@ -443,7 +432,7 @@ Result<BranchReport> branch_recording(const BranchOptions& options, const Branch
     });
     return read ? Result<void>{} : fail(read.error());
   };
-  return branch_run(events, options, hooks, make);
+  return branch_run(events, options, hooks);
 }
 
 }  // namespace chicane::recording

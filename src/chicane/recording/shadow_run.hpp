@@ -12,8 +12,7 @@
 #include "chicane/base/result.hpp"
 #include "chicane/recording/replay.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/make.hpp"
-#include "chicane/run/racing.hpp"
+#include "chicane/run/run_steps.hpp"
 #include "chicane/run/setting.hpp"
 #include "chicane/telemetry/frame.hpp"
 
@@ -22,19 +21,13 @@ namespace chicane::recording {
 /// Visits all events of a run in order; a failure of the visitor ends them.
 using RunEvents = std::function<Result<void>(const std::function<Result<void>(const RecordedEvent&)>& visit)>;
 
-/// Observers of a shadow run; empty functions are not called.
-struct ShadowObservers {
-  std::function<void(const run::ClosedLoop&)> on_step{};  ///< after each control step of drive()
-  std::function<void(const telemetry::CompletedLap&)> on_lap{};
-};
-
 /// A run of our simulator in the shadow of another run: begun from a scenario, a loop or a copy of a shadow
 /// run, computed event by event with follow(), changed with apply(), and driven in virtual time with drive().
 /// One thread.
 class ShadowRun {
  public:
-  explicit ShadowRun(ShadowObservers observers = {}, run::Factories make = {})
-      : observers_{std::move(observers)}, make_{std::move(make)} {}
+  /// `hooks`: on_frame and on_change hear of drive(), on_lap of all laps.
+  explicit ShadowRun(run::RunHooks hooks = {}) : hooks_{std::move(hooks)} {}
 
   /// Begins from a scenario, without an end after its laps. Fails as ClosedLoop::create() does.
   [[nodiscard]] Result<void> begin(const scenario::Scenario& scenario);
@@ -59,9 +52,9 @@ class ShadowRun {
   /// step, did so here, too: that change is ignored.
   void apply(const run::Setting& setting);
   /// Physics up to the next control step.
-  void finish_cycle();
+  void finish_cycle() { steps_->finish_cycle(); }
   /// Drives until `is_enough`, asked before each physics step, or until the car is lost. Plans the laps that
-  /// the controller wants (LapPlanner, virtual clock).
+  /// the controller wants, in virtual time (RunSteps).
   void drive(const std::function<bool()>& is_enough);
 
   [[nodiscard]] run::ClosedLoop& loop() const { return *loop_; }
@@ -70,12 +63,11 @@ class ShadowRun {
   [[nodiscard]] Result<void> take(const scenario::Scenario& scenario) { return begin(scenario); }
   [[nodiscard]] Result<void> take(const telemetry::Change& change);
   [[nodiscard]] Result<void> take(const RecordedStep& recorded);
-  void tell_lap();
+  void take(std::unique_ptr<run::ClosedLoop> loop);
 
-  ShadowObservers observers_;
-  run::Factories make_;
+  run::RunHooks hooks_;
   std::unique_ptr<run::ClosedLoop> loop_;
-  run::LapPlanner planner_{run::LapPlanner::Clock::kVirtual};
+  std::optional<run::RunSteps> steps_;  ///< of loop_
   double time_ = 0.0;
   std::uint64_t next_cycle_ = 0;
   std::optional<std::uint64_t> first_difference_;
@@ -154,15 +146,14 @@ struct BranchHooks {
   std::function<bool(double time)> go_on{};
 };
 
-/// Computes a recorded run of `drive` again from its start, controller and plant, and drives on from
-/// `options.at` with other settings, in virtual time. Fails with kInvalidArgument when the moment is not in
-/// the recording, a setting is unknown, out of range or cannot change in a run that goes on, when
+/// Computes a recorded run of `drive` again from its start, controller and plant, and drives a copy of it on
+/// from `options.at` with other settings, in virtual time. Fails with kInvalidArgument when the moment is not
+/// in the recording, a setting is unknown, out of range or cannot change in a run that goes on, when
 /// BranchHooks::go_on gives up, or when the recording is not of our simulator.
-[[nodiscard]] Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks,
-                                                    const run::Factories& make = {});
-/// The same of a run that is not a file, whose events are visited once for each future; `options.log` is not
-/// used. Without `options.from` they are the events of the whole run.
+[[nodiscard]] Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks);
+/// The same of a run that is not a file, whose events are visited once; `options.log` is not used. Without
+/// `options.from` they are the events of the whole run.
 [[nodiscard]] Result<BranchReport> branch_run(const RunEvents& events, const BranchOptions& options,
-                                              const BranchHooks& hooks, const run::Factories& make = {});
+                                              const BranchHooks& hooks);
 
 }  // namespace chicane::recording

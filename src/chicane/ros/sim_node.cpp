@@ -18,13 +18,8 @@
 #include "chicane/ros/car_topics.hpp"
 #include "chicane/ros/dds.hpp"
 #include "chicane/ros/nodes.hpp"
-#include "chicane/run/account.hpp"
-#include "chicane/run/make.hpp"
-#include "chicane/run/observe.hpp"
-#include "chicane/safety/stop_player.hpp"
+#include "chicane/run/simulated_car.hpp"
 #include "chicane/sim/range_scanner.hpp"
-#include "chicane/sim/sensor.hpp"
-#include "chicane/sim/world.hpp"
 #include "chicane/wire/endpoint.hpp"
 
 namespace chicane::ros {
@@ -46,8 +41,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kCatchUp = 1.0 / 3.0;           // physics skips time it cannot catch up [s]
-constexpr double kStanding = 0.1;                // of a car in full size [m/s]
 constexpr double kScanPeriod = 0.025;            // of the Hokuyo UST-10LX [s]
 constexpr double kTickPeriod = 0.005;            // of /clock [s]
 constexpr double kScannerAhead = 0.275 / 0.307;  // of the rear axle, in wheelbases: as f1tenth_gym_ros has it
@@ -57,15 +50,6 @@ constexpr double kRangeMin = 0.02;               // [m]
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 Clock::duration duration(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-}
-
-run::AccountTerms terms(const scenario::Scenario& scenario, const road::Track& track) {
-  run::AccountTerms terms = run::terms_of(scenario, &track);
-  terms.controller = terms.preset = "external";
-  terms.guard.reset();
-  terms.remedy = telemetry::kControllerRemedy;
-  terms.step_deadline = std::numeric_limits<double>::infinity();  // there is none
-  return terms;
 }
 
 std::vector<WantedPartner> partners_of_simulator(const NodeOptions& node) {
@@ -140,45 +124,23 @@ class Walls {
   std::variant<sim::RangeScanner, sim::MapScanner> scanner_;
 };
 
-/// The parts of the simulated world that are made once.
-struct Parts {
-  road::Track track;
-  std::unique_ptr<sim::Plant> plant;
-  Walls walls;
-
-  static Result<Parts> create(const scenario::Scenario& scenario, const std::string& map_file) {
-    auto track = run::make_track(scenario);
-    if (!track) return fail(track.error());
-    auto plant = run::make_plant(scenario);
-    if (!plant) return fail(plant.error());
-    auto walls = Walls::create(*track, scenario.vehicle.scale, map_file);
-    if (!walls) return fail(walls.error());
-    return Parts{std::move(*track), std::move(*plant), std::move(*walls)};
-  }
-};
-
 class SimNode {
  public:
   SimNode(const NodeOptions& node, const scenario::Scenario& scenario, const wire::SimulateHooks& hooks,
-          std::unique_ptr<Participant> participant, SimTopics topics, Parts& parts)
+          std::unique_ptr<Participant> participant, SimTopics topics, const Walls& walls,
+          run::SimulatedCar& car)
       : node_{node},
         scenario_{scenario},
         hooks_{hooks},
         participant_{std::move(participant)},
         topics_{std::move(topics)},
         log_{hooks.log},
-        walls_{parts.walls},
-        plant_{*parts.plant},
-        world_{plant_, parts.track},
-        sensor_{scenario.sensor, scenario.seed},
-        receiver_{scenario.vehicle, scenario.control_period, scenario.guard.receiver},
-        account_{terms(scenario, parts.track)},
+        walls_{walls},
+        car_{car},
+        stop_news_{scenario, [this](std::string_view line) { log_.say(line); }},
         partners_{partners_of_simulator(node), node.network},
         scanner_ahead_{kScannerAhead * scenario.vehicle.wheelbase()},
-        pace_{node.pace > 0.0 ? node.pace : 1.0},
-        standing_{kStanding * std::sqrt(scenario.vehicle.scale)} {
-    world_.place(parts.track.start_s(), parts.track.start_d());
-    in_flight_.reset({});
+        pace_{node.pace > 0.0 ? node.pace : 1.0} {
     ranges_.resize(static_cast<std::size_t>(walls_.options().beams));
   }
 
@@ -186,13 +148,13 @@ class SimNode {
     started_ = began_ = Clock::now();
     if (topics_.clock) next_tick_ = 0.0;
     send_scanner_place();
-    const model::State& car = plant_.state();
+    const model::State& car = car_.plant->state();
     if (walls_.is_wall({car.x, car.y})) {
       log_.say(fmt::format(
           "{}: got a wall at ({:.2f}, {:.2f}), where the car stands, expected a map of this track",
           node_.map_file, car.x, car.y));
     }
-    while (!stop && !account_.is_over()) {
+    while (!stop && !car_.account.is_over()) {
       participant_->wait(std::chrono::nanoseconds(std::max<Clock::duration>(
           std::chrono::microseconds{50}, began_ + duration(next_moment() / pace_) - Clock::now())));
       const Clock::time_point now = Clock::now();
@@ -202,7 +164,7 @@ class SimNode {
       sense(now);
       look_at_partners(now);
     }
-    report_.run = account_.summary(world_.time());
+    report_.run = car_.account.summary(car_.world.time());
     report_.run.wall_time = seconds(Clock::now() - started_);
     return report_;
   }
@@ -255,12 +217,12 @@ class SimNode {
   /// A command waits for its moment as what was wanted: the pedal follows from the speed then.
   void accept(const protocol::DriveMessage& message) {
     ++report_.answers;
-    const double time = std::max(world_.time(), 0.0);
+    const double time = car_.world.time();
     const double act =
         std::max(time + scenario_.latency + sim::random_delay(scenario_.seed, time, scenario_.latency_jitter),
-                 in_flight_.last_time());
-    in_flight_.push(act, {.steer = message.steer,
-                          .throttle = node_.drive.is_by_speed ? message.speed : message.acceleration});
+                 car_.in_flight.last_time());
+    car_.in_flight.push(act, {.steer = message.steer,
+                              .throttle = node_.drive.is_by_speed ? message.speed : message.acceleration});
     safety::StopPlan stop;
     for (const protocol::StopMessage& each : stops_) {
       if (each.stop.size == 0 || each.stamp != message.stamp) continue;
@@ -268,7 +230,7 @@ class SimNode {
       const double asked = 1e-9 * static_cast<double>(each.stamp - epoch_);
       for (int i = 0; i < stop.size; ++i) stop.points[static_cast<std::size_t>(i)].time += asked;
     }
-    receiver_.arrived(act, stop);
+    car_.receiver.arrived(act, stop);
     arrived_ = time;
     frame_.result.command.steer = message.steer;
     frame_.step_time = time - 1e-9 * static_cast<double>(message.stamp - epoch_);
@@ -283,9 +245,9 @@ class SimNode {
       const model::Pose& base = message->pose;
       const model::Pose centre{base.x + b * chicane::cos(base.psi), base.y + b * chicane::sin(base.psi),
                                base.psi};
-      world_.put(centre);
-      plant_.reset(centre, 0.0);
-      account_.resume();
+      car_.world.put(centre);
+      car_.plant->reset(centre, 0.0);
+      car_.account.resume();
       log_.say(fmt::format("{}: the car is at ({:.2f}, {:.2f})", node_.topics.initial_pose, base.x, base.y));
     }
   }
@@ -293,51 +255,29 @@ class SimNode {
   // ---- Physics ----
 
   void move(Clock::time_point now) {
-    const double step = plant_.step_length();
-    const double until = elapsed(now);
-    const double forgotten = std::max(0.0, until - world_.time() - kCatchUp);
+    const double speed = car_.speed();
+    const double forgotten = car_.catch_up(elapsed(now), [this] { return act(); });
     began_ += duration(forgotten / pace_);
     epoch_ += static_cast<std::int64_t>(std::llround(1e9 * forgotten));
-    const double speed = plant_.output().speed;
-    while (world_.time() + step <= until - forgotten && !account_.is_over()) {
-      world_.advance(act());
-      account_.add_physics(world_, false);
-    }
-    tell_stops(speed);
-    if (const auto lap = account_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
+    const double silence = car_.world.time() - arrived_;
+    const bool is_timed_out =
+        car_.receiver.is_stopping() && silence > safety::StopPlayer::kPatience + scenario_.latency;
+    const auto why = [&] { return fmt::format("nothing on {} for {:.1f} s", node_.topics.drive, silence); };
+    if (stop_news_.look(car_, is_timed_out, speed, why)) ++report_.stops;
+    if (const auto lap = car_.account.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
   }
 
   model::Command act() {
-    const double time = world_.time() + 1e-9;
-    const double speed = plant_.output().speed;
-    model::Command command = in_flight_.at(time);
-    command.throttle = throttle_of(scenario_.vehicle, command.throttle, speed, node_.drive);
-    applied_ = receiver_.guard(command, world_.time(), speed);
+    model::Command command = car_.in_flight.at(car_.world.time() + 1e-9);
+    command.throttle = throttle_of(scenario_.vehicle, command.throttle, car_.speed(), node_.drive);
+    applied_ = car_.receiver.guard(command, car_.world.time(), car_.speed());
     return applied_;
-  }
-
-  void tell_stops(double speed) {
-    const bool is_timed_out = receiver_.is_stopping() &&
-                              world_.time() - arrived_ > safety::StopPlayer::kPatience + scenario_.latency;
-    if (is_timed_out && !is_timed_out_ && speed > standing_) {
-      ++report_.stops;
-      log_.say(fmt::format("no command in time: the car is stopped from {:.1f} m/s", speed));
-      is_standing_reported_ = false;
-    }
-    if (!is_timed_out && is_timed_out_)
-      log_.say(fmt::format("commands again at {:.1f} m/s", plant_.output().speed));
-    is_timed_out_ = is_timed_out;
-    if (!is_timed_out || is_standing_reported_ || plant_.output().speed >= standing_) return;
-    is_standing_reported_ = true;
-    const double edge = world_.state().edge_distance;
-    log_.say(fmt::format("the car stands, its outermost wheel {:.2f} m {} the road's edge", std::fabs(edge),
-                         edge < 0.0 ? "beyond" : "inside"));
   }
 
   // ---- Out ----
 
   void sense(Clock::time_point now) {
-    const double time = report_.connections > 0 ? world_.time() : elapsed(now);
+    const double time = report_.connections > 0 ? car_.world.time() : elapsed(now);
     if (topics_.clock && time + 1e-9 >= next_tick_) {
       next_tick_ = std::max(next_tick_ + kTickPeriod, time);
       static_cast<void>(topics_.clock->write(protocol::encode(protocol::ClockMessage{stamp(time)})));
@@ -352,8 +292,8 @@ class SimNode {
   }
 
   void send_odometry(double time) {
-    const model::Measurement seen = sensor_.sample(time, plant_);
-    const model::State& state = plant_.state();
+    const model::Measurement seen = car_.sense(0);
+    const model::State& state = car_.plant->state();
     const double b = node_.is_base_at_rear_axle ? scenario_.vehicle.rear_axle : 0.0;
     const model::Pose base{seen.x - b * chicane::cos(seen.psi), seen.y - b * chicane::sin(seen.psi),
                            seen.psi};
@@ -363,35 +303,28 @@ class SimNode {
                                                      .frame = node_.frames.map,
                                                      .child_frame = node_.frames.base,
                                                      .pose = base,
-                                                     .vx = state.vx + seen.speed - plant_.output().speed,
+                                                     .vx = state.vx + seen.speed - car_.speed(),
                                                      .vy = state.vy - b * state.r,
                                                      .yaw_rate = state.r})));
     }
     static_cast<void>(topics_.transform->write(protocol::encode(
         protocol::TransformsMessage{{{stamp(time), node_.frames.map, node_.frames.base, base}}})));
     if (topics_.imu && topics_.imu->matched() > 0) {
-      static_cast<void>(topics_.imu->write(protocol::encode(protocol::ImuMessage{.stamp = stamp(time),
-                                                                                 .frame = node_.frames.base,
-                                                                                 .yaw_rate = state.r,
-                                                                                 .ax = plant_.output().ax,
-                                                                                 .ay = plant_.output().ay})));
+      static_cast<void>(
+          topics_.imu->write(protocol::encode(protocol::ImuMessage{.stamp = stamp(time),
+                                                                   .frame = node_.frames.base,
+                                                                   .yaw_rate = state.r,
+                                                                   .ax = car_.plant->output().ax,
+                                                                   .ay = car_.plant->output().ay})));
     }
     if (report_.connections > 0) record(seen);
   }
 
   /// What the world knows, with the last command as the answer.
   void record(const model::Measurement& seen) {
-    run::observe(world_, frame_);
-    frame_.completed_lap = account_.completed_lap();
-    frame_.time = seen.time;
-    frame_.measurement = seen;
-    frame_.applied = applied_;
-    ++frame_.cycle;
+    car_.write(seen, applied_, frame_);
     frame_.result.command.throttle = applied_.throttle;
-    frame_.asked = frame_.result.command;
-    frame_.result.report.solve.status =
-        solver::SolveStatus::kOptimal;  // of an external solver nothing is known
-    account_.add(frame_);
+    car_.count(frame_);
     if (hooks_.on_frame) hooks_.on_frame(frame_);
   }
 
@@ -407,7 +340,7 @@ class SimNode {
   }
 
   void send_scan(double time) {
-    const model::State& car = plant_.state();
+    const model::State& car = car_.plant->state();
     const double ahead = scanner_ahead_ - scenario_.vehicle.rear_axle;
     walls_.scan({car.x + ahead * chicane::cos(car.psi), car.y + ahead * chicane::sin(car.psi), car.psi},
                 ranges_);
@@ -438,19 +371,14 @@ class SimNode {
   SimTopics topics_;
   wire::SparseLog log_;
   const Walls& walls_;
-  sim::Plant& plant_;
-  sim::World world_;
-  sim::Sensor sensor_;
-  sim::ActuationDelay in_flight_;  ///< steering, and in the pedal's place what was wanted
-  safety::StopPlayer receiver_;
-  run::Account account_;
+  run::SimulatedCar& car_;  ///< with what was wanted in the place of the pedal among commands on their way
+  run::StopNews stop_news_;
   PartnerWatch partners_;
   wire::SimulateReport report_;
   telemetry::Frame frame_;
 
   const double scanner_ahead_;  ///< of the rear axle [m]
   const double pace_;           ///< seconds simulated in a second of the clock
-  const double standing_;       ///< [m/s]
   std::vector<float> ranges_;
   std::array<protocol::StopMessage, 8> stops_{};  ///< the last ones, a ring
   std::size_t stop_count_ = 0;
@@ -463,21 +391,21 @@ class SimNode {
   double next_tick_ = std::numeric_limits<double>::infinity();  ///< of /clock [s]
   double arrived_ = 0.0;                                        ///< the last command [s]
   model::Command applied_;
-  bool is_timed_out_ = false;
-  bool is_standing_reported_ = true;  ///< nothing more to say about the stop
 };
 
 }  // namespace
 
 Result<wire::SimulateReport> simulate(const NodeOptions& node, const scenario::Scenario& scenario,
                                       const wire::SimulateHooks& hooks, const std::atomic<bool>& stop) {
-  auto parts = Parts::create(scenario, node.map_file);
-  if (!parts) return fail(parts.error());
+  const auto car = run::SimulatedCar::create(scenario, scenario.latency);
+  if (!car) return fail(car.error());
+  const auto walls = Walls::create((*car)->track, scenario.vehicle.scale, node.map_file);
+  if (!walls) return fail(walls.error());
   auto participant = Participant::create(node.network);
   if (!participant) return fail(participant.error());
   auto topics = SimTopics::create(**participant, node);
   if (!topics) return fail(topics.error());
-  return SimNode(node, scenario, hooks, std::move(*participant), std::move(*topics), *parts).run(stop);
+  return SimNode(node, scenario, hooks, std::move(*participant), std::move(*topics), *walls, **car).run(stop);
 }
 
 }  // namespace chicane::ros

@@ -11,26 +11,13 @@
 #include "chicane/run/racing.hpp"
 
 namespace chicane::run {
-namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-}  // namespace
 
 ClosedLoop::ClosedLoop(const scenario::Scenario& scenario, const Roads::Prepared& road,
                        std::unique_ptr<sim::Plant> plant, std::unique_ptr<controller::Controller> controller)
     : scenario_{scenario},
-      track_{road.track},
-      waypoints_{road.waypoints},
-      plant_{std::move(plant)},
+      car_{scenario, road.track, road.waypoints, std::move(plant), terms_of(scenario, &road.track)},
       cycle_{std::move(controller), scenario, road.known},
-      world_{*plant_, track_},
-      sensor_{scenario.sensor, scenario.seed},
-      faults_{scenario.faults, scenario.seed},
-      receiver_{scenario.vehicle, scenario.control_period, scenario.guard.receiver},
-      account_{terms_of(scenario, &track_)} {
+      faults_{scenario.faults, scenario.seed} {
   use_line(road.lap);
   restart();
 }
@@ -69,21 +56,15 @@ std::unique_ptr<ClosedLoop> ClosedLoop::copy() const {
   const bool is_copyable = dynamic_cast<const controller::Copyable*>(&controller()) != nullptr;
   if (!is_copyable) return nullptr;
   std::unique_ptr<ClosedLoop> other(new ClosedLoop(*this));
-  if (!other->plant_) return nullptr;
-  other->world_.stand_on(*other->plant_, other->track_);
-  return other;
+  return other->car_.plant ? std::move(other) : nullptr;
 }
 
 void ClosedLoop::restart() {
-  world_.place(track_.start_s(), track_.start_d());
+  car_.restart(scenario_);
   cycle_.begin();
-  in_flight_.reset({});
   configured_act_time_ = -std::numeric_limits<double>::infinity();
   manual_.restart();
   faults_.reset();
-  receiver_.reset();
-  sensor_ = sim::Sensor(scenario_.sensor, scenario_.seed);
-  account_.restart();
   frame_ = {};
   seen_.reset();
   next_control_ = 0.0;
@@ -92,12 +73,12 @@ void ClosedLoop::restart() {
 
 void ClosedLoop::restart_at(const model::State& start) {
   restart();
-  world_.reset(start);
+  car_.world.reset(start);
 }
 
 void ClosedLoop::drive_on() {
-  const bool is_lost = account_.is_lost();
-  account_.drive_on();
+  const bool is_lost = car_.account.is_lost();
+  car_.account.drive_on();
   if (is_lost) restart();
 }
 
@@ -117,20 +98,19 @@ bool ClosedLoop::advance(const GivenStep& given) noexcept {
 
 void ClosedLoop::follow(double time, const model::State& car, double delay,
                         const model::Command& sent) noexcept {
-  world_.see(time, car);
+  car_.world.see(time, car);
   seen_.reset();
   next_control_ = time;
   const GivenStep given{.delay = delay};
   control(0.0, &given, &sent);
-  account_.add_physics(world_, true);
+  car_.account.add_physics(car_.world, true);
 }
 
 /// One physics step.
 void ClosedLoop::move() noexcept {
   watch_faults();
-  world_.advance(acting());
-  account_.add_physics(world_, manual_.is_on());
-  frame_.completed_lap = account_.completed_lap();
+  car_.advance(acting(), manual_.is_on());
+  frame_.completed_lap = car_.account.completed_lap();
 }
 
 void ClosedLoop::apply(const telemetry::Change& change) {
@@ -145,10 +125,10 @@ void ClosedLoop::take(const FieldValue& field) noexcept {
   if (!protocol::is_live(*field.row)) return;
   write(scenario_, field);
   cycle_.configure(scenario_);
-  account_.set_terms(scenario_.laps, scenario_.time_limit, scenario_.latency);
-  sensor_.configure(scenario_.sensor);
-  plant_->deviate({.friction_scale = scenario_.plant_options.friction_scale,
-                   .mass_scale = scenario_.plant_options.mass_scale});
+  car_.account.set_terms(scenario_.laps, scenario_.time_limit, scenario_.latency);
+  car_.sensor.configure(scenario_.sensor);
+  car_.plant->deviate({.friction_scale = scenario_.plant_options.friction_scale,
+                       .mass_scale = scenario_.plant_options.mass_scale});
 }
 
 void ClosedLoop::take(const FaultSwitch& fault) noexcept {
@@ -164,7 +144,7 @@ void ClosedLoop::take(LearnedLap learned) noexcept {
   request.grip = learned.grip;
   request.slides = learned.slides;
   request.slip = learned.slip;
-  const auto lap = plan_wanted_lap(scenario_, &track_, request);
+  const auto lap = plan_wanted_lap(scenario_, &car_.track, request);
   if (lap) use_line(*lap);
 }
 
@@ -177,23 +157,21 @@ bool ClosedLoop::set_fault(std::string_view name, bool on) noexcept {
 /// Begins and ends faults; the plant feels them from this step on.
 void ClosedLoop::watch_faults() noexcept {
   faults_.update(time());
-  plant_->disturb({.grip = faults_.grip(), .side_acceleration = faults_.side_acceleration()});
+  car_.plant->disturb({.grip = faults_.grip(), .side_acceleration = faults_.side_acceleration()});
 }
 
 /// What the actuators do now: the command that has arrived; when none has for long, the car brakes by itself.
 model::Command ClosedLoop::acting() noexcept {
   const double late = faults_.extra_delay(scenario_.latency);
-  const model::Command& arrived = in_flight_.at(time() + 1e-9 - late);
-  model::Command command = faults_.done(receiver_.guard(arrived, time() - late, plant_->output().speed));
+  const model::Command& arrived = car_.in_flight.at(time() + 1e-9 - late);
+  model::Command command = faults_.done(car_.receiver.guard(arrived, time() - late, car_.speed()));
   if (interceptor_.actuated) interceptor_.actuated(time(), command);
   return command;
 }
 
 /// The controller's measurement now.
 model::Measurement ClosedLoop::measure() noexcept {
-  model::Measurement now = sensor_.sample(time(), *plant_);
-  sim::select_waypoints(waypoints_, {now.x, now.y, now.psi}, scenario_.waypoints_sent, now);
-  now = faults_.seen(now);
+  model::Measurement now = faults_.seen(car_.sense(scenario_.waypoints_sent));
   if (interceptor_.measured) interceptor_.measured(now);
   // Commands act in the order they are sent: behind a latency that has just been shortened they still wait.
   now.delay = std::max(scenario_.latency + step_time_, configured_act_time_ - now.time);
@@ -222,7 +200,7 @@ void ClosedLoop::control(double budget, const GivenStep* given, const model::Com
   }
   if (manual_.is_on()) input.manual = manual_.command(frame_.measurement, scenario_.vehicle);
   if (sent != nullptr) input.manual = *sent;
-  observe(world_, frame_);
+  observe(car_.world, frame_);
   frame_.pace = pace_;
   frame_.applied = acting();
   frame_.active_faults = faults_.bits();
@@ -234,36 +212,25 @@ void ClosedLoop::control(double budget, const GivenStep* given, const model::Com
     configured_act_time_ = frame_.measurement.time + frame_.measurement.delay;
     const double act_time =
         configured_act_time_ + sim::random_delay(scenario_.seed, time(), scenario_.latency_jitter);
-    in_flight_.push(act_time, frame_.result.command);
-    receiver_.arrived(act_time, cycle_.stop());
+    car_.in_flight.push(act_time, frame_.result.command);
+    car_.receiver.arrived(act_time, cycle_.stop());
   }
-  account_.add(frame_);
+  car_.account.add(frame_);
   next_control_ += scenario_.control_period;
 }
 
 telemetry::RunSummary ClosedLoop::summary() const {
-  telemetry::RunSummary run = account_.summary(world_.time());
+  telemetry::RunSummary run = car_.account.summary(time());
   const bool is_full_size = scenario_.vehicle.scale == 1.0;  // else the plan has times of full size
   if (lap_ && is_full_size) run.planned_corner_times = lap_->corner_times();
   return run;
 }
 
-telemetry::RunSummary run_closed_loop(ClosedLoop& loop, const RunHooks& hooks,
-                                      const std::function<bool()>& stop) {
-  const auto start = std::chrono::steady_clock::now();
-  LapPlanner planner(LapPlanner::Clock::kVirtual);
-  while (!loop.is_over()) {
-    const bool is_new = loop.advance();
-    if (const auto lap = loop.take_lap(); lap && hooks.on_lap) hooks.on_lap(*lap);
-    if (!is_new) continue;
-    if (hooks.on_frame) hooks.on_frame(loop.frame());
-    const std::optional<telemetry::Change> planned = planner.advance(loop);
-    if (planned && hooks.on_change) hooks.on_change(*planned);
-    if (stop && stop()) break;
-  }
-  telemetry::RunSummary run = loop.summary();
-  run.wall_time = seconds_since(start);
-  return run;
+scenario::Scenario endless(scenario::Scenario scenario) {
+  scenario.laps = 0;
+  scenario.time_limit = 0.0;
+  scenario.faults.clear();
+  return scenario;
 }
 
 }  // namespace chicane::run

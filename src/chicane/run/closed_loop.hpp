@@ -8,22 +8,17 @@
 #include <utility>
 #include <variant>
 
-#include "chicane/base/owned.hpp"
 #include "chicane/base/result.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/road/track.hpp"
-#include "chicane/run/account.hpp"
 #include "chicane/run/control_cycle.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/manual_drive.hpp"
 #include "chicane/run/roads.hpp"
 #include "chicane/run/setting.hpp"
-#include "chicane/safety/stop_player.hpp"
+#include "chicane/run/simulated_car.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/sim/fault.hpp"
-#include "chicane/sim/plant.hpp"
-#include "chicane/sim/sensor.hpp"
-#include "chicane/sim/world.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
@@ -44,7 +39,7 @@ struct Interceptor {
 };
 
 /// One experiment: controller against plant, in virtual time. The same object is run flat out
-/// (run_closed_loop) and paced by the clock (realtime_loop.hpp); given the same scenario it does the same,
+/// (run_closed_loop) and paced by the clock (run_realtime); given the same scenario it does the same,
 /// bit for bit, as long as no deadline is spent.
 ///
 /// Time advances by physics steps. Every control period the plant is measured, the controller asked, its
@@ -100,11 +95,11 @@ class ClosedLoop {
   void intercept(Interceptor interceptor) { interceptor_ = std::move(interceptor); }
   /// Stands the car at `pose`, as a simulator's reset does: controller and guard are not informed. Call it
   /// between two advance().
-  void put_car(const model::Pose& pose) noexcept { world_.put(pose); }
+  void put_car(const model::Pose& pose) noexcept { car_.world.put(pose); }
   /// All laps driven, the car lost, or time up (Account).
-  [[nodiscard]] bool is_over() const noexcept { return account_.is_over(); }
+  [[nodiscard]] bool is_over() const noexcept { return car_.account.is_over(); }
   /// A lap that the last advance() completed, once.
-  [[nodiscard]] std::optional<telemetry::CompletedLap> take_lap() noexcept { return account_.take_lap(); }
+  [[nodiscard]] std::optional<telemetry::CompletedLap> take_lap() noexcept { return car_.account.take_lap(); }
   /// More laps than were asked for: is_over() only when the car is lost, which starts it anew. Their laps are
   /// counted and remembered like the others.
   void drive_on();
@@ -122,12 +117,12 @@ class ClosedLoop {
   /// controller or plant cannot be copied (controller/controller.hpp). Allocates some 8 MB.
   [[nodiscard]] std::unique_ptr<ClosedLoop> copy() const;
 
-  [[nodiscard]] double time() const noexcept { return world_.time(); }
+  [[nodiscard]] double time() const noexcept { return car_.world.time(); }
   [[nodiscard]] const telemetry::Frame& frame() const noexcept { return frame_; }
-  [[nodiscard]] const road::Track& track() const noexcept { return track_; }
-  [[nodiscard]] const sim::WorldState& world() const noexcept { return world_.state(); }
+  [[nodiscard]] const road::Track& track() const noexcept { return car_.track; }
+  [[nodiscard]] const sim::WorldState& world() const noexcept { return car_.world.state(); }
   /// The car as it is now, after the last physics step.
-  [[nodiscard]] const model::State& car() const noexcept { return plant_->state(); }
+  [[nodiscard]] const model::State& car() const noexcept { return car_.plant->state(); }
   [[nodiscard]] const scenario::Scenario& scenario() const noexcept { return scenario_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return cycle_.controller(); }
   [[nodiscard]] telemetry::RunSummary summary() const;
@@ -137,7 +132,7 @@ class ClosedLoop {
   [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> build(const scenario::Scenario& scenario,
                                                                  const Roads::Prepared& road,
                                                                  const Factories& make);
-  ClosedLoop(const ClosedLoop& other) = default;  ///< whose world stands on `other`: copy()
+  ClosedLoop(const ClosedLoop& other) = default;
   ClosedLoop(const scenario::Scenario& scenario, const Roads::Prepared& road,
              std::unique_ptr<sim::Plant> plant, std::unique_ptr<controller::Controller> controller);
   void control(double budget, const GivenStep* given, const model::Command* sent = nullptr) noexcept;
@@ -154,19 +149,12 @@ class ClosedLoop {
   void move() noexcept;
 
   scenario::Scenario scenario_;
-  road::Track track_;
-  road::Track waypoints_;
-  Owned<sim::Plant> plant_;
+  SimulatedCar car_;
   ControlCycle cycle_;
-  sim::World world_;
-  sim::Sensor sensor_;
-  sim::ActuationDelay in_flight_;
   ManualDrive manual_;
   double pace_ = 1.0;
   sim::FaultLab faults_;
   Interceptor interceptor_;
-  safety::StopPlayer receiver_;
-  Account account_;
   std::shared_ptr<const road::RacingRoad> lap_;  ///< that is raced by; null: none is planned
   telemetry::Frame frame_;
   std::optional<model::Measurement> seen_;  ///< by look(), of the step that is due
@@ -175,6 +163,9 @@ class ClosedLoop {
   /// When the last command acts by the configured latency [s].
   double configured_act_time_ = -std::numeric_limits<double>::infinity();
 };
+
+/// The scenario without an end and without its faults.
+[[nodiscard]] scenario::Scenario endless(scenario::Scenario scenario);
 
 /// Called during a run on the thread that runs it; must not block. Empty functions are not called.
 struct RunHooks {

@@ -18,7 +18,7 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/racing.hpp"
+#include "chicane/run/run_steps.hpp"
 
 namespace chicane::run {
 namespace {
@@ -28,40 +28,19 @@ constexpr double kTimeToGetGoing = 5;  // [s] for a car that the fault has stopp
 constexpr double kRounding = 1e-9;     // [s] sums of step lengths round
 constexpr double kLongestLaps = 1800;  // [s] for the two laps without a fault; longer ones are not waited for
 
-scenario::Scenario endless(const scenario::Scenario& scenario) {
-  scenario::Scenario other = scenario;
-  other.laps = 0;
-  other.time_limit = 0.0;
-  other.faults.clear();
-  return other;
-}
-
-/// A run as `drive --fast` drives it: with the planned laps that its controller wants.
-struct Driven {
-  ClosedLoop& loop;
-  LapPlanner planner{LapPlanner::Clock::kVirtual};
-
-  /// One physics step; true when there was a control step.
-  bool advance() {
-    const bool is_new = loop.advance();
-    if (is_new) static_cast<void>(planner.advance(loop));
-    return is_new;
-  }
-};
-
 /// When a trial's faults begin, clock of the run, in whole milliseconds: short in `--fault NAME@at`.
 double onset_of(const FlyingLap& lap, const FaultTrial& trial) {
   return std::round(1e3 * (lap.begins + trial.onset)) / 1e3;
 }
 
 /// Drives until the next step is the first with a fault in it.
-void drive_up_to(Driven& driven, double at) {
-  while (driven.loop.time() < at - kRounding && !driven.loop.is_over()) driven.advance();
+void drive_up_to(RunSteps& steps, double at) {
+  while (steps.loop().time() < at - kRounding && !steps.loop().is_over()) steps.advance();
 }
 
 /// From there to the trial's end.
-FaultOutcome drive_on(Driven& driven, const FaultTrial& trial, double at) {
-  ClosedLoop& loop = driven.loop;
+FaultOutcome drive_on(RunSteps& steps, const FaultTrial& trial, double at) {
+  ClosedLoop& loop = steps.loop();
   FaultOutcome outcome{.trial = trial, .at = at};
   loop.set_fault({trial.fault, at, trial.duration, trial.strength});
   if (trial.second) loop.set_fault({*trial.second, at, trial.duration, sim::kind_of(*trial.second).strength});
@@ -69,7 +48,7 @@ FaultOutcome drive_on(Driven& driven, const FaultTrial& trial, double at) {
   const double end = at + longest_trial(trial.duration);
   double standing_since = loop.time();
   while (loop.time() < end && !loop.is_over()) {
-    const bool is_new = driven.advance();
+    const bool is_new = steps.advance();
     const double speed = loop.frame().has_truth ? hypot(loop.frame().truth.vx, loop.frame().truth.vy) : 0.0;
     if (speed > FaultOutcome::kStanding) standing_since = loop.time();
     if (loop.time() <= at) continue;
@@ -131,9 +110,10 @@ Result<FlyingLap> drive_undisturbed(const scenario::Scenario& scenario, double w
   auto loop = ClosedLoop::create(endless(scenario), make);
   if (!loop) return fail(loop.error());
   FlyingLap lap;
-  Driven driven{**loop};
+  const RunHooks hooks;
+  RunSteps steps(**loop, hooks);
   const auto advance = [&] {
-    driven.advance();
+    steps.advance();
     if ((*loop)->world().edge_distance >= 0.0) return;
     const double now = (*loop)->time();
     const double before = now - 2.0 * (*loop)->scenario().control_period;
@@ -164,7 +144,8 @@ Result<std::vector<FaultOutcome>> drive_trials(const scenario::Scenario& scenari
                                                const Factories& make) {
   const auto loop = ClosedLoop::create(endless(scenario), make);
   if (!loop) return fail(loop.error());
-  Driven driven{**loop};
+  const RunHooks hooks;
+  RunSteps steps(**loop, hooks);
   const SharedOutcomes found(trials.size());
   if (!found.is_there()) return fail(ErrorCode::kIo, "no memory for the outcomes of the trials");
   std::vector<std::size_t> order(trials.size());
@@ -192,7 +173,7 @@ Result<std::vector<FaultOutcome>> drive_trials(const scenario::Scenario& scenari
     if (static_cast<int>(running.size()) >= std::max(jobs, 1)) finish_oldest();
     if (!goes_on || !trouble.empty()) break;
     const double at = onset_of(lap, trials[i]);
-    drive_up_to(driven, at);
+    drive_up_to(steps, at);
     const pid_t process = fork();
     if (process < 0) {
       trouble = "no process for a trial";
@@ -200,7 +181,7 @@ Result<std::vector<FaultOutcome>> drive_trials(const scenario::Scenario& scenari
     }
     if (process == 0) {
       end_with_parent();
-      found[i].outcome = drive_on(driven, trials[i], at);
+      found[i].outcome = drive_on(steps, trials[i], at);
       found[i].is_there = true;
       _exit(0);  // nothing of the parent's is flushed or torn down
     }

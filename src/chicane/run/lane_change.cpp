@@ -84,10 +84,8 @@ double margin_of(const model::VehicleParams& car) {
 }
 
 /// The scenario as it is driven there: without an end, faults and guard.
-scenario::Scenario on_course(scenario::Scenario scenario) {
-  scenario.laps = 0;
-  scenario.time_limit = 0.0;
-  scenario.faults.clear();
+scenario::Scenario on_course(const scenario::Scenario& driven) {
+  scenario::Scenario scenario = endless(driven);
   scenario.guard.mode = safety::GuardMode::kOff;
   std::get<controller::TrackingMpcEntry::Options>(scenario.controllers).edge_margin =
       margin_of(scenario.vehicle);

@@ -3,7 +3,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
+#include <string_view>
 
+#include "chicane/base/result.hpp"
 #include "chicane/run/roads.hpp"
 
 namespace chicane::run {
@@ -14,5 +17,31 @@ void for_each_run(std::uint64_t count, int jobs, const std::function<bool(std::u
 
 /// Threads for `wanted` jobs; 0: as many as there are processors.
 [[nodiscard]] int threads_for(int wanted);
+
+/// The part of a sweep that one process drives: the runs whose index leaves the remainder `index` when
+/// divided by `count`.
+struct Shard {
+  std::uint64_t index = 0;
+  std::uint64_t count = 1;
+  std::string from{};  ///< where it was read, for people: "--shard"; empty: everything is ours
+
+  [[nodiscard]] bool has(std::uint64_t run) const noexcept { return run % count == index; }
+  /// How many of `runs` are ours.
+  [[nodiscard]] std::uint64_t size(std::uint64_t runs) const noexcept {
+    return runs / count + (runs % count > index ? 1 : 0);
+  }
+  /// "results.3-of-7.jsonl" for "results.jsonl"; the name itself where everything is ours.
+  [[nodiscard]] std::string file_of(const std::string& file) const;
+};
+
+/// "3/7", counted from 1. kInvalidArgument otherwise.
+[[nodiscard]] Result<Shard> parse_shard(std::string_view text);
+
+/// What the launcher of this process says in its environment: the place in a Slurm array
+/// (SLURM_ARRAY_TASK_ID), among the tasks of a Slurm step (SLURM_PROCID) or the ranks of MPI
+/// (OMPI_COMM_WORLD_RANK, PMI_RANK), an array of such steps included. Everything is ours where it says
+/// nothing. `variable` gives a variable's value, or null. kInvalidArgument for numbers that make no sense,
+/// and for arrays with holes.
+[[nodiscard]] Result<Shard> environment_shard(const std::function<const char*(const char*)>& variable);
 
 }  // namespace chicane::run

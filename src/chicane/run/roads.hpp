@@ -7,7 +7,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/model/state.hpp"
-#include "chicane/protocol/remembered_files.hpp"
+#include "chicane/protocol/library.hpp"
 #include "chicane/road/known_road.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/track.hpp"

@@ -65,11 +65,7 @@ std::vector<StartPose> start_poses(const road::Track& track, int count, std::uin
 
 Result<WayBackOutcome> drive_back(const scenario::Scenario& scenario, const StartPose& start, Roads& roads,
                                   const Factories& make) {
-  scenario::Scenario one = scenario;
-  one.laps = 0;
-  one.time_limit = 0.0;
-  one.faults.clear();
-  auto created = ClosedLoop::create(one, roads, make);
+  auto created = ClosedLoop::create(endless(scenario), roads, make);
   if (!created) return fail(created.error());
   ClosedLoop& loop = **created;
   loop.restart_at(start.state);

@@ -15,6 +15,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/fault_campaign.hpp"
 #include "chicane/sweep/plan_codec.hpp"
+#include "chicane/sweep/result_file.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -212,18 +213,13 @@ CampaignTrial trial_in(const Json& json) {
   return trial;
 }
 
-/// A name or a number.
-std::string text_in(const Json& json) {
-  return json.is_string() ? json.get<std::string>() : protocol::json_text(json);
-}
-
 CampaignGroup group_in(const Json& json) {
   const Json& settings = json.at("settings");
-  CampaignGroup group{.track = text_in(settings.at("track")),
-                      .car = text_in(settings.at("car")),
-                      .preset = text_in(settings.at("preset")),
+  CampaignGroup group{.track = plain_text(settings.at("track")),
+                      .car = plain_text(settings.at("car")),
+                      .preset = plain_text(settings.at("preset")),
                       .fault = settings.at("fault"),
-                      .lasts = text_in(settings.at("for_s")),
+                      .lasts = plain_text(settings.at("for_s")),
                       .error = json.value("error", "")};
   for (const Json& trial : json.value("trials", Json::array())) group.trials.push_back(trial_in(trial));
   return group;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/sweep/league_page.hpp"
+#include "chicane/sweep/league.hpp"
 
 #include <fmt/format.h>
 

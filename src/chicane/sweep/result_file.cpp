@@ -52,6 +52,8 @@ OnLine of_runs(const OnLine& on_line) {
   };
 }
 
+}  // namespace
+
 Json json_of(const Settings& settings) {
   Json json = Json::object();
   for (const auto& [key, text] : settings) json[key] = text;
@@ -64,7 +66,9 @@ Settings settings_in(const Json& json) {
   return settings;
 }
 
-}  // namespace
+std::string plain_text(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : protocol::json_text(value);
+}
 
 std::string header_of(const Plan& plan) {
   std::vector<std::string> kept = plan.keep;

@@ -10,7 +10,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/protocol/json.hpp"
-#include "chicane/run/shard.hpp"
+#include "chicane/run/parallel.hpp"
 #include "chicane/sweep/plan.hpp"
 
 /// The file of a sweep: one JSON object in each line, the first about plan and program, each further about
@@ -19,6 +19,12 @@ namespace chicane::sweep {
 
 /// "chicane 0.3.0 (1f0c5e8a9b27)": the version, and a digest of the sources that runs can depend on.
 [[nodiscard]] std::string program_name();
+
+/// Settings as an object of texts, and back. Throws Json::exception for another value.
+[[nodiscard]] protocol::Json json_of(const Settings& settings);
+[[nodiscard]] Settings settings_in(const protocol::Json& json);
+/// A text as it is, all else as JSON.
+[[nodiscard]] std::string plain_text(const protocol::Json& value);
 
 /// The first line, without its line break: what has to agree for results to belong together.
 [[nodiscard]] std::string header_of(const Plan& plan);

@@ -75,10 +75,6 @@ struct ComparedRuns {
   std::map<std::vector<std::string>, std::uint64_t> first_run{};
 };
 
-std::string setting_text(const Json& value) {
-  return value.is_string() ? value.get<std::string>() : protocol::json_text(value);
-}
-
 Result<void> add_results(const std::string& file, const std::string& key, ComparedRuns& found) {
   const auto check = [&](const Header& header) -> Result<void> {
     if (std::find(header.keys.begin(), header.keys.end(), key) != header.keys.end()) return {};
@@ -91,8 +87,8 @@ Result<void> add_results(const std::string& file, const std::string& key, Compar
       std::string value;
       for (const auto& [name, setting] : json.at("settings").items()) {
         if (name != key) keys.push_back(name);
-        if (name != key) common.push_back(setting_text(setting));
-        if (name == key) value = setting_text(setting);
+        if (name != key) common.push_back(plain_text(setting));
+        if (name == key) value = plain_text(setting);
       }
       if (found.keys.empty()) found.keys = keys;
       const auto first = found.first_run.emplace(std::move(common), run).first;
@@ -107,7 +103,7 @@ Result<void> add_results(const std::string& file, const std::string& key, Compar
 }
 
 /// A text as it is, all else as JSON; nothing for null.
-std::string cell_of(const Json& value) { return value.is_null() ? "" : csv_cell(setting_text(value)); }
+std::string cell_of(const Json& value) { return value.is_null() ? "" : csv_cell(plain_text(value)); }
 
 std::string table_head(const ComparedRuns& found, const std::string& key, const std::string& value) {
   std::string text = "|";

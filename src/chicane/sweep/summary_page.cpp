@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/sweep/summary_page.hpp"
 
 #include <fmt/format.h>
 
@@ -155,10 +154,7 @@ class Page {
     Run run;
     run.number = number;
     const json settings = line.is_object() ? line.value("settings", json::object()) : json::object();
-    for (const std::string& key : header_.keys) {
-      const json value = settings.value(key, json());
-      run.values.push_back(value.is_string() ? value.get<std::string>() : protocol::json_text(value));
-    }
+    for (const std::string& key : header_.keys) run.values.push_back(plain_text(settings.value(key, json())));
     for (std::size_t i = 0; i < kShown.size(); ++i) {
       const json value = line.is_object() ? line.value(kShown[i].column, json()) : json();
       run.numbers[i] = value.is_number() ? value.get<double>() : std::nan("");

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "chicane/base/result.hpp"
+#include "chicane/run/parallel.hpp"
 #include "chicane/run/roads.hpp"
-#include "chicane/run/shard.hpp"
 #include "chicane/sweep/plan.hpp"
 #include "chicane/telemetry/metrics.hpp"
 

@@ -57,12 +57,6 @@ namespace {
 
 using protocol::Json;
 
-Json json_of(const Settings& settings) {
-  Json json = Json::object();
-  for (const auto& [key, text] : settings) json[key] = text;
-  return json;
-}
-
 std::string line_of(const Settings& values, const Verdict& verdict) {
   Json json{{"values", json_of(values)}};
   Verdict::rows(verdict, [&](const char* name, auto value) { json[name] = value; });
@@ -71,8 +65,7 @@ std::string line_of(const Settings& values, const Verdict& verdict) {
 
 std::pair<Settings, Verdict> read_line(const std::string& line) {
   const Json json = protocol::parse_json(line);
-  std::pair<Settings, Verdict> read;
-  for (const auto& [key, text] : json.at("values").items()) read.first.emplace_back(key, text);
+  std::pair<Settings, Verdict> read{settings_in(json.at("values")), {}};
   Verdict::rows(read.second, [&](const char* name, auto& value) {
     const Json& member = json.at(name);
     value = std::numeric_limits<std::remove_reference_t<decltype(value)>>::quiet_NaN();

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -208,3 +209,14 @@ struct McapReport {
 [[nodiscard]] Result<McapReport> read_mcap(const std::string& path, const McapVisitor& visitor);
 
 }  // namespace chicane::telemetry
+
+/// Zstandard, where the program was built with libzstd.
+namespace chicane::telemetry::zstd {
+
+[[nodiscard]] bool is_available() noexcept;
+/// At the fastest level. Pre: is_available().
+[[nodiscard]] std::string compress(std::string_view bytes);
+/// None when it is damaged, or is not of `size` bytes. Pre: is_available().
+[[nodiscard]] std::optional<std::string> decompress(std::string_view bytes, std::uint64_t size);
+
+}  // namespace chicane::telemetry::zstd

@@ -87,6 +87,36 @@ class SparseLog {
 /// network thread.
 using Pages = std::map<std::string, std::function<net::Content()>, std::less<>>;
 
+/// Median of the last nine values. No allocation.
+class RecentMedian {
+ public:
+  void reset() noexcept { count_ = 0; }
+  void add(double value) noexcept { values_[count_++ % values_.size()] = value; }
+  /// `otherwise`: while there is none.
+  [[nodiscard]] double value(double otherwise) const noexcept {
+    if (count_ == 0) return otherwise;
+    std::array<double, 9> sorted = values_;
+    const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(std::min(count_, sorted.size()));
+    const auto middle = sorted.begin() + (end - sorted.begin()) / 2;
+    std::nth_element(sorted.begin(), middle, end);
+    return *middle;
+  }
+
+ private:
+  std::array<double, 9> values_{};
+  std::size_t count_ = 0;
+};
+
+/// Whether the query of a request's target ("/path?a=1&b=2") has this item.
+[[nodiscard]] inline bool asks_for(std::string_view item, std::string_view target) {
+  for (std::size_t begin = target.find('?'); begin != std::string_view::npos;) {
+    const std::size_t end = target.find('&', ++begin);
+    if (target.substr(begin, end - begin) == item) return true;
+    begin = end;
+  }
+  return false;
+}
+
 /// One dialect spoken on the shared port: the simulator's (serve.hpp) or the viewers' (viewer.hpp). It sees
 /// only its own connections. All member functions are called on the network thread, one at a time, and must
 /// not block.

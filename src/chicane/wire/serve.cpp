@@ -31,31 +31,6 @@ constexpr const char* kOpenPacket =
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
-/// Median over the last cycles of the time from telemetry to telemetry: the control step, artificial latency,
-/// both ways through the sockets and the simulator's turn-around. A command takes effect when the next
-/// telemetry is sampled.
-class DelayMeter {
- public:
-  explicit DelayMeter(double expected) : expected_{expected} {}
-  void reset() noexcept { count_ = 0; }
-  void add(double sample) noexcept { samples_[static_cast<std::size_t>(count_++) % kWindow] = sample; }
-  [[nodiscard]] double value() const noexcept {
-    if (count_ == 0) return expected_;
-    std::array<double, kWindow> sorted = samples_;
-    const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(
-                                          std::min<std::size_t>(static_cast<std::size_t>(count_), kWindow));
-    const auto middle = sorted.begin() + (end - sorted.begin()) / 2;
-    std::nth_element(sorted.begin(), middle, end);
-    return *middle;
-  }
-
- private:
-  static constexpr std::size_t kWindow = 9;
-  double expected_;
-  std::array<double, kWindow> samples_{};
-  int count_ = 0;
-};
-
 /// One thing to be answered, in the order of arrival.
 struct Request {
   enum class Kind : signed char { kTelemetry, kManual, kUnusable };
@@ -74,17 +49,6 @@ run::ExternalDriveOptions by_simulator_clock(const ServeOptions& options) {
   return counted;
 }
 
-/// Whether the query of a request's target ("/path?a=1&b=2") has this item.
-bool has_item(std::string_view target, std::string_view item) {
-  std::size_t begin = target.find('?');
-  while (begin != std::string_view::npos) {
-    const std::size_t end = target.find('&', ++begin);
-    if (target.substr(begin, end - begin) == item) return true;
-    begin = end;
-  }
-  return false;
-}
-
 }  // namespace
 
 /// The control thread and everything it owns.
@@ -98,7 +62,7 @@ class UdacityEndpoint::Control {
         answer_{std::move(answer)},
         drive_hooks_{hooks},
         drive_{by_simulator_clock(options), std::move(controller), drive_hooks_},
-        delay_{seconds(options.latency) + kTypicalTurnAround},
+        expected_delay_{seconds(options.latency) + kTypicalTurnAround},
         thread_{[this] { work(); }} {}
   ~Control() { stop(); }
   Control(const Control&) = delete;
@@ -161,12 +125,12 @@ class UdacityEndpoint::Control {
 
   void drive(const Request& request) {
     is_by_hand_ = false;
-    run::ExternalDrive::Sighting sighting{.received = request.received, .usual_delay = delay_.value()};
+    run::ExternalDrive::Sighting sighting{.received = request.received, .usual_delay = delay()};
     if (const auto gap = drive_.gap(request.received)) {
       delay_.add(*gap);
-      measured_delay_ = delay_.value();
+      measured_delay_ = delay();
     }
-    sighting.delay = delay_.value();
+    sighting.delay = delay();
     if (request.kind == Request::Kind::kTelemetry) sighting.measured = request.measurement;
     const telemetry::Frame& frame = drive_.step(sighting);
     if (frame.guard.gated) ++interventions_;
@@ -179,6 +143,10 @@ class UdacityEndpoint::Control {
     drive_.finish();
   }
 
+  /// From telemetry to telemetry, when a command takes effect [s]: the control step, artificial latency, both
+  /// ways through the sockets and the simulator's turn-around.
+  [[nodiscard]] double delay() const { return delay_.value(expected_delay_); }
+
   /// Where the car will be when the answer arrives: where the plan begins.
   [[nodiscard]] static model::Pose pose_at_receipt(const telemetry::Frame& frame) {
     const controller::Plan& plan = frame.result.plan;
@@ -190,7 +158,8 @@ class UdacityEndpoint::Control {
   Answer answer_;
   const run::ExternalDriveHooks drive_hooks_;
   run::ExternalDrive drive_;
-  DelayMeter delay_;
+  const double expected_delay_;  ///< [s]
+  RecentMedian delay_;           ///< [s]
   telemetry::RunSummary run_;
   net::ConnectionId driven_ = 0;
   bool is_by_hand_ = false;  ///< a person drives
@@ -249,7 +218,7 @@ net::UpgradeAnswer UdacityEndpoint::on_upgrade(const net::UpgradeRequest& reques
   }
   Session session{.id = request.id, .name = request.peer};
   session.is_version_3 = request.target.find("EIO=3") != std::string::npos;
-  session.knows_stop_plan = has_item(request.target, protocol::kStopPlanItem);
+  session.knows_stop_plan = asks_for(protocol::kStopPlanItem, request.target);
   if (accepted_.size() >= kMaxAccepted) accepted_.erase(accepted_.begin());
   accepted_[request.id] = session;
   return {.accept = true};

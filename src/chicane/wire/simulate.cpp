@@ -3,8 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <future>
 #include <limits>
 #include <memory>
@@ -16,13 +21,8 @@
 #include "chicane/base/math.hpp"
 #include "chicane/net/client.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
-#include "chicane/run/account.hpp"
-#include "chicane/run/make.hpp"
-#include "chicane/run/observe.hpp"
-#include "chicane/sim/sensor.hpp"
-#include "chicane/sim/world.hpp"
+#include "chicane/run/simulated_car.hpp"
 #include "chicane/wire/endpoint.hpp"
-#include "chicane/wire/server_process.hpp"
 
 namespace chicane::wire {
 namespace {
@@ -34,7 +34,10 @@ constexpr double kPatienceInCycles = 3.0;
 bool CommandReceiver::sampled(double time) noexcept {
   const double asked = std::exchange(sampled_, time);
   if (!waiting_) return true;
-  add_cycle(time - asked);
+  // A controller's habit tells when it has fallen silent.
+  cycles_.add(time - asked);
+  patience_ = std::max(kPatienceInCycles * cycles_.value(0.0), safety::StopPlayer::kPatience);
+  player_.set_patience(patience_);
   const bool is_late = is_timed_out_ && timed_out_since_ >= asked;
   if (!is_late) {
     received_ = waiting_->command;
@@ -63,26 +66,13 @@ model::Command CommandReceiver::act(double time, double speed) noexcept {
   return acting_;
 }
 
-/// A controller's habit tells when it has fallen silent.
-void CommandReceiver::add_cycle(double length) noexcept {
-  cycles_[static_cast<std::size_t>(cycle_count_++) % cycles_.size()] = length;
-  std::array<double, 9> sorted = cycles_;
-  const auto size = std::min(static_cast<std::size_t>(cycle_count_), sorted.size());
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(size / 2);
-  std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<std::ptrdiff_t>(size));
-  patience_ = std::max(kPatienceInCycles * *middle, safety::StopPlayer::kPatience);
-  player_.set_patience(patience_);
-}
-
 namespace {
 
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr double kCatchUp = 1.0 / 3.0;  // physics skips time it cannot catch up, as the original [s]
 constexpr milliseconds kConnectTimeout{1000};
 constexpr milliseconds kNap{5};
-constexpr double kStanding = 0.1;  // [m/s]
 
 Clock::duration duration(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
@@ -97,76 +87,6 @@ std::string with_stop_plan(const std::string& url) {
                                                                                : "/?";
   return fmt::format("{}{}{}", url, separator, protocol::kStopPlanItem);
 }
-
-run::AccountTerms terms(const scenario::Scenario& scenario, const road::Track& track) {
-  run::AccountTerms terms = run::terms_of(scenario, &track);
-  terms.controller = terms.preset = "external";
-  terms.guard.reset();
-  terms.latency = 0.0;
-  terms.remedy = telemetry::kControllerRemedy;
-  terms.step_deadline = std::numeric_limits<double>::infinity();  // there is none
-  return terms;
-}
-
-/// The physical side: plant, road and what is measured of them, and the account of the run.
-class Scene {
- public:
-  Scene(const scenario::Scenario& scenario, road::Track track, road::Track waypoints,
-        std::unique_ptr<sim::Plant> plant)
-      : waypoints_sent_{scenario.waypoints_sent},
-        track_{std::move(track)},
-        waypoints_{std::move(waypoints)},
-        plant_{std::move(plant)},
-        world_{*plant_, track_},
-        sensor_{scenario.sensor, scenario.seed},
-        receiver_{scenario.vehicle, scenario.guard.receiver},
-        account_{terms(scenario, track_)} {
-    world_.place(track_.start_s(), track_.start_d());
-  }
-
-  /// Physics up to the moment `elapsed` [s] after the run began; what it cannot catch up is returned.
-  double advance_to(double elapsed) {
-    const double step = plant_->step_length();
-    const double forgotten = std::max(0.0, elapsed - world_.time() - kCatchUp);
-    while (world_.time() + step <= elapsed - forgotten && !account_.is_over()) {
-      world_.advance(receiver_.act(world_.time(), plant_->output().speed));
-      account_.add_physics(world_, false);
-    }
-    return forgotten;
-  }
-
-  /// Telemetry's content now, and with it the command of the last answer reaches the wheels, unless it is too
-  /// late for that; false says so. `frame` is filled with what the world knows and the controller has not
-  /// answered yet.
-  bool sample(telemetry::Frame& frame) {
-    model::Measurement now = sensor_.sample(world_.time(), *plant_);
-    sim::select_waypoints(waypoints_, {.x = now.x, .y = now.y, .psi = now.psi}, waypoints_sent_, now);
-    run::observe(world_, frame);
-    frame.completed_lap = account_.completed_lap();
-    frame.time = now.time;
-    frame.measurement = now;
-    frame.applied = receiver_.acting();
-    return receiver_.sampled(now.time);
-  }
-
-  [[nodiscard]] telemetry::RunSummary summary() const { return account_.summary(world_.time()); }
-  [[nodiscard]] run::Account& account() { return account_; }
-  [[nodiscard]] double next_step() const { return world_.time() + plant_->step_length(); }
-  [[nodiscard]] const model::State& car() const { return plant_->state(); }
-  [[nodiscard]] double speed() const { return plant_->output().speed; }
-  [[nodiscard]] double edge() const { return world_.state().edge_distance; }
-  [[nodiscard]] CommandReceiver& receiver() { return receiver_; }
-
- private:
-  int waypoints_sent_;
-  road::Track track_;
-  road::Track waypoints_;
-  std::unique_ptr<sim::Plant> plant_;
-  sim::World world_;
-  sim::Sensor sensor_;
-  CommandReceiver receiver_;
-  run::Account account_;
-};
 
 /// The lines of a reply, from the car's frame to W.
 void place_lines(const protocol::UdacitySteer& reply, const model::State& car, controller::Plan& plan) {
@@ -189,29 +109,32 @@ void place_lines(const protocol::UdacitySteer& reply, const model::State& car, c
   }
 }
 
-/// One run: the scene and the token that goes round between it and the controller.
+/// One run: the car and the token that goes round between it and the controller.
 class Simulation {
  public:
   Simulation(const SimulateOptions& options, const scenario::Scenario& scenario, const SimulateHooks& hooks,
-             Scene& scene)
+             run::SimulatedCar& car)
       : options_{options},
+        waypoints_sent_{scenario.waypoints_sent},
         turn_around_{duration(scenario.turn_around)},
         hooks_{hooks},
         url_{scenario.guard.receiver == safety::Receiver::kStopPlan ? with_stop_plan(options.url)
                                                                     : options.url},
         log_{hooks.log},
         server_{options.server_command, log_},
-        scene_{scene} {}
+        car_{car},
+        receiver_{scenario.vehicle, scenario.guard.receiver},
+        stops_{scenario, [this](std::string_view line) { log_.say(line); }} {}
 
   Result<SimulateReport> run(const std::atomic<bool>& stop) {
     began_ = last_connected_ = Clock::now();
     const Clock::time_point wall_start = began_;
-    while (!stop && !scene_.account().is_over() && why_.empty()) {
+    while (!stop && !car_.account.is_over() && why_.empty()) {
       const Clock::time_point now = Clock::now();
       server_.keep_running(now);
       lose_hope(now);
       if (report_.connections > 0) move(now);
-      if (const auto lap = scene_.account().take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
+      if (const auto lap = car_.account.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
       if (client_ == nullptr) {
         connect(now);
       } else {
@@ -220,7 +143,7 @@ class Simulation {
     }
     if (report_.connections == 0 && !stop) return fail(ErrorCode::kIo, why_);
     report_.server_starts = server_.starts();
-    report_.run = scene_.summary();
+    report_.run = car_.account.summary(car_.world.time());
     report_.run.wall_time = seconds(Clock::now() - wall_start);
     if (!why_.empty()) report_.run.end_reason = why_;
     return report_;
@@ -229,24 +152,10 @@ class Simulation {
  private:
   /// Physics up to now; says when the car is stopped because no commands arrive, and when it stands.
   void move(Clock::time_point now) {
-    const double speed = scene_.speed();
-    began_ += duration(scene_.advance_to(seconds(now - began_)));
-    const bool is_timed_out = scene_.receiver().is_timed_out();
-    if (is_timed_out && !is_timed_out_ && speed > kStanding) {
-      ++report_.stops;
-      log_.say(
-          fmt::format("no command in time: the car is stopped from {:.1f} m/s: {}", speed, silence(now)));
-      is_standing_reported_ = false;
-    }
-    if (!is_timed_out && is_timed_out_ && !is_standing_reported_) {
-      log_.say(fmt::format("commands again: the car drives on from {:.1f} m/s", speed));
-      is_standing_reported_ = true;
-    }
-    is_timed_out_ = is_timed_out;
-    if (!is_timed_out || is_standing_reported_ || scene_.speed() >= kStanding) return;
-    is_standing_reported_ = true;
-    log_.say(fmt::format("the car stands, its outermost wheel {:.2f} m {} the road's edge: {}",
-                         std::fabs(scene_.edge()), scene_.edge() < 0.0 ? "beyond" : "inside", silence(now)));
+    const double speed = car_.speed();
+    began_ += duration(
+        car_.catch_up(seconds(now - began_), [&] { return receiver_.act(car_.world.time(), car_.speed()); }));
+    if (stops_.look(car_, receiver_.is_timed_out(), speed, [&] { return silence(now); })) ++report_.stops;
   }
 
   /// Why no command acts.
@@ -293,7 +202,7 @@ class Simulation {
   void lose(const std::string& why) {
     log_.say(fmt::format("connection lost: {}", why));
     client_.reset();
-    scene_.receiver().disconnected();
+    receiver_.disconnected();
     last_connected_ = Clock::now();
     next_attempt_ = last_connected_ + options_.retry_after;
   }
@@ -308,7 +217,7 @@ class Simulation {
       ask(now);
       if (client_ == nullptr) return;
     }
-    Clock::time_point wake = began_ + duration(scene_.next_step());
+    Clock::time_point wake = began_ + duration(car_.world.time() + car_.plant->step_length());
     if (due_) wake = std::min(wake, *due_);
     const auto patience = std::chrono::ceil<milliseconds>(std::max(wake - now, Clock::duration::zero()));
     auto received = client_->receive(std::max(patience, milliseconds{1}));
@@ -325,7 +234,8 @@ class Simulation {
     due_.reset();
     asked_ = now;
     is_reported_silent_ = false;
-    if (!scene_.sample(frame_)) ++report_.late_answers;
+    car_.write(car_.sense(waypoints_sent_), receiver_.acting(), frame_);
+    if (!receiver_.sampled(frame_.time)) ++report_.late_answers;
     is_manual_ = frame_.time < options_.manual_time;
     deliver(is_manual_ ? protocol::encode_manual_telemetry()
                        : protocol::encode_telemetry(frame_.measurement));
@@ -372,14 +282,11 @@ class Simulation {
                       "rad) or of the pedal, not degrees",
                       steer.clamped));
     last_answer_ = Clock::now();
-    scene_.receiver().answered(steer);
-    ++frame_.cycle;
+    receiver_.answered(steer);
     frame_.step_time = waited;
-    frame_.result.command = frame_.asked = steer.command;  // its own gate is unknown
-    frame_.result.report.solve.status =
-        solver::SolveStatus::kOptimal;  // of an external solver nothing is known
-    place_lines(steer, scene_.car(), frame_.result.plan);
-    scene_.account().add(frame_);
+    frame_.result.command = steer.command;
+    place_lines(steer, car_.plant->state(), frame_.result.plan);
+    car_.count(frame_);
     if (hooks_.on_frame) hooks_.on_frame(frame_);
   }
 
@@ -393,12 +300,15 @@ class Simulation {
   }
 
   const SimulateOptions& options_;
+  const int waypoints_sent_;
   const Clock::duration turn_around_;
   const SimulateHooks& hooks_;
   const std::string url_;
   SparseLog log_;
   ServerProcess server_;
-  Scene& scene_;
+  run::SimulatedCar& car_;
+  CommandReceiver receiver_;
+  run::StopNews stops_;
   SimulateReport report_;
   std::string why_;  ///< the run is over
 
@@ -414,8 +324,6 @@ class Simulation {
   std::optional<Clock::time_point> asked_;  ///< telemetry is out since then
   bool is_reported_silent_ = false;
   bool is_manual_ = false;
-  bool is_timed_out_ = false;         ///< when the car was looked at last
-  bool is_standing_reported_ = true;  ///< nothing more to say about the stop
   telemetry::Frame frame_;
 };
 
@@ -424,14 +332,94 @@ class Simulation {
 Result<SimulateReport> simulate(const SimulateOptions& options, const scenario::Scenario& scenario,
                                 const SimulateHooks& hooks, const std::atomic<bool>& stop) {
   if (auto url = net::parse_url(options.url); !url) return fail(url.error());
-  Result<road::Track> track = run::make_track(scenario);
-  if (!track) return fail(track.error());
-  Result<road::Track> waypoints = run::make_waypoints(*track, scenario.vehicle.scale);
-  if (!waypoints) return fail(waypoints.error());
-  Result<std::unique_ptr<sim::Plant>> plant = run::make_plant(scenario);
-  if (!plant) return fail(plant.error());
-  Scene scene(scenario, std::move(*track), std::move(*waypoints), std::move(*plant));
-  return Simulation(options, scenario, hooks, scene).run(stop);
+  const auto car = run::SimulatedCar::create(scenario, 0.0);
+  if (!car) return fail(car.error());
+  return Simulation(options, scenario, hooks, **car).run(stop);
+}
+
+namespace {
+
+constexpr std::chrono::seconds kRestartAfter{1};
+constexpr unsigned kPatience = 1;  // of the guard, with a group that was asked to end [s]
+
+[[noreturn]] void run_shell(const char* command, const sigset_t& no_signals) {
+  ::sigprocmask(SIG_SETMASK, &no_signals, nullptr);
+  const int nothing = ::open("/dev/null", O_RDWR);
+  ::dup2(nothing, STDIN_FILENO);
+  ::dup2(nothing, STDOUT_FILENO);  // the original's controllers print every message
+  ::execl("/bin/sh", "sh", "-c", command, static_cast<char*>(nullptr));
+  ::_exit(127);
+}
+
+/// Ends as the shell ended.
+[[noreturn]] void end_like(int status, const sigset_t& no_signals) {
+  if (WIFSIGNALED(status)) {
+    ::sigprocmask(SIG_SETMASK, &no_signals, nullptr);
+    static_cast<void>(::signal(WTERMSIG(status), SIG_DFL));
+    static_cast<void>(::raise(WTERMSIG(status)));
+  }
+  ::_exit(WEXITSTATUS(status));
+}
+
+/// The head of the group: waits for the shell; asked to end, or left alone, it ends the whole group. Forked
+/// from a program with several threads, so it only makes system calls.
+[[noreturn]] void guard(const char* command, pid_t parent) {
+  ::setpgid(0, 0);
+  sigset_t awaited, no_signals;
+  ::sigemptyset(&no_signals);
+  ::sigemptyset(&awaited);
+  for (const int signal : {SIGCHLD, SIGTERM, SIGALRM}) ::sigaddset(&awaited, signal);
+  ::sigprocmask(SIG_SETMASK, &awaited, nullptr);
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);     // whom the shell leaves behind is ours to wait for
+  if (::getppid() != parent) ::_exit(0);  // it died before we listened
+  const pid_t shell = ::fork();
+  if (shell == 0) run_shell(command, no_signals);
+  for (bool is_ending = false;;) {
+    int signal = 0;
+    if (::sigwait(&awaited, &signal) != 0) continue;
+    if (signal == SIGALRM) ::kill(0, SIGKILL);
+    if (signal == SIGTERM && !is_ending) {
+      is_ending = true;
+      ::kill(0, SIGTERM);
+      ::alarm(kPatience);
+    }
+    int status = 0;
+    pid_t ended = 0;
+    while ((ended = ::waitpid(-1, &status, WNOHANG)) > 0) {
+      if (ended == shell && !is_ending) end_like(status, no_signals);
+    }
+    if (ended < 0) ::_exit(0);  // none is left
+  }
+}
+
+}  // namespace
+
+ServerProcess::~ServerProcess() {
+  if (pid_ <= 0) return;
+  ::kill(pid_, SIGTERM);
+  ::waitpid(pid_, nullptr, 0);  // within the guard's time limit
+}
+
+void ServerProcess::keep_running(std::chrono::steady_clock::time_point now) {
+  if (command_.empty()) return;
+  if (pid_ > 0) {
+    int status = 0;
+    if (::waitpid(pid_, &status, WNOHANG) != pid_) return;
+    pid_ = -1;
+    log_.say(WIFSIGNALED(status) ? fmt::format("the controller was ended by signal {}", WTERMSIG(status))
+                                 : fmt::format("the controller ended with status {}", WEXITSTATUS(status)));
+  }
+  if (starts_ > 0 && now - started_ < kRestartAfter) return;
+  start();
+  started_ = now;
+  ++starts_;
+}
+
+void ServerProcess::start() {
+  const pid_t parent = ::getpid();
+  pid_ = ::fork();
+  if (pid_ == 0) guard(command_.c_str(), parent);
 }
 
 }  // namespace chicane::wire

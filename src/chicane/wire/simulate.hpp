@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -9,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "chicane/base/result.hpp"
 #include "chicane/model/state.hpp"
@@ -18,6 +18,7 @@
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
+#include "chicane/wire/endpoint.hpp"
 
 namespace chicane::wire {
 
@@ -49,8 +50,6 @@ class CommandReceiver {
   [[nodiscard]] bool is_timed_out() const noexcept { return is_timed_out_; }
 
  private:
-  void add_cycle(double length) noexcept;
-
   safety::StopPlayer player_;
   std::optional<protocol::UdacitySteer> waiting_;
   bool has_any_ = false;    ///< a command has been picked up; until then the car stands
@@ -60,8 +59,7 @@ class CommandReceiver {
   bool is_timed_out_ = false;
   double timed_out_since_ = -1.0;  ///< [s]
   model::Command received_, acting_;
-  std::array<double, 9> cycles_{};  ///< [s]
-  int cycle_count_ = 0;
+  RecentMedian cycles_;  ///< [s]
 };
 
 /// How the simulator meets a controller program. What it simulates is the scenario's.
@@ -113,5 +111,32 @@ struct SimulateReport {
 [[nodiscard]] Result<SimulateReport> simulate(const SimulateOptions& options,
                                               const scenario::Scenario& scenario, const SimulateHooks& hooks,
                                               const std::atomic<bool>& stop);
+
+/// The controller program that we started ourselves, by a shell, in a process group of its own with a guard
+/// at its head. The group ends with this object, and also where our process dies without a word: the guard
+/// sees to that.
+class ServerProcess {
+ public:
+  ServerProcess(std::string command, SparseLog& log) : command_{std::move(command)}, log_{log} {}
+  ServerProcess(const ServerProcess&) = delete;
+  ServerProcess& operator=(const ServerProcess&) = delete;
+  /// Asks all of the group to end, and makes them after a second.
+  ~ServerProcess();
+
+  [[nodiscard]] std::uint64_t starts() const { return starts_; }
+
+  /// Starts it, at first and after its death, but at most once a second. Always by the same thread, which
+  /// lives as long as this: the guard watches that one. Nothing happens for an empty command.
+  void keep_running(std::chrono::steady_clock::time_point now);
+
+ private:
+  void start();
+
+  std::string command_;
+  SparseLog& log_;
+  int pid_ = -1;  ///< the guard's, and the group's
+  std::uint64_t starts_ = 0;
+  std::chrono::steady_clock::time_point started_{};
+};
 
 }  // namespace chicane::wire

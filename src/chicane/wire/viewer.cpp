@@ -62,18 +62,6 @@ bool is_worth_keeping(const telemetry::Change& change) {
   return change.name.view() != "manual.steer" && change.name.view() != "manual.throttle";
 }
 
-/// Whether the query of an address has this word.
-bool asks_for(std::string_view word, std::string_view target) {
-  const std::size_t query = target.find('?');
-  if (query == std::string_view::npos) return false;
-  for (std::string_view rest = target.substr(query + 1); !rest.empty();) {
-    const std::size_t end = std::min(rest.find('&'), rest.size());
-    if (rest.substr(0, end) == word) return true;
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  return false;
-}
-
 std::function<Result<std::string>(std::string_view)> trigger(std::function<Result<void>()> action,
                                                              std::string done) {
   return [action = std::move(action), done = std::move(done)](std::string_view) -> Result<std::string> {

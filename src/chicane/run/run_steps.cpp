@@ -1,21 +1,37 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/run/realtime_loop.hpp"
+#include "chicane/run/run_steps.hpp"
 
 #include <chrono>
+#include <optional>
 #include <thread>
 
 namespace chicane::run {
 
-bool LiveSteps::advance() {
-  if (loop_.is_control_due()) take_up_changes();
-  if (is_to_start_anew_) return false;
-  const bool is_new = loop_.advance(budget_);
+bool RunSteps::advance(double budget) {
+  const bool is_new = loop_.advance(budget);
   tell_lap();
   if (!is_new) return false;
-  is_unseen_ = false;
   if (hooks_.on_frame) hooks_.on_frame(loop_.frame());
   const std::optional<telemetry::Change> planned = planner_.advance(loop_);
   if (planned && hooks_.on_change) hooks_.on_change(*planned);
+  return true;
+}
+
+void RunSteps::finish_cycle() {
+  while (!loop_.is_control_due()) {
+    loop_.advance();
+    tell_lap();
+  }
+}
+
+void RunSteps::tell_lap() {
+  if (const auto lap = loop_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
+}
+
+bool LiveSteps::advance() {
+  if (loop_.is_control_due()) take_up_changes();
+  if (is_to_start_anew_ || !steps_.advance(budget_)) return false;
+  is_unseen_ = false;
   return true;
 }
 
@@ -23,17 +39,6 @@ void LiveSteps::one_cycle() {
   while (!is_to_start_anew_ && !advance()) {
   }
   finish_cycle();
-}
-
-void LiveSteps::finish_cycle() {
-  while (!loop_.is_control_due()) {
-    loop_.advance();
-    tell_lap();
-  }
-}
-
-void LiveSteps::tell_lap() {
-  if (const auto lap = loop_.take_lap(); lap && hooks_.on_lap) hooks_.on_lap(*lap);
 }
 
 void LiveSteps::take_up_changes() {
@@ -149,15 +154,29 @@ class Session {
   Pacer pacer_;
 };
 
-}  // namespace
-
-telemetry::RunSummary run_realtime(ClosedLoop& loop, const RealtimeOptions& options, RunControls& controls,
-                                   const RunHooks& hooks) {
-  const auto start = Clock::now();
-  Session(loop, options, controls, hooks).run(options.stay_at_end);
+telemetry::RunSummary summary_since(Clock::time_point start, const ClosedLoop& loop) {
   telemetry::RunSummary run = loop.summary();
   run.wall_time = std::chrono::duration<double>(Clock::now() - start).count();
   return run;
+}
+
+}  // namespace
+
+telemetry::RunSummary run_closed_loop(ClosedLoop& loop, const RunHooks& hooks,
+                                      const std::function<bool()>& stop) {
+  const Clock::time_point start = Clock::now();
+  RunSteps steps(loop, hooks);
+  while (!loop.is_over()) {
+    if (steps.advance() && stop && stop()) break;
+  }
+  return summary_since(start, loop);
+}
+
+telemetry::RunSummary run_realtime(ClosedLoop& loop, const RealtimeOptions& options, RunControls& controls,
+                                   const RunHooks& hooks) {
+  const Clock::time_point start = Clock::now();
+  Session(loop, options, controls, hooks).run(options.stay_at_end);
+  return summary_since(start, loop);
 }
 
 }  // namespace chicane::run
