@@ -1,5 +1,6 @@
 import { useLayoutEffect, useMemo, useRef, useState } from 'preact/hooks';
 import { rangeInSteps, ticksOf } from '../draw/axis';
+import { curvePath } from '../draw/curve';
 import { duration, fixed } from '../lib/format';
 import { degrees, extent, niceCeil } from '../lib/math';
 import { onScreen } from '../lib/on_screen';
@@ -202,16 +203,8 @@ function yOf({ range: [low, high] }: Row, { top, bottom }: { top: number; bottom
   return bottom - ((Math.min(high, Math.max(low, value)) - low) / (high - low || 1)) * (bottom - top);
 }
 
-function pathOf(values: Float64Array, x: (i: number) => number, y: (value: number) => number): string {
-  let [path, isOpen] = ['', false];
-  for (let i = 0; i < values.length; ++i) {
-    const value = values[i] ?? NaN;
-    const isHere = Number.isFinite(value);
-    if (isHere) path += `${isOpen ? 'L' : 'M'}${px(x(i))} ${px(y(value))}`;
-    isOpen = isHere;
-  }
-  return path;
-}
+const pathOf = (values: Float64Array, x: (i: number) => number, y: (value: number) => number): string =>
+  curvePath(values.length, x, (i) => y(values[i] ?? NaN));
 
 /** The gap: the colour of lost above zero, of won below it. */
 function GapCurve({ row, x, y }: { row: Row; x: (i: number) => number; y: (value: number) => number }) {

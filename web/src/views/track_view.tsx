@@ -3,6 +3,7 @@ import { CachedPicture, isSame } from '../draw/cached_picture';
 import { allRound, behind, type Camera, fitting, project, unproject, zoomed } from '../draw/camera';
 import { carShape } from '../draw/car';
 import { aheadOf, type Line } from '../draw/line';
+import { Paper } from '../draw/paper';
 import { drawLosses } from '../draw/road_marks';
 import {
   drawCursor,
@@ -17,7 +18,6 @@ import {
 import { onThemeChange, theme } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { type Box, boundsOf, extrapolate, type Point, wrapAngle } from '../lib/math';
-import { type OnScreen, onScreen } from '../lib/on_screen';
 import { paintSize } from '../lib/paint_size';
 import { store } from '../lib/store';
 import { inSpeedUnit, speedUnit } from '../lib/units';
@@ -71,29 +71,6 @@ class Road {
     this.#version = road.version;
     this.shape = roadShape(road.lines);
     this.box = boundsOf([...road.lines.left, ...road.lines.right]);
-  }
-}
-
-/** A canvas in the screen's resolution; its size follows its place on the page. */
-class Paper {
-  readonly canvas: HTMLCanvasElement;
-  readonly box: OnScreen;
-
-  constructor(canvas: HTMLCanvasElement) {
-    this.canvas = canvas;
-    this.box = onScreen(canvas);
-  }
-
-  /** Device pixels to a CSS pixel; null while there is nothing to paint on. */
-  prepare(): { context: CanvasRenderingContext2D; ratio: number } | null {
-    const { width, height } = this.box;
-    const context = this.canvas.getContext('2d');
-    if (!context || width === 0 || height === 0) return null;
-    const ratio = Math.min(devicePixelRatio, 2);
-    const [wide, high] = [Math.round(width * ratio), Math.round(height * ratio)];
-    if (this.canvas.width !== wide || this.canvas.height !== high)
-      [this.canvas.width, this.canvas.height] = [wide, high];
-    return { context, ratio };
   }
 }
 
