@@ -1,4 +1,3 @@
-import type { IWebSocket } from '@foxglove/ws-protocol';
 import { computed, effect } from '@preact/signals';
 import { render } from 'preact';
 import { toggleScheme } from './lib/appearance';
@@ -8,6 +7,7 @@ import { store } from './lib/store';
 import { nextSpeedUnit } from './lib/units';
 import { WorkerLink } from './page/worker_link';
 import { Connection, SUBPROTOCOLS } from './protocol/connection';
+import type { Socket } from './protocol/foxglove';
 import { ReadingSocket } from './protocol/reading';
 import { readSchema } from './protocol/schema';
 import type { Source } from './protocol/source';
@@ -62,7 +62,7 @@ function tellPastLeft(messages: number): void {
 }
 
 /** Opens the connection to the program, or to the worker of a page that needs none. */
-function opener(): () => IWebSocket {
+function opener(): () => Socket {
   const told = { age: (seconds: number) => (ageAtArrival.value = seconds), pastLeft: tellPastLeft };
   if (__PAGE__) {
     const worker = new WorkerLink((sentence) => (notice.value = sentence));
