@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { firstSince, rangeAboutZero, rangeFromZero, rangeInSteps, ticksOf } from './axis';
+import { firstSince } from '../lib/math';
+import { rangeAboutZero, rangeFromZero, rangeInSteps, ticksOf } from './axis';
 
 describe('axes', () => {
   it('start at zero and end at a round number', () => {

@@ -27,17 +27,6 @@ export function rangeAboutZero(values: readonly ArrayLike<number>[], least: numb
   return [-end, end];
 }
 
-/** Index of the first of these ascending times that is not before `since`. */
-export function firstSince(times: ArrayLike<number>, since: number): number {
-  let [low, high] = [0, times.length];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if ((times[middle] ?? NaN) < since) low = middle + 1;
-    else high = middle;
-  }
-  return low;
-}
-
 /** Round numbers from `low` to `high`, at most `most` of them: 1, 2 or 5 times a power of ten apart. */
 export function ticksOf(low: number, high: number, most: number): number[] {
   const span = high - low;

@@ -1,5 +1,6 @@
 import { tidy } from '../lib/scale';
 import { drawStretch, knownStretches } from './curve';
+import type { Theme } from './theme';
 
 // A chart of columns over time, on a canvas. Lengths in CSS pixels, y down.
 
@@ -34,21 +35,15 @@ export function chartOn(
   return { context, left, right, top, bottom, from, to, x, y };
 }
 
-export interface Ink {
-  readonly line: string;
-  readonly text: string;
-  readonly font: string;
-}
-
 /** Grid and labels; `label` of the horizontal axis. */
 export function drawAxes(
   { context, left, right, top, bottom, x, y }: Chart,
   xTicks: readonly number[],
   yTicks: readonly number[],
   label: (tick: number) => string,
-  { line, text, font }: Ink,
+  { rule, quiet, font }: Theme,
 ): void {
-  context.strokeStyle = line;
+  context.strokeStyle = rule;
   context.lineWidth = 1;
   context.beginPath();
   const sharp = (place: number): number => Math.round(place) + 0.5; // a line of one pixel, not of two faint ones
@@ -61,7 +56,7 @@ export function drawAxes(
     context.lineTo(right, sharp(y(tick)));
   }
   context.stroke();
-  context.fillStyle = text;
+  context.fillStyle = quiet;
   context.font = `11px ${font}`;
   context.textBaseline = 'middle';
   context.textAlign = 'center';

@@ -1,6 +1,5 @@
-import type { Box, Point } from '../lib/math';
+import { type Box, firstSince, type Point } from '../lib/math';
 import type { Losses, MarkedCorner } from '../state/road_marks';
-import { firstSince } from './axis';
 import { type Camera, project } from './camera';
 import type { Line } from './line';
 import type { RoadShape } from './scene';

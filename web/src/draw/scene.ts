@@ -1,6 +1,7 @@
 import type { Box, Point } from '../lib/math';
+import type { Pose } from '../lib/poses';
 import type { Limit } from '../protocol/topics';
-import type { Hindsight, Pose } from '../state/hindsight';
+import type { Hindsight } from '../state/hindsight';
 import type { RoadLines } from '../state/road';
 import type { Losses, MarkedCorner } from '../state/road_marks';
 import { type Camera, groundGrid, transformOf, worldInView } from './camera';

@@ -3,10 +3,10 @@ import { MessageWriter } from '@foxglove/rosmsg2-serialization';
 import { McapWriter } from '@mcap/core';
 import { beforeAll, describe, expect, it } from 'vitest';
 import type { Frame, TopicName } from '../protocol/topics';
+import { posesOf, RecordedDrive } from '../scene3d/ghost';
 import { type LogEvents, LogSource, landmarksOf, runStarts } from './log_source';
 import { McapLog } from './mcap_log';
 import { BytesReadable, HttpReadable } from './readable';
-import { RecordedDrive } from './recorded_drive';
 
 // A small recording of 10 s: frames at 10 Hz on a straight, a lap at 4 s, off the road at 6 s, a setting changed at 7
 // s, one fault from 8 s to 9 s and another that begins where that ends. It was driven at 15 times its pace.
@@ -252,7 +252,7 @@ describe('another drive beside it', () => {
       frame: message as Frame,
     }));
     let now = 2.05;
-    const drive = RecordedDrive.from('other', frames, () => now);
+    const drive = new RecordedDrive('other', posesOf(frames), Infinity, () => now);
     const pose = { x: 0, y: 0, yaw: 0, steer: 0 };
     expect(drive.poseAt(0, pose)).toBe(true);
     expect(pose.x).toBeCloseTo(4.1, 6);

@@ -2,6 +2,7 @@ import { computed, effect, untracked } from '@preact/signals';
 import { store } from '../lib/store';
 import { readSchema } from '../protocol/schema';
 import type { Frame, Run } from '../protocol/topics';
+import { posesOf, RecordedDrive } from '../scene3d/ghost';
 import { beginSession, receive, rewind } from '../state/demultiplexer';
 import { ghostShown } from '../state/ghost_shown';
 import { keepAllLaps, lapSamples, laps, sampleLap } from '../state/laps';
@@ -18,7 +19,6 @@ import { type Landmark, LogSource, landmarksOf } from './log_source';
 import type { McapLog } from './mcap_log';
 import type { Mode } from './mode';
 import { openFiles, openRecordings, type Recordings } from './open';
-import { RecordedDrive } from './recorded_drive';
 import { type LoggedRun, runsOf } from './runs_of_log';
 
 // State of the time line.
@@ -104,7 +104,7 @@ export async function showBeside(which: number, log = logs.value[played.value]):
     beside.value = -1;
     return;
   }
-  ghostShown.source = RecordedDrive.from(rival.name, await framesOf(rival), () => position.value);
+  ghostShown.source = new RecordedDrive(rival.name, posesOf(await framesOf(rival)), Infinity, () => position.value);
 }
 
 async function trackOf(log: McapLog): Promise<string> {

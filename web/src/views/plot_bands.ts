@@ -1,9 +1,9 @@
-import { firstSince } from '../draw/axis';
 import type { Chart } from '../draw/chart';
+import { theme } from '../draw/theme';
+import { firstSince } from '../lib/math';
 import { RUNG_WORDS } from '../protocol/messages';
 import { Column } from '../state/columns';
 import { plotted } from '../state/plot_view';
-import type { ChartColours } from './plot_colours';
 
 const STRIP_HEIGHT = 5; // CSS pixels
 const GROUND_OPACITY = 0.13;
@@ -33,19 +33,20 @@ function fillStates(chart: Chart, stateAt: (row: number) => number, colours: rea
 }
 
 /** A band at the bottom of a plot: green while the controller's answer was usable and sent unchanged. */
-export function drawStatusStrip(chart: Chart, { good, warning, bad }: ChartColours): void {
+export function drawStatusStrip(chart: Chart): void {
+  const { wonInText, planInText, lostInText } = theme();
   const [status, rung, gated] = [Column.solve_status, Column.rung, Column.is_gated].map((each) =>
     plotted().column(each),
   );
   const stateAt = (i: number): number => stepSeverity(status?.[i] ?? 0, rung?.[i] ?? 0, gated?.[i] ?? 0);
-  fillStates(chart, stateAt, [good, warning, bad], STRIP_HEIGHT);
+  fillStates(chart, stateAt, [wonInText, planInText, lostInText], STRIP_HEIGHT);
 }
 
 /** Behind the lines of a plot: a red ground while a fault acts, amber while another than the controller drives. */
-export function drawFaultBands(chart: Chart, { warning, bad }: ChartColours): void {
+export function drawFaultBands(chart: Chart): void {
   const [faults, rungs] = [plotted().column(Column.active_faults), plotted().column(Column.rung)];
   const stateAt = (i: number): number => ((faults[i] ?? 0) > 0 ? 2 : (rungs[i] ?? 0) > 0 ? 1 : 0);
   chart.context.globalAlpha = GROUND_OPACITY;
-  fillStates(chart, stateAt, ['transparent', warning, bad], chart.bottom - chart.top);
+  fillStates(chart, stateAt, ['transparent', theme().planInText, theme().lostInText], chart.bottom - chart.top);
   chart.context.globalAlpha = 1;
 }

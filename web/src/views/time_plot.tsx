@@ -1,10 +1,11 @@
 import { effect } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
-import { firstSince, ticksOf } from '../draw/axis';
+import { ticksOf } from '../draw/axis';
 import { type Chart, chartOn, drawAxes, drawCurve, ROOM } from '../draw/chart';
 import { Paper } from '../draw/paper';
-import { onThemeChange } from '../draw/theme';
+import { onThemeChange, theme, toneOf } from '../draw/theme';
 import { fixed } from '../lib/format';
+import { firstSince } from '../lib/math';
 import { tidy } from '../lib/scale';
 import { store } from '../lib/store';
 import { Column } from '../state/columns';
@@ -24,7 +25,6 @@ import { shown } from '../state/shown';
 import { LONGEST_SILENCE_S } from '../state/silence';
 import { everyFrame } from '../state/ticker';
 import { drawFaultBands } from './plot_bands';
-import { type ChartColours, chartColours, toneOf } from './plot_colours';
 
 export interface Series {
   readonly column: number; // one of them, or
@@ -43,7 +43,7 @@ export interface PlotSpec {
   readonly series: readonly Series[];
   readonly range: (columns: readonly ArrayLike<number>[]) => [number, number];
   /** Strokes under the lines. */
-  readonly under?: (chart: Chart, colours: ChartColours) => void;
+  readonly under?: (chart: Chart) => void;
 }
 
 /** Relative to now while the plot follows the run, so that the grid does not move; run time when zoomed in. */
@@ -92,10 +92,10 @@ function readout(series: Series, decimals: number): string {
 }
 
 /** A dashed line where the mark is. */
-function drawMark({ context, x, from, to, top, bottom }: Chart, { text }: ChartColours): void {
+function drawMark({ context, x, from, to, top, bottom }: Chart): void {
   const time = markTime.value;
   if (time === null || time < from || time > to) return;
-  context.strokeStyle = text;
+  context.strokeStyle = theme().ink;
   context.lineWidth = 1;
   context.setLineDash([4, 3]);
   context.beginPath();
@@ -110,25 +110,24 @@ function drawPlot(spec: PlotSpec, paper: Paper): Chart | null {
   const ready = paper.prepare();
   if (!ready) return null;
   const { context, ratio } = ready;
-  const colours = chartColours();
+  const colours = theme();
   const [times, ...columns] = dataOf(spec);
   const chart = chartOn(context, paper.box, timeRange(), spec.range(columns));
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, paper.box.width, paper.box.height);
-  drawFaultBands(chart, colours);
+  drawFaultBands(chart);
   const yTicks = ticksOf(...spec.range(columns), Math.max(2, (chart.bottom - chart.top) / 22));
-  const ink = { line: colours.grid, text: colours.faint, font: colours.font };
-  drawAxes(chart, ticksOfTime(chart.from, chart.to), yTicks, (tick) => timeLabel(tick, chart.to), ink);
-  spec.under?.(chart, colours);
+  drawAxes(chart, ticksOfTime(chart.from, chart.to), yTicks, (tick) => timeLabel(tick, chart.to), colours);
+  spec.under?.(chart);
   // Stacked layers reach down to 0: the lower ones cover the higher ones.
   const curves = spec.series.map(({ colour, isDashed = false, isFilled }, i) => {
-    const tone = colours.series[colour] ?? colours.text;
-    const fill = isFilled ? { fill: `color-mix(in srgb, ${tone} 55%, ${colours.panel})` } : {};
+    const tone = colours.series[colour] ?? colours.ink;
+    const fill = isFilled ? { fill: `color-mix(in srgb, ${tone} 55%, ${colours.sheet})` } : {};
     return { values: columns[i] ?? [], colour: tone, isDashed, ...fill };
   });
   if (spec.series[0]?.isFilled) curves.reverse();
   for (const curve of curves) drawCurve(chart, times ?? [], curve, LONGEST_SILENCE_S);
-  drawMark(chart, colours);
+  drawMark(chart);
   return chart;
 }
 

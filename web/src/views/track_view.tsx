@@ -19,9 +19,9 @@ import { onThemeChange, theme } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { type Box, boundsOf, extrapolate, type Point, wrapAngle } from '../lib/math';
 import { paintSize } from '../lib/paint_size';
+import type { Pose } from '../lib/poses';
 import { store } from '../lib/store';
 import { inSpeedUnit, speedUnit } from '../lib/units';
-import type { GhostPose } from '../scene3d/ghost';
 import { Scene3dView } from '../scene3d/scene3d_view';
 import { session } from '../scene3d/session';
 import {
@@ -103,7 +103,7 @@ class Painter {
   #drawn: { readonly car: Scene['car']; readonly plan: readonly Point[] } = { car: null, plan: [] };
   #worldKey: readonly unknown[] = [];
   readonly #world = new CachedPicture();
-  readonly #ghost: GhostPose = { x: 0, y: 0, yaw: 0, steer: 0 };
+  readonly #ghost: Pose = { x: 0, y: 0, yaw: 0, steer: 0 };
 
   constructor(canvas: HTMLCanvasElement) {
     this.#paper = new Paper(canvas);
@@ -348,9 +348,11 @@ function usePainter() {
       else if (time !== null) seek(time);
     };
     const answer = (event: Event): void => void Object.assign(event, { geometry: painter.geometry() });
-    element.addEventListener('click', onClick);
-    element.addEventListener('wheel', onWheel, { passive: false });
-    element.addEventListener('geometry', answer); // asked by tests: is anything over the car or its plan?
+    const over = new AbortController();
+    const { signal } = over;
+    element.addEventListener('click', onClick, { signal });
+    element.addEventListener('wheel', onWheel, { passive: false, signal });
+    element.addEventListener('geometry', answer, { signal }); // asked by tests: is anything over the car or its plan?
     const stop = everyFrame((now) => {
       painter.paint(now);
       const label = session.ghost?.label ?? null;
@@ -361,9 +363,7 @@ function usePainter() {
       stop();
       painter.end();
       unwatch();
-      element.removeEventListener('wheel', onWheel);
-      element.removeEventListener('click', onClick);
-      element.removeEventListener('geometry', answer);
+      over.abort();
     };
   }, []);
   return canvas;
