@@ -1,9 +1,8 @@
 import { effect } from '@preact/signals';
-import { store } from '../lib/store';
+import { complete } from '../protocol/topics';
 import { RecordedDrive } from '../scene3d/ghost';
-import { ghostShown } from '../state/ghost_shown';
+import { ghosts } from '../state/ghost_shown';
 import { live } from '../state/live';
-import { complete } from '../state/message_fields';
 import { type Moment, showAgain } from '../state/replay';
 import { answer } from '../state/what_if';
 import type { Trace, WhatIfAnswer } from '../state/what_if_answer';
@@ -44,13 +43,6 @@ export function momentsOf({ was: { trace } }: WhatIfAnswer): Moment[] {
 /** Shows both futures on the picture, from their first moment on. */
 export const watchBoth = (found: WhatIfAnswer): void => showAgain(momentsOf(found));
 
-const before = store.data('page', () => ({ source: null as typeof ghostShown.source }));
 effect(() => {
-  const found = answer.value;
-  if (found) {
-    if (ghostShown.source?.label !== 'what if') before.source = ghostShown.source;
-    ghostShown.source = ghostOf(found.branch);
-  } else if (ghostShown.source?.label === 'what if') {
-    ghostShown.source = before.source;
-  }
+  ghosts.whatIf = answer.value && ghostOf(answer.value.branch);
 });

@@ -5,7 +5,7 @@ import type { GhostSource } from '../scene3d/ghost';
 import type { Course } from './comparison';
 import { recordedCourse } from './courses';
 import { restartListeners } from './demultiplexer';
-import { ghostShown } from './ghost_shown';
+import { ghosts } from './ghost_shown';
 import { LapSamples } from './lap_samples';
 import { lapSamples } from './laps';
 import { link, notice } from './link';
@@ -52,15 +52,8 @@ const ghost: GhostSource = {
   poseAt: (_time, into) => race.value !== null && poseOf(race.value.poses, live.frame?.time_s ?? NaN, into),
 };
 
-const before = store.data('page', () => ({ source: null as GhostSource | null }));
 effect(() => {
-  const isOnStage = race.value?.state === 'racing';
-  if (isOnStage && ghostShown.source !== ghost) {
-    before.source = ghostShown.source;
-    ghostShown.source = ghost;
-  } else if (!isOnStage && ghostShown.source === ghost) {
-    ghostShown.source = before.source;
-  }
+  ghosts.race = race.value?.state === 'racing' ? ghost : null;
 });
 
 /** B's laps as functions of the distance, sampled from its poses. */

@@ -9,7 +9,6 @@ import { firstSince } from '../lib/math';
 import { tidy } from '../lib/scale';
 import { store } from '../lib/store';
 import { Column } from '../state/columns';
-import type { History } from '../state/history';
 import {
   cursorTime,
   isFrozen,
@@ -27,8 +26,7 @@ import { everyFrame } from '../state/ticker';
 import { drawFaultBands } from './plot_bands';
 
 export interface Series {
-  readonly column: number; // one of them, or
-  readonly compute?: (history: History, first: number, end: number) => Float64Array; // from rows of all
+  readonly column: number;
   readonly label: string;
   readonly colour: number; // of plot_colours.ts, from 0
   readonly isDashed?: boolean;
@@ -67,19 +65,17 @@ function dataOf(spec: PlotSpec): Float64Array[] {
   const part = (column: number): Float64Array => history.column(column).subarray(first, end);
   return [
     part(Column.time_s),
-    ...spec.series.map(({ column, compute, factor = 1 }) => {
-      if (compute) return compute(history, first, end);
-      return factor === 1 ? part(column) : part(column).map((value) => value * factor);
-    }),
+    ...spec.series.map(({ column, factor = 1 }) =>
+      factor === 1 ? part(column) : part(column).map((value) => value * factor),
+    ),
   ];
 }
 
 /** The value of a series at a time, or the newest. */
-function valueAt({ column, compute, factor = 1 }: Series, time: number | null): number {
+function valueAt({ column, factor = 1 }: Series, time: number | null): number {
   const history = plotted();
   const row = time === null ? history.length - 1 : firstSince(history.column(Column.time_s), time - 1e-9);
-  if (row < 0) return NaN;
-  return compute ? (compute(history, row, row + 1)[0] ?? NaN) : (history.column(column)[row] ?? NaN) * factor;
+  return (history.column(column)[row] ?? NaN) * factor;
 }
 
 /** The value under the cursor, or the newest; with a mark, the difference from there, too. */

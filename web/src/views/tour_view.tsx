@@ -211,11 +211,10 @@ export function TourView() {
   );
 }
 
-addShortcuts({
+addShortcuts('Page', {
   keys: ['h'],
   label: 'H',
   does: 'The tour: begin, go on, leave',
-  group: 'Page',
   action: () => (isTourOpen.value ? leaveTour() : isTourOffered() && openTourHere()),
 });
 
