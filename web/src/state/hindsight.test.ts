@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { Plan } from '../protocol/topics';
 import { COLUMN_COUNT, Column } from './columns';
-import { hindsight, poseOf } from './hindsight';
+import { hindsight } from './hindsight';
 import { History } from './history';
 
 /** Straight on along x at 10 m/s, made at `time` and acting 0.1 s later. */
@@ -36,10 +36,4 @@ describe('hindsight', () => {
   });
 
   it('is nothing before there is a plan', () => expect(hindsight([], driven(1), 1)).toBeNull());
-
-  it('does not see beyond the ends of a plan', () => {
-    expect(poseOf(plan(0), 0.05)).toBeNull();
-    expect(poseOf(plan(0), 1.7)).toBeNull();
-    expect(poseOf(plan(0), 1.6)).toMatchObject({ x: 16, y: 2, yaw: 0.4 });
-  });
 });

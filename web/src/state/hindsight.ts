@@ -17,7 +17,7 @@ export interface Hindsight {
 }
 
 /** The pose that a plan predicts for a time of the run; null outside its horizon. */
-export function poseOf(plan: Plan, time: number): Pose | null {
+function poseOf(plan: Plan, time: number): Pose | null {
   const pose = { x: NaN, y: NaN, yaw: NaN, steer: NaN };
   return poseAt(plan, time, pose) ? pose : null;
 }

@@ -108,11 +108,12 @@ function drawPlot(spec: PlotSpec, paper: Paper): Chart | null {
   const { context, ratio } = ready;
   const colours = theme();
   const [times, ...columns] = dataOf(spec);
-  const chart = chartOn(context, paper.box, timeRange(), spec.range(columns));
+  const range = spec.range(columns);
+  const chart = chartOn(context, paper.box, timeRange(), range);
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, paper.box.width, paper.box.height);
   drawFaultBands(chart);
-  const yTicks = ticksOf(...spec.range(columns), Math.max(2, (chart.bottom - chart.top) / 22));
+  const yTicks = ticksOf(...range, Math.max(2, (chart.bottom - chart.top) / 22));
   drawAxes(chart, ticksOfTime(chart.from, chart.to), yTicks, (tick) => timeLabel(tick, chart.to), colours);
   spec.under?.(chart);
   // Stacked layers reach down to 0: the lower ones cover the higher ones.
