@@ -4,7 +4,6 @@ import { allRound, behind, type Camera, fitting, project, unproject, zoomed } fr
 import { carShape } from '../draw/car';
 import { aheadOf, type Line } from '../draw/line';
 import { Paper } from '../draw/paper';
-import { drawLosses } from '../draw/road_marks';
 import {
   drawCursor,
   drawDot,
@@ -122,63 +121,41 @@ class Painter {
     this.#lastPaint = now;
     const isWhole = camera.value !== 'ahead';
     const losses = isWhole ? lossesToLimit.value : null;
-    const scene: Scene = {
+    const world = {
       road: this.#road.shape,
       racingLine: layers.racingLine.value ? limit.value : null,
       corners: markedCorners(),
       kerb: run.value?.kerb_width_m ?? 0,
       start: startLine(),
       losses,
+      size: run.value ? paintSize(run.value) : 1,
+    };
+    const scene: Scene = {
+      ...world,
       reference: road.reference,
       // The way driven would lie on the line of the lap that is coloured.
       trace: losses ? { x: [], y: [] } : { x: live.trace.column(0), y: live.trace.column(1) },
       plan,
-      size: run.value ? paintSize(run.value) : 1,
       hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
       faults: faultMarks.value,
       ghost: session.ghost?.poseAt(live.frame?.lap_time_s ?? NaN, this.#ghost) ? this.#ghost : null,
       car,
     };
-    const still = [
-      seen.centre.x,
-      seen.centre.y,
-      seen.scale,
-      seen.rotation,
-      canvas.width,
-      canvas.height,
-      this.#road.shape,
-      scene.racingLine,
-      scene.corners,
-      scene.start,
-      scene.size,
-      scene.losses,
-      theme(),
-    ];
+    const { centre, scale, rotation } = seen;
+    const still = [centre.x, centre.y, scale, rotation, canvas.width, canvas.height, theme(), ...Object.values(world)];
     const mark = cursorMark();
+    const { ghost } = scene;
     // In a paused run the picture does not change.
-    const shownNow = [
-      ...still,
-      live.frame,
-      live.plan,
-      road.reference,
-      live.trace.newest(0),
-      car?.x,
-      car?.y,
-      car?.yaw,
-      scene.hindsight?.plan,
-      scene.ghost?.x,
-      scene.ghost?.y,
-      faultMarks.value,
-      mark?.x,
-      mark?.y,
-    ];
+    const moving = [live.frame, live.plan, road.reference, live.trace.newest(0), scene.hindsight?.plan, scene.faults];
+    const places = [car?.x, car?.y, car?.yaw, ghost?.x, ghost?.y, mark?.x, mark?.y];
+    const shownNow = [...still, ...moving, ...places];
     if (isSame(shownNow, this.#shown)) return;
     this.#shown = shownNow;
     this.#drawn = { car, plan: pointsOf(plan) };
     this.#seen = seen;
     this.#drawWorld(context, scene, seen, still, ratio);
-    drawMoving(context, scene, seen, theme(), ratio);
-    if (mark) drawCursor(context, mark, seen, theme(), ratio);
+    drawMoving(context, scene, seen, ratio);
+    if (mark) drawCursor(context, mark, seen, ratio);
   }
 
   /** Draws the static part; copies it while the camera does not move. */
@@ -192,13 +169,13 @@ class Painter {
     const isStill = isSame(key, this.#worldKey);
     this.#worldKey = key;
     if (!isStill) {
-      drawWorld(context, scene, seen, theme(), ratio);
+      drawWorld(context, scene, seen, ratio);
       return;
     }
     const { width, height } = this.#paper.canvas;
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.drawImage(
-      this.#world.picture(key, width, height, (own) => drawWorld(own, scene, seen, theme(), ratio)),
+      this.#world.picture(key, width, height, (own) => drawWorld(own, scene, seen, ratio)),
       0,
       0,
     );
@@ -274,15 +251,13 @@ function SmallMap() {
       const { width, height } = paper.canvas;
       const seen = fitting(box, paper.box.width, paper.box.height, allRound(10));
       const picture = still.picture([shape, losses, theme(), width, height], width, height, (own) => {
-        drawOutline(own, shape, seen, theme(), ratio);
-        if (losses)
-          drawLosses(own, losses, { ...theme(), lost: theme().lostInText, won: theme().wonInText }, 4 / seen.scale);
+        drawOutline(own, shape, losses, seen, ratio);
       });
       context.setTransform(1, 0, 0, 1, 0, 0);
       context.clearRect(0, 0, width, height);
       context.drawImage(picture, 0, 0);
       const car = carNow(now);
-      if (car) drawDot(context, car, seen, theme(), ratio);
+      if (car) drawDot(context, car, seen, ratio);
     });
     return () => {
       stop();
