@@ -6,12 +6,13 @@
 # PRIVATE_HEADERS are for our own sources and not installed, HEADERS lie elsewhere. SIMD_SOURCES are compiled once for each instruction set
 # (InstructionSets.cmake). A test has every *_test.cpp of its folder but those WITHOUT, and FURTHER sources; or its SOURCES alone. Each of its
 # tests is a process of its own, but those of a suite in SUITES, which share what takes long to make. OWN_OPTIONS is for tests that are
-# compiled with further options, and so cannot have the precompiled headers of the others.
+# compiled with further options, and so cannot have the precompiled headers of the others; RUN_HEADERS for those that include the headers of
+# runs or of JSON, which are precompiled for them, too.
 #
 # Most of a small source file's compile time goes into the headers that it includes. UNITY compiles the module's sources as one file,
 # and chicane_unity(TARGET GROUP FILE...) some of a target's, so names in their anonymous namespaces must differ; files that no group
-# names, such as those of a new controller, are compiled alone. LIGHT is for what no control step waits for: -O1. Tests have -Og.
-# docs/measured/program.md says what this is good for.
+# names, such as those of a new controller, are compiled alone. A test that names no groups is one file, too. LIGHT is for what no control
+# step waits for: -O1. Tests have -Og. docs/measured/program.md says what this is good for.
 option(CHICANE_UNITY "Compile groups of sources as one file; OFF, as in the preset dev: each alone" ON)
 
 function(chicane_unity target group)
@@ -95,7 +96,7 @@ function(chicane_test_options target)
 endfunction()
 
 function(chicane_test name)
-  cmake_parse_arguments(T "OWN_OPTIONS" "" "SOURCES;FURTHER;WITHOUT;DEPENDS;LABELS;PRIVATE;SUITES" ${ARGN})
+  cmake_parse_arguments(T "OWN_OPTIONS;RUN_HEADERS" "" "SOURCES;FURTHER;WITHOUT;DEPENDS;LABELS;PRIVATE;SUITES" ${ARGN})
   if(NOT T_DEPENDS)
     set(T_DEPENDS ${name})
   endif()
@@ -106,13 +107,18 @@ function(chicane_test name)
   list(TRANSFORM T_DEPENDS PREPEND chicane_)
   set(target ${name}_test)
   add_executable(${target} ${T_SOURCES} ${T_FURTHER})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${CHICANE_UNITY} UNITY_BUILD_BATCH_SIZE 0)
   chicane_test_options(${target})
   target_link_libraries(${target} PRIVATE ${T_DEPENDS} ${T_PRIVATE})
   if(NOT CMAKE_CROSSCOMPILING)
     set_target_properties(${target} PROPERTIES CROSSCOMPILING_EMULATOR "${chicane_measured};-")
   endif()
   if(NOT T_OWN_OPTIONS)
-    target_precompile_headers(${target} REUSE_FROM chicane_test_headers)
+    set(headers chicane_test_headers)
+    if(T_RUN_HEADERS)
+      set(headers chicane_run_test_headers)
+    endif()
+    target_precompile_headers(${target} REUSE_FROM ${headers})
   endif()
   # One label with all words in it, which `ctest -L` and `-LE` find: gtest_discover_tests takes lists apart.
   string(JOIN ":" labels ${name} ${T_LABELS})

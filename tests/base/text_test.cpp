@@ -14,8 +14,6 @@
 namespace chicane {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 TEST(Text, WritesNumbersAsPeopleDo) {
   EXPECT_EQ(number_text(0.0), "0");
   EXPECT_EQ(number_text(-0.0), "-0");
@@ -25,7 +23,7 @@ TEST(Text, WritesNumbersAsPeopleDo) {
   EXPECT_EQ(number_text(1e16), "1e+16");
   EXPECT_EQ(number_text(1e-4), "0.0001");
   EXPECT_EQ(number_text(1e-5), "1e-05");
-  EXPECT_EQ(number_text(-kInfinity), "-inf");
+  EXPECT_EQ(number_text(-std::numeric_limits<double>::infinity()), "-inf");
   EXPECT_EQ(number_text(std::numeric_limits<double>::quiet_NaN()), "nan");
 }
 

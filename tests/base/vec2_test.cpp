@@ -48,10 +48,10 @@ TEST(Vec2, DividesEachComponentOnce) { EXPECT_EQ(Vec2(5.0, 10.0) / 3.0, Vec2(5.0
 
 TEST(Vec2, KnowsWhetherItIsFinite) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(Vec2(1e308, -1e308).is_finite());
   EXPECT_FALSE(Vec2(kNan, 0.0).is_finite());
-  EXPECT_FALSE(Vec2(0.0, -kInfinity).is_finite());
+  EXPECT_FALSE(Vec2(0.0, -infinity).is_finite());
 }
 
 }  // namespace

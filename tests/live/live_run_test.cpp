@@ -16,7 +16,7 @@
 namespace chicane::live {
 namespace {
 
-scenario::Scenario scenario_of(const std::string& laps) {
+scenario::Scenario laps_of_oval(const std::string& laps) {
   return protocol::compose(
              {.scenario_file = {}, .settings = {{"preset", "pid"}, {"track", "oval"}, {"laps", laps}}})
       .value();
@@ -31,7 +31,7 @@ Result<std::unique_ptr<LiveRun>> fast_run(const scenario::Scenario& scenario, ru
 }
 
 TEST(LiveRun, DrivesToItsEndAndRecordsAllOfIt) {
-  scenario::Scenario scenario = scenario_of("1");
+  scenario::Scenario scenario = laps_of_oval("1");
   scenario.time_limit = 8.0;
   run::RunControls controls;
   const auto live = fast_run(scenario, controls);
@@ -70,7 +70,7 @@ TEST(LiveRun, TellsOfEachLapTheLastOneToo) {
 }
 
 TEST(LiveRun, BeginsWithAPersonAtTheWheelWhenAsked) {
-  scenario::Scenario scenario = scenario_of("1");
+  scenario::Scenario scenario = laps_of_oval("1");
   scenario.time_limit = 1.0;
   run::RunControls controls;
   LiveRunOptions options;
@@ -87,12 +87,12 @@ TEST(LiveRun, StopsWhenAskedAndRefusesAPaceThatIsNone) {
   run::RunControls controls;
   LiveRunOptions options;
   options.pace = 1000.0;
-  const auto refused = fast_run(scenario_of("1"), controls, options);
+  const auto refused = fast_run(laps_of_oval("1"), controls, options);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("run.pace: got 1000"), std::string::npos);
 
   run::RunControls stopping;
-  const auto live = fast_run(scenario_of("0"), stopping);
+  const auto live = fast_run(laps_of_oval("0"), stopping);
   ASSERT_TRUE(live);
   int frames = 0;
   const telemetry::RunSummary summary = (*live)->run(

@@ -213,11 +213,11 @@ TEST(RunLog, HasAFewCheckpointsNeverFartherBehindAMomentThanItIsAgo) {
   const auto loop = oval();
   RunLog log(true);
   log.begin(loop->scenario());
-  drive(*loop, log, 3000);
+  drive(*loop, log, 1800);
   const double now = loop->time();
   const recording::BranchOptions newest{.at = 1e9, .duration = 1.0, .drives_both = true};
   branch_from_checkpoint(log, newest, 260);
-  for (const double at : {12.0, 40.0, 75.0, 95.0, 115.0}) {
+  for (const double at : {7.0, 24.0, 45.0, 57.0, 68.0}) {
     const auto report = log.branch({.at = at, .duration = 1.0, .drives_both = true}, {});
     ASSERT_TRUE(report) << report.error().message;
     EXPECT_FALSE(report->first_difference);

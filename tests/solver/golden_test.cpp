@@ -106,12 +106,12 @@ TEST_P(Golden, ColdStartsEndNoHigher) {
   if (!each_problem(GetParam(), compare)) GTEST_SKIP() << "no reference problems in " << kFolder;
 }
 
-std::string name_of(const testing::TestParamInfo<GoldenSet>& info) {
+std::string name_of_set(const testing::TestParamInfo<GoldenSet>& info) {
   return "Lap" + std::string(info.param.lap) + "N" + std::to_string(info.param.nodes);
 }
 constexpr GoldenSet kSets[] = {{"30mps", 7},  {"30mps", 10}, {"30mps", 20}, {"30mps", 25},
                                {"30mps", 50}, {"16mps", 50}, {"8mps", 100}, {"4mps", 200}};
-INSTANTIATE_TEST_SUITE_P(OcpSolver, Golden, testing::ValuesIn(kSets), name_of);
+INSTANTIATE_TEST_SUITE_P(OcpSolver, Golden, testing::ValuesIn(kSets), name_of_set);
 
 }  // namespace
 }  // namespace chicane

@@ -12,7 +12,7 @@
 /// Problems and starts for comparisons with Ipopt.
 namespace chicane::test {
 
-constexpr int kIpoptCapacity = 50;
+constexpr int kIpoptCapacity = 200;
 
 /// Where a solve starts from: inputs of zero, those of a path-following law, or the optimum of a slightly
 /// different problem.

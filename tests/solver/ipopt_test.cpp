@@ -22,16 +22,14 @@ using bench::DescribedProblem;
 using solver::SolveStatus;
 using namespace test;
 
-constexpr int kCapacity = kIpoptCapacity;
-
 struct AgainstIpopt : testing::TestWithParam<Family> {};
 
 TEST_P(AgainstIpopt, AgreesOnTheOptimumOfTheDescribedProblem) {
-  const auto ocp = std::make_unique<solver::OcpSolver<DescribedProblem, kCapacity>>();
+  const auto ocp = std::make_unique<solver::OcpSolver<DescribedProblem, kIpoptCapacity>>();
   Random random{1000 + static_cast<std::uint64_t>(GetParam().horizon)};
   for (int i = 0; i < GetParam().count; ++i) {
     const auto instance = bench::random_instance(random, GetParam().horizon);
-    bench::DescribedTrajectory<kCapacity> own;
+    bench::DescribedTrajectory<kIpoptCapacity> own;
     own.horizon = GetParam().horizon;
     choose_start(GetParam().start, instance, instance.problem, *ocp, own);
     auto reference = own;
