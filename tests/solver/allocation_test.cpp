@@ -24,14 +24,14 @@ TEST(AllocationGuard, CountsEveryWayToTheHeap) {
 }
 
 TEST(OcpSolver, AllocatesNothingInAHundredSolves) {
-  constexpr int kCapacity = 20;
-  const auto solver = std::make_unique<solver::OcpSolver<bench::DescribedProblem, kCapacity>>();
-  const auto trajectory = std::make_unique<bench::DescribedTrajectory<kCapacity>>();
+  constexpr int kLongest = 20;
+  const auto solver = std::make_unique<solver::OcpSolver<bench::DescribedProblem, 50>>();
+  const auto trajectory = std::make_unique<bench::DescribedTrajectory<50>>();
   Random random{1};
   const test::AllocationGuard guard;
   for (int i = 0; i < 100; ++i) {
-    const bench::DescribedInstance instance = bench::random_instance(random, kCapacity);
-    trajectory->horizon = 1 + i % kCapacity;
+    const bench::DescribedInstance instance = bench::random_instance(random, kLongest);
+    trajectory->horizon = 1 + i % kLongest;
     const auto report = solver->solve(instance.problem, instance.start, *trajectory);
     ASSERT_EQ(report.status, solver::SolveStatus::kOptimal);
     solver::shift(*trajectory, 1.0);

@@ -69,15 +69,15 @@ TEST(SoftConstraint, SmoothedPenaltyTendsToTheExactOne) {
 }
 
 struct SoftOcp : testing::Test {
-  static constexpr int kCapacity = 20;
-  using Solver = solver::OcpSolver<CorridorProblem, kCapacity>;
+  static constexpr int kHorizon = 20;
+  using Solver = solver::OcpSolver<CorridorProblem, 60>;
   std::unique_ptr<Solver> ocp = std::make_unique<Solver>();
-  bench::DescribedTrajectory<kCapacity> trajectory;
+  bench::DescribedTrajectory<60> trajectory;
   CorridorProblem problem;
   std::array<double, 8> start{};
 
   SoftOcp() {
-    trajectory.horizon = kCapacity;
+    trajectory.horizon = kHorizon;
     problem.path = {0.3, 0.05, 0.0, 0.0};
     problem.speed_reference = 12.0;
     bench::DescribedInstance plain{.problem = static_cast<const bench::DescribedProblem&>(problem)};
@@ -124,12 +124,12 @@ TEST_F(SoftOcp, WhateverTheStatusTheReportIsOfTheAnswer) {
   Random random{81};
   int cut_short = 0;
   for (int i = 0; i < 40; ++i) {
-    bench::CorridorInstance instance = bench::random_corridor(random, kCapacity);
+    bench::CorridorInstance instance = bench::random_corridor(random, kHorizon);
     instance.problem.penalty = {.linear = 3e4, .quadratic = 1e4};
     for (int iterations = 1; iterations <= 40; ++iterations) {
       *ocp = Solver{{.max_iterations = iterations}};
       trajectory = {};
-      trajectory.horizon = kCapacity;
+      trajectory.horizon = kHorizon;
       Random guess{static_cast<std::uint64_t>(i) + 5};
       for (auto& u : trajectory.u) u = {guess.uniform(-0.43, 0.43), guess.uniform(-1.0, 1.0)};
       const auto report = ocp->solve(instance.problem, instance.start, trajectory);
@@ -137,7 +137,7 @@ TEST_F(SoftOcp, WhateverTheStatusTheReportIsOfTheAnswer) {
       double worst = 0.0;
       int stage = -1;
       int constraint = -1;
-      for (int k = 0; k < kCapacity; ++k) {
+      for (int k = 0; k < kHorizon; ++k) {
         const auto values = instance.problem.constraint(k, trajectory.x[k], trajectory.u[k]);
         for (int c = 0; c < 2; ++c) {
           if (!(values[static_cast<std::size_t>(c)] > worst)) continue;
@@ -162,7 +162,7 @@ TEST_F(SoftOcp, KnowsTheMultiplierOfAConstraint) {
   *ocp = Solver{{.tolerance = 1e-9}};
   ASSERT_EQ(solve().status, SolveStatus::kOptimal);
   int violated = 0;
-  for (int k = 0; k < kCapacity; ++k) {
+  for (int k = 0; k < kHorizon; ++k) {
     const auto values = problem.constraint(k, trajectory.x[k], trajectory.u[k]);
     for (int c = 0; c < 2; ++c) {
       const double value = values[static_cast<std::size_t>(c)];
@@ -205,7 +205,7 @@ TEST_F(SoftOcp, AHigherPenaltyLeavesLessViolation) {
     problem.penalty = {.linear = scale, .quadratic = scale};
     ASSERT_EQ(solve().status, SolveStatus::kOptimal) << scale;
     double penalty = 0.0;  // at unit penalty
-    for (int k = 0; k < kCapacity; ++k) {
+    for (int k = 0; k < kHorizon; ++k) {
       for (const double value : problem.constraint(k, trajectory.x[k], trajectory.u[k])) {
         if (value > 0.0) penalty += value + 0.5 * value * value;
       }

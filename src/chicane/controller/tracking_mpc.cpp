@@ -35,10 +35,9 @@ constexpr double kSlow = 6.0;               // [m/s] below which it may turn rou
 constexpr double kJoining = 0.2;            // [rad] to the road at which a car that returns has joined it
 constexpr double kSpeedAhead = 4.0;         // [m/s] wanted at most beyond what the last answer reaches
 constexpr double kSteadySpeed = 25.0;  // [m/s] from which on the weight on the steering rate grows as v²
-constexpr double kExcessSteerRate = 100.0;  // [s/rad] root weight on a rate that the actuator does not have
-constexpr double kLongestHold = 0.3;        // [s] the first command is assumed to be held at most this long
-constexpr double kBlindAfter = 0.3;         // [s] without a measurement, or a waypoint: stop
-constexpr double kPreview = 0.3;            // [s] the car answers the wheel about so late
+constexpr double kLongestHold = 0.3;   // [s] the first command is assumed to be held at most this long
+constexpr double kBlindAfter = 0.3;    // [s] without a measurement, or a waypoint: stop
+constexpr double kPreview = 0.3;       // [s] the car answers the wheel about so late
 constexpr double kCrawl = 3.0;  // [m/s] below it the fallback brings the car to rest, and no plan races
 
 class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable<TrackingMpcOptions> {
@@ -111,7 +110,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const bool slides =
         options_.slide && is_known && grip_.may_slide(grip, result_.report.delay, lap->slides());
     const double kept = lap != nullptr ? lap->slip() : 1.0;
-    const double slip = grip_.is_shown() || !options_.learns() ? reserve_.for_plan(kept) : kept;
+    const double slip = grip_.is_shown() ? reserve_.for_plan(kept) : kept;
     return {.is_wanted = lap == nullptr || grip != planned || slides != lap->slides() || slip != kept,
             .waypoints = is_known ? std::span<const Vec2>{} : waypoints,
             .grip = grip,
@@ -159,7 +158,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
                        .jerk = std::sqrt(options_.weight_jerk),
                        .edge = std::sqrt(options_.weight_edge),
                        .slip = std::sqrt(options_.weight_slip),
-                       .excess_steer_rate = kExcessSteerRate,
+                       .excess_steer_rate = 100.0,
                        .friction = std::sqrt(options_.weight_slip)};
     shape_edges();
   }
@@ -286,7 +285,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     }
     if (road_.is_raced() && !(configured_.friction_coupling > 0.0)) iterations_ = kRacingIterations;
     if (road_.is_raced()) mind_helper_gap(problem_, horizon_, line(), s_);
-    correct_first();
+    problem_.correct_first(x0_, horizon_.u[0]);
     act_time_ = act_time;
     old_first_ = first;
     old_step_ = step;
@@ -344,15 +343,6 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
       keep_sane(horizon_.x[i + 1]);
     }
     ask_road(horizon_.horizon, horizon_.x[static_cast<std::size_t>(horizon_.horizon)]);
-  }
-
-  /// A long first stage moves as several steps would, at least for the first guess of its input.
-  void correct_first() noexcept {
-    const int parts = static_cast<int>(problem_.first.length / problem_.others.length + 0.75);
-    if (parts < 2) return;
-    const StageState exact = problem_.move_in_parts(0, x0_, horizon_.u[0], parts);
-    const StageState rough = problem_.move_in_parts(0, x0_, horizon_.u[0], 1);
-    for (std::size_t i = 0; i < exact.size(); ++i) problem_.first_correction[i] = exact[i] - rough[i];
   }
 
   /// What the road asks at stage k where the car is about to be in state x.

@@ -230,6 +230,14 @@ struct TrackingProblem {
       0.93;  ///< of the longitudinal force: the rest keeps the car on its course
 
  public:
+  /// A long first stage from x moves as several steps would, at least for the first guess u of its input.
+  void correct_first(const State& x, const Input& u) noexcept {
+    const int parts = static_cast<int>(first.length / others.length + 0.75);
+    if (parts < 2) return;
+    const State exact = move_in_parts(0, x, u, parts);
+    const State rough = move_in_parts(0, x, u, 1);
+    for (std::size_t i = 0; i < exact.size(); ++i) first_correction[i] = exact[i] - rough[i];
+  }
   /// The motion over stage k in `parts` steps, without first_correction and what a disturbance adds.
   [[nodiscard]] State move_in_parts(int k, const State& x, const Input& u, int parts) const noexcept {
     const double h = step(k).length / parts;
