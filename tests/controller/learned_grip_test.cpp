@@ -139,18 +139,18 @@ double slip_share(double heading_noise, double rate_limit = 1.5, double planned 
 
 TEST(SlipReserve, GrowsWithTheNoiseOfTheSensorsAndWithASlowSteering) {
   EXPECT_EQ(slip_share(0.0), 1.0) << "a car that is surely as it seems gives nothing away";
-  const double usual = slip_share(0.005);
+  const double usual = slip_share(0.002);
   EXPECT_LT(usual, 0.9);
   EXPECT_GT(usual, 0.5);
-  EXPECT_LT(slip_share(0.01), usual);
-  EXPECT_LT(slip_share(0.005, 0.4), usual);
+  EXPECT_LT(slip_share(0.004), usual);
+  EXPECT_LT(slip_share(0.002, 0.4), usual);
   EXPECT_GE(slip_share(0.1), 1.0 - SlipReserve::kMost - 1e-9) << "no lap stands";
 }
 
 TEST(SlipReserve, KeepsALapThatIsNearlyTheWantedOne) {
-  const double wanted = slip_share(0.005);
-  EXPECT_EQ(slip_share(0.005, 1.5, wanted + 0.01), wanted + 0.01);
-  EXPECT_EQ(slip_share(0.005, 1.5, 0.4), wanted);
+  const double wanted = slip_share(0.002);
+  EXPECT_EQ(slip_share(0.002, 1.5, wanted + 0.01), wanted + 0.01);
+  EXPECT_EQ(slip_share(0.002, 1.5, 0.4), wanted);
 }
 
 }  // namespace

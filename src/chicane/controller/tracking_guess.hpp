@@ -130,7 +130,7 @@ class SlipReserve {
   static constexpr double kPerSecond = 67.0;  ///< deviations that are kept back, over that time [1/s]
   static constexpr double kStep = 0.05;       ///< shares are multiples of it
   static constexpr double kMost = 0.4;        ///< that is kept back
-  static constexpr double kFast = 40.0;       ///< [m/s] below which a car takes an error back more easily
+  static constexpr double kFast = 20.0;       ///< [m/s] below which a car takes an error back more easily
   static constexpr double kNothing = 0.1;     ///< less is not kept back
 
   void forget() noexcept { *this = {}; }

@@ -158,7 +158,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
                        .jerk = std::sqrt(options_.weight_jerk),
                        .edge = std::sqrt(options_.weight_edge),
                        .slip = std::sqrt(options_.weight_slip),
-                       .excess_steer_rate = 100.0,
+                       .excess_steer_rate = 40.0,
                        .friction = std::sqrt(options_.weight_slip)};
     shape_edges();
   }
