@@ -39,7 +39,7 @@ TEST(Attack, DoesNotLeadOffTheRoad) {
                              {"creep", "road-car", "lakeside", 12.0},
                              {"lock", "f1tenth", "lakeside", 8.0},
                              {"rock", "f1tenth", "lakeside", 8.0},
-                             {"blind_throttle", "f1tenth", "lakeside", 23.0, -0.9},
+                             {"blind_throttle", "f1tenth", "lakeside", 23.0, -0.8},
                              {"random_hold", "udacity", "lakeside", 30.0},
                              {"lock", "udacity", "lakeside", 10.0},
                              {"bang_bang", "udacity", "oval", 20.0},
