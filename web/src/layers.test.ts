@@ -6,7 +6,7 @@ import { expect, it } from 'vitest';
 // in the page.
 
 const ALLOWED: Readonly<Record<string, readonly string[]>> = {
-  protocol: ['lib'],
+  protocol: [],
   lib: ['protocol'],
   page: ['protocol', 'lib'],
   draw: ['lib', 'state'],

@@ -1,15 +1,13 @@
-import type { Point } from '../lib/math';
-import type { Pose } from '../lib/poses';
+import type { Box, Point } from '../lib/math';
 import type { Limit } from '../protocol/topics';
-import type { Hindsight } from '../state/hindsight';
+import type { Hindsight, Pose } from '../state/hindsight';
 import type { RoadLines } from '../state/road';
 import type { Losses, MarkedCorner } from '../state/road_marks';
-import { type Brush, brushOn } from './brush';
-import { type Camera, groundGrid } from './camera';
+import { type Camera, groundGrid, transformOf, worldInView } from './camera';
 import type { CarShape } from './car';
 import { addLine, type Line, lengthsOf, lineOf, longestStep, stretchesInside } from './line';
 import { drawCornerNumbers, drawKerbs, drawLosses, drawStartLine } from './road_marks';
-import { theme } from './theme';
+import type { Theme } from './theme';
 
 /** The content of one picture of the map; lengths in metres, angles in radians, in W. */
 export interface Scene {
@@ -57,7 +55,9 @@ export function roadShape(road: RoadLines): RoadShape | null {
   };
 }
 
-function stroke({ ctx }: Brush, path: Path2D, colour: string, width: number): void {
+type Context = CanvasRenderingContext2D;
+
+function stroke(ctx: Context, path: Path2D, colour: string, width: number): void {
   ctx.strokeStyle = colour;
   ctx.lineWidth = width;
   ctx.stroke(path);
@@ -67,10 +67,10 @@ function stroke({ ctx }: Brush, path: Path2D, colour: string, width: number): vo
  * A square grid on the ground, which shows speed off the road too. Stroked line by line: as one path of crossing lines
  * it took a tenth of a core with software rendering.
  */
-function drawGround({ ctx, camera, colours, ratio, px, size }: Brush): void {
+function drawGround(ctx: Context, camera: Camera, colour: string, ratio: number, size: number): void {
   const { spacing, from, to } = groundGrid(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio, 5 * size);
-  ctx.strokeStyle = colours.landLine;
-  ctx.lineWidth = px;
+  ctx.strokeStyle = colour;
+  ctx.lineWidth = 1 / camera.scale;
   const draw = (x: number, y: number, toX: number, toY: number): void => {
     ctx.beginPath();
     ctx.moveTo(x, y);
@@ -81,8 +81,14 @@ function drawGround({ ctx, camera, colours, ratio, px, size }: Brush): void {
   for (let y = from.y; y <= to.y; y += spacing) draw(from.x, y, to.x, y);
 }
 
-function drawRoad(brush: Brush, { left, right, centre, lengths, reach }: RoadShape): void {
-  const { ctx, view, colours, px, size } = brush;
+function drawRoad(
+  ctx: Context,
+  { left, right, centre, lengths, reach }: RoadShape,
+  view: Box,
+  colours: Theme,
+  px: number,
+  size: number,
+): void {
   const stretches = stretchesInside(centre, view, reach);
   const [surface, edges] = [new Path2D(), new Path2D()];
   for (const [first, end] of stretches) {
@@ -93,13 +99,13 @@ function drawRoad(brush: Brush, { left, right, centre, lengths, reach }: RoadSha
   }
   ctx.fillStyle = colours.road;
   ctx.fill(surface);
-  stroke(brush, edges, colours.mark, Math.max(0.15 * size, 1.5 * px));
+  stroke(ctx, edges, colours.mark, Math.max(0.15 * size, 1.5 * px));
   ctx.setLineDash([3 * size, 6 * size]);
   for (const [first, end] of stretches) {
     const dashes = new Path2D();
     addLine(dashes, centre, first, end);
     ctx.lineDashOffset = lengths[first] ?? 0; // keeps the dashes fixed to the road
-    stroke(brush, dashes, colours.mark, Math.max(0.1 * size, 0.75 * px));
+    stroke(ctx, dashes, colours.mark, Math.max(0.1 * size, 0.75 * px));
   }
   ctx.lineDashOffset = 0;
   ctx.setLineDash([]);
@@ -108,39 +114,50 @@ function drawRoad(brush: Brush, { left, right, centre, lengths, reach }: RoadSha
 const JUMP_M = 20; // the car was placed elsewhere: no line across the jump
 
 /** The part of a line that is in view; longer steps than `reach` are jumps [m]. */
-function drawInView(brush: Brush, points: Line, reach: number, colour: string, width: number): void {
+function drawInView(ctx: Context, points: Line, view: Box, reach: number, colour: string, width: number): void {
   const path = new Path2D();
-  for (const [first, end] of stretchesInside(points, brush.view, reach)) addLine(path, points, first, end, reach);
-  stroke(brush, path, colour, width);
+  for (const [first, end] of stretchesInside(points, view, reach)) addLine(path, points, first, end, reach);
+  stroke(ctx, path, colour, width);
 }
 
-function drawLine(brush: Brush, line: Line, colour: string, width: number): void {
+function trail(points: readonly Point[]): Path2D {
   const path = new Path2D();
-  addLine(path, line, 0, line.x.length);
-  stroke(brush, path, colour, width);
+  for (const { x, y } of points) path.lineTo(x, y);
+  return path;
+}
+
+function line(xs: ArrayLike<number>, ys: ArrayLike<number>): Path2D {
+  const path = new Path2D();
+  for (let i = 0; i < xs.length; ++i) path.lineTo(xs[i] ?? NaN, ys[i] ?? NaN);
+  return path;
 }
 
 const reaches = new WeakMap<Limit, number>();
 
 /** Thin and solid: dashes would double the cost. */
-function drawRacingLine(brush: Brush, limit: Limit): void {
+function drawRacingLine(ctx: Context, limit: Limit, view: Box, colours: Theme, px: number, size: number): void {
   const points = { x: limit.x_m, y: limit.y_m };
   const reach = reaches.get(limit) ?? longestStep(points);
   reaches.set(limit, reach);
-  drawInView(brush, points, reach, brush.colours.b, Math.max(0.2 * brush.size, 1.5 * brush.px));
+  drawInView(ctx, points, view, reach, colours.b, Math.max(0.2 * size, 1.5 * px));
 }
 
 /** A past plan as a broad band, with the path driven since on top. */
-function drawHindsight(brush: Brush, { plan, drivenX, drivenY }: Hindsight): void {
-  const { ctx, colours, px, size } = brush;
+function drawHindsight(
+  ctx: Context,
+  { plan, drivenX, drivenY }: Hindsight,
+  colours: Theme,
+  px: number,
+  size: number,
+): void {
   ctx.globalAlpha = 0.6;
-  drawLine(brush, { x: plan.x_m, y: plan.y_m }, colours.pastPlan, Math.max(1.1 * size, 8 * px));
+  stroke(ctx, line(plan.x_m, plan.y_m), colours.pastPlan, Math.max(1.1 * size, 8 * px));
   ctx.globalAlpha = 1;
-  drawLine(brush, { x: drivenX, y: drivenY }, colours.a, Math.max(0.18 * size, 2 * px));
+  stroke(ctx, line(drivenX, drivenY), colours.a, Math.max(0.18 * size, 2 * px));
 }
 
-function drawWheels({ ctx, colours }: Brush, shape: CarShape): void {
-  ctx.fillStyle = colours.wheel;
+function drawWheels(ctx: Context, shape: CarShape, colour: string): void {
+  ctx.fillStyle = colour;
   for (const wheel of shape.wheels) {
     ctx.save();
     ctx.translate(wheel.x, wheel.y);
@@ -152,51 +169,41 @@ function drawWheels({ ctx, colours }: Brush, shape: CarShape): void {
 
 /** Radii of a body seen from above: tail, nose, nose, tail. */
 const NOSE_M = [0.5, 0.9, 0.9, 0.5];
-const NARROW = 0.84; // than the wheels, so that they are seen to steer
 
-type Car = NonNullable<Scene['car']>;
-
-/** From far away a car is drawn enlarged, at least 18 px long. */
-const grownBy = ({ front, rear }: CarShape, px: number): number => Math.max(1, (18 * px) / (front - rear));
-
-/** The outline of a car's body at a pose, as the path that is drawn next; in the axes of the body until restored. */
-function outline({ ctx, px }: Brush, { x, y, yaw }: Point & { yaw: number }, { shape }: Car): void {
-  const { front, rear, halfWidth, size } = shape;
-  const [grown, narrow] = [grownBy(shape, px), NARROW * halfWidth];
-  ctx.save();
-  ctx.translate(x, y);
-  ctx.rotate(yaw);
-  ctx.scale(grown, grown);
-  ctx.beginPath();
-  ctx.roundRect(
-    rear,
-    -narrow,
-    front - rear,
-    2 * narrow,
-    NOSE_M.map((radius) => radius * size),
-  );
-}
-
-function drawCar(brush: Brush, car: Car): void {
-  const { ctx, colours, px } = brush;
+function drawCar(ctx: Context, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
   const { shape } = car;
   const { size } = shape;
   const length = shape.front - shape.rear;
-  const [grown, narrow] = [grownBy(shape, px), NARROW * shape.halfWidth];
+  ctx.save();
+  ctx.translate(car.x, car.y);
+  ctx.rotate(car.yaw);
+  // From far away the car is drawn enlarged, at least 18 px long, with a ring around it.
+  const grown = Math.max(1, (18 * px) / length);
   if (grown > 1) {
     ctx.beginPath();
-    ctx.arc(car.x, car.y, 15 * px, 0, 2 * Math.PI);
+    ctx.arc(0, 0, 15 * px, 0, 2 * Math.PI);
     ctx.strokeStyle = colours.a;
     ctx.lineWidth = 3 * px;
     ctx.stroke();
   }
-  outline(brush, car, car);
-  drawWheels(brush, shape);
+  ctx.scale(grown, grown);
+  drawWheels(ctx, shape, colours.wheel);
+
+  const narrow = shape.halfWidth * 0.84; // narrower than the wheels, so that they are seen to steer
+  ctx.beginPath();
+  ctx.roundRect(
+    shape.rear,
+    -narrow,
+    length,
+    2 * narrow,
+    NOSE_M.map((radius) => radius * size),
+  );
   ctx.fillStyle = colours.car;
   ctx.fill();
   ctx.strokeStyle = colours.wheel;
   ctx.lineWidth = Math.max(0.06 * size, (1 * px) / grown);
   ctx.stroke();
+
   ctx.beginPath();
   ctx.roundRect(shape.rear + 0.24 * length, -0.78 * narrow, 0.4 * length, 1.56 * narrow, 0.4 * size);
   ctx.fillStyle = colours.glass;
@@ -214,7 +221,7 @@ function drawCar(brush: Brush, car: Car): void {
 }
 
 /** A triangle where a fault began. */
-function drawFault({ ctx, colours, px, size: unit }: Brush, { x, y }: Point): void {
+function drawFault(ctx: Context, { x, y }: Point, colours: Theme, px: number, unit: number): void {
   const size = Math.max(0.9 * unit, 7 * px);
   ctx.beginPath();
   ctx.moveTo(x, y + size);
@@ -228,100 +235,133 @@ function drawFault({ ctx, colours, px, size: unit }: Brush, { x, y }: Point): vo
   ctx.stroke();
 }
 
+/** The car's outline at another pose. */
+function outline(ctx: Context, pose: Pose, { shape }: NonNullable<Scene['car']>, px: number): void {
+  const grown = Math.max(1, (18 * px) / (shape.front - shape.rear));
+  ctx.translate(pose.x, pose.y);
+  ctx.rotate(pose.yaw);
+  ctx.scale(grown, grown);
+  ctx.beginPath();
+  ctx.roundRect(
+    shape.rear,
+    -0.84 * shape.halfWidth,
+    shape.front - shape.rear,
+    1.68 * shape.halfWidth,
+    NOSE_M.map((radius) => radius * shape.size),
+  );
+}
+
 /** The pose that the plan of a second ago predicts for now. */
-function drawPredicted(brush: Brush, pose: Pose, car: Car): void {
-  outline(brush, pose, car);
-  brush.ctx.restore();
-  brush.ctx.strokeStyle = brush.colours.pastPlan;
-  brush.ctx.lineWidth = Math.max(0.15 * car.shape.size, 1.5 * brush.px);
-  brush.ctx.stroke();
+function drawPredicted(ctx: Context, pose: Pose, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
+  ctx.save();
+  outline(ctx, pose, car, px);
+  ctx.restore();
+  ctx.strokeStyle = colours.pastPlan;
+  ctx.lineWidth = Math.max(0.15 * car.shape.size, 1.5 * px);
+  ctx.stroke();
 }
 
 /** The ghost car; not drawn where it would overlap the car itself. */
-function drawGhost(brush: Brush, ghost: Pose, car: Car): void {
-  const { ctx, colours, px } = brush;
-  const { size } = car.shape;
-  if (Math.hypot(ghost.x - car.x, ghost.y - car.y) < Math.max(size, grownBy(car.shape, px))) return;
-  outline(brush, ghost, car);
+function drawGhost(ctx: Context, ghost: Pose, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
+  const { shape } = car;
+  const { size } = shape;
+  if (Math.hypot(ghost.x - car.x, ghost.y - car.y) < Math.max(size, (18 * px) / (shape.front - shape.rear))) return;
+  ctx.save();
+  outline(ctx, ghost, car, px);
   ctx.globalAlpha = 0.45;
   ctx.fillStyle = colours.b;
   ctx.fill();
   ctx.restore();
 }
 
-/** The static part of the scene: ground, road, racing line. Covers the whole canvas. */
+/**
+ * The static part of the scene: ground, road, racing line. Covers the whole canvas, which has `ratio` device pixels
+ * to a CSS pixel.
+ */
 export function drawWorld(
-  ctx: CanvasRenderingContext2D,
+  ctx: Context,
   scene: Pick<Scene, 'road' | 'racingLine' | 'corners' | 'kerb' | 'start' | 'losses' | 'size'>,
   camera: Camera,
+  colours: Theme,
   ratio: number,
 ): void {
   ctx.setTransform(1, 0, 0, 1, 0, 0);
-  ctx.fillStyle = theme().land;
+  ctx.fillStyle = colours.land;
   ctx.fillRect(0, 0, ctx.canvas.width, ctx.canvas.height);
-  const brush = brushOn(ctx, camera, ratio, scene.size);
-  drawGround(brush);
+  ctx.setTransform(...transformOf(camera, ratio));
+  ctx.lineJoin = 'round';
+  const px = 1 / camera.scale; // one CSS pixel in metres
+  const { size } = scene;
+  const view = worldInView(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
+  drawGround(ctx, camera, colours.landLine, ratio, size);
   if (scene.road) {
-    drawRoad(brush, scene.road);
-    drawKerbs(brush, scene.road, scene.corners, scene.kerb);
-    drawStartLine(brush, scene.road, scene.start);
+    drawRoad(ctx, scene.road, view, colours, px, size);
+    drawKerbs(ctx, scene.road, scene.corners, scene.kerb, view, colours);
+    drawStartLine(ctx, scene.road, scene.start, colours, px, size);
   }
-  if (scene.losses) drawLosses(brush, scene.losses, Math.max(1 * brush.size, 6 * brush.px));
-  if (scene.racingLine) drawRacingLine(brush, scene.racingLine);
-  if (scene.road) drawCornerNumbers(brush, scene.road, scene.corners);
+  if (scene.losses) drawLosses(ctx, scene.losses, colours, Math.max(1 * size, 6 * px));
+  if (scene.racingLine) drawRacingLine(ctx, scene.racingLine, view, colours, px, size);
+  if (scene.road) drawCornerNumbers(ctx, scene.road, scene.corners, camera, colours, ratio);
 }
 
 /** The moving part of the scene, on top of drawWorld(). */
-export function drawMoving(ctx: CanvasRenderingContext2D, scene: Scene, camera: Camera, ratio: number): void {
-  const brush = brushOn(ctx, camera, ratio, scene.size);
-  const { colours, px, size } = brush;
-  drawInView(brush, scene.trace, JUMP_M * Math.max(size, 0.1), colours.a, Math.max(0.2 * size, 2 * px));
-  if (!scene.road) drawLine(brush, lineOf(scene.reference), colours.quiet, Math.max(0.12 * size, 1.5 * px));
-  if (scene.hindsight) drawHindsight(brush, scene.hindsight);
-  drawLine(brush, scene.plan, colours.plan, Math.max(0.45 * size, 4 * px));
-  for (const mark of scene.faults) drawFault(brush, mark);
-  if (scene.ghost && scene.car) drawGhost(brush, scene.ghost, scene.car);
-  if (scene.car) drawCar(brush, scene.car);
-  if (scene.hindsight?.predicted && scene.car) drawPredicted(brush, scene.hindsight.predicted, scene.car);
+export function drawMoving(ctx: Context, scene: Scene, camera: Camera, colours: Theme, ratio: number): void {
+  ctx.setTransform(...transformOf(camera, ratio));
+  ctx.lineJoin = 'round';
+  const px = 1 / camera.scale;
+  const { size } = scene;
+  const view = worldInView(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
+  drawInView(ctx, scene.trace, view, JUMP_M * Math.max(size, 0.1), colours.a, Math.max(0.2 * size, 2 * px));
+  if (!scene.road) stroke(ctx, trail(scene.reference), colours.quiet, Math.max(0.12 * size, 1.5 * px));
+  if (scene.hindsight) drawHindsight(ctx, scene.hindsight, colours, px, size);
+  stroke(ctx, line(scene.plan.x, scene.plan.y), colours.plan, Math.max(0.45 * size, 4 * px));
+  for (const mark of scene.faults) drawFault(ctx, mark, colours, px, size);
+  if (scene.ghost && scene.car) drawGhost(ctx, scene.ghost, scene.car, colours, px);
+  if (scene.car) drawCar(ctx, scene.car, colours, px);
+  if (scene.hindsight?.predicted && scene.car) drawPredicted(ctx, scene.hindsight.predicted, scene.car, colours, px);
 }
 
 /** Where the cursor of the plots stands. */
-export function drawCursor(ctx: CanvasRenderingContext2D, at: Point, camera: Camera, ratio: number): void {
-  const { colours, px } = brushOn(ctx, camera, ratio);
-  for (const [colour, width] of [
-    [colours.wheel, 5],
-    [colours.act, 3],
+export function drawCursor(ctx: Context, at: Point, camera: Camera, colours: Theme, ratio: number): void {
+  ctx.setTransform(...transformOf(camera, ratio));
+  const px = 1 / camera.scale;
+  for (const [radius, colour, width] of [
+    [9, colours.wheel, 5],
+    [9, colours.act, 3],
   ] as const) {
     ctx.beginPath();
-    ctx.arc(at.x, at.y, 9 * px, 0, 2 * Math.PI);
+    ctx.arc(at.x, at.y, radius * px, 0, 2 * Math.PI);
     ctx.strokeStyle = colour;
     ctx.lineWidth = width * px;
     ctx.stroke();
   }
 }
 
-/** The whole track, small, with the line of a lap by what it loses. */
-export function drawOutline(
-  ctx: CanvasRenderingContext2D,
-  { centre }: RoadShape,
-  losses: Losses | null,
-  camera: Camera,
-  ratio: number,
-): void {
-  const brush = brushOn(ctx, camera, ratio);
-  const { colours, px } = brush;
-  drawLine(brush, centre, colours.sheet, 7 * px);
-  drawLine(brush, centre, colours.quiet, 2.5 * px);
-  const onPaper = { ...colours, lost: colours.lostInText, won: colours.wonInText };
-  if (losses) drawLosses({ ...brush, colours: onPaper }, losses, 4 * px);
+/** The whole track, small. */
+export function drawOutline(ctx: Context, { centre }: RoadShape, camera: Camera, colours: Theme, ratio: number): void {
+  ctx.setTransform(...transformOf(camera, ratio));
+  ctx.lineJoin = 'round';
+  const px = 1 / camera.scale;
+  const path = new Path2D();
+  addLine(path, centre, 0, centre.x.length);
+  stroke(ctx, path, colours.sheet, 7 * px);
+  stroke(ctx, path, colours.quiet, 2.5 * px);
 }
 
-/** The car on it. */
-export function drawDot(ctx: CanvasRenderingContext2D, car: Point, camera: Camera, ratio: number): void {
-  const { colours, px } = brushOn(ctx, camera, ratio);
+/** The car on it, or the cursor of the plots. */
+export function drawDot(
+  ctx: Context,
+  car: Point,
+  camera: Camera,
+  colours: Theme,
+  ratio: number,
+  colour = colours.ink,
+): void {
+  ctx.setTransform(...transformOf(camera, ratio));
+  const px = 1 / camera.scale;
   ctx.beginPath();
   ctx.arc(car.x, car.y, 5 * px, 0, 2 * Math.PI);
-  ctx.fillStyle = colours.ink;
+  ctx.fillStyle = colour;
   ctx.fill();
   ctx.strokeStyle = colours.sheet;
   ctx.lineWidth = 2 * px;

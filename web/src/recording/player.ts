@@ -1,23 +1,24 @@
 import { computed, effect, untracked } from '@preact/signals';
 import { store } from '../lib/store';
 import { readSchema } from '../protocol/schema';
-import { complete, type Frame, type Run } from '../protocol/topics';
-import { posesOf, RecordedDrive } from '../scene3d/ghost';
+import type { Frame, Run } from '../protocol/topics';
 import { beginSession, receive, rewind } from '../state/demultiplexer';
-import { ghosts } from '../state/ghost_shown';
+import { ghostShown } from '../state/ghost_shown';
 import { keepAllLaps, lapSamples, laps, sampleLap } from '../state/laps';
 import { link, notice, services } from '../state/link';
-import { requests } from '../state/operate';
+import { complete } from '../state/message_fields';
 import { removeOtherLaps } from '../state/other_laps';
 import { run } from '../state/run';
 import { seekTo } from '../state/seek';
 import { schema } from '../state/settings';
+import { takeSettings } from '../state/settings_session';
 import { everyFrame } from '../state/ticker';
 import { offerLaps } from './add_laps';
 import { type Landmark, LogSource, landmarksOf } from './log_source';
 import type { McapLog } from './mcap_log';
 import type { Mode } from './mode';
 import { openFiles, openRecordings, type Recordings } from './open';
+import { RecordedDrive } from './recorded_drive';
 import { type LoggedRun, runsOf } from './runs_of_log';
 
 // State of the time line.
@@ -73,7 +74,7 @@ export async function play(recordings: Recordings, which = 0, start = recordings
     rewind,
     message: (topic, message) => receive(topic, message, performance.now()),
     services: (names) => (services.value = names),
-    settings: (values) => requests.receive(values),
+    settings: takeSettings,
     notice: (sentence) => (notice.value = sentence),
     moved(time, plays) {
       position.value = time;
@@ -94,7 +95,7 @@ export const beside = store.signal('page', 1);
 /** Shows another recording as a ghost, where it was driven on the same track. */
 export async function showBeside(which: number, log = logs.value[played.value]): Promise<void> {
   const rival = logs.value[which] === log ? logs.value.find((each) => each !== log) : logs.value[which];
-  ghosts.recording = null;
+  ghostShown.source = null;
   beside.value = rival ? logs.value.indexOf(rival) : -1;
   if (!rival || !log) return;
   const [mine, other] = await Promise.all([trackOf(log), trackOf(rival)]);
@@ -103,7 +104,7 @@ export async function showBeside(which: number, log = logs.value[played.value]):
     beside.value = -1;
     return;
   }
-  ghosts.recording = new RecordedDrive(rival.name, posesOf(await framesOf(rival)), Infinity, () => position.value);
+  ghostShown.source = RecordedDrive.from(rival.name, await framesOf(rival), () => position.value);
 }
 
 async function trackOf(log: McapLog): Promise<string> {

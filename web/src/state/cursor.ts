@@ -1,4 +1,4 @@
-import { firstSince } from '../lib/math';
+import { firstSince } from '../draw/axis';
 import { Column } from './columns';
 import type { LapChannel } from './lap_samples';
 import { lapSamples } from './laps';

@@ -2,7 +2,6 @@ import type { ComponentChildren } from 'preact';
 import { fixed, lapTime, plural, side, UNKNOWN } from '../lib/format';
 import { clamp, degrees } from '../lib/math';
 import { inSpeedUnit, speedUnit } from '../lib/units';
-import { signed, toneOf } from '../state/comparison';
 import { bestsOf } from '../state/lap_table';
 import { lapSamples, laps } from '../state/laps';
 import { gapsToLimit, limit, limitTimeAt } from '../state/limit';
@@ -115,8 +114,8 @@ function Gap() {
   if (!frame || !limit.value || frame.lap === 0) return <p class="cell" />;
   const gap = frame.lap_time_s - limitTimeAt(limit.value, lapSamples.length, frame.s_m, frame.lap_time_s);
   return (
-    <Cell id="delta-limit" label="to the limit" tone={toneOf(gap)}>
-      {Number.isFinite(gap) ? `${signed(gap)} s` : UNKNOWN}
+    <Cell id="delta-limit" label="to the limit" tone={gap >= 0.005 ? 'lost' : 'won'}>
+      {Number.isFinite(gap) ? `${gap >= 0.005 ? '+' : ''}${fixed(gap, 2)} s` : UNKNOWN}
     </Cell>
   );
 }
