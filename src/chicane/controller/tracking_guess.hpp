@@ -89,12 +89,13 @@ inline void mind_helper_gap(tracking::TrackingProblem& problem, const tracking::
 
 /// How far beside `lap` [m] the plan of the next 1.5 s leads at most. Of the first lap (`now` is null) the
 /// car's own place counts: the line through waypoints leaves grip to join it with, and crosses it before
-/// long. 0 where `lap` is to be taken up at once, since it has less grip, which has to be braked for.
+/// long. 0 where `lap` is to be taken up at once, since it has less grip or slip, which has to be braked for.
 /// Allocates nothing.
 [[nodiscard]] inline double beside_lap(const road::RacingRoad& lap, const road::RacingRoad* now,
                                        const Plan& plan, double reach, double far) noexcept {
   const double joining_time = now == nullptr ? 0.0 : 1.5;  // [s]
-  if (lap.line().is_empty() || (now != nullptr && lap.grip() < now->grip())) return 0.0;
+  if (lap.line().is_empty() || (now != nullptr && (lap.grip() < now->grip() || lap.slip() < now->slip())))
+    return 0.0;
   double most = 0.0, last = 0.0;
   for (int k = 0; k < plan.size; ++k) {
     const PlanPoint& point = plan.points[static_cast<std::size_t>(k)];
@@ -123,7 +124,7 @@ struct Absence {
 };
 
 /// How much slip of the rear tyres a lap keeps back for the error of the estimated slip (docs/racing.md, eq.
-/// 8): the controller steers for that error, and takes it back later by the delay and by the time that the
+/// 9): the controller steers for that error, and takes it back later by the delay and by the time that the
 /// steering needs. One thread; allocates nothing.
 class SlipReserve {
  public:
@@ -138,28 +139,32 @@ class SlipReserve {
   void see(const tracking::StateEstimator& car, double time, double delay) noexcept {
     const double elapsed = time - std::exchange(time_, time);
     const model::State& now = car.state();
-    if (!(std::fabs(now.vx * now.r) >= tracking::GripEstimator::kLeast) || !(elapsed > 0.0)) return;
+    if (!(std::fabs(now.vx * now.r) >= tracking::GripEstimator::kLeast)) return;
+    if (!(elapsed > 0.0 && elapsed < kLongestGap)) return;
     const model::PredictionModel& model = car.model();
     const double peak = model.peak_slip_rear();
     const double late = delay + elapsed + 0.5 * peak / model.vehicle().steer_rate_limit;
     const double deviation =
         std::sqrt(car.errors().slide_variance(model.vehicle().rear_axle)) / (now.vx * peak);
+    const double kept = kPerSecond * late * std::min(now.vx / kFast, 1.0) * deviation;
+    if (!std::isfinite(kept)) return;
     seen_ = std::min(seen_ + elapsed, kMemory);
-    kept_ += std::min(elapsed / seen_, 1.0) *
-             (kPerSecond * late * std::min(now.vx / kFast, 1.0) * deviation - kept_);
+    kept_ += elapsed / seen_ * (std::min(kept, 1.0) - kept_);
   }
   /// The share of the tyres' slip to plan a lap with where there is one with `planned`.
   [[nodiscard]] double for_plan(double planned) const noexcept {
-    const double share = kept_ < kNothing ? 1.0 : 1.0 - std::min(kept_, kMost);
+    const double least = planned < 1.0 ? 0.5 * kNothing : kNothing;
+    const double share = kept_ < least ? 1.0 : 1.0 - std::min(kept_, kMost);
     const bool is_near = share > planned - kStep && share < planned + 2.0 * kStep;
-    return is_near ? planned : kStep * std::floor(share / kStep + 0.5);
+    return is_near ? planned : std::floor(share / kStep + 0.5) / std::floor(1.0 / kStep + 0.5);
   }
 
  private:
-  static constexpr double kMemory = 10.0;  ///< of cornering [s]
-  double kept_ = 0.0;                      ///< share of the slip that is kept back, mean over kMemory
-  double time_ = 0.0;                      ///< of the last cycle [s]
-  double seen_ = 0.0;                      ///< of cornering [s]
+  static constexpr double kMemory = 10.0;      ///< of cornering [s]
+  static constexpr double kLongestGap = 0.25;  ///< between cycles [s]
+  double kept_ = 0.0;                          ///< share of the slip that is kept back, mean over kMemory
+  double time_ = 0.0;                          ///< of the last cycle [s]
+  double seen_ = 0.0;                          ///< of cornering [s]
 };
 
 /// The grip that a car is raced with when nobody is sure of it: of the model, which begins as configured

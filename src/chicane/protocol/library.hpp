@@ -76,7 +76,7 @@ class RememberedFiles {
   std::map<std::pair<Shelf, std::string>, Document> documents_;
 };
 
-/// The same as compose(request), with what is remembered in the place of files.
+/// The same as compose(request), from `files` first, then from the disk.
 [[nodiscard]] Result<scenario::Scenario> compose(const Request& request, RememberedFiles& files);
 
 }  // namespace chicane::protocol

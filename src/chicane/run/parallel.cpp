@@ -50,7 +50,7 @@ Result<std::optional<std::array<std::uint64_t, N>>> numbers_of(const Variable& v
     const std::optional<std::uint64_t> number = count_in(text == nullptr ? "" : text);
     if (!number || *number > 1'000'000'000) {
       return fail(ErrorCode::kInvalidArgument,
-                  fmt::format("{}: got {}, expected a number beside {}; --shard I/N says it", names[i],
+                  fmt::format("{}: got {}, expected a number together with {}; --shard I/N says it", names[i],
                               printable(text == nullptr ? "" : text), names[0]));
     }
     numbers[i] = *number;

@@ -93,7 +93,7 @@ struct RealtimeOptions {
 /// catch up: it goes on from where it is (missed time is skipped, as a plant that is not simulated would have
 /// skipped it for the controller).
 ///
-/// Changes that wait are applied between two cycles, also while paused. Comes back, beside at the end, when
+/// Changes that wait are applied between two cycles, also while paused. Returns, except at the end, when
 /// the next one `starts_anew`; it is left in the queue.
 [[nodiscard]] telemetry::RunSummary run_realtime(ClosedLoop& loop, const RealtimeOptions& options,
                                                  RunControls& controls, const RunHooks& hooks = {});

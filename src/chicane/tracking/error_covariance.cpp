@@ -19,7 +19,7 @@ constexpr double kLowSpread = 0.5,
                  kSpreadGain = 2.0;    // innovations smaller than expected: the model is better
 constexpr double kSurprise = 4.0;      // deviations of an innovation from which on the model is wrong at once
 constexpr double kMostSurprise = 4.0;  // times by which one innovation raises the model's error
-// Of an estimate that begins: the car may have started with any slide.
+// Deviations of a new estimate: the car may have started with any slide.
 constexpr ErrorCovariance::Vector kFirst{0.1, 0.02, 2.0, 0.5, 0.0, 0.0};
 
 }  // namespace
@@ -34,6 +34,7 @@ void ErrorCovariance::begin() noexcept {
   p_ = {};
   for (std::size_t i = 0; i < kStates; ++i) p_[i][i] = kFirst[i] * kFirst[i];
   aside_.last = heading_.last = 0.0;
+  place_share_ = kMostShare;
 }
 
 void ErrorCovariance::estimate_disturbance(bool is_on) noexcept {
@@ -92,7 +93,7 @@ void ErrorCovariance::take(State state, double innovation, Channel& channel, boo
   channel.learn(unexpected, (1.0 - gains[state]) * unexpected, whole, least, most);
 }
 
-/// Noise and model error from an innovation, what was left of it and its expected variance (eq. 24, 25).
+/// Noise and model error from an innovation, what was left of it and its expected variance (eq. 23, 24).
 void ErrorCovariance::Channel::learn(double innovation, double left, double expected, double least,
                                      double most) noexcept {
   const double square_now = innovation * innovation / expected, product_now = innovation * last / expected;

@@ -8,8 +8,8 @@
 namespace chicane::tracking {
 
 /// Covariance of the error of an estimated car, and the gains of a Kalman filter that follow from it
-/// (docs/controller.md, eq. 22 to 25). Place beside the car, heading, lateral velocity and yaw rate hang
-/// together: an error of the heading moves the place by speed times time, and lateral velocity and yaw rate
+/// (docs/controller.md, eq. 22 to 25). Place beside the car, heading, lateral velocity and yaw rate are
+/// coupled: an error of the heading moves the place by speed times time, and lateral velocity and yaw rate
 /// change by the slopes of the tyres. The noise of the sensors, and how wrong the model is, come from the
 /// innovations. SI units, left positive. Allocates nothing; one thread.
 class ErrorCovariance {
@@ -44,8 +44,9 @@ class ErrorCovariance {
 
   /// Variance of the error of the lateral velocity of a point `behind` the centre of mass [m²/s²].
   [[nodiscard]] double slide_variance(double behind) const noexcept {
-    return p_[kSlide][kSlide] - 2.0 * behind * p_[kSlide][kYawRate] +
-           behind * behind * p_[kYawRate][kYawRate];
+    const double variance =
+        p_[kSlide][kSlide] - 2.0 * behind * p_[kSlide][kYawRate] + behind * behind * p_[kYawRate][kYawRate];
+    return variance > 0.0 ? variance : 0.0;
   }
   /// Share of the last innovation of the place that was taken over; [0, kMostShare].
   [[nodiscard]] double place_share() const noexcept { return place_share_; }

@@ -39,8 +39,8 @@ double CommandHistory::next_change(double time, double limit) const noexcept {
 namespace {
 
 constexpr double kMaxStep = 0.01;       // [s] integration step of the estimator
-constexpr double kLongestGap = 1.0;     // [s] after a longer silence the estimate starts anew
-constexpr double kLostPosition = 3.0;   // [m] a measurement further from the prediction starts anew
+constexpr double kLongestGap = 1.0;     // [s] after a longer silence the estimate restarts
+constexpr double kLostPosition = 3.0;   // [m] a measurement further from the prediction restarts it
 constexpr double kAtRest = 0.3;         // [m/s] slower than that there is no direction
 constexpr double kMostlyAlong = 0.5;    // of the way, along the heading or against it
 constexpr double kMostDisplaced = 1.5;  // times the way that the speed says
@@ -191,8 +191,9 @@ StateEstimator::Correction StateEstimator::correction(double aside, double headi
     return {by, errors_.place_share()};
   }
   Errors::Vector by{};
-  const double root = exp(-elapsed / average_);
-  const double place = 1.0 - root * root, velocity = 2.0 * (1.0 - root) * (1.0 - root) / elapsed;
+  const double root = is_after_gap ? std::sqrt(1.0 - Errors::kMostShare) : exp(-elapsed / average_);
+  const double place = 1.0 - root * root;
+  const double velocity = is_after_gap ? 0.0 : 2.0 * (1.0 - root) * (1.0 - root) / elapsed;
   if (std::isfinite(aside)) by[Errors::kAside] = place * aside, by[Errors::kSlide] = velocity * aside;
   by[Errors::kHeading] = place * heading;
   by[Errors::kYawRate] = velocity * heading;
@@ -212,13 +213,13 @@ void StateEstimator::take_over(const model::Measurement& now, double dx, double 
     const double along = dx * cosine + dy * sine, aside = dy * cosine - dx * sine,
                  elapsed = now.time - before;
     const bool is_after_gap = before > heading_seen_ || (has_place && before > place_seen_);
-    const auto [by, share] = correction(has_place ? aside : dx, dpsi, elapsed, is_after_gap);
+    const auto [by, share] = correction(aside, dpsi, elapsed, is_after_gap);
     heading_seen_ = now.time;
     if (has_place) {
-      place_seen_ = now.time;
+      const double unseen = now.time - std::exchange(place_seen_, now.time);
       state.x += share * along * cosine - by[Errors::kAside] * sine;
       state.y += share * along * sine + by[Errors::kAside] * cosine;
-      if (!std::isfinite(now.speed)) state.vx = std::max(0.0, state.vx + 0.25 * share * along / elapsed);
+      if (!std::isfinite(now.speed)) state.vx = std::max(0.0, state.vx + 0.25 * share * along / unseen);
     }
     state.psi += by[Errors::kHeading];
     state.vy += by[Errors::kSlide];

@@ -210,7 +210,7 @@ class GripEstimator {
   [[nodiscard]] double share() const noexcept;
   /// Whether share() differs from one by more than `least`, and by more than noise does in one case of 20.
   [[nodiscard]] bool differs(double least) const noexcept;
-  /// Standard deviation of share(), the larger of eq. 4 and 5; infinite before there is any corner.
+  /// Standard deviation of share(), the larger of eq. 6 and 7; infinite before there is any corner.
   [[nodiscard]] double deviation() const noexcept;
   /// By how much a command may act otherwise than configured so that it explains the error of headings, root
   /// mean square [s]: jitter, and all else that is not known. Infinite before there is any corner.
@@ -235,7 +235,7 @@ class GripEstimator {
     [[nodiscard]] double variance(double time) const noexcept;
   };
 
-  /// Squares of what each bend adds to the sums of (3).
+  /// Squares of what each bend adds to the sums of (7).
   struct Bends {
     double hnhn = 0.0, hnhh = 0.0, hhhh = 0.0;
     int count = 0;

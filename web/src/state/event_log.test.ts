@@ -63,6 +63,8 @@ describe('event log', () => {
     expect(events.value[0]?.text).toBe('Races by a new lap, planned with 87 % of the grip');
     noteChange({ stamp: { sec: 6, nsec: 0 }, cycle: 93n, name: 'run.racing_line', value: '0.97, slides' });
     expect(events.value[0]?.text).toBe('Races by a new lap, planned with 97 % of the grip, and to slide');
+    noteChange({ stamp: { sec: 7, nsec: 0 }, cycle: 94n, name: 'run.racing_line', value: '1, slip 0.65' });
+    expect(events.value[0]?.text).toBe('Races by a new lap, planned with 100 % of the grip, 65 % of the slip');
   });
 
   it('lists once what was assumed as the run began', () => {

@@ -100,8 +100,13 @@ export const faultInWords = (name: string): string => nameInWords(name.replace(/
 export function noteChange({ stamp, name, value }: Change): void {
   const isPlan = name === 'run.racing_line';
   if (/^(manual|fault|run)\./.test(name) && !isPlan) return; // noteEvents() or the page itself shows these
-  const [grip, slides] = value.split(',');
-  const share = `${Math.round(100 * Number(grip))} % of the grip${slides ? ', and to slide' : ''}`;
+  const [grip, ...more] = value.split(', ');
+  const slip = more.find((part) => part.startsWith('slip '));
+  const share = [
+    `${Math.round(100 * Number(grip))} % of the grip`,
+    ...(slip ? [`${Math.round(100 * Number(slip.slice(5)))} % of the slip`] : []),
+    ...(more.includes('slides') ? ['and to slide'] : []),
+  ].join(', ');
   const planned = `Races by a new lap, planned with ${share}`;
   add({
     id: kept.nextId++,
