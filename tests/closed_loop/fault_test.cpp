@@ -89,8 +89,8 @@ INSTANTIATE_TEST_SUITE_P(Drivers, EveryFault, testing::ValuesIn(trials()), [](co
          std::string(sim::fault_kinds()[static_cast<std::size_t>(std::get<1>(each.param))].name);
 });
 
-/// How far the outermost tyre may come beyond the edge [m]: not at all, but for what the controller is not
-/// told and cannot find out in time. Measured worst plus a fifth; docs/safety.md has the figures and says
+/// How far the outermost tyre may come beyond the edge [m]: 0, except where the controller cannot know
+/// the fault in time. Measured worst plus a fifth; docs/safety.md has the figures and says
 /// why.
 double beyond_edge(std::string_view fault, std::string_view driver) {
   // The guard assumes the full grip, too.

@@ -128,11 +128,11 @@ struct Absence {
 /// steering needs. One thread; allocates nothing.
 class SlipReserve {
  public:
-  static constexpr double kPerSecond = 67.0;  ///< deviations that are kept back, over that time [1/s]
+  static constexpr double kPerSecond = 67.0;  ///< deviations kept back for each second of lateness [1/s]
   static constexpr double kStep = 0.05;       ///< shares are multiples of it
-  static constexpr double kMost = 0.4;        ///< that is kept back
+  static constexpr double kMost = 0.4;        ///< largest share kept back
   static constexpr double kFast = 20.0;       ///< [m/s] below which a car takes an error back more easily
-  static constexpr double kNothing = 0.1;     ///< less is not kept back
+  static constexpr double kNothing = 0.1;     ///< smallest share kept back
 
   void forget() noexcept { *this = {}; }
   /// The estimate of this cycle; corners count. `delay`: from the measurement to its command's effect [s].
@@ -160,11 +160,11 @@ class SlipReserve {
   }
 
  private:
-  static constexpr double kMemory = 10.0;      ///< of cornering [s]
+  static constexpr double kMemory = 10.0;      ///< cornering that the mean spans [s]
   static constexpr double kLongestGap = 0.25;  ///< between cycles [s]
   double kept_ = 0.0;                          ///< share of the slip that is kept back, mean over kMemory
-  double time_ = 0.0;                          ///< of the last cycle [s]
-  double seen_ = 0.0;                          ///< of cornering [s]
+  double time_ = 0.0;                          ///< last cycle [s]
+  double seen_ = 0.0;                          ///< cornering so far, at most kMemory [s]
 };
 
 /// The grip that a car is raced with when nobody is sure of it: of the model, which begins as configured

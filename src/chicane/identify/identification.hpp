@@ -88,7 +88,7 @@ struct Identification {
   SlipCover slip;
   /// Samples for each one that is independent: 1 where the model explains all but noise. Intervals count it.
   double correlation = 1.0;
-  double loss = 0.0;      ///< what was minimised (docs/identification.md, eq. 6)
+  double loss = 0.0;      ///< minimised sum (docs/identification.md, eq. 6)
   bool has_pedal = true;  ///< else drive and brakes are the start's
   /// Whether the car predicts the held-out motion one second ahead better than keeping speed and yaw rate
   /// does, or within 0.1 m and 1 degree. True where nothing was held out.

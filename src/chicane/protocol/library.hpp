@@ -76,7 +76,7 @@ class RememberedFiles {
   std::map<std::pair<Shelf, std::string>, Document> documents_;
 };
 
-/// The same as compose(request), from `files` first, then from the disk.
+/// Does the same as compose(request); reads `files` first, then the disk.
 [[nodiscard]] Result<scenario::Scenario> compose(const Request& request, RememberedFiles& files);
 
 }  // namespace chicane::protocol

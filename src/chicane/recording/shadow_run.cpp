@@ -270,7 +270,7 @@ class Branching {
   };
 
   static tl::unexpected<Error> cannot_copy() {
-    return fail(ErrorCode::kInvalidArgument, "this controller cannot be copied");
+    return fail(ErrorCode::kInvalidArgument, "this controller or plant cannot be copied");
   }
 
   Result<void> take(const scenario::Scenario& /*scenario*/, const RecordedEvent& event) {

@@ -67,7 +67,7 @@ class ShadowRun {
 
   run::RunHooks hooks_;
   std::unique_ptr<run::ClosedLoop> loop_;
-  std::optional<run::RunSteps> steps_;  ///< of loop_
+  std::optional<run::RunSteps> steps_;  ///< steps of loop_
   double time_ = 0.0;
   std::uint64_t next_cycle_ = 0;
   std::optional<std::uint64_t> first_difference_;
@@ -149,7 +149,8 @@ struct BranchHooks {
 /// Computes a recorded run of `drive` again from its start, controller and plant, and drives a copy of it on
 /// from `options.at` with other settings, in virtual time. Fails with kInvalidArgument when the moment is not
 /// in the recording, a setting is unknown, out of range or cannot change in a run that goes on, when
-/// BranchHooks::go_on gives up, or when the recording is not of our simulator.
+/// BranchHooks::go_on gives up, when the recording is not of our simulator, or when controller or plant
+/// cannot be copied.
 [[nodiscard]] Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks);
 /// The same of a run that is not a file, whose events are visited once; `options.log` is not used. Without
 /// `options.from` they are the events of the whole run.

@@ -371,7 +371,7 @@ class SimNode {
   SimTopics topics_;
   wire::SparseLog log_;
   const Walls& walls_;
-  run::SimulatedCar& car_;  ///< with what was wanted in the place of the pedal among commands on their way
+  run::SimulatedCar& car_;  ///< commands on their way hold the wanted speed or acceleration as throttle
   run::StopNews stop_news_;
   PartnerWatch partners_;
   wire::SimulateReport report_;

@@ -104,12 +104,12 @@ bool StopNews::look(const SimulatedCar& car, bool is_timed_out, double speed,
   const bool begins = is_timed_out && !std::exchange(is_timed_out_, is_timed_out) && speed > standing_;
   is_timed_out_ = is_timed_out;
   if (begins) {
-    is_told_ = is_moving_ = true;
+    is_said_ = is_moving_ = true;
     say_(fmt::format("no command in time: the car is stopped from {:.1f} m/s: {}", speed, why()));
   }
-  if (!is_timed_out && std::exchange(is_told_, false))
+  if (!is_timed_out && std::exchange(is_said_, false))
     say_(fmt::format("commands again: the car drives on from {:.1f} m/s", car.speed()));
-  if (!is_told_ || !is_moving_ || car.speed() >= standing_) return begins;
+  if (!is_said_ || !is_moving_ || car.speed() >= standing_) return begins;
   is_moving_ = false;
   const double edge = car.world.state().edge_distance;
   say_(fmt::format("the car stands, its outermost wheel {:.2f} m {} the road's edge: {}", std::fabs(edge),

@@ -20,11 +20,11 @@
 
 namespace chicane::run {
 
-/// A car of ours on its road, for a controller in this program or in another one: the plant and its world,
-/// what is measured of them, commands on their way, the receiver that stops the car when none come, and the
-/// account of the run. No allocation but in create(), restart() and a copy. One thread.
+/// A simulated car on its road, for a controller in this program or in another one: the plant and its world,
+/// the sensor, commands on their way, the receiver that stops the car when none come (`simulate` has one of
+/// its own), and the account of the run. No allocation but in create(), restart() and a copy. One thread.
 struct SimulatedCar {
-  static constexpr double kCatchUp = 1.0 / 3.0;  ///< of physics that is late, at most [s]
+  static constexpr double kCatchUp = 1.0 / 3.0;  ///< most physics that is caught up with in a call [s]
 
   SimulatedCar(const scenario::Scenario& scenario, road::Track road, road::Track shown,
                std::unique_ptr<sim::Plant> car, AccountTerms terms);
@@ -52,7 +52,7 @@ struct SimulatedCar {
              telemetry::Frame& frame) const noexcept;
   /// Counts a cycle of a controller that is another program, whose answer is `frame.result.command`.
   void count(telemetry::Frame& frame) noexcept;
-  /// By the car's own wheels [m/s].
+  /// Wheel speed [m/s].
   [[nodiscard]] double speed() const noexcept { return plant->output().speed; }
 
   road::Track track, waypoints;
@@ -79,7 +79,7 @@ class StopNews {
   const double standing_;  ///< [m/s]
   Say say_;
   bool is_timed_out_ = false;  ///< at the last look
-  bool is_told_ = false;       ///< the stop that goes on
+  bool is_said_ = false;       ///< the stop that goes on
   bool is_moving_ = false;     ///< in it
 };
 

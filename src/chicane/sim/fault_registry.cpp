@@ -71,7 +71,7 @@ constexpr FaultKind kSteeringStuck{
 
 constexpr FaultKind kSteeringOffset{
     .name = "steering_offset",
-    .meaning = "The wheel stands off what is asked for.",
+    .meaning = "The wheel's angle differs from the command.",
     .duration = 5.0,
     .strength = 2.0,
     .weakest = -20.0,

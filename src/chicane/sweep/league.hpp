@@ -136,7 +136,7 @@ class BesideFile {
 [[nodiscard]] std::string league_markdown(const League& league, const LeagueResults& results);
 /// A row for each run (RFC 4180).
 [[nodiscard]] std::string league_csv(const LeagueResults& results);
-/// A list of objects, one for each run, with what is in the table of CSV.
+/// A list of objects, one for each run, with the columns of the CSV table.
 [[nodiscard]] std::string league_json(const LeagueResults& results);
 
 }  // namespace chicane::sweep

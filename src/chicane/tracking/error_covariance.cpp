@@ -9,16 +9,16 @@
 namespace chicane::tracking {
 namespace {
 
-constexpr double kForgetting = 0.03;  // of the means over innovations, in each measurement
+constexpr double kForgetting = 0.03;  // weight of the newest innovation in means
 // Deviation of the acceleration that the model lacks, at least and at most.
 constexpr double kLeastLateral = 0.25, kMostLateral = 4.0;  // [m/s²]
 constexpr double kLeastYaw = 0.125, kMostYaw = 2.0;         // [rad/s²]
-constexpr double kErrorTime = 0.3;                          // [s] that such an error lasts where it is noise
-constexpr double kAdapting = 0.1;  // by which a deviation follows one product of innovations
+constexpr double kErrorTime = 0.3;                          // [s] duration of such an error where it is noise
+constexpr double kAdapting = 0.1;  // share of one product of innovations that a deviation follows
 constexpr double kLowSpread = 0.5,
                  kSpreadGain = 2.0;    // innovations smaller than expected: the model is better
-constexpr double kSurprise = 4.0;      // deviations of an innovation from which on the model is wrong at once
-constexpr double kMostSurprise = 4.0;  // times by which one innovation raises the model's error
+constexpr double kSurprise = 4.0;      // deviations of an innovation that show a wrong model at once
+constexpr double kMostSurprise = 4.0;  // largest factor of the model's error by one innovation
 // Deviations of a new estimate: the car may have started with any slide.
 constexpr ErrorCovariance::Vector kFirst{0.1, 0.02, 2.0, 0.5, 0.0, 0.0};
 

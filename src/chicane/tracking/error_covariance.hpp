@@ -16,7 +16,7 @@ class ErrorCovariance {
  public:
   enum State : std::size_t { kAside, kHeading, kSlide, kYawRate, kLateral, kYaw, kStates };
   using Vector = std::array<double, kStates>;
-  static constexpr double kMostShare = 0.8;  ///< of an innovation that is taken over, with a perfect sensor
+  static constexpr double kMostShare = 0.8;  ///< largest share of an innovation that is taken over
 
   /// What a step makes of a lateral velocity [m/s] and of a yaw rate [rad/s].
   struct Slopes {

@@ -140,13 +140,13 @@ class StateEstimator {
   [[nodiscard]] double rolling_speed(double time, const CommandHistory& sent) const noexcept;
 
  private:
-  static constexpr double kMostLateral = 6.0;  ///< of a disturbance [m/s²]
+  static constexpr double kMostLateral = 6.0;  ///< largest disturbance [m/s²]
   static constexpr double kMostYaw = 6.0;      ///< [rad/s²]
 
   void take_over(const model::Measurement& now, double dx, double dy, double dpsi) noexcept;
   struct Correction {
     ErrorCovariance::Vector by;
-    double share;  ///< of an innovation of the place, also along the car
+    double share;  ///< taken over from an innovation of the place, also along the car
   };
   [[nodiscard]] Correction correction(double aside, double heading, double elapsed,
                                       bool is_after_gap) noexcept;
