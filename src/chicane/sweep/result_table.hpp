@@ -46,8 +46,8 @@ struct SummaryDocument {
   std::string text{};
 };
 
-/// Sums up the results of a sweep, one file or the files of its parts: what was driven, one table for each axis,
-/// heat maps of pairs of axes, distributions, and the runs with the command that drives each (the first
+/// Sums up the results of a sweep, one file or the files of its parts: what was driven, one table for each
+/// axis, heat maps of pairs of axes, distributions, and the runs with the command that drives each (the first
 /// kMostListed). Runs that are missing are left out, and counted. Fails as read_lines() does.
 inline constexpr std::size_t kMostListed = 2000;
 [[nodiscard]] Result<SummaryDocument> summary_document(const std::vector<std::string>& results);
