@@ -205,6 +205,15 @@ TEST(MovesAgain, WhateverTheSimulatorsClockAndWhereverTheCarIsPut) {
   }
 }
 
+/// The receiver brakes for one command that does not arrive. The original car keeps that brake below 5 mph.
+TEST(MovesAgain, WithABrakeThatStaysOnWhileItDrives) {
+  scenario::Scenario scenario = *protocol::compose({});
+  scenario.faults = {{.fault = *sim::fault_named("dead_controller"), .at = 0.8, .duration = 0.1}};
+  const auto loop = std::move(*ClosedLoop::create(scenario));
+  while (loop->time() < 4.0) loop->advance();
+  EXPECT_GT(loop->frame().truth.vx, 10.0) << "without a release it rolls at 2.3 to 0.4 m/s for 8 s";
+}
+
 /// A short run with a fault that ends: the time for which the car stands afterwards [s].
 struct Standing {
   double longest = 0.0;

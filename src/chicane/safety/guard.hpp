@@ -175,6 +175,7 @@ class Guard {
   double refused_since_ = 0.0;     ///< commands of a standing car [s]
   double moved_at_ = 0.0;          ///< last faster than at rest [s]
   double stuck_since_ = 0.0;       ///< a car that should move stands [s]
+  double held_speed_ = 0.0;        ///< of the car then [m/s]
   double released_at_ = std::numeric_limits<double>::infinity();  ///< its brake, or began to stand [s]
   double act_speed_ = 0.0;                                        ///< estimated where the command acts [m/s]
   double most_drive_ = 0.0;  ///< acceleration that the tyres can give then [m/s²]

@@ -115,6 +115,7 @@ constexpr double kAlong = 0.2;         // [rad] within which it is along it agai
 constexpr double kRefusedTime = 1.0;   // [s] of refused commands after which a standing car is led back
 constexpr double kReleaseTime = 0.5;   // [s] a car that should move may stand before its brake is released
 constexpr double kDrives = 0.1;        // pedal from which on a car should move
+constexpr double kGain = 0.1;          // [m/s] by which a car gains speed that nothing holds
 constexpr double kMostAgainstRolling = 0.7;  // pedal against rolling back
 constexpr double kStillTime = 1.0;   // [s] a car stands before it is tried whether it was put elsewhere
 constexpr double kTrialWay = 0.5;    // share of the car's length that is driven for that
@@ -331,16 +332,23 @@ void Guard::watch_rest(double time, double throttle) noexcept {
 }
 
 /// A car that should move and stands is stuck after kStuckTime, where nothing worse is said of it. Its pedals
-/// are released for a cycle now and then: a brake that stays on at rest lets go then.
+/// are released for a cycle now and then: a brake that stays on lets go then. It holds a slow car, too, that
+/// gains no speed by its drive.
 void Guard::free_stuck_car(double time, controller::StepResult& result) noexcept {
   model::Command& command = result.command;
   const model::VehicleParams& car = model_.vehicle();
-  const bool should_move =
-      (command.throttle > kDrives || is_idle_) && std::fabs(estimator_.state().vx) < kStandingSpeed;
-  if (!should_move || !(released_at_ <= time)) stuck_since_ = released_at_ = time;
+  const double speed = std::fabs(estimator_.state().vx);
+  const bool stands = speed < kStandingSpeed;
+  const bool drives = command.throttle > kDrives;
+  const bool is_held = drives && speed < std::min(car.brake_latch_speed, held_speed_ + kGain);
+  const bool should_move = is_held || (stands && (drives || is_idle_));
+  if (!should_move || !(released_at_ <= time)) {
+    stuck_since_ = released_at_ = time;
+    held_speed_ = speed;
+  }
   controller::GuardReason& reason = report_.reason;
   const bool has_worse = controller::word_of(reason).severity == Severity::kError;
-  if (time - stuck_since_ > kStuckTime && !has_worse) reason = controller::GuardReason::kStuck;
+  if (stands && time - stuck_since_ > kStuckTime && !has_worse) reason = controller::GuardReason::kStuck;
   if (!(time - released_at_ > (car.latches_brakes() ? kReleaseTime : kStuckTime))) return;
   command.throttle = car.latches_brakes() ? car.brake_release_throttle : 0.0;
   released_at_ = time;
