@@ -221,9 +221,10 @@ bool Guard::try_reset(const StopStart& start, const Cycle& cycle, double time,
   }
   const double speed = std::fabs(estimator_.state().vx);
   const model::Command command{0.0, speed < kTrialSpeed ? kTrialPedal : 0.0};
-  // A car that stopped where the known road ends has no stop ahead of it; well inside the edges and along the
-  // road the way of the trial does without.
-  const bool has_room = filter_.planner().edge(road_, start) >= kTrialRoom && std::fabs(start.e) < kAlong;
+  // A car that stopped where the known road ends has no stop ahead of it, nor one that is off the road; the
+  // way of the trial does without there, and well inside the edges and along the road.
+  const double edge = filter_.planner().edge(road_, start);
+  const bool has_room = edge < 0.0 || (edge >= kTrialRoom && std::fabs(start.e) < kAlong);
   if (verify(start, cycle, command, true) == Fit::kNone && !has_room) return false;
   tried_ += std::max(speed, kTrialSpeed) * std::max(cycle.interval, 0.0);
   result.answer = Answer::kNone;
