@@ -112,6 +112,7 @@ class Guard {
   [[nodiscard]] bool idles(const controller::StepResult& result) const noexcept;
   [[nodiscard]] bool should_lead_back(double time, bool has_answer) noexcept;
   [[nodiscard]] bool lead_back(double act, const Cycle& cycle, controller::StepResult& result) noexcept;
+  [[nodiscard]] model::VehicleParams led_vehicle() const noexcept;
   [[nodiscard]] model::Command creep_step(const StopStart& start, const model::State& car) const noexcept;
   [[nodiscard]] double against_rolling_back() const noexcept;
   void watch_for_reset(const model::Measurement& measured) noexcept;

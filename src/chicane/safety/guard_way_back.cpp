@@ -276,7 +276,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
       line.project_along({car.x, car.y}, car.psi, 2.0 * model_.vehicle().width);
   if (!(place.distance < kLost)) return false;
   result.command = rolls_back ? model::Command{0.0, against_rolling_back()}
-                              : tracking::way_back(line, place, car, model_.vehicle());
+                              : tracking::way_back(line, place, car, led_vehicle());
   const std::optional<StopStart> start = place_on_road(act);
   if (is_astray_) filter_.forget();
   const double edge = start ? filter_.planner().edge(road_, *start) : 0.0;
@@ -292,8 +292,13 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there,
   // and once it stands.
   const bool is_off = start && edge < 0.0;
-  if (start && !is_off && fit == Fit::kNone && (!has_stood_astray_ || result.answer == Answer::kDrive))
-    return false;
+  if (start && !is_off && fit == Fit::kNone && (!has_stood_astray_ || result.answer == Answer::kDrive)) {
+    // A car that stands turns its wheels, so that it needs less room.
+    const double steer = result.command.steer;
+    if (!stands || !drive_backup(*start, result)) return false;
+    result.command.steer = steer;
+    return true;
+  }
   if (fit == Fit::kNone) filter_.forget();
   result.answer = Answer::kNone;
   result.plan.size = result.plan.reference_size = 0;
@@ -301,11 +306,19 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   return true;
 }
 
+/// The car with the lock that its wheels reach as they answer: who waits for more waits for ever.
+model::VehicleParams Guard::led_vehicle() const noexcept {
+  model::VehicleParams vehicle = model_.vehicle();
+  const double lock = vehicle.steer_limit;
+  vehicle.steer_limit = std::clamp(answer().gain * lock - std::fabs(answer().offset), 0.1 * lock, lock);
+  return vehicle;
+}
+
 /// At full lock away from the near edge a car soon comes no nearer to it (eq. 6a); until then it may take
 /// half of the margin. Its wheels turn first: the stop of a car that does not move is the standstill it
 /// begins from.
 model::Command Guard::creep_step(const StopStart& start, const model::State& car) const noexcept {
-  const model::VehicleParams& vehicle = model_.vehicle();
+  const model::VehicleParams vehicle = led_vehicle();
   const double lock = std::copysign(vehicle.steer_limit, -start.d);
   const model::Command rest{lock, throttle_to_rest(vehicle, -kCreepDrive, std::max(car.vx, 0.0))};
   if (!(std::fabs(lock - car.steer) < kTurnedWheels * vehicle.steer_limit)) return rest;
