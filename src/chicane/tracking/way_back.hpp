@@ -21,7 +21,7 @@ namespace chicane::tracking {
   constexpr double kApproach = 8.0;      // [m]
   constexpr double kWalkingPace = 3.0;   // [m/s]
   constexpr double kMostBraking = -2.0;  // [m/s²]
-  constexpr double kMostDrive = 2.5;     // [m/s²]: turned wheels resist
+  constexpr double kMostDrive = 1.0;     // [m/s²]
   constexpr double kFullLock = 0.5;      // [rad] off its course the wheel is turned as far as it goes
   constexpr double kWheelOff = 0.5;      // [rad] the wheel is from its command, and the car stands
   const double course = line.at(place.s).heading - atan(place.d / kApproach);
