@@ -11,6 +11,7 @@
 #include <memory>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -97,9 +98,10 @@ class Client {
     switch (event) {
       case Event::kNone:
         return;
-      case Event::kHandedBack:
+      case Event::kHandedBack:  // by a person who kept to the road
         drive_.begin_anew();
-        wait(3.0, {});
+        wall_ += 3.0;
+        simulated_ = time_ += 3.0 * cell_.ratio;
         return move(70.0, speed());
       case Event::kReset:
         return move(track_.start_s() - world_.state().s, 0.0);
@@ -183,7 +185,8 @@ std::vector<Cell> cells() {
 /// A simulator that is fast does not wait: at 2 and 5 times the wall's clock its car drives on for 0.8 s and
 /// more with a command, and for longer where the answer bursts. No controller here drives that.
 bool is_drivable(const Cell& cell) {
-  const double longest = cell.ratio * (kCycle + (cell.jitter == Jitter::kBursts ? 0.3 : 0.0));
+  constexpr double kLate[] = {0.0, 0.3 * kCycle, 0.3};
+  const double longest = cell.ratio * (kCycle + kLate[static_cast<std::size_t>(cell.jitter)]);
   return longest < (cell.is_guarded ? 0.7 : 0.4);
 }
 
@@ -205,60 +208,81 @@ TEST(MovesAgain, WhateverTheSimulatorsClockAndWhereverTheCarIsPut) {
   }
 }
 
-/// A short run with a fault that ends: the time for which the car stands afterwards [s].
-struct Standing {
-  double longest = 0.0;
-  double least_edge = std::numeric_limits<double>::infinity();
-  std::string what{};
+/// The receiver brakes for one command that does not arrive. The original car keeps that brake below 5 mph.
+TEST(MovesAgain, WithABrakeThatStaysOnWhileItDrives) {
+  scenario::Scenario scenario = *protocol::compose({});
+  scenario.faults = {{.fault = *sim::fault_named("dead_controller"), .at = 0.8, .duration = 0.1}};
+  const auto loop = std::move(*ClosedLoop::create(scenario));
+  while (loop->time() < 4.0) loop->advance();
+  EXPECT_GT(loop->frame().truth.vx, 10.0) << "without a release it rolls at 2.3 to 0.4 m/s for 8 s";
+}
+
+/// A short run of a car that is configured right, with a fault that ends.
+struct FaultRun {
+  std::string preset, car, track;
+  double mass_scale;
+  std::string_view fault;
+  double at, lasts;  // [s]
 };
 
-Standing drive_with_fault(Random& chance) {
+/// The time for which the car stands afterwards [s].
+double stands_after(const FaultRun& run) {
+  auto scenario = *protocol::compose(
+      {.scenario_file = "",
+       .settings = {{"preset", run.preset}, {"car", run.car}, {"track", run.track}, {"laps", "0"}}});
+  scenario.vehicle.mass *= run.mass_scale;
+  scenario.faults = {sim::default_event(*sim::fault_named(run.fault), run.at)};
+  scenario.faults[0].duration = run.lasts;
+  const auto loop = std::move(*ClosedLoop::create(scenario));
+  const double ended = run.at + run.lasts;
+  double longest = 0.0, stands_since = ended;
+  while (loop->time() < ended + 20.0 && !loop->is_over()) {
+    loop->advance();
+    const model::State& car = loop->frame().truth;
+    if (loop->time() < ended || std::hypot(car.vx, car.vy) > 1.0) stands_since = loop->time();
+    longest = std::max(longest, loop->time() - stands_since);
+  }
+  return longest;
+}
+
+/// Each stood for as long as it was watched: late for ever beside a place in doubt; off its road by an
+/// estimate that is in doubt; in wait for a lock that its wheels do not reach; between a way back and a stop
+/// that turn its wheels in turn, because it counted as moving while they were turned.
+TEST(MovesAgain, FromWhereItStood) {
+  for (const FaultRun& run :
+       {FaultRun{"pid", "vw-vanagon", "oval", 0.902734, "gps_noise", 4.350844, 1.0},
+        {"sixty-mph", "vw-vanagon", "hairpins", 1.144555, "half_grip", 8.071533, 5.0},
+        {"pid", "bmw-320i", "oval", 0.892637, "steering_stuck", 5.112047, 5.0},
+        {"sixty-mph", "bmw-320i", "hairpins", 1.080957, "throttle_stuck", 20.5398, 2.0}})
+    EXPECT_LT(stands_after(run), kAgain) << run.car << " on " << run.track << ", " << run.fault;
+}
+
+FaultRun draw(Random& chance) {
   const auto pick = [&](const auto& names) { return names[chance.bits() % std::size(names)]; };
   static constexpr const char* kTracks[] = {"lakeside", "oval", "hairpins", "speedway"};
   static constexpr const char* kCars[] = {"udacity", "road-car", "bmw-320i", "vw-vanagon"};
   static constexpr const char* kPresets[] = {"default", "default", "pid", "measured-latency", "sixty-mph"};
   static constexpr double kLasts[] = {0.3, 1.0, 2.0, 5.0};
-  const std::string car = pick(kCars), track = pick(kTracks), preset = pick(kPresets);
-  const auto& kinds = sim::fault_kinds();
-  const auto index = chance.bits() % kinds.size();
-  sim::FaultEvent event = sim::default_event(static_cast<sim::Fault>(index), chance.uniform(4.0, 30.0));
-  event.duration = pick(kLasts);
-  auto scenario = *protocol::compose(
-      {.scenario_file = "", .settings = {{"preset", preset}, {"car", car}, {"track", track}, {"laps", "0"}}});
-  // Other cars, configured right.
-  scenario.vehicle.mass *= chance.uniform(0.8, 1.2);
-  scenario.faults = {event};
-  Standing result{.what = preset + ' ' + car + ' ' + track + ' ' + std::string(kinds[index].name) + '@' +
-                          std::to_string(event.at) + '+' + std::to_string(event.duration)};
-  auto made = ClosedLoop::create(scenario);
-  if (!made) return result;
-  ClosedLoop& loop = **made;
-  const double ended = event.at + event.duration;
-  double stands_since = ended;
-  while (loop.time() < ended + 20.0 && !loop.is_over()) {
-    loop.advance();
-    result.least_edge = std::min(result.least_edge, loop.world().edge_distance);
-    const telemetry::Frame& frame = loop.frame();
-    if (loop.time() < ended || std::hypot(frame.truth.vx, frame.truth.vy) > 1.0) stands_since = loop.time();
-    result.longest = std::max(result.longest, loop.time() - stands_since);
-  }
-  result.what += ": " + std::string(controller::word_of(loop.frame().guard.reason).name);
-  return result;
+  return {pick(kPresets),
+          pick(kCars),
+          pick(kTracks),
+          chance.uniform(0.8, 1.2),
+          pick(sim::fault_kinds()).name,
+          chance.uniform(4.0, 30.0),
+          pick(kLasts)};
 }
 
-/// Other runs: --gtest_random_seed=N. Of 360 runs 19 stood, 16 of them after the fault had led them off the
-/// road: the large search counts how many do, the sample must have none.
+/// Other runs: --gtest_random_seed=N. The large search counts how many stand, the sample must have none.
 TEST(MovesAgain, AfterAFaultThatHasEnded) {
   Random chance(57 + static_cast<std::uint64_t>(testing::GTEST_FLAG(random_seed)));
-  constexpr int kRuns = kDrivesAll ? 2000 : 4, kMost = kDrivesAll ? kRuns * 8 / 100 : 0;
+  constexpr int kRuns = kDrivesAll ? 2000 : 4, kMost = kDrivesAll ? kRuns * 3 / 100 : 0;
   int stood = 0;
   std::string which;
   for (int i = 0; i < kRuns; ++i) {
-    const Standing standing = drive_with_fault(chance);
-    if (standing.longest <= kAgain) continue;
+    const FaultRun run = draw(chance);
+    if (stands_after(run) <= kAgain) continue;
     ++stood;
-    which += "\nrun " + std::to_string(i) + ' ' + standing.what + " stands " +
-             std::to_string(standing.longest) + " s, edge " + std::to_string(standing.least_edge);
+    which += "\nrun " + std::to_string(i) + ": " + run.car + " on " + run.track;
   }
   EXPECT_LE(stood, kMost) << which;
 }

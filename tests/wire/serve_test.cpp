@@ -128,6 +128,28 @@ TEST(Serve, TellsTheControllerHowLongItsCommandsTake) {
   EXPECT_GE(served.summary().delay, 0.035 - 0.005);
 }
 
+TEST(Serve, CountsByTheTimeThatTelemetryCarries) {
+  ServeOptions options = Served::immediate();
+  options.time_field = "t";
+  Served served(options);
+  RawSocket client = served.connect();
+  const auto seen_at = [&](const std::string& t) {
+    client.send(RawSocket::masked(test::with("\"x\":", "\"t\":" + t + ",\"x\":")));
+    steer_of(client.frame());
+    return served.controller.last();
+  };
+  const double first = seen_at("1000").time;
+  seen_at("1000.05");
+  std::this_thread::sleep_for(100ms);
+  EXPECT_NEAR(seen_at("1000.1").time, first + 0.1, 1e-9) << "whatever the wall's clock shows";
+  EXPECT_NEAR(served.controller.last().delay, 0.05, 1e-6);
+  EXPECT_NEAR(seen_at("3").time, first + 0.15, 1e-6) << "its time went back, the run's goes on";
+  EXPECT_TRUE(served.has_logged("the simulator's time jumped"));
+  client.send(RawSocket::masked(kRealTelemetry));
+  EXPECT_LT(steer_of(client.frame())["throttle"].get<double>(), 0.0);
+  EXPECT_TRUE(served.has_logged("broken telemetry: t: "));
+}
+
 TEST(Serve, BeginsAnewAfterASilenceAndOnceMoreWithTheNextTelemetry) {
   for (const bool is_long : {false, true}) {
     ServeOptions options = Served::immediate();

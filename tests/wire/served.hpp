@@ -77,7 +77,7 @@ class Served {
     hooks.on_other_road = [this](double distance) {
       note("another road at " + std::to_string(std::lround(distance)));
     };
-    hooks.log = [this](std::string_view line) { note(line); };
+    hooks.on_clock = hooks.log = [this](std::string_view line) { note(line); };
     endpoint_ =
         std::make_unique<UdacityEndpoint>(options, std::make_unique<Borrowed>(controller), std::move(hooks));
     router_ = std::make_unique<Router>(endpoint_.get(), nullptr);

@@ -148,22 +148,9 @@ const model::Command* Fallback::planned(double time) const noexcept {
 
 namespace {
 
-/// Share of the useful braking that stands for "gentle".
-constexpr double kGentleBraking = 0.4;
-
 /// Severity of a reason; the worst one is reported.
 constexpr int severity(GateReason reason) noexcept {
-  switch (reason) {
-    case GateReason::kNone:
-      return 0;
-    case GateReason::kRate:
-      return 1;
-    case GateReason::kRange:
-      return 2;
-    case GateReason::kNotFinite:
-      return 3;
-  }
-  return 3;
+  return reason == GateReason::kNone ? 0 : 4 - static_cast<int>(reason);
 }
 
 bool is_slow(const model::VehicleParams& vehicle) noexcept {
@@ -195,7 +182,7 @@ GateResult CommandGate::limited(const model::Command& asked, double elapsed) con
     note(GateReason::kNotFinite);
   }
   if (!std::isfinite(command.throttle)) {
-    command.throttle = -kGentleBraking * vehicle_.brake_throttle_limit;
+    command.throttle = -Fallback::kGentleBraking * vehicle_.brake_throttle_limit;
     note(GateReason::kNotFinite);
   }
 

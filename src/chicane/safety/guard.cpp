@@ -7,8 +7,6 @@
 #include <utility>
 
 #include "chicane/base/math.hpp"
-#include "chicane/model/vehicle.hpp"
-#include "chicane/safety/stop_player.hpp"
 
 namespace chicane::safety {
 namespace {
@@ -66,12 +64,7 @@ Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::Ve
                .open_time = options.blind_time}},
       model_{vehicle} {
   estimator_.estimate_disturbance(filter_.planner().has_wheels());
-  refused_since_ = answered_at_ = std::numeric_limits<double>::infinity();
 }
-
-Guard::Guard(const Guard& other) = default;
-
-Guard::~Guard() = default;
 
 void Guard::reset() noexcept {
   controller_->reset();
@@ -90,14 +83,7 @@ void Guard::reset() noexcept {
   estimator_.reset();
   direction_.reset();
   filter_.forget();
-  has_place_ = is_astray_ = false;
-  is_led_ = is_idle_ = rests_ = is_by_hand_ = has_jumped_ = false;
-  ask_at_ = 0.0;
-  ask_pause_ = kAskPause;
-  refused_since_ = answered_at_ = std::numeric_limits<double>::infinity();
-  stuck_since_ = still_since_ = moved_at_ = 0.0;
-  released_at_ = std::numeric_limits<double>::infinity();
-  tried_ = 0.0;
+  run_ = {};
 }
 
 void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
@@ -131,7 +117,7 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   const bool is_off = options_.mode == GuardMode::kOff;
   if (options_.mode != GuardMode::kOn) learned_.see(now, commanded_);
   // What was in doubt while a person drove says nothing of where the person has driven to.
-  const bool is_handed_back = std::exchange(is_by_hand_, cycle.manual.has_value()) && !cycle.manual;
+  const bool is_handed_back = std::exchange(run_.is_by_hand, cycle.manual.has_value()) && !cycle.manual;
   if (is_handed_back && Supervisor::wants_trial(monitor_.findings())) begin_here();
   const model::Measurement& seen = is_off ? now : look(now);
   result = controller_->step(seen, deadline);
@@ -278,23 +264,23 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   if (!verdict.must_stop && actuators_.has_other_steering()) report_.reason = GuardReason::kOtherSteering;
   if (!verdict.must_stop && actuators_.has_weak_brakes()) report_.reason = GuardReason::kWeakBrakes;
   if (!has_answer && !verdict.must_stop)
-    report_.reason = is_far_ ? GuardReason::kFarFromRoad : GuardReason::kNoAnswer;
+    report_.reason = run_.is_far ? GuardReason::kFarFromRoad : GuardReason::kNoAnswer;
 
   bool may_send = has_answer && !verdict.must_stop;
   if (may_send && start) may_send = filter(*start, cycle, result);
   if (options_.mode == GuardMode::kObserve)
     return has_answer ? accept(seen, result) : fall_back(seen, result);
-  is_idle_ = has_answer && idles(result);
-  refused_since_ = std::min(refused_since_, seen.time);
-  if (may_send && !is_astray_ && !(is_idle_ && (is_led_ || seen.time - refused_since_ > kStuckTime))) {
+  run_.is_idle = has_answer && idles(result);
+  const bool is_kept = run_.refused.lasts(seen.time) > kStuckTime || run_.is_led;
+  if (may_send && !run_.is_astray && !(run_.is_idle && is_kept)) {
     // One accepted command does not move a car that stands.
-    if (!is_idle_ && std::fabs(estimator_.state().vx) >= kStandingSpeed) {
-      is_led_ = false;
-      refused_since_ = seen.time;
+    if (!run_.is_idle && std::fabs(estimator_.state().vx) >= kStandingSpeed) {
+      run_.is_led = false;
+      run_.refused.at = seen.time;
     }
     return accept(seen, result);
   }
-  if (verdict.must_stop && start && try_reset(*start, cycle, seen.time, result)) return;
+  if (verdict.must_stop && (start || run_.is_far) && try_reset(start, cycle, seen.time, result)) return;
   if (!verdict.must_stop && should_lead_back(seen.time, has_answer) && lead_back(sent_from_, cycle, result))
     return;
   if (!start || !drive_backup(*start, result)) fall_back(seen, result);
@@ -348,7 +334,7 @@ model::Command Guard::limited(const model::Command& command, double interval) co
     inside.throttle = std::min(inside.throttle, std::max(most, 0.0));
   }
   if (car.latches_brakes() && inside.throttle == car.brake_release_throttle) return inside;
-  if (rests_ && car.reverse_speed > 0.0) inside.throttle = std::max(inside.throttle, 0.0);
+  if (run_.rests && car.reverse_speed > 0.0) inside.throttle = std::max(inside.throttle, 0.0);
   if (v < car.reverse_speed && inside.throttle < 0.0)
     inside.throttle = std::max(inside.throttle, throttle_to_rest(car, -car.reverse_acceleration, v));
   return inside;
@@ -356,17 +342,9 @@ model::Command Guard::limited(const model::Command& command, double interval) co
 
 /// The controller's answer is sent.
 void Guard::accept(const model::Measurement& seen, controller::StepResult& result) noexcept {
-  switch (result.answer) {
-    case Answer::kStopOnRoad:
-      report_.rung = Rung::kStopOnRoad;
-      return;
-    case Answer::kReturnToRoad:
-      report_.rung = Rung::kReturnToRoad;
-      return;
-    case Answer::kDrive:
-    case Answer::kNone:
-      break;
-  }
+  const bool stops = result.answer == Answer::kStopOnRoad;
+  report_.rung = stops ? Rung::kStopOnRoad : Rung::kReturnToRoad;
+  if (stops || result.answer == Answer::kReturnToRoad) return;
   report_.rung = Rung::kController;
   if (result.plan.size > 0) {
     fallback_.accept(result.plan);
@@ -377,11 +355,15 @@ void Guard::accept(const model::Measurement& seen, controller::StepResult& resul
 
 void Guard::fall_back(const model::Measurement& seen, controller::StepResult& result) noexcept {
   const Fallback::Answer answer = fallback_.command(sent_from_, seen);
+  take_over(answer.command, answer.rung, result);
+}
+
+/// The guard's own command, without the controller's plan.
+void Guard::take_over(const model::Command& command, Rung rung, controller::StepResult& result) noexcept {
   result.answer = Answer::kNone;
-  result.command = answer.command;
-  report_.rung = answer.rung;
-  result.plan.size = 0;
-  result.plan.reference_size = 0;
+  result.command = command;
+  result.plan.size = result.plan.reference_size = 0;
+  report_.rung = rung;
 }
 
 /// The stored backup goes on; false where there is none.
@@ -390,9 +372,7 @@ bool Guard::drive_backup(const StopStart& start, controller::StepResult& result)
   const bool is_open = findings.unmeasured || findings.frozen || findings.late;
   const bool may_race_on = report_.reason == GuardReason::kNoWayToStop;
   if (!filter_.drive(road_, start, is_open, may_race_on, report_)) return false;
-  result.answer = Answer::kNone;
-  result.command = filter_.stop().points[0].command;
-  report_.rung = Rung::kGuardStop;
+  take_over(filter_.stop().points[0].command, Rung::kGuardStop, result);
   show_backup(start, result.plan);
   return true;
 }
@@ -403,7 +383,6 @@ void Guard::show_backup(const StopStart& start, controller::Plan& plan) const no
   StopStart at = start;
   double edge = 0.0;
   double driven = 0.0;
-  plan.size = plan.reference_size = 0;
   while (plan.size < kShown) {
     const double speed = hypot(at.body.vx, at.body.vy);
     const model::Command command = played(filter_.stop(), driven, speed, model_.vehicle());

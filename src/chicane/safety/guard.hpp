@@ -53,9 +53,8 @@ class Guard {
   /// The same with what known_road() has made before: smoothing a road takes milliseconds.
   Guard(std::unique_ptr<controller::Controller> controller, const model::VehicleParams& vehicle,
         const GuardOptions& options, road::KnownRoad road);
-  ~Guard();
   /// All it knows, the controller included. Pre: the controller is Copyable.
-  Guard(const Guard& other);
+  Guard(const Guard&) = default;
   Guard& operator=(const Guard&) = delete;
 
   /// What else holds in a cycle.
@@ -106,12 +105,15 @@ class Guard {
   [[nodiscard]] model::Command limited(const model::Command& command, double interval) const noexcept;
   void accept(const model::Measurement& seen, controller::StepResult& result) noexcept;
   void fall_back(const model::Measurement& seen, controller::StepResult& result) noexcept;
+  void take_over(const model::Command& command, controller::Rung rung,
+                 controller::StepResult& result) noexcept;
   [[nodiscard]] bool drive_backup(const StopStart& start, controller::StepResult& result) noexcept;
   void show_backup(const StopStart& start, controller::Plan& plan) const noexcept;
   void watch_course(const std::optional<StopStart>& start) noexcept;
   [[nodiscard]] bool idles(const controller::StepResult& result) const noexcept;
   [[nodiscard]] bool should_lead_back(double time, bool has_answer) noexcept;
   [[nodiscard]] bool lead_back(double act, const Cycle& cycle, controller::StepResult& result) noexcept;
+  [[nodiscard]] model::VehicleParams led_vehicle() const noexcept;
   [[nodiscard]] model::Command creep_step(const StopStart& start, const model::State& car) const noexcept;
   [[nodiscard]] double against_rolling_back() const noexcept;
   void watch_for_reset(const model::Measurement& measured) noexcept;
@@ -119,7 +121,7 @@ class Guard {
   [[nodiscard]] bool agrees_with_road(const model::Measurement& measured) const noexcept;
   void begin_here() noexcept;
   void watch_answer(const model::Measurement& seen, bool has_answer) noexcept;
-  [[nodiscard]] bool try_reset(const StopStart& start, const Cycle& cycle, double time,
+  [[nodiscard]] bool try_reset(const std::optional<StopStart>& start, const Cycle& cycle, double time,
                                controller::StepResult& result) noexcept;
   void watch_rest(double time, double throttle) noexcept;
   void free_stuck_car(double time, controller::StepResult& result) noexcept;
@@ -158,25 +160,39 @@ class Guard {
   double s_ = 0.0;  ///< on the known road where the command acts [m]
   double d_ = 0.0;  ///< to the left of its line [m]
   unsigned revision_ = 0;
-  bool has_place_ = false;
-  bool is_far_ = false;            ///< the car is far from the known road
-  bool is_astray_ = false;         ///< it is off the road or across it
-  bool has_stood_astray_ = false;  ///< since it is astray; from then on it may leave the road to turn
-  bool is_led_ = false;            ///< it stood while commands were refused, and is led back to the line
-  bool is_idle_ = false;           ///< its controller does not drive a car that stands, or is led
-  bool rests_ = false;             ///< it came to rest, and has not been asked to drive since
-  bool is_by_hand_ = false;        ///< a person drove in the last cycle
-  bool has_jumped_ = false;        ///< the measured place, since something is in doubt
-  double ask_at_ = 0.0;            ///< from when on a car in doubt may be tried again [s]
-  double ask_pause_ = kAskPause;   ///< after the next trial [s]
-  double answered_at_ = 0.0;       ///< by the controller, last [s]
-  double tried_ = 0.0;             ///< way driven to see whether the car was put elsewhere, by the model [m]
-  double still_since_ = 0.0;       ///< a car that is measured elsewhere stands by the estimate [s]
-  double refused_since_ = 0.0;     ///< commands of a standing car [s]
-  double moved_at_ = 0.0;          ///< last faster than at rest [s]
-  double stuck_since_ = 0.0;       ///< a car that should move stands [s]
-  double released_at_ = std::numeric_limits<double>::infinity();  ///< its brake, or began to stand [s]
-  double act_speed_ = 0.0;                                        ///< estimated where the command acts [m/s]
+  /// When something began [s]: empty until it is asked for or set, so that no clock's zero is taken for it.
+  struct Since {
+    double at = std::numeric_limits<double>::infinity();
+    /// For how long it has lasted. It begins at `time` where it has not, or where the clock went back.
+    [[nodiscard]] double lasts(double time) noexcept {
+      if (!(at <= time)) at = time;
+      return time - at;
+    }
+  };
+  /// What a run has shown of the car and its controller. All of it is forgotten when another begins.
+  struct Run {
+    bool has_place = false;
+    bool is_far = false;            ///< the car is far from the known road
+    bool is_astray = false;         ///< it is off the road or across it
+    bool has_stood_astray = false;  ///< since it is astray; from then on it may leave the road to turn
+    bool is_led = false;            ///< it stood while commands were refused, and is led back to the line
+    bool is_idle = false;           ///< its controller does not drive a car that stands, or is led
+    bool rests = false;             ///< it came to rest, and has not been asked to drive since
+    bool is_by_hand = false;        ///< a person drove in the last cycle
+    bool has_jumped = false;        ///< the measured place, since something is in doubt
+    double ask_at = 0.0;            ///< from when on a car in doubt may be tried again [s]
+    double ask_pause = kAskPause;   ///< after the next trial [s]
+    double tried = 0.0;             ///< way driven to see whether the car was put elsewhere, by the model [m]
+    double held_speed = 0.0;        ///< of a car that should move, when it began not to [m/s]
+    Since answered;                 ///< the controller, last
+    Since still;                    ///< a car that is measured elsewhere stands by the estimate
+    Since refused;                  ///< commands of a standing car
+    Since moved;                    ///< faster than at rest, last
+    Since stuck;                    ///< a car that should move does not
+    Since released;                 ///< its brake, or began to be stuck
+  };
+  Run run_;
+  double act_speed_ = 0.0;   ///< estimated where the command acts [m/s]
   double most_drive_ = 0.0;  ///< acceleration that the tyres can give then [m/s²]
   double sent_from_ = 0.0;   ///< from which the command of this cycle acts [s]
 };

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The guard with the road that it knows (docs/safety.md, "Settings"), and with a car that stands, rolls back,
-// is off its road or was put elsewhere (docs/safety.md, "The way back").
+// The guard with its options, with the road that it knows (docs/safety.md, "Settings"), and with a car that
+// stands, rolls back, is off its road or was put elsewhere (docs/safety.md, "The way back").
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "chicane/base/math.hpp"
@@ -30,7 +32,33 @@ double traction(const model::PredictionModel& model, const model::BodyMotion<dou
   return std::min(front, rear) + longitudinal_acceleration(car, 0.0, body.vx);
 }
 
+using G = GuardOptions;
+constexpr std::array<std::string_view, 3> kModes{"on", "observe", "off"};
+constexpr std::array<std::string_view, 2> kRoads{"track", "waypoints"};
+constexpr std::array<std::string_view, 3> kReceivers{"stop-plan", "brake", "hold"};
+constexpr std::array kOptions{
+    option<&G::mode>(
+        "mode", kModes,
+        "Mode. on: without a way to stop, or when sensors fail, the car is stopped on the road; observe: it "
+        "is only reported; off: only range and rate of commands are limited."),
+    option<&G::road>("road", kRoads,
+                     "Source of the road for the guard and for racing: the track, or waypoints."),
+    option<&G::half_width>("half_width", unit::kMetre, 0.2, 100,
+                           "Assumed from waypoints to edge where the road is known from waypoints."),
+    option<&G::receiver>(
+        "receiver", kReceivers,
+        "Action of the actuators when commands cease: the stop that came with the last one, all "
+        "braking with the last steering, or the last command for ever, as the original game."),
+    option<&G::margin>("margin", unit::kMetre, 0, 10, "Distance from the edge that the stop at hand keeps."),
+    option<&G::blind_time>(
+        "blind_time", unit::kSecond, 0, 60,
+        "Duration that a silence may last: the stop at hand keeps the road for so long when it is played "
+        "by a car that differs a little from the assumed one; 0: not checked."),
+};
+
 }  // namespace
+
+std::span<const Option> guard_options() noexcept { return kOptions; }
 
 road::KnownRoad known_road(const GuardOptions& options, const road::RoadData* road,
                            const model::VehicleParams& vehicle) {
@@ -43,7 +71,7 @@ void Guard::forget_road() {
   if (options_.road == GuardRoad::kWaypoints) return;
   options_.road = GuardRoad::kWaypoints;
   road_ = known_road(options_, nullptr, model_.vehicle());
-  has_place_ = false;
+  run_.has_place = false;
   filter_.forget();
   set_grip(1.0);
   controller_->use_line(nullptr);
@@ -64,14 +92,14 @@ void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
 void Guard::take_up_line() noexcept {
   if (revision_ == road_.revision()) return;
   revision_ = road_.revision();
-  has_place_ = false;
+  run_.has_place = false;
   if (road_.line().is_empty()) filter_.forget();
 }
 
 /// Where the car will be on the known road when the command acts; none when car or road are lost.
 std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   const road::ReferenceLine& line = road_.line();
-  is_far_ = false;
+  run_.is_far = false;
   most_drive_ = std::numeric_limits<double>::infinity();
   act_speed_ = estimator_.is_started() ? estimator_.state().vx : std::numeric_limits<double>::infinity();
   if (line.is_empty() || !estimator_.is_started() || !std::isfinite(act_time)) return std::nullopt;
@@ -83,12 +111,12 @@ std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   act_speed_ = car.vx;
   most_drive_ = traction(model_, {car.vx, car.vy, car.r, car.steer, 0.0});
   const Vec2 position{car.x, car.y};
-  const double* last = has_place_ ? &s_ : nullptr;
+  const double* last = run_.has_place ? &s_ : nullptr;
   const road::ReferenceLine::Projection place =
       line.find(position, car.psi, 2.0 * model_.vehicle().width, last, 0.5 * kFarFromRoad);
-  has_place_ = place.distance < kFarFromRoad;
-  is_far_ = !has_place_;
-  if (is_far_) return std::nullopt;
+  run_.has_place = place.distance < kFarFromRoad;
+  run_.is_far = !run_.has_place;
+  if (run_.is_far) return std::nullopt;
   s_ = place.s;
   d_ = place.d;
   const double e = angle_difference(car.psi, line.at(place.s).heading);
@@ -115,6 +143,7 @@ constexpr double kAlong = 0.2;         // [rad] within which it is along it agai
 constexpr double kRefusedTime = 1.0;   // [s] of refused commands after which a standing car is led back
 constexpr double kReleaseTime = 0.5;   // [s] a car that should move may stand before its brake is released
 constexpr double kDrives = 0.1;        // pedal from which on a car should move
+constexpr double kGain = 0.1;          // [m/s] by which a car gains speed that nothing holds
 constexpr double kMostAgainstRolling = 0.7;  // pedal against rolling back
 constexpr double kStillTime = 1.0;   // [s] a car stands before it is tried whether it was put elsewhere
 constexpr double kTrialWay = 0.5;    // share of the car's length that is driven for that
@@ -139,19 +168,19 @@ void Guard::watch_for_reset(const model::Measurement& measured) noexcept {
   const bool has_jumped = reset_watch_.has_jumped() && monitor_.findings().position_jump;
   reset_watch_.see(measured, sent_.at(measured.time).throttle);
   if (!Supervisor::wants_trial(monitor_.findings())) {
-    has_jumped_ = false;
-    ask_at_ = 0.0;
-    ask_pause_ = kAskPause;
+    run_.has_jumped = false;
+    run_.ask_at = 0.0;
+    run_.ask_pause = kAskPause;
   }
-  has_jumped_ = has_jumped_ || has_jumped;
+  run_.has_jumped = run_.has_jumped || has_jumped;
   if (may_ask(measured)) {
     reset_watch_.ask();
-    ask_at_ = measured.time + ask_pause_;
-    ask_pause_ = std::min(2.0 * ask_pause_, kLongestAskPause);
+    run_.ask_at = measured.time + run_.ask_pause;
+    run_.ask_pause = std::min(2.0 * run_.ask_pause, kLongestAskPause);
   }
-  if (!reset_watch_.is_waiting()) tried_ = 0.0;
-  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed || tried_ > 0.0;
-  if (!reset_watch_.is_waiting() || !stands) still_since_ = measured.time;
+  if (!reset_watch_.is_waiting()) run_.tried = 0.0;
+  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed || run_.tried > 0.0;
+  if (!reset_watch_.is_waiting() || !stands) run_.still.at = measured.time;
   if (reset_watch_.has_answered()) begin_here();
 }
 
@@ -161,8 +190,8 @@ bool Guard::may_ask(const model::Measurement& measured) const noexcept {
   const Findings& found = monitor_.findings();
   const bool is_doubted = Supervisor::wants_trial(found) && !found.unmeasured && !found.frozen && !found.late;
   const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed && reset_watch_.rests();
-  if (!is_doubted || !stands || reset_watch_.is_waiting() || !(measured.time >= ask_at_)) return false;
-  return !has_jumped_ || agrees_with_road(measured);
+  if (!is_doubted || !stands || reset_watch_.is_waiting() || !(measured.time >= run_.ask_at)) return false;
+  return !run_.has_jumped || agrees_with_road(measured);
 }
 
 bool Guard::agrees_with_road(const model::Measurement& measured) const noexcept {
@@ -196,39 +225,37 @@ void Guard::begin_here() noexcept {
   filter_.forget();
   if (options_.mode == GuardMode::kOn) controller_->reset();
   if (options_.road == GuardRoad::kWaypoints) road_.reset();
-  has_place_ = is_astray_ = is_led_ = has_jumped_ = false;
+  run_.has_place = run_.is_astray = run_.is_led = run_.has_jumped = false;
 }
 
 /// A controller without an answer to whole measurements begins anew now and then: the car may have been put
 /// where its road, or its estimate, does not lead.
 void Guard::watch_answer(const model::Measurement& seen, bool has_answer) noexcept {
-  if (has_answer || !std::isfinite(seen.x + seen.y + seen.psi + seen.speed)) answered_at_ = seen.time;
-  answered_at_ = std::min(answered_at_, seen.time);
-  if (!(seen.time - answered_at_ > kNoAnswerTime)) return;
+  if (has_answer || !std::isfinite(seen.x + seen.y + seen.psi + seen.speed)) run_.answered.at = seen.time;
+  if (!(run_.answered.lasts(seen.time) > kNoAnswerTime)) return;
   controller_->reset();
-  answered_at_ = seen.time;
+  run_.answered.at = seen.time;
 }
 
 /// By the estimate the car stands, but it is measured elsewhere: at walking pace, within half a car's length,
 /// it shows whether it answers there. False where it is not tried.
-bool Guard::try_reset(const StopStart& start, const Cycle& cycle, double time,
+bool Guard::try_reset(const std::optional<StopStart>& start, const Cycle& cycle, double time,
                       controller::StepResult& result) noexcept {
-  if (!(time - still_since_ > kStillTime)) return false;
-  if (tried_ > kTrialWay * model_.vehicle().length) {
+  if (!(run_.still.lasts(time) > kStillTime)) return false;
+  if (run_.tried > kTrialWay * model_.vehicle().length) {
     reset_watch_.give_up();
     return false;
   }
   const double speed = std::fabs(estimator_.state().vx);
   const model::Command command{0.0, speed < kTrialSpeed ? kTrialPedal : 0.0};
-  // A car that stopped where the known road ends has no stop ahead of it; well inside the edges and along the
-  // road the way of the trial does without.
-  const bool has_room = filter_.planner().edge(road_, start) >= kTrialRoom && std::fabs(start.e) < kAlong;
-  if (verify(start, cycle, command, true) == Fit::kNone && !has_room) return false;
-  tried_ += std::max(speed, kTrialSpeed) * std::max(cycle.interval, 0.0);
-  result.answer = Answer::kNone;
-  result.command = command;
-  result.plan.size = result.plan.reference_size = 0;
-  report_.rung = Rung::kReturnToRoad;
+  // A car that stopped where the known road ends has no stop ahead of it, nor one that is off the road; the
+  // way of the trial does without there, and well inside the edges and along the road.
+  const double edge = start ? filter_.planner().edge(road_, *start) : -kFarFromRoad;
+  const bool has_room = edge < 0.0 || (edge >= kTrialRoom && std::fabs(start->e) < kAlong);
+  const bool has_stop = start && verify(*start, cycle, command, true) != Fit::kNone;
+  if (!has_room && !has_stop) return false;
+  run_.tried += std::max(speed, kTrialSpeed) * std::max(cycle.interval, 0.0);
+  take_over(command, Rung::kReturnToRoad, result);
   return true;
 }
 
@@ -236,29 +263,29 @@ bool Guard::try_reset(const StopStart& start, const Cycle& cycle, double time,
 void Guard::watch_course(const std::optional<StopStart>& start) noexcept {
   const double least = options_.road == GuardRoad::kWaypoints ? -kGuessedWidth : 0.0;
   const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed;
-  has_stood_astray_ = is_astray_ && (has_stood_astray_ || stands);
+  run_.has_stood_astray = run_.is_astray && (run_.has_stood_astray || stands);
   if (!start) {
-    is_astray_ = is_far_;
+    run_.is_astray = run_.is_far;
     return;
   }
   const bool is_on_road = filter_.planner().edge(road_, *start) >= least;
   const double off = std::fabs(start->e);
-  if (!is_on_road || off > kAcross) is_astray_ = true;
-  if (is_on_road && off < kAlong) is_astray_ = false;
+  if (!is_on_road || off > kAcross) run_.is_astray = true;
+  if (is_on_road && off < kAlong) run_.is_astray = false;
 }
 
 /// A car that is astray, or that stands while its controller's commands are refused.
 bool Guard::should_lead_back(double time, bool has_answer) noexcept {
   const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed;
-  if (!has_answer || !(stands || is_led_)) refused_since_ = time;
-  if (time - refused_since_ > kRefusedTime) is_led_ = true;
-  return is_astray_ || (is_led_ && has_answer);
+  if (!has_answer || !(stands || run_.is_led)) run_.refused.at = time;
+  if (run_.refused.lasts(time) > kRefusedTime) run_.is_led = true;
+  return run_.is_astray || (run_.is_led && has_answer);
 }
 
 /// The car stands, or is led on, and its controller does not drive it although it aims at a speed.
 bool Guard::idles(const controller::StepResult& result) const noexcept {
   const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed;
-  return (stands || is_led_) && result.report.speed_reference > kTrialSpeed &&
+  return (stands || run_.is_led) && result.report.speed_reference > kTrialSpeed &&
          !(result.command.throttle > kDrives);
 }
 
@@ -274,36 +301,50 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
       line.project_along({car.x, car.y}, car.psi, 2.0 * model_.vehicle().width);
   if (!(place.distance < kLost)) return false;
   result.command = rolls_back ? model::Command{0.0, against_rolling_back()}
-                              : tracking::way_back(line, place, car, model_.vehicle());
+                              : tracking::way_back(line, place, car, led_vehicle());
   const std::optional<StopStart> start = place_on_road(act);
-  if (is_astray_) filter_.forget();
+  if (run_.is_astray) filter_.forget();
   const double edge = start ? filter_.planner().edge(road_, *start) : 0.0;
   const bool stands = std::fabs(car.vx) < kStandingSpeed && !rolls_back;
-  const bool creeps = start && stands && !is_astray_ && edge >= 0.0 && edge < options_.margin;
+  const bool creeps = start && stands && !run_.is_astray && edge >= 0.0 && edge < options_.margin;
   Fit fit = Fit::kNone;
   if (creeps) {
     result.command = creep_step(*start, car);
     fit = Fit::kSeen;
-  } else if (start) {
-    fit = verify(*start, cycle, result.command, true);
+  } else if (stands && result.command.throttle > 0.0) {
+    const double gently = result.command.throttle;
+    result.command.throttle = throttle_for(model_.vehicle(), kCreepDrive * kCreep, car.vx);
+    if (start) fit = verify(*start, cycle, result.command, true);
+    if (start && edge >= -options_.margin && fit == Fit::kNone) result.command.throttle = gently;
   }
+  if (start && fit == Fit::kNone) fit = verify(*start, cycle, result.command, true);
   // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there,
-  // and once it stands.
-  const bool is_off = start && edge < 0.0;
-  if (start && !is_off && fit == Fit::kNone && (!has_stood_astray_ || result.answer == Answer::kDrive))
-    return false;
+  // and once it stands. Otherwise a car that stands turns its wheels: it needs less room then.
+  const bool may_leave = run_.has_stood_astray && result.answer != Answer::kDrive;
+  if (start && !(edge < 0.0) && fit == Fit::kNone && !may_leave) {
+    const double steer = result.command.steer;
+    if (!stands || !drive_backup(*start, result)) return false;
+    result.command.steer = steer;
+    return true;
+  }
   if (fit == Fit::kNone) filter_.forget();
-  result.answer = Answer::kNone;
-  result.plan.size = result.plan.reference_size = 0;
-  report_.rung = Rung::kReturnToRoad;
+  take_over(result.command, Rung::kReturnToRoad, result);
   return true;
+}
+
+/// The car with the lock that its wheels reach as they answer: who waits for more waits for ever.
+model::VehicleParams Guard::led_vehicle() const noexcept {
+  model::VehicleParams vehicle = model_.vehicle();
+  const double lock = vehicle.steer_limit;
+  vehicle.steer_limit = std::clamp(answer().gain * lock - std::fabs(answer().offset), 0.1 * lock, lock);
+  return vehicle;
 }
 
 /// At full lock away from the near edge a car soon comes no nearer to it (eq. 6a); until then it may take
 /// half of the margin. Its wheels turn first: the stop of a car that does not move is the standstill it
 /// begins from.
 model::Command Guard::creep_step(const StopStart& start, const model::State& car) const noexcept {
-  const model::VehicleParams& vehicle = model_.vehicle();
+  const model::VehicleParams vehicle = led_vehicle();
   const double lock = std::copysign(vehicle.steer_limit, -start.d);
   const model::Command rest{lock, throttle_to_rest(vehicle, -kCreepDrive, std::max(car.vx, 0.0))};
   if (!(std::fabs(lock - car.steer) < kTurnedWheels * vehicle.steer_limit)) return rest;
@@ -325,25 +366,32 @@ double Guard::against_rolling_back() const noexcept {
 /// sign, and a car that begins to roll back would be braked into going faster.
 void Guard::watch_rest(double time, double throttle) noexcept {
   const double speed = std::fabs(estimator_.state().vx);
-  if (!estimator_.is_started() || !(speed < kAtRest)) moved_at_ = time;
-  if (time - moved_at_ > kRestTime) rests_ = true;
-  if (speed > kStandingSpeed || throttle > kDrives) rests_ = false;
+  if (!estimator_.is_started() || !(speed < kAtRest)) run_.moved.at = time;
+  if (run_.moved.lasts(time) > kRestTime) run_.rests = true;
+  if (speed > kStandingSpeed || throttle > kDrives) run_.rests = false;
 }
 
 /// A car that should move and stands is stuck after kStuckTime, where nothing worse is said of it. Its pedals
-/// are released for a cycle now and then: a brake that stays on at rest lets go then.
+/// are released for a cycle now and then: a brake that stays on lets go then. It holds a slow car, too, that
+/// gains no speed by its drive.
 void Guard::free_stuck_car(double time, controller::StepResult& result) noexcept {
   model::Command& command = result.command;
   const model::VehicleParams& car = model_.vehicle();
-  const bool should_move =
-      (command.throttle > kDrives || is_idle_) && std::fabs(estimator_.state().vx) < kStandingSpeed;
-  if (!should_move || !(released_at_ <= time)) stuck_since_ = released_at_ = time;
+  const double speed = std::fabs(estimator_.state().vx);
+  const bool stands = speed < kStandingSpeed;
+  const bool drives = command.throttle > kDrives;
+  const bool is_held = drives && speed < std::min(car.brake_latch_speed, run_.held_speed + kGain);
+  const bool should_move = is_held || (stands && (drives || run_.is_idle));
+  if (!should_move) {
+    run_.stuck.at = run_.released.at = time;
+    run_.held_speed = speed;
+  }
   controller::GuardReason& reason = report_.reason;
   const bool has_worse = controller::word_of(reason).severity == Severity::kError;
-  if (time - stuck_since_ > kStuckTime && !has_worse) reason = controller::GuardReason::kStuck;
-  if (!(time - released_at_ > (car.latches_brakes() ? kReleaseTime : kStuckTime))) return;
+  if (stands && run_.stuck.lasts(time) > kStuckTime && !has_worse) reason = controller::GuardReason::kStuck;
+  if (!(run_.released.lasts(time) > (car.latches_brakes() ? kReleaseTime : kStuckTime))) return;
   command.throttle = car.latches_brakes() ? car.brake_release_throttle : 0.0;
-  released_at_ = time;
+  run_.released.at = time;
 }
 
 }  // namespace chicane::safety

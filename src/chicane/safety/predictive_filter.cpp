@@ -20,6 +20,7 @@ constexpr double kRecovery = 0.5;       // [s] after a silence until the car is 
 constexpr double kDrivenOpen = 2.0;     // [s] of silence for which a stop that is being driven is certified
 constexpr double kTurnReserve = 1.5;    // times the room in which a car that stood turns back to the road
 constexpr double kLedShare = 0.5;       // of the margin that turning back leaves at least
+constexpr double kCrawl = 0.5;          // [m/s]
 constexpr double kWalkingPace = 3.0;    // [m/s] below it slip angles say little
 constexpr double kNearer = 0.02;        // [m] that a driven stop may come nearer to an edge that it is beyond
 constexpr double kMemory = 3.0;         // [s] of residuals
@@ -202,8 +203,11 @@ double PredictiveFilter::slip(const StopStart& at) const noexcept {
 Fit PredictiveFilter::verify(const Request& request, GuardReport& report) noexcept {
   const double cycle = request.interval > 0.0 ? request.interval : kAssumedCycle;
   const double held = std::clamp(cycle, kShortestHold, kLongestHold);
-  const Fit fit = verify_held(request, std::min(cycle + kLateness, kLongestHold), report);
-  if (fit != Fit::kNone) return fit;
+  // How far a car goes that begins to move shows only once its drive acts.
+  const bool begins = request.is_led && request.start.body.vx < kCrawl;
+  const Fit fit =
+      verify_held(request, begins ? kLongestHold : std::min(cycle + kLateness, kLongestHold), report);
+  if (fit != Fit::kNone || begins) return fit;
   if (!request.road.is_raced()) return verify_held(request, held, report);
   double edge = planner_.edge(request.road, request.start);
   const StopStart next = planner_.advance(request.road, request.start, request.command, held, edge);

@@ -204,7 +204,9 @@ void SensorWatch::judge_age(const model::Measurement& now, const model::State& e
   const bool is_far = seen.place > most.place;
   doubts_.is_old = goes_on || (is_far && !doubts_.place && is_earlier(now, most));
   doubts_.late |= doubts_.is_old;
-  late_agrees_ = doubts_.is_old || is_far ? 0.0 : late_agrees_ + elapsed;
+  // A place in doubt stays far; the age of a car that stands does not show in it.
+  const bool is_other = is_far && !(stands && doubts_.place);
+  late_agrees_ = doubts_.is_old || is_other ? 0.0 : late_agrees_ + elapsed;
   if (!doubts_.late) return try_start(now, expected, elapsed);
   if (late_agrees_ < kAgreeing || (stands && now.time < retry_)) return;
   doubts_.late = false;

@@ -150,6 +150,12 @@ double end_of(const road::KnownRoad& road, const StopStart& start) noexcept {
   return road.line().is_closed() ? start.s + road.line().length() : road.end();
 }
 
+/// Below kSpeedFloor that of the wheels: the model moves a car that stands with its wheels turned aside.
+double speed_of(const model::BodyMotion<double>& body) noexcept {
+  const double speed = hypot(body.vx, body.vy);
+  return speed < model::PredictionModel::kSpeedFloor ? body.vx : speed;
+}
+
 /// How far the car's course is off its heading [rad], where slip angles say something.
 double slide(const model::BodyMotion<double>& body) noexcept {
   return hypot(body.vx, body.vy) > kSlow ? std::fabs(atan2(body.vy, body.vx)) : 0.0;
@@ -197,7 +203,7 @@ DoubtCheck StopPlanner::in_doubt(const road::KnownRoad& road, const StopStart& s
     at.e += inwards * (doubt_ * kHeadingDoubt + doubt.course);
     at.body.r += inwards * (doubt_ * kYawRateDoubt + doubt.yaw_rate);
     at.body.vx += doubt.speed;
-    cars[k].speed = hypot(at.body.vx, at.body.vy);
+    cars[k].speed = speed_of(at.body);
     cars[k].drives = cars[k].speed >= kStanding;
   }
   for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity && (cars[0].drives || cars[1].drives); ++i) {
@@ -206,7 +212,7 @@ DoubtCheck StopPlanner::in_doubt(const road::KnownRoad& road, const StopStart& s
       if (!each.drives) continue;
       const double before = each.speed;
       move(each.car, road, each.at, command_at(k, i, each.at, each.driven, before), step, reach);
-      each.speed = hypot(each.at.body.vx, each.at.body.vy);
+      each.speed = speed_of(each.at.body);
       each.driven += 0.5 * kStep * (before + each.speed);
       const double now = std::min(edge(road, each.at), seen - each.at.s);
       check.edge = std::min(check.edge, now);
@@ -466,7 +472,7 @@ StopCheck StopPlanner::plan(const road::KnownRoad& road, const StopStart& start,
   StopCheck check{.least_edge = edge(road, start)};
   StopStart at = start;
   double driven = 0.0;
-  double speed = hypot(at.body.vx, at.body.vy);
+  double speed = speed_of(at.body);
   out.size = 0;
   model::Command held;
   for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity; ++i) {
@@ -477,7 +483,7 @@ StopCheck StopPlanner::plan(const road::KnownRoad& road, const StopStart& start,
     if (has_ended) break;
     const double before = speed;
     move(car_, road, at, held, step, reach);
-    speed = hypot(at.body.vx, at.body.vy);
+    speed = speed_of(at.body);
     driven += 0.5 * kStep * (before + speed);
     check.least_edge = std::min(check.least_edge, edge(road, at));
     if (!(check.spins_at > 0.0) && slide(at.body) > most_slide) check.spins_at = speed;
