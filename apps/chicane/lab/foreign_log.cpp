@@ -23,7 +23,7 @@ namespace chicane::apps {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMinStep = 0.01;  // [s] samples closer than this are skipped: recordings have at most 100 Hz
+constexpr double kMinStep = 0.01;  // [s] closer samples are left out: 100 Hz are enough to look at
 constexpr double kMaxGap = 2.0;    // [s] a longer gap between samples ends a stint: its lap does not count
 
 /// Commands of a log, asked for with times that only grow.
