@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <memory>
@@ -30,9 +29,7 @@ namespace {
 
 /// Whether a run with a dashboard may go on until it is stopped: nobody has asked for a number of laps.
 bool may_stay(const Options& options) {
-  const bool has_laps = std::any_of(options.settings.begin(), options.settings.end(),
-                                    [](const auto& setting) { return setting.first == "laps"; });
-  return !has_laps && !options.is_fast && !options.is_json;
+  return !has_setting(options, "laps") && !options.is_fast && !options.is_json;
 }
 
 /// Whether somebody sees that a run has ended and can end the program.

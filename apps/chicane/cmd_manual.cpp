@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// `chicane manual` and `chicane completion`: the manual page and the completion scripts of three shells,
+// written from the same rows of options that the command line is read by.
 #include <fmt/format.h>
 
 #include <string>
@@ -10,7 +12,7 @@
 namespace chicane::apps {
 namespace {
 
-/// As roff text: no character of it is a command.
+/// Text for roff (man pages), with everything escaped that roff reads as a command.
 std::string plain(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -79,16 +81,14 @@ the same folders as installed, seen from the folder of the program
 
 std::string manual_page() {
   std::string page = fmt::format(
-      ".TH CHICANE 1 \"\" \"chicane {}\" \"User Commands\"\n.SH NAME\nchicane \\- drive a car round a track "
-      "by "
-      "model predictive control\n.SH SYNOPSIS\n",
+      ".TH CHICANE 1 \"\" \"chicane {}\" \"User Commands\"\n.SH NAME\n"
+      "chicane \\- drive a car round a track by model predictive control\n.SH SYNOPSIS\n",
       plain(kVersion));
   Options scratch;
   for (const Command& command : commands()) page += synopsis(command, options_of(command, scratch)) + ".br\n";
   page +=
-      ".SH DESCRIPTION\nController, simulator, recorder and dashboard in one program. Results go to the "
-      "standard output, "
-      "everything else to the\nstandard error.\n.SH COMMANDS\n";
+      ".SH DESCRIPTION\nController, simulator, recorder and dashboard in one program. "
+      "Results go to the standard output, everything else to the\nstandard error.\n.SH COMMANDS\n";
   for (const Command& command : commands()) {
     page += fmt::format(".SS chicane {}\n{}.\n", plain(command.name), plain(command.summary));
     for (const OptionRow& row : options_of(command, scratch)) page += manual_entry(row);
@@ -104,12 +104,12 @@ ExitCode manual(const Options&) {
 
 namespace {
 
-/// Placeholder for the value of an option, in all three shells.
+/// Completions for the value of an option, in any of the three shells.
 struct Value {
-  std::string words;  ///< fixed ones
-  std::string shelf;  ///< argument of `chicane list`
-  bool is_file = false;
-  bool is_assignment = false;  ///< KEY=VALUE: more is typed behind the word
+  std::string words;           ///< fixed words, separated by blanks
+  std::string shelf;           ///< argument of `chicane list`, which prints names; empty: none
+  bool is_file = false;        ///< names of files
+  bool is_assignment = false;  ///< KEY=VALUE: no blank after the completed key
 };
 
 Value value_of(const OptionRow& option) {
@@ -122,7 +122,7 @@ Value value_of(const OptionRow& option) {
   return value;
 }
 
-/// Within '...' of a shell.
+/// Text in single quotes; `quote` stands for each single quote within.
 std::string quoted(std::string_view text, std::string_view quote) {
   std::string result;
   for (const char c : text) result += c == '\'' ? std::string(quote) : std::string(1, c);
@@ -205,16 +205,15 @@ std::string zsh_script() {
   const std::string_view quote = R"('\'')";
   std::string script =
       "#compdef chicane\n# zsh completion for chicane, made by `chicane completion zsh`.\n"
-      "_chicane_names() { local shelf=$1; shift; compadd \"$@\" -- ${(f)\"$(chicane list $shelf 2>/dev/null "
-      "| "
-      "cut -d' ' -f1)\"} }\n_chicane() {\n  if (( CURRENT == 2 )); then\n    local -a commands=(\n";
+      "_chicane_names() { local shelf=$1; shift; "
+      "compadd \"$@\" -- ${(f)\"$(chicane list $shelf 2>/dev/null | cut -d' ' -f1)\"} }\n"
+      "_chicane() {\n  if (( CURRENT == 2 )); then\n    local -a commands=(\n";
   for (const Command& command : commands())
     script += fmt::format("      {}\n",
                           quoted(fmt::format("{}:{}", command.name, zsh_text(command.summary)), quote));
   script +=
-      "    )\n    _describe command commands\n    return\n  fi\n  shift words; (( CURRENT-- ))\n  case "
-      "$words[1] "
-      "in\n";
+      "    )\n    _describe command commands\n    return\n  fi\n"
+      "  shift words; (( CURRENT-- ))\n  case $words[1] in\n";
   for (const Command& command : commands()) {
     script +=
         fmt::format("    {})\n      _arguments '--help[Print this help message and exit]'", command.name);
@@ -234,8 +233,8 @@ std::string zsh_script() {
     script += " ;;\n";
   }
   return script +
-         "  esac\n}\nif [[ $funcstack[1] == _chicane ]]; then _chicane \"$@\"; else compdef _chicane "
-         "chicane; fi\n";
+         "  esac\n}\n"
+         "if [[ $funcstack[1] == _chicane ]]; then _chicane \"$@\"; else compdef _chicane chicane; fi\n";
 }
 
 // fish ----------------------------------------------------------------------------------------------------

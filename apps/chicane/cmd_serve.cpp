@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
+// Commands whose other end is another program: `serve` drives its car, `simulate` is the car it drives.
 #include "cmd_serve.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <optional>
@@ -25,7 +25,7 @@
 namespace chicane::apps {
 namespace {
 
-/// Our road and car; the controller is not known.
+/// Description of a run on our road, in our car, whose controller is another program.
 protocol::Run description_of_external(const scenario::Scenario& scenario, const road::Track& track) {
   protocol::Run run;
   run.controller = run.preset = "external";
@@ -44,7 +44,7 @@ Result<wire::ServeSummary> drive_external_car(const Options& options, scenario::
                                               std::atomic<bool>& stop, const live::ServeFunction& serve) {
   Result<std::unique_ptr<controller::Controller>> controller = run::make_controller(scenario);
   if (!controller) return fail(controller.error());
-  // Recorded: where the guard knew the road from; a replay computes the same by it.
+  // The recording says from where the guard knows the road, so that a replay computes the same.
   if (!track) scenario.guard.road = safety::GuardRoad::kWaypoints;
   const Result<net::ServerOptions> listening = server_options(options);
   if (!listening) return fail(listening.error());
@@ -129,22 +129,12 @@ Result<wire::SimulateReport> drive_by_external(const Options& options, const Ext
 
 namespace {
 
-/// The road of the simulator, where the command line says which; none where it does not.
-Result<std::optional<road::Track>> chosen_track(const Options& options, const scenario::Scenario& scenario) {
-  const bool is_given = std::any_of(options.settings.begin(), options.settings.end(),
-                                    [](const auto& setting) { return setting.first == "track"; });
-  if (!is_given) return std::optional<road::Track>{};
-  Result<road::Track> track = run::make_track(scenario);
-  if (!track) return fail(track.error());
-  return std::optional<road::Track>{std::move(*track)};
-}
-
 Result<wire::ServeSummary> serve_until_stopped(const Options& options) {
   static std::atomic<bool> stop{false};  // static: must outlive the last signal
   let_interrupts_end();
   Result<scenario::Scenario> scenario = experiment(options);
   if (!scenario) return fail(scenario.error());
-  Result<std::optional<road::Track>> track = chosen_track(options, *scenario);
+  Result<std::optional<road::Track>> track = given_track(options, *scenario);
   if (!track) return fail(track.error());
   return drive_external_car(
       options, std::move(*scenario), std::move(*track),

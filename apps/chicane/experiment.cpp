@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/json.hpp"
@@ -23,6 +24,18 @@ protocol::Request request_of(const Options& options) {
 
 Result<scenario::Scenario> experiment(const Options& options) {
   return protocol::compose(request_of(options));
+}
+
+bool has_setting(const Options& options, std::string_view key) {
+  return std::any_of(options.settings.begin(), options.settings.end(),
+                     [&](const auto& setting) { return setting.first == key; });
+}
+
+Result<std::optional<road::Track>> given_track(const Options& options, const scenario::Scenario& scenario) {
+  if (!has_setting(options, "track")) return std::optional<road::Track>{};
+  Result<road::Track> track = run::make_track(scenario);
+  if (!track) return fail(track.error());
+  return std::optional<road::Track>{std::move(*track)};
 }
 
 Result<std::unique_ptr<run::ClosedLoop>> prepared(const protocol::Request& request) {

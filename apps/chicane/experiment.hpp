@@ -3,7 +3,9 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "chicane/base/result.hpp"
 #include "chicane/lap_time/limit.hpp"
@@ -21,6 +23,12 @@ namespace chicane::apps {
 /// drives.
 [[nodiscard]] protocol::Request request_of(const Options& options);
 [[nodiscard]] Result<scenario::Scenario> experiment(const Options& options);
+
+/// Whether the command line sets `key`.
+[[nodiscard]] bool has_setting(const Options& options, std::string_view key);
+/// The track of --track; none without that option, because the other program knows the road.
+[[nodiscard]] Result<std::optional<road::Track>> given_track(const Options& options,
+                                                             const scenario::Scenario& scenario);
 
 /// The run of an experiment, ready to start, or why it cannot be driven: `drive` starts it, `check` only
 /// asks. `hooks`: while its lap is planned.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The help as text of 80 columns.
+// Rows of options: values given to their targets, and the help as text of 80 columns.
 #include "option_row.hpp"
 
 #include <fmt/format.h>
@@ -35,7 +35,7 @@ std::string limits(const Interval& within) {
   return within.least > 0.0 ? " > 0" : " >= 0";
 }
 
-/// Gives one value to the target; what was expected of it, or nothing.
+/// Reads a value into the target of a row. Returns what was expected where it does not fit, else nothing.
 struct Assign {
   const OptionRow& row;
   const std::string& text;
@@ -67,6 +67,7 @@ struct Assign {
   }
 };
 
+/// Present value of a target as text; empty for targets without one.
 struct DefaultText {
   template <class Value>
   std::string operator()(Value* value) const {
@@ -168,7 +169,7 @@ std::string assign(const OptionRow& row, const std::vector<std::string>& given,
 
 namespace {
 
-constexpr std::size_t kWidth = 80;
+constexpr std::size_t kWidth = 80;   ///< of a terminal
 constexpr std::size_t kIndent = 27;  ///< column at which meanings begin
 
 /// An example that fits the screen and can be typed as it stands.

@@ -13,28 +13,29 @@
 
 namespace chicane::apps {
 
-/// Checks that the name of an HTML page is one that browsers open: `option`: got x.txt, expected a name that
-/// ends in .html. An empty name is no file; devices may have any.
+/// Checks that browsers open a page of this name. Fails with "OPTION: got x.txt, expected a name that ends in
+/// .html". Passes the empty name, which is no file, and devices.
 [[nodiscard]] Result<void> check_page_name(std::string_view option, const std::string& file);
 
-/// What --record and --report keep of a run: every control step. Nothing is kept where neither is asked for.
+/// Recording and report of a run (--record, --report), made of every control step. Does nothing without
+/// either option.
 class KeptRun {
  public:
   /// `step_budget` [s]: deadline of a control step in real time; 0 with --fast, where the run waits for the
-  /// disk. Fails as Recorder::create does, and where a report could not be written at the end: kNotFound
-  /// without a dashboard in this program, kIo without a folder for it.
+  /// disk. Fails as Recorder::create does. Fails also if the report cannot be written at the end: kNotFound
+  /// without a dashboard in this program, kIo without a folder.
   [[nodiscard]] static Result<std::unique_ptr<KeptRun>> start(const Options& options, protocol::Run run,
                                                               const scenario::Scenario& scenario,
                                                               double step_budget);
 
-  /// Null where nothing is kept.
+  /// Null without --record and --report.
   [[nodiscard]] recording::Recorder* recorder() const { return recorder_.get(); }
-  /// As Recorder::record does.
+  /// Passes a frame, lap or change to Recorder::record.
   template <class What>
   void record(What&& what) {
     if (recorder_) recorder_->record(std::forward<What>(what));
   }
-  /// Closes the recording, writes the report, and says on stderr what is in them.
+  /// Closes the recording, writes the report, and sums them up on stderr.
   [[nodiscard]] Result<void> finish();
 
  private:
@@ -44,9 +45,8 @@ class KeptRun {
 
   std::string record_file_;
   std::string report_file_;
-  bool is_bag_;  ///< metadata.yaml is written beside the recording
-  std::optional<recording::TemporaryFile>
-      temporary_;  ///< what a report is made of, where nothing is recorded
+  bool is_bag_;                                        ///< metadata.yaml is written beside the recording
+  std::optional<recording::TemporaryFile> temporary_;  ///< recording for a report without --record
   std::unique_ptr<recording::Recorder> recorder_;
 };
 

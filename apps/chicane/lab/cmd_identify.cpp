@@ -24,6 +24,7 @@
 #include "chicane/recording/html_report.hpp"
 #include "chicane/sim/double_track.hpp"
 #include "commands.hpp"
+#include "experiment.hpp"
 #include "lab/identify_page.hpp"
 #include "program.hpp"
 #include "record.hpp"
@@ -295,10 +296,9 @@ Result<std::string> car_for(const std::vector<identify::DriveLog>& logs, const s
 
 /// Logs of other programs do not say whose they are; recordings of ours are of the car of the settings.
 bool is_nobodys(const std::vector<identify::DriveLog>& logs, const Options& options) {
-  const bool is_given = std::any_of(options.settings.begin(), options.settings.end(),
-                                    [](const auto& each) { return each.first == "car"; });
-  return !is_given && std::none_of(logs.begin(), logs.end(),
-                                   [](const identify::DriveLog& log) { return log.is_centre_of_mass; });
+  return !has_setting(options, "car") &&
+         std::none_of(logs.begin(), logs.end(),
+                      [](const identify::DriveLog& log) { return log.is_centre_of_mass; });
 }
 
 /// Wheels that are expected: those of the plant that the search begins with, where it has four.

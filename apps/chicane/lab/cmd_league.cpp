@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+// `chicane league`: our controllers and programs of others on the same tracks, in the same cars. Ours are
+// driven as a sweep, others in real time over their own protocol; the results become a page, CSV, Markdown
+// and JSON.
 #include <arpa/inet.h>
 #include <fmt/format.h>
 #include <sys/socket.h>
@@ -32,27 +35,30 @@
 #include "program.hpp"
 
 namespace chicane::apps {
-
 namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+using sweep::ExternalTrial;
+using sweep::League;
 
-constexpr std::chrono::milliseconds kLook{100};  // between looks at what the simulator has said
+constexpr std::chrono::milliseconds kPollPeriod{100};  // of the simulator's output
+// DDS domains of ROS 2 programs, by process number. DDS has 0 to 232; people use the low ones.
+constexpr int kRosDomain = 110, kRosDomains = 80;
 
-/// A folder for what the simulator says, gone with this.
-class Folder {
+/// A temporary folder for the output of a simulator; deleted with this object.
+class TemporaryFolder {
  public:
-  Folder() {
+  TemporaryFolder() {
     std::string name = (fs::temp_directory_path() / "chicane-league-XXXXXX").string();
     if (::mkdtemp(name.data()) != nullptr) path_ = name;
   }
-  ~Folder() {
+  ~TemporaryFolder() {
     std::error_code ignored;
     if (!path_.empty()) fs::remove_all(path_, ignored);
   }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   [[nodiscard]] const fs::path& path() const { return path_; }
 
  private:
@@ -67,16 +73,13 @@ std::string last_line(const std::string& text) {
                      end - (begin == std::string::npos ? 0 : begin + 1) + 1);
 }
 
-}  // namespace
-
-/// A run of a league whose program is a ROS 2 controller, in real time: `chicane ros --simulate` and the
-/// program, each started by a shell, in the DDS domain `domain`. `own`: this program, for a shell. Fails with
-/// kIo where no command has come for `patience` [s], or the simulator could not begin; its words are in the
-/// error.
-Result<telemetry::RunSummary> drive_ros_program(const sweep::ExternalTrial& trial, int domain,
+/// Runs a ROS 2 controller in real time: a shell starts `chicane ros --simulate` and the controller's
+/// program, both in the DDS domain `domain`. `own`: word of a shell that starts this program. Fails with kIo
+/// if no command arrives within `patience` [s], or if the simulator does not start, with its last line.
+Result<telemetry::RunSummary> drive_ros_program(const ExternalTrial& trial, int domain,
                                                 const std::string& own, double patience,
                                                 const std::atomic<bool>& stop) {
-  const Folder folder;
+  const TemporaryFolder folder;
   if (folder.path().empty()) return fail(ErrorCode::kIo, "no folder for temporary files");
   const std::string out = (folder.path() / "out").string(), err = (folder.path() / "err").string();
   const std::string done = (folder.path() / "done").string();
@@ -94,34 +97,27 @@ Result<telemetry::RunSummary> drive_ros_program(const sweep::ExternalTrial& tria
   driving.keep_running(began);
   bool has_command = false;
   while (!stop) {
-    std::this_thread::sleep_for(kLook);
-    const std::string said = protocol::read_file(err).value_or("");
+    std::this_thread::sleep_for(kPollPeriod);
+    const std::string output = protocol::read_file(err).value_or("");
     if (fs::exists(done)) {
       auto run = protocol::read_run(protocol::read_file(out).value_or(""));
-      return run ? std::move(run) : fail(ErrorCode::kIo, "the simulator has no result: " + last_line(said));
+      return run ? std::move(run) : fail(ErrorCode::kIo, "the simulator has no result: " + last_line(output));
     }
-    has_command = has_command || said.find("first command on") != std::string::npos;
+    has_command = has_command || output.find("first command on") != std::string::npos;
     if (!has_command && std::chrono::duration<double>(Clock::now() - began).count() > patience)
       return fail(ErrorCode::kIo, fmt::format("the program sends no command in DDS domain {}", domain));
   }
   return fail(ErrorCode::kIo, "stopped");
 }
 
-namespace {
-
-using sweep::ExternalTrial;
-using sweep::League;
-
-constexpr int kRosDomain = 110, kRosDomains = 80;  ///< DDS domains of ROS 2 programs, one for each process
-
-/// `wanted` where nobody listens on it, or with 0 any free port of this machine; nothing where it is taken.
+/// The port `wanted` if it is free, or with 0 any free port of this machine; none if it is taken.
 std::optional<int> free_port(int wanted) {
   const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   address.sin_port = htons(static_cast<std::uint16_t>(wanted));
-  const int reuse = 1;  // also behind a program that has just ended
+  const int reuse = 1;  // a program that has just ended does not keep its port
   ::setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
   socklen_t size = sizeof address;
   auto* const plain = reinterpret_cast<sockaddr*>(&address);
@@ -131,14 +127,14 @@ std::optional<int> free_port(int wanted) {
   return is_free ? std::optional<int>(ntohs(address.sin_port)) : std::nullopt;
 }
 
-/// Program that {chicane} stands for, as a word of the shell.
+/// Replacement of {chicane} in commands: this program, as a word of the shell.
 std::string driving_program() {
   const std::string program = other_program("chicane", false);
   return program.empty() ? "chicane" : sweep::shell_word(program);
 }
 
-/// Starts the program, drives it in real time, and ends it. A program that has not connected or not answered
-/// for `patience` [s] never will.
+/// Starts the program, drives the car by it in real time, and ends it. Fails if it has not connected or not
+/// answered for `patience` [s].
 Result<telemetry::RunSummary> drive_program(const ExternalTrial& trial, double patience,
                                             const std::atomic<bool>& stop) {
   if (sweep::is_ros(trial))
@@ -168,12 +164,13 @@ Result<telemetry::RunSummary> drive_program(const ExternalTrial& trial, double p
   return done->run;
 }
 
-/// Everything that a league has to do, step by step; what is done is not done again.
+/// Runs of a league in three steps: our controllers, limits of cars on tracks, other programs. Runs whose
+/// results are in the files already are skipped.
 class LeagueRun {
  public:
   LeagueRun(const Options& options, League league, std::string results, const std::atomic<bool>& stop)
       : options_{options}, league_{std::move(league)}, results_{std::move(results)}, stop_{stop} {
-    beside_ = std::filesystem::path(results_).replace_extension(".beside.jsonl").string();
+    beside_ = fs::path(results_).replace_extension(".beside.jsonl").string();
   }
 
   Result<void> drive() {
@@ -251,10 +248,11 @@ class LeagueRun {
   const League league_;
   const std::string results_;
   const std::atomic<bool>& stop_;
-  std::string beside_;
+  std::string beside_;  ///< file of sweep::BesideFile
 };
 
-constexpr std::string_view kLeagueMarker = "<!-- league: chicane league -->\n";
+constexpr std::string_view kLeagueMarker =
+    "<!-- league: chicane league -->\n";  // tables are written below it
 
 Result<void> write_pages(const Options& options, const League& league, const sweep::LeagueResults& results) {
   if (!options.output_file.empty()) {
@@ -284,7 +282,7 @@ ExitCode compare_league(const Options& options) {
     if (const Result<void> writable = check_writable(file); !writable) return report(writable.error());
   for (const std::string& command : options.league.servers) sweep::add_external(*league, command);
   const std::string results = options.results_file.empty()
-                                  ? std::filesystem::path(options.league.file).stem().string() + ".jsonl"
+                                  ? fs::path(options.league.file).stem().string() + ".jsonl"
                                   : options.results_file;
   LeagueRun run(options, std::move(*league), results, stop);
   if (const Result<void> done = run.drive(); !done) return report(done.error());

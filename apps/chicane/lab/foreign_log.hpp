@@ -8,11 +8,11 @@
 
 namespace chicane::apps {
 
-/// Writes what a log of another program says of a car as a recording into `output`: where it was, its speed,
-/// commands sent. Laps and the place along the road are those of --track; without it laps end where the car
-/// has been before. Values that the log lacks stay unknown (NaN). Sentences on stderr tell how it was read.
+/// Converts a log of another program into a recording, `output`: positions, speeds and commands of the car.
+/// --track gives the road for laps and progress; without it a lap ends where the car has been before. Values
+/// that the log lacks are NaN. One sentence on stderr sums up what was found.
 ///
-/// kParse for what is no log: neither a bag of ROS 2 with odometry, nor a CSV table of a car.
+/// kParse for a file that is neither a ROS 2 bag with odometry nor a CSV table of a car.
 [[nodiscard]] Result<void> convert_foreign_log(const std::string& file, const Options& options,
                                                const std::string& output);
 

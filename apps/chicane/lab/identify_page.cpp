@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Page of `chicane identify`: one function for each section, in the order of the page.
 #include "lab/identify_page.hpp"
 
 #include <fmt/format.h>
@@ -20,15 +21,14 @@ using identify::Identification;
 using protocol::Json;
 using protocol::ReportDocument;
 
-constexpr std::size_t kMostStretches = 6;
-constexpr std::size_t kMostDots = 1500;  // dots in one plot
+constexpr std::size_t kMostStretches = 6;  // maps of predictions: two rows on a screen
+constexpr std::size_t kMostDots = 1500;    // dots of one chart: more cover each other
 
 void add_numbers(ReportDocument& document, const Identification& found) {
   document.begin_section("Numbers");
   document.add_text(
-      "Dot: found. Bar: 95 % interval. Stroke: what the search began with. Not excited: the log hardly "
-      "narrows "
-      "what was assumed.");
+      "Dot: found. Bar: 95 % interval. Stroke: what the search began with. "
+      "Not excited: the log hardly narrows what was assumed.");
   Json rows = Json::array();
   for (const Estimate& each : found.estimates)
     rows.push_back({Json{{"text", each.key}, {"is_code", true}}, number_text(each.value, 4),
@@ -40,7 +40,8 @@ void add_numbers(ReportDocument& document, const Identification& found) {
                      std::move(rows));
 }
 
-/// One stretch: measured, and predicted from where the samples end.
+/// Map of one stretch: measured path, and the prediction from the last sample that the model knows. Dots mark
+/// whole seconds.
 void add_path(ReportDocument& document, const identify::PredictedStretch& stretch) {
   std::vector<double> measured, model, measured_seconds, model_seconds;
   double next = stretch.known;
@@ -65,9 +66,8 @@ void add_predictions(ReportDocument& document, const Identification& found) {
   if (found.stretches.empty())
     return document.add_text("No end of a log was held out (`--hold-out`), or none was long enough.");
   document.add_text(
-      "The end of each log was not fitted. The model knows half a second of samples, and goes on from there "
-      "by "
-      "the commands alone. Root mean square:");
+      "The end of each log was not fitted. The model knows half a second of samples, "
+      "and goes on from there by the commands alone. Root mean square:");
   Json rows = Json::array();
   for (const identify::PredictionError& error : found.held_out)
     rows.push_back({number_text(error.ahead, 3), fmt::format("{:.3f}", error.position),
@@ -88,11 +88,11 @@ void add_predictions(ReportDocument& document, const Identification& found) {
 }
 
 struct ResidualKind {
-  const char* name;
-  double (*of)(const Compared&);
+  const char* name;               ///< title of its chart
+  double (*of)(const Compared&);  ///< model less measurement
 };
 
-/// How much a residual says of the next one.
+/// Correlation of a residual with the next one: 0 for white noise.
 double next_correlation(const std::vector<double>& values) {
   double product = 0.0, square = 0.0;
   for (std::size_t i = 0; i + 1 < values.size(); ++i) {
@@ -112,10 +112,9 @@ void add_residuals(ReportDocument& document, const Identification& found) {
       {"speed [m/s]", [](const Compared& c) { return c.model_speed - c.speed; }}};
   document.begin_section("Residuals");
   document.add_text(
-      "Model less measurement at the fitted samples. Noise of sensors has no pattern; what repeats in every "
-      "bend is what the model lacks. The last figure is the correlation of a residual with the next one: 0 "
-      "for "
-      "noise alone.");
+      "Model less measurement at the fitted samples. Noise of sensors has no pattern; "
+      "what repeats in every bend is what the model lacks. "
+      "The last figure is the correlation of a residual with the next one: 0 for noise alone.");
   const std::size_t step = std::max<std::size_t>(1, found.fitted.size() / kMostDots);
   for (const ResidualKind& kind : kKinds) {
     if (found.fitted.empty()) continue;
@@ -154,13 +153,13 @@ void add_correlations(ReportDocument& document, const Identification& found) {
 
 void add_slip(ReportDocument& document, const Identification& found) {
   document.begin_section("Slip covered");
-  document.add_text(fmt::format(
-      "Fitted samples by the slip of an axle, over the slip at its peak force. Grip counts as known where 1 "
-      "% "
-      "of the samples lie beyond {:.0f} % at one axle and {:.0f} % at the other. The log reached {:.0f} % at "
-      "the front and {:.0f} % at the rear.",
-      100.0 * identify::kRaceUse, 100.0 * identify::kLeastRaceUse, 100.0 * found.use_front,
-      100.0 * found.use_rear));
+  document.add_text(
+      fmt::format("Fitted samples by the slip of an axle, over the slip at its peak force. "
+                  "Grip counts as known where 1 % of the samples lie beyond {:.0f} % at one axle and {:.0f} "
+                  "% at the other. "
+                  "The log reached {:.0f} % at the front and {:.0f} % at the rear.",
+                  100.0 * identify::kRaceUse, 100.0 * identify::kLeastRaceUse, 100.0 * found.use_front,
+                  100.0 * found.use_rear));
   for (const auto& [name, bins] :
        {std::pair{"front", found.slip.front}, std::pair{"rear", found.slip.rear}}) {
     double all = 0.0;
@@ -177,7 +176,7 @@ void add_slip(ReportDocument& document, const Identification& found) {
   }
 }
 
-/// Lines of a terminal as lines of sentences.
+/// Joins lines that a terminal's width has broken: a line ends only after a full stop.
 std::string unwrapped(std::string text) {
   for (std::size_t i = 1; i < text.size(); ++i)
     if (text[i] == '\n' && text[i - 1] != '.') text[i] = ' ';

@@ -23,9 +23,14 @@
 namespace chicane::apps {
 namespace {
 
+// Periods of RunCounter's lines on a terminal and in a log.
+constexpr std::chrono::milliseconds kTerminalPeriod{200}, kLogPeriod{10000};
+constexpr int kKeptMemory = 1 << 30;  // [byte] more than a run allocates at a time
+
+/// In two digits or more: minutes from 90 s, hours from 90 min.
 std::string time_left(double seconds) {
   if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  if (seconds < 90.0 * 60.0) return fmt::format("{:.0f} min", seconds / 60.0);
   return fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
@@ -35,7 +40,7 @@ Result<sweep::Progress> drive(const PlanRuns& runs, const sweep::SweepOptions& o
                    : sweep::drive_plan(runs.plan, {}, options, stop);
 }
 
-/// The command that drives a run, or what makes it different.
+/// Name of a run in messages: its command line, or with a rule of its own its values on the plan's axes.
 std::string name_of(const PlanRuns& runs, std::uint64_t run) {
   if (!runs.rule) return sweep::command_of(runs.plan.settings_of(run));
   std::string name;
@@ -48,8 +53,8 @@ std::string name_of(const PlanRuns& runs, std::uint64_t run) {
 std::atomic<bool>& begin_many_runs() {
   static std::atomic<bool> stop{false};  // static: must outlive the last signal
 #ifdef __GLIBC__
-  ::mallopt(M_MMAP_THRESHOLD, 1 << 30);
-  ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  ::mallopt(M_MMAP_THRESHOLD, kKeptMemory);
+  ::mallopt(M_TRIM_THRESHOLD, kKeptMemory);
 #endif
   catch_interrupts(stop);
   return stop;
@@ -63,13 +68,13 @@ Result<void> write_below(const std::string& page, std::string_view marker, const
 }
 
 RunCounter::RunCounter(const char* what) : what_{what}, is_terminal_{isatty(STDERR_FILENO) == 1} {
-  next_ = started_ + (is_terminal_ ? std::chrono::milliseconds{0} : std::chrono::milliseconds{10000});
+  next_ = started_ + (is_terminal_ ? std::chrono::milliseconds{0} : kLogPeriod);
 }
 
 void RunCounter::show(std::uint64_t done, std::uint64_t runs, std::uint64_t driven) {
   const Clock::time_point now = Clock::now();
   if (now < next_) return;
-  next_ = now + (is_terminal_ ? std::chrono::milliseconds{200} : std::chrono::milliseconds{10000});
+  next_ = now + (is_terminal_ ? kTerminalPeriod : kLogPeriod);
   const double seconds = std::chrono::duration<double>(now - started_).count();
   const double speed = seconds > 0.0 ? static_cast<double>(driven) / seconds : 0.0;
   const std::string left = speed > 0.0 ? time_left(static_cast<double>(runs - done) / speed) : "?";
@@ -104,8 +109,8 @@ Result<RunLines> drive_runs(const PlanRuns& runs, int jobs, const std::string& r
     found.lines[run] = line;
     return {};
   };
-  const auto read = sweep::read_runs(
-      file, [](const sweep::Header&) { return Result<void>{}; }, keep);
+  const auto accept = [](const sweep::Header&) { return Result<void>{}; };
+  const auto read = sweep::read_runs(file, accept, keep);
   if (!read) return fail(read.error());
   for (const auto& [run, line] : found.lines)
     if (!runs.keeps_failed && line.contains("error"))

@@ -2,7 +2,6 @@
 // The program chicane-ros, which `chicane ros` becomes: the only one that needs DDS.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <optional>
@@ -47,9 +46,7 @@ ros::NodeOptions node_of(const Options& options) {
 
 /// The F1TENTH car, whose names the topics have, where neither a scenario nor an option chooses another.
 Options with_car(Options options) {
-  const bool is_given = std::any_of(options.settings.begin(), options.settings.end(),
-                                    [](const auto& setting) { return setting.first == "car"; });
-  if (!is_given) options.settings.insert(options.settings.begin(), {"car", "f1tenth"});
+  if (!has_setting(options, "car")) options.settings.insert(options.settings.begin(), {"car", "f1tenth"});
   return options;
 }
 

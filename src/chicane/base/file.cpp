@@ -22,10 +22,11 @@ tl::unexpected<Error> cannot_be_written(const std::string& path, int reason) {
   return fail(ErrorCode::kIo, path + ": cannot be written: " + std::strerror(reason));
 }
 
-/// A name of an open descriptor: the file behind it belongs to whoever has opened it, and is appended to.
+/// Whether `path` names an open descriptor. Its file belongs to the program that opened it: appended to,
+/// never replaced.
 bool is_descriptor(std::string_view path) {
-  constexpr std::array<std::string_view, 3> kPlaces{"/dev/std", "/dev/fd/", "/proc/"};
-  return std::any_of(kPlaces.begin(), kPlaces.end(), [&](auto place) { return path.starts_with(place); });
+  constexpr std::array<std::string_view, 3> kFolders{"/dev/std", "/dev/fd/", "/proc/"};
+  return std::any_of(kFolders.begin(), kFolders.end(), [&](auto folder) { return path.starts_with(folder); });
 }
 
 }  // namespace
@@ -45,9 +46,10 @@ FileWriter::FileWriter(std::string path, unsigned mode) : path_{std::move(path)}
   struct stat old {};
   const bool exists = ::stat(path_.c_str(), &old) == 0;
   if (exists && S_ISDIR(old.st_mode)) fault_ = EISDIR;
-  note(!exists || ::access(path_.c_str(), W_OK) == 0);
+  require(!exists || ::access(path_.c_str(), W_OK) == 0);
   const bool is_plain = exists ? S_ISREG(old.st_mode) : !fs::is_symlink(path_, error);
   if (fault_ != 0 || !is_plain || is_descriptor(path_)) return;
+
   if (exists) target_ = fs::canonical(path_, error).string();
   const fs::path folder = fs::path(target_).parent_path();
   for (int number = 0; descriptor_ < 0 && (number == 0 || errno == EEXIST); ++number) {
@@ -55,12 +57,14 @@ FileWriter::FileWriter(std::string path, unsigned mode) : path_{std::move(path)}
                 .string();
     descriptor_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
   }
+
   if (descriptor_ < 0) {
     part_.clear();
-    note(exists && (errno == EACCES || errno == EPERM || errno == EROFS));
+    // A folder that takes no new file: the old one is written directly.
+    require(exists && (errno == EACCES || errno == EPERM || errno == EROFS));
   } else if (exists) {
-    static_cast<void>(!::fchown(descriptor_, old.st_uid, old.st_gid));  // root's privilege, mostly
-    note(::fchmod(descriptor_, old.st_mode & 07777U) == 0);
+    static_cast<void>(!::fchown(descriptor_, old.st_uid, old.st_gid));  // only root may: a failure is none
+    require(::fchmod(descriptor_, old.st_mode & 07777U) == 0);
   }
 }
 
@@ -69,21 +73,21 @@ FileWriter::~FileWriter() {
   if (!part_.empty()) ::unlink(part_.c_str());
 }
 
-void FileWriter::note(bool is_done) {
+void FileWriter::require(bool is_done) {
   if (!is_done && fault_ == 0) fault_ = errno;
 }
 
 void FileWriter::close() {
-  if (descriptor_ >= 0) note(::close(std::exchange(descriptor_, -1)) == 0);
+  if (descriptor_ >= 0) require(::close(std::exchange(descriptor_, -1)) == 0);
 }
 
 void FileWriter::write(std::string_view bytes) {
   if (fault_ != 0) return;
   if (descriptor_ < 0) {
-    const int how = is_descriptor(path_) ? O_APPEND : O_CREAT | O_TRUNC;
-    descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC | how, 0666);
+    const int flags = is_descriptor(path_) ? O_APPEND : O_CREAT | O_TRUNC;
+    descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666);
   }
-  note(descriptor_ >= 0 && write_all(descriptor_, bytes));
+  require(descriptor_ >= 0 && write_all(descriptor_, bytes));
 }
 
 Result<void> FileWriter::check() const {
@@ -91,10 +95,10 @@ Result<void> FileWriter::check() const {
 }
 
 Result<void> FileWriter::finish() {
-  if (!part_.empty() && fault_ == 0) note(::fsync(descriptor_) == 0);
+  if (!part_.empty() && fault_ == 0) require(::fsync(descriptor_) == 0);
   close();
   if (!part_.empty() && fault_ == 0) {
-    note(std::rename(part_.c_str(), target_.c_str()) == 0);
+    require(std::rename(part_.c_str(), target_.c_str()) == 0);
     if (fault_ == 0) part_.clear();
   }
   return check();

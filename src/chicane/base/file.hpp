@@ -6,45 +6,47 @@
 
 #include "chicane/base/result.hpp"
 
-/// Files that are written. Whatever goes wrong is said in one sentence: "FILE: cannot be written: REASON".
+/// Writing of files. Every failure is kIo with one sentence: "FILE: cannot be written: REASON".
 namespace chicane {
 
-/// Replaces a file as a whole: writes beside it and renames. Until finish() the old file is there, and it
-/// stays when anything fails. Links, owner and permissions of the old file are kept. Pipes and devices are
-/// written through, and so is a file whose folder takes no new one.
+/// Replaces a file as a whole: writes a new file in the same folder, which finish() renames. The old file is
+/// there until then, and stays when anything fails. Links, owner and permissions of the old file are kept.
+/// Pipes, devices, and files in a folder that takes no new file are written directly.
 class FileWriter {
  public:
-  /// `mode`: permissions of a new file, less the umask.
+  /// `mode`: permissions of a new file, less the umask; 0666: everybody reads and writes.
   explicit FileWriter(std::string path, unsigned mode = 0666);
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
   ~FileWriter();
 
-  /// After an error nothing: check() and finish() say it.
+  /// Does nothing after a failure, which check() and finish() return.
   void write(std::string_view bytes);
-  /// kIo with the reason of the first error.
+  /// kIo with the reason of the first failure.
   [[nodiscard]] Result<void> check() const;
-  /// Flushes to the disk and renames. kIo, and then the old file stays.
+  /// Flushes to the disk and renames. kIo; the old file stays then.
   [[nodiscard]] Result<void> finish();
 
  private:
-  void note(bool is_done);
+  /// Keeps errno where a system call failed, unless an earlier one did.
+  void require(bool is_done);
   void close();
 
   std::string path_;
-  std::string target_;  ///< the file itself, behind links
-  std::string part_;    ///< beside the target; empty when it is written through
+  std::string target_;  ///< `path_` with its symbolic links resolved
+  std::string part_;    ///< new file that becomes the target; empty: the target is written directly
   int descriptor_ = -1;
-  int fault_ = 0;  ///< errno
+  int fault_ = 0;  ///< errno of the first failure; 0: none
 };
 
-/// Replaces the file's content, or changes nothing. kIo.
+/// Replaces the file's content, or changes nothing (FileWriter). kIo.
 [[nodiscard]] Result<void> write_file(const std::string& path, std::string_view bytes, unsigned mode = 0666);
 
-/// Before what takes long: that write_file() can begin. Changes nothing; an empty name is no file. kIo.
+/// Checks before a long computation that its result can be written. Changes nothing; an empty name is no
+/// file, and passes. kIo.
 [[nodiscard]] Result<void> check_writable(const std::string& path);
 
-/// Whether all bytes were written; errno says why not.
+/// Writes all bytes to an open file. False on failure, with the reason in errno.
 [[nodiscard]] bool write_all(int descriptor, std::string_view bytes);
 
 }  // namespace chicane

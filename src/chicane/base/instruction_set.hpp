@@ -48,7 +48,7 @@ using Native = CHICANE_ARCH;  ///< of this translation unit (cmake/InstructionSe
 using Native = Baseline;
 #endif
 
-/// The simplest that the program has code for (cmake/BuiltInstructionSets.cmake).
+/// The simplest instruction set that the program has code for (cmake/BuiltInstructionSets.cmake).
 #if !defined(CHICANE_WITHOUT_BASELINE)
 using Simplest = Baseline;
 #elif defined(__aarch64__)
@@ -69,30 +69,31 @@ enum class InstructionSet : std::uint8_t { kBaseline, kAvx2, kAvx512, kNeon };
 /// bits; a recording names it, and replays bit by bit on any machine that has it.
 [[nodiscard]] std::string_view arithmetic(InstructionSet set) noexcept;
 
-/// Whether this processor has it.
+/// Whether this processor has the instruction set.
 [[nodiscard]] bool is_supported(InstructionSet set) noexcept;
-/// Whether the program has code for it. All of the family, unless CHICANE_SIMD was given to CMake.
+/// Whether the program has code for the instruction set: for all of the family, unless CHICANE_SIMD was given
+/// to CMake.
 [[nodiscard]] bool is_built(InstructionSet set) noexcept;
-/// Whether it can be chosen: both of these.
+/// Whether the instruction set can be chosen: is_supported() and is_built().
 [[nodiscard]] bool is_available(InstructionSet set) noexcept;
-/// Names of those that the program has code for: "baseline, avx2, avx512".
+/// Names of the instruction sets with code in the program: "baseline, avx2, avx512".
 [[nodiscard]] std::string built_instruction_sets();
-/// Names of those of the family that were left out; empty when none was.
+/// Names of the instruction sets of the family without code in the program; may be empty.
 [[nodiscard]] std::string instruction_sets_left_out();
 
-/// The best one that is available; the simplest that was built where none is, which is not to be run.
+/// The best available instruction set. Without one the simplest built one, which must not be run.
 [[nodiscard]] InstructionSet detect_instruction_set() noexcept;
 
-/// By name: "baseline", "avx2", "avx512", "neon". Fails for other names, for one that this processor does
-/// not have, and for one that was not built.
+/// The instruction set "baseline", "avx2", "avx512" or "neon". Fails for other names, and for one that this
+/// processor does not have or that was not built.
 [[nodiscard]] Result<InstructionSet> instruction_set_by_name(std::string_view name);
 
 /// Advice for users of a set that was left out: "In a clone `CHICANE_SIMD=avx2 ./run.sh` adds it; ...".
 [[nodiscard]] std::string how_to_build(std::string_view name);
 
-/// The one that solvers made from now on use: the last choice, else the environment's CHICANE_SIMD, else the
-/// best one. A CHICANE_SIMD that is not available counts as "baseline", or the best where that was not built:
-/// programs refuse it at their start with environment_instruction_set().
+/// Instruction set of solvers made from now on: the last choice, else the environment's CHICANE_SIMD, else
+/// the best one. A CHICANE_SIMD that is not available counts as "baseline", or the best where that was not
+/// built: programs refuse it at their start with environment_instruction_set().
 [[nodiscard]] InstructionSet chosen_instruction_set() noexcept;
 /// Chooses for the whole process; for replays and tests. Any thread may call it. Pre: is_available(set).
 void choose_instruction_set(InstructionSet set) noexcept;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Numbers and words to text and back, the same in every locale.
 #include "chicane/base/text.hpp"
 
 #include <algorithm>
@@ -10,12 +11,14 @@
 namespace chicane {
 namespace {
 
+/// `value` by std::to_chars, in this format.
 std::string written(double value, auto... format) {
   std::array<char, 64> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format...).ptr;
   return {buffer.data(), end};
 }
 
+/// A number that is the whole text.
 template <class Number>
 std::optional<Number> whole(std::string_view text) noexcept {
   Number value = 0;
@@ -34,6 +37,7 @@ std::optional<std::uint64_t> count_in(std::string_view text) noexcept { return w
 
 Result<double> number_in(std::string_view key, std::string_view text, double low, double high) {
   const std::optional<double> value = number_in(text);
+  // A number that rounds to a bound counts as the bound.
   const auto rounding = [](double border) { return 1e-6 * std::max(1.0, std::fabs(border)); };
   if (value && *value >= low - rounding(low) && *value <= high + rounding(high))
     return std::clamp(*value, low, high);
@@ -48,6 +52,7 @@ Error refusal(std::string_view key, std::string_view text, std::string_view expe
 
 std::string number_text(double value) {
   const double size = std::fabs(value);
+  // Without an exponent while that is as exact and short: doubles have 16 digits.
   const bool is_plain = size == 0.0 || !std::isfinite(value) || (size >= 1e-4 && size < 1e16);
   return written(value, is_plain ? std::chars_format::fixed : std::chars_format::scientific);
 }
@@ -57,7 +62,7 @@ std::string number_text(double value, int digits) {
 }
 
 std::string printable(std::string_view text) {
-  constexpr std::size_t kMost = 60;
+  constexpr std::size_t kMost = 60;  // [byte] fits a line of a terminal with the message around it
   std::string shown(text.substr(0, kMost));
   std::replace_if(
       shown.begin(), shown.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, '?');

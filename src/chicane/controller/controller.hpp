@@ -27,12 +27,12 @@ struct Estimate {
   double deviation = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation
 };
 
-/// Estimates of the car that a run has made by the last measurement, beyond the configured car. The car is
-/// driven with them in steps (docs/identification.md).
+/// Estimates of the car by the measurements of a run so far, relative to the configured car. Models follow
+/// them in steps (docs/identification.md).
 struct LearnedCar {
-  Estimate delay;   ///< time by which commands act later than configured [s]
+  Estimate delay;   ///< delay of commands beyond the configured one [s]
   Estimate gain;    ///< steering gain: wheels turn to gain · command + offset
-  Estimate offset;  ///< [rad]
+  Estimate offset;  ///< steering offset [rad]
   Estimate grip;    ///< grip of the tyres, share of the configured grip
 };
 
@@ -57,8 +57,8 @@ struct Plan {
 
 using road::SpeedLimiter;
 
-/// Why the answer is what it is. Plain data, filled once per step; what a controller cannot say stays at its
-/// default.
+/// Explanation of a step: cost by term, limits of speed, active constraints. Plain data, filled once per
+/// step; fields that a controller does not compute keep their default.
 struct Explanation {
   static constexpr int kMaxCostTerms = 12;
 
@@ -68,8 +68,8 @@ struct Explanation {
   int cost_term_count = 0;
 
   SpeedLimiter speed_limiter = SpeedLimiter::kNone;
-  double speed_limit =
-      std::numeric_limits<double>::quiet_NaN();  ///< what is allowed where the command acts [m/s]
+  /// Allowed speed at the place where the command acts [m/s]; NaN: unknown.
+  double speed_limit = std::numeric_limits<double>::quiet_NaN();
 
   /// One bit each, in the order of Controller::constraints(): active in the first stage of the plan, and in
   /// any.
@@ -77,8 +77,8 @@ struct Explanation {
   std::uint32_t active_ahead = 0;
 };
 
-/// Constraints by their bit in Explanation::active_now. Controllers without tyres and edges in their problem
-/// know the first three only.
+/// Constraints, numbered as bits of Explanation::active_now. Problems without tyres and edges have the first
+/// three only.
 enum class Constraint : std::uint8_t {
   kSteerLimit,
   kThrottleMax,
@@ -94,14 +94,14 @@ enum class Constraint : std::uint8_t {
   return 1U << static_cast<unsigned>(constraint);
 }
 
-/// Names in the order of the bits.
+/// Names of constraints in the order of Constraint.
 inline constexpr std::array<std::string_view, 9> kConstraintNames{
     "steer_limit", "throttle_max", "brake_max", "steer_rate",      "left_edge",
     "right_edge",  "front_tire",   "rear_tire", "friction_ellipse"};
-/// Those of controllers that bound their inputs only.
+/// Names of constraints of controllers that bound their inputs only.
 inline constexpr std::span<const std::string_view> kInputConstraintNames{kConstraintNames.data(), 3};
 
-/// What a controller's step came to.
+/// Kind of a step's result.
 enum class Answer : signed char {
   kNone = 0,          ///< no command: the guard falls back on the last plan (safety/guard.hpp)
   kDrive = 1,         ///< the command is the first of the plan
@@ -109,19 +109,19 @@ enum class Answer : signed char {
   kReturnToRoad = 3,  ///< no plan: the command leads back to the road at walking pace
 };
 
-/// How one step went.
+/// Report of one step.
 struct StepReport {
   solver::SolveReport solve{.status = solver::SolveStatus::kOptimal};  ///< as it is where nothing is solved
-  double act_time = std::numeric_limits<double>::quiet_NaN();  ///< when the command acts [s], clock of the
-                                                               ///< run; NaN: measurement time plus its delay
+  /// Time when the command acts [s], clock of the run; NaN: measurement time plus its delay.
+  double act_time = std::numeric_limits<double>::quiet_NaN();
   double lateral_error = 0.0;    ///< of the measured position from the reference line [m], left positive
   double heading_error = 0.0;    ///< measured yaw minus the line's heading [rad]
   double speed_reference = 0.0;  ///< wanted at the point where the command acts [m/s]
   double delay = 0.0;            ///< compensated: from measurement to actuation [s]
   double sight = 0.0;            ///< length of known road ahead [m]
   double solve_time = 0.0;  ///< of the optimisation alone [s], as the deadline's clock saw it; 0 without one
-  bool has_map = false;     ///< the lap is closed in memory
-  Explanation explanation;  ///< why the answer is what it is; empty without an answer
+  bool has_map = false;     ///< the learned road is a closed lap
+  Explanation explanation;  ///< empty without an answer
   LearnedCar learned;       ///< grip: the controller's word, where it learns that; the rest: the guard's
 };
 
@@ -132,18 +132,17 @@ struct StepResult {
   StepReport report;
 };
 
-/// A lap that a controller wants to be planned, from what it has learned of road and grip.
+/// Request of a controller for a planned lap, by the road and grip that it has learned.
 struct LapRequest {
   bool is_wanted = false;
-  std::span<const Vec2> waypoints{};  ///< of the closed road that was learned, in driving order; empty: the
-                                      ///< track's, which is known
-  double grip = 1.0;                  ///< over the one that the vehicle's parameters tell
-  bool slides = false;                ///< beyond the peak of the tyres, where that is stable
-  double slip = 1.0;                  ///< most slip of an axle, over what the options allow
+  std::span<const Vec2> waypoints{};  ///< learned closed road, in driving order; empty: the known track
+  double grip = 1.0;                  ///< share of the configured grip
+  bool slides = false;  ///< the lap may slide beyond the peak of the tyres, where that is stable
+  double slip = 1.0;    ///< largest slip of an axle, share of that in the options
 };
 
-/// The contract every controller fulfils: a measurement goes in, an answer or none comes out. What happens
-/// without an answer is not the controller's concern: safety::Guard decides it, for all controllers alike.
+/// The contract every controller fulfils: a measurement goes in, an answer or none comes out. Without an
+/// answer safety::Guard decides, in the same way for all controllers.
 ///
 /// step() is noexcept, allocates nothing, takes no lock and reads no clock but the deadline's. It accepts any
 /// measurement, also one with NaN or without waypoints. The result stays valid until the next call. One
@@ -152,18 +151,18 @@ class Controller {
  public:
   virtual ~Controller() = default;
   [[nodiscard]] virtual const StepResult& step(const model::Measurement& now, Deadline deadline) noexcept = 0;
-  /// After each step(): what was really sent, which may be another command than the step's.
+  /// Called after each step() with the command that was sent, which may differ from the step's.
   virtual void note_sent(const model::Command& /*command*/) noexcept {}
-  /// A planned lap to race by from the next step() on; null: none any more. Controllers that follow the
-  /// waypoints do not care. Allocates nothing.
+  /// Sets the planned lap to race by from the next step() on; null: none. Controllers that follow waypoints
+  /// ignore it. Allocates nothing.
   virtual void use_line(std::shared_ptr<const road::RacingRoad> /*lap*/) noexcept {}
-  /// The lap to race by that the controller would rather have than what it drives by. Valid until step().
+  /// Request for another planned lap than the present one. Valid until step().
   [[nodiscard]] virtual LapRequest wants_lap() const noexcept { return {}; }
-  /// How far beside `lap` [m] the controller is about to drive: what taking it up now makes it correct. 0: to
-  /// be taken up at once.
+  /// Lateral distance from `lap` [m] at which the controller is about to drive, and which it corrects if it
+  /// takes the lap up now. 0: take it up at once.
   [[nodiscard]] virtual double beside(const road::RacingRoad& /*lap*/) const noexcept { return 0.0; }
-  /// Forget everything learned (map, warm start): a new run begins. A planned lap stays, one of a road that
-  /// was learned does not.
+  /// Begins a new run: forgets map, estimates and warm start. A planned lap of a track stays, one of a
+  /// learned road does not.
   virtual void reset() noexcept = 0;
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
   /// Names of Explanation's cost terms and of the bits of its active constraints; empty for none.
@@ -171,9 +170,9 @@ class Controller {
   [[nodiscard]] virtual std::span<const std::string_view> constraints() const noexcept { return {}; }
 };
 
-/// A controller that can be copied with all it knows: the other face of what make_controller() returns. Both
-/// answer the same to the same measurements from then on, bit for bit. One that is not Copyable drives like
-/// any other; a run with it cannot be copied (run::ClosedLoop::copy()).
+/// Interface of controllers, beside Controller, that can be copied with their whole state: both give the same
+/// answers to the same measurements from then on, bit for bit. A run with a controller that is not Copyable
+/// cannot be copied (run::ClosedLoop::copy()).
 class Copyable {
  public:
   [[nodiscard]] virtual std::unique_ptr<Controller> copy() const = 0;
@@ -200,14 +199,13 @@ class CopyableController : public Controller, public Copyable {
   return copyable == nullptr ? nullptr : copyable->copy();
 }
 
-/// A controller whose settings may change while it drives: the other face of what make_…(options, vehicle)
-/// returns.
+/// Interface of controllers, beside Controller, whose settings may change while they drive.
 template <class Options>
 class Tunable {
  public:
-  /// The next step() follows these settings. What was learned stays where it still means something: the map,
-  /// the commands in flight, the last answer as a start. Pre: what make_… accepts, with the vehicle's name
-  /// unchanged. Allocates nothing; no slower than a step that learns a new waypoint.
+  /// Applies settings from the next step() on. Map, commands in flight and the last answer as a start are
+  /// kept. Pre: settings that the make function accepts, of the same vehicle by name. Allocates nothing; no
+  /// slower than a step that learns a new waypoint.
   virtual void configure(const Options& options, const model::VehicleParams& vehicle) noexcept = 0;
 
  protected:

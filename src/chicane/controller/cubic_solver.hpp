@@ -12,24 +12,25 @@ namespace chicane::controller {
 
 using CubicTrajectory = solver::Trajectory<CubicProblem::kNx, CubicProblem::kNu, CubicProblem::kCapacity>;
 
-/// The solver of the described problem, whatever instruction set it is compiled for
-/// (base/instruction_set.hpp).
+/// Solver of the problem of `cubic-mpc` (cubic_problem.hpp), compiled for each instruction set
+/// (base/instruction_set.hpp) behind this interface.
 class CubicSolver {
  public:
   virtual ~CubicSolver() = default;
-  /// As OcpSolver::solve().
+  /// Solves from `start`, with `trajectory` as the guess and the answer, as OcpSolver::solve() does.
   virtual solver::SolveReport solve(const CubicProblem& problem, const CubicProblem::State& start,
                                     CubicTrajectory& trajectory, Deadline deadline) noexcept = 0;
-  /// One like it: nothing is remembered from solve to solve.
+  /// A solver with the same options: no other state is kept between solves.
   [[nodiscard]] virtual std::unique_ptr<CubicSolver> copy() const = 0;
 };
 [[nodiscard]] inline std::unique_ptr<CubicSolver> copy_of(const CubicSolver& solver) { return solver.copy(); }
 
-/// For one instruction set; defined in cubic_solver.cpp, which is compiled for each.
+/// Makes the solver for one instruction set; defined in cubic_solver.cpp, which is compiled for each.
 template <class Arch>
 [[nodiscard]] std::unique_ptr<CubicSolver> make_cubic_solver(const solver::SolverOptions& options);
 
-/// For the instruction set of this machine (chosen_instruction_set()), with the options of `cubic-mpc`.
+/// Makes the solver for the instruction set of this machine (chosen_instruction_set()), with the options of
+/// `cubic-mpc`.
 [[nodiscard]] std::unique_ptr<CubicSolver> make_cubic_solver();
 
 /// The controller `cubic-mpc` with another solver of its problem, to compare solvers on the road. Pre:

@@ -17,11 +17,13 @@
 #include "chicane/tracking/tracking_problem.hpp"
 #include "chicane/tracking/tracking_solver.hpp"
 
-/// The first guess of `tracking-mpc` where it has no answer to go on from.
+/// What `tracking-mpc` needs around its solver: a first guess without a last answer, the last answer moved to
+/// another line, and what it learns for planned laps (grip of the car, reserve of slip).
 
 namespace chicane::controller {
 
-/// Inputs towards the line in state x, on the road as stage k of `problem` sees it.
+/// Steering and acceleration towards the line in state x, on the road as stage k of `problem` sees it: a
+/// spring and a damper across the road (1 rad/s, damping ratio 0.7), and the speed error within a second.
 [[nodiscard]] inline tracking::TrackingProblem::Input path_law(
     const tracking::TrackingProblem& problem, int k, const tracking::TrackingProblem::State& x) noexcept {
   using Problem = tracking::TrackingProblem;
@@ -30,19 +32,20 @@ namespace chicane::controller {
   return {problem.model->vehicle().wheelbase() * curvature, problem.road.speed.at(k) - x[Problem::kVx]};
 }
 
-/// Pulls a guess back that is far from the road: no place to linearise.
-inline void keep_sane(tracking::TrackingProblem::State& x) noexcept {
+/// Limits a guess to 5 m and 0.6 rad from the line and to driving forwards: farther away a linearisation
+/// tells nothing.
+inline void clamp_to_road(tracking::TrackingProblem::State& x) noexcept {
   using Problem = tracking::TrackingProblem;
   x[Problem::kD] = std::clamp(x[Problem::kD], -5.0, 5.0);
   x[Problem::kE] = std::clamp(x[Problem::kE], -0.6, 0.6);
   x[Problem::kVx] = std::max(x[Problem::kVx], 0.0);
 }
 
-/// Adds what the steer helper leaves out along the guess `along` to what disturbs the stages of `problem`: a
-/// change of v_y where the heading passes the gap, divided between the ends of the stages around it
-/// (docs/limit.md, eq. 12). `s`: of the car on `line` [m].
-inline void mind_helper_gap(tracking::TrackingProblem& problem, const tracking::TrackingTrajectory& along,
-                            const road::ReferenceLine& line, double s) noexcept {
+/// Adds the gap of the steer helper to the disturbances of `problem`: a change of v_y where the heading
+/// passes the gap along the guess `along`, divided between the ends of the stages around it (docs/limit.md,
+/// eq. 12). `s`: place of the car on `line` [m].
+inline void add_helper_gap(tracking::TrackingProblem& problem, const tracking::TrackingTrajectory& along,
+                           const road::ReferenceLine& line, double s) noexcept {
   using Problem = tracking::TrackingProblem;
   const model::VehicleParams& car = problem.model->vehicle();
   if (!(car.helper_gap > 0.0)) return;
@@ -63,10 +66,9 @@ inline void mind_helper_gap(tracking::TrackingProblem& problem, const tracking::
   }
 }
 
-/// Expresses the states of an answer along another line, so that it goes on as the first guess there: a guess
-/// made newly at the limit of the tyres is one from which a step does not converge. `plan`: where the states
-/// are in the world. `far` [m]: beside the line. False, and an answer of no use, where one is farther.
-/// Allocates nothing.
+/// Expresses the states of an answer along another line, where it becomes the first guess: at the limit of
+/// the tyres a step does not converge from a fresh guess. `plan`: the states in the world. False, with an
+/// unusable answer, if one is farther than `far` [m] from the line. Allocates nothing.
 [[nodiscard]] inline bool move_to_line(const road::ReferenceLine& line, const Plan& plan, double reach,
                                        double far, tracking::TrackingTrajectory& answer) noexcept {
   using Problem = tracking::TrackingProblem;
@@ -87,9 +89,9 @@ inline void mind_helper_gap(tracking::TrackingProblem& problem, const tracking::
   return true;
 }
 
-/// How far beside `lap` [m] the plan of the next 1.5 s leads at most. Of the first lap (`now` is null) the
-/// car's own place counts: the line through waypoints leaves grip to join it with, and crosses it before
-/// long. 0 where `lap` is to be taken up at once, since it has less grip or slip, which has to be braked for.
+/// Largest distance of the plan from the line of `lap` over the next 1.5 s [m]. For the first lap (`now` is
+/// null) only the car's present place counts, because the line through waypoints leaves grip to join it. 0
+/// for a lap of less grip or slip than `now`: it is taken up at once, because the car has to brake for it.
 /// Allocates nothing.
 [[nodiscard]] inline double beside_lap(const road::RacingRoad& lap, const road::RacingRoad* now,
                                        const Plan& plan, double reach, double far) noexcept {
@@ -108,12 +110,12 @@ inline void mind_helper_gap(tracking::TrackingProblem& problem, const tracking::
   return most;
 }
 
-/// How long something has not been there that was. One thread; allocates nothing.
+/// Timer of something that stopped arriving. One thread; allocates nothing.
 struct Absence {
-  double longest;      ///< that is borne [s]
-  double since = 0.0;  ///< last there [s]
-  bool was_there = false;
-  bool is_long = false;
+  double longest;          ///< tolerated absence [s]
+  double since = 0.0;      ///< time of the last presence [s]
+  bool was_there = false;  ///< present at least once
+  bool is_long = false;    ///< absent for longer than tolerated
 
   void note(bool is_there, double time) noexcept {
     if (is_there) since = time;
@@ -123,19 +125,20 @@ struct Absence {
   void reset() noexcept { *this = {.longest = longest}; }
 };
 
-/// How much slip of the rear tyres a lap keeps back for the error of the estimated slip (docs/racing.md, eq.
-/// 9): the controller steers for that error, and takes it back later by the delay and by the time that the
-/// steering needs. One thread; allocates nothing.
+/// Slip of the rear tyres that a planned lap keeps in reserve for the error of the estimated slip
+/// (docs/racing.md, eq. 9). The controller steers by that error until delay and steering rate allow a
+/// correction. One thread; allocates nothing.
 class SlipReserve {
  public:
-  static constexpr double kPerSecond = 67.0;  ///< deviations kept back for each second of lateness [1/s]
+  static constexpr double kPerSecond = 67.0;  ///< deviations in reserve for each second of lateness [1/s]
   static constexpr double kStep = 0.05;       ///< shares are multiples of it
-  static constexpr double kMost = 0.4;        ///< largest share kept back
-  static constexpr double kFast = 20.0;       ///< [m/s] below which a car takes an error back more easily
-  static constexpr double kNothing = 0.1;     ///< smallest share kept back
+  static constexpr double kMost = 0.4;        ///< largest reserve, share of the slip
+  static constexpr double kFast = 20.0;       ///< [m/s] slower cars correct errors sooner: less reserve
+  static constexpr double kNothing = 0.1;     ///< a smaller reserve is none
 
   void forget() noexcept { *this = {}; }
-  /// The estimate of this cycle; corners count. `delay`: from the measurement to its command's effect [s].
+  /// Takes in the estimate of one cycle, if the car corners. `delay`: from measurement to effect of the
+  /// command [s].
   void see(const tracking::StateEstimator& car, double time, double delay) noexcept {
     const double elapsed = time - std::exchange(time_, time);
     const model::State& now = car.state();
@@ -151,7 +154,7 @@ class SlipReserve {
     seen_ = std::min(seen_ + elapsed, kMemory);
     kept_ += elapsed / seen_ * (std::min(kept, 1.0) - kept_);
   }
-  /// The share of the tyres' slip to plan a lap with where there is one with `planned`.
+  /// Share of the tyres' slip to plan the next lap with; `planned`: share of the present one.
   [[nodiscard]] double for_plan(double planned) const noexcept {
     const double least = planned < 1.0 ? 0.5 * kNothing : kNothing;
     const double share = kept_ < least ? 1.0 : 1.0 - std::min(kept_, kMost);
@@ -167,17 +170,15 @@ class SlipReserve {
   double seen_ = 0.0;                          ///< cornering so far, at most kMemory [s]
 };
 
-/// The grip that a car is raced with when nobody is sure of it: of the model, which begins as configured
-/// and follows what the tyres show, and of the plan, which is made for what may be relied on
-/// (docs/racing.md). Shares of the configured grip. One thread; allocates nothing.
+/// Grip of a racing car, learned from what its tyres show: one value for the model, the estimate, and one for
+/// the plan, its lower bound (docs/racing.md). Shares of the configured grip. One thread; allocates nothing.
 class LearnedGrip {
  public:
-  static constexpr double kStep =
-      0.03;  ///< the model, and a plan upwards, follow where the grip differs by more
-  static constexpr double kStepDown = 0.015;   ///< a plan downwards
-  static constexpr double kOtherGrip = 0.055;  ///< difference to the configured grip that rules a slide out
-  static constexpr double kOtherCar = 0.03;    ///< sure difference of the estimate that does so for the run
-  static constexpr double kSlidesOn = 0.01;    ///< more delay that a lap which slides may have [s]
+  static constexpr double kStep = 0.03;        ///< least change of the model, and of a plan upwards
+  static constexpr double kStepDown = 0.015;   ///< least change of a plan downwards
+  static constexpr double kOtherGrip = 0.055;  ///< difference to the configured grip that forbids slides
+  static constexpr double kOtherCar = 0.03;    ///< significant difference that forbids slides for the run
+  static constexpr double kSlidesOn = 0.01;    ///< hysteresis: delay beyond the limit that ends slides [s]
 
   explicit LearnedGrip(const model::PredictionModel& configured) noexcept : estimator_{configured} {}
 
@@ -185,17 +186,17 @@ class LearnedGrip {
   void configure(const model::VehicleParams& configured) noexcept {
     longest_delay_ = model::SlidingBound::longest_delay(configured);
   }
-  /// Nothing is known; begin() has to follow.
+  /// Forgets the estimate; begin() has to follow.
   void forget() noexcept {
     share_ = 1.0;
     unsure_ = 0.0;
     is_shown_ = is_other_ = false;
   }
-  /// The estimate begins anew where `from` is, with the model as it is now.
+  /// Restarts the estimate at the state of `from`, with the present model.
   void begin(const tracking::StateEstimator& from, const model::PredictionModel& model) noexcept {
     estimator_.begin(from, model);
   }
-  /// What has changed by a measurement. After kModel the model has to follow share(), and then begin().
+  /// Result of see(). After kModel the caller sets the model to share() and calls begin().
   enum class Change { kNothing, kShown, kModel };
   [[nodiscard]] Change see(const model::Measurement& now, const tracking::CommandHistory& sent) noexcept {
     estimator_.see(now, sent);
@@ -208,7 +209,7 @@ class LearnedGrip {
     share_ = share;
     return Change::kModel;
   }
-  /// Of the model.
+  /// Grip of the model.
   [[nodiscard]] double share() const noexcept { return share_; }
   /// Present estimate of the grip and its deviation; NaN before anything is known.
   [[nodiscard]] Estimate estimate() const noexcept {
@@ -217,19 +218,19 @@ class LearnedGrip {
   }
   /// Whether the tyres have shown anything yet.
   [[nodiscard]] bool is_shown() const noexcept { return is_shown_; }
-  /// Whether the car is so close to its configuration, and answered so soon and surely, that a lap planned
-  /// for `grip` may slide (docs/limit.md, eq. 19). `delay`: assumed from a measurement to its command's
-  /// effect [s]; `slides`: it does already.
+  /// Whether a lap planned for `grip` may slide (docs/limit.md, eq. 19): grip close to the configured one,
+  /// and a delay short enough. `delay`: configured, from measurement to effect of its command [s]; `slides`:
+  /// the present lap slides.
   [[nodiscard]] bool may_slide(double grip, double delay, bool slides) const noexcept {
     const double answered = delay + estimator_.interval() + estimator_.unsure_time();
     return is_shown_ && std::fabs(grip - 1.0) < kOtherGrip && !is_other_ &&
            answered < longest_delay_ + (slides ? kSlidesOn : 0.0);
   }
-  /// Grip that may be relied on: the estimate less two standard deviations. Pre: is_shown().
+  /// Lower bound: the estimate less two standard deviations. Pre: is_shown().
   [[nodiscard]] double lower() const noexcept { return rounded(mean() - unsure()); }
-  /// The grip to plan for where there is a plan for `planned`: what may be relied on where that is more, what
-  /// the tyres show where that is surely less. A plan of less grip has to be braked down to, wherever the car
-  /// is: it takes more than doubt, and asks for no more than was seen. Pre: is_shown().
+  /// Grip for the next plan; `planned`: grip of the present one. Upwards to the lower bound, downwards only
+  /// to a significantly lower estimate, because a plan of less grip makes the car brake wherever it is. Pre:
+  /// is_shown().
   [[nodiscard]] double for_plan(double planned) const noexcept {
     if (lower() > planned + kStep) return lower();
     return mean() + unsure() < planned - kStepDown ? rounded(mean()) : planned;
@@ -243,9 +244,9 @@ class LearnedGrip {
   [[nodiscard]] double unsure() const noexcept {
     return estimator_.is_known() ? 2.0 * share_ * estimator_.deviation() : unsure_;
   }
-  /// In hundredths. Nearly one is one: a car with the configured grip ends with the plan that
-  /// it would have had without learning. A little more may be the model's error: `udacity`, with its
-  /// configured grip, shows 1.06 on circuits of 48 m/s (docs/measured/limit.md).
+  /// Rounds to hundredths, and values near 1 to 1: a car with the configured grip keeps the plan of the
+  /// configured grip. The upper bound covers the model's error: `udacity` shows 1.06 with exactly its
+  /// configured grip on circuits of 48 m/s (docs/measured/limit.md).
   [[nodiscard]] static double rounded(double share) noexcept {
     constexpr double kLittleLess = 0.02, kLittleMore = 0.075;
     const bool is_configured = share >= 1.0 - kLittleLess && share <= 1.0 + kLittleMore;

@@ -284,7 +284,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
       follow_line();
     }
     if (road_.is_raced() && !(configured_.friction_coupling > 0.0)) iterations_ = kRacingIterations;
-    if (road_.is_raced()) mind_helper_gap(problem_, horizon_, line(), s_);
+    if (road_.is_raced()) add_helper_gap(problem_, horizon_, line(), s_);
     problem_.correct_first(x0_, horizon_.u[0]);
     act_time_ = act_time;
     old_first_ = first;
@@ -340,7 +340,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
       ask_road(k, horizon_.x[i]);
       horizon_.u[i] = problem_.within_bounds(k, path_law(problem_, k, horizon_.x[i]));
       horizon_.x[i + 1] = solver::next_state(problem_, k, horizon_.x[i], horizon_.u[i]);
-      keep_sane(horizon_.x[i + 1]);
+      clamp_to_road(horizon_.x[i + 1]);
     }
     ask_road(horizon_.horizon, horizon_.x[static_cast<std::size_t>(horizon_.horizon)]);
   }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// The lap that a controller races by: its own model of the car for PlanSearch, and the search with other
+// nodes where it fails.
 #include "chicane/lap_time/racing_plan.hpp"
 
 #include <algorithm>
@@ -10,8 +12,19 @@
 namespace chicane::lap_time {
 namespace {
 
-constexpr double kQuickSteering = 1.2;  // [rad/s] catches a car whose braking turns it, without a bound
-constexpr double kTolerance = 1e-4;     // of a plan: about a millisecond of a lap
+constexpr double kQuickSteering =
+    1.2;                             // [rad/s] steering as quick needs no bound on braking that turns the car
+constexpr double kTolerance = 1e-4;  // of the optimum: about a millisecond of a lap
+constexpr int kSteerRate = kPedal + 1, kPedalRate = kPedal + 2;  // inputs follow the states of CommonState
+
+[[nodiscard]] bool are_in_range(const RacingPlanOptions& options) {
+  const auto is_share = [](double share, double most) { return share > 0.0 && share <= most; };
+  return options.margin >= 0.0 && is_share(options.grip_share, 1.0) && is_share(options.brake_share, 1.0) &&
+         is_share(options.slip_share, 2.0) && options.speed_limit > 3.0 && options.time_step >= 0.01 &&
+         options.time_step <= 0.2 && options.budget > 0.0 && options.delay > 0.0;
+}
+
+/// The model of tracking controllers (model::PredictionModel) as a car whose lap is searched.
 
 class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
  public:
@@ -28,6 +41,7 @@ class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
     return {vehicle_.front_axle, vehicle_.rear_axle, 0.5 * (vehicle_.track_width + vehicle_.tire_width),
             vehicle_.steer_limit};
   }
+  /// A gentle lap as the first guess: shares of grip, drive and brakes from which the search converges.
   [[nodiscard]] GuessCar guess_car() const override {
     const model::VehicleParams& car = vehicle_;
     const double stay = 1.0 - car.steer_helper;
@@ -48,6 +62,7 @@ class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
     model_.slip_share = reserve.slip_share;
     model_.steer_weight = reserve.steer_weight;
   }
+  /// Steady motion along the bend.
   void guess(double v, double a, double curvature, double* z) const override {
     const model::VehicleParams& car = vehicle_;
     const double side = (1.0 - car.steer_helper) * v * v * curvature / model_.model.load(v);
@@ -67,9 +82,9 @@ class VehiclePlan final : public PlanModelOf<PlanModel, VehicleModel> {
             .vy = z[kVy],
             .yaw_rate = z[kYawRate],
             .steer = z[kSteer],
-            .steer_command = z[kSteer] + car.steer_lag * z[7],
+            .steer_command = z[kSteer] + car.steer_lag * z[kSteerRate],
             .acceleration = model_.model.change(body).vx,
-            .throttle = throttle_for(car, z[kPedal] + car.drive_lag * z[8], z[kVx])};
+            .throttle = throttle_for(car, z[kPedal] + car.drive_lag * z[kPedalRate], z[kVx])};
   }
 
  private:
@@ -82,7 +97,8 @@ Result<void> can_be_driven(const road::Track& track, const model::VehicleParams&
                            double scale) {
   if (!track.centre().is_closed()) return {};
   const CarSize size = VehiclePlan(vehicle).size();
-  // A tenth of the lock steers; a middle of the road with a fifth more room is a line that can be driven.
+  // A tenth of the steering lock stays for control (1.1). A middle of the road with a fifth more room than
+  // that (1.32) needs no search for a line.
   const Fit fit{.reserve = 1.1, .surely = 1.32, .beside = beside, .scale = scale};
   Result<void> fits = fits_road(track, size, fit);
   constexpr std::string_view kPrefix = "limit: ";
@@ -93,10 +109,7 @@ Result<void> can_be_driven(const road::Track& track, const model::VehicleParams&
 Result<road::RacingLine> plan_racing_line(const road::Track& track, const model::VehicleParams& vehicle,
                                           const RacingPlanOptions& options) {
   if (Result<void> valid = model::validate(vehicle); !valid) return fail(valid.error());
-  const auto is_share = [](double share, double most) { return share > 0.0 && share <= most; };
-  if (!(options.margin >= 0.0 && is_share(options.grip_share, 1.0) && is_share(options.brake_share, 1.0) &&
-        is_share(options.slip_share, 2.0) && options.speed_limit > 3.0 && options.time_step >= 0.01 &&
-        options.time_step <= 0.2 && options.budget > 0.0 && options.delay > 0.0))
+  if (!are_in_range(options))
     return fail(ErrorCode::kInvalidArgument, "racing plan: an option is out of its range");
   VehiclePlan model(vehicle, options);
   CarSize size = model.size();
@@ -110,7 +123,7 @@ Result<road::RacingLine> plan_racing_line(const road::Track& track, const model:
                      .grip_share = options.grip_share,
                      .slip_share = options.slip_share,
                      .brake_share = options.brake_share});
-  // Where tyres saturate an optimum may not settle on some nodes: others are tried.
+  // Where tyres saturate the search may not converge on some nodes: 0.85 and 1.2 times the step give others.
   Result<NodePlan> plan = fail(ErrorCode::kInvalidArgument, "");
   double work = 0.0;
   for (const double step : {1.0, 0.85, 1.2}) {

@@ -9,14 +9,15 @@
 
 namespace chicane::model {
 
-/// The part of a car's motion that does not depend on where it is.
+/// Motion of a car in its own axes: what does not depend on its place and heading.
 template <class T>
 struct BodyMotion {
   T vx{};            ///< [m/s]
   T vy{};            ///< [m/s]
   T r{};             ///< yaw rate [rad/s]
   T steer{};         ///< road-wheel angle [rad]
-  T acceleration{};  ///< net longitudinal acceleration, drag included, cornering resistance not [m/s²]
+  T acceleration{};  ///< longitudinal acceleration by drive, brakes and drag, without cornering resistance
+                     ///< [m/s²]
 };
 
 /// The car model of a tracking controller: a single track with saturating tyres, steering and drive lag,
@@ -42,12 +43,12 @@ class PredictionModel {
     unloading_rear_ = unloading(vehicle, vehicle.front_axle, 1.0 - vehicle.roll_share_front);
   }
 
-  /// What a first-order lag leaves of the difference between now and asked.
+  /// Share of the difference between present and commanded value that a first-order lag leaves.
   struct Lag {
     double end = 0.0;   ///< at the end of a step
-    double mean = 0.0;  ///< in its mean
+    double mean = 0.0;  ///< mean over the step
   };
-  /// Those of steering and drive over dt [s].
+  /// Lags of steering and drive over a step of dt [s].
   struct Lags {
     Lag steer;
     Lag drive;
@@ -84,7 +85,7 @@ class PredictionModel {
     const T b1 = from.vy + dt * force;
     const T b2 = from.r + (turn * a) * force + turn * tires.twist;
     const T det = a11 * a22 - a12 * a21;
-    // A car about to spin has no implicit step for large dt: let it grow fivefold, not without bound.
+    // The implicit step of a spinning car is singular for large dt: its growth is limited to fivefold.
     const T inverse_det = 1.0 / T(select(det > kLeastDeterminant, det, kLeastDeterminant));
     BodyMotion<T> to;
     to.vy = (b1 * a22 - a12 * b2) * inverse_det;
@@ -96,7 +97,7 @@ class PredictionModel {
     return to;
   }
 
-  /// The whole motion after dt [s] with what is asked for all along.
+  /// Motion after dt [s] with constant commands, lags of steering and drive included.
   [[nodiscard]] BodyMotion<double> advance(const BodyMotion<double>& from, double steer_command,
                                            double acceleration_command, double dt,
                                            const Lags& lags) const noexcept {
@@ -109,16 +110,16 @@ class PredictionModel {
     return to;
   }
 
-  /// Changes by time of v_x, v_y and r, and what they take of the tyres.
+  /// Derivatives by time of v_x, v_y and r, and the use of the tyres.
   template <class T>
   struct Change {
     T vx, vy;                     ///< [m/s²]
     T r;                          ///< [rad/s²]
-    T square_front, square_rear;  ///< of TireUse::front and rear
+    T square_front, square_rear;  ///< squares of TireUse::front and rear
     T along_front, along_rear;    ///< as in TireUse
   };
-  /// With the steering and acceleration that the car has (eq. 1–3). Smooth, for searches that use second
-  /// derivatives: drive and brakes take over from each other within kBlend.
+  /// Derivatives at the present steering and acceleration (eq. 1–3). Smooth, for searches by second
+  /// derivatives: drive and brakes change over within kBlend.
   template <class T>
   [[nodiscard]] Change<T> change(const BodyMotion<T>& at) const noexcept {
     const model::VehicleParams& p = vehicle_;
@@ -137,12 +138,12 @@ class PredictionModel {
         .along_rear = tires.along_rear};
   }
 
-  /// How much of its tyres an axle uses; 1 is the peak of the tyre curve. Of its inner wheel while it drives:
-  /// that one spins first.
+  /// Use of an axle's tyres: 1 is the peak of the tyre curve. That of its inner wheel while the axle drives,
+  /// because it spins first.
   template <class T>
   struct TireUse {
     T front, rear;  ///< slip over the slip of the peak, both directions together
-    /// Longitudinal force over the peak. 0 where the directions share nothing.
+    /// Longitudinal force over peak force; 0 for a car without friction_coupling.
     T along_front, along_rear;
   };
   template <class T>
@@ -152,8 +153,8 @@ class PredictionModel {
             tires.along_rear};
   }
 
-  /// The road-wheel angle at which the yaw rate begins to change by `yaw_acceleration` [rad/s²], lag apart;
-  /// no more slip than gives nine tenths of the front tyres' peak [rad].
+  /// Road-wheel angle for `yaw_acceleration` [rad/s²], without lag [rad]. Front slip is limited to that of
+  /// nine tenths of the peak force.
   [[nodiscard]] double steer_for(const BodyMotion<double>& m, double yaw_acceleration) const noexcept {
     const model::VehicleParams& p = vehicle_;
     const Tires<double> tires = tire_state<false>(m, m.steer);
@@ -172,25 +173,25 @@ class PredictionModel {
   [[nodiscard]] double peak_slip_rear() const noexcept {
     return vehicle_.friction / (vehicle_.cornering_rear * per_peak_);
   }
-  /// Least speed that slip angles are computed with, about [m/s]: below it a car whose wheels are turned is
-  /// braked and turned by more slip than it has.
+  /// Least speed in slip angles, about [m/s]. Below it they would grow without bound: slower cars are
+  /// modelled with more slip than they have.
   static constexpr double kSpeedFloor = 1.0;
   /// Normal acceleration carried by the tyres at speed v [m/s²].
   [[nodiscard]] double load(double v) const noexcept { return vehicle_.load(v); }
   [[nodiscard]] const model::VehicleParams& vehicle() const noexcept { return vehicle_; }
 
  private:
-  static constexpr double kGravity = 9.81;  ///< [m/s²]
-  static constexpr double kLeastDeterminant = 0.2;
+  static constexpr double kGravity = 9.81;          ///< [m/s²]
+  static constexpr double kLeastDeterminant = 0.2;  ///< limits the growth in an implicit step to fivefold
 
   template <class T>
   struct Tires {
     T inverse_speed;
-    T square_front, square_rear;  ///< of the slip, over peak force by initial stiffness
-    T along_front, along_rear;    ///< longitudinal force over the peak
-    T stiffness_front, stiffness_rear;
-    T lost;   ///< of the acceleration asked for, where wheels spin or their brakes let go [m/s²]
-    T twist;  ///< yaw moment that follows over mass [m²/s²]
+    T square_front, square_rear;        ///< square of z in secant()
+    T along_front, along_rear;          ///< longitudinal force over peak force
+    T stiffness_front, stiffness_rear;  ///< secant stiffness per mass, k in eq. 1–3 [m/s²]
+    T lost;                             ///< acceleration lost to spinning wheels or anti-lock [m/s²]
+    T twist;                            ///< yaw moment by that loss, over mass [m²/s²]
   };
 
   static Lag lag(double time_constant, double dt) noexcept {
@@ -206,7 +207,7 @@ class PredictionModel {
     const double per_wheelbase = 1.0 / p.wheelbase();
     const T speed = sqrt(m.vx * m.vx + kSpeedFloor * kSpeedFloor);
     const T load_now = p.load_constant + (p.load_per_speed + p.load_quadratic * speed) * speed;
-    // Downforce loads the wheels, and moves nothing from one to the other.
+    // Load transfer depends on the weight alone, not on downforce.
     const T rest = p.load_quadratic > 0.0 ? T(p.load_constant / load_now) : T(1.0);
     const T transfer = (p.height / kGravity) * rest * m.acceleration;
     const T part_front = least<kSmooth>(1.0 - (1.0 / p.rear_axle) * transfer);  // of its load at rest
@@ -232,12 +233,12 @@ class PredictionModel {
       t.along_front = t.along_rear = t.lost = t.twist = T(0.0);
       return t;
     }
-    // The wheels of an axle share its slip angle and its force along, not its load.
+    // Both wheels of an axle have its slip angle and half its longitudinal force, and loads of their own.
     const T drive = positive<kSmooth>(m.acceleration, kBlend);
     const T brake = drive - m.acceleration;
     const T sideways = rest * m.vx * m.r;
     const T side = 2.0 * positive<kSmooth>(sideways, kBlend) - sideways;
-    // An inner wheel that is driven too hard spins; anti-lock keeps one that brakes.
+    // 1 while driving, when the inner wheel spins; 0 while braking, when anti-lock prevents it.
     const T driving = (drive + kLeastSide) / (drive + brake + kLeastSide);
     struct LoadedAxle {
       double cornering, unloading, rest;
@@ -264,7 +265,7 @@ class PredictionModel {
                             {},
                             {}}};
     T lost[2] = {T(0.0), T(0.0)};
-    // Loops that stay loops: code for one wheel, a quarter of what the compiler would have to work on.
+    // Not unrolled: a quarter of the code to compile.
 #pragma GCC unroll 1
     for (LoadedAxle& axle : axles) {
       const T z = (axle.cornering / p.friction) * axle.slip;
@@ -280,7 +281,7 @@ class PredictionModel {
         use[i] = (0.5 * per_friction) * axle.pull / load;
         const T over = positive<kSmooth>(T(use[i] - kMostAlong), kSmoothUse);
         lost[i] = lost[i] + over * (p.friction * load);
-        // The slip along the tyre that gives this force beside the slip across, by similarity.
+        // Longitudinal slip that gives this force together with the slip across (similarity).
         const T kept = use[i] - over;
         const T u2 = kept * kept;
         const T first = secant(z2 + u2 / sqrt(1.0 - u2 * u2));
@@ -305,8 +306,9 @@ class PredictionModel {
     return t;
   }
 
-  /// Secant of the tyre curve over its initial slope, by the square of the slip z over peak force by initial
-  /// stiffness: that of the magic formula, sin(C atan(z/C))/z, or of the original simulator's curve.
+  /// Secant of the tyre curve over its initial slope, by the square of the slip z in units of peak force over
+  /// initial stiffness: of the magic formula, sin(C atan(z/C))/z, or of the original simulator's curve, which
+  /// falls by a quarter between z = 1 and 2.5.
   template <class T>
   [[nodiscard]] [[gnu::noinline]] T secant(const T& square) const noexcept {
     const T z = sqrt(square + kLeastSquare);
@@ -317,7 +319,7 @@ class PredictionModel {
     return select(z < 1.0, 1.0 + z - z * z, (1.0 - 0.25 * (w * w * (3.0 - 2.0 * w))) / z);
   }
 
-  /// max(x, 0); smooth within about `width`, or exact.
+  /// max(x, 0), exact or smooth within about `width`.
   template <bool kSmooth, class T>
   [[nodiscard]] CHICANE_INLINE static inline T positive(const T& x, double width) noexcept {
     if constexpr (kSmooth) {
@@ -332,7 +334,7 @@ class PredictionModel {
     const T drive = positive<kSmooth>(acceleration, kBlend);
     return vehicle_.drive_share_front * drive + vehicle_.brake_share_front * (acceleration - drive);
   }
-  /// Of a wheel's load at rest, not less than kLeastLoad; smooth within about kSmoothLoad, or exact.
+  /// max(share, kLeastLoad) of a wheel's load at rest, exact or smooth within about kSmoothLoad.
   template <bool kSmooth, class T>
   [[nodiscard]] CHICANE_INLINE static inline T least(const T& share) noexcept {
     if constexpr (kSmooth) {
@@ -341,25 +343,27 @@ class PredictionModel {
       return select(share > kLeastLoad, share, T(kLeastLoad));
     }
   }
-  /// What an inner wheel loses of its load at rest for each m/s² of lateral acceleration.
+  /// Share of its load at rest that an inner wheel loses for each m/s² of lateral acceleration [s²/m].
   static double unloading(const model::VehicleParams& p, double other_axle, double share) noexcept {
     return 2.0 * p.height * share / p.track_width / (p.load_constant * other_axle / p.wheelbase());
   }
+  /// One over the slip z (secant()) of the peak force.
   static double per_peak(const model::VehicleParams& p) noexcept {
     constexpr double kHalfPi = 1.5707963267948966;
     return p.tire_shape > 0.0 ? 1.0 / (p.tire_shape * tan(kHalfPi / p.tire_shape)) : 1.0;
   }
 
-  static constexpr double kMostSlip = 1.4;     ///< that steer_for() asks of the front tyres, as z in secant()
-  static constexpr double kMostAlong = 0.95;   ///< of the peak: the model asks for no more along the tyre
-  static constexpr double kSmoothUse = 0.02;   ///< of change()
-  static constexpr double kLeastSide = 1e-3;   ///< [m/s²]
-  static constexpr double kBlend = 0.3;        ///< [m/s²] of change()
-  static constexpr double kLeastLoad = 0.1;    ///< of the load at rest
-  static constexpr double kSmoothLoad = 0.05;  ///< of change()
-  static constexpr double kLeastSquare = 1e-8;           ///< of a slip: the curve's secant has a kink at 0
+  static constexpr double kMostSlip = 1.4;      ///< largest front slip z of steer_for()
+  static constexpr double kMostAlong = 0.95;    ///< largest longitudinal force, share of the peak
+  static constexpr double kLeastSide = 1e-3;    ///< keeps quotients defined without acceleration [m/s²]
+  static constexpr double kLeastLoad = 0.1;     ///< least load of a wheel, share of that at rest
+  static constexpr double kLeastSquare = 1e-8;  ///< least square of a slip: the secant has a kink at 0
+  // Widths over which change() is smooth where advance() has a kink.
+  static constexpr double kSmoothUse = 0.02;             ///< at kMostAlong, share of the peak
+  static constexpr double kBlend = 0.3;                  ///< between drive and brakes [m/s²]
+  static constexpr double kSmoothLoad = 0.05;            ///< at kLeastLoad, share of the load at rest
   double unloading_front_ = 0.0, unloading_rear_ = 0.0;  ///< [s²/m]
-  double per_peak_ = 1.0;                                ///< one over the slip of the peak, as in secant()
+  double per_peak_ = 1.0;                                ///< one over the slip z of the peak force
   model::VehicleParams vehicle_;
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Answers to HTTP requests: parts of files, security headers, and the token of visitors.
 #include "chicane/net/http_response.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +17,7 @@
 namespace chicane::net {
 namespace {
 
-constexpr std::uint64_t kPiece = 32UL * 1024UL;
+constexpr std::uint64_t kPiece = 32UL * 1024UL;  // [byte] sent at a time
 constexpr std::string_view kNotModified = "304 Not Modified";
 constexpr std::string_view kSecurityHeaders =
     "Content-Security-Policy: default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' "
@@ -27,7 +28,8 @@ constexpr std::string_view kSecurityHeaders =
     "Cross-Origin-Opener-Policy: same-origin\r\n"
     "Cross-Origin-Resource-Policy: same-origin\r\n";
 
-/// Sockets of the same host; some browsers' 'self' leaves them out. Content policies know no IPv6 addresses.
+/// Policy for WebSockets of the same host, which 'self' of some browsers leaves out; empty for IPv6
+/// addresses, which content policies cannot name.
 std::string sockets_of(std::string_view host) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-:";
   if (host.empty() || host.find_first_not_of(kPlain) != std::string_view::npos) return "";

@@ -23,15 +23,15 @@ using ConnectionId = std::uint64_t;
 
 /// An HTTP upgrade as it arrived; bounded sizes are already checked.
 struct UpgradeRequest {
-  ConnectionId id = 0;   ///< what the connection will be called if it is accepted
+  ConnectionId id = 0;   ///< number of the connection if it is accepted
   std::string target{};  ///< path and query, e.g. "/socket.io/?EIO=4&transport=websocket"
   std::string peer{};    ///< "127.0.0.1:51234"
   std::string origin{};  ///< empty when absent
   std::string host{};
   std::vector<std::string> subprotocols{};  ///< as offered, in order
-  bool may_watch = false;                   ///< may see what the run shows
-  bool may_control = false;                 ///< may change its state
-  bool is_crowded = false;                  ///< only the slots are left that viewers must not take
+  bool may_watch = false;                   ///< may read: frames, settings, files
+  bool may_control = false;                 ///< may change settings and call services
+  bool is_crowded = false;                  ///< no connection is free for viewers, only for others
 };
 
 /// What to do with an upgrade. Refused before anybody is asked: a Host that is not ours (see
@@ -54,16 +54,16 @@ struct ServerOptions {
   std::uint16_t port = 4567;          ///< 0 = any free port (see Server::port)
   std::size_t max_message = 65536;    ///< larger messages close the connection with 1009 [byte]
   std::size_t max_header = 8192;      ///< of an HTTP request; larger ones get 431 [byte]
-  /// More get 503. A new one takes the place of the oldest that has asked for no upgrade; WebSocket viewers
-  /// leave the last eighth, at most 8, to others.
+  /// Connections beyond get 503. When all are taken, a new one replaces the oldest without an upgrade. The
+  /// last eighth, at most 8, is not for WebSocket viewers.
   std::size_t max_connections = 1024;
-  std::chrono::milliseconds handshake_timeout{
-      5000};  ///< for a whole HTTP request, and between two on one connection
+  /// For a whole HTTP request, and between two on one connection.
+  std::chrono::milliseconds handshake_timeout{5000};
   /// A WebSocket peer that has sent nothing for half of it is pinged; one that stays silent for all of it is
   /// closed. That also ends peers that stopped reading, because they never see the ping.
   std::chrono::milliseconds idle_timeout{10000};
-  /// When the server ends, so long it waits for peers to read what they were sent and to answer its close
-  /// frame. One that is behind loses what it has not read by then.
+  /// Time that a server that ends leaves its peers to read what waits and to answer the close frame. What a
+  /// peer has not read by then is lost.
   std::chrono::milliseconds goodbye{200};
   std::size_t max_queue = 256;  ///< messages waiting for one connection before it is closed
   /// Bytes waiting for all connections together; beyond, connections that hold more than others are closed
@@ -83,11 +83,11 @@ struct ServerHandlers {
   std::function<void(ConnectionId, int endpoint)> on_open{};
   std::function<void(ConnectionId, int endpoint, std::string_view bytes, bool binary)> on_message{};
   std::function<void(ConnectionId, int endpoint, std::string_view why)> on_close{};
-  /// What a GET or HEAD of `path` (no query) is answered with; none: the asset of that name, or 404. Compare
-  /// whole paths with the few you offer, and never make a file's name of one. May be empty.
+  /// Answer to a GET or HEAD of `path` (no query); none: the asset of that name, or 404. Compare whole paths
+  /// with the few you offer, and never make a file's name of one. May be empty.
   std::function<std::optional<Content>(std::string_view path)> on_get{};
-  /// Why a GET of `target` (path and query) without an upgrade should have asked for one, with the remedy;
-  /// empty: it need not. May be empty.
+  /// Sentence for a GET of `target` (path and query) that should have asked for an upgrade, with the remedy;
+  /// empty: an upgrade is not needed. May be empty.
   std::function<std::string(std::string_view target)> on_no_upgrade{};
   /// A request of `peer` was refused at the door, in these words. May be empty.
   std::function<void(std::string_view peer, std::string_view words)> on_refused{};
@@ -99,7 +99,7 @@ enum class Delivery {
   kNewest,    ///< replaces a waiting message of the same `topic`: slow clients lose frames, we lose nothing
 };
 
-/// What is sent, shared so that one frame for many viewers is stored once.
+/// A message, shared: one frame for many viewers is stored once.
 using Bytes = std::shared_ptr<const std::string>;
 
 /// HTTP and WebSocket server on one port and one network thread of its own. It knows bytes, no message and no
@@ -108,22 +108,21 @@ using Bytes = std::shared_ptr<const std::string>;
 /// called from any thread, and never wait for the network.
 class Server {
  public:
-  /// Binds and starts. kIo with the sentence that helps when the port is taken ("port 4567 is in use by
-  /// ...").
+  /// Binds and starts. kIo if the port is taken, with the sentence that helps ("port 4567 is in use by ...").
   [[nodiscard]] static Result<std::unique_ptr<Server>> create(const ServerOptions& options,
                                                               ServerHandlers handlers,
                                                               std::vector<Asset> assets);
   virtual ~Server() = default;  ///< closes all connections and joins the thread
 
   [[nodiscard]] virtual std::uint16_t port() const noexcept = 0;
-  /// Nothing happens when the connection has ended meanwhile.
+  /// Sends a message; nothing if the connection has ended meanwhile.
   virtual void send(ConnectionId to, Bytes bytes, bool binary, Delivery delivery = Delivery::kReliable,
                     std::uint32_t topic = 0) = 0;
   void send(ConnectionId to, std::string bytes, bool binary, Delivery delivery = Delivery::kReliable,
             std::uint32_t topic = 0) {
     send(to, std::make_shared<const std::string>(std::move(bytes)), binary, delivery, topic);
   }
-  /// Messages that wait for a connection: sent here, and not yet taken by the system. The network thread's.
+  /// Number of messages sent to a connection that the system has not taken yet. Network thread only.
   [[nodiscard]] virtual std::size_t waiting(ConnectionId id) const = 0;
   /// Sends what waits, then a close frame with `code` (RFC 6455 §7.4); on_close follows.
   virtual void close(ConnectionId id, std::uint16_t code, std::string_view reason) = 0;

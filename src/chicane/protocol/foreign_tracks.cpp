@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Roads of other programs, recognised by their content: the list of formats, then cones (CSV, YAML, SDF) and
+// JSON (way points of ROS, GeoJSON). Maps, XML of roads and coordinates have files of their own.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,8 +21,9 @@
 namespace chicane::protocol {
 namespace {
 
-constexpr std::size_t kHead = 4096;  // bytes that are looked at
+constexpr std::size_t kHead = 4096;  // [byte] of a file that decide on its format
 
+/// The first kHead bytes without byte-order mark and leading blanks.
 std::string_view head_of(std::string_view text) noexcept {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   text = text.substr(0, kHead);
@@ -37,6 +40,7 @@ bool has_key(std::string_view head, std::string_view key) noexcept {
   return false;
 }
 
+/// ROS's map_server: its YAML, or the picture itself.
 bool is_map(std::string_view text) noexcept {
   if (text.starts_with("\x89PNG") || text.starts_with("P5\n") || text.starts_with("P2\n")) return true;
   const std::string_view head = head_of(text);
@@ -141,7 +145,7 @@ RoadRows cone_rows(const std::string& file, const TrackReadOptions& options) {
   return {file, options, {{"x", Column::kX}, {"y", Column::kY}, {"tag", Column::kTag}}};
 }
 
-/// Cones by what files call them: "blue", "cone_yellow", "big_orange", "left".
+/// Cones by the words of files: "blue", "cone_yellow", "big_orange", "left".
 struct ConeMap {
   survey::Cones cones;
   std::optional<Vec2> start{};
@@ -163,7 +167,7 @@ struct ConeMap {
   }
 };
 
-/// The road between cones; gaps are named.
+/// The road between cones, with a warning for each gap.
 Result<TrackFile> track_of_cones(const RoadRows& rows) {
   if (rows.error) return fail(*rows.error);
   ConeMap map;
@@ -251,7 +255,7 @@ Result<TrackFile> track_of_sdf(const XmlDocument& xml, const TrackReadOptions& o
 
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{16} << 20U;
+constexpr std::size_t kMostBytes = std::size_t{16} << 20U;  // of JSON, which takes many times as much memory
 
 /// A member of an object or an element of a list; null where there is none.
 template <typename Key>
@@ -265,7 +269,7 @@ const Json& at(const Json& json, const Key& key) {
   }
 }
 
-/// Rows of the elements of a list: of each the values behind `keys`, which name the columns.
+/// Adds a row for each element of a list: its values of `keys`, which name the columns.
 template <typename Key>
 void add_rows(const Json& list, const std::vector<Key>& keys, RoadRows& rows) {
   for (const Json& each : list) {
@@ -307,7 +311,7 @@ Result<TrackFile> track_of_way_points(const Json& root, const std::string& file,
                        "a list of them there or in global_traj_wpnts_iqp"));
 }
 
-/// The lines of a geometry; others are marks.
+/// Appends the lines of a geometry; points and other shapes are no roads.
 void find_lines(const Json& geometry, std::vector<const Json*>& lines) {
   const Json& type = at(geometry, "type");
   const Json& list = at(geometry, "coordinates");

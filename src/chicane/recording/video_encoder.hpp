@@ -11,31 +11,31 @@
 namespace chicane::recording {
 
 struct VideoFormat {
-  std::string output{};  ///< its ending says what it becomes: .mp4, .webm, .webp or .gif
+  std::string output{};  ///< file; its ending gives the format: .mp4, .webm, .webp or .gif
   int width = 1280, height = 720;
-  double rate = 30.0;  ///< pictures in a second
-  int quality = 0;     ///< of .webp, 1 to 100; 0: 60
+  double rate = 30.0;  ///< pictures a second
+  int quality = 0;     ///< quality of .webp, 1 to 100; 0: 60
 };
 
-/// Whether there is such an ending. kInvalidArgument names those there are.
+/// Checks the ending of a name. kInvalidArgument lists the known endings.
 [[nodiscard]] Result<void> check_video_name(const std::string& output);
-/// The words of the command that encodes; the last one is the output.
+/// Command line of the encoder as words; the last one is the output.
 [[nodiscard]] std::vector<std::string> encoder_command(const VideoFormat& format);
 
-/// A film under construction: the program `ffmpeg` of the system, fed with pictures through a pipe. What it
-/// writes takes its name in finish(); without, nothing is left of it.
+/// Encodes a film by the program `ffmpeg` of the system, which gets the pictures through a pipe. finish()
+/// gives the file its name; without it the file is deleted.
 class VideoEncoder {
  public:
-  /// kNotFound with the package's name where there is no ffmpeg; kInvalidArgument for another ending; kIo.
-  /// An older file is replaced in the end.
+  /// Starts the encoder. kNotFound, with the package's name, without ffmpeg; kInvalidArgument for an unknown
+  /// ending; kIo. finish() replaces an older file.
   [[nodiscard]] static Result<VideoEncoder> start(const VideoFormat& format);
   VideoEncoder(VideoEncoder&& other) noexcept;
   VideoEncoder& operator=(VideoEncoder&&) = delete;
   ~VideoEncoder();
 
-  /// One picture: three bytes for each pixel. kIo when ffmpeg has ended.
+  /// Adds a picture: three bytes for each pixel. kIo when ffmpeg has ended.
   [[nodiscard]] Result<void> add(std::span<const std::uint8_t> picture);
-  /// kIo when ffmpeg says that something failed; its own words stand on stderr.
+  /// Ends the film. kIo when ffmpeg failed; it prints the reason on stderr.
   [[nodiscard]] Result<void> finish();
 
  private:
@@ -43,7 +43,7 @@ class VideoEncoder {
       : output_{std::move(output)}, unfinished_{std::move(unfinished)}, process_{process}, pipe_{pipe} {}
 
   std::string output_, unfinished_;
-  int process_;  ///< -1: it has ended
+  int process_;  ///< process of ffmpeg; -1: it has ended
   int pipe_;
 };
 

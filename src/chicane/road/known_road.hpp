@@ -14,28 +14,28 @@
 
 namespace chicane::road {
 
-/// The road that a supervisor knows: its line, and where its edges are. Either a track's, complete from the
-/// beginning, or what the waypoints of the measurements have shown so far, with an assumed width. All memory
-/// is reserved at construction; one thread.
+/// The road that a supervisor knows: its line and its edges. Either a track's, complete from the beginning,
+/// or learned from the waypoints of measurements, with an assumed width. All memory is reserved at
+/// construction; one thread.
 class KnownRoad {
  public:
-  /// Nothing is known, and nothing is learned: for a guard that is off.
+  /// No road, and none is learned: for a guard that is off.
   KnownRoad() : line_{2} {}
   /// A track's road. Pre: `data` has at least two points.
   KnownRoad(const road::RoadData& data, const model::VehicleParams& vehicle);
-  /// From waypoints; `half_width`: assumed each side of their line [m].
+  /// A road learned from waypoints; `half_width`: assumed from their line to each edge [m].
   KnownRoad(double half_width, const model::VehicleParams& vehicle);
 
-  /// Instead of the middle of the road, a line to race by: its places, the room beside it, and the line
-  /// itself as target(). On a road from waypoints until reset(), with `half_width` of room each side of their
-  /// line. Allocates; null changes nothing.
+  /// Replaces the middle of the road by a planned racing line: line(), edges() and target() are the plan's.
+  /// On a road from waypoints until reset(), with edges `half_width` from the waypoints' line. Allocates;
+  /// null changes nothing.
   void use_line(const RacingRoad* lap);
 
   void reset() noexcept;
-  /// Takes in the waypoints of a measurement; nothing where the track is known.
+  /// Learns the waypoints of a measurement; does nothing on a track.
   void add(const model::Measurement& now) noexcept;
 
-  /// In W; empty while nothing is known.
+  /// Line in W; empty while no road is known.
   [[nodiscard]] const ReferenceLine& line() const noexcept { return is_learning() ? seen_->line() : line_; }
   /// Distances from the line to the edges at s, both positive on the road [m]. Pre: the line is not empty.
   struct Edges {
@@ -43,28 +43,28 @@ class KnownRoad {
     double right = 0.0;
   };
   [[nodiscard]] Edges edges(double s) const noexcept;
-  /// Where an open road ends [m]. From waypoints it is assumed to go on, straight, to where the next one
-  /// would be, as far as the last two are apart and 25 m at most, and beyond it as far as to its sides.
+  /// End of an open road [m]. A road from waypoints is assumed to continue straight to the next waypoint (as
+  /// far as the last two are apart, at most 25 m), and beyond it by half its width.
   [[nodiscard]] double end() const noexcept {
     return line().length() + (is_learning() ? next_waypoint_ + half_width_ : 0.0);
   }
-  /// Where a car that has to stop should be: that far to the left of the line, between `edges` [m]. In
-  /// the middle of the road, or where a line is raced by on it, but at least `room` from the edges.
+  /// Lateral place for a car that stops, left of the line positive, between `edges` [m]: the middle of the
+  /// road, or the racing line, at least `room` from the edges.
   [[nodiscard]] double target(const Edges& edges, double room) const noexcept {
     const double middle = 0.5 * (edges.left - edges.right);
     if (!is_raced_ || edges.left + edges.right < 2.0 * room) return middle;
     return std::clamp(0.0, room - edges.right, edges.left - room);
   }
-  /// A line to race by takes the place of the road's own: its demand().speed is that of the planned lap.
+  /// Whether use_line() has set a racing line; demand().speed is the planned lap's then.
   [[nodiscard]] bool is_raced() const noexcept { return is_raced_; }
-  /// Whether the lap that is raced by slides beyond the peak of the tyres.
+  /// Whether the planned lap slides beyond the peak of the tyres.
   [[nodiscard]] bool slides() const noexcept { return is_raced_ && slides_; }
-  /// Increases with every new line: positions along an older one mean nothing any more.
+  /// Number that increases with every new line. Positions along an older line are invalid.
   [[nodiscard]] unsigned revision() const noexcept { return lines_ + (seen_ ? seen_->revision() : 0U); }
 
  private:
   [[nodiscard]] bool is_learning() const noexcept { return seen_ && !is_raced_; }
-  /// On a road from waypoints, of a line that far to the left of theirs [m].
+  /// Edges of a road from waypoints, seen from a line `offset` [m] left of theirs.
   [[nodiscard]] Edges assumed_edges(double offset) const noexcept {
     return {half_width_ - offset, half_width_ + offset};
   }
@@ -74,10 +74,10 @@ class KnownRoad {
   std::vector<Edges> edges_;  ///< at the samples of line_
   std::optional<Road> seen_;
   double half_width_ = 0.0;
-  double next_waypoint_ = 0.0;  ///< behind the last one [m]
-  unsigned lines_ = 0;
+  double next_waypoint_ = 0.0;  ///< assumed distance from the last waypoint to the next [m]
+  unsigned lines_ = 0;          ///< number of lines so far
   bool is_raced_ = false;
-  bool slides_ = false;  ///< the line that was used last
+  bool slides_ = false;  ///< of the last racing line
 };
 
 }  // namespace chicane::road

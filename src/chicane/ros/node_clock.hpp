@@ -8,29 +8,29 @@
 
 namespace chicane::ros {
 
-/// Compares the stamps of a topic with the time at which its messages arrive: finds stamps that come twice or
-/// in the wrong order, clocks that jump, and simulated time. Clocks come in. One thread.
+/// Watches the stamps of a topic by the arrival times of its messages: detects repeated and late stamps,
+/// clocks that jump, and simulated time. Reads no clock itself. One thread.
 class ClockWatch {
  public:
-  static constexpr double kJump = 0.5;  ///< a change of the clock that is said [s]
+  static constexpr double kJump = 0.5;  ///< least change of a clock that is reported [s]
 
   explicit ClockWatch(std::string topic) : topic_{std::move(topic)} {}
 
-  /// A message with `stamp` arrived at `received`, by this machine's monotonic and its system clock [ns].
-  /// True: it is newer than those before, or the first after a jump.
+  /// A message with `stamp` arrived at `received` by the monotonic and at `system` by the system clock of
+  /// this machine [ns]. True if it is newer than all before, or the first after a jump.
   [[nodiscard]] bool accept(std::int64_t stamp, std::int64_t received, std::int64_t system);
-  /// When the last accepted message was stamped, by this machine's monotonic clock [ns]: the quickest of the
-  /// last messages is taken to have come at once, so that what others waited for does not look like motion.
-  /// At most kLatest before it arrived.
+  /// Stamp of the last accepted message as a time of the monotonic clock [ns], at most kLatest before its
+  /// arrival. The fastest recent message counts as one without delay, so that delays of others do not look
+  /// like motion.
   [[nodiscard]] std::int64_t moment() const { return last_ ? last_->stamp + offset_ : 0; }
-  static constexpr double kLatest = 0.1;  ///< [s]
-  /// What is to be said since the last call; empty: nothing.
+  static constexpr double kLatest = 0.1;  ///< longest delay that is compensated [s]
+  /// Newest sentence for the user since the last call; empty: none.
   [[nodiscard]] std::string news();
-  /// Messages that were dropped, because they came twice or too late.
+  /// Number of messages dropped as repeated or late.
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
-  /// The stamps are not this machine's time: of /clock, or of a machine whose clock differs by hours.
+  /// Whether the stamps are not this machine's time: simulated, or of a clock that differs by hours.
   [[nodiscard]] bool is_simulated() const { return is_simulated_; }
-  /// Another sender: nothing known of its clock.
+  /// Forgets the clock of the sender, for another sender.
   void forget() { last_.reset(); }
 
  private:
@@ -43,14 +43,14 @@ class ClockWatch {
   std::string topic_;
   std::optional<Arrival> last_;
   std::string news_{};
-  std::int64_t offset_ = 0;  ///< from stamps to the monotonic clock, of the quickest messages [ns]
+  std::int64_t offset_ = 0;  ///< monotonic clock less stamp, of the fastest messages [ns]
   std::uint64_t dropped_ = 0;
   bool is_simulated_ = false;
   bool has_said_dropped_ = false;
 };
 
-/// The time by which a node counts: this machine's, or that of /clock, which stands where nobody sends it. As
-/// points of the monotonic clock, which begin when the node does. One thread.
+/// Time of a node: this machine's, or that of /clock, which stands still without its messages. Given as
+/// points of the monotonic clock, from the start of the node on. One thread.
 class NodeClock {
  public:
   using Clock = std::chrono::steady_clock;
@@ -58,20 +58,20 @@ class NodeClock {
   explicit NodeClock(bool is_simulated) : is_simulated_{is_simulated} {}
 
   [[nodiscard]] bool is_simulated() const { return is_simulated_; }
-  /// /clock says that it is `time` [ns]. What is to be said of it; empty: nothing. A time that goes back, as
-  /// where a simulation begins anew, is where the node's time goes on.
+  /// Takes in `time` of /clock [ns]. Returns a sentence for the user, or nothing. If /clock goes back, as at
+  /// a restart of a simulation, the node's time continues from there without a step.
   [[nodiscard]] std::string tick(std::int64_t time);
 
   [[nodiscard]] Clock::time_point now() const {
     return is_simulated_ ? base_ + std::chrono::nanoseconds(time_ - first_) : Clock::now();
   }
-  /// Now in the numbers of stamps [ns]: since 1970, or of /clock.
+  /// Present time as a stamp [ns]: since 1970, or of /clock.
   [[nodiscard]] std::int64_t stamp_now() const;
 
  private:
   bool is_simulated_;
   bool has_ticked_ = false;
-  Clock::time_point base_ = Clock::now();  ///< when /clock had `first_`
+  Clock::time_point base_ = Clock::now();  ///< node's time at `first_` of /clock
   std::int64_t first_ = 0, time_ = 0;      ///< [ns]
 };
 

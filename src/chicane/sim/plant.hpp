@@ -9,7 +9,7 @@
 
 namespace chicane::sim {
 
-/// What an observer can see of a plant beside its state.
+/// Quantities of a plant that are not in its state, for displays, reports and telemetry.
 struct PlantOutput {
   double ax = 0.0;                     ///< acceleration of the centre of mass along B's x [m/s²]
   double ay = 0.0;                     ///< along B's y, centripetal part included [m/s²]
@@ -17,8 +17,8 @@ struct PlantOutput {
   double throttle = 0.0;               ///< accelerator as telemetry reports it, [0, 1]: braking reads 0
   std::array<double, 4> slip_angle{};  ///< front left, front right, rear left, rear right [rad]
   std::array<double, 4> slip_ratio{};
-  /// Share of its grip that each axle uses, front and rear, wheels weighted by their load: force over peak up
-  /// to the slip of the peak, slip over that slip beyond it. 1 is all there is, more is sliding.
+  /// Share of the grip that an axle uses, front and rear, wheels weighted by load: force over peak force up
+  /// to the slip of the peak, beyond it slip over that slip. 1 is the limit, more is sliding.
   std::array<double, 2> tire_use{};
 };
 
@@ -28,37 +28,35 @@ struct PlantDeviation {
   double mass_scale = 1.0;      ///< mass and yaw inertia of the body times this
 };
 
-/// What happens to a plant from outside (sim/fault.hpp).
+/// External disturbance of a plant (sim/fault.hpp).
 struct Disturbance {
   double grip = 1.0;               ///< all tyre forces times this, beside any lasting deviation; > 0
   double side_acceleration = 0.0;  ///< push along B's y [m/s²]
 };
 
-/// The car that answers back: tyres, drive, brakes, actuators. Not the model of a controller.
-/// Deterministic, allocation-free. Fixed physics step. One thread at a time; plants share nothing. References
-/// it returns are to what changes with the next advance() or reset().
+/// The simulated car: tyres, drive, brakes, actuators. Not the model of a controller. Deterministic, without
+/// allocation, with a fixed physics step. One thread at a time; plants share nothing. References that it
+/// returns are valid until the next advance() or reset().
 class Plant {
  public:
   virtual ~Plant() = default;
   [[nodiscard]] virtual double step_length() const noexcept = 0;  ///< [s]
-  /// Stands the car at `pose` in W, moving forward with `speed` [m/s], wheels rolling freely.
+  /// Puts the car at `pose` in W, moving forward with `speed` [m/s], wheels rolling freely.
   virtual void reset(const model::Pose& pose, double speed) noexcept = 0;
-  /// It slides and turns from now on: velocity in B [m/s], yaw rate [rad/s]. Its wheels roll as fast as it
-  /// moves along.
+  /// Sets velocity in B [m/s] and yaw rate [rad/s], with wheels rolling freely.
   virtual void set_motion(const Vec2& velocity, double yaw_rate) noexcept = 0;
-  /// Another deviation from the nominal car from the next step on; the car stays where it is, as fast as it
-  /// is.
+  /// Changes the deviation from the nominal car, from the next step on. Place and speed stay.
   virtual void deviate(const PlantDeviation& deviation) noexcept = 0;
-  /// Acts from the next step on, until the next call; survives reset().
+  /// Sets the disturbance, from the next step on until the next call; survives reset().
   virtual void disturb(const Disturbance& /*disturbance*/) noexcept {}
-  /// One physics step with `command` acting on the actuators from its beginning. Any command, also one
-  /// that is not finite; clamped inside.
+  /// One physics step with `command` acting on the actuators from its beginning. Accepts any command, also
+  /// one that is not finite, and clamps it.
   virtual void advance(const model::Command& command) noexcept = 0;
   [[nodiscard]] virtual const model::State& state() const noexcept = 0;
   [[nodiscard]] virtual const PlantOutput& output() const noexcept = 0;
   /// Outer corners of the contact patches in B [m]: front left, front right, rear left, rear right.
   [[nodiscard]] virtual std::array<Vec2, 4> contact_points() const noexcept = 0;
-  /// Another one in the same state; null: this plant cannot be copied, nor a run with it.
+  /// A copy in the same state; null if this plant, and so a run with it, cannot be copied.
   [[nodiscard]] virtual std::unique_ptr<Plant> copy() const { return nullptr; }
 };
 

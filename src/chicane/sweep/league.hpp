@@ -13,7 +13,9 @@
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
-/// Controllers, each on all tracks, in all cars and disturbances, at the fastest speed at which it is clean.
+/// A league compares controllers, ours and those of other programs, on the same tracks, in the same cars and
+/// under the same disturbances. Ours drive at the highest speed at which a run is clean: all laps driven, no
+/// tyre off the road.
 
 namespace chicane::sweep {
 
@@ -21,40 +23,42 @@ namespace chicane::sweep {
 inline constexpr std::string_view kEntryKey = "entry";
 inline constexpr std::string_view kDisturbanceKey = "disturbance";
 
-/// A controller that is a program of its own, driven over the wire, at its own speed and in real time.
+/// A controller that is another program. The car is simulated here, in real time, and commanded over a
+/// socket.
 struct ExternalEntry {
   std::string name{};
-  /// Of a shell; starts it. {port}, {latency_ms}, {track} and {chicane} stand for what it shall listen to,
-  /// the sleep before each answer, the road, and the program that reads this. A ROS 2 controller has {domain}
-  /// in place of {port}: the DDS domain in which the car is.
+  /// Command of a shell that starts the program. Replaced in it: {port} by the port to listen on,
+  /// {latency_ms} by the sleep before each answer, {track} by the road, {chicane} by this program. A ROS 2
+  /// controller has {domain}, the DDS domain of the car, in place of {port}.
   std::string command{};
-  std::vector<std::string> tracks{}, cars{}, disturbances{};  ///< on which it is tried
+  std::vector<std::string> tracks{}, cars{}, disturbances{};  ///< names of its trials
 };
 
 /// One run of an external entry.
 struct ExternalTrial {
   std::string entry{}, command{}, track{}, car{}, disturbance{};
-  Settings settings{};    ///< of the world
-  std::string why_not{};  ///< it cannot be tried, in one sentence; empty: it can
+  Settings settings{};    ///< scenario of the run
+  std::string why_not{};  ///< sentence why this trial is impossible; empty: it is possible
 };
 
 struct League {
   std::string name{};
-  Plan plan{};  ///< of our own controllers; its axes are entry, track, car, disturbance
+  Plan plan{};  ///< runs of our own controllers; axes: entry, track, car, disturbance
   std::vector<ExternalEntry> externals{};
   std::vector<std::string> tracks{}, cars{};
   std::vector<std::pair<std::string, Settings>> disturbances{};  ///< the first one is the undisturbed world
 
-  /// The runs of the external entries. A disturbance by faults, or by a latency that the command has no place
-  /// for, cannot be made for them: the latency is the controller's own, and faults are in our control loop.
+  /// Trials of the external entries. A disturbance by faults is impossible for them, because faults act in
+  /// our control loop; one by latency needs {latency_ms} in the command, because the latency is the program's
+  /// own.
   [[nodiscard]] std::vector<ExternalTrial> external_trials() const;
 };
 
-/// Port of the original's controllers, which commands without {port} listen to.
+/// Port of the original simulator's controllers: commands without {port} listen on it.
 inline constexpr int kOriginalPort = 4567;
-/// It is a ROS 2 controller: the command has the place {domain}.
+/// Whether the trial is of a ROS 2 controller: its command contains {domain}.
 [[nodiscard]] bool is_ros(const ExternalTrial& trial);
-/// The command with `port` for {port} and {domain}, and what its other places in braces stand for.
+/// The command of a trial with all places in braces filled in: {port} and {domain} by `port`.
 [[nodiscard]] std::string filled(const ExternalTrial& trial, int port,
                                  const std::string& program = "chicane");
 
@@ -76,36 +80,37 @@ void add_external(League& league, const std::string& command);
 /// kParse lists all faults, each with its line.
 [[nodiscard]] Result<League> parse_league(std::string_view text, const std::string& file);
 
-/// The same of a file; kNotFound when there is none.
+/// Reads a league from a file; kNotFound without one.
 [[nodiscard]] Result<League> read_league(const std::string& file);
 
-/// The fastest lap that the plant of a car allows on a track (lap_time/limit.hpp), in seconds; what
-/// `settings` say of car and track. Takes up to half a minute. kInvalidArgument also when `stop` is set.
+/// Fastest lap that the plant allows (lap_time/limit.hpp) for car and track of `settings` [s]. Takes up to
+/// half a minute. kInvalidArgument also when `stop` is set.
 [[nodiscard]] Result<double> bound_of(const Settings& settings, const std::atomic<bool>& stop);
 
-// What a league has found. The runs of our own controllers are the results of a sweep, the same bytes on
-// every machine; times that a clock measured, and the limits, stand in a file of their own.
+// Results of a league are two files: runs of our own controllers as a sweep has them, the same bytes on every
+// machine; and limits, external trials and measured times in a BesideFile.
 
 /// One controller on one track, in one car and disturbance.
 struct LeagueCell {
   std::string entry{}, track{}, car{}, disturbance{};
   bool is_external = false;
   bool is_clean = false;
-  std::map<std::string, double, std::less<>> numbers{};  ///< by column; what was not measured is not there
-  std::string why{};                                     ///< it is not clean, in a few words
-  std::string command{};                                 ///< that drives it again
+  std::map<std::string, double, std::less<>> numbers{};  ///< by column; only those that were measured
+  std::string why{};                                     ///< why it is not clean, in a few words
+  std::string command{};                                 ///< command line that repeats the run
 
-  /// Not-a-number where it was not measured.
+  /// The number of a column; NaN if it was not measured.
   [[nodiscard]] double number(std::string_view column) const;
 };
 
 struct LeagueResults {
   std::vector<LeagueCell> cells{};                                 ///< in the order of the league
   std::map<std::pair<std::string, std::string>, double> bounds{};  ///< by track and car [s]
-  std::uint64_t missing = 0;                                       ///< runs that were not driven yet
+  std::uint64_t missing = 0;                                       ///< number of runs not driven yet
 };
 
-/// The file beside the results: one JSON object in each line, a trial under its program's command.
+/// File of limits, external trials and measured times: one JSON object in each line. The key of a trial is
+/// its program's command.
 class BesideFile {
  public:
   /// As LineFile::open(). kInvalidArgument for the file of another league or plan.
@@ -122,21 +127,21 @@ class BesideFile {
 
  private:
   LineFile file_{};
-  std::vector<std::string> keys_{};  ///< of limits and trials that are there
+  std::vector<std::string> keys_{};  ///< keys of the limits and trials in the file
 };
 
-/// Both files. Fails as read_lines() does.
+/// Reads both files. Fails as read_lines() does.
 [[nodiscard]] Result<LeagueResults> read_results(const League& league, const std::string& results,
                                                  const std::string& beside);
 
-/// A document (protocol/json.hpp): the standings, a table for each track and car, times that were
-/// measured, and the command of each run.
+/// Document for the web page (protocol/json.hpp): standings, a table for each track and car, measured times,
+/// and the command of each run.
 [[nodiscard]] std::string league_document(const League& league, const LeagueResults& results);
-/// The same tables for a page of docs/, without the commands.
+/// The tables of league_document() as Markdown, without the commands.
 [[nodiscard]] std::string league_markdown(const League& league, const LeagueResults& results);
-/// A row for each run (RFC 4180).
+/// CSV with a row for each run (RFC 4180).
 [[nodiscard]] std::string league_csv(const LeagueResults& results);
-/// A list of objects, one for each run, with the columns of the CSV table.
+/// JSON list with an object for each run, and the columns of league_csv().
 [[nodiscard]] std::string league_json(const LeagueResults& results);
 
 }  // namespace chicane::sweep

@@ -82,7 +82,7 @@ struct LapSummary {
   std::vector<double> corner_times{};
 };
 
-/// Percentiles of durations [s]; bins are 4.4 % wide (base/deadline.hpp), `max` is exact.
+/// Percentiles of durations [s]; bins are at most 6.3 % wide (base/deadline.hpp), `max` is exact.
 struct TimeSummary {
   double p50 = 0.0;
   double p99 = 0.0;

@@ -12,27 +12,26 @@
 
 namespace chicane::tracking {
 
-/// The commands this controller has sent, with the time from which each acts. Fixed memory; the oldest is
-/// forgotten.
+/// Commands that were sent, with the times from which they act. Fixed memory: the oldest is dropped.
 class CommandHistory {
  public:
   void clear() noexcept { count_ = 0; }
   /// `command` acts from `time` [s] on; later commands replace earlier ones that would act later.
   void add(double time, const model::Command& command) noexcept;
-  /// The same times with other commands: what `change` makes of each.
+  /// A copy whose commands are changed by `change`, at the same times.
   template <class Change>
   [[nodiscard]] CommandHistory changed(const Change& change) const noexcept {
     CommandHistory other = *this;
     for (Entry& entry : other.entries_) entry.command = change(entry.command);
     return other;
   }
-  /// Each command acts `time` [s] later; negative: earlier.
+  /// Moves all commands by `time` [s], later where positive.
   void delay(double time) noexcept {
     for (Entry& entry : entries_) entry.time += time;
   }
   /// The command acting at `time`; zero before the first.
   [[nodiscard]] model::Command at(double time) const noexcept;
-  /// First change of command after `time`, or `limit` when there is none before it.
+  /// Time of the first change of command after `time`, at most `limit` [s].
   [[nodiscard]] double next_change(double time, double limit) const noexcept;
 
  private:
@@ -49,32 +48,33 @@ class CommandHistory {
   }
 };
 
-/// Whether a car rolls backwards: its speed is measured without a sign, so that only its displacement tells.
+/// Detects a car that rolls backwards by its displacement, because its speed is measured without a sign.
 class DirectionWatch {
  public:
-  static constexpr double kPath = 2.0;  ///< [m] after which it is known
+  static constexpr double kPath = 2.0;  ///< way over which the direction is judged [m]
   void reset() noexcept { *this = {}; }
   void see(const model::Measurement& now) noexcept;
-  /// Over the last kPath the car has moved against its heading. False for a car that stands or slides across.
+  /// Whether the car moved against its heading over the last kPath. False for a car that stands or slides
+  /// sideways.
   [[nodiscard]] bool rolls_back() const noexcept { return rolls_back_; }
 
  private:
   bool has_last_ = false;
-  double time_ = 0.0, x_ = 0.0, y_ = 0.0;  ///< of the measurement before
-  double path_ = 0.0;                      ///< by the measured speed [m]
-  double along_ = 0.0;                     ///< and what of it was along the heading [m]
+  double time_ = 0.0, x_ = 0.0, y_ = 0.0;  ///< last measurement [s, m]
+  double path_ = 0.0;                      ///< way by the measured speed [m]
+  double along_ = 0.0;                     ///< part of that way along the heading [m]
   bool rolls_back_ = false;
 };
 
-/// What the car accelerates by beyond the model, as measurements have shown lately; less and less true later.
+/// Accelerations of the car beyond the model, estimated from recent measurements.
 struct Disturbance {
-  /// Time constant by which it fades where it is not measured anew [s].
+  /// Time constant of its decay without measurements [s].
   static constexpr double kTime = 0.5;
 
-  double lateral = 0.0;  ///< of v_y [m/s²]
-  double yaw = 0.0;      ///< of the yaw rate [rad/s²]
+  double lateral = 0.0;  ///< change of v_y [m/s²]
+  double yaw = 0.0;      ///< change of the yaw rate [rad/s²]
 
-  /// Leaves what is true of it `dt` [s] later, to first order in dt.
+  /// Decay over `dt` [s], to first order in dt.
   void fade(double dt) noexcept {
     const double left = kTime / (kTime + dt);
     lateral *= left;
@@ -82,9 +82,9 @@ struct Disturbance {
   }
 };
 
-/// Where the car is, and where it will be when the next command acts: the prediction model driven by the
-/// commands that are really in flight, and by a disturbance where one is asked for, corrected by each
-/// measurement. Yaw rate and sideslip, which telemetry does not hold, come from here.
+/// Estimate of the car's state, and its prediction for the time at which the next command acts. The
+/// prediction model runs with the commands in flight and, if asked, an estimated disturbance; each
+/// measurement corrects it. Yaw rate and sideslip, which telemetry does not contain, are estimated here.
 class StateEstimator {
  public:
   explicit StateEstimator(const model::PredictionModel& model) noexcept : model_{model} {}
@@ -93,38 +93,38 @@ class StateEstimator {
     direction_.reset();
     errors_.reset();
   }
-  /// Whether a disturbance is estimated from now on; off at first.
+  /// Turns the estimate of a disturbance on or off; off at first.
   void estimate_disturbance(bool is_on) noexcept {
     errors_.estimate_disturbance(is_on);
     is_disturbed_ = is_on;
     now_.disturbance = {};
   }
-  /// Whether what the steer helper leaves out is counted from now on (model/actuator.hpp); off at first.
+  /// Turns the model of the steer helper's gap on or off (model/actuator.hpp); off at first.
   void mind_helper_gap(bool is_on) noexcept { minds_gap_ = is_on; }
-  /// Innovations are averaged over `time` [s] from now on, whatever the noise; 0: by the noise, as at first.
+  /// Averages innovations over `time` [s], whatever the noise; 0, as at first: by the noise.
   void average_over(double time) noexcept { average_ = time; }
-  /// Another model from now on; the estimate stays.
+  /// Changes the model; the estimate stays.
   void set_model(const model::PredictionModel& model) noexcept { model_ = model; }
   [[nodiscard]] const model::PredictionModel& model() const noexcept { return model_; }
 
-  /// Takes in a measurement. Afterwards state() is the estimate at now.time; what of it is not finite is
-  /// replaced by what the model expects.
+  /// Takes in a measurement. Afterwards state() is the estimate at now.time. Values that are not finite are
+  /// replaced by the model's.
   void correct(const model::Measurement& now, const CommandHistory& sent) noexcept;
   [[nodiscard]] const model::State& state() const noexcept { return now_.state; }
-  /// Adds `by` to the estimate: what another model would have made of it.
+  /// Adds `by` to the estimate, as the difference by another model.
   void move(const model::State& by) noexcept;
   [[nodiscard]] double time() const noexcept { return time_; }  ///< of state() [s]
   [[nodiscard]] bool is_started() const noexcept { return is_started_; }
   [[nodiscard]] double acceleration() const noexcept { return now_.acceleration; }
-  /// The last measurement beside what was expected of it; NaN where nothing was.
+  /// Last measurement less its prediction; NaN without one.
   struct Surprise {
-    double aside = std::numeric_limits<double>::quiet_NaN();    ///< [m] to the left of the expected place
+    double aside = std::numeric_limits<double>::quiet_NaN();    ///< lateral, left positive [m]
     double heading = std::numeric_limits<double>::quiet_NaN();  ///< [rad]
   };
   [[nodiscard]] const Surprise& surprise() const noexcept { return surprise_; }
   [[nodiscard]] const ErrorCovariance& errors() const noexcept { return errors_; }
   [[nodiscard]] const Disturbance& disturbance() const noexcept { return now_.disturbance; }
-  /// What state() has for a speed forward is one backwards (DirectionWatch).
+  /// Whether the car rolls backwards although state() has a forward speed (DirectionWatch).
   [[nodiscard]] bool rolls_back() const noexcept { return direction_.rolls_back(); }
 
   /// The state at `time` >= the last measurement's [s], commands in flight replayed for exactly the fractions
@@ -135,8 +135,8 @@ class StateEstimator {
     Disturbance disturbance;
   };
   [[nodiscard]] Prediction predict(double time, const CommandHistory& sent) const noexcept;
-  /// Speed at `time` [m/s] by the pedals alone. A car slower than PredictionModel::kSpeedFloor rolls on where
-  /// the model has it braked by its turned wheels.
+  /// Speed at `time` by the pedals alone [m/s]. Below PredictionModel::kSpeedFloor a car rolls on, while in
+  /// the model its turned wheels brake it.
   [[nodiscard]] double rolling_speed(double time, const CommandHistory& sent) const noexcept;
 
  private:
@@ -146,7 +146,7 @@ class StateEstimator {
   void take_over(const model::Measurement& now, double dx, double dy, double dpsi) noexcept;
   struct Correction {
     ErrorCovariance::Vector by;
-    double share;  ///< taken over from an innovation of the place, also along the car
+    double share;  ///< gain for the place along the car, as for its innovation
   };
   [[nodiscard]] Correction correction(double aside, double heading, double elapsed,
                                       bool is_after_gap) noexcept;
@@ -164,63 +164,61 @@ class StateEstimator {
   bool is_started_ = false;
   double time_ = 0.0;
   double place_seen_ = 0.0;    ///< time of the last place that was measured together with a heading [s]
-  double heading_seen_ = 0.0;  ///< and of the last heading
+  double heading_seen_ = 0.0;  ///< time of the last heading [s]
   Prediction now_;             ///< at time_
   Surprise surprise_;
   DirectionWatch direction_;
 };
 
-/// The throttle that brings a car to rest that rolls backwards with `speed` [m/s], > 0: where the brake pedal
-/// is the reverse gear then, its drive has to.
+/// Throttle that stops a car that rolls backwards with `speed` [m/s], > 0: the drive, for cars whose brake
+/// pedal is the reverse gear then.
 [[nodiscard]] double throttle_against_rolling_back(const model::VehicleParams& vehicle,
                                                    double speed) noexcept;
 
-/// How much grip the tyres have, over the assumed one, by which grip predicts the next measurement better
-/// (docs/racing.md, eq. 3 to 7). Two estimators see the same measurements and commands, one with the
-/// assumed grip, one with a little less. What each did not expect is noise and the wrong grip; the noise is
-/// the same in both, so that their difference says what the grip does alone, and least squares over the last
-/// kMemory of cornering finds the share, without the bias of noise. How sure it is, is the larger of what
-/// noise explains and of what the bends disagree by: a model that lacks something is wrong for a whole bend.
+/// Estimates the grip of the tyres as a share of the assumed grip, by which grip predicts the next
+/// measurement better (docs/racing.md, eq. 3 to 7). Two estimators see the same measurements and commands,
+/// one with the assumed grip, one with a little less. Their innovations have the same noise, so that the
+/// difference shows the effect of grip alone; least squares over the last kMemory of cornering finds the
+/// share without bias by noise. The deviation is the larger of that by noise and that between bends, because
+/// a model error lasts for a whole bend.
 ///
-/// Another mass, a side wind or steering that answers otherwise pass for grip.
+/// Errors of mass, side wind and steering gain appear as grip.
 ///
-/// A third estimator sees the commands act a little later. What the headings are off by, beside what that
-/// makes of them, says how much another time than configured explains (docs/limit.md, eq. 18). One thread;
-/// allocates nothing.
+/// A third estimator sees the commands act a little later. Errors of heading over its difference say how much
+/// another delay than configured explains (docs/limit.md, eq. 18). One thread; allocates nothing.
 class GripEstimator {
  public:
-  static constexpr double kLeast = 3.0;  ///< [m/s²] of lateral acceleration by tyres: less tells too little
-  static constexpr double kMemory = 10.0;  ///< time constant of forgetting, of cornering [s]
-  static constexpr double kShortestBend =
-      1.0;  ///< cornering [s] that counts as one; shorter bends count together
-  static constexpr double kLongestBend = 4.0;  ///< longer ones count as several
-  static constexpr int kEnough = 3;            ///< bends until something is known
-  static constexpr double kSure = 0.1;         ///< standard deviation of share() from which on it is known
+  static constexpr double kLeast = 3.0;             ///< least lateral acceleration that shows grip [m/s²]
+  static constexpr double kMemory = 10.0;           ///< time constant of forgetting, in time of cornering [s]
+  static constexpr double kShortestBend = 1.0;      ///< shorter bends count together as one [s]
+  static constexpr double kLongestBend = 4.0;       ///< longer bends count as several [s]
+  static constexpr int kEnough = 3;                 ///< bends until the share is known
+  static constexpr double kSure = 0.1;              ///< largest standard deviation of a known share
   static constexpr double kLow = 0.3, kHigh = 1.6;  ///< range of share()
 
   explicit GripEstimator(const model::PredictionModel& model) noexcept
       : assumed_{model}, less_{model}, late_{model} {}
 
-  /// Restarts where `from` is, with the assumed car.
+  /// Restarts at the state of `from`, with the assumed car.
   void begin(const StateEstimator& from, const model::PredictionModel& assumed) noexcept;
   void see(const model::Measurement& now, const CommandHistory& sent) noexcept;
 
   [[nodiscard]] bool is_known() const noexcept { return bends_.count >= kEnough && deviation() <= kSure; }
-  /// Grip over the assumed one; 1 until it is known.
+  /// Share of the assumed grip; 1 until it is known.
   [[nodiscard]] double share() const noexcept;
-  /// Whether share() differs from one by more than `least`, and by more than noise does in one case of 20.
+  /// Whether share() differs from 1 by more than `least`, and significantly (5 %).
   [[nodiscard]] bool differs(double least) const noexcept;
-  /// Standard deviation of share(), the larger of eq. 6 and 7; infinite before there is any corner.
+  /// Standard deviation of share(), the larger of eq. 6 and 7; infinite before the first corner.
   [[nodiscard]] double deviation() const noexcept;
-  /// By how much a command may act otherwise than configured so that it explains the error of headings, root
-  /// mean square [s]: jitter, and all else that is not known. Infinite before there is any corner.
+  /// Root mean square of the error of delay that explains the errors of heading [s]: jitter, and whatever
+  /// else is not modelled. Infinite before the first corner.
   [[nodiscard]] double unsure_time() const noexcept;
   /// Mean time between measurements in corners [s].
   [[nodiscard]] double interval() const noexcept { return interval_; }
 
  private:
-  static constexpr double kStep = 0.1;   ///< share of grip that the other estimator has less
-  static constexpr double kLate = 0.02;  ///< by which commands act later for the third [s]
+  static constexpr double kStep = 0.1;   ///< grip that the second estimator lacks, share
+  static constexpr double kLate = 0.02;  ///< delay that the third estimator adds [s]
 
   GripEstimator(const StateEstimator& assumed, const StateEstimator& less,
                 const StateEstimator& late) noexcept
@@ -231,7 +229,7 @@ class GripEstimator {
     double hh = 0.0, hn = 0.0, nn = 0.0;
 
     void add(double h, double n, double left, double elapsed) noexcept;
-    /// Of n about what the best share of h explains, per second.
+    /// Variance of n without the part that the best share of h explains, per second.
     [[nodiscard]] double variance(double time) const noexcept;
   };
 
@@ -243,14 +241,14 @@ class GripEstimator {
   void end_bend() noexcept;
 
   StateEstimator assumed_, less_, late_;
-  double time_ = 0.0;      ///< of cornering, as far as it is remembered [s]
-  double interval_ = 0.0;  ///< between measurements in corners, mean [s]
+  double time_ = 0.0;      ///< remembered time of cornering [s]
+  double interval_ = 0.0;  ///< interval() [s]
   Sums all_;
-  Sums bend_;               ///< sums of the bend that goes on
-  double bend_time_ = 0.0;  ///< [s]
-  double side_ = 0.0;       ///< sign of the side that the last measurement in a bend turned to
+  Sums bend_;               ///< sums of the present bend
+  double bend_time_ = 0.0;  ///< duration of the present bend [s]
+  double side_ = 0.0;       ///< sign of the yaw rate at the last measurement in a bend
   Bends bends_;
-  /// Sums over corners of squares: what the heading was off by, and what it changes by with the time [rad/s].
+  /// Sums of squares over corners: error of heading, and its change by delay [rad/s].
   double off_ = 0.0, by_time_ = 0.0;
 };
 

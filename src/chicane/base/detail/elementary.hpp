@@ -11,9 +11,11 @@
 
 namespace chicane::elementary {
 
-/// The algorithms behind math.hpp (double) and pack.hpp (packs): one text for both, without branches, so
-/// that a lane has the bits of the scalar call. After fdlibm (Sun Microsystems, 1993, freely distributable).
-/// Plain IEEE operations in a fixed order; never fused.
+/// Elementary functions for math.hpp (V = double) and pack.hpp (V = a pack): one text for both, without
+/// branches, so that a lane has the bits of the scalar call. Plain IEEE operations in a fixed order, never
+/// fused. Algorithms, coefficients and short names (r, z, w, hi, lo) are those of fdlibm 5.3 (Sun
+/// Microsystems, 1993, freely distributable): e_rem_pio2.c, k_sin.c, k_cos.c, s_atan.c, e_atan2.c, e_exp.c,
+/// e_log.c.
 
 [[nodiscard]] CHICANE_INLINE inline std::uint64_t bits_of(double x) noexcept {
   return std::bit_cast<std::uint64_t>(x);
@@ -23,7 +25,7 @@ namespace chicane::elementary {
   return std::copysign(magnitude, sign);
 }
 
-/// How V turns bits back into numbers; packs have a member for it.
+/// Turns bits back into numbers of type V.
 template <class V>
 struct Number {
   using Bits = typename V::BitsType;
@@ -37,16 +39,19 @@ struct Number<double> {
 
 /// Added to a number below 2^51 this leaves its nearest integer in the last bits.
 inline constexpr double kToInteger = 6755399441055744.0;  // 1.5 · 2^52
+inline constexpr double kMostAngle = 1e9;  // [rad] sin and cos of more are NaN: n π/2 has lost its bits
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// An angle x as n quarter turns and a remainder.
 template <class V>
 struct Reduced {
-  V r;     // x − n π/2, |r| <= π/4
-  V tail;  // what rounding lost of r
-  typename Number<V>::Bits quadrant;
+  V r;                                // x − n π/2, |r| <= π/4 [rad]
+  V tail;                             // rounding error of r [rad]
+  typename Number<V>::Bits quadrant;  // n in the last bits
 };
 
+/// Subtracts n π/2 in three parts of π/2 (Cody and Waite).
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline Reduced<V> reduce(const V& x) noexcept {
   constexpr double kHalfPiHigh = 1.57079632673412561417e+00;    // first 33 bits of π/2
@@ -63,6 +68,7 @@ template <class V>
   return {r, (partial - r) - low, bits_of(counted)};
 }
 
+/// sin(x + tail) for |x| <= π/4, by its polynomial of degree 13.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V sin_kernel(const V& x, const V& tail) noexcept {
   constexpr double s1 = -1.66666666666666324348e-01, s2 = 8.33333333332248946124e-03,
@@ -74,6 +80,7 @@ template <class V>
   return x - ((z * (0.5 * tail - v * r) - tail) - v * s1);
 }
 
+/// cos(x + tail) for |x| <= π/4, by its polynomial of degree 14.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V cos_kernel(const V& x, const V& tail) noexcept {
   constexpr double c1 = 4.16666666666666019037e-02, c2 = -1.38888888888741095749e-03,
@@ -86,14 +93,15 @@ template <class V>
   return w + (((1.0 - w) - half) + (z * r - x * tail));
 }
 
-/// Sine and cosine share all their work: calls for both of one argument cost little more than one.
+/// Bit 0 of the quadrant exchanges sine and cosine, bit 1 is the sign. Calls of sin and cos for one argument
+/// share their work, and cost little more than one.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V sin(const V& x) noexcept {
   using Bits = typename Number<V>::Bits;
   const Reduced<V> a = reduce(x);
   const V s = select(is_set(a.quadrant & Bits(1)), cos_kernel(a.r, a.tail), sin_kernel(a.r, a.tail));
   const V turned = Number<V>::from(bits_of(s) ^ ((a.quadrant & Bits(2)) << 62));
-  return select(abs(x) < V(1e9), turned, V(kNaN));
+  return select(abs(x) < V(kMostAngle), turned, V(kNaN));
 }
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V cos(const V& x) noexcept {
@@ -101,10 +109,11 @@ template <class V>
   const Reduced<V> a = reduce(x);
   const V c = select(is_set(a.quadrant & Bits(1)), sin_kernel(a.r, a.tail), cos_kernel(a.r, a.tail));
   const V turned = Number<V>::from(bits_of(c) ^ (((a.quadrant + Bits(1)) & Bits(2)) << 62));
-  return select(abs(x) < V(1e9), turned, V(kNaN));
+  return select(abs(x) < V(kMostAngle), turned, V(kNaN));
 }
 
-/// |x| is folded to below 7/16 by one of four tangent differences.
+/// atan|x| = atan(c) + atan a, where c = 0, 1/2, 1, 3/2 or ∞ (`high` + `low` is atan(c)) is chosen by the
+/// bounds 7/16, 11/16, 19/16 and 39/16. `t` are the coefficients of atan a, |a| < 7/16.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V atan(const V& x) noexcept {
   constexpr double high[] = {4.63647609000806093515e-01, 7.85398163397448278999e-01,
@@ -123,15 +132,16 @@ template <class V>
   };
   const V a = choose(m, 2.0 * m - 1.0, m - 1.0, m - 1.5, V(-1.0)) /
               choose(V(1.0), 2.0 + m, m + 1.0, 1.0 + 1.5 * m, m);
-  const V from = choose(V(0.0), V(high[0]), V(high[1]), V(high[2]), V(high[3]));
+  const V start = choose(V(0.0), V(high[0]), V(high[1]), V(high[2]), V(high[3]));
   const V lost = choose(V(0.0), V(low[0]), V(low[1]), V(low[2]), V(low[3]));
   const V z = a * a;
   const V w = z * z;
   const V odd = z * (t[0] + w * (t[2] + w * (t[4] + w * (t[6] + w * (t[8] + w * t[10])))));
   const V even = w * (t[1] + w * (t[3] + w * (t[5] + w * (t[7] + w * t[9]))));
-  return copysign(from - ((a * (odd + even) - lost) - a), x);
+  return copysign(start - ((a * (odd + even) - lost) - a), x);
 }
 
+/// Angle of the point (x, y) in [-π, π]; 0 or ±π where y is zero, by the sign of x.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V atan2(const V& y, const V& x) noexcept {
   constexpr double pi = 3.14159265358979311600e+00, pi_low = 1.22464679914735317723e-16;
@@ -142,6 +152,7 @@ template <class V>
   return copysign(select(is_behind, pi - (a - pi_low), a), y);
 }
 
+/// 2^k exp(r) with |r| <= ln 2 / 2; saturates where 2^k would leave the normal numbers.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V exp(const V& x) noexcept {
   using Bits = typename Number<V>::Bits;
@@ -159,9 +170,11 @@ template <class V>
   const V c = r - t * (p1 + t * (p2 + t * (p3 + t * (p4 + t * p5))));
   const V y = 1.0 - ((lo - (r * c) / (2.0 - c)) - hi);
   const V power = Number<V>::from((bits_of(counted) + Bits(1023)) << 52);  // 2^k
+  // 709 and -708: whole numbers just within the logarithms of normal numbers.
   return select(x > V(709.0), V(kInfinity), select(x < V(-708.0), V(0.0), y * power));
 }
 
+/// k ln 2 + log(1 + f) with 1 + f in [√½, √2].
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V log(const V& x) noexcept {
   using Bits = typename Number<V>::Bits;
@@ -171,15 +184,15 @@ template <class V>
                    g5 = 1.818357216161805012e-01, g6 = 1.531383769920937332e-01,
                    g7 = 1.479819860511658591e-01;
   constexpr double kLeastNormal = std::numeric_limits<double>::min();
-  constexpr double kTwo54 = 18014398509481984.0;
+  constexpr double kTwo54 = 18014398509481984.0, kTwo52 = 4503599627370496.0;
   constexpr std::uint64_t kMantissa = (std::uint64_t{1} << 52) - 1;
-  constexpr std::uint64_t kTwo52 = std::uint64_t{0x433} << 52;  // bits of 2^52
-  constexpr std::uint64_t kHalf = std::uint64_t{0x3fe} << 52;   // bits of 1/2
+  constexpr std::uint64_t kTwo52Bits = std::uint64_t{0x433} << 52;
+  constexpr std::uint64_t kHalfBits = std::uint64_t{0x3fe} << 52;
   const auto is_tiny = x < V(kLeastNormal);
   const auto bits = bits_of(select(is_tiny, x * kTwo54, x));
-  const V exponent = Number<V>::from((bits >> 52) | Bits(kTwo52)) - 4503599627370496.0;
-  const V fraction = Number<V>::from((bits & Bits(kMantissa)) | Bits(kHalf));  // in [1/2, 1)
-  const auto is_low = fraction < V(0.70710678118654752440);
+  const V exponent = Number<V>::from((bits >> 52) | Bits(kTwo52Bits)) - kTwo52;
+  const V fraction = Number<V>::from((bits & Bits(kMantissa)) | Bits(kHalfBits));  // in [1/2, 1)
+  const auto is_low = fraction < V(0.70710678118654752440);                        // √½
   const V m = select(is_low, 2.0 * fraction, fraction);
   const V k = exponent - select(is_tiny, V(1022.0 + 54.0), V(1022.0)) - select(is_low, V(1.0), V(0.0));
   const V f = m - 1.0;
@@ -193,15 +206,17 @@ template <class V>
   return select((x > V(0.0)) & (x < V(kInfinity)), result, special);
 }
 
+/// By exp; two terms of the series for small x, and ±1 where the difference is below half an ulp.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V tanh(const V& x) noexcept {
+  // Below 1e-4 the next term, 2/15 x⁵, is less than 2e-17 x; above 22 1 − tanh x is less than 2^-62.
   const V a = abs(x);
   const V e = elementary::exp(-2.0 * a);
   const V large = copysign(select(a > V(22.0), V(1.0), (1.0 - e) / (1.0 + e)), x);
   return select(a < V(1e-4), x - x * x * x / 3.0, large);
 }
 
-/// NaN beyond ±1.
+/// asin and acos: NaN beyond ±1.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V asin(const V& x) noexcept {
   return elementary::atan2(x, sqrt((1.0 - x) * (1.0 + x)));
@@ -211,7 +226,7 @@ template <class V>
   return elementary::atan2(sqrt((1.0 - x) * (1.0 + x)), x);
 }
 
-/// x multiplied by itself: of any sign, and 1 for n = 0.
+/// xⁿ by multiplication, for any sign of x and n; 1 for n = 0.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V power(const V& x, int n) noexcept {
   V result(1.0);
@@ -223,9 +238,10 @@ template <class V>
   }
   return n < 0 ? 1.0 / result : result;
 }
+/// power() for whole exponents up to ±64, else exp(exponent · log x).
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V pow(const V& x, double exponent) noexcept {
-  constexpr double kMostFactors = 64.0;
+  constexpr double kMostFactors = 64.0;  // as math.hpp promises
   const bool is_whole = exponent >= -kMostFactors && exponent <= kMostFactors &&
                         exponent == static_cast<double>(static_cast<int>(exponent));
   if (is_whole) return elementary::power(x, static_cast<int>(exponent));

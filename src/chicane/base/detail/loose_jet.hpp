@@ -11,9 +11,10 @@
 
 namespace chicane {
 
-/// A jet of second order whose pattern is part of its value, not of its type: one type for all values of a
-/// function over arrays of one scalar. Sets of variables say which derivatives may differ from zero; only
-/// those are computed and copied. Bits are those of a Jet that stores everything.
+/// A number with its first and second derivatives by `Count` variables (a jet of second order). Which of them
+/// may differ from zero is part of the value, not of the type as in Jet: all values of a function over arrays
+/// of one scalar have one type. Only derivatives in those sets are computed and copied; results have the bits
+/// of a Jet that stores everything.
 template <class V, int Count>
 struct LooseJet {
   using Value = V;
@@ -99,7 +100,7 @@ struct LooseJet {
       }
     }
   }
-  /// Visits the pairs of all variables, in loops of fixed length.
+  /// Calls visit(j)(i, place of the curvature) for all pairs, in loops of fixed length.
   template <class Visit>
   CHICANE_INLINE static void each_row(const Visit& visit) noexcept {
     std::size_t at = 0;
@@ -108,7 +109,7 @@ struct LooseJet {
       for (std::size_t i = 0; i <= j; ++i, ++at) visit_pair(i, at);
     }
   }
-  /// Every pair has a curvature.
+  /// Whether every pair has a curvature.
   [[nodiscard]] bool is_full() const noexcept { return second == kFirst; }
   /// Variables that have a curvature with j.
   [[nodiscard]] Variables partners(std::size_t j) const noexcept {
@@ -129,7 +130,7 @@ template <class V, int Count>
 
 namespace jet {
 
-/// The chain rule in two arguments.
+/// Chain rule for f(a, b): `value` is f, `f` its partial derivatives.
 template <AnyLooseJet A, class PA, class PB, class AA, class AB, class BB>
 [[nodiscard]] inline A chain(const A& a, const A& b, const typename A::Value& value,
                              const Partials<PA, PB, AA, AB, BB>& f) {
@@ -168,7 +169,7 @@ template <AnyLooseJet A, class PA, class PB, class AA, class AB, class BB>
   });
   return r;
 }
-/// Chain rule with a constant.
+/// Chain rule for f(a, b) where one argument is a constant.
 template <AnyLooseJet A, AnyJet B, class PA, class PB, class AA, class AB, class BB>
 requires(B::kFirst == 0) [[nodiscard]] inline A
     chain(const A& a, const B& b, const typename A::Value& value, const Partials<PA, PB, AA, AB, BB>& f) {
@@ -179,7 +180,7 @@ requires(A::kFirst == 0) [[nodiscard]] inline B
     chain(const A& a, const B& b, const typename A::Value& value, const Partials<PA, PB, AA, AB, BB>& f) {
   return chain(B(a.v), b, value, f);
 }
-/// The chain rule in one argument.
+/// Chain rule for f(a): `value` is f, `slope` f', `curvature` f''.
 template <AnyLooseJet A, class Slope, class Curvature>
 [[nodiscard]] inline A chain(const A& a, const typename A::Value& value, const Slope& slope,
                              const Curvature& curvature) {

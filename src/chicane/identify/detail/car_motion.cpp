@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Motion of a car that is identified: four wheels, or the controllers' single track, driven by the commands
+// of a log from one of its samples on (docs/identification.md).
 #include "chicane/identify/detail/car_motion.hpp"
 
 #include <algorithm>
@@ -11,15 +13,15 @@
 namespace chicane::identify {
 namespace {
 
-constexpr double kGravity = 9.81;      // [m/s²]
-constexpr double kLeastLoad = 0.1;     // of the load at rest, as model::PredictionModel
-constexpr double kLeastSpeed = 0.3;    // [m/s] of a wheel
-constexpr double kLeastSquare = 1e-8;  // of a slip: the secant is 1 there
-// A standing tyre springs; what damps it (docs/model.md, eq. 19).
+constexpr double kGravity = 9.81;   // [m/s²]
+constexpr double kLeastLoad = 0.1;  // least load of a wheel, share of that at rest; as model::PredictionModel
+constexpr double kLeastSpeed = 0.3;    // [m/s] least rolling speed of a wheel in its slip
+constexpr double kLeastSquare = 1e-8;  // least square of a slip: the secant is 1 there
+// Damping of a tyre below kCreepSpeed, which springs when it stands (docs/model.md, eq. 19).
 constexpr double kCreepSpeed = 3.0, kCreepDamping = 0.12;  // [m/s], [s/m]
 
-/// The slip x with `sign` · torque · b(x) + rest = stiffness · x. b is 1 up to the slip at which a controller
-/// begins to take torque away, and 0 where it has taken all.
+/// Solves `sign` · torque · b(x) + rest = stiffness · x for the slip x. b is what traction control or
+/// anti-lock leaves of the torque: 1 up to `hold.start`, 0 from `hold.end` on.
 double slip_for(double torque, double sign, const SlipLimit& hold, double stiffness, double rest) noexcept {
   const double free = (sign * torque + rest) / stiffness;
   if (!(sign * free > hold.start)) return std::clamp(free, -1.0, 1.0);
@@ -28,7 +30,7 @@ double slip_for(double torque, double sign, const SlipLimit& hold, double stiffn
   return std::clamp(sign * std::min(sign * held, hold.end), -1.0, 1.0);
 }
 
-/// e^(−x) for x >= 0, positive and within 1 % for all x: of the fourth order.
+/// e^(−x) for x >= 0 by its reciprocal series of fourth order: positive, within 1 % for all x.
 double decay(double x) noexcept {
   return 1.0 / (1.0 + x * (1.0 + x * (0.5 + x * ((1.0 / 6.0) + x * (1.0 / 24.0)))));
 }
@@ -78,9 +80,9 @@ FourWheels::Motion FourWheels::steady(double vx, double vy, double r, double ste
 void FourWheels::advance(Motion& motion, double steer, double steer_middle, double force,
                          double drag) const noexcept {
   const double pressed = vehicle_.load(std::max(motion.vx, 0.0));
-  // Downforce loads the wheels, and moves nothing from one to the other.
+  // Load transfer depends on the weight alone, not on downforce.
   const double rest = kGravity / pressed;
-  // The lagged load half a step on.
+  // Accelerations that transfer load, with its lag, in the middle of the step.
   motion.along += load_share_ * (motion.forward - motion.along);
   motion.across += load_share_ * (motion.sideways - motion.across);
   const double c0 = cos(steer), s0 = sin(steer);
@@ -89,7 +91,7 @@ void FourWheels::advance(Motion& motion, double steer, double steer_middle, doub
   const auto force_of = [&](std::size_t i, const model::Axle& axle, const model::Planar<double>& v) {
     const bool is_front = i < 2;
     const Tire& tire = tires_[i / 2];
-    // Slip across, over the step whose middle the begin of this one is.
+    // Slip across over the interval dt around the beginning of this step.
     const model::Planar<double> w = is_front ? model::in_turned_axes(v, c0, s0) : v;
     const double rolling = std::max(std::fabs(w.x), kLeastSpeed);
     const double keeps = decay(dt_ * rolling * per_relaxation_);
@@ -102,8 +104,8 @@ void FourWheels::advance(Motion& motion, double steer, double steer_middle, doub
         kLeastLoad, 1.0 + rest * (tire.per_along * motion.along + side * tire.per_across * motion.across));
     const double load = axle.rest * pressed * part * (1.0 + vehicle_.load_sensitivity * (1.0 - part));
     const double most = vehicle_.friction * load;
-    // The slip along the tyre at which the wheel's torque and force agree, the wheel's own inertia included;
-    // the secant of the tyre curve is that of both slips together, by similarity.
+    // Slip along the tyre from the balance of torque, tyre force and the wheel's inertia, in two steps of
+    // fixed point: the secant of the tyre curve is that of both slips together (similarity).
     const double z = tire.cornering * slip;
     const double inertia = inertia_ * rolling / dt_;
     const double holds_back =
@@ -116,16 +118,16 @@ void FourWheels::advance(Motion& motion, double steer, double steer_middle, doub
       return model::magic_secant(vehicle_.tire_shape, square + kLeastSquare);
     };
     const double share = 0.5 * (force >= 0.0 ? axle.drive_share : axle.brake_share);
-    double of = secant();
+    double now = secant();
     for (int step = 0; step < 2; ++step) {
       along = slip_for(rotating_ * share * std::fabs(force), force >= 0.0 ? 1.0 : -1.0,
-                       force >= 0.0 ? wheels_.drive : wheels_.brakes, most * tire.cornering * of + inertia,
+                       force >= 0.0 ? wheels_.drive : wheels_.brakes, most * tire.cornering * now + inertia,
                        inertia * before - holds_back);
-      of = secant();
+      now = secant();
     }
-    const model::Planar<double> made{most * tire.cornering * along * of, most * z * of};
-    if (is_front) motion.resistance += sm * made.y;
-    return made;
+    const model::Planar<double> force_here{most * tire.cornering * along * now, most * z * now};
+    if (is_front) motion.resistance += sm * force_here.y;
+    return force_here;
   };
   const auto sum =
       model::wheel_forces<double>(axles_, {motion.vx, motion.vy}, motion.r, cm, sm, {}, force_of);
@@ -134,7 +136,8 @@ void FourWheels::advance(Motion& motion, double steer, double steer_middle, doub
   const double r = motion.r + dt_ * turn_ * sum.moment;
   const double turned = 0.5 * dt_ * (motion.r + r);
   motion.r = r;
-  // Velocity keeps its direction in the plane; the axes turn, half of it before the forces act.
+  // The axes turn under the velocity, half before and half after the forces act. Sine and cosine by their
+  // series.
   const auto turn = [](double angle, double& x, double& y) {
     const double square = angle * angle;
     const double cosine = 1.0 - 0.5 * square * (1.0 - square * (1.0 / 12.0));
@@ -151,7 +154,7 @@ void FourWheels::advance(Motion& motion, double steer, double steer_middle, doub
 
 namespace {
 
-/// Integral of held commands over time: means over any interval follow, continuous in its ends.
+/// Means of commands over intervals of time, by their integral; each command holds until the next.
 class Held {
  public:
   Held(const std::vector<SentCommand>& commands, double SentCommand::*value)
@@ -163,7 +166,7 @@ class Held {
       sums_.push_back(sum);
     }
   }
-  /// Intervals have to be asked for in their order.
+  /// Pre: intervals come in the order of time.
   double mean(double from, double to) { return (integral(to) - integral(from)) / (to - from); }
 
  private:
@@ -178,9 +181,9 @@ class Held {
   std::size_t at_ = 0;
 };
 
-/// The model's step is linearly implicit, of first order: its damping would be found in inertia and lags.
-/// Twice the way to the middle is of second order, and as stable. The model's slip of the front axle is
-/// linear in angles: it is given the angle with which that slip is the true one.
+/// A step of second order: twice the change of the model's linearly implicit step of dt/2, and as stable. The
+/// step of first order would damp, and the fit would put its damping into inertia and lags. The model's front
+/// slip is linear in angles: `linear` is the steering angle with which it is the true slip.
 model::BodyMotion<double> midpoint_step(const model::PredictionModel& model, const Car& car,
                                         const model::BodyMotion<double>& from, double steer,
                                         double acceleration, double dt) noexcept {
@@ -194,7 +197,7 @@ model::BodyMotion<double> midpoint_step(const model::PredictionModel& model, con
   return to;
 }
 
-/// Speed and its change from samples alone, by a line of least squares through those near a moment.
+/// Speed and acceleration from measured speeds: a line of least squares through the samples around a moment.
 class MeasuredSpeed {
  public:
   explicit MeasuredSpeed(const std::vector<Sample>& samples) : samples_{samples} {}
@@ -202,7 +205,7 @@ class MeasuredSpeed {
     double value = 0.0;         ///< [m/s]
     double acceleration = 0.0;  ///< [m/s²]
   };
-  /// Moments have to be asked for in their order.
+  /// Pre: moments come in order.
   Speed at(double t) {
     while (first_ + 1 < samples_.size() && samples_[first_].time < t - kReach) ++first_;
     double count = 0.0, sum_t = 0.0, sum_v = 0.0, tt = 0.0, tv = 0.0;
@@ -221,16 +224,16 @@ class MeasuredSpeed {
   }
 
  private:
-  static constexpr double kReach = 0.15;  ///< [s] to each side
+  static constexpr double kReach = 0.15;  ///< samples used, to each side of the moment [s]
   const std::vector<Sample>& samples_;
   std::size_t first_ = 0;
 };
 
-/// Steering over a step: at its end, and in its mean.
+/// Steering angle over a step [rad].
 struct Followed {
   double end, mean;
 };
-/// At the largest rate while that is less than the lag asks for, then with the lag.
+/// Steering towards `asked`: at its largest rate, then, when the lag is slower than that, with the lag.
 Followed follow(double steer, double asked, double lag, double rate,
                 const model::PredictionModel::Lag& alone) {
   const double apart = std::fabs(asked - steer);
@@ -301,7 +304,7 @@ struct Place {
   double x, y, psi;
 };
 
-/// A sample is expected `ahead` [s] of a moment on the grid, where the car is `at`.
+/// What a sensor would measure `ahead` [s] after the car is `at`.
 Expected seen_at(const Car& car, const Place& at, double ahead, double vx, double vy, double r,
                  double acceleration, double steer) {
   const double course = at.psi + 0.5 * ahead * r;
@@ -319,6 +322,7 @@ Expected seen_at(const Car& car, const Place& at, double ahead, double vx, doubl
           steer};
 }
 
+/// Moves `at` by one step, with the means of both motions.
 void move(Place& at, double dt, double vx, double vy, double r, double next_vx, double next_vy,
           double next_r) {
   const double course = at.psi + 0.25 * dt * (r + next_r);
@@ -328,7 +332,7 @@ void move(Place& at, double dt, double vx, double vy, double r, double next_vx, 
   at.psi += 0.5 * dt * (r + next_r);
 }
 
-/// Motion by the controllers' model: for cars that FourWheels cannot stand for.
+/// Drives by the controllers' model: for cars without has_four_wheels().
 void drive_single_track(const Car& car, const DriveLog& log, const Actuators& actuators, std::size_t first,
                         std::size_t last, const Start& start, std::vector<Expected>& expected) {
   constexpr double kStep = Actuators::kStep;
@@ -362,6 +366,7 @@ void drive_single_track(const Car& car, const DriveLog& log, const Actuators& ac
   }
 }
 
+/// Drives by FourWheels.
 void drive_four_wheels(const Car& car, const DriveLog& log, const Actuators& actuators, std::size_t first,
                        std::size_t last, const Start& start, std::vector<Expected>& expected) {
   constexpr double kStep = Actuators::kStep;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// The search for a fastest lap: optima on coarse nodes from several guesses, the best one refined. Then the
+// feedback that drives such a plan, and a drive by both as the witness of its time.
 #include "chicane/lap_time/detail/plan_search.hpp"
 
 #include <algorithm>
@@ -12,14 +14,14 @@
 namespace chicane::lap_time {
 namespace {
 
-constexpr double kCoarse = 2.5;  // times the spacing, for the first solutions
-constexpr int kCoarseIterations = 260;
-constexpr double kCoarseTolerance = 1e-3;  // a start for the fine nodes needs no more
-constexpr int kFineIterations = 300;
-constexpr double kWarmBarrier = 1e-4;
-constexpr double kUsable = 1e-2;             // violation of an iterate that can be driven: some centimetres
-constexpr double kIterationsOfStart = 55.0;  // of a search that goes well, on coarse nodes
-constexpr double kIterationsOfFine = 35.0;
+constexpr double kCoarse = 2.5;  // spacing of the coarse nodes over that of the fine ones
+constexpr int kCoarseIterations = 260,
+              kFineIterations = 300;       // limits: a search that goes well needs a fifth
+constexpr double kCoarseTolerance = 1e-3;  // the fine nodes start from these solutions
+constexpr double kWarmBarrier = 1e-4;      // first barrier close to a known solution
+constexpr double kUsable = 1e-2;           // largest violation of a plan that can be driven: some centimetres
+// Iterations of a search that goes well, for the progress that is shown: on coarse and on fine nodes.
+constexpr double kIterationsOfStart = 55.0, kIterationsOfFine = 35.0;
 constexpr const char* kStopped = "limit: stopped";
 constexpr const char* kNoBudget = "limit: its budget ended before there was a plan";
 
@@ -28,7 +30,7 @@ NodePlan best_so_far(NodePlan plan) {
   return plan;
 }
 
-/// Variables at the nodes of another ring on the same line, by linear interpolation.
+/// Variables of a plan at other nodes along the same line, by linear interpolation.
 std::vector<double> moved(const NodePlan& from, const RoadNodes& to, std::size_t variables) {
   std::vector<double> z(to.s.size() * variables);
   const std::size_t n = from.road.s.size();
@@ -131,7 +133,7 @@ Result<NodePlan> PlanSearch::find() {
     double barrier, share;
   };
   constexpr Start kStarts[] = {{0.01, 1.0}, {0.003, 1.0}, {0.03, 0.7}, {0.001, 0.7}, {0.1, 0.5}};
-  constexpr int kEnough = 2;  // solutions, of which the best goes on
+  constexpr int kEnough = 2;  // coarse solutions; the best of them is refined
   const RoadNodes coarse = lay_nodes(track_, model_.guess_car(), kCoarse * options_.time_step);
   const RoadNodes nodes = lay_nodes(track_, model_.guess_car(), options_.time_step);
   expected_ = work_ + (kEnough * kIterationsOfStart * static_cast<double>(coarse.s.size()) +
@@ -183,7 +185,7 @@ namespace {
 
 using Matrix = std::vector<double>;  // by rows
 
-/// X = A⁻¹ B with A n × n and B n × m, by elimination with row pivots; both are used up.
+/// X = A⁻¹ B with A n × n and B n × m, by elimination with row pivots.
 Matrix solved(Matrix a, Matrix b, std::size_t n, std::size_t m) {
   for (std::size_t k = 0; k < n; ++k) {
     std::size_t top = k;
@@ -260,7 +262,7 @@ RingFeedback::RingFeedback(const LimitModel& model, const RoadNodes& road, const
   gains_.resize(nodes * 2 * n);
   Matrix p(n * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) p[i * n + i] = error[i];
-  constexpr std::size_t kRounds = 2;  // so that the end is forgotten
+  constexpr std::size_t kRounds = 2;  // the second lap no longer depends on the cost at the end
   for (std::size_t turn = kRounds * nodes; turn-- > 0;) {
     const std::size_t k = turn % nodes;
     const std::size_t next = (k + 1) % nodes;
@@ -302,7 +304,7 @@ RingFeedback::RingFeedback(const LimitModel& model, const RoadNodes& road, const
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j)
         p[i * n + j] = q[i * m + j] - q[n * m + i] * gain[j] - q[(n + 1) * m + i] * gain[n + j];
-    // What rounding makes of a symmetric matrix would grow from node to node.
+    // Symmetric again: differences by rounding would grow from node to node.
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < i; ++j) p[i * n + j] = p[j * n + i] = 0.5 * (p[i * n + j] + p[j * n + i]);
   }

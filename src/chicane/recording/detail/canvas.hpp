@@ -12,8 +12,8 @@
 namespace chicane::recording {
 
 /// Calls `stroke(x0, y0, x1, y1)` for each line of a letter: base line at y = 0, top of a capital at 1, y up,
-/// width about 0.6. Digits, letters of ASCII (small ones look like capitals) and some signs; nothing for any
-/// other.
+/// width about 0.6. Draws digits, letters of ASCII (small ones as capitals) and some signs; nothing for
+/// others.
 void for_each_stroke(char letter, const std::function<void(double, double, double, double)>& stroke);
 
 struct Colour {
@@ -22,7 +22,7 @@ struct Colour {
 };
 
 /// A picture of plain shapes with smooth edges. Coordinates are pixels from the upper left corner, y down;
-/// what lies outside is left out. Deterministic.
+/// shapes are clipped. Deterministic.
 class Canvas {
  public:
   Canvas(int width, int height);
@@ -33,15 +33,15 @@ class Canvas {
   [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; }
 
   void clear(const Colour& colour);
-  /// Fills what lies between some closed rings: one within another, turned against it, is a hole.
+  /// Fills closed rings: a ring within another, in the opposite direction, is a hole.
   void fill(const std::vector<std::vector<Vec2>>& rings, const Colour& colour);
   void line(std::span<const Vec2> points, double thickness, const Colour& colour);
   void disc(const Vec2& centre, double radius, const Colour& colour);
   void rectangle(double x, double y, double width, double height, const Colour& colour);
-  /// Text with its base line at y, `size` pixels from base line to the top of a capital letter. Letters
-  /// without a shape here are left blank. Where it ends.
+  /// Draws text from x on, with its base line at y and capitals `size` pixels tall; letters without strokes
+  /// stay blank. Returns the x where the text ends.
   double text(double x, double y, double size, std::string_view words, const Colour& colour);
-  /// How wide it would be.
+  /// Width of that text.
   [[nodiscard]] static double text_width(double size, std::string_view words);
 
  private:
@@ -51,8 +51,8 @@ class Canvas {
 
   int width_, height_;
   std::vector<std::uint8_t> bytes_;
-  std::vector<float> cover_;  ///< of the shape under construction: change from pixel to pixel
-  int first_row_, last_row_;  ///< that it touches
+  std::vector<float> cover_;  ///< cover by the present shape: its change from pixel to pixel
+  int first_row_, last_row_;  ///< rows of the present shape
 };
 
 }  // namespace chicane::recording
