@@ -26,7 +26,7 @@ if(CHICANE_SANITIZE)
   endif()
 endif()
 
-# For what reads a stranger's bytes (docs/security.md): the modules below and the program. The numerical modules stay as they are, because
+# For what reads a stranger's bytes (docs/reference/security.md): the modules below and the program. The numerical modules stay as they are, because
 # they see checked values only. Debug and sanitizer builds have better checks of their own.
 set(CHICANE_HARDENED_MODULES net protocol telemetry sweep recording wire live ros)
 set(CHICANE_IS_HARDENED OFF)

@@ -60,13 +60,13 @@ def counts_of(pages):
 
 
 def groups_of(root, pages):
-    """README, guides, other pages that somebody wrote, and pages of tables."""
+    """README, guides, other pages that somebody wrote, and the folders of reference, measurements and decisions."""
     listed = "\n".join(GUIDES.findall((root / "docs/index.md").read_text(encoding="utf-8")))
     guides = {"index.md", *re.findall(r"\]\((\w+\.md)", listed)}
-    groups = {"README": [], "guides": [], "other pages": [], "reference, measured": []}
+    groups = {"README": [], "guides": [], "other pages": [], "reference": [], "measured": [], "decisions": []}
     for page in pages:
-        kind = {"reference": "reference, measured", "measured": "reference, measured", root.name: "README"}.get(page.parent.name)
-        groups[kind or ("guides" if page.name in guides else "other pages")].append(page)
+        kind = "guides" if page.name in guides else "other pages"
+        groups[{"docs": kind, root.name: "README"}.get(page.parent.name, page.parent.name)].append(page)
     return groups
 
 

@@ -45,7 +45,7 @@ void print_shelf(bool /*is_markdown*/) {
   for (const protocol::Entry& entry : protocol::entries(shelf)) print_entry(entry.name, entry.description);
 }
 
-/// docs/cars.md.
+/// The table of cars in docs/tracks.md.
 void print_cars(bool is_markdown) {
   if (!is_markdown) return print_shelf<Shelf::kCar>(false);
   fmt::print(

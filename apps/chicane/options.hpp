@@ -43,7 +43,7 @@ struct Options {
   std::vector<std::string> faults{};     ///< drive: NAME@SECOND+SECONDS*STRENGTH
   std::string address = "127.0.0.1";
   std::uint16_t port = 4567;
-  bool needs_token = true;                     ///< to change something (docs/security.md)
+  bool needs_token = true;                     ///< to change something (docs/reference/security.md)
   std::vector<std::string> allowed_hosts{};    ///< names by which the port may be asked for
   std::vector<std::string> allowed_origins{};  ///< pages that may connect, beside our own
 

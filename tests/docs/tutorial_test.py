@@ -42,6 +42,11 @@ def commands_of(page):
     return lines
 
 
+def files_of(page):
+    """Name and content of the files that it asks its reader to save."""
+    return re.findall(r"save\s+this\s+as\s+`(\S+)`:\s+```\w+\n(.*?)^```", (ROOT / page).read_text(encoding="utf-8"), re.M | re.S)
+
+
 def parts_of(line):
     """Command, and the exit code that it has to end with."""
     command, _, comment = line.partition("  #")
@@ -126,6 +131,8 @@ def main():
         sys.exit(f"got {len(lines)} commands, expected at least 10")
     with tempfile.TemporaryDirectory(prefix=f"tutorial-{os.getpid()}-") as folder:
         walk = Walk(Path(folder), program, build)
+        for name, content in [file for page in PAGES for file in files_of(page)]:
+            (walk.folder / name).write_text(content, encoding="utf-8")
         try:
             wrong = [line for line in lines if not walk.step(line)]
         finally:

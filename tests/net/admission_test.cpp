@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The table of docs/security.md: every combination of address, token, Host, Origin, path and proof.
+// The table of docs/reference/security.md: every combination of address, token, Host, Origin, path and proof.
 #include "chicane/net/detail/connections.hpp"
 
 #include <gtest/gtest.h>
@@ -104,7 +104,7 @@ struct Case {
   const Path& path;
 };
 
-/// As docs/security.md says it.
+/// As docs/reference/security.md says it.
 Admission expected(const Case& of) {
   const auto refused = [](unsigned status) { return Admission{.status = status}; };
   if (!(of.is_lan ? of.host.is_ours_lan : of.host.is_ours)) return refused(403);

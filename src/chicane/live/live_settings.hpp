@@ -78,7 +78,7 @@ struct LiveSettingsOptions {
 /// the run was started with; no sentence for them quotes a file. Settings of the guard and of the
 /// car's model, and so the limits of commands, are shown and refused (protocol::is_fixed): every run that
 /// viewers choose has the guard that the program was started with, and its model belongs to the car
-/// (docs/security.md).
+/// (docs/reference/security.md).
 class LiveSettings final : public protocol::foxglove::ParameterStore {
  public:
   /// `requests` is drained by the control thread and outlives this.

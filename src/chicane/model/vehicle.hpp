@@ -181,10 +181,10 @@ inline constexpr double kRestTime = 0.4;  ///< [s]
   return car;
 }
 
-/// A model car and the same car in full size (docs/cars.md, "Model cars"). With lengths by λ = 1 / scale and
-/// times by √λ, speeds are by √λ, accelerations stay, and with forces by λ³ so do friction and gravity: the
-/// two move alike. What controllers and guard hold in metres and seconds is stated for the car in full size;
-/// a model car is seen by them as that. Factors are exactly 1 where the scale is.
+/// A model car and the same car in full size (docs/tracks.md, "Model cars"). With lengths by λ = 1 / scale
+/// and times by √λ, speeds are by √λ, accelerations stay, and with forces by λ³ so do friction and gravity:
+/// the two move alike. What controllers and guard hold in metres and seconds is stated for the car in full
+/// size; a model car is seen by them as that. Factors are exactly 1 where the scale is.
 class Similarity {
  public:
   explicit Similarity(double scale = 1.0) noexcept : length_{1.0 / scale}, time_{std::sqrt(1.0 / scale)} {}

@@ -36,7 +36,7 @@ struct UpgradeRequest {
 
 /// What to do with an upgrade. Refused before anybody is asked: a Host that is not ours (see
 /// ServerOptions::allowed_hosts), an Origin that is neither Host nor allowed, a wrong token, a connection too
-/// many. What may_watch and may_control forbid is for the endpoint to refuse (docs/security.md).
+/// many. What may_watch and may_control forbid is for the endpoint to refuse (docs/reference/security.md).
 struct UpgradeAnswer {
   bool accept = false;
   std::string subprotocol{};  ///< one of those offered, or empty
@@ -72,7 +72,7 @@ struct ServerOptions {
   std::vector<std::string> allowed_hosts{};    ///< further names without port, e.g. "car.local"
   std::vector<std::string> allowed_origins{};  ///< pages beside our own, e.g. "https://app.foxglove.dev"
   /// What a visitor must show who wants to change something, or see something on an address that other
-  /// machines reach (http_response.hpp, docs/security.md); empty: nothing.
+  /// machines reach (http_response.hpp, docs/reference/security.md); empty: nothing.
   std::string token{};
 };
 

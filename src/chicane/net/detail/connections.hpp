@@ -52,7 +52,7 @@ struct Admission {
   bool may_control = false;  ///< change the state of the run
 };
 
-/// Who may do what with one server, by what stands in a request's head (docs/security.md has the table).
+/// Who may do what with one server, by a request's head (docs/reference/security.md has the table).
 struct Doorkeeper {
   std::string address;                       ///< that is listened on
   std::vector<std::string> allowed_hosts;    ///< beside ours
