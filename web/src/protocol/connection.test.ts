@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
-import type { IWebSocket } from '@foxglove/ws-protocol';
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { Connection, retryDelay } from './connection';
+import type { Socket } from './foxglove';
 import type { SourceEvents } from './source';
 
 const folder = new URL('../../../tests/protocol/fixtures/ros/', import.meta.url);
@@ -12,18 +12,15 @@ const topics = JSON.parse(readFileSync(new URL('topics.json', folder), 'utf8')) 
 }[];
 
 /** A server on the other end of no network. */
-class FakeSocket implements IWebSocket {
+class FakeSocket implements Socket {
   binaryType = '';
-  protocol = 'foxglove.sdk.v1';
-  onerror: IWebSocket['onerror'];
-  onopen: IWebSocket['onopen'];
-  onclose: IWebSocket['onclose'];
-  onmessage: IWebSocket['onmessage'];
-  readonly sent: (string | ArrayBuffer | ArrayBufferView)[] = [];
+  onclose: Socket['onclose'] = null;
+  onmessage: Socket['onmessage'] = null;
+  readonly sent: (string | Uint8Array)[] = [];
   close(): void {
     this.onclose?.({});
   }
-  send(data: string | ArrayBuffer | ArrayBufferView): void {
+  send(data: string | Uint8Array): void {
     this.sent.push(data);
   }
   say(message: object): void {

@@ -1,15 +1,12 @@
-import type { IWebSocket } from '@foxglove/ws-protocol';
 import { describe, expect, it } from 'vitest';
+import type { Socket } from './foxglove';
 import { ReadingSocket } from './reading';
 
 function connected() {
   const sent: unknown[] = [];
-  const raw: IWebSocket = {
+  const raw: Socket = {
     binaryType: 'arraybuffer',
-    protocol: 'foxglove.sdk.v1',
-    onopen: null,
     onclose: null,
-    onerror: null,
     onmessage: null,
     close: () => undefined,
     send: (data) => sent.push(JSON.parse(String(data))),
