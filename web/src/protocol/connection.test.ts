@@ -134,6 +134,12 @@ describe('connection', () => {
     const refused = connection.call('/step');
     last().say({ op: 'serviceCallFailure', serviceId: 1, callId: 2, message: 'the run is over' });
     expect(await refused).toBe('the run is over');
+    const unreadable = connection.call('/step');
+    const cut = [3, 1, 0, 0, 0, 3, 0, 0, 0, 3, 0, 0, 0, 99, 100, 114, 0, 1, 0, 0, 1];
+    last().sayBytes(new Uint8Array(cut.slice(0, 9))); // no head: nothing
+    last().sayBytes(new Uint8Array([...cut.slice(0, 9), 255, 255, 255, 255])); // an encoding beyond the end: nothing
+    last().sayBytes(new Uint8Array(cut));
+    expect(await unreadable).toMatch(/^the answer of \/step cannot be read: .* got 5 bytes, expected at least 12$/);
     const pending = connection.call('/step');
     last().close();
     expect(await pending).toBe('the connection was lost');

@@ -212,9 +212,13 @@ export class Connection implements Source {
   #answer(callId: number, data: DataView): void {
     const service = this.#calls.get(callId)?.service;
     if (!service) return;
-    const schema = service.response?.schema ?? service.responseSchema ?? '';
-    const answer = decoder(schema)(data) as { success: boolean; message: string };
-    this.#finish(callId, { isTaken: answer.success, message: answer.message });
+    try {
+      const schema = service.response?.schema ?? service.responseSchema ?? '';
+      const answer = decoder(schema)(data) as { success: boolean; message: string };
+      this.#finish(callId, { isTaken: answer.success, message: answer.message });
+    } catch (error) {
+      this.#finish(callId, { isTaken: false, message: `the answer of ${service.name} cannot be read: ${error}` });
+    }
   }
 
   #finish(callId: number, answer: AskAnswer): void {

@@ -21,6 +21,21 @@ it('reads types that are defined behind, with and without the name of their pack
   expect(read(schema, 1, 0, 0, 0, 7)).toEqual({ a: [{ b: { c: 7 } }] });
 });
 
+it('takes an unqualified type from the package that names it, and refuses one that two packages have', () => {
+  const inner = ['one', 'two'].map((name) => `===\nMSG: ${name}/Inner\nuint8 ${name}\n`).join('');
+  expect(read(`two/Outer a\n${inner}===\nMSG: two/Outer\nInner b\n`, 7)).toEqual({ a: { b: { two: 7 } } });
+  expect(() => read(`Inner a\n${inner}`, 7)).toThrow('ambiguous type Inner: one/Inner, two/Inner');
+});
+
+it('refuses lengths beyond the end of the message before it makes room for them', () => {
+  const long = [255, 255, 255, 255];
+  for (const type of ['float64[]', 'string', 'string[]', 'bool[]'])
+    expect(() => read(`${type} a`, ...long, 104, 0), type).toThrow(/^CDR: got 10 bytes, expected at least \d+$/);
+  expect(() => read('float64[100000000] a', 1)).toThrow('CDR: got 5 bytes');
+  expect(() => read('uint32 a', 1, 2)).toThrow('CDR: got 6 bytes, expected at least 8');
+  expect(() => decoder('uint8 a')(new Uint8Array([0, 1]))).toThrow('CDR: got 2 bytes, expected at least 4');
+});
+
 it('reads big-endian messages, and refuses other representations by name', () => {
   const decode = decoder('uint16 a');
   expect(decode(new Uint8Array([0, 0, 0, 0, 1, 2]))).toEqual({ a: 258 });

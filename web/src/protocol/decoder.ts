@@ -8,6 +8,7 @@ class Cursor {
 
   constructor(bytes: ArrayBufferView) {
     this.view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    this.#need(4);
     const representation = this.view.getUint16(0);
     if (representation > 1) throw new Error(`CDR: got representation ${representation}, expected 0 or 1`);
     this.isLittle = representation === 1;
@@ -16,12 +17,23 @@ class Cursor {
   /** Where a value of so many bytes begins, and on behind it. */
   take(size: number, alignment = 1): number {
     const begin = 4 + Math.ceil((this.#at - 4) / alignment) * alignment;
+    this.#need(begin + size);
     this.#at = begin + size;
     return begin;
   }
 
   count(): number {
     return this.view.getUint32(this.take(4, 4), this.isLittle);
+  }
+
+  /** Before a list is made: whether so many elements of at least `size` bytes can follow. */
+  need(count: number, size: number): void {
+    this.#need(this.#at + count * size);
+  }
+
+  #need(end: number): void {
+    const { byteLength } = this.view;
+    if (end > byteLength) throw new Error(`CDR: got ${byteLength} bytes, expected at least ${end}`);
   }
 }
 
@@ -49,7 +61,18 @@ function readString(from: Cursor): string {
   return text.decode(new Uint8Array(buffer, byteOffset + from.take(length), Math.max(0, length - 1)));
 }
 
-function readerOf(type: string, types: ReadonlyMap<string, Read>): Read {
+/** A type that is defined behind the others; without a package: of the same one, or the only one of that name. */
+function find(type: string, own: string, types: ReadonlyMap<string, Read>): Read {
+  const names = [...types.keys()].filter((name) => name === type || name.endsWith(`/${type}`));
+  const exact = [type, `${own}/${type}`].find((name) => types.has(name));
+  const read = types.get(exact ?? (names.length === 1 ? (names[0] ?? '') : ''));
+  if (read) return read;
+  const known = names.length > 1 ? `ambiguous type ${type}: ${names.join(', ')}` : `unknown type ${type}`;
+  throw new Error(`message definition: got the ${known}`);
+}
+
+/** `own`: the package whose message has the field. */
+function readerOf(type: string, own: string, types: ReadonlyMap<string, Read>): Read {
   if (isNumber(type)) {
     const { size, get } = NUMBERS[type];
     return (from) => from.view[get](from.take(size, size), from.isLittle);
@@ -57,22 +80,24 @@ function readerOf(type: string, types: ReadonlyMap<string, Read>): Read {
   if (type === 'bool') return (from) => from.view.getUint8(from.take(1)) !== 0;
   if (type === 'string') return readString;
   if (/^builtin_interfaces\/(Time|Duration)$/.test(type)) {
-    const [sec, nsec] = [readerOf('int32', types), readerOf('uint32', types)];
+    const [sec, nsec] = [readerOf('int32', own, types), readerOf('uint32', own, types)];
     return (from) => ({ sec: sec(from), nsec: nsec(from) });
   }
-  // Types of the same package may be named without it. They are defined behind those that use them.
-  const find = (): Read | undefined => types.get(type) ?? [...types].find(([name]) => name.endsWith(`/${type}`))?.[1];
-  let known: Read | undefined;
+  let known: Read | undefined; // found at the first message: it is defined behind those that use it
   return (from) => {
-    known ??= find();
-    if (!known) throw new Error(`message definition: got the unknown type ${type}`);
+    known ??= find(type, own, types);
     return known(from);
   };
 }
 
 /** `count`: of a list of fixed length; not-a-number: the message says how many follow. */
 function listReader(type: string, count: number, one: Read): Read {
-  const lengthOf = (from: Cursor): number => (Number.isNaN(count) ? from.count() : count);
+  const size = isNumber(type) ? NUMBERS[type].size : 1;
+  const lengthOf = (from: Cursor): number => {
+    const length = Number.isNaN(count) ? from.count() : count;
+    from.need(length, size);
+    return length;
+  };
   if (!isNumber(type)) return (from) => Array.from({ length: lengthOf(from) }, () => one(from));
   const { list: List } = NUMBERS[type];
   return (from) => {
@@ -85,12 +110,12 @@ function listReader(type: string, count: number, one: Read): Read {
 /** "float64[3] name": a type, perhaps bounded or a list, and a name; what follows is a default value. */
 const FIELD = /^([\w/]+)(?:<=\d+)?(?:\[(<=)?(\d*)\])?\s+(\w+)(?!\s*=)\b/;
 
-function structReader(lines: readonly string[], types: ReadonlyMap<string, Read>): Read {
+function structReader(lines: readonly string[], own: string, types: ReadonlyMap<string, Read>): Read {
   const fields = lines.flatMap((line): [string, Read][] => {
     const [all, named = '', bound, length, name = ''] = FIELD.exec(line.replace(/#.*/, '').trim()) ?? [];
     if (all === undefined) return []; // a constant, a comment
     const type = named.replace('/msg/', '/').replace(/^(byte|char)$/, 'uint8');
-    const one = readerOf(type, types);
+    const one = readerOf(type, own, types);
     if (length === undefined) return [[name, one]];
     return [[name, listReader(type, bound || length === '' ? NaN : Number(length), one)]];
   });
@@ -108,9 +133,10 @@ export function decoder(schema: string): (bytes: ArrayBufferView) => unknown {
   const [root = '', ...others] = schema.split(/^=+$/m);
   for (const each of others) {
     const [, name = '', rest = ''] = /^\s*MSG:\s*(\S+)([\s\S]*)$/.exec(each) ?? [];
-    types.set(name.replace('/msg/', '/'), structReader(rest.split('\n'), types));
+    const [own = ''] = name.split('/');
+    types.set(name.replace('/msg/', '/'), structReader(rest.split('\n'), own, types));
   }
-  const read = structReader(root.split('\n'), types);
+  const read = structReader(root.split('\n'), '', types);
   return (bytes) => read(new Cursor(bytes));
 }
 

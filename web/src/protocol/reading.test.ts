@@ -19,7 +19,7 @@ function connected() {
     { now: () => clock.now },
   );
   socket.onmessage = ({ data }) => log.passed.push(data);
-  return { raw, sent, clock, log, say: (data: unknown) => raw.onmessage?.({ data }) };
+  return { raw, sent, clock, log, socket, say: (data: unknown) => raw.onmessage?.({ data }) };
 }
 
 describe('a reading socket', () => {
@@ -35,6 +35,15 @@ describe('a reading socket', () => {
     clock.now += 40;
     say(new ArrayBuffer(1));
     expect(sent[2]).toEqual({ op: 'received', bytes: 4201, at: 1050 });
+  });
+
+  it('acknowledges what nobody can read, or the program would wait for ever', () => {
+    const { raw, sent, socket } = connected();
+    socket.onmessage = () => {
+      throw new Error('unreadable');
+    };
+    expect(() => raw.onmessage?.({ data: new ArrayBuffer(100) })).toThrow('unreadable');
+    expect(sent).toHaveLength(1);
   });
 
   it('says how old the next frame is at most, and how much of the past is left', () => {

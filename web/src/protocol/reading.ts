@@ -54,11 +54,12 @@ export class ReadingSocket implements Socket {
     socket.onclose = (event) => this.onclose?.(event);
     socket.onmessage = (event) => {
       const { data } = event;
+      // First: whatever a reader makes of a message, it has come.
+      if (acknowledges && data instanceof ArrayBuffer) this.#count(data.byteLength);
       const said = typeof data === 'string' ? told(data) : null;
       if (said?.op === 'heard') events.age(Math.max(0, (now() - said.at) / 1000 - said.held));
       else if (said) events.pastLeft(said.messages);
       else this.onmessage?.(event);
-      if (acknowledges && data instanceof ArrayBuffer) this.#count(data.byteLength);
     };
   }
 

@@ -1,4 +1,5 @@
 import { effect } from '@preact/signals';
+import type { ComponentChildren } from 'preact';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { ticksOf } from '../draw/axis';
 import { type Chart, chartOn, drawAxes, drawCurve, ROOM } from '../draw/chart';
@@ -18,12 +19,12 @@ import {
   timeRange,
   windowSeconds,
   zoomed,
-  zoomTo,
 } from '../state/plot_view';
 import { shown } from '../state/shown';
 import { LONGEST_SILENCE_S } from '../state/silence';
 import { everyFrame } from '../state/ticker';
 import { drawFaultBands } from './plot_bands';
+import { PlotPointer } from './plot_pointer';
 
 export interface Series {
   readonly column: number;
@@ -138,71 +139,45 @@ const plotsMade = store.data('page', () => ({ count: 0 }));
  */
 const paceOf = ({ box }: Paper): number => Math.min(PACE_MS, (1000 * windowSeconds.value) / Math.max(1, box.width));
 
-/** The sample that is nearest to a time [s]; null without any. */
-function sampleAt(time: number): number | null {
-  const times = plotted().column(Column.time_s);
-  const after = firstSince(times, time);
-  const [before, behind] = [times[after - 1] ?? NaN, times[after] ?? NaN];
-  const nearest = time - before < behind - time || Number.isNaN(behind) ? before : behind;
-  return Number.isNaN(nearest) ? null : nearest;
-}
-
-const LEAST_DRAG_PX = 5;
-
-/** The plotted area under the pointer: it moves the cursor, a click sets the mark, dragging zooms. */
-function PointerArea({ chart, label }: { chart: { readonly current: Chart | null }; label: string }) {
-  const [drag, setDrag] = useState<{ readonly from: number; readonly to: number } | null>(null);
-  const width = drag ? Math.abs(drag.to - drag.from) : 0;
-  const timeAt = (place: number): number => {
-    const { from = NaN, to = NaN, left = 0, right = 1 } = chart.current ?? {};
-    return from + (place / (right - left)) * (to - from);
-  };
+/** The plotted area under the pointer. */
+function PointerArea({ pointer, label, children }: { pointer: PlotPointer; label: string; children: ComponentChildren }) {
   return (
     <div
       class="plot-over"
       role="img"
       aria-label={label}
       style={{ inset: `${ROOM.top}px ${ROOM.right}px ${ROOM.bottom}px ${ROOM.left}px` }}
-      onPointerDown={(event) => {
-        event.currentTarget.setPointerCapture(event.pointerId);
-        setDrag({ from: event.offsetX, to: event.offsetX });
+      onPointerDown={({ currentTarget, pointerId, offsetX, button }) => {
+        currentTarget.setPointerCapture(pointerId);
+        pointer.press(offsetX, button);
       }}
-      onPointerMove={({ offsetX }) => {
-        cursorTime.value = sampleAt(timeAt(offsetX));
-        if (drag) setDrag({ ...drag, to: offsetX });
-      }}
-      onPointerUp={() => {
-        if (!drag) return;
-        if (width < LEAST_DRAG_PX) markTime.value = cursorTime.value;
-        else zoomTo(timeAt(Math.min(drag.from, drag.to)), timeAt(Math.max(drag.from, drag.to)));
-        setDrag(null);
-      }}
-      onPointerCancel={() => setDrag(null)}
-      onPointerLeave={() => (cursorTime.value = null)}
+      onPointerMove={({ offsetX }) => pointer.move(offsetX)}
+      onPointerUp={({ offsetX }) => pointer.release(offsetX)}
+      onPointerCancel={() => pointer.cancel()}
+      onPointerLeave={() => pointer.leave()}
       onDblClick={thaw}
     >
-      {drag && width >= LEAST_DRAG_PX && (
-        <i class="plot-select" style={{ left: `${Math.min(drag.from, drag.to)}px`, width: `${width}px` }} />
-      )}
+      {children}
     </div>
   );
 }
 
 export function TimePlot({ spec }: { spec: PlotSpec }) {
   const host = useRef<HTMLDivElement>(null);
-  const chart = useRef<Chart | null>(null);
+  const [dragged, select] = useState<readonly [number, number] | null>(null);
+  const [pointer] = useState(() => new PlotPointer(select));
   useEffect(() => {
     const canvas = host.current?.querySelector('canvas');
     if (!canvas) return undefined;
     const marks = [...(host.current?.querySelectorAll<HTMLElement>('.plot-cursor, .plot-dot') ?? [])];
-    let drawn = NaN;
+    let drawn: number | null = null; // the newest time that is drawn; null: draw again
     const again = (): void => {
-      drawn = NaN;
+      drawn = null;
     };
     const paper = new Paper(canvas, again);
     /** Cursor and dots are elements: moving them draws no curve. */
     const placeCursor = (): void => {
-      const [time, on] = [cursorTime.value, chart.current];
+      const [time, on] = [cursorTime.value, pointer.chart];
       const isShown = time !== null && on !== null && time >= on.from && time <= on.to;
       marks.forEach((mark, i) => {
         const series = spec.series[i - 1];
@@ -215,11 +190,12 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
     const stop = everyFrame((now) => {
       const newest = plotted().newest(Column.time_s);
       // Half a repaint of tolerance, as in everyFrame().
-      const isDue = Number.isNaN(drawn) || now - last >= paceOf(paper) - 8;
+      const isDue = drawn === null || now - last >= paceOf(paper) - 8;
       if (Object.is(newest, drawn) || !paper.box.isSeen || !isDue) return;
       drawn = newest;
       last = now;
-      chart.current = drawPlot(spec, paper);
+      pointer.chart = drawPlot(spec, paper);
+      pointer.follow();
       placeCursor();
     });
     const unwatch = onThemeChange(again);
@@ -260,7 +236,11 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
         {spec.series.map(({ label, colour }) => (
           <i key={label} class="plot-dot" style={{ '--tone': toneOf(colour) }} hidden />
         ))}
-        <PointerArea chart={chart} label={`${spec.title} over time`} />
+        <PointerArea pointer={pointer} label={`${spec.title} over time`}>
+          {dragged && (
+            <i class="plot-select" style={{ left: `${dragged[0]}px`, width: `${dragged[1] - dragged[0]}px` }} />
+          )}
+        </PointerArea>
       </div>
     </section>
   );
