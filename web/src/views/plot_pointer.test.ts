@@ -9,7 +9,12 @@ import { PlotPointer } from './plot_pointer';
 const see = (time: number): void => receive('/chicane/frame', frameWith({ time_s: time }), 0);
 /** Ten pixels to a second. */
 const chartFrom = (from: number): Chart =>
-  chartOn({} as CanvasRenderingContext2D, { width: 200 + ROOM.left + ROOM.right, height: 90 }, [from, from + 20], [0, 1]);
+  chartOn(
+    {} as CanvasRenderingContext2D,
+    { width: 200 + ROOM.left + ROOM.right, height: 90 },
+    [from, from + 20],
+    [0, 1],
+  );
 
 const select = vi.fn();
 let pointer: PlotPointer;

@@ -10,16 +10,7 @@ import { firstSince } from '../lib/math';
 import { tidy } from '../lib/scale';
 import { store } from '../lib/store';
 import { Column } from '../state/columns';
-import {
-  cursorTime,
-  isFrozen,
-  markTime,
-  plotted,
-  thaw,
-  timeRange,
-  windowSeconds,
-  zoomed,
-} from '../state/plot_view';
+import { cursorTime, isFrozen, markTime, plotted, thaw, timeRange, windowSeconds, zoomed } from '../state/plot_view';
 import { shown } from '../state/shown';
 import { LONGEST_SILENCE_S } from '../state/silence';
 import { everyFrame } from '../state/ticker';
@@ -140,7 +131,15 @@ const plotsMade = store.data('page', () => ({ count: 0 }));
 const paceOf = ({ box }: Paper): number => Math.min(PACE_MS, (1000 * windowSeconds.value) / Math.max(1, box.width));
 
 /** The plotted area under the pointer. */
-function PointerArea({ pointer, label, children }: { pointer: PlotPointer; label: string; children: ComponentChildren }) {
+function PointerArea({
+  pointer,
+  label,
+  children,
+}: {
+  pointer: PlotPointer;
+  label: string;
+  children: ComponentChildren;
+}) {
   return (
     <div
       class="plot-over"
