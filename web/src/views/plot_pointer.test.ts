@@ -25,7 +25,7 @@ beforeEach(() => {
   windowSeconds.value = 20;
   for (let time = 0; time <= 30; ++time) see(time);
   select.mockClear();
-  pointer = new PlotPointer(select);
+  pointer = new PlotPointer(() => 400, select);
   pointer.chart = chartFrom(10);
 });
 
@@ -85,8 +85,16 @@ it('the cursor follows a pointer that rests while the plot moves on', () => {
   expect(cursorTime.value).toBeNull();
 });
 
-it('without a chart there is no cursor', () => {
+it('a click before the first picture of a plot counts, too', () => {
   pointer.chart = null;
-  pointer.move(50);
+  pointer.press(100, 0);
+  pointer.release(100);
+  expect(markTime.value).toBe(15);
+  expect(zoomed.value).toBeNull();
+});
+
+it('without measurements there is no cursor', () => {
+  store.reset('moment');
+  pointer.move(100);
   expect(cursorTime.value).toBeNull();
 });

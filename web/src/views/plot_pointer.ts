@@ -1,7 +1,7 @@
 import type { Chart } from '../draw/chart';
 import { clamp, firstSince } from '../lib/math';
 import { Column } from '../state/columns';
-import { cursorTime, markTime, plotted, zoomTo } from '../state/plot_view';
+import { cursorTime, markTime, plotted, timeRange, zoomTo } from '../state/plot_view';
 
 const LEAST_DRAG_PX = 5;
 
@@ -20,15 +20,16 @@ function sampleAt(time: number): number | null {
  * the area's left edge.
  */
 export class PlotPointer {
-  /** The chart under the pointer. */
+  /** The chart under the pointer; null: not drawn yet. */
   chart: Chart | null = null;
+  readonly #width: () => number;
   readonly #select: (range: readonly [number, number] | null) => void;
   #place: number | null = null;
   #pressed: number | null = null;
 
-  /** `select`: shows the stretch that is dragged over; null: none. */
-  constructor(select: (range: readonly [number, number] | null) => void) {
-    this.#select = select;
+  /** `width`: of the area; `select`: shows the stretch that is dragged over; null: none. */
+  constructor(width: () => number, select: (range: readonly [number, number] | null) => void) {
+    [this.#width, this.#select] = [width, select];
   }
 
   move(place: number): void {
@@ -75,13 +76,19 @@ export class PlotPointer {
     return Math.abs(to - from) >= LEAST_DRAG_PX ? [Math.min(from, to), Math.max(from, to)] : null;
   }
 
+  /** What is drawn, or will be. */
+  #area(): { readonly from: number; readonly to: number; readonly width: number } {
+    if (this.chart) return { ...this.chart, width: this.chart.right - this.chart.left };
+    const [from, to] = timeRange();
+    return { from, to, width: this.#width() };
+  }
+
   #inside(place: number): number {
-    const { left = 0, right = 0 } = this.chart ?? {};
-    return clamp(place, 0, right - left);
+    return clamp(place, 0, this.#area().width);
   }
 
   #timeAt(place: number): number {
-    const { from = NaN, to = NaN, left = 0, right = 0 } = this.chart ?? {};
-    return from + (place / (right - left)) * (to - from);
+    const { from, to, width } = this.#area();
+    return from + (place / width) * (to - from);
   }
 }

@@ -164,7 +164,9 @@ function PointerArea({
 export function TimePlot({ spec }: { spec: PlotSpec }) {
   const host = useRef<HTMLDivElement>(null);
   const [dragged, select] = useState<readonly [number, number] | null>(null);
-  const [pointer] = useState(() => new PlotPointer(select));
+  const [pointer] = useState(
+    () => new PlotPointer(() => host.current?.querySelector('.plot-over')?.clientWidth ?? 0, select),
+  );
   useEffect(() => {
     const canvas = host.current?.querySelector('canvas');
     if (!canvas) return undefined;
