@@ -115,8 +115,8 @@ function trackOf(file: string): Track {
   const at = (i: number): [number, number] => points[i % points.length] as [number, number];
   const step = (i: number): number => Math.hypot(at(i + 1)[0] - at(i)[0], at(i + 1)[1] - at(i)[1]);
   const yaw = (i: number): number => Math.atan2(at(i + 1)[1] - at(i)[1], at(i + 1)[0] - at(i)[0]);
-  let place = 0;
-  const places = points.map((_, i) => (i === 0 ? 0 : (place += step(i - 1))));
+  const places = [0];
+  for (let i = 1; i < points.length; ++i) places.push((places[i - 1] ?? 0) + step(i - 1));
   const speeds = points.map((_, i) => {
     const turn = Math.abs(Math.sin((yaw(i + 1) - yaw(i)) / 2)) * 2;
     return Math.min(60, Math.max(8, Math.sqrt((12 * step(i)) / Math.max(turn, 1e-6))));
