@@ -14,8 +14,12 @@ export default defineConfig({
     reportCompressedSize: false,
     modulePreload: false,
     chunkSizeWarningLimit: 700,
-    // One script in the place of several.
-    rollupOptions: CHICANE_PAGE ? { output: { inlineDynamicImports: true } } : {},
+    rollupOptions: {
+      // Without three.js' warnings to its own developers; its errors stay. 2 kB of the page.
+      treeshake: { manualPureFunctions: ['warn', 'warnOnce'], propertyReadSideEffects: false },
+      // Small scripts join those that load them; for the page without a program all are one.
+      output: CHICANE_PAGE ? { inlineDynamicImports: true } : { experimentalMinChunkSize: 10_000 },
+    },
   },
   server: {
     // `npm run dev` beside `chicane drive`: the page is Vite's, the data the program's.

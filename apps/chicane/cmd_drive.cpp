@@ -136,7 +136,7 @@ Result<Outcome> run_fast(const Options& options, run::ClosedLoop& loop, const ru
 /// The run with its planned lap, shown while it is planned.
 Result<std::unique_ptr<run::ClosedLoop>> planned(const scenario::Scenario& scenario,
                                                  std::optional<net::ServerOptions>* server) {
-  PlanWait wait(run::plan_budget(scenario), server);
+  PlanWait wait(scenario, server);
   Result<std::unique_ptr<run::ClosedLoop>> loop = prepared(scenario, wait.hooks());
   if (!wait.opened()) return fail(wait.opened().error());
   return loop;

@@ -52,7 +52,7 @@ Result<wire::ServeSummary> drive_external_car(const Options& options, scenario::
   catch_interrupts(stop);
   Result<std::shared_ptr<const road::RacingRoad>> planned;
   {
-    PlanWait wait(run::plan_budget(scenario), &server);
+    PlanWait wait(scenario, &server);
     planned = run::plan_lap(scenario, track ? &*track : nullptr, wait.hooks());
     if (!wait.opened()) return fail(wait.opened().error());
   }

@@ -12,6 +12,7 @@
 
 #include "access.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/run/make.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -125,24 +126,54 @@ constexpr std::chrono::milliseconds kRedrawPeriod{100};
 constexpr std::chrono::seconds kReportPeriod{10};
 constexpr std::chrono::milliseconds kGoodbyeOfPage{50};
 
-net::Content waiting_page(const std::string& line) {
-  return {.content_type = "text/html; charset=utf-8",
-          .bytes = fmt::format(
-              "<!doctype html><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" "
-              "content=\"1\"><title>chicane</title>"
-              "<body style=\"color-scheme:light dark;margin:24px;font:14px/1.4 system-ui,sans-serif;"
-              "background:light-dark(#f6f7f8,#0f1419);color:light-dark(#17202a,#e8edf2)\">"
-              "<b>chicane</b><h1 style=\"font-size:28px;font-weight:500\">{}</h1><p>The dashboard follows "
-              "here.</p>",
-              line)};
+/// A road as a stroke of its mean width, in SVG, and over it another, up to the length of its dashes.
+std::string picture_of(const road::Track& track) {
+  constexpr int kPoints = 240;
+  std::string path;
+  Vec2 low = track.centre().at(0.0).position, high = low;
+  double width = 0.0;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double s = track.lap_length() * i / kPoints;
+    const Vec2 at = track.centre().at(s).position;
+    low = {std::min(low.x(), at.x()), std::min(low.y(), at.y())};
+    high = {std::max(high.x(), at.x()), std::max(high.y(), at.y())};
+    width += (track.left_width(s) + track.right_width(s)) / (kPoints + 1);
+    path += fmt::format("{}{:.1f} {:.1f}", i == 0 ? "M" : "L", at.x(), -at.y());
+  }
+  return fmt::format(
+      "viewBox=\"{:.0f} {:.0f} {:.0f} {:.0f}\" stroke-width=\"{:.1f}\"><path id=\"road\" pathLength=\"100\" "
+      "d=\"{}\"/><use href=\"#road\" style=\"stroke:#ffcb3d\" stroke-width=\"{:.1f}\" stroke-dasharray=\"",
+      low.x() - width, -high.y() - width, high.x() - low.x() + 2.0 * width, high.y() - low.y() + 2.0 * width,
+      width, path, 0.25 * width);
+}
+
+/// `done`: of the work [%], as a share of the road in the colour of plans (web/src/styles/tokens.css).
+net::Content waiting_page(const std::string& road, const std::string& line, double done, double lap_time) {
+  return {
+      .content_type = "text/html; charset=utf-8",
+      .bytes = fmt::format(
+          "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" "
+          "content=\"1\"><meta name=\"viewport\" content=\"width=device-width\"><title>chicane</title>"
+          "<body style=\"color-scheme:light dark;margin:0;height:100vh;display:grid;"
+          "grid-template-rows:48px minmax(0,1fr) auto;font:14px/1.4 system-ui,sans-serif;"
+          "background:light-dark(#f6f7f8,#0f1419);color:light-dark(#17202a,#e8edf2)\">"
+          "<b style=\"padding:14px 24px\">chicane</b><svg aria-hidden=\"true\" fill=\"none\" width=\"100%\" "
+          "height=\"100%\" style=\"background:light-dark(#dfe4da,#141b1c);"
+          "stroke:light-dark(#5c646e,#2a323a)\" {}{:.1f} "
+          "100\"/></svg><main style=\"padding:8px 24px\">"
+          "<h1 style=\"font-size:18px;margin:0\">{}</h1>The plan so far takes {:.2f} s for the lap. The "
+          "dashboard follows here.</main>",
+          road, done, line, lap_time)};
 }
 
 }  // namespace
 
 /// What the network thread answers while this one plans.
 struct PlanWait::Page {
+  std::string road;
   std::mutex mutex;
   std::string line;
+  lap_time::PlanProgress now;
   std::unique_ptr<net::Server> server;  // last: it ends first
 };
 
@@ -158,8 +189,8 @@ std::string plan_line(const lap_time::PlanProgress& now, double elapsed, double 
                      std::ceil(per_work * std::max(budget - now.work, 0.0)));
 }
 
-PlanWait::PlanWait(double budget, std::optional<net::ServerOptions>* server)
-    : budget_{budget}, server_{server}, is_terminal_{isatty(STDERR_FILENO) == 1} {}
+PlanWait::PlanWait(const scenario::Scenario& scenario, std::optional<net::ServerOptions>* server)
+    : scenario_{scenario}, server_{server}, is_terminal_{isatty(STDERR_FILENO) == 1} {}
 
 PlanWait::~PlanWait() {
   clear_line();
@@ -178,6 +209,8 @@ run::PlanHooks PlanWait::hooks() {
 void PlanWait::open() {
   if (server_ == nullptr || !server_->has_value()) return;
   page_ = std::make_unique<Page>();
+  const Result<road::Track> track = run::make_track(scenario_);
+  page_->road = track ? picture_of(*track) : "><path stroke-dasharray=\"";
   net::ServerOptions options = **server_;
   options.goodbye = kGoodbyeOfPage;
   net::ServerHandlers handlers;
@@ -190,7 +223,8 @@ void PlanWait::open() {
   handlers.on_get = [page = page_.get()](std::string_view path) -> std::optional<net::Content> {
     if (path != "/") return {};
     const std::lock_guard lock(page->mutex);
-    return waiting_page(page->line);
+    const double done = 100.0 * std::min(page->now.work / std::max(page->now.expected, 1e-9), 1.0);
+    return waiting_page(page->road, page->line, done, page->now.lap_time);
   };
   auto server = net::Server::create(options, std::move(handlers), {});
   if (!server) {
@@ -205,11 +239,13 @@ void PlanWait::open() {
 
 void PlanWait::show(const lap_time::PlanProgress& now) {
   const Clock::time_point time = Clock::now();
-  const std::string line = plan_line(now, std::chrono::duration<double>(time - begin_).count(), budget_);
+  const std::string line =
+      plan_line(now, std::chrono::duration<double>(time - begin_).count(), run::plan_budget(scenario_));
   if (!shown_) open();
   if (page_) {
     const std::lock_guard lock(page_->mutex);
     page_->line = line;
+    page_->now = now;
   }
   const Clock::duration period = is_terminal_ ? Clock::duration(kRedrawPeriod) : kReportPeriod;
   if (shown_ && time - *shown_ < period) return;

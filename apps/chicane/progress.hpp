@@ -72,8 +72,8 @@ class Progress {
 /// Both begin with the first iteration: a plan from the cache shows nothing.
 class PlanWait {
  public:
-  /// `server`: of the dashboard that follows; none: no page. Must outlive this.
-  PlanWait(double budget, std::optional<net::ServerOptions>* server);
+  /// `server`: of the dashboard that follows; none: no page. Both must outlive this.
+  PlanWait(const scenario::Scenario& scenario, std::optional<net::ServerOptions>* server);
   /// Ends line and page; the port of the page becomes that of `server`.
   ~PlanWait();
   PlanWait(const PlanWait&) = delete;
@@ -91,7 +91,7 @@ class PlanWait {
   void open();
   void clear_line();
 
-  double budget_;
+  const scenario::Scenario& scenario_;
   std::optional<net::ServerOptions>* server_;
   bool is_terminal_;
   bool has_line_ = false;

@@ -56,7 +56,7 @@ py::list to_list(const std::vector<telemetry::Situation>& situations) {
   py::list list;
   for (const telemetry::Situation& each : situations) {
     py::dict row;
-    row["time_s"] = each.since;
+    row["time_s"] = each.kind_since;
     row["severity"] = telemetry::name_of(severity_of(each));
     row["sentence"] = sentence_of(each);
     row["reason"] = reason_of(each);

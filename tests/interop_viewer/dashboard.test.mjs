@@ -121,13 +121,13 @@ describe('the dashboard', () => {
     await dashboard.button('Follow').click();
     await dashboard.until(ticks, differentFrom(still), 'plots that follow');
 
-    const box = await plot.locator('.u-over').boundingBox();
+    const box = await plot.locator('.plot-over').boundingBox();
     await page.mouse.move(box.x + box.width * 0.5, box.y + 20);
     await page.mouse.down();
     await page.mouse.move(box.x + box.width * 0.9, box.y + 30, { steps: 4 });
     await page.mouse.up();
     await dashboard.button('Reset zoom').waitFor();
-    const zoomed = await plot.locator('.u-over').boundingBox(); // the button may have taken a row above the plots
+    const zoomed = await plot.locator('.plot-over').boundingBox(); // the button may have taken a row above the plots
     await page.mouse.dblclick(zoomed.x + zoomed.width * 0.5, zoomed.y + 20);
     await dashboard.button('Reset zoom').waitFor({ state: 'detached' });
     await dashboard.button('Hold plots').waitFor();
@@ -146,7 +146,7 @@ describe('the dashboard', () => {
     const values = () =>
       page.locator('.plot[aria-label="Lateral error"] .key b, .plot[aria-label="Speed"] .key b').allInnerTexts();
     const newest = await values();
-    const box = await page.locator('.plot[aria-label="Speed"] .u-over').boundingBox();
+    const box = await page.locator('.plot[aria-label="Speed"] .plot-over').boundingBox();
     let back = 0; // where the other plot shows another value: two moments may have the same one
     const pointed = () => {
       back += 6;
@@ -170,7 +170,7 @@ describe('the dashboard', () => {
     await dashboard.pause();
     await dashboard.showEngineer();
     await page.locator('.plot[aria-label="Speed"]').scrollIntoViewIfNeeded();
-    const place = () => page.locator('.plot[aria-label="Speed"] .u-over').boundingBox();
+    const place = () => page.locator('.plot[aria-label="Speed"] .plot-over').boundingBox();
     const box = await place();
     const at = (back) => [box.x + box.width - back, box.y + 20];
     await page.mouse.click(...at(10));

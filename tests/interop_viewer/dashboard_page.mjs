@@ -202,10 +202,11 @@ export class DashboardPage {
     return this.page.getByTestId('lap-rows').locator('tbody tr:not(.limit)');
   }
 
-  /** Presses an entry of the menu under the program's name. */
+  /** Chooses what the menu has, and leaves it: after a pace it stays open, over what is below. */
   async fromMenu(name) {
     if ((await this.page.locator('#menu:popover-open').count()) === 0) await this.page.locator('.name').click();
     await this.page.locator('#menu').getByRole('button', { name }).click();
+    await this.page.evaluate(() => document.querySelector('#menu:popover-open')?.hidePopover());
   }
 
   /** Puts the car to the start, whatever box was typed into last. */

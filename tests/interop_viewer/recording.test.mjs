@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { execFileSync, spawn } from 'node:child_process';
 import { once } from 'node:events';
-import { mkdtempSync, readFileSync, rmSync, statSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, afterEach, before, describe, it } from 'node:test';
@@ -198,23 +198,26 @@ it('is shown when its file is dropped on a page that watches a run; what is none
   const drive = await startDrive(['--track', 'oval']);
   dashboard = await DashboardPage.open(browser, drive.url, { mode: 'understand' });
   const { page } = dashboard;
-  const drop = (name, bytes) =>
-    page.evaluate(
-      ({ name: called, base64 }) => {
-        const data = new DataTransfer();
-        data.items.add(new File([Uint8Array.from(atob(base64), (each) => each.charCodeAt(0))], called));
-        const options = { dataTransfer: data, bubbles: true, cancelable: true };
-        document.body.dispatchEvent(new DragEvent('dragover', options));
-        document.body.dispatchEvent(new DragEvent('drop', options));
-      },
-      { name, base64: bytes.toString('base64') },
-    );
-  await drop('broken.mcap', Buffer.from('this is none'));
+  /** By a box for files, which takes a path: the bytes need not be sent to the browser. */
+  async function drop(path) {
+    const box = await page.evaluateHandle(() => Object.assign(document.createElement('input'), { type: 'file' }));
+    await box.asElement().setInputFiles(path);
+    await box.evaluate(({ files }) => {
+      const data = new DataTransfer();
+      data.items.add(files[0]);
+      const options = { dataTransfer: data, bubbles: true, cancelable: true };
+      document.body.dispatchEvent(new DragEvent('dragover', options));
+      document.body.dispatchEvent(new DragEvent('drop', options));
+    });
+  }
+  const broken = join(folder, 'broken.mcap');
+  writeFileSync(broken, 'this is none');
+  await drop(broken);
   await page.getByTestId('notice').waitFor();
   await page.getByText('Live', { exact: true }).waitFor();
-  await drop('of yesterday.mcap', readFileSync(log));
+  await drop(log);
   await page.getByText('Recording', { exact: true }).waitFor();
-  await page.locator('.timeline-name', { hasText: 'of yesterday.mcap' }).waitFor();
+  await page.locator('.timeline-name', { hasText: 'run.mcap' }).waitFor();
   await dashboard.until(
     () => dashboard.lapRows().count(),
     (count) => count === 2,

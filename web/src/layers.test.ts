@@ -6,7 +6,7 @@ import { expect, it } from 'vitest';
 // in the page.
 
 const ALLOWED: Readonly<Record<string, readonly string[]>> = {
-  protocol: [],
+  protocol: ['lib'],
   lib: ['protocol'],
   page: ['protocol', 'lib'],
   draw: ['lib', 'state'],

@@ -1,4 +1,3 @@
-import type { IWebSocket } from '@foxglove/ws-protocol';
 import { computed, effect } from '@preact/signals';
 import { render } from 'preact';
 import { toggleScheme } from './lib/appearance';
@@ -8,6 +7,7 @@ import { store } from './lib/store';
 import { nextSpeedUnit } from './lib/units';
 import { WorkerLink } from './page/worker_link';
 import { Connection, SUBPROTOCOLS } from './protocol/connection';
+import type { Socket } from './protocol/foxglove';
 import { ReadingSocket } from './protocol/reading';
 import { readSchema } from './protocol/schema';
 import type { Source } from './protocol/source';
@@ -16,20 +16,19 @@ import { nextCamera } from './scene3d/view_state';
 import { beginSession, receive, receivePastLeft } from './state/demultiplexer';
 import { toggleLayer } from './state/layers';
 import { ageAtArrival, attempt, link, notice, pastLeft, services } from './state/link';
-import { followAddress, MODES, mode } from './state/mode';
-import { call, refresh } from './state/operate';
+import { followAddress, MODES, type Mode, mode } from './state/mode';
+import { call, refreshOnNewChoice, requests } from './state/operate';
 import { rememberRun } from './state/other_run';
 import { toggleFrozen, toggleMark } from './state/plot_view';
 import { answerBy, programPage } from './state/program_page';
 import { run } from './state/run';
 import { schema } from './state/settings';
-import { refreshOnNewChoice, takeSettings } from './state/settings_session';
 import { programName } from './state/share';
 import { refreshText } from './state/shown';
 import { oneButton } from './state/stage_state';
 import { everyFrame } from './state/ticker';
 import { HeaderView, TITLES } from './views/header_view';
-import { HelpView, isHelpOpen } from './views/help_view';
+import { HelpView, openHelp } from './views/help_view';
 import { handBack, listenToDriver, toggleManual } from './views/manual_view';
 import { changePace, present } from './views/menu_view';
 import { RestartView } from './views/restart_view';
@@ -62,7 +61,7 @@ function tellPastLeft(messages: number): void {
 }
 
 /** Opens the connection to the program, or to the worker of a page that needs none. */
-function opener(): () => IWebSocket {
+function opener(): () => Socket {
   const told = { age: (seconds: number) => (ageAtArrival.value = seconds), pastLeft: tellPastLeft };
   if (__PAGE__) {
     const worker = new WorkerLink((sentence) => (notice.value = sentence));
@@ -95,7 +94,7 @@ function live(): Source {
     message: (topic, message) => receive(topic, message, performance.now()),
     services: (names) => (services.value = names),
     settings(values, isAll) {
-      takeSettings(values);
+      requests.receive(values);
       if (isAll) void loadSchema();
     },
     notice: (sentence) => (notice.value = refusalInWords(sentence)),
@@ -103,7 +102,7 @@ function live(): Source {
 }
 
 void begin(live);
-refreshOnNewChoice(refresh);
+refreshOnNewChoice();
 const isDriven = computed(() => run.value?.mode === 'drive' && link.value === 'live');
 effect(() => {
   if (!__PAGE__ && isDriven.value) void loadProgramName();
@@ -113,83 +112,55 @@ listenForLinks();
 followAddress();
 
 addShortcuts(
+  'Run',
   {
     keys: [' '],
     label: 'Space',
     does: 'The button of the header: pause, resume, drive again',
-    group: 'Run',
     isPossible: () => oneButton.value?.isPossible === true,
     action: () => oneButton.value?.act(),
   },
-  { keys: ['.'], label: '.', does: 'One control step while paused', group: 'Run', action: () => call('/step') },
-  { keys: ['r'], label: 'R', does: 'Back to the start of the run', group: 'Run', action: () => call('/reset') },
-  { keys: ['['], label: '[', does: 'Halve the pace', group: 'Run', action: () => changePace(0.5) },
-  { keys: [']'], label: ']', does: 'Double the pace', group: 'Run', action: () => changePace(2) },
-  { keys: ['c'], label: 'C', does: 'Next camera', group: 'Camera', action: nextCamera },
-  { keys: ['+', '='], label: '+', does: 'Zoom in', group: 'Camera', action: () => zoom(0.8) },
-  { keys: ['-'], label: '−', does: 'Zoom out', group: 'Camera', action: () => zoom(1.25) },
-  {
-    keys: ['l'],
-    label: 'L',
-    does: "Show or hide the limit's line",
-    group: 'Camera',
-    action: () => toggleLayer('racingLine'),
-  },
-  {
-    keys: ['o'],
-    label: 'O',
-    does: 'Show or hide the plan of a second ago and the path driven since',
-    group: 'Camera',
-    action: () => toggleLayer('hindsight'),
-  },
-  { keys: ['t'], label: 'T', does: 'Light or dark', group: 'Page', action: toggleScheme },
-  { keys: ['u'], label: 'U', does: 'Next unit for speeds: mph, km/h, m/s', group: 'Page', action: nextSpeedUnit },
-  ...MODES.map((name, i) => ({
-    keys: [String(i + 1)],
-    label: String(i + 1),
-    does: TITLES[name],
-    group: 'Page' as const,
-    action: () => {
-      mode.value = name;
-    },
-  })),
-  {
-    keys: ['/'],
-    label: '/',
-    does: 'Search settings',
-    group: 'Page',
-    action: () => {
-      mode.value = 'try';
-      focusSearch();
-    },
-  },
-  { keys: ['p'], label: 'P', does: 'Hold the plots, or follow again', group: 'Page', action: toggleFrozen },
-  {
-    keys: ['x'],
-    label: 'X',
-    does: 'Mark the moment under the cursor: plots show differences from it',
-    group: 'Page',
-    action: toggleMark,
-  },
-  { keys: ['g'], label: 'G', does: 'The stage on the whole screen', group: 'Page', action: present },
-  {
-    keys: ['?'],
-    label: '?',
-    does: 'This list',
-    group: 'Page',
-    action: () => {
-      isHelpOpen.value = true;
-    },
-  },
-  {
-    keys: ['m'],
-    label: 'M',
-    does: 'Take the wheel, or hand back to the controller',
-    group: 'Driving by hand',
-    action: toggleManual,
-  },
-  { keys: ['escape'], label: 'Esc', does: 'Hand back to the controller', group: 'Driving by hand', action: handBack },
-  { keys: [], label: '← → ↑ ↓', does: 'Steer, drive, brake', group: 'Driving by hand', action: () => undefined },
+  { keys: ['.'], label: '.', does: 'One control step while paused', action: () => call('/step') },
+  { keys: ['r'], label: 'R', does: 'Back to the start of the run', action: () => call('/reset') },
+  { keys: ['['], label: '[', does: 'Halve the pace', action: () => changePace(0.5) },
+  { keys: [']'], label: ']', does: 'Double the pace', action: () => changePace(2) },
+);
+const hindsight = 'Show or hide the plan of a second ago and the path driven since';
+addShortcuts(
+  'Camera',
+  { keys: ['c'], label: 'C', does: 'Next camera', action: nextCamera },
+  { keys: ['+', '='], label: '+', does: 'Zoom in', action: () => zoom(0.8) },
+  { keys: ['-'], label: '−', does: 'Zoom out', action: () => zoom(1.25) },
+  { keys: ['l'], label: 'L', does: "Show or hide the limit's line", action: () => toggleLayer('racingLine') },
+  { keys: ['o'], label: 'O', does: hindsight, action: () => toggleLayer('hindsight') },
+);
+function show(next: Mode): void {
+  mode.value = next;
+}
+function search(): void {
+  show('try');
+  focusSearch();
+}
+const mark = 'Mark the moment under the cursor: plots show differences from it';
+addShortcuts(
+  'Page',
+  { keys: ['t'], label: 'T', does: 'Light or dark', action: toggleScheme },
+  { keys: ['u'], label: 'U', does: 'Next unit for speeds: mph, km/h, m/s', action: nextSpeedUnit },
+  ...MODES.map((name, i) => {
+    const key = String(i + 1);
+    return { keys: [key], label: key, does: TITLES[name], action: () => show(name) };
+  }),
+  { keys: ['/'], label: '/', does: 'Search settings', action: search },
+  { keys: ['p'], label: 'P', does: 'Hold the plots, or follow again', action: toggleFrozen },
+  { keys: ['x'], label: 'X', does: mark, action: toggleMark },
+  { keys: ['g'], label: 'G', does: 'The stage on the whole screen', action: present },
+  { keys: ['?'], label: '?', does: 'This list', action: openHelp },
+);
+addShortcuts(
+  'Driving by hand',
+  { keys: ['m'], label: 'M', does: 'Take the wheel, or hand back to the controller', action: toggleManual },
+  { keys: ['escape'], label: 'Esc', does: 'Hand back to the controller', action: handBack },
+  { keys: [], label: '← → ↑ ↓', does: 'Steer, drive, brake', action: () => undefined },
 );
 
 addEventListener('keydown', (event) => {

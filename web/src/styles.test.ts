@@ -1,8 +1,8 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { expect, it } from 'vitest';
+import { toneOf } from './draw/theme';
 import { TONES } from './parts/plot';
-import { toneOf } from './views/plot_colours';
 
 const root = new URL('.', import.meta.url).pathname;
 const sheets = readdirSync(root, { recursive: true })

@@ -115,7 +115,9 @@ constexpr auto kSituation = [](auto& row, const Frame& frame, const Run& /*run*/
   row("ends_it", "what ends an alarm, by itself and by a person: two sentences", what_ends(now));
   row("driver", "\"controller\", \"guard\", \"person\"", name_of(now.driver));
   row("kind", "the sentence without its numbers: \"part_throttle\"", name_of(now.kind));
-  row("since_s", "time of the run at which it began; of an alarm: the event", now.since);
+  row("kind_since_s", "time of the run at which `kind` began", now.kind_since);
+  row("event_since_s", "of an alarm: time of the run at which its event began; not-a-number: no alarm",
+      severity_of(now) == Severity::kError ? now.event_since : kNaN);
   row("stands_since_s", "time of the run since which the car stands; not-a-number: it moves",
       now.stands_since < 0.0 ? kNaN : now.stands_since);
   row("alarms", "events of the run so far that a person has to know of", now.alarms);

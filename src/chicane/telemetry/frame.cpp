@@ -206,7 +206,7 @@ std::string_view end_of(GuardReason reason) noexcept {
 
 Situation situation_of(const Frame& frame, const Situation& before, const SituationTerms& terms) noexcept {
   const bool begins = frame.begins && frame.cycle == 0;
-  const Situation last = begins || frame.time < before.since ? Situation{} : before;
+  const Situation last = begins || frame.time < before.kind_since ? Situation{} : before;
   Situation now;
   now.driver = driver_of(frame);
   now.rung = frame.guard.rung;
@@ -215,6 +215,7 @@ Situation situation_of(const Frame& frame, const Situation& before, const Situat
   now.pedal = pedal_of(frame, terms.full_brake);
   now.alarmed_at = last.alarmed_at;
   now.alarms = last.alarms;
+  now.event_since = last.event_since;
   const double speed = speed_of(frame);
   const bool stood = last.stands_since >= 0.0;
   if (stood ? !(speed > kMoving) : speed < kStanding)
@@ -224,17 +225,18 @@ Situation situation_of(const Frame& frame, const Situation& before, const Situat
   const double grip = used_grip(frame);
   now.kind = kind_of(frame, now, grip);
   const bool is_motion = is_true(now.kind, grip, now.pedal);
-  if (is_motion && frame.time - last.since < kSentenceHeld && is_true(last.kind, grip, now.pedal))
+  if (is_motion && frame.time - last.kind_since < kSentenceHeld && is_true(last.kind, grip, now.pedal))
     now.kind = last.kind;
-  now.since = now.kind == last.kind && !begins ? last.since : frame.time;
+  now.kind_since = now.kind == last.kind && !begins ? last.kind_since : frame.time;
   if (now.kind == Kind::kGrip) now.number = grip;
   if (now.kind == Kind::kOffRoad) now.number = std::max(0.0, -frame.edge_distance);
 
   if (severity_of(now) == Severity::kError) {
     const bool goes_on = last.alarmed_at >= 0.0 && frame.time - last.alarmed_at <= kAlarmPause;
-    if (!goes_on) ++now.alarms;
-    const bool was_alarm = severity_of(last) == Severity::kError;
-    now.since = goes_on && was_alarm ? last.since : frame.time;
+    if (!goes_on) {
+      ++now.alarms;
+      now.event_since = frame.time;
+    }
     now.alarmed_at = frame.time;
   }
   return now;

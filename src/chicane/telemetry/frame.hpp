@@ -54,10 +54,12 @@ struct Situation {
   controller::GuardReason reason = controller::GuardReason::kNone;
   /// Of the sentence: used share of the grip [%], or distance beyond the edge [m]; NaN: none.
   double number = std::numeric_limits<double>::quiet_NaN();
-  int corner = 0;              ///< from 1, in the order of a lap; 0: unknown
-  bool is_ahead = false;       ///< the corner lies ahead of the car
-  double pedal = 0.0;          ///< applied, as share of full throttle or of full braking, [-1, 1]
-  double since = 0.0;          ///< time of the run at which `kind` began; of an alarm: the event [s]
+  int corner = 0;           ///< from 1, in the order of a lap; 0: unknown
+  bool is_ahead = false;    ///< the corner lies ahead of the car
+  double pedal = 0.0;       ///< applied, as share of full throttle or of full braking, [-1, 1]
+  double kind_since = 0.0;  ///< time of the run at which `kind` began [s]
+  double event_since =
+      -1.0;  ///< time of the run at which the newest event with an alarm began [s]; < 0: none yet
   double stands_since = -1.0;  ///< time of the run at which the car came to rest [s]; < 0: it moves
   double alarmed_at = -1.0;    ///< time of the run of the last cycle with an alarm [s]; < 0: none yet
   std::uint32_t alarms = 0;    ///< events so far that a person has to know of

@@ -1,6 +1,5 @@
-import { hasBit } from '../lib/bits';
+import { begunBits } from '../lib/bits';
 import { fixed, lapTime, plural } from '../lib/format';
-
 import { UNKNOWN_CHANGE, UNKNOWN_FRAME, UNKNOWN_LAP, UNKNOWN_LIMIT, UNKNOWN_RUN } from '../protocol/messages';
 import type { Change, Frame, Lap, Limit, Run } from '../protocol/topics';
 import { type Comparison, type Course, compare } from '../state/comparison';
@@ -93,10 +92,8 @@ function readRun(told: ToldRun, name: string, recording: string, settings: strin
     offTrack = Math.max(offTrack, frame.off_track_events);
     if (frame.rung > 0 && !((before?.rung ?? 0) > 0)) ++interventions;
     if (frame.is_gated && !before?.is_gated) ++gated;
-    const begun = frame.active_faults & ~(before?.active_faults ?? 0);
-    for (let bit = 0; bit < 32; ++bit)
-      if (hasBit(begun, bit))
-        faults.push(`${faultInWords(run.fault_names[bit] ?? `#${bit + 1}`)} at ${fixed(frame.time_s, 1)} s`);
+    for (const bit of begunBits(frame.active_faults, before?.active_faults))
+      faults.push(`${faultInWords(run.fault_names[bit] ?? `#${bit + 1}`)} at ${fixed(frame.time_s, 1)} s`);
     before = frame;
   }
   for (const { lap, lap_time_s: time } of laps) samples.complete(lap - 1, time);

@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { firstSince, rangeAboutZero, rangeFromZero, rangeInSteps, secondsBack, silencesIn, ticksOf } from './axis';
+import { firstSince } from '../lib/math';
+import { rangeAboutZero, rangeFromZero, rangeInSteps, ticksOf } from './axis';
 
 describe('axes', () => {
   it('start at zero and end at a round number', () => {
@@ -27,20 +28,6 @@ describe('axes', () => {
     expect(firstSince([1, 2], 9)).toBe(2);
     expect(firstSince([1, 2], 0)).toBe(0);
     expect(firstSince([], 0)).toBe(0);
-  });
-
-  it('count seconds back from now', () => {
-    expect(secondsBack(33, 20, 5)).toEqual([13, 18, 23, 28, 33]);
-  });
-
-  it('find gaps without data', () => {
-    const times = [0, 0.04, 0.08, 2, 2.04, 9, 9.9];
-    expect(silencesIn(times, 0, 6, 1)).toEqual([
-      [0.08, 2],
-      [2.04, 9],
-    ]);
-    expect(silencesIn(times, 3, 4, 1)).toEqual([]);
-    expect(silencesIn([], 0, 0, 1)).toEqual([]);
   });
 });
 

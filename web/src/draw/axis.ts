@@ -27,31 +27,6 @@ export function rangeAboutZero(values: readonly ArrayLike<number>[], least: numb
   return [-end, end];
 }
 
-/** Index of the first of these ascending times that is not before `since`. */
-export function firstSince(times: ArrayLike<number>, since: number): number {
-  let [low, high] = [0, times.length];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if ((times[middle] ?? NaN) < since) low = middle + 1;
-    else high = middle;
-  }
-  return low;
-}
-
-/** The gaps of more than `longest` between ascending times, among those from first to last. */
-export function silencesIn(times: ArrayLike<number>, first: number, last: number, longest: number): [number, number][] {
-  const silences: [number, number][] = [];
-  for (let i = first + 1; i <= last; ++i) {
-    const [from, to] = [times[i - 1] ?? NaN, times[i] ?? NaN];
-    if (to - from > longest) silences.push([from, to]);
-  }
-  return silences;
-}
-
-/** Ticks for the last `seconds` up to `now`, in whole steps back from now, so that the grid does not move. */
-export const secondsBack = (now: number, seconds: number, step: number): number[] =>
-  Array.from({ length: Math.floor(seconds / step) + 1 }, (_, i) => now - seconds + i * step);
-
 /** Round numbers from `low` to `high`, at most `most` of them: 1, 2 or 5 times a power of ten apart. */
 export function ticksOf(low: number, high: number, most: number): number[] {
   const span = high - low;

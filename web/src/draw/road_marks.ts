@@ -1,14 +1,11 @@
-import type { Box, Point } from '../lib/math';
+import { type Box, firstSince, type Point } from '../lib/math';
 import type { Losses, MarkedCorner } from '../state/road_marks';
-import { firstSince } from './axis';
-import { type Camera, project } from './camera';
+import type { Brush } from './brush';
+import { project } from './camera';
 import type { Line } from './line';
 import type { RoadShape } from './scene';
-import type { Theme } from './theme';
 
 // What is painted on the road or stands beside it on the map: kerbs, start line, numbers of corners, time lost.
-
-type Context = CanvasRenderingContext2D;
 
 const pointOf = (line: Line, i: number): Point => ({ x: line.x[i] ?? NaN, y: line.y[i] ?? NaN });
 
@@ -38,12 +35,10 @@ const KERB_DASH_M = 2;
 
 /** Red and white along both edges of each corner, `width` metres wide; nothing where the track has no kerbs. */
 export function drawKerbs(
-  ctx: Context,
+  { ctx, view, colours }: Brush,
   road: RoadShape,
   corners: readonly MarkedCorner[],
   width: number,
-  view: Box,
-  colours: Theme,
 ): void {
   if (!(width > 0)) return;
   ctx.lineWidth = width;
@@ -69,14 +64,7 @@ export function drawKerbs(
 const CHEQUERS = 8;
 
 /** Two rows of chequers across the road. */
-export function drawStartLine(
-  ctx: Context,
-  road: RoadShape,
-  place: number,
-  colours: Theme,
-  px: number,
-  size: number,
-): void {
+export function drawStartLine({ ctx, colours, px, size }: Brush, road: RoadShape, place: number): void {
   const i = indexAt(road, place);
   const [left, right, centre] = [pointOf(road.left, i), pointOf(road.right, i), pointOf(road.centre, i)];
   const [ax, ay] = [(right.x - left.x) / CHEQUERS, (right.y - left.y) / CHEQUERS];
@@ -101,12 +89,9 @@ const LABEL_PX = 16; // from the road's edge
 
 /** "T3" on the outside of each corner, upright whatever way the map is turned. */
 export function drawCornerNumbers(
-  ctx: Context,
+  { ctx, camera, colours, ratio }: Brush,
   road: RoadShape,
   corners: readonly MarkedCorner[],
-  camera: Camera,
-  colours: Theme,
-  ratio: number,
 ): void {
   ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
   ctx.font = `600 12px ${colours.font}`;
@@ -128,7 +113,7 @@ export function drawCornerNumbers(
 }
 
 /** The line of a lap: red where it lost time, green where it gained, faint where neither. */
-export function drawLosses(ctx: Context, { line, pieces, most }: Losses, colours: Theme, width: number): void {
+export function drawLosses({ ctx, colours }: Brush, { line, pieces, most }: Losses, width: number): void {
   ctx.lineWidth = width;
   for (const { first, end, lost } of pieces) {
     const path = new Path2D();

@@ -1,13 +1,15 @@
-import type { Box, Point } from '../lib/math';
+import type { Point } from '../lib/math';
+import type { Pose } from '../lib/poses';
 import type { Limit } from '../protocol/topics';
-import type { Hindsight, Pose } from '../state/hindsight';
+import type { Hindsight } from '../state/hindsight';
 import type { RoadLines } from '../state/road';
 import type { Losses, MarkedCorner } from '../state/road_marks';
-import { type Camera, groundGrid, transformOf, worldInView } from './camera';
+import { type Brush, brushOn } from './brush';
+import { type Camera, groundGrid } from './camera';
 import type { CarShape } from './car';
 import { addLine, type Line, lengthsOf, lineOf, longestStep, stretchesInside } from './line';
 import { drawCornerNumbers, drawKerbs, drawLosses, drawStartLine } from './road_marks';
-import type { Theme } from './theme';
+import { theme } from './theme';
 
 /** The content of one picture of the map; lengths in metres, angles in radians, in W. */
 export interface Scene {
@@ -55,9 +57,7 @@ export function roadShape(road: RoadLines): RoadShape | null {
   };
 }
 
-type Context = CanvasRenderingContext2D;
-
-function stroke(ctx: Context, path: Path2D, colour: string, width: number): void {
+function stroke({ ctx }: Brush, path: Path2D, colour: string, width: number): void {
   ctx.strokeStyle = colour;
   ctx.lineWidth = width;
   ctx.stroke(path);
@@ -67,10 +67,10 @@ function stroke(ctx: Context, path: Path2D, colour: string, width: number): void
  * A square grid on the ground, which shows speed off the road too. Stroked line by line: as one path of crossing lines
  * it took a tenth of a core with software rendering.
  */
-function drawGround(ctx: Context, camera: Camera, colour: string, ratio: number, size: number): void {
+function drawGround({ ctx, camera, colours, ratio, px, size }: Brush): void {
   const { spacing, from, to } = groundGrid(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio, 5 * size);
-  ctx.strokeStyle = colour;
-  ctx.lineWidth = 1 / camera.scale;
+  ctx.strokeStyle = colours.landLine;
+  ctx.lineWidth = px;
   const draw = (x: number, y: number, toX: number, toY: number): void => {
     ctx.beginPath();
     ctx.moveTo(x, y);
@@ -81,14 +81,8 @@ function drawGround(ctx: Context, camera: Camera, colour: string, ratio: number,
   for (let y = from.y; y <= to.y; y += spacing) draw(from.x, y, to.x, y);
 }
 
-function drawRoad(
-  ctx: Context,
-  { left, right, centre, lengths, reach }: RoadShape,
-  view: Box,
-  colours: Theme,
-  px: number,
-  size: number,
-): void {
+function drawRoad(brush: Brush, { left, right, centre, lengths, reach }: RoadShape): void {
+  const { ctx, view, colours, px, size } = brush;
   const stretches = stretchesInside(centre, view, reach);
   const [surface, edges] = [new Path2D(), new Path2D()];
   for (const [first, end] of stretches) {
@@ -99,13 +93,13 @@ function drawRoad(
   }
   ctx.fillStyle = colours.road;
   ctx.fill(surface);
-  stroke(ctx, edges, colours.mark, Math.max(0.15 * size, 1.5 * px));
+  stroke(brush, edges, colours.mark, Math.max(0.15 * size, 1.5 * px));
   ctx.setLineDash([3 * size, 6 * size]);
   for (const [first, end] of stretches) {
     const dashes = new Path2D();
     addLine(dashes, centre, first, end);
     ctx.lineDashOffset = lengths[first] ?? 0; // keeps the dashes fixed to the road
-    stroke(ctx, dashes, colours.mark, Math.max(0.1 * size, 0.75 * px));
+    stroke(brush, dashes, colours.mark, Math.max(0.1 * size, 0.75 * px));
   }
   ctx.lineDashOffset = 0;
   ctx.setLineDash([]);
@@ -114,50 +108,39 @@ function drawRoad(
 const JUMP_M = 20; // the car was placed elsewhere: no line across the jump
 
 /** The part of a line that is in view; longer steps than `reach` are jumps [m]. */
-function drawInView(ctx: Context, points: Line, view: Box, reach: number, colour: string, width: number): void {
+function drawInView(brush: Brush, points: Line, reach: number, colour: string, width: number): void {
   const path = new Path2D();
-  for (const [first, end] of stretchesInside(points, view, reach)) addLine(path, points, first, end, reach);
-  stroke(ctx, path, colour, width);
+  for (const [first, end] of stretchesInside(points, brush.view, reach)) addLine(path, points, first, end, reach);
+  stroke(brush, path, colour, width);
 }
 
-function trail(points: readonly Point[]): Path2D {
+function drawLine(brush: Brush, line: Line, colour: string, width: number): void {
   const path = new Path2D();
-  for (const { x, y } of points) path.lineTo(x, y);
-  return path;
-}
-
-function line(xs: ArrayLike<number>, ys: ArrayLike<number>): Path2D {
-  const path = new Path2D();
-  for (let i = 0; i < xs.length; ++i) path.lineTo(xs[i] ?? NaN, ys[i] ?? NaN);
-  return path;
+  addLine(path, line, 0, line.x.length);
+  stroke(brush, path, colour, width);
 }
 
 const reaches = new WeakMap<Limit, number>();
 
 /** Thin and solid: dashes would double the cost. */
-function drawRacingLine(ctx: Context, limit: Limit, view: Box, colours: Theme, px: number, size: number): void {
+function drawRacingLine(brush: Brush, limit: Limit): void {
   const points = { x: limit.x_m, y: limit.y_m };
   const reach = reaches.get(limit) ?? longestStep(points);
   reaches.set(limit, reach);
-  drawInView(ctx, points, view, reach, colours.b, Math.max(0.2 * size, 1.5 * px));
+  drawInView(brush, points, reach, brush.colours.b, Math.max(0.2 * brush.size, 1.5 * brush.px));
 }
 
 /** A past plan as a broad band, with the path driven since on top. */
-function drawHindsight(
-  ctx: Context,
-  { plan, drivenX, drivenY }: Hindsight,
-  colours: Theme,
-  px: number,
-  size: number,
-): void {
+function drawHindsight(brush: Brush, { plan, drivenX, drivenY }: Hindsight): void {
+  const { ctx, colours, px, size } = brush;
   ctx.globalAlpha = 0.6;
-  stroke(ctx, line(plan.x_m, plan.y_m), colours.pastPlan, Math.max(1.1 * size, 8 * px));
+  drawLine(brush, { x: plan.x_m, y: plan.y_m }, colours.pastPlan, Math.max(1.1 * size, 8 * px));
   ctx.globalAlpha = 1;
-  stroke(ctx, line(drivenX, drivenY), colours.a, Math.max(0.18 * size, 2 * px));
+  drawLine(brush, { x: drivenX, y: drivenY }, colours.a, Math.max(0.18 * size, 2 * px));
 }
 
-function drawWheels(ctx: Context, shape: CarShape, colour: string): void {
-  ctx.fillStyle = colour;
+function drawWheels({ ctx, colours }: Brush, shape: CarShape): void {
+  ctx.fillStyle = colours.wheel;
   for (const wheel of shape.wheels) {
     ctx.save();
     ctx.translate(wheel.x, wheel.y);
@@ -169,41 +152,51 @@ function drawWheels(ctx: Context, shape: CarShape, colour: string): void {
 
 /** Radii of a body seen from above: tail, nose, nose, tail. */
 const NOSE_M = [0.5, 0.9, 0.9, 0.5];
+const NARROW = 0.84; // than the wheels, so that they are seen to steer
 
-function drawCar(ctx: Context, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
+type Car = NonNullable<Scene['car']>;
+
+/** From far away a car is drawn enlarged, at least 18 px long. */
+const grownBy = ({ front, rear }: CarShape, px: number): number => Math.max(1, (18 * px) / (front - rear));
+
+/** The outline of a car's body at a pose, as the path that is drawn next; in the axes of the body until restored. */
+function outline({ ctx, px }: Brush, { x, y, yaw }: Point & { yaw: number }, { shape }: Car): void {
+  const { front, rear, halfWidth, size } = shape;
+  const [grown, narrow] = [grownBy(shape, px), NARROW * halfWidth];
+  ctx.save();
+  ctx.translate(x, y);
+  ctx.rotate(yaw);
+  ctx.scale(grown, grown);
+  ctx.beginPath();
+  ctx.roundRect(
+    rear,
+    -narrow,
+    front - rear,
+    2 * narrow,
+    NOSE_M.map((radius) => radius * size),
+  );
+}
+
+function drawCar(brush: Brush, car: Car): void {
+  const { ctx, colours, px } = brush;
   const { shape } = car;
   const { size } = shape;
   const length = shape.front - shape.rear;
-  ctx.save();
-  ctx.translate(car.x, car.y);
-  ctx.rotate(car.yaw);
-  // From far away the car is drawn enlarged, at least 18 px long, with a ring around it.
-  const grown = Math.max(1, (18 * px) / length);
+  const [grown, narrow] = [grownBy(shape, px), NARROW * shape.halfWidth];
   if (grown > 1) {
     ctx.beginPath();
-    ctx.arc(0, 0, 15 * px, 0, 2 * Math.PI);
+    ctx.arc(car.x, car.y, 15 * px, 0, 2 * Math.PI);
     ctx.strokeStyle = colours.a;
     ctx.lineWidth = 3 * px;
     ctx.stroke();
   }
-  ctx.scale(grown, grown);
-  drawWheels(ctx, shape, colours.wheel);
-
-  const narrow = shape.halfWidth * 0.84; // narrower than the wheels, so that they are seen to steer
-  ctx.beginPath();
-  ctx.roundRect(
-    shape.rear,
-    -narrow,
-    length,
-    2 * narrow,
-    NOSE_M.map((radius) => radius * size),
-  );
+  outline(brush, car, car);
+  drawWheels(brush, shape);
   ctx.fillStyle = colours.car;
   ctx.fill();
   ctx.strokeStyle = colours.wheel;
   ctx.lineWidth = Math.max(0.06 * size, (1 * px) / grown);
   ctx.stroke();
-
   ctx.beginPath();
   ctx.roundRect(shape.rear + 0.24 * length, -0.78 * narrow, 0.4 * length, 1.56 * narrow, 0.4 * size);
   ctx.fillStyle = colours.glass;
@@ -221,7 +214,7 @@ function drawCar(ctx: Context, car: NonNullable<Scene['car']>, colours: Theme, p
 }
 
 /** A triangle where a fault began. */
-function drawFault(ctx: Context, { x, y }: Point, colours: Theme, px: number, unit: number): void {
+function drawFault({ ctx, colours, px, size: unit }: Brush, { x, y }: Point): void {
   const size = Math.max(0.9 * unit, 7 * px);
   ctx.beginPath();
   ctx.moveTo(x, y + size);
@@ -235,133 +228,100 @@ function drawFault(ctx: Context, { x, y }: Point, colours: Theme, px: number, un
   ctx.stroke();
 }
 
-/** The car's outline at another pose. */
-function outline(ctx: Context, pose: Pose, { shape }: NonNullable<Scene['car']>, px: number): void {
-  const grown = Math.max(1, (18 * px) / (shape.front - shape.rear));
-  ctx.translate(pose.x, pose.y);
-  ctx.rotate(pose.yaw);
-  ctx.scale(grown, grown);
-  ctx.beginPath();
-  ctx.roundRect(
-    shape.rear,
-    -0.84 * shape.halfWidth,
-    shape.front - shape.rear,
-    1.68 * shape.halfWidth,
-    NOSE_M.map((radius) => radius * shape.size),
-  );
-}
-
 /** The pose that the plan of a second ago predicts for now. */
-function drawPredicted(ctx: Context, pose: Pose, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
-  ctx.save();
-  outline(ctx, pose, car, px);
-  ctx.restore();
-  ctx.strokeStyle = colours.pastPlan;
-  ctx.lineWidth = Math.max(0.15 * car.shape.size, 1.5 * px);
-  ctx.stroke();
+function drawPredicted(brush: Brush, pose: Pose, car: Car): void {
+  outline(brush, pose, car);
+  brush.ctx.restore();
+  brush.ctx.strokeStyle = brush.colours.pastPlan;
+  brush.ctx.lineWidth = Math.max(0.15 * car.shape.size, 1.5 * brush.px);
+  brush.ctx.stroke();
 }
 
 /** The ghost car; not drawn where it would overlap the car itself. */
-function drawGhost(ctx: Context, ghost: Pose, car: NonNullable<Scene['car']>, colours: Theme, px: number): void {
-  const { shape } = car;
-  const { size } = shape;
-  if (Math.hypot(ghost.x - car.x, ghost.y - car.y) < Math.max(size, (18 * px) / (shape.front - shape.rear))) return;
-  ctx.save();
-  outline(ctx, ghost, car, px);
+function drawGhost(brush: Brush, ghost: Pose, car: Car): void {
+  const { ctx, colours, px } = brush;
+  const { size } = car.shape;
+  if (Math.hypot(ghost.x - car.x, ghost.y - car.y) < Math.max(size, grownBy(car.shape, px))) return;
+  outline(brush, ghost, car);
   ctx.globalAlpha = 0.45;
   ctx.fillStyle = colours.b;
   ctx.fill();
   ctx.restore();
 }
 
-/**
- * The static part of the scene: ground, road, racing line. Covers the whole canvas, which has `ratio` device pixels
- * to a CSS pixel.
- */
+/** The static part of the scene: ground, road, racing line. Covers the whole canvas. */
 export function drawWorld(
-  ctx: Context,
+  ctx: CanvasRenderingContext2D,
   scene: Pick<Scene, 'road' | 'racingLine' | 'corners' | 'kerb' | 'start' | 'losses' | 'size'>,
   camera: Camera,
-  colours: Theme,
   ratio: number,
 ): void {
   ctx.setTransform(1, 0, 0, 1, 0, 0);
-  ctx.fillStyle = colours.land;
+  ctx.fillStyle = theme().land;
   ctx.fillRect(0, 0, ctx.canvas.width, ctx.canvas.height);
-  ctx.setTransform(...transformOf(camera, ratio));
-  ctx.lineJoin = 'round';
-  const px = 1 / camera.scale; // one CSS pixel in metres
-  const { size } = scene;
-  const view = worldInView(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
-  drawGround(ctx, camera, colours.landLine, ratio, size);
+  const brush = brushOn(ctx, camera, ratio, scene.size);
+  drawGround(brush);
   if (scene.road) {
-    drawRoad(ctx, scene.road, view, colours, px, size);
-    drawKerbs(ctx, scene.road, scene.corners, scene.kerb, view, colours);
-    drawStartLine(ctx, scene.road, scene.start, colours, px, size);
+    drawRoad(brush, scene.road);
+    drawKerbs(brush, scene.road, scene.corners, scene.kerb);
+    drawStartLine(brush, scene.road, scene.start);
   }
-  if (scene.losses) drawLosses(ctx, scene.losses, colours, Math.max(1 * size, 6 * px));
-  if (scene.racingLine) drawRacingLine(ctx, scene.racingLine, view, colours, px, size);
-  if (scene.road) drawCornerNumbers(ctx, scene.road, scene.corners, camera, colours, ratio);
+  if (scene.losses) drawLosses(brush, scene.losses, Math.max(1 * brush.size, 6 * brush.px));
+  if (scene.racingLine) drawRacingLine(brush, scene.racingLine);
+  if (scene.road) drawCornerNumbers(brush, scene.road, scene.corners);
 }
 
 /** The moving part of the scene, on top of drawWorld(). */
-export function drawMoving(ctx: Context, scene: Scene, camera: Camera, colours: Theme, ratio: number): void {
-  ctx.setTransform(...transformOf(camera, ratio));
-  ctx.lineJoin = 'round';
-  const px = 1 / camera.scale;
-  const { size } = scene;
-  const view = worldInView(camera, ctx.canvas.width / ratio, ctx.canvas.height / ratio);
-  drawInView(ctx, scene.trace, view, JUMP_M * Math.max(size, 0.1), colours.a, Math.max(0.2 * size, 2 * px));
-  if (!scene.road) stroke(ctx, trail(scene.reference), colours.quiet, Math.max(0.12 * size, 1.5 * px));
-  if (scene.hindsight) drawHindsight(ctx, scene.hindsight, colours, px, size);
-  stroke(ctx, line(scene.plan.x, scene.plan.y), colours.plan, Math.max(0.45 * size, 4 * px));
-  for (const mark of scene.faults) drawFault(ctx, mark, colours, px, size);
-  if (scene.ghost && scene.car) drawGhost(ctx, scene.ghost, scene.car, colours, px);
-  if (scene.car) drawCar(ctx, scene.car, colours, px);
-  if (scene.hindsight?.predicted && scene.car) drawPredicted(ctx, scene.hindsight.predicted, scene.car, colours, px);
+export function drawMoving(ctx: CanvasRenderingContext2D, scene: Scene, camera: Camera, ratio: number): void {
+  const brush = brushOn(ctx, camera, ratio, scene.size);
+  const { colours, px, size } = brush;
+  drawInView(brush, scene.trace, JUMP_M * Math.max(size, 0.1), colours.a, Math.max(0.2 * size, 2 * px));
+  if (!scene.road) drawLine(brush, lineOf(scene.reference), colours.quiet, Math.max(0.12 * size, 1.5 * px));
+  if (scene.hindsight) drawHindsight(brush, scene.hindsight);
+  drawLine(brush, scene.plan, colours.plan, Math.max(0.45 * size, 4 * px));
+  for (const mark of scene.faults) drawFault(brush, mark);
+  if (scene.ghost && scene.car) drawGhost(brush, scene.ghost, scene.car);
+  if (scene.car) drawCar(brush, scene.car);
+  if (scene.hindsight?.predicted && scene.car) drawPredicted(brush, scene.hindsight.predicted, scene.car);
 }
 
 /** Where the cursor of the plots stands. */
-export function drawCursor(ctx: Context, at: Point, camera: Camera, colours: Theme, ratio: number): void {
-  ctx.setTransform(...transformOf(camera, ratio));
-  const px = 1 / camera.scale;
-  for (const [radius, colour, width] of [
-    [9, colours.wheel, 5],
-    [9, colours.act, 3],
+export function drawCursor(ctx: CanvasRenderingContext2D, at: Point, camera: Camera, ratio: number): void {
+  const { colours, px } = brushOn(ctx, camera, ratio);
+  for (const [colour, width] of [
+    [colours.wheel, 5],
+    [colours.act, 3],
   ] as const) {
     ctx.beginPath();
-    ctx.arc(at.x, at.y, radius * px, 0, 2 * Math.PI);
+    ctx.arc(at.x, at.y, 9 * px, 0, 2 * Math.PI);
     ctx.strokeStyle = colour;
     ctx.lineWidth = width * px;
     ctx.stroke();
   }
 }
 
-/** The whole track, small. */
-export function drawOutline(ctx: Context, { centre }: RoadShape, camera: Camera, colours: Theme, ratio: number): void {
-  ctx.setTransform(...transformOf(camera, ratio));
-  ctx.lineJoin = 'round';
-  const px = 1 / camera.scale;
-  const path = new Path2D();
-  addLine(path, centre, 0, centre.x.length);
-  stroke(ctx, path, colours.sheet, 7 * px);
-  stroke(ctx, path, colours.quiet, 2.5 * px);
+/** The whole track, small, with the line of a lap by what it loses. */
+export function drawOutline(
+  ctx: CanvasRenderingContext2D,
+  { centre }: RoadShape,
+  losses: Losses | null,
+  camera: Camera,
+  ratio: number,
+): void {
+  const brush = brushOn(ctx, camera, ratio);
+  const { colours, px } = brush;
+  drawLine(brush, centre, colours.sheet, 7 * px);
+  drawLine(brush, centre, colours.quiet, 2.5 * px);
+  const onPaper = { ...colours, lost: colours.lostInText, won: colours.wonInText };
+  if (losses) drawLosses({ ...brush, colours: onPaper }, losses, 4 * px);
 }
 
-/** The car on it, or the cursor of the plots. */
-export function drawDot(
-  ctx: Context,
-  car: Point,
-  camera: Camera,
-  colours: Theme,
-  ratio: number,
-  colour = colours.ink,
-): void {
-  ctx.setTransform(...transformOf(camera, ratio));
-  const px = 1 / camera.scale;
+/** The car on it. */
+export function drawDot(ctx: CanvasRenderingContext2D, car: Point, camera: Camera, ratio: number): void {
+  const { colours, px } = brushOn(ctx, camera, ratio);
   ctx.beginPath();
   ctx.arc(car.x, car.y, 5 * px, 0, 2 * Math.PI);
-  ctx.fillStyle = colour;
+  ctx.fillStyle = colours.ink;
   ctx.fill();
   ctx.strokeStyle = colours.sheet;
   ctx.lineWidth = 2 * px;

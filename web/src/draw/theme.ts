@@ -23,13 +23,20 @@ export interface Theme {
   readonly rule: string;
   readonly sheet: string;
   readonly act: string;
+  readonly planInText: string;
   readonly lostInText: string;
   readonly wonInText: string;
+  readonly series: readonly string[]; // of curves
   readonly font: string;
 }
 
+/** Tokens of curves, by number. */
+const SERIES = ['ink', 'other', 'plan', 'lost', 'won', 'quiet', 'act', 'edge', 'quiet', 'rule'] as const;
+/** Of a curve, as a style has it. */
+export const toneOf = (series: number): string => `var(--${SERIES[series] ?? 'quiet'})`;
+
 /** A token as a canvas can use it: light or dark is chosen, and colours are mixed. */
-export function tokenColour(name: string): string {
+function tokenColour(name: string): string {
   const probe = document.createElement('i');
   probe.style.color = `var(--${name})`;
   document.documentElement.append(probe);
@@ -58,8 +65,10 @@ const read = (): Theme => ({
   rule: tokenColour('rule'),
   sheet: tokenColour('sheet'),
   act: tokenColour('act'),
+  planInText: tokenColour('plan'),
   lostInText: tokenColour('lost'),
   wonInText: tokenColour('won'),
+  series: SERIES.map(tokenColour),
   font: getComputedStyle(document.body).fontFamily,
 });
 

@@ -14,9 +14,9 @@ const input = (type: string) => ({ tagName: 'INPUT', type });
 describe('keys', () => {
   it('finds what was added last, and forgets it again', () => {
     const [first, second] = [vi.fn(), vi.fn()];
-    const rest = { label: 'S', does: 'steps', group: 'Run' } as const;
-    const end = addShortcuts({ ...rest, keys: ['s'], action: first });
-    const endSecond = addShortcuts({ ...rest, keys: ['s'], action: second });
+    const rest = { label: 'S', does: 'steps' };
+    const end = addShortcuts('Run', { ...rest, keys: ['s'], action: first });
+    const endSecond = addShortcuts('Run', { ...rest, keys: ['s'], action: second });
     shortcutFor(press('S'), null)?.action();
     expect(second).toHaveBeenCalledOnce();
     endSecond();
@@ -28,7 +28,7 @@ describe('keys', () => {
   });
 
   it('leaves the browser its own keys, and does not repeat', () => {
-    const end = addShortcuts({ keys: ['s'], label: 'S', does: '', group: 'Run', action: () => undefined });
+    const end = addShortcuts('Run', { keys: ['s'], label: 'S', does: '', action: () => undefined });
     for (const more of [{ ctrlKey: true }, { metaKey: true }, { altKey: true }, { repeat: true }])
       expect(shortcutFor(press('s', more), null)).toBeNull();
     expect(shortcutFor(press('s'), null)).not.toBeNull();

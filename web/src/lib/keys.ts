@@ -1,3 +1,7 @@
+/** The groups of the help, in their order. */
+export const GROUPS = ['Run', 'Camera', 'Page', 'Driving by hand'] as const;
+type Group = (typeof GROUPS)[number];
+
 /** A keyboard shortcut. The help lists all of them, so that every key that works is documented. */
 export interface Shortcut {
   /** Values of KeyboardEvent.key, letters in lower case. */
@@ -5,7 +9,7 @@ export interface Shortcut {
   /** The key as the help shows it. */
   readonly label: string;
   readonly does: string;
-  readonly group: 'Run' | 'Camera' | 'Page' | 'Driving by hand';
+  readonly group: Group;
   action(): void;
   /** False: the key is left to the element that has the focus. */
   isPossible?(): boolean;
@@ -14,10 +18,11 @@ export interface Shortcut {
 const shortcuts: Shortcut[] = [];
 
 /** Adds shortcuts; returns a function that removes them. */
-export function addShortcuts(...more: readonly Shortcut[]): () => void {
-  shortcuts.push(...more);
+export function addShortcuts(group: Group, ...more: readonly Omit<Shortcut, 'group'>[]): () => void {
+  const added = more.map((each) => ({ ...each, group }));
+  shortcuts.push(...added);
   return () => {
-    for (const each of more) shortcuts.splice(shortcuts.indexOf(each), 1);
+    for (const each of added) shortcuts.splice(shortcuts.indexOf(each), 1);
   };
 }
 
@@ -28,7 +33,6 @@ export interface KeyTarget {
   readonly tagName?: string;
   readonly type?: string;
   readonly isContentEditable?: boolean;
-  getAttribute?(name: string): string | null;
 }
 
 const ON_SLIDER = new Set(['arrowleft', 'arrowright', 'arrowup', 'arrowdown', 'home', 'end', 'pageup', 'pagedown']);
@@ -43,11 +47,8 @@ export function isTakenBy(target: KeyTarget | null, key: string): boolean {
   const tag = target?.tagName?.toLowerCase();
   if (key === 'escape' || !tag || !target) return false;
   if (target.isContentEditable || tag === 'textarea' || tag === 'select') return true;
-  if (target.getAttribute?.('role') === 'separator') return ON_SLIDER.has(key) || key === 'enter';
   if (tag === 'input') {
-    if (target.type === 'range') return ON_SLIDER.has(key);
-    if (TICKED.has(target.type ?? '')) return ON_SLIDER.has(key);
-    return true;
+    return target.type === 'range' || TICKED.has(target.type ?? '') ? ON_SLIDER.has(key) : true;
   }
   return (tag === 'button' || tag === 'a' || tag === 'summary') && key === 'enter';
 }

@@ -57,6 +57,17 @@ export function extent(values: ArrayLike<number>): [number, number] | null {
   return low <= high && Number.isFinite(low) && Number.isFinite(high) ? [low, high] : null;
 }
 
+/** Index of the first of these ascending times that is not before `since`. */
+export function firstSince(times: ArrayLike<number>, since: number): number {
+  let [low, high] = [0, times.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if ((times[middle] ?? NaN) < since) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
 /** The pose `seconds` after a frame with constant speed and yaw rate: on an arc. */
 export function extrapolate(
   pose: { x: number; y: number; yaw: number },

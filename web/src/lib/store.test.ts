@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import { beginSession, receive } from '../state/demultiplexer';
-import { takeSettings } from '../state/settings_session';
+import { requests } from '../state/operate';
 import { changeAt, frameWith, lapWith, planWith, runWith } from '../state/test_messages';
 import { store } from './store';
 
@@ -18,7 +18,7 @@ it('one reset puts back all that belongs to a run', () => {
   receive('/chicane/lap', lapWith(1, 30), 0);
   receive('/chicane/change', changeAt(3, 'latency_ms', '60'), 0);
   receive('/chicane/limit', { is_known: false, why_not: 'the road is open' } as never, 0);
-  takeSettings(new Map([['latency_ms', 60]]));
+  requests.receive(new Map([['latency_ms', 60]]));
   expect(store.peek()).not.toEqual(first);
   beginSession();
   expect(store.peek()).toEqual(first);

@@ -68,8 +68,8 @@ describe('words', () => {
 
   it('has words for whatever limits the speed', () => {
     expect(LIMITERS).toHaveLength(Object.keys(SPEED_LIMITER).length);
-    expect(LIMITERS[SPEED_LIMITER.CURVATURE]?.short).toBe('grip');
-    expect(LIMITERS[SPEED_LIMITER.POWER]?.short).toBe('power');
+    expect(LIMITERS[SPEED_LIMITER.CURVATURE]).toBe('grip');
+    expect(LIMITERS[SPEED_LIMITER.POWER]).toBe('power');
   });
 
   it('names the worst constraint only when one is violated', () => {

@@ -1,12 +1,4 @@
-import {
-  REASON,
-  REASON_WORDS,
-  RUNG,
-  RUNG_WORDS,
-  SPEED_LIMITER,
-  SPEED_LIMITER_WORDS,
-  STATUS_WORDS,
-} from '../protocol/messages';
+import { REASON, REASON_WORDS, RUNG, RUNG_WORDS, type SPEED_LIMITER, STATUS_WORDS } from '../protocol/messages';
 import type { Frame } from '../protocol/topics';
 
 export type Severity = 'good' | 'warning' | 'bad' | 'unknown';
@@ -69,33 +61,22 @@ export function sightInWords(hasMap: boolean, metres: number): Sentence {
   return { severity: 'good', text: hasMap ? `Track known, uses ${sight} of it` : `Sees ${sight} ahead` };
 }
 
-/** What limits the speed: headline, reason, and short name for charts. */
-export interface LimiterWords {
-  readonly title: string;
-  readonly why: string;
-  readonly short: string;
-}
-
-/** Headlines and short names; the sentences are the program's (road/speed_limiter.hpp). */
-const LIMITER_NAMES: Readonly<Record<keyof typeof SPEED_LIMITER, readonly [title: string, short: string]>> = {
-  NONE: ['Not said', 'not said'],
-  ASKED: ['Speed asked for', 'asked for'],
-  CURVATURE: ['Grip in the bend', 'grip'],
-  BRAKING: ['Braking for a bend', 'braking'],
-  POWER: ['Power', 'power'],
-  SIGHT: ['Sight', 'sight'],
-  PART_THROTTLE: ['Part throttle', 'part throttle'],
-  STEER_RATE: ['Steering rate', 'steering'],
-  EDGE: ['Edge of the road', 'edge'],
-  PLAN: ['Planned lap', 'planned lap'],
+/** What limits the speed, as charts call it; the sentences are the program's (road/speed_limiter.hpp). */
+const LIMITER_NAMES: Readonly<Record<keyof typeof SPEED_LIMITER, string>> = {
+  NONE: 'not said',
+  ASKED: 'asked for',
+  CURVATURE: 'grip',
+  BRAKING: 'braking',
+  POWER: 'power',
+  SIGHT: 'sight',
+  PART_THROTTLE: 'part throttle',
+  STEER_RATE: 'steering',
+  EDGE: 'edge',
+  PLAN: 'planned lap',
 };
 
 /** By Frame.speed_limiter. */
-export const LIMITERS: readonly LimiterWords[] = Object.entries(LIMITER_NAMES).map(([name, [title, short]]) => ({
-  title,
-  short,
-  why: `${capital(SPEED_LIMITER_WORDS[SPEED_LIMITER[name as keyof typeof SPEED_LIMITER]]?.text ?? '')}.`,
-}));
+export const LIMITERS: readonly string[] = Object.values(LIMITER_NAMES);
 
 /** snake_case to words, with abbreviations in capitals. */
 export const nameInWords = (name: string): string =>

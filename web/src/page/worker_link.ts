@@ -1,5 +1,4 @@
-import type { IWebSocket } from '@foxglove/ws-protocol';
-import { SUBPROTOCOLS } from '../protocol/connection';
+import type { Socket } from '../protocol/foxglove';
 
 // A page that needs no program: simulator and controller run in a worker of the page, whose script lies in it
 // (apps/page), and speak the protocol that a program speaks over a WebSocket.
@@ -25,29 +24,23 @@ async function startWorker(): Promise<Port> {
   return new Worker(URL.createObjectURL(script)) as unknown as Port;
 }
 
-class WorkerSocket implements IWebSocket {
+class WorkerSocket implements Socket {
   binaryType = 'arraybuffer';
-  readonly protocol = SUBPROTOCOLS[0] ?? '';
-  onerror: IWebSocket['onerror'];
-  onopen: IWebSocket['onopen'];
-  onclose: IWebSocket['onclose'];
-  onmessage: IWebSocket['onmessage'];
+  onclose: Socket['onclose'] = null;
+  onmessage: Socket['onmessage'] = null;
   readonly #send: (message: unknown) => void;
 
   constructor(send: (message: unknown) => void) {
     this.#send = send;
   }
 
-  send(data: string | ArrayBuffer | ArrayBufferView): void {
-    // A view may be of a larger buffer.
-    const own = ArrayBuffer.isView(data)
-      ? new Uint8Array(data.buffer, data.byteOffset, data.byteLength).slice().buffer
-      : data;
-    this.#send({ kind: 'message', data: own });
+  send(data: string | Uint8Array<ArrayBuffer>): void {
+    // Bytes may be a part of a larger buffer.
+    this.#send({ kind: 'message', data: typeof data === 'string' ? data : data.slice().buffer });
   }
 
   close(): void {
-    this.onclose?.({ code: 1000, reason: '', wasClean: true });
+    this.onclose?.({});
   }
 }
 
@@ -71,12 +64,11 @@ export class WorkerLink {
     );
   }
 
-  open(): IWebSocket {
+  open(): Socket {
     const socket = new WorkerSocket((message) => void this.#post(message));
     this.#socket = socket;
     void this.#port.then((port) => {
       if (this.#socket !== socket) return;
-      socket.onopen?.({});
       port.postMessage({ kind: 'connect' });
     });
     return socket;

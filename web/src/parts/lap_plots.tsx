@@ -1,5 +1,6 @@
 import { useLayoutEffect, useMemo, useRef, useState } from 'preact/hooks';
 import { rangeInSteps, ticksOf } from '../draw/axis';
+import { curvePath } from '../draw/curve';
 import { duration, fixed } from '../lib/format';
 import { degrees, extent, niceCeil } from '../lib/math';
 import { onScreen } from '../lib/on_screen';
@@ -20,14 +21,10 @@ interface Row {
   readonly write: (value: number) => string;
 }
 
-interface ChannelRow {
-  readonly title: string;
-  readonly unit: string;
-  readonly height: number;
+interface ChannelRow extends Pick<Row, 'title' | 'unit' | 'write'> {
   readonly channel: LapChannel;
   readonly factor: number;
   readonly range: (columns: readonly Float64Array[]) => readonly [number, number];
-  readonly write: (value: number) => string;
 }
 
 const STEERS = [5, 10, 15, 20, 30, 45, 60, 90];
@@ -43,93 +40,43 @@ const upTo =
   (least: number) =>
   (columns: readonly Float64Array[]): readonly [number, number] => [0, niceCeil(Math.max(least, reachOf(columns)))];
 
-const percent = (value: number): string => `${fixed(value, 0)} %`;
+const inUnit =
+  (unit: string, decimals = 0) =>
+  (value: number): string =>
+    `${fixed(value, decimals)}${unit}`;
+const percent = inUnit(' %');
 const micros = (value: number): string => {
   const { value: number, unit } = duration(value);
   return `${number} ${unit}`;
 };
 
-const speedRow = ({ name, perMps, axisStep, axisLeast }: SpeedUnit): ChannelRow => ({
-  title: 'Speed',
-  unit: name,
-  height: 3.4,
-  channel: 'speed_mps',
-  factor: perMps,
-  range: (columns) => rangeInSteps(columns, 2 * axisStep, axisLeast),
-  write: (value) => fixed(value, 0),
-});
+const speedRow = ({ name: unit, perMps: factor, axisStep, axisLeast }: SpeedUnit): ChannelRow => {
+  const range: ChannelRow['range'] = (columns) => rangeInSteps(columns, 2 * axisStep, axisLeast);
+  return { title: 'Speed', unit, channel: 'speed_mps', factor, range, write: inUnit('') };
+};
 
+const fullPedal = (): [number, number] => [-100, 100];
+const angle = { unit: '°, + left', write: inUnit('°', 1) };
+const offset = { unit: 'm from the centre, + left', write: inUnit(' m', 2) };
+const errorAhead = { unit: 'cm, a delay and a step ahead', write: inUnit(' cm', 1) };
 const DRIVER_ROWS: readonly ChannelRow[] = [
-  {
-    title: 'Pedal',
-    unit: '%, − brakes',
-    height: 1.7,
-    channel: 'throttle',
-    factor: 100,
-    range: () => [-100, 100],
-    write: percent,
-  },
-  {
-    title: 'Steer',
-    unit: '°, + left',
-    height: 1.7,
-    channel: 'steer_rad',
-    factor: degrees(1),
-    range: aboutZero,
-    write: (value) => `${fixed(value, 1)}°`,
-  },
+  { title: 'Pedal', unit: '%, − brakes', channel: 'throttle', factor: 100, range: fullPedal, write: percent },
+  { title: 'Steer', channel: 'steer_rad', factor: degrees(1), range: aboutZero, ...angle },
 ];
 
 /** What solver and controller did: behind the switch Engineer. */
 const ENGINEER_ROWS: readonly ChannelRow[] = [
-  {
-    title: 'Line',
-    unit: 'm from the centre, + left',
-    height: 1.5,
-    channel: 'lateral_error_m',
-    factor: 1,
-    range: aboutZero,
-    write: (value) => `${fixed(value, 2)} m`,
-  },
-  { title: 'Grip used', unit: '%', height: 1.5, channel: 'grip', factor: 100, range: upTo(100), write: percent },
-  {
-    title: 'Control step',
-    unit: 'µs',
-    height: 1.5,
-    channel: 'step_time_us',
-    factor: 1,
-    range: upTo(1000),
-    write: micros,
-  },
-  {
-    title: 'Solver',
-    unit: 'iterations',
-    height: 1.5,
-    channel: 'iterations',
-    factor: 1,
-    range: upTo(8),
-    write: (value) => fixed(value, 0),
-  },
-  { title: 'Cost', unit: 'of the plan', height: 1.5, channel: 'cost', factor: 1, range: upTo(1), write: tidy },
-  {
-    title: 'Model error',
-    unit: 'cm, a delay and a step ahead',
-    height: 1.5,
-    channel: 'prediction_error_m',
-    factor: 100,
-    range: upTo(10),
-    write: (value) => `${fixed(value, 1)} cm`,
-  },
-  {
-    title: 'Delay',
-    unit: 'ms, compensated',
-    height: 1.5,
-    channel: 'delay_s',
-    factor: 1000,
-    range: upTo(100),
-    write: (value) => `${fixed(value, 0)} ms`,
-  },
+  { title: 'Line', channel: 'lateral_error_m', factor: 1, range: aboutZero, ...offset },
+  { title: 'Grip used', unit: '%', channel: 'grip', factor: 100, range: upTo(100), write: percent },
+  { title: 'Control step', unit: 'µs', channel: 'step_time_us', factor: 1, range: upTo(1000), write: micros },
+  { title: 'Solver', unit: 'iterations', channel: 'iterations', factor: 1, range: upTo(8), write: inUnit('') },
+  { title: 'Cost', unit: 'of the plan', channel: 'cost', factor: 1, range: upTo(1), write: tidy },
+  { title: 'Model error', channel: 'prediction_error_m', factor: 100, range: upTo(10), ...errorAhead },
+  { title: 'Delay', unit: 'ms, compensated', channel: 'delay_s', factor: 1000, range: upTo(100), write: inUnit(' ms') },
 ];
+
+/** Shares of the height. */
+const HEIGHTS = { gap: 2.4, speed: 3.4, driver: 1.7, engineer: 1.5 } as const;
 
 const isKnown = (values: Float64Array | null): values is Float64Array => values?.some(Number.isFinite) === true;
 const GAP_STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];
@@ -145,7 +92,7 @@ function gapRow({ gap, b }: Comparison): Row {
   return {
     title: 'Gap',
     unit: `s behind ${b.name}`,
-    height: 2.4,
+    height: HEIGHTS.gap,
     a: gap,
     b: null,
     range: high <= 0.005 && low < 0 ? [range[0], 0] : range,
@@ -156,17 +103,19 @@ function gapRow({ gap, b }: Comparison): Row {
 
 /** The rows that A has; `isEngineer`: also rows of solver and controller. */
 export function rowsOf(comparison: Comparison, unit: SpeedUnit, isEngineer: boolean): Row[] {
-  const specs = [speedRow(unit), ...DRIVER_ROWS, ...(isEngineer ? ENGINEER_ROWS : [])];
   const scaled = (values: Float64Array | null, factor: number): Float64Array | null =>
     isKnown(values) ? values.map((value) => value * factor) : null;
-  return [
-    gapRow(comparison),
-    ...specs.flatMap(({ channel, factor, range, ...spec }): Row[] => {
+  const rows = (height: number, specs: readonly ChannelRow[]): Row[] =>
+    specs.flatMap(({ channel, factor, range, ...spec }) => {
       const a = scaled(comparison.a.channel(channel), factor);
       const b = scaled(comparison.b.channel(channel), factor);
-      if (!a) return [];
-      return [{ ...spec, a, b, range: range(b ? [a, b] : [a]) }];
-    }),
+      return a ? [{ ...spec, height, a, b, range: range(b ? [a, b] : [a]) }] : [];
+    });
+  return [
+    gapRow(comparison),
+    ...rows(HEIGHTS.speed, [speedRow(unit)]),
+    ...rows(HEIGHTS.driver, DRIVER_ROWS),
+    ...rows(HEIGHTS.engineer, isEngineer ? ENGINEER_ROWS : []),
   ];
 }
 
@@ -202,16 +151,8 @@ function yOf({ range: [low, high] }: Row, { top, bottom }: { top: number; bottom
   return bottom - ((Math.min(high, Math.max(low, value)) - low) / (high - low || 1)) * (bottom - top);
 }
 
-function pathOf(values: Float64Array, x: (i: number) => number, y: (value: number) => number): string {
-  let [path, isOpen] = ['', false];
-  for (let i = 0; i < values.length; ++i) {
-    const value = values[i] ?? NaN;
-    const isHere = Number.isFinite(value);
-    if (isHere) path += `${isOpen ? 'L' : 'M'}${px(x(i))} ${px(y(value))}`;
-    isOpen = isHere;
-  }
-  return path;
-}
+const pathOf = (values: Float64Array, x: (i: number) => number, y: (value: number) => number): string =>
+  curvePath(values.length, x, (i) => y(values[i] ?? NaN));
 
 /** The gap: the colour of lost above zero, of won below it. */
 function GapCurve({ row, x, y }: { row: Row; x: (i: number) => number; y: (value: number) => number }) {

@@ -1,4 +1,5 @@
 import { ticksOf } from '../draw/axis';
+import { curvePath } from '../draw/curve';
 import { extent } from '../lib/math';
 
 /** Tokens of the colours of a series. */
@@ -98,17 +99,20 @@ const px = (value: number): string => value.toFixed(1);
 /** The path of a series: of dots, strokes of no length. */
 export function pathOf({ draw, values }: Series, { x, y, height }: Frame): string {
   const at = (i: number): number => values[i] ?? NaN;
-  const step = { line: 2, dots: 2, cells: 4, mark: 1 }[draw];
+  if (draw === 'line')
+    return curvePath(
+      values.length >> 1,
+      (i) => x(at(2 * i)),
+      (i) => y(at(2 * i + 1)),
+    );
+  const step = { dots: 2, cells: 4, mark: 1 }[draw];
   let path = '';
-  let isOpen = false;
   for (let i = 0; i + step <= values.length; i += step) {
-    const isKnown = Number.isFinite(at(i)) && (draw === 'mark' || Number.isFinite(at(i + 1)));
-    const place = isKnown ? `${px(x(at(i)))} ${px(draw === 'mark' ? MARGIN.top : y(at(i + 1)))}` : '';
-    if (draw === 'line') path += isKnown ? `${isOpen ? 'L' : 'M'}${place}` : '';
-    else if (isKnown && draw === 'dots') path += `M${place}h0`;
-    else if (isKnown && draw === 'mark') path += `M${place}V${px(height - MARGIN.bottom)}`;
-    else if (isKnown) path += `M${place}H${px(x(at(i) + at(i + 2)))}V${px(y(at(i + 1) + at(i + 3)))}H${px(x(at(i)))}z`;
-    isOpen = isKnown;
+    if (!Number.isFinite(at(i)) || (draw !== 'mark' && !Number.isFinite(at(i + 1)))) continue;
+    const place = `M${px(x(at(i)))} ${px(draw === 'mark' ? MARGIN.top : y(at(i + 1)))}`;
+    if (draw === 'dots') path += `${place}h0`;
+    else if (draw === 'mark') path += `${place}V${px(height - MARGIN.bottom)}`;
+    else path += `${place}H${px(x(at(i) + at(i + 2)))}V${px(y(at(i + 1) + at(i + 3)))}H${px(x(at(i)))}z`;
   }
   return path;
 }

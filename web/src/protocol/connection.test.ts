@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
-import type { IWebSocket } from '@foxglove/ws-protocol';
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { Connection, retryDelay } from './connection';
+import type { Socket } from './foxglove';
 import type { SourceEvents } from './source';
 
 const folder = new URL('../../../tests/protocol/fixtures/ros/', import.meta.url);
@@ -12,18 +12,15 @@ const topics = JSON.parse(readFileSync(new URL('topics.json', folder), 'utf8')) 
 }[];
 
 /** A server on the other end of no network. */
-class FakeSocket implements IWebSocket {
+class FakeSocket implements Socket {
   binaryType = '';
-  protocol = 'foxglove.sdk.v1';
-  onerror: IWebSocket['onerror'];
-  onopen: IWebSocket['onopen'];
-  onclose: IWebSocket['onclose'];
-  onmessage: IWebSocket['onmessage'];
-  readonly sent: (string | ArrayBuffer | ArrayBufferView)[] = [];
+  onclose: Socket['onclose'] = null;
+  onmessage: Socket['onmessage'] = null;
+  readonly sent: (string | Uint8Array)[] = [];
   close(): void {
     this.onclose?.({});
   }
-  send(data: string | ArrayBuffer | ArrayBufferView): void {
+  send(data: string | Uint8Array): void {
     this.sent.push(data);
   }
   say(message: object): void {
@@ -137,6 +134,12 @@ describe('connection', () => {
     const refused = connection.call('/step');
     last().say({ op: 'serviceCallFailure', serviceId: 1, callId: 2, message: 'the run is over' });
     expect(await refused).toBe('the run is over');
+    const unreadable = connection.call('/step');
+    const cut = [3, 1, 0, 0, 0, 3, 0, 0, 0, 3, 0, 0, 0, 99, 100, 114, 0, 1, 0, 0, 1];
+    last().sayBytes(new Uint8Array(cut.slice(0, 9))); // no head: nothing
+    last().sayBytes(new Uint8Array([...cut.slice(0, 9), 255, 255, 255, 255])); // an encoding beyond the end: nothing
+    last().sayBytes(new Uint8Array(cut));
+    expect(await unreadable).toMatch(/^the answer of \/step cannot be read: .* got 5 bytes, expected at least 12$/);
     const pending = connection.call('/step');
     last().close();
     expect(await pending).toBe('the connection was lost');

@@ -1,5 +1,13 @@
-import { type Channel, FoxgloveClient, type IWebSocket, type Parameter, type Service } from '@foxglove/ws-protocol';
 import { decoder, encodeBool, encodeNothing, encodeText } from './decoder';
+import {
+  type Channel,
+  type FromServer,
+  type Parameter,
+  readBytes,
+  type Service,
+  type Socket,
+  serviceCall,
+} from './foxglove';
 import type { AskAnswer, ServiceName, SetAnswer, Setting, Source, SourceEvents } from './source';
 import { TOPIC_NAMES, type Topics } from './topics';
 
@@ -29,9 +37,10 @@ interface PendingSet {
  * parameters, and reconnects whenever it is lost.
  */
 export class Connection implements Source {
-  readonly #open: () => IWebSocket;
+  readonly #open: () => Socket;
   readonly #events: SourceEvents;
-  #client: FoxgloveClient | undefined;
+  #socket: Socket | undefined;
+  #readers = new Map<number, (bytes: DataView) => void>(); // by subscription
   #attempt = 0;
   #timer: ReturnType<typeof setTimeout> | undefined;
   #services = new Map<string, Service>();
@@ -43,7 +52,7 @@ export class Connection implements Source {
   #nextCall = 1;
   #hasParameters = false;
 
-  constructor(open: () => IWebSocket, events: SourceEvents) {
+  constructor(open: () => Socket, events: SourceEvents) {
     this.#open = open;
     this.#events = events;
     this.#connect();
@@ -51,13 +60,13 @@ export class Connection implements Source {
 
   close(): void {
     clearTimeout(this.#timer);
-    const client = this.#client;
-    this.#client = undefined;
-    client?.close();
+    const socket = this.#socket;
+    this.#socket = undefined;
+    socket?.close();
   }
 
   retryNow(): void {
-    if (this.#client) return;
+    if (this.#socket) return;
     clearTimeout(this.#timer);
     this.#connect();
   }
@@ -73,15 +82,15 @@ export class Connection implements Source {
 
   #request(name: ServiceName, data: Uint8Array): Promise<AskAnswer> {
     const service = this.#services.get(name);
-    if (!service || !this.#client)
+    if (!service || !this.#socket)
       return Promise.resolve({ isTaken: false, message: `${name} is not offered by this run` });
     const callId = this.#nextCall++;
-    this.#client.sendServiceCallRequest({ serviceId: service.id, callId, encoding: 'cdr', data });
+    this.#socket.send(serviceCall(service.id, callId, data));
     return new Promise((resolve) => this.#calls.set(callId, { service, resolve }));
   }
 
   set(name: string, value: Setting): Promise<SetAnswer> {
-    if (!this.#client || !this.#hasParameters)
+    if (!this.#socket || !this.#hasParameters)
       return Promise.resolve({ value: null, sentence: `${name} cannot be changed in this run` });
     return new Promise((resolve) => this.#sendSet({ name, value, sentence: null, resolve }));
   }
@@ -92,7 +101,7 @@ export class Connection implements Source {
     // JSON does not distinguish 3 from 3.0: the type does.
     const parameter: Parameter = typeof value === 'number' ? { name, value, type: 'float64' } : { name, value };
     this.#sets.set(id, request);
-    this.#client?.setParameters([parameter], id);
+    this.#say({ op: 'setParameters', parameters: [parameter], id });
   }
 
   /** The same program soon after takes what it has not answered; hands on the wheel are of their moment. */
@@ -107,54 +116,75 @@ export class Connection implements Source {
   }
 
   refresh(): void {
-    if (this.#hasParameters) this.#client?.getParameters([], ALL);
+    if (this.#hasParameters) this.#say({ op: 'getParameters', parameterNames: [], id: ALL });
+  }
+
+  #say(message: object): void {
+    this.#socket?.send(JSON.stringify(message));
   }
 
   #connect(): void {
-    const client = new FoxgloveClient({ ws: this.#open() });
-    const readers = new Map<number, (bytes: ArrayBufferView) => void>();
-    const isCurrent = () => this.#client === client;
-    this.#client = client;
-
-    client.on('serverInfo', ({ capabilities, sessionId }) => {
-      if (!isCurrent()) return;
-      this.#attempt = 0;
-      this.#hasParameters = capabilities.includes('parameters');
-      this.#events.open(sessionId ?? '');
-      if (!this.#hasParameters) return this.#sendAgain('');
-      client.getParameters([], ALL);
-      client.subscribeParameterUpdates([]);
-      this.#sendAgain(sessionId ?? '');
-    });
-    client.on('advertise', (channels) => {
-      for (const channel of isCurrent() ? channels : []) this.#subscribe(client, channel, readers);
-    });
-    client.on('message', ({ subscriptionId, data }) => {
-      if (isCurrent()) readers.get(subscriptionId)?.(data);
-    });
-    client.on('advertiseServices', (services) => {
-      for (const service of services) this.#services.set(service.name, service);
-      this.#events.services(new Set(this.#services.keys()));
-    });
-    client.on('parameterValues', ({ parameters, id }) => {
-      if (isCurrent()) this.#parameterValues(parameters, id);
-    });
-    client.on('serviceCallResponse', ({ callId, data }) => this.#answer(callId, data));
-    client.on('serviceCallFailure', ({ callId, message }) => this.#finish(callId, { isTaken: false, message }));
-    client.on('status', ({ message }) => this.#status(message));
-    client.on('error', () => undefined); // a close event follows
-    client.on('close', () => {
-      if (isCurrent()) this.#lost();
-    });
+    const socket = this.#open();
+    this.#socket = socket;
+    this.#readers.clear();
+    socket.binaryType = 'arraybuffer';
+    socket.onmessage = ({ data }) => {
+      if (this.#socket !== socket) return;
+      if (data instanceof ArrayBuffer) this.#takeBytes(data);
+      else this.#take(JSON.parse(String(data)) as FromServer);
+    };
+    socket.onclose = () => {
+      if (this.#socket === socket) this.#lost();
+    };
   }
 
-  #subscribe(client: FoxgloveClient, channel: Channel, readers: Map<number, (bytes: ArrayBufferView) => void>): void {
-    const topic = TOPIC_NAMES.find((name) => name === channel.topic);
-    if (!topic || channel.encoding !== 'cdr') return;
-    const decode = decoder(channel.schema);
-    readers.set(client.subscribe(channel.id), (bytes) => {
+  #take(message: FromServer): void {
+    switch (message.op) {
+      case 'serverInfo':
+        this.#introduced(message.capabilities, message.sessionId ?? '');
+        break;
+      case 'advertise':
+        for (const channel of message.channels) this.#subscribe(channel);
+        break;
+      case 'advertiseServices':
+        for (const service of message.services) this.#services.set(service.name, service);
+        this.#events.services(new Set(this.#services.keys()));
+        break;
+      case 'parameterValues':
+        this.#parameterValues(message.parameters, message.id);
+        break;
+      case 'serviceCallFailure':
+        this.#finish(message.callId, { isTaken: false, message: message.message });
+        break;
+      case 'status':
+        this.#status(message.message);
+    }
+  }
+
+  #takeBytes(data: ArrayBuffer): void {
+    const message = readBytes(data);
+    if (message?.op === 'data') this.#readers.get(message.subscription)?.(message.bytes);
+    if (message?.op === 'answer') this.#answer(message.callId, message.bytes);
+  }
+
+  #introduced(capabilities: readonly string[], session: string): void {
+    this.#attempt = 0;
+    this.#hasParameters = capabilities.includes('parameters');
+    this.#events.open(session);
+    this.refresh();
+    if (this.#hasParameters) this.#say({ op: 'subscribeParameterUpdates', parameterNames: [] });
+    this.#sendAgain(this.#hasParameters ? session : '');
+  }
+
+  #subscribe({ id, topic: name, encoding, schema }: Channel): void {
+    const topic = TOPIC_NAMES.find((each) => each === name);
+    if (!topic || encoding !== 'cdr') return;
+    const decode = decoder(schema);
+    const subscription = this.#readers.size;
+    this.#readers.set(subscription, (bytes) => {
       this.#events.message(topic, decode(bytes) as Topics[typeof topic]);
     });
+    this.#say({ op: 'subscribe', subscriptions: [{ id: subscription, channelId: id }] });
   }
 
   #parameterValues(parameters: readonly Parameter[], id: string | undefined): void {
@@ -179,12 +209,16 @@ export class Connection implements Source {
     this.#events.notice(sentence);
   }
 
-  #answer(callId: number, data: ArrayBufferView): void {
+  #answer(callId: number, data: DataView): void {
     const service = this.#calls.get(callId)?.service;
     if (!service) return;
-    const schema = service.response?.schema ?? service.responseSchema ?? '';
-    const answer = decoder(schema)(data) as { success: boolean; message: string };
-    this.#finish(callId, { isTaken: answer.success, message: answer.message });
+    try {
+      const schema = service.response?.schema ?? service.responseSchema ?? '';
+      const answer = decoder(schema)(data) as { success: boolean; message: string };
+      this.#finish(callId, { isTaken: answer.success, message: answer.message });
+    } catch (error) {
+      this.#finish(callId, { isTaken: false, message: `the answer of ${service.name} cannot be read: ${error}` });
+    }
   }
 
   #finish(callId: number, answer: AskAnswer): void {
@@ -193,7 +227,7 @@ export class Connection implements Source {
   }
 
   #lost(): void {
-    this.#client = undefined;
+    this.#socket = undefined;
     this.#hasParameters = false;
     this.#services.clear();
     this.#events.services(new Set());

@@ -1,4 +1,6 @@
 import { readFileSync } from 'node:fs';
+import { parse } from '@foxglove/rosmsg';
+import { MessageReader } from '@foxglove/rosmsg2-serialization';
 import { describe, expect, it } from 'vitest';
 import { decoder } from './decoder';
 import { SPEED_LIMITER } from './messages';
@@ -25,6 +27,12 @@ describe('messages of the C++ side', () => {
     // The past has the type of a frame, and a channel of viewers alone (wire/viewer.hpp).
     const sent = TOPIC_NAMES.filter((name) => name !== '/chicane/past');
     for (const name of sent) expect(topics.map((each) => each.topic)).toContain(name);
+  });
+
+  it.each(topics)('$topic is read as the reference implementation reads it', ({ schema, file }) => {
+    const bytes = readFileSync(new URL(file, folder));
+    const reference = new MessageReader(parse(schema, { ros2: true }));
+    expect(decoder(schema)(bytes)).toEqual(reference.readMessage(bytes));
   });
 
   it('carry a frame', () => {

@@ -857,8 +857,10 @@ export interface Situation {
   driver: string;
   /** the sentence without its numbers: "part_throttle" */
   kind: string;
-  /** time of the run at which it began; of an alarm: the event */
-  since_s: number;
+  /** time of the run at which `kind` began */
+  kind_since_s: number;
+  /** of an alarm: time of the run at which its event began; not-a-number: no alarm */
+  event_since_s: number;
   /** time of the run since which the car stands; not-a-number: it moves */
   stands_since_s: number;
   /** events of the run so far that a person has to know of */
@@ -874,7 +876,8 @@ export const UNKNOWN_SITUATION: Situation = {
   ends_it: '',
   driver: '',
   kind: '',
-  since_s: NaN,
+  kind_since_s: NaN,
+  event_since_s: NaN,
   stands_since_s: NaN,
   alarms: 0,
 };

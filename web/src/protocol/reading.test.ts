@@ -1,15 +1,12 @@
-import type { IWebSocket } from '@foxglove/ws-protocol';
 import { describe, expect, it } from 'vitest';
+import type { Socket } from './foxglove';
 import { ReadingSocket } from './reading';
 
 function connected() {
   const sent: unknown[] = [];
-  const raw: IWebSocket = {
+  const raw: Socket = {
     binaryType: 'arraybuffer',
-    protocol: 'foxglove.sdk.v1',
-    onopen: null,
     onclose: null,
-    onerror: null,
     onmessage: null,
     close: () => undefined,
     send: (data) => sent.push(JSON.parse(String(data))),
@@ -22,7 +19,7 @@ function connected() {
     { now: () => clock.now },
   );
   socket.onmessage = ({ data }) => log.passed.push(data);
-  return { raw, sent, clock, log, say: (data: unknown) => raw.onmessage?.({ data }) };
+  return { raw, sent, clock, log, socket, say: (data: unknown) => raw.onmessage?.({ data }) };
 }
 
 describe('a reading socket', () => {
@@ -38,6 +35,15 @@ describe('a reading socket', () => {
     clock.now += 40;
     say(new ArrayBuffer(1));
     expect(sent[2]).toEqual({ op: 'received', bytes: 4201, at: 1050 });
+  });
+
+  it('acknowledges what nobody can read, or the program would wait for ever', () => {
+    const { raw, sent, socket } = connected();
+    socket.onmessage = () => {
+      throw new Error('unreadable');
+    };
+    expect(() => raw.onmessage?.({ data: new ArrayBuffer(100) })).toThrow('unreadable');
+    expect(sent).toHaveLength(1);
   });
 
   it('says how old the next frame is at most, and how much of the past is left', () => {

@@ -1,4 +1,4 @@
-import type { IWebSocket } from '@foxglove/ws-protocol';
+import type { Socket } from './foxglove';
 
 // What this page adds to the protocol: it acknowledges what it has read, so that the program sends no more than
 // arrives in time, and measures how old the newest frame is when it arrives (docs/viewer.md).
@@ -35,34 +35,31 @@ function told(text: string): Told | null {
  * A socket that acknowledges the bytes of binary messages: of every few thousand, and of every message that comes some
  * time after the last. Without timers: browsers let those of hidden pages rest.
  */
-export class ReadingSocket implements IWebSocket {
-  readonly #socket: IWebSocket;
+export class ReadingSocket implements Socket {
+  readonly #socket: Socket;
   readonly #now: () => number; // [ms]
   #read = 0;
   #acknowledged = 0;
   #acknowledgedAt = Number.NEGATIVE_INFINITY;
-  onerror: IWebSocket['onerror'];
-  onopen: IWebSocket['onopen'];
-  onclose: IWebSocket['onclose'];
-  onmessage: IWebSocket['onmessage'];
+  onclose: Socket['onclose'] = null;
+  onmessage: Socket['onmessage'] = null;
 
   constructor(
-    socket: IWebSocket,
+    socket: Socket,
     events: ReadingEvents,
     { acknowledges = true, now = () => performance.now() }: Acknowledging = {},
   ) {
     this.#socket = socket;
     this.#now = now;
-    socket.onopen = (event) => this.onopen?.(event);
     socket.onclose = (event) => this.onclose?.(event);
-    socket.onerror = (event) => this.onerror?.(event);
     socket.onmessage = (event) => {
       const { data } = event;
+      // First: whatever a reader makes of a message, it has come.
+      if (acknowledges && data instanceof ArrayBuffer) this.#count(data.byteLength);
       const said = typeof data === 'string' ? told(data) : null;
       if (said?.op === 'heard') events.age(Math.max(0, (now() - said.at) / 1000 - said.held));
       else if (said) events.pastLeft(said.messages);
       else this.onmessage?.(event);
-      if (acknowledges && data instanceof ArrayBuffer) this.#count(data.byteLength);
     };
   }
 
@@ -72,11 +69,8 @@ export class ReadingSocket implements IWebSocket {
   set binaryType(type: string) {
     this.#socket.binaryType = type;
   }
-  get protocol(): string {
-    return this.#socket.protocol;
-  }
 
-  send(data: string | ArrayBuffer | ArrayBufferView): void {
+  send(data: string | Uint8Array<ArrayBuffer>): void {
     this.#socket.send(data);
   }
 

@@ -1,3 +1,5 @@
+import { fields, list, number, text } from '../lib/json';
+
 /** One setting as /schema.json describes it; its source is the table of src/chicane/protocol/schema.hpp. */
 export interface SchemaEntry {
   readonly key: string;
@@ -33,48 +35,45 @@ export interface FaultEntry {
 
 function readFault(value: unknown): FaultEntry | undefined {
   if (typeof value !== 'object' || value === null) return undefined;
-  const { group, duration_s, strength, weakest, strongest, strength_meaning } = value as Record<string, unknown>;
+  const all = fields(value);
   return {
-    group: typeof group === 'string' ? group : '',
-    duration_s: numberOr(duration_s) ?? 1,
-    strength: numberOr(strength) ?? 1,
-    weakest: numberOr(weakest) ?? 1,
-    strongest: numberOr(strongest) ?? 1,
-    strength_meaning: typeof strength_meaning === 'string' ? strength_meaning : '',
+    group: text(all.group),
+    duration_s: number(all.duration_s, 1),
+    strength: number(all.strength, 1),
+    weakest: number(all.weakest, 1),
+    strongest: number(all.strongest, 1),
+    strength_meaning: text(all.strength_meaning),
   };
 }
 
-const KINDS: readonly string[] = ['number', 'integer', 'bool', 'choice', 'text'] satisfies SchemaEntry['kind'][];
+const KINDS: readonly SchemaEntry['kind'][] = ['number', 'integer', 'bool', 'choice', 'text'];
 
-const numberOr = (value: unknown): number | null =>
-  typeof value === 'number' && Number.isFinite(value) ? value : null;
+const numberOr = (value: unknown): number | null => (Number.isFinite(value) ? (value as number) : null);
 
 const settingOr = (value: unknown): number | boolean | string | null =>
   typeof value === 'number' || typeof value === 'boolean' || typeof value === 'string' ? value : null;
 
-/** Reads the well-formed entries of a parsed /schema.json: the page may be older or newer than the server. */
-export function readSchema(json: unknown): SchemaEntry[] {
-  if (!Array.isArray(json)) return [];
-  return json.flatMap((each: Partial<Record<keyof SchemaEntry, unknown>> | null) => {
-    if (typeof each?.key !== 'string' || typeof each.kind !== 'string' || !KINDS.includes(each.kind)) return [];
-    const fault = readFault(each.fault);
-    return [
-      {
-        key: each.key,
-        group: typeof each.group === 'string' && each.group !== '' ? each.group : (each.key.split('.')[0] ?? ''),
-        controller: typeof each.controller === 'string' ? each.controller : '',
-        kind: each.kind as SchemaEntry['kind'],
-        unit: typeof each.unit === 'string' ? each.unit : '',
+/** Reads the well-formed entries of a parsed /schema.json. */
+export const readSchema = (json: unknown): SchemaEntry[] =>
+  list(json)
+    .map(fields)
+    .flatMap((each) => {
+      const [key, kind, fault] = [text(each.key), KINDS.find((name) => name === each.kind), readFault(each.fault)];
+      if (typeof each.key !== 'string' || !kind) return [];
+      return {
+        key,
+        group: text(each.group) || (key.split('.')[0] ?? ''),
+        controller: text(each.controller),
+        kind,
+        unit: text(each.unit),
         minimum: numberOr(each.minimum),
         maximum: numberOr(each.maximum),
-        choices: Array.isArray(each.choices) ? each.choices.filter((choice) => typeof choice === 'string') : [],
+        choices: list(each.choices).filter((choice) => typeof choice === 'string'),
         default: settingOr(each.default),
         start: settingOr(each.start),
-        meaning: typeof each.meaning === 'string' ? each.meaning : '',
+        meaning: text(each.meaning),
         is_live: each.is_live !== false,
         is_fixed: each.is_fixed === true,
         ...(fault ? { fault } : {}),
-      },
-    ];
-  });
-}
+      };
+    });

@@ -1,6 +1,12 @@
-import type { Change, Frame, Lap, Limit, Plan, Run, Situation } from './messages';
-
-// What this page subscribes to. Messages of our own are made from their definitions (messages.ts).
+import {
+  UNKNOWN_CHANGE,
+  UNKNOWN_FRAME,
+  UNKNOWN_LAP,
+  UNKNOWN_LIMIT,
+  UNKNOWN_PLAN,
+  UNKNOWN_RUN,
+  UNKNOWN_SITUATION,
+} from './messages';
 
 export type { Change, Frame, Lap, Limit, Plan, Run, Situation, Stamp } from './messages';
 
@@ -9,36 +15,30 @@ export interface Path {
   poses: { pose: { position: { x: number; y: number } } }[];
 }
 
-/** The topics this page subscribes to, with their message types. */
-export interface Topics {
-  '/chicane/frame': Frame;
-  '/chicane/situation': Situation;
-  '/chicane/plan': Plan;
-  '/chicane/run': Run;
-  '/reference': Path;
-  '/track/left': Path;
-  '/track/right': Path;
-  '/track/centre': Path;
-  '/chicane/lap': Lap;
-  '/chicane/change': Change;
-  '/chicane/limit': Limit;
-  /** Frames from before the page came, the newest first. */
-  '/chicane/past': Frame;
-}
+const NO_PATH: Path = { poses: [] };
 
-export type TopicName = keyof Topics;
+/** What this page subscribes to, with values for fields that a sender leaves out. */
+const UNKNOWN = {
+  '/chicane/frame': UNKNOWN_FRAME,
+  '/chicane/situation': UNKNOWN_SITUATION,
+  '/chicane/plan': UNKNOWN_PLAN,
+  '/chicane/run': { ...UNKNOWN_RUN, kerb_width_m: 0 }, // programs without this field drew no kerbs
+  '/reference': NO_PATH,
+  '/track/left': NO_PATH,
+  '/track/right': NO_PATH,
+  '/track/centre': NO_PATH,
+  '/chicane/lap': UNKNOWN_LAP,
+  '/chicane/change': UNKNOWN_CHANGE,
+  '/chicane/limit': UNKNOWN_LIMIT,
+  '/chicane/past': UNKNOWN_FRAME, // frames from before the page came, the newest first
+};
 
-export const TOPIC_NAMES: readonly TopicName[] = [
-  '/chicane/frame',
-  '/chicane/situation',
-  '/chicane/plan',
-  '/chicane/run',
-  '/reference',
-  '/track/left',
-  '/track/right',
-  '/track/centre',
-  '/chicane/lap',
-  '/chicane/change',
-  '/chicane/limit',
-  '/chicane/past',
-];
+export type TopicName = keyof typeof UNKNOWN;
+/** The topics with their message types. */
+export type Topics = { readonly [T in TopicName]: (typeof UNKNOWN)[T] };
+
+export const TOPIC_NAMES = Object.keys(UNKNOWN) as readonly TopicName[];
+
+/** A message with every field; unknown where an older program or its recording leaves it out. */
+export const complete = <T extends TopicName>(topic: T, message: Partial<Topics[T]>): Topics[T] =>
+  ({ ...UNKNOWN[topic], ...message }) as Topics[T];

@@ -46,9 +46,10 @@ function runsOf(): Words[] {
   const [presets, cars, faults] = ['presets', 'cars', 'faults'].map(namesOf) as [string[], string[], string[]];
   const full = cars.filter((car) => car !== 'f1tenth' && car !== 'orca-1-43');
   const cross = presets.flatMap((preset, i) => {
-    const some = isWhole ? full : [full[i % full.length] ?? '', 'udacity'];
-    return some.flatMap((car, j): Words[] => {
-      const mine = isWhole ? faults : faults.filter((_, k) => k % 10 === (i + 5 * j) % 10);
+    // Otherwise each preset, car and fault once; `race` with the car whose lap is soon planned.
+    const some = isWhole ? full : [preset === 'race' ? 'udacity' : (full[i % full.length] ?? '')];
+    return some.flatMap((car): Words[] => {
+      const mine = isWhole ? faults : faults.filter((_, k) => k % presets.length === i);
       return mine.map((fault) => ['--preset', preset, '--car', car, '--fault', `${fault}@6`]);
     });
   });

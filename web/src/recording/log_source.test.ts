@@ -6,7 +6,6 @@ import type { Frame, TopicName } from '../protocol/topics';
 import { type LogEvents, LogSource, landmarksOf, runStarts } from './log_source';
 import { McapLog } from './mcap_log';
 import { BytesReadable, HttpReadable } from './readable';
-import { RecordedDrive } from './recorded_drive';
 
 // A small recording of 10 s: frames at 10 Hz on a straight, a lap at 4 s, off the road at 6 s, a setting changed at 7
 // s, one fault from 8 s to 9 s and another that begins where that ends. It was driven at 15 times its pace.
@@ -242,23 +241,6 @@ describe('playing a recording', () => {
     const source = await LogSource.open(log, new Page());
     expect((await source.set('latency_ms', 50)).sentence).toMatch('belongs to the recording');
     expect(await source.set('run.pace', 100)).toEqual({ value: 1, sentence: 'run.pace: got 100, expected 0.05 to 20' });
-  });
-});
-
-describe('another drive beside it', () => {
-  it('is where it was at the time shown', async () => {
-    const frames = (await log.read(['/chicane/frame'], 0, 10)).map(({ time, message }) => ({
-      time,
-      frame: message as Frame,
-    }));
-    let now = 2.05;
-    const drive = RecordedDrive.from('other', frames, () => now);
-    const pose = { x: 0, y: 0, yaw: 0, steer: 0 };
-    expect(drive.poseAt(0, pose)).toBe(true);
-    expect(pose.x).toBeCloseTo(4.1, 6);
-    expect(pose.steer).toBeCloseTo(0.205, 6);
-    now = 11;
-    expect(drive.poseAt(0, pose)).toBe(false);
   });
 });
 

@@ -1,3 +1,4 @@
+import { begunBits } from '../lib/bits';
 import { nameInWords } from '../lib/words';
 import type { ServiceName, SetAnswer, Setting, Source, SourceEvents } from '../protocol/source';
 import type { Frame, Lap, Run, TopicName } from '../protocol/topics';
@@ -291,10 +292,8 @@ export async function landmarksOf(
       if (frame.off_track_events > was.offTrack) found.push({ time, kind: 'off-track', label: 'off the road' });
       if (frame.rung > 0 && was.rung === 0) found.push({ time, kind: 'fallback', label: 'fallback took over' });
       if (frame.is_gated && !was.isGated) found.push({ time, kind: 'gate', label: 'command gate intervened' });
-      for (let bit = 0; bit < 32; ++bit) {
-        const begins = ((faults & ~was.faults) >>> bit) & 1;
-        if (begins) found.push({ time, kind: 'fault', label: nameInWords(faultNames[bit] ?? 'fault').toLowerCase() });
-      }
+      for (const bit of begunBits(faults, was.faults))
+        found.push({ time, kind: 'fault', label: nameInWords(faultNames[bit] ?? 'fault').toLowerCase() });
       Object.assign(was, { offTrack: frame.off_track_events, rung: frame.rung, isGated: frame.is_gated, faults });
     }
   }

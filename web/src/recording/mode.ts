@@ -1,3 +1,5 @@
+import { type Fields, fields, list, number, text } from '../lib/json';
+
 /**
  * What the page shows: a live run, or recordings served by `chicane replay`.
  */
@@ -10,15 +12,17 @@ export interface ListedLog {
   readonly url: string;
 }
 
-const isRecord = (value: unknown): value is Record<string, unknown> => typeof value === 'object' && value !== null;
-const isListed = (value: unknown): value is ListedLog =>
-  isRecord(value) && typeof value.name === 'string' && typeof value.url === 'string';
-
 /** Reads the server's mode.json; anything else means a live run. */
 export function modeOf(answer: unknown): Mode {
-  if (!isRecord(answer) || answer.mode !== 'replay') return { name: 'live' };
-  const logs = Array.isArray(answer.logs) ? answer.logs.filter(isListed) : [];
-  return { name: 'replay', logs, start: typeof answer.start_s === 'number' ? answer.start_s : 0 };
+  const { mode, logs, start_s } = fields(answer);
+  if (mode !== 'replay') return { name: 'live' };
+  const isListed = ({ name, url }: Fields): boolean => typeof name === 'string' && typeof url === 'string';
+  const listed = list(logs).map(fields).filter(isListed);
+  return {
+    name: 'replay',
+    logs: listed.map(({ name, url }) => ({ name: text(name), url: text(url) })),
+    start: number(start_s, 0),
+  };
 }
 
 export async function findMode(): Promise<Mode> {

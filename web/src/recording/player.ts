@@ -1,24 +1,23 @@
 import { computed, effect, untracked } from '@preact/signals';
 import { store } from '../lib/store';
 import { readSchema } from '../protocol/schema';
-import type { Frame, Run } from '../protocol/topics';
+import { complete, type Frame, type Run } from '../protocol/topics';
+import { posesOf, RecordedDrive } from '../scene3d/ghost';
 import { beginSession, receive, rewind } from '../state/demultiplexer';
-import { ghostShown } from '../state/ghost_shown';
+import { ghosts } from '../state/ghost_shown';
 import { keepAllLaps, lapSamples, laps, sampleLap } from '../state/laps';
 import { link, notice, services } from '../state/link';
-import { complete } from '../state/message_fields';
+import { requests } from '../state/operate';
 import { removeOtherLaps } from '../state/other_laps';
 import { run } from '../state/run';
 import { seekTo } from '../state/seek';
 import { schema } from '../state/settings';
-import { takeSettings } from '../state/settings_session';
 import { everyFrame } from '../state/ticker';
 import { offerLaps } from './add_laps';
 import { type Landmark, LogSource, landmarksOf } from './log_source';
 import type { McapLog } from './mcap_log';
 import type { Mode } from './mode';
 import { openFiles, openRecordings, type Recordings } from './open';
-import { RecordedDrive } from './recorded_drive';
 import { type LoggedRun, runsOf } from './runs_of_log';
 
 // State of the time line.
@@ -74,7 +73,7 @@ export async function play(recordings: Recordings, which = 0, start = recordings
     rewind,
     message: (topic, message) => receive(topic, message, performance.now()),
     services: (names) => (services.value = names),
-    settings: takeSettings,
+    settings: (values) => requests.receive(values),
     notice: (sentence) => (notice.value = sentence),
     moved(time, plays) {
       position.value = time;
@@ -95,7 +94,7 @@ export const beside = store.signal('page', 1);
 /** Shows another recording as a ghost, where it was driven on the same track. */
 export async function showBeside(which: number, log = logs.value[played.value]): Promise<void> {
   const rival = logs.value[which] === log ? logs.value.find((each) => each !== log) : logs.value[which];
-  ghostShown.source = null;
+  ghosts.recording = null;
   beside.value = rival ? logs.value.indexOf(rival) : -1;
   if (!rival || !log) return;
   const [mine, other] = await Promise.all([trackOf(log), trackOf(rival)]);
@@ -104,7 +103,7 @@ export async function showBeside(which: number, log = logs.value[played.value]):
     beside.value = -1;
     return;
   }
-  ghostShown.source = RecordedDrive.from(rival.name, await framesOf(rival), () => position.value);
+  ghosts.recording = new RecordedDrive(rival.name, posesOf(await framesOf(rival)), Infinity, () => position.value);
 }
 
 async function trackOf(log: McapLog): Promise<string> {

@@ -1,6 +1,5 @@
-import type { Frame, Lap, Run } from '../protocol/topics';
+import { complete, type Frame, type Lap, type Run } from '../protocol/topics';
 import { LapSamples, momentOf } from '../state/lap_samples';
-import { complete } from '../state/message_fields';
 import type { McapLog } from './mcap_log';
 
 /** The laps of one run of a recording, along the road. */

@@ -1,12 +1,11 @@
 import { effect } from '@preact/signals';
-import { store } from '../lib/store';
-import { ghostShown } from '../state/ghost_shown';
+import { complete } from '../protocol/topics';
+import { RecordedDrive } from '../scene3d/ghost';
+import { ghosts } from '../state/ghost_shown';
 import { live } from '../state/live';
-import { complete } from '../state/message_fields';
 import { type Moment, showAgain } from '../state/replay';
 import { answer } from '../state/what_if';
 import type { Trace, WhatIfAnswer } from '../state/what_if_answer';
-import { RecordedDrive } from './recorded_drive';
 
 // The second future as a ghost on the picture: beside the car while the run comes to the same moments, and beside the
 // first future when both are watched.
@@ -14,16 +13,8 @@ import { RecordedDrive } from './recorded_drive';
 const column = (trace: Trace, name: keyof Trace, row: number): number => trace[name][row] ?? NaN;
 
 /** The second future by the time of the run. */
-function ghostOf({ trace }: WhatIfAnswer['branch']): RecordedDrive {
-  const rows = trace.time_s.flatMap((time, i) => [
-    time,
-    column(trace, 'x_m', i),
-    column(trace, 'y_m', i),
-    column(trace, 'yaw_rad', i),
-    column(trace, 'steer_rad', i),
-  ]);
-  return new RecordedDrive('what if', new Float64Array(rows), () => live.frame?.time_s ?? NaN);
-}
+const ghostOf = ({ trace }: WhatIfAnswer['branch']): RecordedDrive =>
+  new RecordedDrive('what if', trace, Infinity, () => live.frame?.time_s ?? NaN);
 
 /** The first future as frames of a replay. */
 export function momentsOf({ was: { trace } }: WhatIfAnswer): Moment[] {
@@ -52,14 +43,6 @@ export function momentsOf({ was: { trace } }: WhatIfAnswer): Moment[] {
 /** Shows both futures on the picture, from their first moment on. */
 export const watchBoth = (found: WhatIfAnswer): void => showAgain(momentsOf(found));
 
-const before = store.data('page', () => ({ source: null as typeof ghostShown.source }));
 effect(() => {
-  const found = answer.value;
-  if (found) {
-    if (!(ghostShown.source instanceof RecordedDrive && ghostShown.source.label === 'what if'))
-      before.source = ghostShown.source;
-    ghostShown.source = ghostOf(found.branch);
-  } else if (ghostShown.source?.label === 'what if') {
-    ghostShown.source = before.source;
-  }
+  ghosts.whatIf = answer.value && ghostOf(answer.value.branch);
 });

@@ -1,5 +1,5 @@
 import type { Line } from '../draw/line';
-import { clamp, wrapAngle } from '../lib/math';
+import { clamp, mix, wrapAngle } from '../lib/math';
 import type { Vector } from './mesh';
 
 export type CameraName = 'chase' | 'top' | 'cockpit' | 'free';
@@ -76,8 +76,8 @@ const BACK = 1.62; // of the car's length
 
 /** The way from one stand to another, by a share of it. */
 const between = (from: Stand, to: Stand, share: number): Stand => ({
-  turn: from.turn + (to.turn - from.turn) * share,
-  far: from.far + (to.far - from.far) * share,
+  turn: mix(from.turn, to.turn, share),
+  far: mix(from.far, to.far, share),
 });
 
 /**
@@ -99,20 +99,11 @@ export class CameraMan {
     const share = isFirst || lens.isCut ? 1 : 1 - Math.exp(-seconds / (name === 'top' ? 0.35 : 0.22));
     const from = isFirst ? car.yaw : this.#heading;
     this.#heading = wrapAngle(from + wrapAngle(car.yaw - from) * share);
-    const slow = Number.isNaN(this.#speed) ? 1 : 1 - Math.exp(-seconds / 0.6);
-    this.#speed =
-      (Number.isNaN(this.#speed) ? car.speed : this.#speed) +
-      (car.speed - (Number.isNaN(this.#speed) ? car.speed : this.#speed)) * slow;
-    switch (name) {
-      case 'chase':
-        return this.#chase(car, lens, share);
-      case 'top':
-        return this.#top(car, lens);
-      case 'cockpit':
-        return this.#cockpit(car, lens);
-      case 'free':
-        return this.#free(car, lens);
-    }
+    const before = Number.isNaN(this.#speed) ? car.speed : this.#speed;
+    this.#speed = mix(before, car.speed, 1 - Math.exp(-seconds / 0.6));
+    if (name === 'chase') return this.#chase(car, lens, share);
+    if (name === 'top') return this.#top(car, lens);
+    return name === 'cockpit' ? this.#cockpit(car, lens) : this.#free(car, lens);
   }
 
   #chase(car: Subject, { aspect, plan, orbit: { zoom }, isCut }: Lens, share: number): Shot {

@@ -1,8 +1,8 @@
 import type { CarSize } from '../draw/car';
 import { addClosedBody, COUPE, type Profile, SALOON, VAN } from './closed_body';
-import { type Colour, colourOf, MeshBuilder, type MeshData, mirroredRing, type Vector } from './mesh';
+import { type Colour, MeshBuilder, type MeshData, mirroredRing, type Vector } from './mesh';
 import { addModelCar } from './model_car';
-import type { Measures, Parts } from './parts';
+import { ACCENT, CARBON, LAMP, LIGHT, METAL, type Measures, type Parts, RUBBER, SOOT, WHITE } from './parts';
 
 /** The parts of a car in its own axes: x forward, y left, z up from the road, origin at the centre of mass [m]. */
 export interface CarModel {
@@ -21,14 +21,6 @@ export interface CarModel {
   readonly length: number;
   readonly width: number;
 }
-
-const WHITE = colourOf('#f1f3f7');
-const ACCENT = colourOf('#2158c9');
-const CARBON = colourOf('#2a313a');
-const SOOT = colourOf('#171b20');
-const RUBBER = colourOf('#23262b');
-const RIM = colourOf('#aab3bf');
-const LAMP = colourOf('#ff2a1c');
 
 type Half = readonly (readonly [number, number])[];
 
@@ -58,7 +50,7 @@ function wheelMesh(radius: number, width: number): MeshData {
     [1, half * 0.7, RUBBER],
     [0.94, half, RUBBER],
     [0.7, half, RUBBER],
-    [0.66, half * 0.8, RIM],
+    [0.66, half * 0.8, METAL],
   ];
   for (let k = 0; k < SIDES; ++k) {
     for (let i = 0; i + 1 < profile.length; ++i) {
@@ -81,7 +73,7 @@ function wheelMesh(radius: number, width: number): MeshData {
       point(0.16 * radius, half * (isSpoke ? 0.9 : 0.3), k),
       point(0.16 * radius, half * (isSpoke ? 0.9 : 0.3), k + 1),
       point(0.66 * radius, half * (isSpoke ? 0.8 : 0.3), k + 1),
-      isSpoke ? RIM : SOOT,
+      isSpoke ? METAL : SOOT,
     );
     mesh.triangle(
       point(0.16 * radius, half * 0.9, k),
@@ -233,7 +225,7 @@ function addPods({ paint, dark }: Parts, { k, inner, tub, pod, at }: Measures): 
     // Mirrors.
     dark.rod([at(0.68), side * tub * 0.9, 0.6 * k], [at(0.705), side * (tub + 0.24 * k), 0.69 * k], 0.018 * k, CARBON);
     const [m0, m1] = [side * (tub + 0.2 * k), side * (tub + 0.33 * k)];
-    dark.box([at(0.7), Math.min(m0, m1), 0.68 * k], [at(0.715), Math.max(m0, m1), 0.725 * k], CARBON);
+    dark.box([at(0.7), m0, 0.68 * k], [at(0.715), m1, 0.725 * k], CARBON);
   }
   dark.box([at(0.02), -pod * 0.98, 0.075 * k], [at(0.72), pod * 0.98, 0.1 * k], CARBON);
   dark.box([at(-0.1), -inner, 0.1 * k], [at(0.1), inner, 0.14 * k], CARBON);
@@ -262,21 +254,17 @@ function addWings({ paint, dark, lamps, headlamps }: Parts, { k, rear, nose, tai
   paint.hull(...slanted(tail - 0.06 * k, tail + 0.1 * k, 0.99 * k, 0.93 * k, back), WHITE);
   for (const side of [-1, 1]) {
     const [a, b] = [side * wing, side * (wing + 0.025 * k)];
-    paint.box([nose - 0.48 * k, Math.min(a, b), 0.1 * k], [nose - 0.02 * k, Math.max(a, b), 0.28 * k], ACCENT);
+    paint.box([nose - 0.48 * k, a, 0.1 * k], [nose - 0.02 * k, b, 0.28 * k], ACCENT);
     const [c, d] = [side * back, side * (back + 0.025 * k)];
-    paint.box([tail - 0.1 * k, Math.min(c, d), 0.5 * k], [tail + 0.36 * k, Math.max(c, d), 1.04 * k], WHITE);
+    paint.box([tail - 0.1 * k, c, 0.5 * k], [tail + 0.36 * k, d, 1.04 * k], WHITE);
     dark.rod([rear, side * 0.1 * k, 0.56 * k], [tail + 0.2 * k, side * 0.12 * k, 0.88 * k], 0.035 * k, CARBON);
     const [e, f] = [side * (back - 0.1 * k), side * (back - 0.3 * k)];
-    lamps.box([tail - 0.005, Math.min(e, f), 0.915 * k], [tail + 0.05 * k, Math.max(e, f), 0.955 * k], LAMP);
+    lamps.box([tail - 0.005, e, 0.915 * k], [tail + 0.05 * k, f, 0.955 * k], LAMP);
   }
   lamps.box([tail + 0.08 * k, -0.07 * k, 0.34 * k], [tail + 0.13 * k, 0.07 * k, 0.42 * k], LAMP);
   for (const side of [-1, 1]) {
     const y = side * 0.115 * k;
-    headlamps.box(
-      [nose - 0.26 * k, y - 0.03 * k, 0.31 * k],
-      [nose - 0.2 * k, y + 0.03 * k, 0.35 * k],
-      colourOf('#fff4d8'),
-    );
+    headlamps.box([nose - 0.26 * k, y - 0.03 * k, 0.31 * k], [nose - 0.2 * k, y + 0.03 * k, 0.35 * k], LIGHT);
   }
 }
 

@@ -1,15 +1,8 @@
-import { type Colour, colourOf, mirroredRing, type Vector } from './mesh';
-import type { Measures, Parts } from './parts';
+import { type Colour, mirroredRing, type Vector } from './mesh';
+import { ACCENT, GLASS, LAMP, LIGHT, type Measures, type Parts, RUBBER, WHITE } from './parts';
 
 // Bodies with a roof: a saloon, a van and a coupé. Lengths and heights are those of the shape, drawn for a car of its
 // usual length and scaled to the one driven; axles, track, wheels and width are those of the car.
-
-const WHITE = colourOf('#f1f3f7');
-const ACCENT = colourOf('#2158c9');
-const GLASS = colourOf('#1d2732');
-const DARK = colourOf('#23282f');
-const LAMP = colourOf('#ff2a1c');
-const LIGHT = colourOf('#fff4d8');
 
 /** A closed body in profile. Along the car: 0 at the tail, 1 at the nose; heights from the road [m]. */
 export interface Profile {
@@ -181,29 +174,24 @@ export function addClosedBody(
 
   // Bumpers, floor, lamps.
   const [low, z] = [profile.sill * k, profile.lamps * k];
-  dark.box([tail - 0.01, -half * 0.84, low], [tail + 0.1 * k, half * 0.84, low + 0.2 * k], DARK);
-  dark.box([nose - 0.1 * k, -half * 0.84, low], [nose + 0.01, half * 0.84, low + 0.2 * k], DARK);
-  dark.box([tail + 0.1 * k, -inner, low - 0.05 * k], [nose - 0.1 * k, inner, low], DARK);
+  dark.box([tail - 0.01, -half * 0.84, low], [tail + 0.1 * k, half * 0.84, low + 0.2 * k], RUBBER);
+  dark.box([nose - 0.1 * k, -half * 0.84, low], [nose + 0.01, half * 0.84, low + 0.2 * k], RUBBER);
+  dark.box([tail + 0.1 * k, -inner, low - 0.05 * k], [nose - 0.1 * k, inner, low], RUBBER);
   for (const side of [-1, 1]) {
     const [a, b] = [side * half * 0.62, side * half * 0.84];
-    const [from, to] = [Math.min(a, b), Math.max(a, b)];
-    lamps.box([tail - 0.012, from, z], [tail + 0.05 * k, to, z + 0.12 * k], LAMP);
-    headlamps.box([nose - 0.12 * k, from, z - 0.16 * k], [nose + 0.012, to, z - 0.05 * k], LIGHT);
-    const mirror = [side * (half * 0.93), side * (half + 0.08 * k)] as const;
-    dark.box(
-      [g1 - 0.34 * k, Math.min(...mirror), height(g1)],
-      [g1 - 0.26 * k, Math.max(...mirror), height(g1) + 0.13 * k],
-      DARK,
-    );
+    lamps.box([tail - 0.012, a, z], [tail + 0.05 * k, b, z + 0.12 * k], LAMP);
+    headlamps.box([nose - 0.12 * k, a, z - 0.16 * k], [nose + 0.012, b, z - 0.05 * k], LIGHT);
+    const [m0, m1] = [side * (half * 0.93), side * (half + 0.08 * k)];
+    dark.box([g1 - 0.34 * k, m0, height(g1)], [g1 - 0.26 * k, m1, height(g1) + 0.13 * k], RUBBER);
   }
   if (profile.wing !== undefined) {
     const top = profile.wing * k;
     paint.box([tail + 0.02 * k, -0.86 * half, top - 0.035 * k], [tail + 0.34 * k, 0.86 * half, top], ACCENT);
     for (const side of [-1, 1]) {
       const [a, b] = [side * 0.86 * half, side * 0.88 * half];
-      paint.box([tail, Math.min(a, b), top - 0.14 * k], [tail + 0.36 * k, Math.max(a, b), top + 0.05 * k], WHITE);
+      paint.box([tail, a, top - 0.14 * k], [tail + 0.36 * k, b, top + 0.05 * k], WHITE);
       const post = side * 0.5 * half;
-      dark.rod([tail + 0.26 * k, post, 0.8 * k], [tail + 0.18 * k, post, top - 0.02 * k], 0.04 * k, DARK);
+      dark.rod([tail + 0.26 * k, post, 0.8 * k], [tail + 0.18 * k, post, top - 0.02 * k], 0.04 * k, RUBBER);
     }
   }
   const y = 0.4 * half;

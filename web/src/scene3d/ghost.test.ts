@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
+import type { Pose } from '../lib/poses';
 import type { Frame } from '../protocol/topics';
-import { type GhostPose, LapRecorder } from './ghost';
+import { LapRecorder, RecordedDrive } from './ghost';
 
 const PERIOD = 0.05;
 
@@ -36,7 +37,7 @@ describe('the ghost', () => {
     const ghost = recorder.best;
     expect(ghost?.lapTime).toBe(10);
     expect(ghost?.label).toBe('best lap 0:10.000');
-    const pose: GhostPose = { x: 0, y: 0, yaw: 0, steer: 0 };
+    const pose: Pose = { x: 0, y: 0, yaw: 0, steer: 0 };
     for (const time of [0, 2.51, 7.77, 9.9, 1.2]) {
       expect(ghost?.poseAt(time, pose)).toBe(true);
       const angle = (2 * Math.PI * time) / 10;
@@ -48,9 +49,20 @@ describe('the ghost', () => {
   it('is nowhere before its lap and after it', () => {
     const recorder = new LapRecorder();
     drive(recorder, [10, 1]);
-    const pose: GhostPose = { x: 7, y: 7, yaw: 7, steer: 7 };
+    const pose: Pose = { x: 7, y: 7, yaw: 7, steer: 7 };
     for (const time of [-0.1, 10.01, NaN]) expect(recorder.best?.poseAt(time, pose)).toBe(false);
     expect(pose.x).toBe(7);
+  });
+
+  it('is another drive at the time of its clock', () => {
+    const poses = { time_s: [1, 2], x_m: [0, 10], y_m: [3, 3], yaw_rad: [3.1, -3.1] };
+    const pose: Pose = { x: 0, y: 0, yaw: 0, steer: 0 };
+    let now = 1.25;
+    const drive = new RecordedDrive('other', poses, Infinity, () => now);
+    expect(drive.poseAt(0, pose)).toBe(true);
+    expect(pose).toMatchObject({ x: 2.5, y: 3, yaw: expect.closeTo(3.1 + (2 * Math.PI - 6.2) / 4) });
+    now = 2.1;
+    expect(drive.poseAt(0, pose)).toBe(false);
   });
 
   it('is no lap that was joined half way, left the road, or is still being driven', () => {

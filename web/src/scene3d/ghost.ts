@@ -1,17 +1,10 @@
 import { lapTime } from '../lib/format';
-import { wrapAngle } from '../lib/math';
+import { clamp } from '../lib/math';
 import { paintSize } from '../lib/paint_size';
+import { type Pose, type Poses, poseAt } from '../lib/poses';
 import type { Frame } from '../protocol/topics';
 import { run } from '../state/run';
 import { LONGEST_SILENCE_S } from '../state/silence';
-
-/** Pose and steering angle of another car at a time of the lap. */
-export interface GhostPose {
-  x: number;
-  y: number;
-  yaw: number;
-  steer: number;
-}
 
 /**
  * Another drive round the same track, by lap time: the best lap of this session, a lap of a log, another controller's.
@@ -22,66 +15,56 @@ export interface GhostSource {
   /** Time for the whole lap [s]. */
   readonly lapTime: number;
   /** Writes the pose `time` seconds into the lap; false outside of it. */
-  poseAt(time: number, into: GhostPose): boolean;
+  poseAt(time: number, into: Pose): boolean;
   /** Its path for drawing: x, y alternating [m]; constant. */
   readonly line: Float32Array;
 }
 
-const ROW = 5; // time, x, y, yaw, steer
 const CAPACITY = 30_000; // rows: 10 minutes at 50 frames a second
-const LINE_SPACING_M = 1;
+const LINE_SPACING_M = { lap: 1, drive: 2 } as const;
 
-/** A lap kept as rows of numbers; poses between rows are interpolated. */
-export class RecordedLap implements GhostSource {
+/** A drive that was recorded: by the time of the lap, or, where it has a clock, by that. */
+export class RecordedDrive implements GhostSource {
   readonly line: Float32Array;
-  readonly #rows: Float32Array;
-  #last = 0; // row found last: the next query is nearly always close
 
   constructor(
-    rows: Float32Array,
-    readonly lapTime: number,
     readonly label: string,
+    readonly poses: Poses,
+    readonly lapTime = Infinity,
+    readonly clock?: () => number, // time of the poses that is shown [s]
   ) {
-    this.#rows = rows;
-    const spacing = LINE_SPACING_M * (run.value ? paintSize(run.value) : 1);
+    const spacing = (clock ? LINE_SPACING_M.drive : LINE_SPACING_M.lap) * (run.value ? paintSize(run.value) : 1);
     const line: number[] = [];
-    for (let i = 0; i + ROW <= rows.length; i += ROW) {
-      const [x, y] = [rows[i + 1] ?? NaN, rows[i + 2] ?? NaN];
-      const far = Math.hypot(x - (line.at(-2) ?? Infinity), y - (line.at(-1) ?? Infinity)) >= spacing;
-      if (far) line.push(x, y);
+    for (let i = 0; i < poses.time_s.length; ++i) {
+      const [x, y] = [poses.x_m[i] ?? NaN, poses.y_m[i] ?? NaN];
+      if (Math.hypot(x - (line.at(-2) ?? Infinity), y - (line.at(-1) ?? Infinity)) >= spacing) line.push(x, y);
     }
     this.line = new Float32Array(line);
   }
 
-  /** The same lap under another name. */
-  named(label: string): RecordedLap {
-    return new RecordedLap(this.#rows, this.lapTime, label);
-  }
-
-  poseAt(time: number, into: GhostPose): boolean {
-    const rows = this.#rows;
-    const count = rows.length / ROW;
-    const at = (row: number, column: number): number => rows[row * ROW + column] ?? NaN;
-    if (count < 2 || !(time >= 0) || time > this.lapTime) return false;
-    let row = this.#last;
-    if (row > count - 2 || at(row, 0) > time) row = 0;
-    while (row < count - 2 && at(row + 1, 0) <= time) ++row;
-    this.#last = row;
-    const span = at(row + 1, 0) - at(row, 0);
-    const share = span > 0 ? Math.min(Math.max((time - at(row, 0)) / span, 0), 1) : 0;
-    const mix = (column: number): number => at(row, column) + (at(row + 1, column) - at(row, column)) * share;
-    into.x = mix(1);
-    into.y = mix(2);
-    into.yaw = at(row, 3) + wrapAngle(at(row + 1, 3) - at(row, 3)) * share;
-    into.steer = mix(4);
-    return true;
+  poseAt(lapTime: number, into: Pose): boolean {
+    if (this.clock) return poseAt(this.poses, this.clock(), into);
+    const times = this.poses.time_s;
+    if (!(lapTime >= 0) || lapTime > this.lapTime) return false;
+    return poseAt(this.poses, clamp(lapTime, times[0] ?? NaN, times[times.length - 1] ?? NaN), into);
   }
 }
 
+/** The poses of frames, by the time of their recording. */
+export const posesOf = (frames: readonly { readonly time: number; readonly frame: Frame }[]): Poses => ({
+  time_s: frames.map(({ time }) => time),
+  x_m: frames.map(({ frame }) => frame.x_m),
+  y_m: frames.map(({ frame }) => frame.y_m),
+  yaw_rad: frames.map(({ frame }) => frame.yaw_rad),
+  steer_rad: frames.map(({ frame }) => frame.steer_applied_rad),
+});
+
+const POSE_COLUMNS = ['time_s', 'x_m', 'y_m', 'yaw_rad', 'steer_rad'] as const;
+
 /** Records frames and keeps the best complete lap, in fixed memory. Laps that left the road are not kept. */
 export class LapRecorder {
-  best: RecordedLap | null = null;
-  readonly #rows = new Float32Array(CAPACITY * ROW);
+  best: RecordedDrive | null = null;
+  readonly #rows = POSE_COLUMNS.map(() => new Float32Array(CAPACITY));
   #count = 0;
   #isWhole = false;
   #lap = NaN; // none yet
@@ -113,7 +96,9 @@ export class LapRecorder {
   /** A reset discards the lap in progress; the best lap stays, but the run's own count begins again. */
   #reset(): void {
     this.#begin(NaN, false, 0);
-    if (this.best) this.best = this.best.named(`best lap before the reset ${lapTime(this.best.lapTime, 3)}`);
+    if (!this.best) return;
+    const { poses, lapTime: time } = this.best;
+    this.best = new RecordedDrive(`best lap before the reset ${lapTime(time, 3)}`, poses, time);
   }
 
   #begin(lap: number, isWhole: boolean, events: number): void {
@@ -126,7 +111,10 @@ export class LapRecorder {
   #add(frame: Frame): void {
     if (this.#count >= CAPACITY) this.#isWhole = false; // an endless lap
     if (!this.#isWhole) return;
-    this.#rows.set([frame.lap_time_s, frame.x_m, frame.y_m, frame.yaw_rad, frame.steer_applied_rad], this.#count * ROW);
+    [frame.lap_time_s, frame.x_m, frame.y_m, frame.yaw_rad, frame.steer_applied_rad].forEach((value, column) => {
+      const rows = this.#rows[column];
+      if (rows) rows[this.#count] = value;
+    });
     ++this.#count;
   }
 
@@ -134,6 +122,7 @@ export class LapRecorder {
     const time = frame.last_lap_time_s;
     const isClean = frame.off_track_events === this.#offTrackEvents;
     if (!(time > 0) || !isClean || this.#count < 2 || (this.best && time >= this.best.lapTime)) return;
-    this.best = new RecordedLap(this.#rows.slice(0, this.#count * ROW), time, `best lap ${lapTime(time, 3)}`);
+    const columns = POSE_COLUMNS.map((name, i) => [name, this.#rows[i]?.slice(0, this.#count)]);
+    this.best = new RecordedDrive(`best lap ${lapTime(time, 3)}`, Object.fromEntries(columns) as Poses, time);
   }
 }

@@ -50,23 +50,21 @@ export class MeshBuilder {
     this.triangle(a, c, d, colour);
   }
 
-  /** A box with its faces along the axes. */
-  box(low: Vector, high: Vector, colour: Colour): void {
-    this.hull(
-      [
-        [low[0], low[1], low[2]],
-        [low[0], high[1], low[2]],
-        [low[0], high[1], high[2]],
-        [low[0], low[1], high[2]],
-      ],
-      [
-        [high[0], low[1], low[2]],
-        [high[0], high[1], low[2]],
-        [high[0], high[1], high[2]],
-        [high[0], low[1], high[2]],
-      ],
-      colour,
-    );
+  /** A box with its faces along the axes, between two opposite corners. */
+  box(one: Vector, other: Vector, colour: Colour): void {
+    const [x, y, z] = [0, 1, 2].map((axis) => [one[axis] ?? 0, other[axis] ?? 0].sort((a, b) => a - b)) as [
+      number[],
+      number[],
+      number[],
+    ];
+    const [left, right, low, high] = [y[0] ?? 0, y[1] ?? 0, z[0] ?? 0, z[1] ?? 0];
+    const ring = (at = 0): Vector[] => [
+      [at, left, low],
+      [at, right, low],
+      [at, right, high],
+      [at, left, high],
+    ];
+    this.hull(ring(x[0]), ring(x[1]), colour);
   }
 
   /**

@@ -1,16 +1,8 @@
-import { colourOf, type MeshBuilder, type Vector } from './mesh';
-import type { Measures, Parts } from './parts';
+import type { MeshBuilder, Vector } from './mesh';
+import { ACCENT, CARBON, LAMP, LIGHT, METAL, type Measures, type Parts, SOOT, WHITE } from './parts';
 
 // A model car with its computer, as F1TENTH builds it: chassis, battery, a plate on posts with computer and laser
 // scanner, aerials, and a bumper of foam. Drawn in the units of a car of 4.5 m, as the others.
-
-const WHITE = colourOf('#f1f3f7');
-const ACCENT = colourOf('#2158c9');
-const CARBON = colourOf('#2a313a');
-const SOOT = colourOf('#171b20');
-const METAL = colourOf('#aab3bf');
-const LAMP = colourOf('#ff2a1c');
-const LIGHT = colourOf('#fff4d8');
 
 /** An upright drum about (x, 0). */
 function drum(mesh: MeshBuilder, x: number, low: number, high: number, radius: number, colour = SOOT): void {
@@ -46,9 +38,8 @@ export function addModelCar(
     const y = side * 0.8 * wide;
     dark.rod([back + 0.06 * k, y, 0.81 * k], [back - 0.06 * k, y, 1.5 * k], 0.03 * k, SOOT); // aerials
     const [a, b] = [side * 0.5 * wide, side * 0.95 * wide];
-    const [from, to] = [Math.min(a, b), Math.max(a, b)];
-    lamps.box([tail + 0.13 * k, from, 0.25 * k], [tail + 0.17 * k, to, 0.32 * k], LAMP);
-    headlamps.box([ahead - 0.01 * k, from, plate * k], [ahead + 0.02 * k, to, (plate + 0.05) * k], LIGHT);
+    lamps.box([tail + 0.13 * k, a, 0.25 * k], [tail + 0.17 * k, b, 0.32 * k], LAMP);
+    headlamps.box([ahead - 0.01 * k, a, plate * k], [ahead + 0.02 * k, b, (plate + 0.05) * k], LIGHT);
   }
   // The computer with its fins, and the scanner in front of it.
   box(dark, at(0.08), at(0.5), 0.7 * wide, 0.81, 0.94, CARBON);

@@ -1,4 +1,14 @@
-import type { MeshBuilder } from './mesh';
+import { colourOf, type MeshBuilder } from './mesh';
+
+export const WHITE = colourOf('#f1f3f7');
+export const ACCENT = colourOf('#2158c9');
+export const CARBON = colourOf('#2a313a');
+export const SOOT = colourOf('#171b20');
+export const RUBBER = colourOf('#23262b');
+export const METAL = colourOf('#aab3bf');
+export const GLASS = colourOf('#1d2732');
+export const LAMP = colourOf('#ff2a1c');
+export const LIGHT = colourOf('#fff4d8');
 
 /** The dimensions that the parts are built from [m]. */
 export interface Measures {

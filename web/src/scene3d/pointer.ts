@@ -62,18 +62,13 @@ export function listenToPointers(canvas: HTMLCanvasElement): () => void {
     orbit.value = orbited(orbit.value, turn[0], turn[1]);
   };
 
-  canvas.addEventListener('pointerdown', begin);
-  canvas.addEventListener('pointermove', move);
-  canvas.addEventListener('pointerup', end);
-  canvas.addEventListener('pointercancel', end);
-  canvas.addEventListener('wheel', wheel, { passive: false });
-  canvas.addEventListener('keydown', key);
-  return () => {
-    canvas.removeEventListener('pointerdown', begin);
-    canvas.removeEventListener('pointermove', move);
-    canvas.removeEventListener('pointerup', end);
-    canvas.removeEventListener('pointercancel', end);
-    canvas.removeEventListener('wheel', wheel);
-    canvas.removeEventListener('keydown', key);
-  };
+  const over = new AbortController();
+  const { signal } = over;
+  canvas.addEventListener('pointerdown', begin, { signal });
+  canvas.addEventListener('pointermove', move, { signal });
+  canvas.addEventListener('pointerup', end, { signal });
+  canvas.addEventListener('pointercancel', end, { signal });
+  canvas.addEventListener('wheel', wheel, { passive: false, signal });
+  canvas.addEventListener('keydown', key, { signal });
+  return () => over.abort();
 }

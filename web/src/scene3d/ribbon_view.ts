@@ -1,33 +1,67 @@
 import { BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, Mesh, MeshBasicMaterial, type Scene } from 'three';
+import type { Line } from '../draw/line';
 import type { Colour } from './mesh';
 import { type RibbonRing, ribbonIndices, writeRibbon } from './ribbon';
 
-const flatMaterial = (): MeshBasicMaterial =>
-  new MeshBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false });
-
-/** Shows a ring of bands; uploads only the pieces written since the last picture. */
-export class RingView {
+/** Flat triangles on the ground that change from picture to picture; `perPiece`: numbers of a piece to upload. */
+class FlatView {
+  protected readonly mesh: Mesh<BufferGeometry, MeshBasicMaterial>;
   readonly #scene: Scene;
-  readonly #ring: RibbonRing;
-  readonly #mesh: Mesh<BufferGeometry, MeshBasicMaterial>;
-  #uploaded = 0;
+  readonly #attributes: readonly (readonly [attribute: BufferAttribute, perPiece: number])[];
 
-  constructor(scene: Scene, ring: RibbonRing, order: number, opacity: number) {
+  constructor(
+    scene: Scene,
+    order: number,
+    indices: Uint32Array,
+    positions: readonly [Float32Array, perPiece: number],
+    colours: readonly [Uint8Array, perPiece: number],
+  ) {
     this.#scene = scene;
-    this.#ring = ring;
     const geometry = new BufferGeometry();
-    geometry.setAttribute('position', new BufferAttribute(ring.positions, 3).setUsage(DynamicDrawUsage));
-    geometry.setAttribute('color', new BufferAttribute(ring.colours, 4, true).setUsage(DynamicDrawUsage));
-    geometry.setIndex(new BufferAttribute(ring.indices, 1));
-    this.#mesh = new Mesh(geometry, flatMaterial());
-    this.#mesh.material.opacity = opacity;
-    this.#mesh.renderOrder = order;
-    this.#mesh.frustumCulled = false;
-    scene.add(this.#mesh);
+    const [places, tints] = [new BufferAttribute(positions[0], 3), new BufferAttribute(colours[0], 4, true)];
+    geometry.setAttribute('position', places.setUsage(DynamicDrawUsage));
+    geometry.setAttribute('color', tints.setUsage(DynamicDrawUsage));
+    geometry.setIndex(new BufferAttribute(indices, 1));
+    this.#attributes = [
+      [places, positions[1]],
+      [tints, colours[1]],
+    ];
+    this.mesh = new Mesh(geometry, new MeshBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false }));
+    this.mesh.renderOrder = order;
+    this.mesh.frustumCulled = false;
+    scene.add(this.mesh);
   }
 
   paint(colour: Colour): void {
-    this.#mesh.material.color = new Color().setRGB(...colour);
+    this.mesh.material.color = new Color().setRGB(...colour);
+  }
+
+  /** Uploads pieces, each as the first one and how many, and draws `count` triangles' corners. */
+  protected upload(pieces: readonly (readonly [first: number, count: number])[], count: number): void {
+    for (const [attribute, perPiece] of this.#attributes) {
+      attribute.clearUpdateRanges();
+      for (const [first, length] of pieces) attribute.addUpdateRange(first * perPiece, length * perPiece);
+      attribute.needsUpdate = true;
+    }
+    this.mesh.geometry.setDrawRange(0, count);
+  }
+
+  dispose(): void {
+    this.#scene.remove(this.mesh);
+    this.mesh.geometry.dispose();
+    this.mesh.material.dispose();
+  }
+}
+
+/** Shows a ring of bands; uploads only the pieces written since the last picture. */
+export class RingView extends FlatView {
+  readonly #ring: RibbonRing;
+  #uploaded = 0;
+
+  constructor(scene: Scene, ring: RibbonRing, order: number, opacity: number) {
+    super(scene, order, ring.indices, [ring.positions, 12], [ring.colours, 16]);
+    this.#ring = ring;
+    this.mesh.material.opacity = opacity;
   }
 
   update(): void {
@@ -35,85 +69,37 @@ export class RingView {
     const fresh = written - this.#uploaded;
     if (fresh === 0) return;
     const isAll = fresh < 0 || fresh >= capacity;
-    const from = this.#uploaded % capacity;
-    const pieces: [number, number][] = isAll
-      ? [[0, capacity]]
-      : from + fresh <= capacity
-        ? [[from, fresh]]
-        : [
-            [from, capacity - from],
-            [0, from + fresh - capacity],
-          ];
-    for (const name of ['position', 'color'] as const) {
-      const attribute = this.#mesh.geometry.getAttribute(name) as BufferAttribute;
-      const perPiece = name === 'position' ? 12 : 16;
-      attribute.clearUpdateRanges();
-      for (const [first, count] of pieces) attribute.addUpdateRange(first * perPiece, count * perPiece);
-      attribute.needsUpdate = true;
-    }
+    const from = isAll ? 0 : this.#uploaded % capacity;
+    const count = isAll ? capacity : fresh;
+    const first = Math.min(count, capacity - from); // the others are at the ring's beginning
+    this.upload(
+      [
+        [from, first],
+        [0, count - first],
+      ],
+      6 * Math.min(written, capacity),
+    );
     this.#uploaded = written;
-    this.#mesh.geometry.setDrawRange(0, 6 * Math.min(written, capacity));
-  }
-
-  dispose(): void {
-    this.#scene.remove(this.#mesh);
-    this.#mesh.geometry.dispose();
-    this.#mesh.material.dispose();
   }
 }
 
 /** A band along a line of at most `capacity` points that changes from picture to picture. */
-export class BandView {
-  readonly #scene: Scene;
+export class BandView extends FlatView {
   readonly #capacity: number;
-  readonly #mesh: Mesh<BufferGeometry, MeshBasicMaterial>;
-  readonly #positions: BufferAttribute;
-  readonly #colours: BufferAttribute;
+  readonly #positions: Float32Array;
+  readonly #colours: Uint8Array;
 
   constructor(scene: Scene, capacity: number, order: number) {
-    this.#scene = scene;
-    this.#capacity = capacity;
-    this.#positions = new BufferAttribute(new Float32Array(capacity * 6), 3).setUsage(DynamicDrawUsage);
-    this.#colours = new BufferAttribute(new Uint8Array(capacity * 8).fill(255), 4, true).setUsage(DynamicDrawUsage);
-    const geometry = new BufferGeometry();
-    geometry.setAttribute('position', this.#positions);
-    geometry.setAttribute('color', this.#colours);
-    geometry.setIndex(new BufferAttribute(ribbonIndices(capacity), 1));
-    geometry.setDrawRange(0, 0);
-    this.#mesh = new Mesh(geometry, flatMaterial());
-    this.#mesh.renderOrder = order;
-    this.#mesh.frustumCulled = false;
-    scene.add(this.#mesh);
+    const [positions, colours] = [new Float32Array(capacity * 6), new Uint8Array(capacity * 8).fill(255)];
+    super(scene, order, ribbonIndices(capacity), [positions, 6], [colours, 8]);
+    [this.#capacity, this.#positions, this.#colours] = [capacity, positions, colours];
+    this.mesh.geometry.setDrawRange(0, 0);
   }
 
-  paint(colour: Colour): void {
-    this.#mesh.material.color = new Color().setRGB(...colour);
-  }
-
-  /** `alphaAt` gives the opacity of a point by its share of the length. */
-  show(px: ArrayLike<number>, py: ArrayLike<number>, width: number, alphaAt: (share: number) => number): void {
-    const count = Math.min(px.length, py.length, this.#capacity);
-    this.#lay(px, py, count, width);
-    const colours = this.#colours.array;
-    for (let i = 0; i < count; ++i) colours[8 * i + 3] = colours[8 * i + 7] = 255 * alphaAt(i / Math.max(1, count - 1));
-  }
-
-  #lay(px: ArrayLike<number>, py: ArrayLike<number>, count: number, width: number): void {
-    writeRibbon(px, py, count, width, this.#positions.array as Float32Array);
-    for (const [attribute, perPair] of [
-      [this.#positions, 6],
-      [this.#colours, 8],
-    ] as const) {
-      attribute.clearUpdateRanges();
-      attribute.addUpdateRange(0, count * perPair);
-      attribute.needsUpdate = true;
-    }
-    this.#mesh.geometry.setDrawRange(0, 6 * Math.max(0, count - 1));
-  }
-
-  dispose(): void {
-    this.#scene.remove(this.#mesh);
-    this.#mesh.geometry.dispose();
-    this.#mesh.material.dispose();
+  show({ x, y }: Line, width: number, opacity: number): void {
+    const count = Math.min(x.length, y.length, this.#capacity);
+    writeRibbon(x, y, count, width, this.#positions);
+    for (let i = 0; i < 2 * count; ++i) this.#colours[4 * i + 3] = 255 * opacity;
+    this.upload([[0, count]], 6 * Math.max(0, count - 1));
   }
 }

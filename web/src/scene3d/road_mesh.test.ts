@@ -1,7 +1,8 @@
 import { describe, expect, it } from 'vitest';
 import type { Point } from '../lib/math';
+import type { RoadLines } from '../state/road';
 import { colourOf } from './mesh';
-import { curvatures, type FlatMesh, KERB_RADIUS_M, type RoadLines, roadMeshes, tidyLines } from './road_mesh';
+import { curvatures, type FlatMesh, KERB_RADIUS_M, roadMeshes, tidyLines } from './road_mesh';
 
 const grey = colourOf('#808080');
 const PAINT = {

@@ -1,12 +1,7 @@
+import { lengthsOf, lineOf } from '../draw/line';
 import type { Point } from '../lib/math';
+import type { RoadLines } from '../state/road';
 import { type Colour, colourOf } from './mesh';
-
-/** Edges and centre of a road as the server sends them: equally many points, opposite each other, in W [m]. */
-export interface RoadLines {
-  readonly left: readonly Point[];
-  readonly right: readonly Point[];
-  readonly centre: readonly Point[];
-}
 
 /** A flat mesh on the ground: corners in W at z = 0, three for each triangle, all facing up. */
 export interface FlatMesh {
@@ -83,24 +78,11 @@ export function tidyLines(lines: RoadLines, isClosed: boolean): RoadLines | null
   return { left: pick(lines.left), right: pick(lines.right), centre: pick(lines.centre) };
 }
 
-/** Length of a line from its start to each of its points [m]. */
-export function stations(points: readonly Point[]): Float64Array {
-  const s = new Float64Array(points.length);
-  for (let i = 1; i < points.length; ++i) s[i] = (s[i - 1] ?? 0) + distance(points[i - 1] as Point, points[i] as Point);
-  return s;
-}
-
 /** The band between two lines with equally many points, `left` on the left of `right`. */
-export function band(left: readonly Point[], right: readonly Point[], colour: Colour): FlatMesh {
-  const flat = new Flat();
-  addBand(flat, left, right, colour);
-  return flat.data();
-}
-
-function addBand(flat: Flat, left: readonly Point[], right: readonly Point[], colour: Colour): void {
-  for (let i = 0; i + 1 < left.length; ++i) {
+function addBand(flat: Flat, left: readonly Point[], right: readonly Point[], colour: Colour): Flat {
+  for (let i = 0; i + 1 < left.length; ++i)
     flat.quad(left[i] as Point, right[i] as Point, right[i + 1] as Point, left[i + 1] as Point, colour);
-  }
+  return flat;
 }
 
 /** Curvature at each point from its neighbours a few points before and behind; left positive [1/m]. */
@@ -122,7 +104,7 @@ export function curvatures(centre: readonly Point[], isClosed: boolean): Float64
 
 /** Dashes of `dash` metres with gaps between, along a line. */
 function addDashes(flat: Flat, lines: RoadLines, dash: number, gap: number, width: number, colour: Colour): void {
-  const s = stations(lines.centre);
+  const s = lengthsOf(lineOf(lines.centre));
   for (let i = 0; i + 1 < lines.centre.length; ++i) {
     const [from, to] = [s[i] ?? 0, s[i + 1] ?? 0];
     const [a, b] = [lines.centre[i] as Point, lines.centre[i + 1] as Point];
@@ -185,7 +167,7 @@ function addKerb(
   isLeft: boolean,
   paint: RoadPaint,
 ): void {
-  const s = stations(side);
+  const s = lengthsOf(lineOf(side));
   for (let i = 0; i + 1 < side.length; ++i) {
     const [a, b] = [side[i] as Point, side[i + 1] as Point];
     const [outerA, outerB] = [towards(a, other[i] as Point, -width), towards(b, other[i + 1] as Point, -width)];
@@ -247,9 +229,9 @@ function fullSizeMeshes(lines: RoadLines, isClosed: boolean, kerb: number, paint
   addDashes(paintedLines, lines, 3, 6, 0.12, paint.centreLine);
   addStart(paintedLines, lines, paint.kerbWhite);
   return {
-    verge: band(offset(left, right, -VERGE_M), offset(right, left, -VERGE_M), paint.verge),
+    verge: addBand(new Flat(), offset(left, right, -VERGE_M), offset(right, left, -VERGE_M), paint.verge).data(),
     kerbs: kerbs.data(),
-    surface: band(left, right, paint.road),
+    surface: addBand(new Flat(), left, right, paint.road).data(),
     lines: paintedLines.data(),
   };
 }

@@ -1,8 +1,9 @@
 import { BufferAttribute, BufferGeometry, type DataTexture, Group, Mesh, MeshBasicMaterial, type Scene } from 'three';
+import type { RoadLines } from '../state/road';
 import { greyTexture, Order, underTexture } from './landscape';
 import { noiseTile } from './noise';
 import type { Palette } from './palette';
-import { type FlatMesh, type RoadLines, roadMeshes } from './road_mesh';
+import { type FlatMesh, roadMeshes } from './road_mesh';
 
 const GRAIN_M = 5; // size of the asphalt texture
 const PIECE = 120 * 18; // numbers for 120 quads

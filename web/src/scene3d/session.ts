@@ -31,7 +31,7 @@ export class Session {
 
   /** The ghost: the rival if there is one, else the best lap of this session. */
   get ghost(): GhostSource | null {
-    return ghostShown.source ?? this.laps.best;
+    return ghostShown() ?? this.laps.best;
   }
 
   take(frame: Frame, now: number): void {

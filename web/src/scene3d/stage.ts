@@ -12,6 +12,7 @@ import {
 } from 'three';
 import { aheadOf, type Line } from '../draw/line';
 import { paintSize } from '../lib/paint_size';
+import type { Pose } from '../lib/poses';
 import type { Limit, Plan, Run } from '../protocol/topics';
 import type { CursorMark } from '../state/cursor';
 import type { Hindsight } from '../state/hindsight';
@@ -19,7 +20,7 @@ import type { RoadLines } from '../state/road';
 import { BodyMotion } from './body_motion';
 import { CameraMan, type CameraName, type Orbit, type Shot } from './cameras';
 import { CarView, GhostView } from './car_view';
-import type { GhostPose, GhostSource } from './ghost';
+import type { GhostSource } from './ghost';
 import { Landscape } from './landscape';
 import type { Motion } from './motion';
 import { type Palette, palette } from './palette';
@@ -70,15 +71,8 @@ export class Stage {
   readonly #skyLight = new HemisphereLight();
   readonly #landscape: Landscape;
   readonly #road: RoadView;
-  readonly #bestLine: BandView;
-  readonly #trace: RingView;
-  readonly #marks: RingView;
-  readonly #brakes: RingView;
-  readonly #racingLine: BandView;
-  readonly #predicted: BandView;
-  readonly #outcome: BandView;
-  readonly #plan: BandView;
-  readonly #cursor: BandView;
+  readonly #rings: Readonly<Record<'trace' | 'rubber' | 'lost', RingView>>; // by their colours
+  readonly #bands: Readonly<Record<'ghost' | 'racingLine' | 'predicted' | 'outcome' | 'plan' | 'act', BandView>>;
   readonly #governor: QualityGovernor;
   readonly #slow: SlowPicture | null; // with software rendering
   readonly #cameraMan = new CameraMan();
@@ -116,15 +110,19 @@ export class Stage {
     this.#camera.up.set(0, 0, 1);
     this.#landscape = new Landscape(this.#scene, anisotropy);
     this.#road = new RoadView(this.#scene, anisotropy);
-    this.#bestLine = new BandView(this.#scene, 20_000, 1);
-    this.#trace = new RingView(this.#scene, session.trace, 2, 0.65);
-    this.#marks = new RingView(this.#scene, session.marks.ring, 3, 0.75);
-    this.#brakes = new RingView(this.#scene, session.brakes, 4, 0.8);
-    this.#racingLine = new BandView(this.#scene, 8192, 1.5);
-    this.#predicted = new BandView(this.#scene, 512, 6);
-    this.#outcome = new BandView(this.#scene, 512, 7);
-    this.#plan = new BandView(this.#scene, 512, 8);
-    this.#cursor = new BandView(this.#scene, 2, 9);
+    this.#rings = {
+      trace: new RingView(this.#scene, session.trace, 2, 0.65),
+      rubber: new RingView(this.#scene, session.marks.ring, 3, 0.75),
+      lost: new RingView(this.#scene, session.brakes, 4, 0.8),
+    };
+    this.#bands = {
+      ghost: new BandView(this.#scene, 20_000, 1),
+      racingLine: new BandView(this.#scene, 8192, 1.5),
+      predicted: new BandView(this.#scene, 512, 6),
+      outcome: new BandView(this.#scene, 512, 7),
+      plan: new BandView(this.#scene, 512, 8),
+      act: new BandView(this.#scene, 2, 9), // the cursor
+    };
     this.#sun.shadow.mapSize.set(1024, 1024);
     this.#scene.add(this.#sun, this.#sun.target, this.#skyLight);
     this.repaint();
@@ -145,15 +143,8 @@ export class Stage {
     this.#skyLight.color = new Color().setRGB(...zenith).lerp(new Color('#ffffff'), isDark ? 0.25 : 0.6);
     this.#skyLight.groundColor = new Color().setRGB(...ground);
     this.#skyLight.intensity = this.#slow ? 1.25 * sky : sky; // replaces the reflections
-    this.#trace.paint(this.#palette.trace);
-    this.#marks.paint(this.#palette.rubber);
-    this.#brakes.paint(this.#palette.lost);
-    this.#racingLine.paint(this.#palette.racingLine);
-    this.#predicted.paint(this.#palette.predicted);
-    this.#outcome.paint(this.#palette.outcome);
-    this.#plan.paint(this.#palette.plan);
-    this.#cursor.paint(this.#palette.act);
-    this.#bestLine.paint(this.#palette.ghost);
+    const lines = { ...this.#rings, ...this.#bands };
+    for (const name of Object.keys(lines) as (keyof typeof lines)[]) lines[name].paint(this.#palette[name]);
     this.#car?.paint(this.#palette);
     this.#ghost?.paint(this.#palette);
     this.#roadKey = '';
@@ -295,17 +286,19 @@ export class Stage {
     if (line !== this.#lineShown) {
       this.#lineShown = line;
       const every = (axis: number): Float32Array => (line ?? new Float32Array()).filter((_, i) => i % 2 === axis);
-      this.#bestLine.show(every(0), every(1), 0.3 * width, () => 0.55);
+      this.#bands.ghost.show({ x: every(0), y: every(1) }, 0.3 * width, 0.55);
     }
     if (view.racingLine !== this.#limitShown) {
       this.#limitShown = view.racingLine;
-      this.#racingLine.show(view.racingLine?.x_m ?? [], view.racingLine?.y_m ?? [], 0.22 * width, () => 0.75);
+      const { x_m: x, y_m: y } = view.racingLine ?? { x_m: [], y_m: [] };
+      this.#bands.racingLine.show({ x, y }, 0.22 * width, 0.75);
     }
     const size = (this.#car?.model.length ?? 4.5) / 4.5;
-    this.#predicted.show(view.hindsight?.plan.x_m ?? [], view.hindsight?.plan.y_m ?? [], 1.2 * size, () => 0.6);
-    this.#outcome.show(view.hindsight?.drivenX ?? [], view.hindsight?.drivenY ?? [], 0.2 * size, () => 1);
+    const { plan, drivenX, drivenY } = view.hindsight ?? { plan: { x_m: [], y_m: [] }, drivenX: [], drivenY: [] };
+    this.#bands.predicted.show({ x: plan.x_m, y: plan.y_m }, 1.2 * size, 0.6);
+    this.#bands.outcome.show({ x: drivenX, y: drivenY }, 0.2 * size, 1);
     this.#showCursor(view.cursor, size);
-    for (const ring of [this.#trace, this.#marks, this.#brakes]) ring.update();
+    for (const ring of Object.values(this.#rings)) ring.update();
   }
 
   /** The plan from where the car is now. */
@@ -313,19 +306,18 @@ export class Stage {
     this.#planShown = plan;
     this.#ahead = plan && motion ? aheadOf({ x: plan.x_m, y: plan.y_m }, motion) : NO_LINE;
     const size = (this.#car?.model.length ?? 4.5) / 4.5;
-    this.#plan.show(this.#ahead.x, this.#ahead.y, 0.5 * size, () => 0.9);
+    this.#bands.plan.show(this.#ahead, 0.5 * size, 0.9);
   }
 
   /** A bar across the road. */
   #showCursor(mark: CursorMark | null, size: number): void {
     const [dx, dy] = mark ? [-Math.sin(mark.yaw) * 5 * size, Math.cos(mark.yaw) * 5 * size] : [0, 0];
     const ends = mark ? [1, -1] : [];
-    this.#cursor.show(
-      ends.map((side) => (mark?.x ?? 0) + side * dx),
-      ends.map((side) => (mark?.y ?? 0) + side * dy),
-      0.5 * size,
-      () => 1,
-    );
+    const line = {
+      x: ends.map((side) => (mark?.x ?? 0) + side * dx),
+      y: ends.map((side) => (mark?.y ?? 0) + side * dy),
+    };
+    this.#bands.act.show(line, 0.5 * size, 1);
   }
 
   #renewCar(run: Run, key: string): void {
@@ -387,7 +379,7 @@ export class Stage {
     return passed;
   }
 
-  readonly #ghostPose: GhostPose = { x: 0, y: 0, yaw: 0, steer: 0 };
+  readonly #ghostPose: Pose = { x: 0, y: 0, yaw: 0, steer: 0 };
 
   #moveGhost(source: GhostSource | null, motion: Motion, length: number): void {
     const pose = this.#ghostPose;
@@ -441,18 +433,7 @@ export class Stage {
     this.#car?.dispose();
     this.#ghost?.dispose();
     this.#landscape.plant([], this.#palette);
-    for (const part of [
-      this.#landscape,
-      this.#road,
-      this.#bestLine,
-      this.#trace,
-      this.#marks,
-      this.#brakes,
-      this.#racingLine,
-      this.#predicted,
-      this.#outcome,
-      this.#plan,
-    ])
+    for (const part of [this.#landscape, this.#road, ...Object.values(this.#rings), ...Object.values(this.#bands)])
       part.dispose();
     this.#environment?.dispose();
     this.#sun.dispose();

@@ -1,6 +1,6 @@
 import type { Point } from '../lib/math';
+import type { RoadLines } from '../state/road';
 import { randomNumbers } from './noise';
-import type { RoadLines } from './road_mesh';
 
 export interface Tree extends Point {
   readonly height: number; // [m]

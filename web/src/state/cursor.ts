@@ -1,4 +1,4 @@
-import { firstSince } from '../draw/axis';
+import { firstSince } from '../lib/math';
 import { Column } from './columns';
 import type { LapChannel } from './lap_samples';
 import { lapSamples } from './laps';

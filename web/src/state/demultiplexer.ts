@@ -1,11 +1,22 @@
 import { store } from '../lib/store';
-import type { Change, Frame, Lap, Limit, Path, Plan, Run, Situation, TopicName, Topics } from '../protocol/topics';
+import {
+  type Change,
+  complete,
+  type Frame,
+  type Lap,
+  type Limit,
+  type Path,
+  type Plan,
+  type Run,
+  type Situation,
+  type TopicName,
+  type Topics,
+} from '../protocol/topics';
 import { forgetFrameEvents, noteChange, noteEvents, noteNotices, setFaultNames } from './event_log';
 import { forgetFaultMarks, noteFaultChange, noteFaultMarks } from './faults';
 import { forgetSamples, noteLap, receiveLap } from './laps';
 import { receiveLimit } from './limit';
 import { forgetRows, keepFrame, keepPlan, live } from './live';
-import { complete } from './message_fields';
 import { Past } from './past';
 import { isReplaying, keepRecent } from './replay';
 import { type RoadLines, receiveReference, receiveRoadLine } from './road';

@@ -87,7 +87,7 @@ const EFFECTS: readonly Effect[] = [
       'Commands act 100 ms late, and the controller rolls its state forward by 100 ms before it plans. With 300 ms ' +
       'it still compensates 100: it corrects errors that are being corrected already, and weaves.',
     mode: 'try',
-    where: '[data-key="latency_ms"]',
+    where: '.setting[data-key="latency_ms"]',
     key: 'latency_ms',
     to: 300,
     tasks: ['Set the latency to 300 ms', 'Watch it stray 1.5 m from its line, or the guard stop it'],
@@ -102,7 +102,7 @@ const CHOOSE: Step = {
     `${PRESET} is the controller of one of five public write-ups: N, dt, weights and latency as its author ` +
     'describes them. The choice restarts the run.',
   mode: 'try',
-  where: '.choices [data-key="preset"]',
+  where: '.choices [data-key="preset"] select',
   tasks: [`Choose the preset ${PRESET}`, `Let it drive ${WATCHED_S} s`],
   isPossible: () => run.value?.preset === PRESET || (entryOf('preset')?.choices.length ?? 0) > 0,
   watch() {

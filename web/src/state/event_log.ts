@@ -1,4 +1,4 @@
-import { hasBit } from '../lib/bits';
+import { begunBits, hasBit } from '../lib/bits';
 import { store } from '../lib/store';
 import { nameInWords, rungInWords, type Severity, statusInWords } from '../lib/words';
 import type { Change, Frame } from '../protocol/topics';
@@ -74,16 +74,9 @@ function follow(key: string, now: { severity: Severity; text: string } | null, t
 /** Opens and closes events by comparing a frame with the one before it. */
 export function noteEvents(frame: Frame, before: Frame | null): void {
   for (const { name, look } of WATCHES) follow(name, look(frame), frame.time_s);
-  const changed = frame.active_faults ^ (before?.active_faults ?? 0);
-  if (changed === 0) return;
-  for (let i = 0; i < 32; ++i) {
-    if (!hasBit(changed, i)) continue;
-    const isOn = hasBit(frame.active_faults, i);
-    follow(
-      `fault ${i}`,
-      isOn ? { severity: 'warning', text: `Fault: ${faultInWords(kept.faultNames[i] ?? `#${i + 1}`)}` } : null,
-      frame.time_s,
-    );
+  for (const bit of begunBits(frame.active_faults ^ (before?.active_faults ?? 0))) {
+    const text = `Fault: ${faultInWords(kept.faultNames[bit] ?? `#${bit + 1}`)}`;
+    follow(`fault ${bit}`, hasBit(frame.active_faults, bit) ? { severity: 'warning', text } : null, frame.time_s);
   }
 }
 

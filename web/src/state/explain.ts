@@ -1,5 +1,5 @@
-import { firstSince } from '../draw/axis';
 import { hasBit } from '../lib/bits';
+import { firstSince } from '../lib/math';
 import type { Plan } from '../protocol/topics';
 import { Column } from './columns';
 import type { History } from './history';

@@ -1,4 +1,4 @@
-import { hasBit } from '../lib/bits';
+import { begunBits, hasBit } from '../lib/bits';
 import { store } from '../lib/store';
 import type { Change, Frame } from '../protocol/topics';
 import { faultInWords } from './event_log';
@@ -37,13 +37,13 @@ export function noteFaultChange({ stamp, name, value }: Change): void {
 }
 
 export function noteFaultMarks(frame: Frame, before: Frame | null, names: readonly string[]): void {
-  const begun = frame.active_faults & ~(before?.active_faults ?? 0);
-  if (begun === 0) return;
-  const marks: FaultMark[] = [];
-  for (let bit = 0; bit < 32; ++bit)
-    if (hasBit(begun, bit))
-      marks.push({ name: names[bit] ?? `#${bit + 1}`, time: frame.time_s, x: frame.x_m, y: frame.y_m });
-  faultMarks.value = [...faultMarks.value, ...marks].slice(-MARKS_KEPT);
+  const marks = begunBits(frame.active_faults, before?.active_faults).map((bit) => ({
+    name: names[bit] ?? `#${bit + 1}`,
+    time: frame.time_s,
+    x: frame.x_m,
+    y: frame.y_m,
+  }));
+  if (marks.length > 0) faultMarks.value = [...faultMarks.value, ...marks].slice(-MARKS_KEPT);
 }
 
 /** Seconds until a fault ends by itself; not-a-number where that is not known. */

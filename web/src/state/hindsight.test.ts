@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { Plan } from '../protocol/topics';
 import { COLUMN_COUNT, Column } from './columns';
-import { hindsight, poseOf } from './hindsight';
+import { hindsight } from './hindsight';
 import { History } from './history';
 
 /** Straight on along x at 10 m/s, made at `time` and acting 0.1 s later. */
@@ -32,14 +32,8 @@ describe('hindsight', () => {
     const seen = hindsight(plans, driven(2), 2);
     expect(seen?.plan).toBe(plans[2]);
     expect([...(seen?.drivenX ?? [])]).toEqual([10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20]);
-    expect(seen?.predicted).toEqual({ x: expect.closeTo(20), y: expect.closeTo(0.8), yaw: expect.closeTo(0.16) });
+    expect(seen?.predicted).toMatchObject({ x: expect.closeTo(20), y: expect.closeTo(0.8), yaw: expect.closeTo(0.16) });
   });
 
   it('is nothing before there is a plan', () => expect(hindsight([], driven(1), 1)).toBeNull());
-
-  it('does not see beyond the ends of a plan', () => {
-    expect(poseOf(plan(0), 0.05)).toBeNull();
-    expect(poseOf(plan(0), 1.7)).toBeNull();
-    expect(poseOf(plan(0), 1.6)).toEqual({ x: 16, y: 2, yaw: 0.4 });
-  });
 });

@@ -1,5 +1,5 @@
-import { firstSince } from '../draw/axis';
-import { mix, wrapAngle } from '../lib/math';
+import { firstSince } from '../lib/math';
+import { type Pose, poseAt } from '../lib/poses';
 import type { Plan } from '../protocol/topics';
 import { Column } from './columns';
 import { planOf } from './explain';
@@ -7,12 +7,6 @@ import type { History } from './history';
 
 /** Age of the plan that is compared with the driven path [s]. */
 export const HINDSIGHT_S = 1;
-
-export interface Pose {
-  readonly x: number;
-  readonly y: number;
-  readonly yaw: number;
-}
 
 /** A past plan and the path driven since; lines of the centre of mass in W. */
 export interface Hindsight {
@@ -22,21 +16,10 @@ export interface Hindsight {
   readonly predicted: Pose | null; // the plan's pose for the present time; null beyond its end
 }
 
-/** The pose that a plan predicts for a time of the run, linear between its points; null outside its horizon. */
-export function poseOf(plan: Plan, time: number): Pose | null {
-  const times = plan.time_s;
-  const next = firstSince(times, time);
-  const first = times[0] ?? NaN;
-  if (next >= times.length || !(time >= first)) return null;
-  if (next === 0) return { x: plan.x_m[0] ?? NaN, y: plan.y_m[0] ?? NaN, yaw: plan.yaw_rad[0] ?? NaN };
-  const at = (values: ArrayLike<number>, i: number): number => values[i] ?? NaN;
-  const share = (time - at(times, next - 1)) / (at(times, next) - at(times, next - 1));
-  const yaw = at(plan.yaw_rad, next - 1);
-  return {
-    x: mix(at(plan.x_m, next - 1), at(plan.x_m, next), share),
-    y: mix(at(plan.y_m, next - 1), at(plan.y_m, next), share),
-    yaw: yaw + wrapAngle(at(plan.yaw_rad, next) - yaw) * share,
-  };
+/** The pose that a plan predicts for a time of the run; null outside its horizon. */
+function poseOf(plan: Plan, time: number): Pose | null {
+  const pose = { x: NaN, y: NaN, yaw: NaN, steer: NaN };
+  return poseAt(plan, time, pose) ? pose : null;
 }
 
 /** The plan of a second ago and the path driven since; null before there is one. */

@@ -30,38 +30,28 @@ export function bestsOf(laps: readonly Lap[]): LapBests {
   };
 }
 
+const SECTORS = [1, 2, 3] as const;
+
 /** The table of laps as CSV, in SI units. */
-export const lapsCsv = (laps: readonly Lap[], limit: Limit | null): string =>
-  csv(
-    [
-      'lap',
-      'lap_time_s',
-      'sector_1_s',
-      'sector_2_s',
-      'sector_3_s',
-      'is_clean',
-      'mean_speed_mps',
-      'top_speed_mps',
-      'min_edge_distance_m',
-      'rms_lateral_error_m',
-      'gap_to_limit_percent',
-      'by_hand_share',
-      'settings',
-    ],
-    laps.map((lap) => [
-      lap.lap,
-      lap.lap_time_s,
-      ...[0, 1, 2].map((sector) => lap.sector_times_s[sector] ?? NaN),
-      lap.is_clean,
-      lap.mean_speed_mps,
-      lap.top_speed_mps,
-      lap.min_edge_distance_m,
-      lap.rms_lateral_error_m,
-      gapsToLimit(lap, limit).lap,
-      lap.by_hand_share,
-      lap.setting_names.map((name, i) => `${name}=${lap.setting_values[i]}`).join(' '),
-    ]),
+export function lapsCsv(laps: readonly Lap[], limit: Limit | null): string {
+  const rows = laps.map((lap) => ({
+    lap: lap.lap,
+    lap_time_s: lap.lap_time_s,
+    ...Object.fromEntries(SECTORS.map((sector) => [`sector_${sector}_s`, lap.sector_times_s[sector - 1] ?? NaN])),
+    is_clean: lap.is_clean,
+    mean_speed_mps: lap.mean_speed_mps,
+    top_speed_mps: lap.top_speed_mps,
+    min_edge_distance_m: lap.min_edge_distance_m,
+    rms_lateral_error_m: lap.rms_lateral_error_m,
+    gap_to_limit_percent: gapsToLimit(lap, limit).lap,
+    by_hand_share: lap.by_hand_share,
+    settings: lap.setting_names.map((name, i) => `${name}=${lap.setting_values[i]}`).join(' '),
+  }));
+  return csv(
+    Object.keys(rows[0] ?? {}),
+    rows.map((row) => Object.values(row)),
   );
+}
 
 /** The samples of a lap along the road as CSV; `index` counts from 0. */
 export function lapSamplesCsv(samples: LapSamples, index: number): string {

@@ -41,6 +41,7 @@ function publish(): void {
 
 export function forgetLaps(): void {
   table.kept = [];
+  table.isHeldBack = false;
   laps.value = table.kept;
   bestSeen.value = NaN;
   if (!table.hasAllLaps) lapSamples.clear();

@@ -1,5 +1,6 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
+import { firstSince } from '../lib/math';
 import { store } from '../lib/store';
 import { UNKNOWN_LIMIT } from '../protocol/messages';
 import type { Limit } from '../protocol/topics';
@@ -114,13 +115,14 @@ function trackOf(file: string): Track {
   const at = (i: number): [number, number] => points[i % points.length] as [number, number];
   const step = (i: number): number => Math.hypot(at(i + 1)[0] - at(i)[0], at(i + 1)[1] - at(i)[1]);
   const yaw = (i: number): number => Math.atan2(at(i + 1)[1] - at(i)[1], at(i + 1)[0] - at(i)[0]);
-  const places = points.map((_, i) => points.slice(0, i).reduce((sum, _point, j) => sum + step(j), 0));
+  const places = [0];
+  for (let i = 1; i < points.length; ++i) places.push((places[i - 1] ?? 0) + step(i - 1));
   const speeds = points.map((_, i) => {
     const turn = Math.abs(Math.sin((yaw(i + 1) - yaw(i)) / 2)) * 2;
     return Math.min(60, Math.max(8, Math.sqrt((12 * step(i)) / Math.max(turn, 1e-6))));
   });
   const length = (places.at(-1) ?? 0) + step(points.length - 1);
-  return { name: file, length, speedAt: (s) => speeds[places.filter((place) => place <= s).length - 1] ?? 8 };
+  return { name: file, length, speedAt: (s) => speeds[firstSince(places, s + 1e-9) - 1] ?? 8 };
 }
 
 /** The lap in steps of half a metre from a line on: place along the road and time since the line. */
@@ -141,8 +143,8 @@ describe('a lap against itself as the limit', () => {
     .map(trackOf);
 
   it.each(tracks)('has no gap on $name, wherever the line is', (track) => {
-    for (let part = 0; part < 24; ++part) {
-      const line = (part / 24) * track.length;
+    for (let part = 0; part < 11; ++part) {
+      const line = (part / 11) * track.length;
       const { s, time, speed, lapTime } = drive(track, line);
       const itself: Limit = {
         ...UNKNOWN_LIMIT,
@@ -186,7 +188,7 @@ describe('a lap against itself as the limit', () => {
       // Distance and time of the picture's numbers.
       for (let i = 0; i < s.length - 1; i += 7) {
         const told = (time[i] ?? NaN) - limitTimeAt(itself, track.length, s[i] ?? NaN, time[i] ?? NaN);
-        expect(Math.abs(told), `at ${s[i]} m`).toBeLessThan(0.05);
+        if (!(Math.abs(told) < 0.05)) expect.fail(`at ${s[i]} m: ${told} s`);
       }
       const speeds = limitChannel(itself, all, 'speed_mps') as Float64Array;
       expect(speeds.every((value) => value > 7.9 && value < 60.1)).toBe(true);

@@ -1,5 +1,4 @@
-import { firstSince } from '../draw/axis';
-import { mix } from '../lib/math';
+import { firstSince, mix } from '../lib/math';
 import { store } from '../lib/store';
 import type { Lap, Limit } from '../protocol/topics';
 import type { LapChannel, LapSamples } from './lap_samples';

@@ -1,6 +1,8 @@
+import { effect } from '@preact/signals';
 import { store } from '../lib/store';
 import type { AskAnswer, ServiceName, Setting, Source } from '../protocol/source';
 import { link, notice, services } from './link';
+import { run } from './run';
 import { entryOf, SettingRequests, settings } from './settings';
 
 /** What the page can do to the run: every view changes it through these functions. */
@@ -22,6 +24,19 @@ export const retry = (): void => operated.source?.retryNow?.();
 
 /** Requests the values of all settings again. */
 export const refresh = (): void => operated.source?.refresh?.();
+
+/** Requests them whenever the track, car, controller or preset changes. */
+export function refreshOnNewChoice(): void {
+  let known = '';
+  effect(() => {
+    const now = run.value;
+    if (!now) return;
+    const choice = [now.track, now.car, now.controller, now.preset].join('\n');
+    const isOther = known !== '' && known !== choice;
+    known = choice;
+    if (isOther) refresh();
+  });
+}
 
 export const can = (name: ServiceName): boolean => services.value.has(name) && link.value === 'live';
 

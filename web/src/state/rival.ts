@@ -1,18 +1,18 @@
 import { effect } from '@preact/signals';
-import { wrapAngle } from '../lib/math';
+import { type Pose, poseAt } from '../lib/poses';
 import { store } from '../lib/store';
-import type { GhostPose, GhostSource } from '../scene3d/ghost';
+import type { GhostSource } from '../scene3d/ghost';
 import type { Course } from './comparison';
 import { recordedCourse } from './courses';
 import { restartListeners } from './demultiplexer';
-import { ghostShown } from './ghost_shown';
+import { ghosts } from './ghost_shown';
 import { LapSamples } from './lap_samples';
 import { lapSamples } from './laps';
 import { link, notice } from './link';
 import { live } from './live';
 import { askRival, can, canSet, requests } from './operate';
 import { programPage } from './program_page';
-import { type Poses, type Race, readRace, sampleRace } from './rival_answer';
+import { type Race, type RacePoses, readRace, sampleRace } from './rival_answer';
 import { run } from './run';
 import { entryOf } from './settings';
 import type { Wish } from './what_if';
@@ -31,27 +31,17 @@ export const canRace = (): boolean => can('/rival');
 const AHEAD_S = 0.6; // shown beyond the newest pose at most, by its speed [s]
 
 /** B's pose at the time of the run's newest frame; B's poses arrive later, and are extrapolated until then. */
-export function poseOf(poses: Poses, time: number, into: GhostPose): boolean {
-  const times = poses.time_s;
-  const last = times.length - 1;
-  if (last < 0 || !(time >= (times[0] ?? NaN)) || time > (times[last] ?? NaN) + AHEAD_S) return false;
-  const at = (name: keyof Poses, row: number): number => poses[name][row] ?? NaN;
-  let row = last;
-  while (row > 0 && (times[row] ?? NaN) > time) --row;
-  const begin = at('time_s', row);
-  const yaw = at('yaw_rad', row);
-  if (row === last) {
-    const way = at('speed_mps', row) * (time - begin);
-    into.x = at('x_m', row) + way * Math.cos(yaw);
-    into.y = at('y_m', row) + way * Math.sin(yaw);
-    into.yaw = yaw;
-  } else {
-    const share = (time - begin) / (at('time_s', row + 1) - begin);
-    into.x = at('x_m', row) + share * (at('x_m', row + 1) - at('x_m', row));
-    into.y = at('y_m', row) + share * (at('y_m', row + 1) - at('y_m', row));
-    into.yaw = yaw + share * wrapAngle(at('yaw_rad', row + 1) - yaw);
-  }
-  into.steer = at('steer_rad', row);
+export function poseOf(poses: RacePoses, time: number, into: Pose): boolean {
+  if (poseAt(poses, time, into)) return true;
+  const last = poses.time_s.length - 1;
+  const at = (name: keyof RacePoses): number => poses[name][last] ?? NaN;
+  const ahead = time - at('time_s');
+  if (!(ahead > 0) || ahead > AHEAD_S) return false;
+  const way = at('speed_mps') * ahead;
+  into.yaw = at('yaw_rad');
+  into.x = at('x_m') + way * Math.cos(into.yaw);
+  into.y = at('y_m') + way * Math.sin(into.yaw);
+  into.steer = at('steer_rad');
   return true;
 }
 
@@ -62,15 +52,8 @@ const ghost: GhostSource = {
   poseAt: (_time, into) => race.value !== null && poseOf(race.value.poses, live.frame?.time_s ?? NaN, into),
 };
 
-const before = store.data('page', () => ({ source: null as GhostSource | null }));
 effect(() => {
-  const isOnStage = race.value?.state === 'racing';
-  if (isOnStage && ghostShown.source !== ghost) {
-    before.source = ghostShown.source;
-    ghostShown.source = ghost;
-  } else if (!isOnStage && ghostShown.source === ghost) {
-    ghostShown.source = before.source;
-  }
+  ghosts.race = race.value?.state === 'racing' ? ghost : null;
 });
 
 /** B's laps as functions of the distance, sampled from its poses. */

@@ -1,4 +1,5 @@
 import { fixed } from '../lib/format';
+import { columns, fields, list, number, text } from '../lib/json';
 import { mod } from '../lib/math';
 import { type LapSamples, UNKNOWN_MOMENT } from './lap_samples';
 
@@ -14,7 +15,7 @@ export interface RaceLap {
 }
 
 export const POSE_COLUMNS = ['time_s', 'x_m', 'y_m', 'yaw_rad', 'steer_rad', 'speed_mps', 'distance_m'] as const;
-export type Poses = Readonly<Record<(typeof POSE_COLUMNS)[number], readonly number[]>>;
+export type RacePoses = Readonly<Record<(typeof POSE_COLUMNS)[number], readonly number[]>>;
 
 export interface Race {
   readonly id: number;
@@ -23,14 +24,8 @@ export interface Race {
   readonly a: readonly RaceLap[];
   readonly b: readonly RaceLap[];
   /** The newest poses of B. */
-  readonly poses: Poses;
+  readonly poses: RacePoses;
 }
-
-type Fields = Readonly<Record<string, unknown>>;
-const fields = (value: unknown): Fields => (typeof value === 'object' && value !== null ? (value as Fields) : {});
-const list = (value: unknown): readonly unknown[] => (Array.isArray(value) ? value : []);
-const number = (value: unknown): number => (typeof value === 'number' ? value : NaN);
-const numbers = (value: unknown): readonly number[] => list(value).map(number);
 
 const readLaps = (value: unknown): RaceLap[] =>
   list(value)
@@ -46,14 +41,13 @@ const STATES: readonly Race['state'][] = ['none', 'building', 'racing', 'ended',
 /** Reads a parsed /rival.json. */
 export function readRace(json: unknown): Race {
   const all = fields(json);
-  const trace = fields(all.trace);
   return {
     id: number(all.id),
     state: STATES.find((state) => state === all.state) ?? 'none',
-    why: typeof all.why === 'string' ? all.why : '',
+    why: text(all.why),
     a: readLaps(all.run),
     b: readLaps(all.rival),
-    poses: Object.fromEntries(POSE_COLUMNS.map((name) => [name, numbers(trace[name])])) as unknown as Poses,
+    poses: columns(all.trace, POSE_COLUMNS),
   };
 }
 
@@ -68,7 +62,7 @@ export function sampleRace(samples: LapSamples, { b, poses }: Race, line: number
     newest = time;
     let lap = 0;
     while (lap + 1 < ends.length && time >= (ends[lap + 1] ?? Infinity)) ++lap;
-    const at = (name: keyof Poses): number => poses[name][row] ?? NaN;
+    const at = (name: keyof RacePoses): number => poses[name][row] ?? NaN;
     const moment = {
       ...UNKNOWN_MOMENT,
       s_m: mod(line + at('distance_m'), samples.length),

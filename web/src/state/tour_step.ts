@@ -14,7 +14,7 @@ export interface Step {
   readonly text: string;
   /** The mode in which it is done. */
   readonly mode: Mode;
-  /** What the step is about, in that mode: a selector, as in try.css, which marks it. */
+  /** What the step is about, in that mode: a selector; it is marked. */
   readonly where: string;
   /** What is searched for in Try; empty: nothing. */
   readonly search?: string;

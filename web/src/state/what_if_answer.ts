@@ -1,4 +1,5 @@
-import { mix } from '../lib/math';
+import { columns, fields, list, number, text } from '../lib/json';
+import { firstSince, mix } from '../lib/math';
 import type { Course } from './comparison';
 import type { LapChannel } from './lap_samples';
 
@@ -70,17 +71,11 @@ export type WhatIfState =
   | { readonly kind: 'failed'; readonly id: number; readonly why: string }
   | { readonly kind: 'done'; readonly id: number; readonly answer: WhatIfAnswer };
 
-type Fields = Readonly<Record<string, unknown>>;
-const fields = (value: unknown): Fields => (typeof value === 'object' && value !== null ? (value as Fields) : {});
-const list = (value: unknown): readonly unknown[] => (Array.isArray(value) ? value : []);
-const number = (value: unknown): number => (typeof value === 'number' ? value : NaN);
-
 function readFuture(value: unknown): Future {
   const all = fields(value);
-  const trace = fields(all.trace);
   return {
     duration: number(all.duration_s),
-    lapTimes: list(all.lap_times_s).map(number),
+    lapTimes: list(all.lap_times_s).map((each) => number(each)),
     largestError: number(all.max_abs_lateral_error_m),
     leastEdge: number(all.min_edge_distance_m),
     meanSpeed: number(all.mean_speed_mps),
@@ -90,7 +85,7 @@ function readFuture(value: unknown): Future {
     passages: list(all.passages)
       .map(fields)
       .map((each) => ({ lap: number(each.lap), sector: number(each.sector), time: number(each.time_s) })),
-    trace: Object.fromEntries(TRACE_COLUMNS.map((name) => [name, list(trace[name]).map(number)])) as unknown as Trace,
+    trace: columns(all.trace, TRACE_COLUMNS),
   };
 }
 
@@ -112,32 +107,21 @@ export function readWhatIf(json: unknown): WhatIfState | null {
     knownUntil: number(all.known_until_s),
     isExact: all.is_exact === true,
     standIn: readStandIn(all.stand_in),
-    endReason: typeof all.end_reason === 'string' ? all.end_reason : '',
+    endReason: text(all.end_reason),
     was: readFuture(all.was),
     branch: readFuture(all.branch),
   };
   return { kind: 'done', id, answer };
 }
 
-/** The last row whose value of an ascending column is not above `value`; −1 before the first. */
-function rowAt(column: readonly number[], value: number): number {
-  let [low, high] = [-1, column.length];
-  while (high - low > 1) {
-    const middle = (low + high) >> 1;
-    if ((column[middle] ?? NaN) <= value) low = middle;
-    else high = middle;
-  }
-  return low;
-}
-
 /** A column of a trace at a distance along the road; not-a-number where it was not driven. */
 function atDistance(trace: Trace, name: TraceColumn, distance: number): number {
   const places = trace.distance_m;
-  const row = rowAt(places, distance);
-  const [here, next] = [places[row] ?? NaN, places[row + 1] ?? NaN];
   const values = trace[name];
-  if (here === distance) return values[row] ?? NaN;
-  return next > here ? mix(values[row] ?? NaN, values[row + 1] ?? NaN, (distance - here) / (next - here)) : NaN;
+  const next = firstSince(places, distance);
+  const [before, behind] = [places[next - 1] ?? NaN, places[next] ?? NaN];
+  if (behind === distance) return values[next] ?? NaN;
+  return mix(values[next - 1] ?? NaN, values[next] ?? NaN, (distance - before) / (behind - before));
 }
 
 /** The points at which futures are compared; `driven`: a lap of the run, as far as it is known. */

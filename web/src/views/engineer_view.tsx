@@ -28,7 +28,7 @@ function Share({ share }: { share: number }) {
 function Limiters() {
   void shown.value;
   const shares = sharesOf(live.plots, Column.speed_limiter, LIMITERS.length, WINDOW_S);
-  const rows = LIMITERS.map(({ short }, i) => ({ short, share: shares[i] ?? 0 })).filter(({ share }) => share > 0.005);
+  const rows = LIMITERS.map((short, i) => ({ short, share: shares[i] ?? 0 })).filter(({ share }) => share > 0.005);
   return (
     <section class="stack" aria-label="What limits the speed">
       <h2>What limited the speed, last {WINDOW_S} s</h2>

@@ -46,11 +46,9 @@ const chosen = store.signal<ReadonlyMap<string, { readonly duration: number; rea
 const choiceOf = (key: string, entry: FaultEntry): { duration: number; strength: number } =>
   chosen.value.get(key) ?? { duration: Math.max(LEAST_S, entry.duration_s), strength: entry.strength };
 
-function choose(
-  key: string,
-  entry: FaultEntry,
-  { duration, strength }: { duration?: number | undefined; strength?: number | undefined },
-): void {
+type Choice = { readonly duration?: number | undefined; readonly strength?: number | undefined };
+
+function choose(key: string, entry: FaultEntry, { duration, strength }: Choice): void {
   const before = choiceOf(key, entry);
   const now = { duration: duration ?? before.duration, strength: strength ?? before.strength };
   chosen.value = new Map([...chosen.value, [key, now]]);
@@ -95,32 +93,31 @@ function numberIn(text: string, least: number, most: number): number | undefined
   return typeof value === 'number' ? clamp(value, least, most) : undefined;
 }
 
-function Parameters({ fault, entry }: { fault: Fault; entry: FaultEntry }) {
-  const { key, name } = fault;
+function Parameters({ fault: { key, name }, entry }: { fault: Fault; entry: FaultEntry }) {
   const { duration, strength } = choiceOf(key, entry);
+  const box = (label: string, value: number, choice: (text: string) => Choice) => (
+    <DraftBox
+      class="number-box"
+      label={label}
+      value={tidy(value)}
+      when="typed"
+      onText={(text) => choose(key, entry, choice(text))}
+    />
+  );
+  const { strength_meaning: meaning, weakest, strongest } = entry;
   return (
     <div class="row parameter">
       <span class="row parameter">
         <span>for</span>
-        <DraftBox
-          class="number-box"
-          label={`Duration of ${name} [s]`}
-          value={tidy(duration)}
-          when="typed"
-          onText={(text) => choose(key, entry, { duration: numberIn(text, ...DURATIONS_S) })}
-        />
+        {box(`Duration of ${name} [s]`, duration, (text) => ({ duration: numberIn(text, ...DURATIONS_S) }))}
         <span>s</span>
       </span>
-      {entry.strength_meaning !== '' && (
+      {meaning !== '' && (
         <span class="row parameter">
-          <DraftBox
-            class="number-box"
-            label={`Strength of ${name}: ${entry.strength_meaning}`}
-            value={tidy(strength)}
-            when="typed"
-            onText={(text) => choose(key, entry, { strength: numberIn(text, entry.weakest, entry.strongest) })}
-          />
-          <span>{entry.strength_meaning}</span>
+          {box(`Strength of ${name}: ${meaning}`, strength, (text) => ({
+            strength: numberIn(text, weakest, strongest),
+          }))}
+          <span>{meaning}</span>
         </span>
       )}
     </div>

@@ -1,10 +1,11 @@
 import { useLayoutEffect, useRef } from 'preact/hooks';
-import { allShortcuts, type Shortcut } from '../lib/keys';
+import { allShortcuts, GROUPS } from '../lib/keys';
 import { store } from '../lib/store';
 
-export const isHelpOpen = store.signal('page', false);
-
-const GROUPS: readonly Shortcut['group'][] = ['Run', 'Camera', 'Page', 'Driving by hand'];
+const isHelpOpen = store.signal('page', false);
+export const openHelp = (): void => {
+  isHelpOpen.value = true;
+};
 
 /** A modal dialog, with the browser's handling of focus and Escape. */
 export function Dialog({

@@ -9,7 +9,7 @@ import { call, can, canSet, set } from '../state/operate';
 import { programPage } from '../state/program_page';
 import { isPaused } from '../state/run';
 import { settings } from '../state/settings';
-import { isHelpOpen } from './help_view';
+import { openHelp } from './help_view';
 import { isManual, toggleManual } from './manual_view';
 import { openShare } from './share_view';
 import { isTourOffered, openTourHere, tourLabel } from './tour_view';
@@ -117,7 +117,7 @@ export function MenuView() {
         <Item act={present} name="G">
           Present
         </Item>
-        <Item act={() => (isHelpOpen.value = true)} name="?">
+        <Item act={openHelp} name="?">
           Keys and help
         </Item>
       </div>

@@ -37,41 +37,44 @@ const speedSpec = ({ name, perMps, axisStep, axisLeast }: SpeedUnit): PlotSpec =
   range: (columns) => rangeInSteps(columns.slice(1), axisStep, axisLeast),
 });
 
+/** A command as it was sent, asked for by the controller, and applied to the car. */
+const commands = (sent: number, asked: number, applied: number, factor: number): PlotSpec['series'] => [
+  { column: sent, label: 'sent', colour: SENT, factor },
+  { column: asked, label: 'asked', colour: ASKED, isDashed: true, factor },
+  { column: applied, label: 'applied', colour: APPLIED, factor },
+];
+const aboutZero =
+  (least: number): PlotSpec['range'] =>
+  (columns) =>
+    rangeAboutZero(columns, least);
+
 const BEFORE_COST: readonly PlotSpec[] = [
   {
     title: 'Lateral error',
     unit: 'm, + left',
     decimals: 2,
     series: [{ column: Column.lateral_error_m, label: 'car', colour: APPLIED }],
-    range: (columns) => rangeAboutZero(columns, 0.5),
+    range: aboutZero(0.5),
   },
   {
     title: 'Heading error',
     unit: '°, + left',
     decimals: 1,
     series: [{ column: Column.heading_error_rad, label: 'car', colour: APPLIED, factor: DEGREES }],
-    range: (columns) => rangeAboutZero(columns, 2),
+    range: aboutZero(2),
   },
   {
     title: 'Steering',
     unit: '°, + left',
     decimals: 1,
-    series: [
-      { column: Column.steer_sent_rad, label: 'sent', colour: SENT, factor: DEGREES },
-      { column: Column.steer_asked_rad, label: 'asked', colour: ASKED, isDashed: true, factor: DEGREES },
-      { column: Column.steer_applied_rad, label: 'applied', colour: APPLIED, factor: DEGREES },
-    ],
-    range: (columns) => rangeAboutZero(columns, 2),
+    series: commands(Column.steer_sent_rad, Column.steer_asked_rad, Column.steer_applied_rad, DEGREES),
+    range: aboutZero(2),
   },
   {
     title: 'Drive',
     unit: '%, − brakes',
     decimals: 0,
-    series: [
-      { column: Column.throttle_sent, label: 'sent', colour: SENT, factor: PERCENT },
-      { column: Column.throttle_asked, label: 'asked', colour: ASKED, isDashed: true, factor: PERCENT },
-      { column: Column.throttle_applied, label: 'applied', colour: APPLIED, factor: PERCENT },
-    ],
+    series: commands(Column.throttle_sent, Column.throttle_asked, Column.throttle_applied, PERCENT),
     range: () => [-105, 105],
   },
   {
@@ -106,19 +109,17 @@ const AFTER_COST: readonly PlotSpec[] = [
 
 function costSpec(names: readonly string[]): PlotSpec {
   const shownNames = names.length > COST_TERMS ? [...names.slice(0, COST_TERMS - 1), 'others'] : names;
+  const layers = shownNames.map((name, term) => ({
+    column: costColumn(term),
+    label: nameInWords(name),
+    colour: term,
+    isFilled: true,
+  }));
   return {
     title: 'Cost',
     unit: names.length > 0 ? 'of the plan, stacked' : 'of the plan',
     decimals: 1,
-    series:
-      names.length > 0
-        ? shownNames.map((name, term) => ({
-            column: costColumn(term),
-            label: nameInWords(name),
-            colour: term,
-            isFilled: true,
-          }))
-        : [{ column: Column.cost, label: 'all', colour: APPLIED }],
+    series: names.length > 0 ? layers : [{ column: Column.cost, label: 'all', colour: APPLIED }],
     range: (columns) => rangeFromZero(columns.slice(-1), 1e-3),
   };
 }
@@ -181,12 +182,7 @@ export function PlotsView() {
     <div class="plots-view stack">
       <Toolbar />
       <div class="plots">
-        <TimePlot spec={speed.value} />
-        {BEFORE_COST.map((spec) => (
-          <TimePlot key={spec.title} spec={spec} />
-        ))}
-        <TimePlot spec={cost.value} />
-        {AFTER_COST.map((spec) => (
+        {[speed.value, ...BEFORE_COST, cost.value, ...AFTER_COST].map((spec) => (
           <TimePlot key={spec.title} spec={spec} />
         ))}
       </div>

@@ -27,17 +27,19 @@ export function typed(text: string): Setting | null {
 const asText = (value: Setting | undefined): string =>
   typeof value === 'number' ? tidy(value).replace('−', '-') : value === undefined ? '' : String(value);
 
-function NumberBox({ entry, id }: { entry: SchemaEntry; id: string }) {
+/** A box for a number or a text, sent once it is complete. */
+function ValueBox({ entry, label }: { entry: SchemaEntry; label: string }) {
   const value = valueShown(entry.key);
+  const isText = entry.kind === 'text';
   return (
     <DraftBox
-      class="number-box"
-      label={`${id}, value`}
+      class={isText ? 'text-box' : 'number-box'}
+      label={label}
       disabled={!canChange(entry.key)}
       value={asText(value)}
       when="complete"
       onText={(text) => {
-        const request = typed(text);
+        const request = isText ? text : typed(text);
         if (request !== null && request !== value) change(entry.key, request);
       }}
     />
@@ -120,27 +122,29 @@ function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
     const put = (choice: string): void => change(entry.key, choice);
     return <ChoiceBox entry={entry} label={label} value={value} isPossible={canChange(entry.key)} put={put} />;
   }
-  if (entry.kind === 'text') return <TextBox entry={entry} label={label} />;
+  if (entry.kind === 'text') return <ValueBox entry={entry} label={label} />;
   const range = rangeOf(entry, firstValueOf(entry) ?? entry.default ?? undefined);
   return (
     <>
       {range ? <Slider entry={entry} range={range} label={label} /> : <span class="slider" />}
-      <NumberBox entry={entry} id={label} />
+      <ValueBox entry={entry} label={`${label}, value`} />
       <span class="unit">{entry.unit}</span>
     </>
   );
 }
 
-function TextBox({ entry, label }: { entry: SchemaEntry; label: string }) {
+const inWords = (value: Setting): string => (typeof value === 'number' ? tidy(value) : String(value));
+
+/** A setting with its value before and after. */
+export function ChangeOf({ of: { key, from, to } }: { of: { key: string; from: Setting; to: Setting } }) {
   return (
-    <DraftBox
-      class="text-box"
-      label={label}
-      disabled={!canChange(entry.key)}
-      value={String(valueShown(entry.key) ?? '')}
-      when="complete"
-      onText={(text) => text !== valueShown(entry.key) && change(entry.key, text)}
-    />
+    <>
+      <code>{key}</code> <span class="was">{inWords(from)}</span>{' '}
+      <span role="img" aria-label="to">
+        →
+      </span>{' '}
+      <b>{inWords(to)}</b>
+    </>
   );
 }
 

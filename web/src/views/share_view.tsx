@@ -1,7 +1,6 @@
 import { plural } from '../lib/format';
 import { tidy } from '../lib/scale';
 import { store } from '../lib/store';
-import type { Setting } from '../protocol/source';
 import { notice } from '../state/link';
 import { mode } from '../state/mode';
 import { canSet } from '../state/operate';
@@ -18,6 +17,7 @@ import {
 } from '../state/share';
 import { Copied, forgetCopied } from './copied';
 import { Dialog } from './help_view';
+import { ChangeOf } from './setting_row';
 
 const isOpen = store.signal('page', false);
 
@@ -36,8 +36,6 @@ export function listenForLinks(): void {
   addEventListener('hashchange', read);
   read();
 }
-
-const asText = (value: Setting): string => (typeof value === 'number' ? tidy(value) : String(value));
 
 /** The link to the run that goes on, and the command that begins it. */
 function Offer() {
@@ -58,8 +56,10 @@ function Offer() {
       ) : (
         <>
           <p class="soft">
-            {[...shared.choices].map(([key, value]) => `${key} ${asText(value)}`).join(', ')}, {changes}. Whoever opens
-            it with <code>chicane drive</code> running is asked once, and drives the same.
+            {[...shared.choices]
+              .map(([key, value]) => `${key} ${typeof value === 'number' ? tidy(value) : value}`)
+              .join(', ')}
+            , {changes}. Whoever opens it with <code>chicane drive</code> running is asked once, and drives the same.
           </p>
           {fixedChanges.value.length > 0 && (
             <p class="soft" data-testid="share-fixed">
@@ -105,13 +105,9 @@ function Question() {
             <>
               <p>The run that goes on ends, and this one begins from standstill:</p>
               <ul class="link-differences stack" data-testid="wanted">
-                {request.differences.map(({ key, from, to }) => (
-                  <li key={key}>
-                    <code>{key}</code> <span class="was">{asText(from)}</span>{' '}
-                    <span role="img" aria-label="to">
-                      →
-                    </span>{' '}
-                    <b>{asText(to)}</b>
+                {request.differences.map((each) => (
+                  <li key={each.key}>
+                    <ChangeOf of={each} />
                   </li>
                 ))}
               </ul>

@@ -2,6 +2,7 @@ import type { ComponentChildren } from 'preact';
 import { fixed, lapTime, plural, side, UNKNOWN } from '../lib/format';
 import { clamp, degrees } from '../lib/math';
 import { inSpeedUnit, speedUnit } from '../lib/units';
+import { signed, toneOf } from '../state/comparison';
 import { bestsOf } from '../state/lap_table';
 import { lapSamples, laps } from '../state/laps';
 import { gapsToLimit, limit, limitTimeAt } from '../state/limit';
@@ -114,8 +115,8 @@ function Gap() {
   if (!frame || !limit.value || frame.lap === 0) return <p class="cell" />;
   const gap = frame.lap_time_s - limitTimeAt(limit.value, lapSamples.length, frame.s_m, frame.lap_time_s);
   return (
-    <Cell id="delta-limit" label="to the limit" tone={gap >= 0.005 ? 'lost' : 'won'}>
-      {Number.isFinite(gap) ? `${gap >= 0.005 ? '+' : ''}${fixed(gap, 2)} s` : UNKNOWN}
+    <Cell id="delta-limit" label="to the limit" tone={toneOf(gap)}>
+      {Number.isFinite(gap) ? `${signed(gap)} s` : UNKNOWN}
     </Cell>
   );
 }

@@ -1,34 +1,24 @@
 import { effect } from '@preact/signals';
-import { useEffect, useRef } from 'preact/hooks';
-import uPlot from 'uplot';
-import { store } from '../lib/store';
-import 'uplot/dist/uPlot.min.css';
-import { firstSince, secondsBack, silencesIn } from '../draw/axis';
-import { onThemeChange } from '../draw/theme';
+import type { ComponentChildren } from 'preact';
+import { useEffect, useRef, useState } from 'preact/hooks';
+import { ticksOf } from '../draw/axis';
+import { type Chart, chartOn, drawAxes, drawCurve, ROOM } from '../draw/chart';
+import { Paper } from '../draw/paper';
+import { onThemeChange, theme, toneOf } from '../draw/theme';
 import { fixed } from '../lib/format';
-import { onScreen } from '../lib/on_screen';
+import { firstSince } from '../lib/math';
+import { tidy } from '../lib/scale';
+import { store } from '../lib/store';
 import { Column } from '../state/columns';
-import type { History } from '../state/history';
-import {
-  cursorTime,
-  isFrozen,
-  markTime,
-  plotted,
-  thaw,
-  timeRange,
-  windowSeconds,
-  zoomed,
-  zoomTo,
-} from '../state/plot_view';
+import { cursorTime, isFrozen, markTime, plotted, thaw, timeRange, windowSeconds, zoomed } from '../state/plot_view';
 import { shown } from '../state/shown';
 import { LONGEST_SILENCE_S } from '../state/silence';
 import { everyFrame } from '../state/ticker';
 import { drawFaultBands } from './plot_bands';
-import { type ChartColours, chartColours, toneOf } from './plot_colours';
+import { PlotPointer } from './plot_pointer';
 
 export interface Series {
-  readonly column: number; // one of them, or
-  readonly compute?: (history: History, first: number, end: number) => Float64Array; // from rows of all
+  readonly column: number;
   readonly label: string;
   readonly colour: number; // of plot_colours.ts, from 0
   readonly isDashed?: boolean;
@@ -43,30 +33,19 @@ export interface PlotSpec {
   readonly series: readonly Series[];
   readonly range: (columns: readonly ArrayLike<number>[]) => [number, number];
   /** Strokes under the lines. */
-  readonly under?: (plot: uPlot, colours: ChartColours) => void;
+  readonly under?: (chart: Chart) => void;
 }
 
-const axisNumber = (value: number): string => String(Number(value.toPrecision(6))).replace('-', '−');
+/** Relative to now while the plot follows the run, so that the grid does not move; run time when zoomed in. */
+const ticksOfTime = (low: number, high: number): number[] =>
+  // Times of the run are long labels, so fewer.
+  zoomed.value ? ticksOf(low, high, 4.5) : ticksOf(low - high, 0, 6.5).map((back) => high + back);
 
-function timeAxis(low: number, high: number): number[] {
-  const span = high - low;
-  // Zoomed in, labels are times of the run: long ones, so fewer.
-  const most = zoomed.value ? 4 : 6;
-  const step = [0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20].find((each) => span / each <= most) ?? 20;
-  if (!zoomed.value) return secondsBack(high, Math.ceil(span / step) * step, step).filter((time) => time >= low - 1e-9);
-  const first = Math.ceil(low / step - 1e-9);
-  return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, i) => (first + i) * step);
+function timeLabel(time: number, last: number): string {
+  if (zoomed.value) return `${tidy(time)} s`;
+  if (time !== last) return `−${tidy(Math.round((last - time) * 10) / 10)} s`;
+  return isFrozen.value ? `${fixed(time, 1)} s` : 'now';
 }
-
-/** Labels relative to now while the plot follows the run; run time when zoomed in. */
-const timeLabel = (time: number, last: number): string =>
-  zoomed.value
-    ? `${axisNumber(time)} s`
-    : time === last
-      ? isFrozen.value
-        ? `${fixed(time, 1)} s`
-        : 'now'
-      : `−${axisNumber(Math.round((last - time) * 10) / 10)} s`;
 
 /** Time and columns of a plot over the range of its axis, with one more point on each side. */
 function dataOf(spec: PlotSpec): Float64Array[] {
@@ -78,114 +57,17 @@ function dataOf(spec: PlotSpec): Float64Array[] {
   const part = (column: number): Float64Array => history.column(column).subarray(first, end);
   return [
     part(Column.time_s),
-    ...spec.series.map(({ column, compute, factor = 1 }) => {
-      if (compute) return compute(history, first, end);
-      return factor === 1 ? part(column) : part(column).map((value) => value * factor);
-    }),
+    ...spec.series.map(({ column, factor = 1 }) =>
+      factor === 1 ? part(column) : part(column).map((value) => value * factor),
+    ),
   ];
 }
 
-/** Gaps of the lines, as pairs of pixels of the canvas. */
-function gapsOf(
-  plot: uPlot,
-  _series: number,
-  first: number,
-  last: number,
-  found: uPlot.Series.Gaps,
-): uPlot.Series.Gaps {
-  const pixel = (time: number): number => Math.round(plot.valToPos(time, 'x', true));
-  const silences = silencesIn(plot.data[0], first, last, LONGEST_SILENCE_S).map(
-    ([from, to]): uPlot.Series.Gap => [pixel(from), pixel(to)],
-  );
-  return [...found, ...silences];
-}
-
-function seriesOptions({ label, colour, isDashed, isFilled }: Series, colours: ChartColours): uPlot.Series {
-  const stroke = colours.series[colour] ?? colours.text;
-  return {
-    label,
-    stroke,
-    width: isFilled ? 1 : 1.75,
-    dash: isDashed ? [5, 4] : [],
-    points: { show: false },
-    gaps: gapsOf,
-  };
-}
-
-function optionsOf(spec: PlotSpec, colours: ChartColours): uPlot.Options {
-  const axis = {
-    stroke: colours.faint,
-    grid: { stroke: colours.grid, width: 1 },
-    ticks: { show: false },
-    font: `11px ${colours.font}`,
-  };
-  const fill = (colour: number): string =>
-    `color-mix(in srgb, ${colours.series[colour] ?? colours.text} 55%, ${colours.panel})`;
-  return {
-    width: 300,
-    height: 120,
-    legend: { show: false },
-    cursor: {
-      sync: { key: 'plots', setSeries: false },
-      drag: { x: true, y: false, setScale: false, dist: 5 },
-      points: { size: 7 },
-      bind: {
-        dblclick: () => () => {
-          thaw();
-          return null;
-        },
-      },
-    },
-    padding: [8, 18, 0, 0],
-    scales: { x: { time: false, range: () => timeRange() }, y: { range: () => spec.range(dataOf(spec).slice(1)) } },
-    axes: [
-      {
-        ...axis,
-        size: 22,
-        splits: (_plot, _axis, low, high) => timeAxis(low, high),
-        values: (_plot, ticks) => ticks.map((tick) => timeLabel(tick, ticks.at(-1) ?? 0)),
-      },
-      { ...axis, size: 44, space: 24, values: (_plot, ticks) => ticks.map(axisNumber) },
-    ],
-    series: [
-      {},
-      ...spec.series.map((each) => ({
-        ...seriesOptions(each, colours),
-        ...(each.isFilled && each === spec.series[0] ? { fill: fill(each.colour) } : {}),
-      })),
-    ],
-    bands: spec.series.flatMap((each, i) =>
-      each.isFilled && i > 0 ? [{ series: [i + 1, i] as [number, number], fill: fill(each.colour) }] : [],
-    ),
-    hooks: {
-      drawClear: [(plot) => drawFaultBands(plot, colours)],
-      drawAxes: [(plot) => spec.under?.(plot, colours)],
-      draw: [(plot) => drawMark(plot, colours)],
-      ready: [markByClick],
-      setSelect: [
-        (plot) => {
-          const { left, width } = plot.select;
-          if (width > 0) zoomTo(plot.posToVal(left, 'x'), plot.posToVal(left + width, 'x'));
-          plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
-        },
-      ],
-      setCursor: [
-        (plot) => {
-          const { idx } = plot.cursor;
-          const time = idx === null || idx === undefined ? null : (plot.data[0][idx] ?? null);
-          if (plot.cursor.event !== undefined || time === null) cursorTime.value = time;
-        },
-      ],
-    },
-  };
-}
-
 /** The value of a series at a time, or the newest. */
-function valueAt({ column, compute, factor = 1 }: Series, time: number | null): number {
+function valueAt({ column, factor = 1 }: Series, time: number | null): number {
   const history = plotted();
   const row = time === null ? history.length - 1 : firstSince(history.column(Column.time_s), time - 1e-9);
-  if (row < 0) return NaN;
-  return compute ? (compute(history, row, row + 1)[0] ?? NaN) : (history.column(column)[row] ?? NaN) * factor;
+  return (history.column(column)[row] ?? NaN) * factor;
 }
 
 /** The value under the cursor, or the newest; with a mark, the difference from there, too. */
@@ -198,31 +80,44 @@ function readout(series: Series, decimals: number): string {
 }
 
 /** A dashed line where the mark is. */
-function drawMark(plot: uPlot, colours: ChartColours): void {
+function drawMark({ context, x, from, to, top, bottom }: Chart): void {
   const time = markTime.value;
-  const { left, top, width, height } = plot.bbox;
-  if (time === null) return;
-  const x = Math.round(plot.valToPos(time, 'x', true));
-  if (x < left || x > left + width) return;
-  const { ctx } = plot;
-  ctx.save();
-  ctx.strokeStyle = colours.text;
-  ctx.lineWidth = devicePixelRatio;
-  ctx.setLineDash([4 * devicePixelRatio, 3 * devicePixelRatio]);
-  ctx.beginPath();
-  ctx.moveTo(x, top);
-  ctx.lineTo(x, top + height);
-  ctx.stroke();
-  ctx.restore();
+  if (time === null || time < from || time > to) return;
+  context.strokeStyle = theme().ink;
+  context.lineWidth = 1;
+  context.setLineDash([4, 3]);
+  context.beginPath();
+  context.moveTo(x(time), top);
+  context.lineTo(x(time), bottom);
+  context.stroke();
+  context.setLineDash([]);
 }
 
-/** A click, no drag, sets the mark where it is. */
-function markByClick(plot: uPlot): void {
-  let from = NaN;
-  plot.over.addEventListener('mousedown', ({ clientX }) => (from = clientX));
-  plot.over.addEventListener('mouseup', ({ clientX, detail }) => {
-    if (Math.abs(clientX - from) < 5 && detail === 1) markTime.value = cursorTime.value;
+/** Draws a plot on its paper; null while that has no size. */
+function drawPlot(spec: PlotSpec, paper: Paper): Chart | null {
+  const ready = paper.prepare();
+  if (!ready) return null;
+  const { context, ratio } = ready;
+  const colours = theme();
+  const [times, ...columns] = dataOf(spec);
+  const range = spec.range(columns);
+  const chart = chartOn(context, paper.box, timeRange(), range);
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, paper.box.width, paper.box.height);
+  drawFaultBands(chart);
+  const yTicks = ticksOf(...range, Math.max(2, (chart.bottom - chart.top) / 22));
+  drawAxes(chart, ticksOfTime(chart.from, chart.to), yTicks, (tick) => timeLabel(tick, chart.to), colours);
+  spec.under?.(chart);
+  // Stacked layers reach down to 0: the lower ones cover the higher ones.
+  const curves = spec.series.map(({ colour, isDashed = false, isFilled }, i) => {
+    const tone = colours.series[colour] ?? colours.ink;
+    const fill = isFilled ? { fill: `color-mix(in srgb, ${tone} 55%, ${colours.sheet})` } : {};
+    return { values: columns[i] ?? [], colour: tone, isDashed, ...fill };
   });
+  if (spec.series[0]?.isFilled) curves.reverse();
+  for (const curve of curves) drawCurve(chart, times ?? [], curve, LONGEST_SILENCE_S);
+  drawMark(chart);
+  return chart;
 }
 
 const PACE_MS = 100; // as often as text
@@ -233,52 +128,89 @@ const plotsMade = store.data('page', () => ({ count: 0 }));
  * Time between repaints of a plot [ms]: until its lines have moved by one pixel, at most as long as between updates of
  * text.
  */
-const paceOf = (plot: uPlot): number =>
-  plot.bbox.width > 0 ? Math.min(PACE_MS, (1000 * windowSeconds.value) / plot.bbox.width) : 0;
+const paceOf = ({ box }: Paper): number => Math.min(PACE_MS, (1000 * windowSeconds.value) / Math.max(1, box.width));
+
+/** The plotted area under the pointer. */
+function PointerArea({
+  pointer,
+  label,
+  children,
+}: {
+  pointer: PlotPointer;
+  label: string;
+  children: ComponentChildren;
+}) {
+  return (
+    <div
+      class="plot-over"
+      role="img"
+      aria-label={label}
+      style={{ inset: `${ROOM.top}px ${ROOM.right}px ${ROOM.bottom}px ${ROOM.left}px` }}
+      onPointerDown={({ currentTarget, pointerId, offsetX, button }) => {
+        currentTarget.setPointerCapture(pointerId);
+        pointer.press(offsetX, button);
+      }}
+      onPointerMove={({ offsetX }) => pointer.move(offsetX)}
+      onPointerUp={({ offsetX }) => pointer.release(offsetX)}
+      onPointerCancel={() => pointer.cancel()}
+      onPointerLeave={() => pointer.leave()}
+      onDblClick={thaw}
+    >
+      {children}
+    </div>
+  );
+}
 
 export function TimePlot({ spec }: { spec: PlotSpec }) {
   const host = useRef<HTMLDivElement>(null);
+  const [dragged, select] = useState<readonly [number, number] | null>(null);
+  const [pointer] = useState(
+    () => new PlotPointer(() => host.current?.querySelector('.plot-over')?.clientWidth ?? 0, select),
+  );
   useEffect(() => {
-    const element = host.current;
-    if (!element) return undefined;
-    const create = (): uPlot =>
-      new uPlot(optionsOf(spec, chartColours()), dataOf(spec) as unknown as uPlot.AlignedData, element);
-    let plot = create();
-    let drawn = NaN;
-    const redraw = (): void => plot.setData(dataOf(spec) as unknown as uPlot.AlignedData);
-    const fit = (): void => plot.setSize(box);
-    const box = onScreen(element, fit);
+    const canvas = host.current?.querySelector('canvas');
+    if (!canvas) return undefined;
+    const marks = [...(host.current?.querySelectorAll<HTMLElement>('.plot-cursor, .plot-dot') ?? [])];
+    let drawn: number | null = null; // the newest time that is drawn; null: draw again
+    const again = (): void => {
+      drawn = null;
+    };
+    const paper = new Paper(canvas, again);
+    /** Cursor and dots are elements: moving them draws no curve. */
+    const placeCursor = (): void => {
+      const [time, on] = [cursorTime.value, pointer.chart];
+      const isShown = time !== null && on !== null && time >= on.from && time <= on.to;
+      marks.forEach((mark, i) => {
+        const series = spec.series[i - 1];
+        const y = on && series ? on.y(valueAt(series, time)) : 0;
+        mark.hidden = !isShown || !Number.isFinite(y);
+        if (isShown) mark.style.transform = `translate(${on.x(time)}px, ${y}px)`;
+      });
+    };
     let last = performance.now() - (PACE_MS / PHASES) * (plotsMade.count++ % PHASES);
     const stop = everyFrame((now) => {
       const newest = plotted().newest(Column.time_s);
       // Half a repaint of tolerance, as in everyFrame().
-      if (Object.is(newest, drawn) || !box.isSeen || now - last < paceOf(plot) - 8) return;
+      const isDue = drawn === null || now - last >= paceOf(paper) - 8;
+      if (Object.is(newest, drawn) || !paper.box.isSeen || !isDue) return;
       drawn = newest;
       last = now;
-      redraw();
+      pointer.chart = drawPlot(spec, paper);
+      pointer.follow();
+      placeCursor();
     });
-    const unwatch = onThemeChange(() => {
-      plot.destroy();
-      plot = create();
-      fit();
-    });
+    const unwatch = onThemeChange(again);
     const unfollow = effect(() => {
       void [isFrozen.value, zoomed.value, windowSeconds.value, markTime.value];
-      drawn = NaN;
+      again();
     });
-    // A cursor that was set elsewhere, on the map for one.
-    const point = effect(() => {
-      const time = cursorTime.value;
-      if (plot.cursor.event?.type === 'mousemove') return;
-      plot.setCursor({ left: time === null ? -10 : plot.valToPos(time, 'x'), top: time === null ? -10 : 10 }, false);
-    });
+    const unpoint = effect(placeCursor);
     return () => {
       stop();
       unwatch();
       unfollow();
-      point();
-      box.end();
-      plot.destroy();
+      unpoint();
+      paper.box.end();
     };
   }, [spec]);
 
@@ -299,7 +231,18 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
           ))}
         </p>
       </header>
-      <div class="plot-area" ref={host} />
+      <div class="plot-area" ref={host}>
+        <canvas />
+        <i class="plot-cursor" hidden />
+        {spec.series.map(({ label, colour }) => (
+          <i key={label} class="plot-dot" style={{ '--tone': toneOf(colour) }} hidden />
+        ))}
+        <PointerArea pointer={pointer} label={`${spec.title} over time`}>
+          {dragged && (
+            <i class="plot-select" style={{ left: `${dragged[0]}px`, width: `${dragged[1] - dragged[0]}px` }} />
+          )}
+        </PointerArea>
+      </div>
     </section>
   );
 }

@@ -211,16 +211,17 @@ export function TourView() {
   );
 }
 
-addShortcuts({
+addShortcuts('Page', {
   keys: ['h'],
   label: 'H',
   does: 'The tour: begin, go on, leave',
-  group: 'Page',
   action: () => (isTourOpen.value ? leaveTour() : isTourOffered() && openTourHere()),
 });
 
-// What the step is about is marked by the style sheet.
+/** A style, not a class: what the step is about is drawn again and again. */
+const marked = new CSSStyleSheet();
+document.adoptedStyleSheets.push(marked);
 effect(() => {
-  const name = isTourOpen.value && isTourOffered() ? (step.value?.name ?? '') : '';
-  document.documentElement.dataset.tour = name;
+  const where = isTourOpen.value && isTourOffered() ? (step.value?.where ?? '') : '';
+  marked.replaceSync(where === '' ? '' : `${where} { outline: 2px solid var(--act); outline-offset: 2px; }`);
 });

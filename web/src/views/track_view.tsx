@@ -3,7 +3,7 @@ import { CachedPicture, isSame } from '../draw/cached_picture';
 import { allRound, behind, type Camera, fitting, project, unproject, zoomed } from '../draw/camera';
 import { carShape } from '../draw/car';
 import { aheadOf, type Line } from '../draw/line';
-import { drawLosses } from '../draw/road_marks';
+import { Paper } from '../draw/paper';
 import {
   drawCursor,
   drawDot,
@@ -17,11 +17,10 @@ import {
 import { onThemeChange, theme } from '../draw/theme';
 import { fixed } from '../lib/format';
 import { type Box, boundsOf, extrapolate, type Point, wrapAngle } from '../lib/math';
-import { type OnScreen, onScreen } from '../lib/on_screen';
 import { paintSize } from '../lib/paint_size';
+import type { Pose } from '../lib/poses';
 import { store } from '../lib/store';
 import { inSpeedUnit, speedUnit } from '../lib/units';
-import type { GhostPose } from '../scene3d/ghost';
 import { Scene3dView } from '../scene3d/scene3d_view';
 import { session } from '../scene3d/session';
 import {
@@ -74,29 +73,6 @@ class Road {
   }
 }
 
-/** A canvas in the screen's resolution; its size follows its place on the page. */
-class Paper {
-  readonly canvas: HTMLCanvasElement;
-  readonly box: OnScreen;
-
-  constructor(canvas: HTMLCanvasElement) {
-    this.canvas = canvas;
-    this.box = onScreen(canvas);
-  }
-
-  /** Device pixels to a CSS pixel; null while there is nothing to paint on. */
-  prepare(): { context: CanvasRenderingContext2D; ratio: number } | null {
-    const { width, height } = this.box;
-    const context = this.canvas.getContext('2d');
-    if (!context || width === 0 || height === 0) return null;
-    const ratio = Math.min(devicePixelRatio, 2);
-    const [wide, high] = [Math.round(width * ratio), Math.round(height * ratio)];
-    if (this.canvas.width !== wide || this.canvas.height !== high)
-      [this.canvas.width, this.canvas.height] = [wide, high];
-    return { context, ratio };
-  }
-}
-
 /** The car's pose extrapolated to now: frames arrive less often than repaints. */
 function carNow(now: number): Scene['car'] {
   const { frame } = live;
@@ -126,7 +102,7 @@ class Painter {
   #drawn: { readonly car: Scene['car']; readonly plan: readonly Point[] } = { car: null, plan: [] };
   #worldKey: readonly unknown[] = [];
   readonly #world = new CachedPicture();
-  readonly #ghost: GhostPose = { x: 0, y: 0, yaw: 0, steer: 0 };
+  readonly #ghost: Pose = { x: 0, y: 0, yaw: 0, steer: 0 };
 
   constructor(canvas: HTMLCanvasElement) {
     this.#paper = new Paper(canvas);
@@ -145,63 +121,41 @@ class Painter {
     this.#lastPaint = now;
     const isWhole = camera.value !== 'ahead';
     const losses = isWhole ? lossesToLimit.value : null;
-    const scene: Scene = {
+    const world = {
       road: this.#road.shape,
       racingLine: layers.racingLine.value ? limit.value : null,
       corners: markedCorners(),
       kerb: run.value?.kerb_width_m ?? 0,
       start: startLine(),
       losses,
+      size: run.value ? paintSize(run.value) : 1,
+    };
+    const scene: Scene = {
+      ...world,
       reference: road.reference,
       // The way driven would lie on the line of the lap that is coloured.
       trace: losses ? { x: [], y: [] } : { x: live.trace.column(0), y: live.trace.column(1) },
       plan,
-      size: run.value ? paintSize(run.value) : 1,
       hindsight: layers.hindsight.value ? hindsight(live.pastPlans, live.plots, live.frame?.time_s ?? NaN) : null,
       faults: faultMarks.value,
       ghost: session.ghost?.poseAt(live.frame?.lap_time_s ?? NaN, this.#ghost) ? this.#ghost : null,
       car,
     };
-    const still = [
-      seen.centre.x,
-      seen.centre.y,
-      seen.scale,
-      seen.rotation,
-      canvas.width,
-      canvas.height,
-      this.#road.shape,
-      scene.racingLine,
-      scene.corners,
-      scene.start,
-      scene.size,
-      scene.losses,
-      theme(),
-    ];
+    const { centre, scale, rotation } = seen;
+    const still = [centre.x, centre.y, scale, rotation, canvas.width, canvas.height, theme(), ...Object.values(world)];
     const mark = cursorMark();
+    const { ghost } = scene;
     // In a paused run the picture does not change.
-    const shownNow = [
-      ...still,
-      live.frame,
-      live.plan,
-      road.reference,
-      live.trace.newest(0),
-      car?.x,
-      car?.y,
-      car?.yaw,
-      scene.hindsight?.plan,
-      scene.ghost?.x,
-      scene.ghost?.y,
-      faultMarks.value,
-      mark?.x,
-      mark?.y,
-    ];
+    const moving = [live.frame, live.plan, road.reference, live.trace.newest(0), scene.hindsight?.plan, scene.faults];
+    const places = [car?.x, car?.y, car?.yaw, ghost?.x, ghost?.y, mark?.x, mark?.y];
+    const shownNow = [...still, ...moving, ...places];
     if (isSame(shownNow, this.#shown)) return;
     this.#shown = shownNow;
     this.#drawn = { car, plan: pointsOf(plan) };
     this.#seen = seen;
     this.#drawWorld(context, scene, seen, still, ratio);
-    drawMoving(context, scene, seen, theme(), ratio);
-    if (mark) drawCursor(context, mark, seen, theme(), ratio);
+    drawMoving(context, scene, seen, ratio);
+    if (mark) drawCursor(context, mark, seen, ratio);
   }
 
   /** Draws the static part; copies it while the camera does not move. */
@@ -215,13 +169,13 @@ class Painter {
     const isStill = isSame(key, this.#worldKey);
     this.#worldKey = key;
     if (!isStill) {
-      drawWorld(context, scene, seen, theme(), ratio);
+      drawWorld(context, scene, seen, ratio);
       return;
     }
     const { width, height } = this.#paper.canvas;
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.drawImage(
-      this.#world.picture(key, width, height, (own) => drawWorld(own, scene, seen, theme(), ratio)),
+      this.#world.picture(key, width, height, (own) => drawWorld(own, scene, seen, ratio)),
       0,
       0,
     );
@@ -297,15 +251,13 @@ function SmallMap() {
       const { width, height } = paper.canvas;
       const seen = fitting(box, paper.box.width, paper.box.height, allRound(10));
       const picture = still.picture([shape, losses, theme(), width, height], width, height, (own) => {
-        drawOutline(own, shape, seen, theme(), ratio);
-        if (losses)
-          drawLosses(own, losses, { ...theme(), lost: theme().lostInText, won: theme().wonInText }, 4 / seen.scale);
+        drawOutline(own, shape, losses, seen, ratio);
       });
       context.setTransform(1, 0, 0, 1, 0, 0);
       context.clearRect(0, 0, width, height);
       context.drawImage(picture, 0, 0);
       const car = carNow(now);
-      if (car) drawDot(context, car, seen, theme(), ratio);
+      if (car) drawDot(context, car, seen, ratio);
     });
     return () => {
       stop();
@@ -371,9 +323,11 @@ function usePainter() {
       else if (time !== null) seek(time);
     };
     const answer = (event: Event): void => void Object.assign(event, { geometry: painter.geometry() });
-    element.addEventListener('click', onClick);
-    element.addEventListener('wheel', onWheel, { passive: false });
-    element.addEventListener('geometry', answer); // asked by tests: is anything over the car or its plan?
+    const over = new AbortController();
+    const { signal } = over;
+    element.addEventListener('click', onClick, { signal });
+    element.addEventListener('wheel', onWheel, { passive: false, signal });
+    element.addEventListener('geometry', answer, { signal }); // asked by tests: is anything over the car or its plan?
     const stop = everyFrame((now) => {
       painter.paint(now);
       const label = session.ghost?.label ?? null;
@@ -384,9 +338,7 @@ function usePainter() {
       stop();
       painter.end();
       unwatch();
-      element.removeEventListener('wheel', onWheel);
-      element.removeEventListener('click', onClick);
-      element.removeEventListener('geometry', answer);
+      over.abort();
     };
   }, []);
   return canvas;

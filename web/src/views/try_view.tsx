@@ -1,7 +1,7 @@
 import type { ComponentChildren } from 'preact';
+import { plural } from '../lib/format';
 import { tidy } from '../lib/scale';
 import { store } from '../lib/store';
-import type { Setting } from '../protocol/source';
 import {
   aimAt,
   canChange,
@@ -23,7 +23,7 @@ import { ControllerView } from './controller_view';
 import { allFaults, FaultsView, toggleFault } from './faults_view';
 import { OriginView } from './origin_view';
 import { RaceView } from './race_view';
-import { ChoiceBox, SettingRow } from './setting_row';
+import { ChangeOf, ChoiceBox, SettingRow } from './setting_row';
 
 const wants = store.data('page', () => ({ search: false }));
 
@@ -121,14 +121,12 @@ function RunSentence() {
   );
 }
 
-const asText = (value: Setting): string => (typeof value === 'number' ? tidy(value) : String(value));
-
 function Changes() {
   const changes = settingChanges.value;
   return (
     <section class="changes stack" aria-label="Changes" data-testid="changes">
       <header class="row apart">
-        <h2>{changes.length === 0 ? 'No changes' : changes.length === 1 ? '1 change' : `${changes.length} changes`}</h2>
+        <h2>{changes.length === 0 ? 'No changes' : plural(changes.length, 'change')}</h2>
         {changes.length > 0 && (
           <button type="button" onClick={() => changes.forEach(({ key, from }) => set(key, from))}>
             Reset all
@@ -137,14 +135,15 @@ function Changes() {
       </header>
       {changes.length > 0 && (
         <ul>
-          {changes.map(({ key, from, to }) => (
-            <li key={key} class="row">
-              <code>{key}</code> <span class="was">{asText(from)}</span>{' '}
-              <span role="img" aria-label="to">
-                →
-              </span>{' '}
-              <b>{asText(to)}</b>
-              <button type="button" class="icon small" aria-label={`Reset ${key}`} onClick={() => set(key, from)}>
+          {changes.map((each) => (
+            <li key={each.key} class="row">
+              <ChangeOf of={each} />
+              <button
+                type="button"
+                class="icon small"
+                aria-label={`Reset ${each.key}`}
+                onClick={() => set(each.key, each.from)}
+              >
                 ↺
               </button>
             </li>

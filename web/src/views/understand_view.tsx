@@ -24,11 +24,10 @@ import { EngineerView } from './engineer_view';
 /** Whether what solver and controller did is shown. */
 export const isEngineer = persisted<boolean>('engineer', false);
 
-addShortcuts({
+addShortcuts('Page', {
   keys: ['e'],
   label: 'E',
   does: 'Show or hide what solver and controller did',
-  group: 'Page',
   action: () => (isEngineer.value = !isEngineer.value),
 });
 
