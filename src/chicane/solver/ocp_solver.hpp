@@ -96,11 +96,11 @@ class OcpSolver {
 
   // ---- the filter method alone, for HardSolver
 
-  /// Follows the barrier from a guess to its end, in at most `most` iterations, counted in `report`. True
-  /// where it gets there: solve_again() goes on with full steps. Rows that must hold are equations then
-  /// (detail/hard_rows.hpp), and `problem` gets their multipliers.
+  /// Follows the barrier from a guess, low where it `is_near`, in at most `most` iterations, counted in
+  /// `report`. True where it gets there: solve_again() goes on with full steps. Rows that must hold are
+  /// equations then (detail/hard_rows.hpp), and `problem` gets their multipliers.
   bool follow_barrier(P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline, int most,
-                      SolveReport& report) noexcept;
+                      bool is_near, SolveReport& report) noexcept;
   /// Slacks of hard constraints to penalties that have changed.
   void update_penalties(const P& problem) noexcept { barrier_.update_penalties(problem, t_.horizon); }
 

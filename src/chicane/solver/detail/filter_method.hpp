@@ -340,7 +340,7 @@ class FilterMethod {
       if (length >= 0.05 || there.miss <= 0.9 * here.miss) failures_ = 0;
       short_steps_ = length < kShort ? short_steps_ + 1 : 0;
       moved_ = longest_move(t, candidate_);
-      floor_.note_step(stays<Arch>(t, candidate_));
+      floor_.note_step(stays<Arch>(t, candidate_) && !(there.miss < 0.9 * here.miss));
       t = candidate_;
       here_ = there;
       is_here_known_ = true;

@@ -21,14 +21,14 @@ bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& tra
                                                 const Deadline& deadline, int& left,
                                                 HardReport& report) noexcept {
   if constexpr (has_filter_method<P>()) {
-    if (!options_.may_start_short) return round(x0, trajectory, deadline, left, report);
-    if (follow(x0, trajectory, deadline, left, report)) return round(x0, trajectory, deadline, left, report);
-    begin_again(trajectory, 1.0);
-    if (!is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report) &&
-        follow(x0, trajectory, deadline, left, report))
+    if (!options_.may_start_short || follow(x0, trajectory, deadline, left, report))
       return round(x0, trajectory, deadline, left, report);
     begin_again(trajectory, 1.0);
-    trial_ = most_of_a_trial();
+    if (is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report) ||
+        !follow(x0, trajectory, deadline, left, report)) {
+      begin_again(trajectory, 1.0);
+      trial_ = most_of_a_trial();
+    }
   }
   return round(x0, trajectory, deadline, left, report);
 }
@@ -41,15 +41,14 @@ bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajecto
   constexpr double kDearer = 4.0;  // than the highest multiplier: the constraint is kept
   SolveReport seen;
   const int most = std::max(1, std::min({left, kMostIterations, options_.max_iterations / 4}));
-  const bool is_solved = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, seen);
+  const bool is_solved = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, false, seen);
   report.iterations += seen.iterations;
   report.sweeps += seen.sweeps;
   left -= seen.iterations;
   if (!is_solved) return false;
   for (std::size_t c = 0; c < kNc; ++c) {
-    if (!is_hard(*problem_.problem, c)) continue;
     double highest = 0.0;
-    for (int k = 0; k < trajectory.horizon; ++k)
+    for (int k = 0; is_hard(*problem_.problem, c) && k < trajectory.horizon; ++k)
       highest = std::max(highest, inner_.constraint_multiplier(k, static_cast<int>(c)));
     const double penalty = std::max(1e-12, penalty_of(problem_, c).linear);
     problem_.penalty_factor[c] *= std::max(1.0, kDearer * highest / penalty);
@@ -66,21 +65,22 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
                                                   const Deadline& deadline, int& left,
                                                   HardReport& report) noexcept {
   constexpr double kShare = 1e-8, kTolerance = 1e-8, kFirstUnit = 0.1;
-  constexpr double kMuch = 0.1;  // of the misses is left: they count in the same unit
+  constexpr double kMuch = 0.1, kLeastShare = 1e-3;  // of a unit that is left: the next is as small, at least
   if (left <= 0) return false;
+  has_restored_ = true;
   const auto factors = problem_.penalty_factor;
   for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
   problem_.terminal_shift.fill(0.0);
   inner_.ask_for(kTolerance);
   Misses misses = measure(problem, trajectory, nullptr);
   least_unit_ = std::max(kFirstUnit, misses.worst());  // states of a guess may miss nothing but the dynamics
-  bool converged = true, is_less = true;
-  while (converged && is_less && left > 0) {
+  bool converged = true, is_less = true, is_near = false;
+  for (; converged && is_less && left > 0; is_near = true) {
     const double cost = std::isfinite(misses.cost) ? std::max(unit_, misses.cost) : unit_;
     weigh_misses(kShare / (cost * std::max(1.0, least_unit_)), least_unit_);
     SolveReport seen;
     const int most = std::max(1, std::min(left, most_of_a_trial()));
-    converged = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, seen);
+    converged = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, is_near, seen);
     inner_.start_from_states(true);
     report.iterations += seen.iterations;
     report.sweeps += seen.sweeps;
@@ -89,7 +89,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
     const double worst = misses.worst();
     is_possible_ = is_possible_ || (converged && worst <= options_.tolerance);
     is_less = !is_possible_ && worst < kMuch * least_unit_;
-    if (is_less) least_unit_ = worst;
+    if (is_less) least_unit_ = std::max(worst, kLeastShare * least_unit_);
   }
   is_certified_ =
       converged && !is_less && !is_possible_ && is_proven(problem, trajectory, misses.total / least_unit_);

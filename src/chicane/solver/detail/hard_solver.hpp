@@ -119,7 +119,7 @@ class HardSolver {
     HardReport report;
     guess_ = trajectory;
     trial_ = 0;
-    is_certified_ = is_possible_ = false;
+    is_certified_ = is_possible_ = has_restored_ = false;
     start(problem, x0, trajectory);
     int left = options_.max_iterations;
     bool has_begun = multipliers_.is_known;
@@ -141,14 +141,13 @@ class HardSolver {
       if (is_trial_over) trial_ = 0;
       const bool is_lost = progress.is_lost(now.worst(), first_.worst(), last_iterations_);
       if (is_trial_over ? progress.is_good() : converged && !is_lost) continue;
-      if (restarts < kHeavier.size()) {  // misses count from the start
+      if (has_restored_ && restarts < kHeavier.size()) {  // misses count from the start
         begin_again(trajectory, kHeavier[restarts++]);
         trial_ = is_certified_ ? most_of_a_trial() : 0;
-        progress = {};
-        continue;
-      }
-      if (!converged || is_certified_ || is_infeasible(problem, x0, trajectory, deadline, left, report))
+      } else if (is_certified_ || (!converged && has_restored_) ||
+                 is_infeasible(problem, x0, trajectory, deadline, left, report)) {
         break;
+      }
       progress = {};
     }
     Misses now = measure(problem, trajectory, &report);
@@ -216,15 +215,13 @@ class HardSolver {
     last_iterations_ = now.iterations;
     left -= std::max(1, now.iterations);
     if (trial_ != 0) trial_ = trial_ > now.iterations ? trial_ - now.iterations : kTrialSpent;
-    if (now.status == SolveStatus::kAtFloor && residual(now) <= options_.tolerance)
+    const double residual = std::max({now.stationarity, now.defect, now.complementarity});
+    if (now.status == SolveStatus::kAtFloor && residual <= options_.tolerance)
       report.status = exceeds_a_cap(now) ? SolveStatus::kInfeasible : SolveStatus::kOptimal;
     return now.status == SolveStatus::kOptimal || now.status == SolveStatus::kAtFloor ||
            now.status == SolveStatus::kInfeasible;
   }
 
-  static double residual(const SolveReport& report) noexcept {
-    return std::max({report.stationarity, report.defect, report.complementarity});
-  }
   [[nodiscard]] bool exceeds_a_cap(const SolveReport& report) const noexcept {
     const int c = report.worst_constraint;
     return c >= 0 && report.violation > penalty_of(problem_, static_cast<std::size_t>(c)).cap;
@@ -432,9 +429,10 @@ class HardSolver {
   Multipliers least_multipliers_;  ///< there, of the violation alone
   double least_unit_ = 1.0;        ///< unit of the misses there
   bool is_certified_ = false;
-  bool is_possible_ = false;  ///< a point without misses has been found
-  int trial_ = 0;             ///< iterations that are left for the first weights, kTrialSpent; 0: all of them
-  bool can_go_on_ = false;    ///< the next round differs little from the last one
+  bool has_restored_ = false;  ///< restoration has been tried
+  bool is_possible_ = false;   ///< a point without misses has been found
+  int trial_ = 0;           ///< iterations that are left for the first weights, kTrialSpent; 0: all of them
+  bool can_go_on_ = false;  ///< the next round differs little from the last one
   std::array<std::array<double, Capacity>, kNh> equality_{};  ///< values at the last measure()
   std::array<double, kEnd> terminal_{};
 };

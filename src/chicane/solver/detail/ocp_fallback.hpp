@@ -184,18 +184,20 @@ bool OcpSolver<P, Capacity, Arch>::filter_iteration(const P& problem, const Dead
 
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, Trajectory& trajectory,
-                                                  const Deadline& deadline, int most,
+                                                  const Deadline& deadline, int most, bool is_near,
                                                   SolveReport& report) noexcept {
   using Outcome = typename Filter::Outcome;
-  constexpr int kPatience = 6;  // short steps in succession
+  const int patience = problem.violation_penalty > 0.0 ? most : 6;  // short steps in succession
   filter_.take_rows(&problem);
   SolveReport unused;
   bool is_solved = false;
-  if (start(problem, x0, trajectory) && begin_filter(problem, trajectory, unused)) {
+  const bool is_good = start(problem, x0, trajectory);
+  is_again_ = is_near;
+  if (is_good && begin_filter(problem, trajectory, unused)) {
     for (; report.iterations < most && !is_solved; ++report.iterations) {
       const Outcome outcome = filter_.iterate(problem, now_, lq_, barrier_, t_, deadline, report);
       record_filter_iteration(report);
-      if (outcome == Outcome::kGoing && filter_.short_steps() < kPatience) continue;
+      if (outcome == Outcome::kGoing && filter_.short_steps() < patience) continue;
       is_solved = outcome == Outcome::kSolved;
       break;
     }
