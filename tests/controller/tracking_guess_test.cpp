@@ -33,7 +33,7 @@ TEST(PathLaw, PullsAGuessBackToTheRoad) {
   x[Problem::kD] = 12.0;
   x[Problem::kE] = -2.0;
   x[Problem::kVx] = -1.0;
-  keep_sane(x);
+  clamp_to_road(x);
   EXPECT_EQ(x[Problem::kD], 5.0);
   EXPECT_EQ(x[Problem::kE], -0.6);
   EXPECT_EQ(x[Problem::kVx], 0.0);
@@ -62,7 +62,7 @@ double pushed(const model::PredictionModel& model, double heading, double& momen
     along.x[i][Problem::kVx] = 20.0;
     along.x[i][Problem::kR] = side * 2.0;
   }
-  mind_helper_gap(problem, along, straight(), 10.0);
+  add_helper_gap(problem, along, straight(), 10.0);
   double sum = 0.0;
   moment = 0.0;
   for (std::size_t i = 0; i < 20; ++i) {
