@@ -146,7 +146,7 @@ class StateEstimator {
   void take_over(const model::Measurement& now, double dx, double dy, double dpsi) noexcept;
   struct Correction {
     ErrorCovariance::Vector by;
-    double share;  ///< gain for the place along the car, as for its innovation
+    double share;  ///< share of a position innovation that is taken over, also along the car
   };
   [[nodiscard]] Correction correction(double aside, double heading, double elapsed,
                                       bool is_after_gap) noexcept;
@@ -246,7 +246,7 @@ class GripEstimator {
   Sums all_;
   Sums bend_;               ///< sums of the present bend
   double bend_time_ = 0.0;  ///< duration of the present bend [s]
-  double side_ = 0.0;       ///< sign of the yaw rate at the last measurement in a bend
+  double side_ = 0.0;       ///< sign of the turn at the last measurement in a bend
   Bends bends_;
   /// Sums of squares over corners: error of heading, and its change by delay [rad/s].
   double off_ = 0.0, by_time_ = 0.0;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kCoarse = 2.5;  // spacing of the coarse nodes over that of the fine ones
 constexpr int kCoarseIterations = 260,
-              kFineIterations = 300;       // limits: a search that goes well needs a fifth
+              kFineIterations = 300;       // limits: searches that go well need fewer
 constexpr double kCoarseTolerance = 1e-3;  // the fine nodes start from these solutions
 constexpr double kWarmBarrier = 1e-4;      // first barrier close to a known solution
 constexpr double kUsable = 1e-2;           // largest violation of a plan that can be driven: some centimetres
