@@ -169,7 +169,7 @@ road::RacingRoad lap(double radius, double grip) {
     point.speed = 20.0;
     points.push_back(point);
   }
-  return road::RacingRoad(points, 0.0, {.grip = grip});
+  return road::RacingRoad(points, 0.0, {.terms = {.grip = grip}});
 }
 
 TEST(BesideLap, IsHowFarThePlanWillHaveToBeCorrected) {

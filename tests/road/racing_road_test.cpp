@@ -90,7 +90,7 @@ TEST(RacingRoad, HasTheRoomAcrossItsLine) {
       at.curvature = side / 8.0;
       at.left = at.right = 20.0;
     }
-    const RacingRoad road(lap, track, {.slides = true});
+    const RacingRoad road(lap, track, {.terms = {.slides = true}});
     const Road::Room room = road.room(0.25 * kTwoPi * 8.0);  // at (4, 8 side)
     EXPECT_NEAR(side > 0.0 ? room.left : room.right, 8.0 - std::sqrt(36.0 - 16.0), 0.05) << side;
     EXPECT_NEAR(side > 0.0 ? room.right : room.left, 18.0 - std::sqrt(80.0), 0.05) << "far off";

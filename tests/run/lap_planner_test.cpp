@@ -37,7 +37,7 @@ class Learner final : public controller::Controller {
     return result_;
   }
   [[nodiscard]] controller::LapRequest wants_lap() const noexcept override {
-    return {.is_wanted = is_wanted, .waypoints = waypoints_, .grip = grip, .slides = slides, .slip = slip};
+    return {.is_wanted = is_wanted, .waypoints = waypoints_, .terms = terms};
   }
   void reset() noexcept override {}
   [[nodiscard]] std::string_view name() const noexcept override { return "learner"; }
@@ -45,9 +45,7 @@ class Learner final : public controller::Controller {
   [[nodiscard]] double beside(const road::RacingRoad& /*lap*/) const noexcept override { return offset; }
 
   bool is_wanted = true;
-  double grip = 1.0;
-  bool slides = false;
-  double slip = 1.0;
+  road::LapTerms terms{};
   double offset = 0.0;  ///< from any lap [m]
 
  private:
@@ -125,11 +123,11 @@ TEST(LapPlanner, PlansOnTheTrackWithTheGripThatIsWanted) {
   const scenario::Scenario race = race_by_waypoints("road-car");
   const road::Track oval = make_track(race).value();
   const auto least_speed = [&](double grip) {
-    learner.grip = grip;
+    learner.terms.grip = grip;
     LapPlanner planner(LapPlanner::Clock::kVirtual);
     static_cast<void>(planner.follow(learner, race, &oval, 0.0));
     const auto lap = planner.follow(learner, race, &oval, 10.0);
-    EXPECT_EQ(lap->grip(), grip);
+    EXPECT_EQ(lap->terms().grip, grip);
     EXPECT_FALSE(lap->is_learned());
     EXPECT_EQ(LapPlanner::lap_change(*lap, 7, 1.0).value.view(), grip == 1.0 ? "1" : "0.8");
     double slowest = 100.0;
@@ -146,25 +144,20 @@ TEST(LapPlanner, PlansOnTheTrackWithTheGripThatIsWanted) {
 // Recordings hold what was wanted, so that a replay plans the same lap.
 TEST(LapPlanner, TellsOfALapThatSlides) {
   Learner learner({});
-  learner.slides = true;
-  learner.slip = 0.9;
-  learner.grip = 0.97;
+  learner.terms = {.grip = 0.97, .slides = true, .slip = 0.9};
   const scenario::Scenario race = race_by_waypoints();
   const road::Track oval = make_track(race).value();
   LapPlanner planner(LapPlanner::Clock::kVirtual);
   static_cast<void>(planner.follow(learner, race, &oval, 0.0));
   const auto lap = planner.follow(learner, race, &oval, 10.0);
   ASSERT_NE(lap, nullptr);
-  EXPECT_TRUE(lap->slides());
+  EXPECT_TRUE(lap->terms().slides);
   EXPECT_GT(lap->slips().rear, 1.0);
   const telemetry::Change change = LapPlanner::lap_change(*lap, 7, 1.0);
   EXPECT_EQ(change.value.view(), "0.97, slip 0.9, slides");
   const Result<Setting> read = read_setting(change);
   ASSERT_TRUE(read) << read.error().message;
-  const auto& learned = std::get<LearnedLap>(read->action);
-  EXPECT_EQ(learned.grip, 0.97);
-  EXPECT_TRUE(learned.slides);
-  EXPECT_EQ(learned.slip, 0.9);
+  EXPECT_EQ(std::get<LearnedLap>(read->action), learner.terms);
   EXPECT_FALSE(read_setting({.name = LapPlanner::kChange, .value = "0.97, slip 0"}));
 }
 

@@ -234,7 +234,7 @@ std::shared_ptr<const road::RacingRoad> lap_with_grip(double grip) {
   for (int i = 0; i <= 100; ++i)
     lap.push_back({.position = {4.0 * i, 0.0}, .speed = 25.0, .left = 5.0, .right = 5.0});
   return std::make_shared<road::RacingRoad>(
-      lap, 0.0, road::RacingRoad::Basis{.is_learned = true, .grip = grip, .is_closed = false});
+      lap, 0.0, road::RacingRoad::Basis{.is_learned = true, .terms = {.grip = grip}, .is_closed = false});
 }
 
 /// Tyres that have shown less grip brake less.

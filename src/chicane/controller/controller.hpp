@@ -136,9 +136,7 @@ struct StepResult {
 struct LapRequest {
   bool is_wanted = false;
   std::span<const Vec2> waypoints{};  ///< learned closed road, in driving order; empty: the known track
-  double grip = 1.0;                  ///< share of the configured grip
-  bool slides = false;  ///< the lap may slide beyond the peak of the tyres, where that is stable
-  double slip = 1.0;    ///< largest slip of an axle, share of that in the options
+  road::LapTerms terms{};
 };
 
 /// The contract every controller fulfils: a measurement goes in, an answer or none comes out. Without an

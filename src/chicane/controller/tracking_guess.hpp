@@ -96,7 +96,8 @@ inline void add_helper_gap(tracking::TrackingProblem& problem, const tracking::T
 [[nodiscard]] inline double beside_lap(const road::RacingRoad& lap, const road::RacingRoad* now,
                                        const Plan& plan, double reach, double far) noexcept {
   const double joining_time = now == nullptr ? 0.0 : 1.5;  // [s]
-  if (lap.line().is_empty() || (now != nullptr && (lap.grip() < now->grip() || lap.slip() < now->slip())))
+  if (lap.line().is_empty() ||
+      (now != nullptr && (lap.terms().grip < now->terms().grip || lap.terms().slip < now->terms().slip)))
     return 0.0;
   double most = 0.0, last = 0.0;
   for (int k = 0; k < plan.size; ++k) {

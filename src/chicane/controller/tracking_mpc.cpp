@@ -103,19 +103,17 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     const road::RacingRoad* lap = road_.lap();
     const std::span<const Vec2> waypoints = road_.seen().closed_waypoints();
     if (!options_.racing_line || (lap == nullptr && waypoints.empty())) return {};
-    const double planned = lap != nullptr ? lap->grip() : options_.first_grip();
-    const double shown = grip_.is_shown() ? grip_.for_plan(planned) : planned;
+    const road::LapTerms planned = lap != nullptr ? lap->terms() : road::LapTerms{options_.first_grip()};
     const bool is_known = lap != nullptr && !lap->is_learned();
-    const double grip = is_known ? shown : std::min(shown, 1.0);  // assumed edges: no more than configured
-    const bool slides =
-        options_.slide && is_known && grip_.may_slide(grip, result_.report.delay, lap->slides());
-    const double kept = lap != nullptr ? lap->slip() : 1.0;
-    const double slip = grip_.is_shown() ? reserve_.for_plan(kept) : kept;
-    return {.is_wanted = lap == nullptr || grip != planned || slides != lap->slides() || slip != kept,
+    road::LapTerms terms = planned;
+    if (grip_.is_shown()) terms.grip = grip_.for_plan(planned.grip);
+    if (!is_known) terms.grip = std::min(terms.grip, 1.0);  // assumed edges: no more than configured
+    terms.slides =
+        options_.slide && is_known && grip_.may_slide(terms.grip, result_.report.delay, planned.slides);
+    if (grip_.is_shown()) terms.slip = reserve_.for_plan(planned.slip);
+    return {.is_wanted = lap == nullptr || terms != planned,
             .waypoints = is_known ? std::span<const Vec2>{} : waypoints,
-            .grip = grip,
-            .slides = slides,
-            .slip = slip};
+            .terms = terms};
   }
 
   [[nodiscard]] double beside(const road::RacingRoad& lap) const noexcept override {

@@ -193,9 +193,7 @@ class Recomputation {
     if (!setting) return;
     if (const auto* learned = std::get_if<run::LearnedLap>(&setting->action)) {
       controller::LapRequest request = cycle_.controller().wants_lap();
-      request.grip = learned->grip;
-      request.slides = learned->slides;
-      request.slip = learned->slip;
+      request.terms = *learned;
       const auto lap = run::plan_wanted_lap(scenario_, track_ ? &*track_ : nullptr, request);
       if (lap) cycle_.use_line(*lap);
     }

@@ -84,7 +84,7 @@ void KnownRoad::use_line(const RacingRoad* lap) {
     edges_.push_back(seen_ ? assumed_edges(line_.demand(s).offset) : Edges{room.left, room.right});
   }
   is_raced_ = true;
-  slides_ = lap->slides();
+  slides_ = lap->terms().slides;
   ++lines_;
 }
 

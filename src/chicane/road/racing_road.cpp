@@ -175,7 +175,7 @@ RacingRoad::RacingRoad(std::span<const road::LinePoint> lap, double kerb, const 
 }
 
 void RacingRoad::look_at(const Track& track, std::span<const road::LinePoint> lap) noexcept {
-  if (!basis_.slides) return;  // cars that do not slide keep to the line
+  if (!basis_.terms.slides) return;  // cars that do not slide keep to the line
   double s = rooms_.empty() ? 0.0 : lap.front().s;
   for (std::size_t i = 0; i < rooms_.size(); ++i) {
     const CurvePoint& here = line_.samples()[i].curve;

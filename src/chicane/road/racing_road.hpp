@@ -111,9 +111,7 @@ class RacingRoad {
   /// What a lap was planned from.
   struct Basis {
     bool is_learned = false;             ///< see is_learned()
-    double grip = 1.0;                   ///< see grip()
-    bool slides = false;                 ///< see slides()
-    double slip = 1.0;                   ///< see slip()
+    LapTerms terms{};                    ///< see terms()
     bool is_closed = true;               ///< the road; else the car is planned to stop at its end ...
     double braking = 0.0;                ///< ... with this deceleration [m/s²]
     double room_behind = 0.0;            ///< the finish, to the end [m]
@@ -137,12 +135,8 @@ class RacingRoad {
   /// Planned for the road that the controller has learned from waypoints, with an assumed width: of no use
   /// when the waypoints are forgotten.
   [[nodiscard]] bool is_learned() const noexcept { return basis_.is_learned; }
-  /// The grip that it was planned with, over the one that the vehicle's parameters tell.
-  [[nodiscard]] double grip() const noexcept { return basis_.grip; }
-  /// Whether it was asked to slide beyond the peak of the tyres.
-  [[nodiscard]] bool slides() const noexcept { return basis_.slides; }
-  /// Most slip of an axle that it was planned with, over what the options allow.
-  [[nodiscard]] double slip() const noexcept { return basis_.slip; }
+  /// Grip, slides and slip that it was planned for.
+  [[nodiscard]] const LapTerms& terms() const noexcept { return basis_.terms; }
   /// Slip beyond which the controller's cost has a weight.
   [[nodiscard]] const Slips& slips() const noexcept { return basis_.slips; }
 

@@ -37,6 +37,15 @@ enum class SpeedLimiter : std::uint8_t { CHICANE_SPEED_LIMITERS(CHICANE_ENUMERAT
 inline constexpr std::array kSpeedLimiterWords{CHICANE_SPEED_LIMITERS(CHICANE_WORD)};
 #undef CHICANE_WORD
 
+/// What a lap is planned for, shares of what car and options have.
+struct LapTerms {
+  double grip = 1.0;    ///< over the grip of the vehicle's parameters
+  bool slides = false;  ///< beyond the peak of the tyres, where that is stable
+  double slip = 1.0;    ///< most slip of an axle, over what the options allow
+
+  friend bool operator==(const LapTerms&, const LapTerms&) = default;
+};
+
 /// A place of a plane curve.
 struct CurvePoint {
   Vec2 position{};                ///< in W [m]

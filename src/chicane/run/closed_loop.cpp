@@ -141,9 +141,7 @@ void ClosedLoop::take(const FaultSwitch& fault) noexcept {
 
 void ClosedLoop::take(LearnedLap learned) noexcept {
   controller::LapRequest request = controller().wants_lap();
-  request.grip = learned.grip;
-  request.slides = learned.slides;
-  request.slip = learned.slip;
+  request.terms = learned;
   const auto lap = plan_wanted_lap(scenario_, &car_.track, request);
   if (lap) use_line(*lap);
 }

@@ -46,8 +46,9 @@ void ControlCycle::begin(std::uint64_t cycle) noexcept {
 }
 
 void ControlCycle::configure(const scenario::Scenario& scenario) noexcept {
-  run::configure(guard_.controller(), scenario);
-  guard_.set_vehicle(full_size(scenario));
+  const model::VehicleParams car = full_size(scenario);
+  controller::Registry::configure(guard_.controller(), scenario.controllers, car);
+  guard_.set_vehicle(car);
   if (scenario.guard.road == safety::GuardRoad::kWaypoints) guard_.forget_road();
 }
 

@@ -23,10 +23,6 @@ model::VehicleParams full_size(const scenario::Scenario& scenario) {
   return model::Similarity(scenario.vehicle).full_size(scenario.assumed_vehicle());
 }
 
-void configure(controller::Controller& controller, const scenario::Scenario& scenario) noexcept {
-  controller::Registry::configure(controller, scenario.controllers, full_size(scenario));
-}
-
 Result<std::unique_ptr<controller::Controller>> make_controller(const scenario::Scenario& scenario) {
   return controller::Registry::make(scenario.controller, scenario.controllers, full_size(scenario));
 }

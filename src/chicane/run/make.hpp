@@ -19,9 +19,6 @@ namespace chicane::run {
     const scenario::Scenario& scenario);
 /// The car that its controller assumes: a model car in full size (model/vehicle.hpp).
 [[nodiscard]] model::VehicleParams full_size(const scenario::Scenario& scenario);
-/// Gives a controller of make_controller() the scenario's settings while it drives
-/// (controller/controller.hpp).
-void configure(controller::Controller& controller, const scenario::Scenario& scenario) noexcept;
 [[nodiscard]] Result<std::unique_ptr<sim::Plant>> make_plant(const scenario::Scenario& scenario);
 [[nodiscard]] Result<road::Track> make_track(const scenario::Scenario& scenario);
 

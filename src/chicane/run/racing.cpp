@@ -44,15 +44,15 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_on(const road::Track& track
   const controller::TrackingMpcOptions& options = options_of(scenario);
   lap_time::RacingPlanOptions planning{.margin = options.edge_margin,
                                        .grip_share = options.grip_share,
-                                       .slip_share = basis.slip * options.slip_share,
+                                       .slip_share = basis.terms.slip * options.slip_share,
                                        .brake_share = options.brake_share,
-                                       .slides = basis.slides,
+                                       .slides = basis.terms.slides,
                                        .delay = delay_of(scenario),
                                        .speed_limit = options.speed_limit,
                                        .budget = options.plan_budget};
   planning.go_on = [&](int, double) { return !must_stop_planning() && (!go_on || go_on()); };
   planning.on_progress = hooks.on_progress;
-  const model::VehicleParams car = model::with_grip(full_size(scenario), basis.grip);
+  const model::VehicleParams car = model::with_grip(full_size(scenario), basis.terms.grip);
   const Result<road::RacingLine> lap = cached_plan(track, car, planning);
   if (!lap && lap.error().code != ErrorCode::kNotFound) return fail(lap.error());
   if (!lap) {
@@ -114,18 +114,15 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenari
                                                          const road::Track* track, const PlanHooks& hooks) {
   const bool is_known = track != nullptr && scenario.guard.road == safety::GuardRoad::kTrack;
   if (!races(scenario) || !is_known) return std::shared_ptr<const road::RacingRoad>{};
-  return plan_on(in_full_size(*track, scenario), scenario, {.grip = options_of(scenario).first_grip()}, {},
-                 hooks);
+  return plan_on(in_full_size(*track, scenario), scenario,
+                 {.terms = {.grip = options_of(scenario).first_grip()}}, {}, hooks);
 }
 
 Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::Scenario& scenario,
                                                                 const road::Track* track,
                                                                 const controller::LapRequest& request,
                                                                 const std::function<bool()>& go_on) {
-  const road::RacingRoad::Basis basis{.is_learned = !request.waypoints.empty(),
-                                      .grip = request.grip,
-                                      .slides = request.slides,
-                                      .slip = request.slip};
+  const road::RacingRoad::Basis basis{.is_learned = !request.waypoints.empty(), .terms = request.terms};
   if (!basis.is_learned && track == nullptr) return std::shared_ptr<const road::RacingRoad>{};
   if (!basis.is_learned) return plan_on(in_full_size(*track, scenario), scenario, basis, go_on, {});
   const model::VehicleParams car = full_size(scenario);
@@ -148,9 +145,10 @@ LapPlanner::~LapPlanner() {
 }
 
 telemetry::Change LapPlanner::lap_change(const road::RacingRoad& lap, std::uint64_t cycle, double time) {
-  std::string value = number_text(lap.grip());
-  if (lap.slip() != 1.0) value += std::string(kSlip) + number_text(lap.slip());
-  if (lap.slides()) value += kSlides;
+  const road::LapTerms& terms = lap.terms();
+  std::string value = number_text(terms.grip);
+  if (terms.slip != 1.0) value += std::string(kSlip) + number_text(terms.slip);
+  if (terms.slides) value += kSlides;
   return {.cycle = cycle, .time = time, .name = kChange, .value = value};
 }
 

@@ -5,6 +5,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/protocol/schema.hpp"
+#include "chicane/road/reference_line.hpp"
 #include "chicane/run/manual_drive.hpp"
 #include "chicane/run/thread_queue.hpp"
 #include "chicane/scenario/scenario.hpp"
@@ -32,11 +33,7 @@ struct FaultSwitch {
   sim::FaultEvent event{};  ///< which fault; kAsGiven: its duration and strength, from now on
 };
 /// The lap to race by that is planned for road and grip as the controller has learned them (LapPlanner).
-struct LearnedLap {
-  double grip = 1.0;    ///< LapRequest::grip
-  bool slides = false;  ///< LapRequest::slides
-  double slip = 1.0;    ///< LapRequest::slip
-};
+using LearnedLap = road::LapTerms;
 
 /// What a change of a setting does to a run that goes on. std::monostate: nothing that can be done to it,
 /// because the run begins anew.

@@ -84,7 +84,7 @@ void Guard::use_line(std::shared_ptr<const road::RacingRoad> lap) {
     take_up_line();
   }
   estimator_.mind_helper_gap(lap != nullptr);
-  set_grip(lap ? lap->grip() : 1.0);
+  set_grip(lap ? lap->terms().grip : 1.0);
   controller_->use_line(std::move(lap));
 }
 
