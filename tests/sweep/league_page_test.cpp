@@ -118,10 +118,10 @@ TEST_F(LeagueFiles, ThePageHasStandingsGapsTimesAndReasons) {
 
 TEST_F(LeagueFiles, TablesForOtherProgramsHaveARowForEachRun) {
   const LeagueResults results = driven(clean_run());
-  const std::string csv = league_csv(results);
+  const std::string csv = league_runs(league_, results).csv();
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
   EXPECT_THAT(csv, HasSubstr("mine,oval,udacity,late,1,10,10,1,"));
-  const auto json = nlohmann::json::parse(league_json(results));
+  const auto json = league_runs(league_, results).json();
   ASSERT_EQ(json.size(), 4U);
   EXPECT_EQ(json[2]["lap_time_s"], 12.5);
   EXPECT_TRUE(json[3]["lap_time_s"].is_null());

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -51,11 +52,10 @@ TEST_F(ComparisonTest, FlagsWhatIsWorse) {
   EXPECT_EQ(comparison->pairs, 3U);
   EXPECT_EQ(comparison->worse, 3U);
   EXPECT_THAT(
-      comparison->table,
-      HasSubstr(
-          "| `a` | on | 12.00 · 10.00 · 11.00 | 12.00 · 10.00 · 11.00 | 2 | 0 |  | **off the road** |"));
-  EXPECT_THAT(comparison->table, HasSubstr("`frozen` 3 | **1.5 % slower** |"));
-  EXPECT_THAT(comparison->table, HasSubstr("**not completed** |"));
+      comparison->table.markdown(),
+      HasSubstr("| `a` | on | 12.00 · 10.00 · 11.00 | 12.00 · 10.00 · 11.00 | 2 | 0 | | **off the road** |"));
+  EXPECT_THAT(comparison->table.markdown(), HasSubstr("`frozen` 3 | **1.5 % slower** |"));
+  EXPECT_THAT(comparison->table.markdown(), HasSubstr("**not completed** |"));
 }
 
 TEST_F(ComparisonTest, FlagsNothingWhereTheOtherOneIsNotCleanEither) {
@@ -69,7 +69,7 @@ TEST_F(ComparisonTest, FlagsNothingWhereTheOtherOneIsNotCleanEither) {
   EXPECT_EQ(comparison->pairs, 2U);
   EXPECT_EQ(comparison->worse, 0U);
   EXPECT_EQ(comparison->missing, 1U);
-  EXPECT_THAT(comparison->table, Not(HasSubstr("**")));
+  EXPECT_THAT(comparison->table.markdown(), Not(HasSubstr("**")));
 }
 
 TEST_F(ComparisonTest, NamesTheAxesWhereTheKeyIsNone) {
@@ -77,6 +77,21 @@ TEST_F(ComparisonTest, NamesTheAxesWhereTheKeyIsNone) {
   const auto comparison = compared("guard.mod");
   ASSERT_FALSE(comparison);
   EXPECT_THAT(comparison.error().message, HasSubstr("track, guard.mode"));
+}
+
+TEST(ResultTable, ShowsPeopleTitlesAndGivesProgramsKeys) {
+  ResultTable table({"car=car{<6}", "laps=laps{>4}", "for [s]{>7.1}", "edge_m=", "is_clean=clean", "=a=b{}"});
+  table.add({"indy", 3, 2.25, std::nan(""), true, ""});
+  table.add({"a,\"b\"", 12, nullptr, 0.5, false, "why"});
+  EXPECT_EQ(table.text(),
+            "car    laps for [s] clean a=b\nindy      3     2.2 true\na,\"b\"    12       – false why\n");
+  EXPECT_EQ(table.markdown(),
+            "| car | laps | for [s] | clean | a=b |\n|---|--:|--:|---|---|\n"
+            "| indy | 3 | 2.2 | true | |\n| a,\"b\" | 12 | – | false | why |\n");
+  EXPECT_EQ(table.csv(), "car,laps,edge_m,is_clean\r\nindy,3,,1\r\n\"a,\"\"b\"\"\",12,0.5,0\r\n");
+  EXPECT_EQ(protocol::json_text(table.json()),
+            R"([{"car":"indy","laps":3,"edge_m":null,"is_clean":true},)"
+            R"({"car":"a,\"b\"","laps":12,"edge_m":0.5,"is_clean":false}])");
 }
 
 }  // namespace

@@ -274,13 +274,6 @@ TEST_F(Sweep, TablesHaveAColumnForEachSettingAndResult) {
               HasSubstr("cannot be written: No such file or directory"));
 }
 
-TEST(SweepCsv, QuotesACellWhereItHasTo) {
-  EXPECT_EQ(csv_cell("plain"), "plain");
-  EXPECT_EQ(csv_cell("a,b"), "\"a,b\"");
-  EXPECT_EQ(csv_cell("say \"x\""), "\"say \"\"x\"\"\"");
-  EXPECT_EQ(csv_cell("two\nlines"), "\"two\nlines\"");
-}
-
 TEST(SweepOutcome, ColumnsAreFoundByTheirNames) {
   for (const Column& column : columns()) EXPECT_EQ(find_column(column.name), &column);
   EXPECT_EQ(find_column("wall_time_s"), nullptr) << "nothing that the clock has told";

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "chicane/base/text.hpp"
-#include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema_json.hpp"
 #include "chicane/run/fault_campaign.hpp"
@@ -80,89 +79,24 @@ std::vector<Row> rows_of(const std::vector<CampaignGroup>& groups, const sweep::
   return rows;
 }
 
-void print_table(const std::vector<Row>& rows) {
-  fmt::print("{:<10} {:<10} {:<36} {:>8} {:>7} {:>5} {:>7} {:>11} {:>11}\n", "car", "preset", "fault", "for",
-             "trials", "off", "anyway", "standing", "to edge [m]");
-  for (const Row& row : rows) {
-    fmt::print("{:<10} {:<10} {:<36} {:>8} {:>7} {:>5} {:>7} {:>11} {:>11.2f}\n", row.car, row.preset,
-               row.fault, row.words(), row.trials, row.off, row.off_anyway, row.standing_text(),
-               row.least_edge);
-  }
-  for (const Row& row : rows) {
-    if (row.off + row.off_anyway == 0) continue;
-    fmt::print("\n{}: off the road {} of {} times{}; the worst:\n  {}\n", row.name(), row.off, row.trials,
-               row.off_anyway > 0 ? fmt::format(", {} more also without the fault", row.off_anyway) : "",
-               row.worst);
-  }
-}
-
-/// The durations of all rows, in their order.
-std::vector<std::string> durations_of(const std::vector<Row>& rows) {
-  std::vector<std::string> durations;
+sweep::ResultTable table_of(const std::vector<Row>& rows) {
+  using protocol::Json;
+  sweep::ResultTable table({"car=car{<10}", "preset=preset{<10}", "fault=fault{<36}", "for{>8}",
+                            "for_s=", "trials=trials{>7}", "off_road=off{>5}", "off_road_anyway=anyway{>7}",
+                            "standing{>11}", "standing=", "least_edge_m=to edge [m]{>11.2}", "worst="});
   for (const Row& row : rows)
-    if (std::find(durations.begin(), durations.end(), row.lasts) == durations.end())
-      durations.push_back(row.lasts);
-  return durations;
+    table.add({row.car, row.preset, row.fault, row.words(), row.is_lasting() ? Json() : Json(row.duration),
+               row.trials, row.off, row.off_anyway, row.standing_text(),
+               row.lasting == 0 ? Json() : Json(row.standing), row.least_edge, row.worst});
+  return table;
 }
 
-std::string column_words(const std::string& lasts) {
-  if (lasts == "inf") return "lasting";
-  return lasts == "own" ? "own duration" : lasts + " s";
-}
-
-void print_markdown_head(const std::vector<std::string>& durations) {
-  fmt::print("| car | preset | fault |");
-  for (const std::string& lasts : durations)
-    fmt::print(" {}: off the road | to the edge [m] |", column_words(lasts));
-  fmt::print(" standing at the end |\n|---|---|---|");
-  for (std::size_t i = 0; i < durations.size(); ++i) fmt::print("--:|--:|");
-  fmt::print("--:|\n");
-}
-
-/// One line for each car, preset and fault; then the rows in which the road was left.
-void print_markdown(const std::vector<Row>& rows) {
-  const std::vector<std::string> durations = durations_of(rows);
-  print_markdown_head(durations);
-  for (std::size_t i = 0; i < rows.size();) {
-    const Row& first = rows[i];
-    const auto is_of_line = [&](const Row& row) {
-      return row.car == first.car && row.preset == first.preset && row.fault == first.fault;
-    };
-    fmt::print("| `{}` | `{}` | `{}` |", first.car, first.preset, first.fault);
-    std::string standing;
-    for (const std::string& lasts : durations) {
-      if (i == rows.size() || !is_of_line(rows[i]) || rows[i].lasts != lasts) {
-        fmt::print(" – | – |");
-        continue;
-      }
-      const Row& row = rows[i++];
-      fmt::print(" {} of {}{} | {:.2f} |", row.off, row.trials,
-                 row.off_anyway > 0 ? fmt::format(" (+{} anyway)", row.off_anyway) : "", row.least_edge);
-      if (row.lasting > 0) standing = row.standing_text();
-    }
-    fmt::print(" {} |\n", standing);
-  }
-  for (const Row& row : rows) {
+void print_worst(const std::vector<Row>& rows, const char* indent) {
+  for (const Row& row : rows)
     if (row.off + row.off_anyway > 0)
-      fmt::print("\n`{}` with `{}`, `{}` {}: {} of {}\n\n    {}\n", row.car, row.preset, row.fault,
-                 row.words(), row.off, row.trials, row.worst);
-  }
-}
-
-void print_json(const std::vector<Row>& rows) {
-  protocol::Json all = protocol::Json::array();
-  for (const Row& row : rows) {
-    protocol::Json json{{"car", row.car}, {"preset", row.preset}, {"fault", row.fault}};
-    json["for_s"] = row.is_lasting() ? protocol::Json() : protocol::Json(row.duration);
-    json["trials"] = row.trials;
-    json["off_road"] = row.off;
-    json["off_road_anyway"] = row.off_anyway;
-    json["standing"] = row.lasting == 0 ? protocol::Json() : protocol::Json(row.standing);
-    json["least_edge_m"] = row.least_edge;
-    json["worst"] = row.worst;
-    all.push_back(std::move(json));
-  }
-  print_rows(std::move(all));
+      fmt::print("\n{}: off the road {} of {} times{}; the worst:{}{}\n", row.name(), row.off, row.trials,
+                 row.off_anyway > 0 ? fmt::format(", {} more also without the fault", row.off_anyway) : "",
+                 indent, row.worst);
 }
 
 /// The names themselves, or all that ship for the one name "all". Fails as protocol::locate() does.
@@ -239,13 +173,8 @@ ExitCode campaign(const Options& options) {
     groups.push_back(std::move(*group));
   }
   const std::vector<Row> rows = rows_of(groups, campaign->settings);
-  if (options.is_json) {
-    print_json(rows);
-  } else if (options.is_markdown) {
-    print_markdown(rows);
-  } else {
-    print_table(rows);
-  }
+  print_table(options, table_of(rows));
+  if (!options.is_json) print_worst(rows, options.is_markdown ? "\n\n    " : "\n  ");
   tell_errors(groups);
   const bool is_kept =
       std::none_of(rows.begin(), rows.end(), [](const Row& row) { return row.off + row.off_anyway > 0; });

@@ -14,6 +14,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/sweep/claim.hpp"
+#include "chicane/sweep/result_table.hpp"
 #include "chicane/sweep/sweep.hpp"
 #include "chicane/sweep/trial.hpp"
 #include "commands.hpp"
@@ -234,33 +235,35 @@ std::string statement_of(const Claim& claim) {
   return claim.quotes.empty() ? claim.says : fmt::format("{}: “{}”", claim.says, claim.quotes);
 }
 
-/// The rows of the page: id, statement, verdict, a cell for each lake, figures. The verdict is that of the
-/// lakes that ship.
-std::string rows_of(const std::vector<Claim>& claims, const Trials& trials, const std::string& older) {
+/// A row of the page: id, statement, verdict, a cell for each lake, figures. The verdict is that of the lakes
+/// that ship.
+std::vector<protocol::Json> row_of(const Claim& claim, const Trials& trials, const std::string& older) {
+  if (!claim.is_tried()) return {claim.id, statement_of(claim), claim.found, "", "", "", claim.see};
   const auto& all = lakes();
+  std::array<std::string, kLakes> cells;
+  for (std::size_t l = 0; l < kLakes; ++l)
+    cells[l] = all[l].is_there ? cell_of(marks_of(claim, trials, all[l]))
+                               : older_cell(older, claim.id, 3 + static_cast<int>(l));
+  return {claim.id,
+          statement_of(claim),
+          verdict_of(claim, cells[0], cells[1]),
+          cells[0],
+          cells[1],
+          cells[2],
+          figures_of(claim, trials, all[0], own_reading(claim))};
+}
+
+/// A table for each write-up.
+std::string rows_of(const std::vector<Claim>& claims, const Trials& trials, const std::string& older) {
+  std::vector<std::string> columns{"", "statement", "verdict"};
+  for (const Lake& lake : lakes()) columns.emplace_back(lake.name);
+  columns.emplace_back("figures, or where to see");
+  std::map<char, sweep::ResultTable> tables;
+  for (const Claim& claim : claims)
+    tables.try_emplace(claim.id[0], columns).first->second.add(row_of(claim, trials, older));
   std::string text;
-  char group = 0;
-  for (const Claim& claim : claims) {
-    if (claim.id[0] != group) {
-      group = claim.id[0];
-      text += fmt::format(
-          "\n## Write-up {}\n\n| | statement | verdict | {} | {} | {} | figures, or where to see |\n"
-          "|---|---|---|---|---|---|---|\n",
-          group, all[0].name, all[1].name, all[2].name);
-    }
-    if (!claim.is_tried()) {
-      text +=
-          fmt::format("| {} | {} | {} | | | | {} |\n", claim.id, statement_of(claim), claim.found, claim.see);
-      continue;
-    }
-    std::array<std::string, kLakes> cells;
-    for (std::size_t l = 0; l < kLakes; ++l)
-      cells[l] = all[l].is_there ? cell_of(marks_of(claim, trials, all[l]))
-                                 : older_cell(older, claim.id, 3 + static_cast<int>(l));
-    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", claim.id, statement_of(claim),
-                        verdict_of(claim, cells[0], cells[1]), cells[0], cells[1], cells[2],
-                        figures_of(claim, trials, all[0], own_reading(claim)));
-  }
+  for (const auto& [group, table] : tables)
+    text += fmt::format("\n## Write-up {}\n\n{}", group, table.markdown());
   return text;
 }
 

@@ -261,14 +261,15 @@ Result<void> write_pages(const Options& options, const League& league, const swe
     if (!done) return fail(done.error());
     fmt::print(stderr, "{}: open it in a browser\n", options.output_file);
   }
+  const sweep::ResultTable runs = sweep::league_runs(league, results);
   if (!options.csv_file.empty()) {
-    if (Result<void> done = write_file(options.csv_file, sweep::league_csv(results)); !done) return done;
+    if (Result<void> done = write_file(options.csv_file, runs.csv()); !done) return done;
   }
   if (!options.league.page.empty()) {
     const std::string tables = "\n" + sweep::league_markdown(league, results);
     if (Result<void> done = write_below(options.league.page, kLeagueMarker, tables); !done) return done;
   }
-  if (options.is_json) fmt::print("{}", sweep::league_json(results));
+  if (options.is_json) fmt::print("{}\n", protocol::json_text(runs.json(), protocol::JsonLayout::kIndented));
   return {};
 }
 

@@ -60,9 +60,8 @@ std::string command_of(const Options& options, const CarOnTrack& pair, int numbe
   return text;
 }
 
-void print_kind(const CarOnTrack& pair, std::string_view kind) {
-  int starts = 0;
-  int back = 0;
+void add_kind(sweep::ResultTable& table, const CarOnTrack& pair, std::string_view kind) {
+  int starts = 0, back = 0;
   double slowest_back = 0.0, slowest = 0.0, farthest = 0.0;
   for (const auto& [number, line] : pair.outcomes) {
     if (line.at("start") != kind) continue;
@@ -73,16 +72,15 @@ void print_kind(const CarOnTrack& pair, std::string_view kind) {
     slowest_back = std::max(slowest_back, time_in(line, "back_s"));
     slowest = std::max(slowest, time_in(line, "lapping_s"));
   }
-  if (starts == 0) return;
-  fmt::print("{:<10} {:<10} {:<10} {:>7} {:>5} {:>14.1f} {:>14.1f} {:>12.1f}\n", pair.track, pair.car, kind,
-             starts, back, slowest_back, slowest, farthest);
+  if (starts > 0) table.add({pair.track, pair.car, kind, starts, back, slowest_back, slowest, farthest});
 }
 
 void print_table(const Options& options, const std::vector<CarOnTrack>& pairs) {
-  fmt::print("{:<10} {:<10} {:<10} {:>7} {:>5} {:>14} {:>14} {:>12}\n", "track", "car", "start", "starts",
-             "back", "back [s]", "lapping [s]", "farthest [m]");
+  sweep::ResultTable table({"track{<10}", "car{<10}", "start{<10}", "starts{>7}", "back{>5}",
+                            "back [s]{>14.1}", "lapping [s]{>14.1}", "farthest [m]{>12.1}"});
   for (const CarOnTrack& pair : pairs)
-    for (const std::string_view kind : run::kStartKindNames) print_kind(pair, kind);
+    for (const std::string_view kind : run::kStartKindNames) add_kind(table, pair, kind);
+  print_table(options, table);
   for (const CarOnTrack& pair : pairs) {
     for (const auto& [number, line] : pair.outcomes) {
       if (line.at("is_back").get<bool>()) continue;
@@ -250,13 +248,6 @@ std::string why_not_faster(const Json& line) {
              : "does not arrive";
 }
 
-void print_row(const std::string& car, const std::string& preset, const Json& line) {
-  const Json& room = line.at("room_m");
-  fmt::print("{:<16} {:<14} {:>7} {:>11.1f} {:>9.2f}   {}\n", car, preset, line.at("entry_kmph").get<int>(),
-             line.at("exit_kmph").get<double>(), room.is_number() ? room.get<double>() : 0.0,
-             why_not_faster(line));
-}
-
 /// The experiments of all runs; a mistake is reported before anything is driven.
 Result<std::vector<scenario::Scenario>> scenarios_of(const Options& options, const sweep::Plan& plan) {
   std::vector<scenario::Scenario> scenarios;
@@ -292,28 +283,22 @@ Result<RunLines> drive(const Options& options, const sweep::Plan& plan, const st
   return drive_runs({.plan = plan, .rule = rule}, options.jobs, options.results_file, stop);
 }
 
-/// Prints a row for each car, with a column for each preset.
-void print(const Options& options, const RunLines& driven) {
+/// A row for each car and preset.
+sweep::ResultTable table_of(const Options& options, const RunLines& driven) {
   const auto& [cars, presets] = options.lane_change;
-  Json rows = Json::array();
-  if (!options.is_json)
-    fmt::print("{:<16} {:<14} {:>7} {:>11} {:>9}   {}\n", "car", "preset", "[km/h]", "exit [km/h]",
-               "room [m]", "1 km/h faster");
+  sweep::ResultTable table({"car=car{<16}", "preset=preset{<14}", "entry_kmph=[km/h]{>7}",
+                            "exit_kmph=exit [km/h]{>11.1}", "room_m=room [m]{>9.2}",
+                            "room_above_m=", "  1 km/h faster"});
   for (std::size_t car = 0; car < cars.size(); ++car) {
     for (std::size_t preset = 0; preset < presets.size(); ++preset) {
       const auto found = driven.lines.find(preset * cars.size() + car);
       if (found == driven.lines.end()) continue;
-      if (!options.is_json) {
-        print_row(cars[car], presets[preset], found->second);
-        continue;
-      }
-      Json row{{"car", cars[car]}, {"preset", presets[preset]}};
-      for (const char* key : {"entry_kmph", "exit_kmph", "room_m", "room_above_m"})
-        row[key] = found->second.at(key);
-      rows.push_back(std::move(row));
+      const Json& line = found->second;
+      table.add({cars[car], presets[preset], line.at("entry_kmph"), line.at("exit_kmph"), line.at("room_m"),
+                 line.at("room_above_m"), "  " + why_not_faster(line)});
     }
   }
-  if (options.is_json) print_rows(std::move(rows));
+  return table;
 }
 
 }  // namespace
@@ -322,7 +307,7 @@ ExitCode lane_change(const Options& options) {
   const std::atomic<bool>& wants_stop = begin_many_runs();
   const Result<RunLines> driven = drive(options, plan_of(options), wants_stop);
   if (!driven) return report(driven.error());
-  print(options, *driven);
+  print_table(options, table_of(options, *driven));
   return driven->progress.is_complete() ? kSuccess : kRunFailed;
 }
 

@@ -42,7 +42,7 @@ ExitCode report_comparison(const Options& options) {
   const auto compared = sweep::compare(options.log_files, options.comparison.substr(0, equals),
                                        options.comparison.substr(equals + 1));
   if (!compared) return report(compared.error());
-  fmt::print("{}", compared->table);
+  fmt::print("{}", compared->table.markdown());
   fmt::print(stderr, "{} of {} are worse than with {}; {} have no run to compare with\n", compared->worse,
              compared->pairs, options.comparison, compared->missing);
   return compared->worse == 0 ? kSuccess : kRunFailed;

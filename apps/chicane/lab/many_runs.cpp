@@ -127,4 +127,9 @@ void print_rows(protocol::Json rows) {
              protocol::json_text(protocol::Json{{"rows", std::move(rows)}}, protocol::JsonLayout::kIndented));
 }
 
+void print_table(const Options& options, const sweep::ResultTable& table) {
+  if (options.is_json) return print_rows(table.json());
+  fmt::print("{}", options.is_markdown ? table.markdown() : table.text());
+}
+
 }  // namespace chicane::apps

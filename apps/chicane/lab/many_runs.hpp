@@ -11,7 +11,9 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/protocol/json.hpp"
+#include "chicane/sweep/result_table.hpp"
 #include "chicane/sweep/sweep.hpp"
+#include "options.hpp"
 
 namespace chicane::apps {
 
@@ -67,5 +69,7 @@ struct RunLines {
 
 /// Prints `{"rows": [...]}` on stdout.
 void print_rows(protocol::Json rows);
+/// Prints a table on stdout as it is asked for: text, Markdown or the rows of print_rows().
+void print_table(const Options& options, const sweep::ResultTable& table);
 
 }  // namespace chicane::apps

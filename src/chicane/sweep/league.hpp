@@ -11,6 +11,7 @@
 #include "chicane/base/result.hpp"
 #include "chicane/sweep/plan.hpp"
 #include "chicane/sweep/result_file.hpp"
+#include "chicane/sweep/result_table.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
 /// A league compares controllers, ours and those of other programs, on the same tracks, in the same cars and
@@ -139,9 +140,7 @@ class BesideFile {
 [[nodiscard]] std::string league_document(const League& league, const LeagueResults& results);
 /// The tables of league_document() as Markdown, without the commands.
 [[nodiscard]] std::string league_markdown(const League& league, const LeagueResults& results);
-/// CSV with a row for each run (RFC 4180).
-[[nodiscard]] std::string league_csv(const LeagueResults& results);
-/// JSON list with an object for each run, and the columns of league_csv().
-[[nodiscard]] std::string league_json(const LeagueResults& results);
+/// A row for each run, for programs.
+[[nodiscard]] ResultTable league_runs(const League& league, const LeagueResults& results);
 
 }  // namespace chicane::sweep

@@ -15,31 +15,16 @@
 namespace chicane::sweep {
 namespace {
 
-/// A table as it stands in both kinds of page; the first column is text.
+using protocol::Json;
+
 struct LeagueTable {
   std::string title, note;
-  std::vector<std::string> head;
-  std::vector<std::vector<std::string>> rows;
+  ResultTable table;
 };
 
-std::string cell_text(double value, int decimals) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "–";
-}
-
-/// Mean of what was measured.
-class Mean {
- public:
-  void add(double value) {
-    if (!std::isfinite(value)) return;
-    sum_ += value;
-    ++count_;
-  }
-  [[nodiscard]] double value() const { return count_ > 0 ? sum_ / count_ : std::nan(""); }
-
- private:
-  double sum_ = 0.0;
-  int count_ = 0;
-};
+/// Columns of the standings behind the gap; the last one says nothing of another program.
+constexpr std::array kFigures{"rms_lateral_error_m", "min_edge_distance_m", "max_lateral_acceleration_mps2",
+                              "steering_rate_rms_radps", "mean_iterations"};
 
 class LeagueTables {
  public:
@@ -58,6 +43,9 @@ class LeagueTables {
     return tables;
   }
 
+  [[nodiscard]] static Json lap_of(const LeagueCell& cell) {
+    return cell.is_clean ? Json(cell.number("lap_time_s")) : Json();
+  }
   /// How much longer than the limit [%].
   [[nodiscard]] double gap(const LeagueCell& cell) const {
     const auto bound = results_.bounds.find({cell.track, cell.car});
@@ -66,10 +54,21 @@ class LeagueTables {
   }
 
  private:
+  /// The gap and kFigures.
+  [[nodiscard]] std::vector<double> figures_of(const LeagueCell& cell) const {
+    std::vector<double> figures{gap(cell)};
+    for (const char* column : kFigures) figures.push_back(cell.number(column));
+    if (cell.is_external) figures.back() = std::nan("");
+    return figures;
+  }
+
   struct Standing {
     std::string entry;
     int clean = 0, tried = 0, disturbed_clean = 0, disturbed = 0;
-    Mean gap, error, margin, acceleration, steering, iterations;
+    std::array<double, kFigures.size() + 1> sums{}, counts{};  ///< of the gap and kFigures, where measured
+
+    /// NaN: nowhere measured.
+    [[nodiscard]] double mean(std::size_t i) const { return sums[i] / counts[i]; }
   };
 
   [[nodiscard]] Standing standing_of(const std::string& entry) const {
@@ -82,12 +81,12 @@ class LeagueTables {
       if (!cell.is_clean) continue;
       ++(is_disturbed ? standing.disturbed_clean : standing.clean);
       if (is_disturbed) continue;
-      standing.gap.add(gap(cell));
-      standing.error.add(cell.number("rms_lateral_error_m"));
-      standing.margin.add(cell.number("min_edge_distance_m"));
-      standing.acceleration.add(cell.number("max_lateral_acceleration_mps2"));
-      standing.steering.add(cell.number("steering_rate_rms_radps"));
-      if (!cell.is_external) standing.iterations.add(cell.number("mean_iterations"));
+      const std::vector<double> figures = figures_of(cell);
+      for (std::size_t i = 0; i < figures.size(); ++i) {
+        if (!std::isfinite(figures[i])) continue;
+        standing.sums[i] += figures[i];
+        ++standing.counts[i];
+      }
     }
     return standing;
   }
@@ -99,22 +98,23 @@ class LeagueTables {
       const double x = a.tried > 0 ? static_cast<double>(a.clean) / a.tried : 0.0;
       const double y = b.tried > 0 ? static_cast<double>(b.clean) / b.tried : 0.0;
       if (x != y) return x > y;
-      return std::isfinite(a.gap.value()) && (!std::isfinite(b.gap.value()) || a.gap.value() < b.gap.value());
+      return std::isfinite(a.mean(0)) && !(a.mean(0) >= b.mean(0));
     });
-    LeagueTable table{.title = "Standings",
-                      .note =
-                          "Most clean first, then by the gap. Means over the tracks and cars on which the "
-                          "entry has a clean lap, without disturbance.",
-                      .head = {"entry", "clean", "clean, disturbed", "gap to the limit [%]",
-                               "rms lateral error [m]", "tyre to edge, least [m]",
-                               "lateral acceleration, most [m/s²]", "steering rate [rad/s]", "iterations"},
-                      .rows = {}};
-    for (const Standing& each : all)
-      table.rows.push_back({each.entry, fmt::format("{} of {}", each.clean, each.tried),
-                            fmt::format("{} of {}", each.disturbed_clean, each.disturbed),
-                            cell_text(each.gap.value(), 1), cell_text(each.error.value(), 2),
-                            cell_text(each.margin.value(), 2), cell_text(each.acceleration.value(), 1),
-                            cell_text(each.steering.value(), 3), cell_text(each.iterations.value(), 1)});
+    LeagueTable table{
+        .title = "Standings",
+        .note =
+            "Most clean first, then by the gap. Means over the tracks and cars on which the "
+            "entry has a clean lap, without disturbance.",
+        .table = ResultTable({"entry", "clean{>}", "clean, disturbed{>}", "gap to the limit [%]{>.1}",
+                              "rms lateral error [m]{>.2}", "tyre to edge, least [m]{>.2}",
+                              "lateral acceleration, most [m/s²]{>.1}", "steering rate [rad/s]{>.3}",
+                              "iterations{>.1}"})};
+    for (const Standing& each : all) {
+      ResultTable::Cells row{each.entry, fmt::format("{} of {}", each.clean, each.tried),
+                             fmt::format("{} of {}", each.disturbed_clean, each.disturbed)};
+      for (std::size_t i = 0; i < each.sums.size(); ++i) row.emplace_back(each.mean(i));
+      table.table.add(std::move(row));
+    }
     return table;
   }
 
@@ -128,54 +128,49 @@ class LeagueTables {
 
   [[nodiscard]] LeagueTable table_of(const std::string& track, const std::string& car) const {
     const auto bound = results_.bounds.find({track, car});
-    LeagueTable table{.title = fmt::format("{} on {}", car, track),
-                      .note = bound == results_.bounds.end()
-                                  ? std::string("The limit is not known.")
-                                  : fmt::format("The limit is {:.2f} s.", bound->second),
-                      .head = {"entry", "reference [m/s]", "lap [s]", "gap [%]", "rms lateral error [m]",
-                               "tyre to edge [m]", "lateral acceleration [m/s²]", "steering rate [rad/s]"},
-                      .rows = {}};
+    std::vector<std::string> columns{"entry",
+                                     "reference [m/s]{>.1}",
+                                     "lap [s]{>.2}",
+                                     "gap [%]{>.1}",
+                                     "rms lateral error [m]{>.2}",
+                                     "tyre to edge [m]{>.2}",
+                                     "lateral acceleration [m/s²]{>.1}",
+                                     "steering rate [rad/s]{>.3}"};
     for (std::size_t i = 1; i < league_.disturbances.size(); ++i)
-      table.head.push_back(fmt::format("{}: lap [s]", league_.disturbances[i].first));
-    for (const std::string& entry : entries_) {
-      const LeagueCell* cell = find(entry, track, car, undisturbed_);
-      if (cell == nullptr) continue;
-      table.rows.push_back(row_of(*cell));
-    }
-    return table;
+      columns.push_back("=" + league_.disturbances[i].first + ": lap [s]{>.2}");
+    ResultTable table(columns);
+    for (const std::string& entry : entries_)
+      if (const LeagueCell* cell = find(entry, track, car, undisturbed_)) table.add(row_of(*cell));
+    return {.title = fmt::format("{} on {}", car, track),
+            .note = bound == results_.bounds.end() ? std::string("The limit is not known.")
+                                                   : fmt::format("The limit is {:.2f} s.", bound->second),
+            .table = std::move(table)};
   }
 
-  [[nodiscard]] std::vector<std::string> row_of(const LeagueCell& cell) const {
-    std::vector<std::string> row{cell.entry};
+  [[nodiscard]] ResultTable::Cells row_of(const LeagueCell& cell) const {
+    ResultTable::Cells row{cell.entry, cell.why};
     if (cell.is_clean) {
-      row.push_back(cell.is_external ? "its own" : cell_text(cell.number(kSearchValue), 1));
-      for (const auto& [column, decimals] :
-           std::array{std::pair{"lap_time_s", 2}, std::pair{"", 1}, std::pair{"rms_lateral_error_m", 2},
-                      std::pair{"min_edge_distance_m", 2}, std::pair{"max_lateral_acceleration_mps2", 1},
-                      std::pair{"steering_rate_rms_radps", 3}})
-        row.push_back(cell_text(*column == '\0' ? gap(cell) : cell.number(column), decimals));
-    } else {
-      row.push_back(cell.why);
-      row.resize(8, "–");
+      row = {cell.entry, cell.is_external ? Json("its own") : Json(cell.number(kSearchValue)), lap_of(cell)};
+      for (const double figure : figures_of(cell)) row.emplace_back(figure);
     }
+    row.resize(8);
     for (std::size_t i = 1; i < league_.disturbances.size(); ++i) {
       const LeagueCell* disturbed = find(cell.entry, cell.track, cell.car, league_.disturbances[i].first);
-      row.push_back(
-          disturbed != nullptr && disturbed->is_clean ? cell_text(disturbed->number("lap_time_s"), 2) : "–");
+      row.push_back(disturbed != nullptr ? lap_of(*disturbed) : Json());
     }
     return row;
   }
 
   /// Medians over an entry's runs of the times that a clock measured.
   [[nodiscard]] LeagueTable times() const {
-    LeagueTable table{.title = "Times",
-                      .note =
-                          "Measured on the machine that drove the league, with all else that it did: the "
-                          "optimisation of a control step, or from telemetry to the answer of a program, "
-                          "its latency included. The median and the 99th percentile of a run; of these "
-                          "the median over all runs.",
-                      .head = {"entry", "what", "median [µs]", "99 % [µs]", "runs"},
-                      .rows = {}};
+    LeagueTable table{
+        .title = "Times",
+        .note =
+            "Measured on the machine that drove the league, with all else that it did: the "
+            "optimisation of a control step, or from telemetry to the answer of a program, "
+            "its latency included. The median and the 99th percentile of a run; of these "
+            "the median over all runs.",
+        .table = ResultTable({"entry", "what{>}", "median [µs]{>.0}", "99 % [µs]{>.0}", "runs{>}"})};
     for (const std::string& entry : entries_) {
       std::vector<double> median, late;
       bool is_external = false;
@@ -192,8 +187,7 @@ class LeagueTables {
         std::sort(values.begin(), values.end());
         return values[values.size() / 2];
       };
-      table.rows.push_back({entry, is_external ? "answer" : "solve", cell_text(middle(median), 0),
-                            cell_text(middle(late), 0), fmt::format("{}", median.size())});
+      table.table.add({entry, is_external ? "answer" : "solve", middle(median), middle(late), median.size()});
     }
     return table;
   }
@@ -219,101 +213,53 @@ std::string in_words(const League& league, const LeagueResults& results) {
   return words + ".";
 }
 
-constexpr std::array kCsvColumns{"search_value",
-                                 "search_trials",
-                                 "completed",
-                                 "laps_completed",
-                                 "off_track_events",
-                                 "lap_time_s",
-                                 "mean_speed_mps",
-                                 "top_speed_mps",
-                                 "rms_lateral_error_m",
-                                 "min_edge_distance_m",
-                                 "max_lateral_acceleration_mps2",
-                                 "steering_rate_rms_radps",
-                                 "mean_iterations",
-                                 "not_usable"};
-
 }  // namespace
 
 std::string league_document(const League& league, const LeagueResults& results) {
-  using protocol::Json;
   protocol::ReportDocument document("league", league.name);
   document.add_text(in_words(league, results));
   const LeagueTables tables(league, results);
-  for (const LeagueTable& table : tables.all()) {
-    document.begin_section(table.title);
-    document.add_text(table.note);
-    document.add_table(table.head, table.rows);
+  for (const LeagueTable& each : tables.all()) {
+    document.begin_section(each.title);
+    document.add_text(each.note);
+    each.table.add_to(document);
   }
   document.begin_section("Runs");
   document.add_text(
       "Each with the command that drives it; without `--fast` it is driven in the dashboard, at "
       "`http://localhost:4567/`.");
-  Json rows = Json::array();
+  ResultTable runs({"entry", "track", "car", "disturbance", "lap [s]{>.2}", "gap [%]{>.1}", "command"});
   for (const LeagueCell& cell : results.cells)
-    rows.push_back(
-        {cell.entry, cell.track, cell.car, cell.disturbance,
-         cell.is_clean ? cell_text(cell.number("lap_time_s"), 2) : "–", cell_text(tables.gap(cell), 1),
-         Json{{"text", cell.command}, {"is_code", true}, {"remark", cell.is_clean ? "" : cell.why}}});
-  document.add_table({"entry", "track", "car", "disturbance", "lap [s]", "gap [%]", "command"},
-                     std::move(rows));
+    runs.add({cell.entry, cell.track, cell.car, cell.disturbance, tables.lap_of(cell), tables.gap(cell),
+              Json{{"text", cell.command}, {"is_code", true}, {"remark", cell.is_clean ? "" : cell.why}}});
+  runs.add_to(document);
   return document.text();
 }
 
 std::string league_markdown(const League& league, const LeagueResults& results) {
-  const auto line = [](const std::vector<std::string>& cells) {
-    std::string text = "|";
-    for (const std::string& cell : cells) text += " " + cell + " |";
-    return text + "\n";
-  };
   std::string page = in_words(league, results) + "\n";
-  for (const LeagueTable& table : LeagueTables(league, results).all()) {
-    page += fmt::format("\n### {}\n\n{}\n\n{}|---|", table.title, table.note, line(table.head));
-    for (std::size_t i = 1; i < table.head.size(); ++i) page += "--:|";
-    page += "\n";
-    for (const auto& row : table.rows) page += line(row);
-  }
+  for (const LeagueTable& each : LeagueTables(league, results).all())
+    page += fmt::format("\n### {}\n\n{}\n\n{}", each.title, each.note, each.table.markdown());
   return page;
 }
 
-std::string league_csv(const LeagueResults& results) {
-  std::string text = "entry,track,car,disturbance,clean,limit_s";
-  for (const char* column : kCsvColumns) text += fmt::format(",{}", column);
-  text += ",why_not\r\n";
+ResultTable league_runs(const League& league, const LeagueResults& results) {
+  std::vector<std::string> kept{std::string(kSearchValue), std::string(kSearchTrials)};
+  for (const std::string& column : league.plan.keep)
+    if (column != "end_reason") kept.push_back(column);
+  std::vector<std::string> columns{"entry=", "track=", "car=", "disturbance=", "clean=", "limit_s="};
+  for (const std::string& column : kept) columns.push_back(column + "=");
+  columns.emplace_back("why_not=");
+  ResultTable table(columns);
   for (const LeagueCell& cell : results.cells) {
+    ResultTable::Cells row{cell.entry, cell.track, cell.car, cell.disturbance, cell.is_clean, Json()};
     const auto bound = results.bounds.find({cell.track, cell.car});
-    text += fmt::format("{},{},{},{},{},{}", csv_cell(cell.entry), csv_cell(cell.track), csv_cell(cell.car),
-                        csv_cell(cell.disturbance), cell.is_clean ? 1 : 0,
-                        bound == results.bounds.end() ? "" : number_text(bound->second));
-    for (const char* column : kCsvColumns) {
-      const double value = cell.number(column);
-      text += "," + (std::isfinite(value) ? number_text(value) : std::string());
-    }
-    text += "," + csv_cell(cell.why) + "\r\n";
+    if (bound != results.bounds.end()) row.back() = bound->second;
+    for (const std::string& column : kept) row.emplace_back(cell.number(column));
+    row.emplace_back(cell.why);
+    table.add(std::move(row));
   }
-  return text;
-}
-
-std::string league_json(const LeagueResults& results) {
-  using protocol::Json;
-  Json list = Json::array();
-  for (const LeagueCell& cell : results.cells) {
-    Json row{{"entry", cell.entry},
-             {"track", cell.track},
-             {"car", cell.car},
-             {"disturbance", cell.disturbance},
-             {"clean", cell.is_clean}};
-    const auto bound = results.bounds.find({cell.track, cell.car});
-    row["limit_s"] = bound == results.bounds.end() ? Json() : Json(bound->second);
-    for (const char* column : kCsvColumns) {
-      const double value = cell.number(column);
-      row[column] = std::isfinite(value) ? Json(value) : Json();
-    }
-    row["why_not"] = cell.why;
-    list.push_back(std::move(row));
-  }
-  return protocol::json_text(list, protocol::JsonLayout::kIndented) + "\n";
+  return table;
 }
 
 }  // namespace chicane::sweep

@@ -102,26 +102,118 @@ Result<void> add_results(const std::string& file, const std::string& key, Compar
   return read_runs(file, check, add);
 }
 
-/// A text as it is, all else as JSON; nothing for null.
-std::string cell_of(const Json& value) { return value.is_null() ? "" : csv_cell(plain_text(value)); }
-
-std::string table_head(const ComparedRuns& found, const std::string& key, const std::string& value) {
-  std::string text = "|";
-  for (const std::string& each : found.keys) text += fmt::format(" {} |", each);
-  text += fmt::format(
-      " {} | laps [s]: first · best · mean | with {} | off the road | with {} | the guard found | worse |\n|",
-      key, value, value);
-  for (std::size_t i = 0; i < found.keys.size(); ++i) text += "---|";
-  return text + "---|--:|--:|--:|--:|---|---|\n";
-}
-
-}  // namespace
-
+/// A value of RFC 4180, in quotes where it has to be.
 std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";
+}
+
+/// A text as it is, all else as JSON; nothing for null.
+std::string cell_of(const Json& value) { return value.is_null() ? "" : csv_cell(plain_text(value)); }
+
+ResultTable empty_table(const ComparedRuns& found, const std::string& key, const std::string& value) {
+  std::vector<std::string> columns;
+  for (const std::string& each : found.keys) columns.push_back("=" + each + "{}");
+  const std::string with = "=with " + value + "{>}";
+  columns.insert(columns.end(), {"=" + key + "{}", "laps [s]: first · best · mean{>}", with,
+                                 "off the road{>}", with, "the guard found", "worse"});
+  return ResultTable(columns);
+}
+
+/// For people.
+Json shown_cell(const Json& cell, const std::string& decimals) {
+  if (cell.is_null()) return "–";
+  if (cell.is_number_float()) return fmt::format(fmt::runtime("{:" + decimals + "f}"), cell.get<double>());
+  return cell.is_object() ? cell : Json(plain_text(cell));
+}
+
+/// For programs.
+std::string csv_text(const Json& cell) {
+  if (cell.is_boolean()) return cell.get<bool>() ? "1" : "0";
+  return cell.is_number() ? number_text(cell.get<double>()) : cell_of(cell);
+}
+
+}  // namespace
+
+ResultTable::ResultTable(const std::vector<std::string>& columns) {
+  for (std::size_t place = 0; place < columns.size(); ++place) {
+    const std::string& text = columns[place];
+    const std::size_t equals = text.find('='), brace = std::min(text.rfind('{'), text.size());
+    const std::string format = brace < text.size() ? text.substr(brace + 1, text.size() - brace - 2) : "";
+    const std::size_t title = equals + 1, point = std::min(format.find('.'), format.size());  // npos + 1 is 0
+    const Column column{text.substr(0, title == 0 ? 0 : equals), text.substr(title, brace - title),
+                        format.substr(0, point), format.substr(point), place};
+    if (column.key.empty() || !column.title.empty()) for_people_.push_back(column);
+    if (!column.key.empty()) for_programs_.push_back(column);
+  }
+}
+
+void ResultTable::add(Cells cells) {
+  for (Json& cell : cells)
+    if (cell.is_number() && !std::isfinite(cell.get<double>())) cell = Json();
+  rows_.push_back(std::move(cells));
+}
+
+/// A line of titles, `rule` and a line for each row.
+std::string ResultTable::lines(std::string_view begin, std::string_view rule,
+                               std::string (*write)(const Column&, const std::string&)) const {
+  std::string text;
+  const auto add_line = [&](const auto& cell_of) {
+    text += begin;
+    for (const Column& column : for_people_) text += write(column, cell_of(column));
+    text.resize(text.find_last_not_of(' ') + 1);
+    text += '\n';
+  };
+  add_line([](const Column& column) { return column.title; });
+  text += rule;
+  for (const Cells& row : rows_)
+    add_line([&](const Column& column) { return shown_cell(row[column.place], column.decimals); });
+  return text;
+}
+
+std::string ResultTable::text() const {
+  return lines("", "", [](const Column& column, const std::string& cell) {
+    return fmt::format(fmt::runtime("{:" + column.alignment + "} "), cell);
+  });
+}
+
+std::string ResultTable::markdown() const {
+  std::string rule = "|";
+  for (const Column& column : for_people_) rule += column.alignment.starts_with('>') ? "--:|" : "---|";
+  return lines("|", rule + "\n", [](const Column&, const std::string& cell) {
+    return cell.empty() ? " |" : " " + cell + " |";
+  });
+}
+
+std::string ResultTable::csv() const {
+  std::string text;
+  for (const Column& column : for_programs_) text += (text.empty() ? "" : ",") + csv_cell(column.key);
+  for (const Cells& row : rows_)
+    for (const Column& column : for_programs_)
+      text += (column.place == for_programs_.front().place ? "\r\n" : ",") + csv_text(row[column.place]);
+  return text + "\r\n";
+}
+
+Json ResultTable::json() const {
+  Json rows = Json::array();
+  for (const Cells& row : rows_) {
+    Json& object = rows.emplace_back(Json::object());
+    for (const Column& column : for_programs_) object[column.key] = row[column.place];
+  }
+  return rows;
+}
+
+void ResultTable::add_to(protocol::ReportDocument& document) const {
+  std::vector<std::string> titles;
+  Json rows(rows_.size(), Json::array());
+  for (const Column& column : for_people_) {
+    titles.push_back(column.title);
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      rows[i].push_back(shown_cell(rows_[i][column.place], column.decimals));
+  }
+  document.add_table(titles, std::move(rows));
 }
 
 Result<void> write_csv(const std::string& results, const std::string& csv) {
@@ -154,7 +246,7 @@ Result<Comparison> compare(const std::vector<std::string>& results, const std::s
     if (const Result<void> added = add_results(file, key, found); !added) return fail(added.error());
   std::map<std::uint64_t, const std::vector<std::string>*> names;
   for (const auto& [common, run] : found.first_run) names[run] = &common;
-  Comparison comparison{.table = table_head(found, key, value)};
+  Comparison comparison{.table = empty_table(found, key, value)};
   for (const auto& [first, runs] : found.by_first_run) {
     const auto other = runs.find(value);
     if (other == runs.end() || runs.size() == 1) {
@@ -166,11 +258,11 @@ Result<Comparison> compare(const std::vector<std::string>& results, const std::s
       const std::string worse = worse_text(run, other->second);
       ++comparison.pairs;
       if (!worse.empty()) ++comparison.worse;
-      comparison.table += "|";
-      for (const std::string& name : *names[first]) comparison.table += fmt::format(" `{}` |", name);
-      comparison.table += fmt::format(" {} | {} | {} | {} | {} | {} | {} |\n", mine, run.laps_text(),
-                                      other->second.laps_text(), run.off, other->second.off, run.reasons,
-                                      worse.empty() ? "" : "**" + worse + "**");
+      std::vector<Json> row;
+      for (const std::string& name : *names[first]) row.emplace_back("`" + name + "`");
+      row.insert(row.end(), {mine, run.laps_text(), other->second.laps_text(), run.off, other->second.off,
+                             run.reasons, worse.empty() ? "" : "**" + worse + "**"});
+      comparison.table.add(std::move(row));
     }
   }
   return comparison;

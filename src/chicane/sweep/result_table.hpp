@@ -4,18 +4,49 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chicane/base/result.hpp"
+#include "chicane/protocol/json.hpp"
 #include "chicane/sweep/plan.hpp"
 
-/// Results of a sweep as tables: a row for each run, or runs that differ in one setting alone beside each
+/// Results of many runs as tables: a row for each run, or runs that differ in one setting alone beside each
 /// other.
 
 namespace chicane::sweep {
 
-/// A value of RFC 4180, in quotes where it has to be.
-[[nodiscard]] std::string csv_cell(const std::string& text);
+/// A table in text, Markdown, CSV and JSON. A cell is a value of JSON; null and a number that is not finite
+/// are not known.
+class ResultTable {
+ public:
+  using Cells = std::vector<protocol::Json>;
+  /// A column is "KEY=TITLE{FORMAT}". The key is for CSV and JSON, the title for people: "TITLE" and "=TITLE"
+  /// are in neither CSV nor JSON, "KEY=" in these alone. FORMAT: > for a column to the right, the width in
+  /// text(), and the decimals of a number that is no integer: "{>11.2}".
+  explicit ResultTable(const std::vector<std::string>& columns);
+
+  /// Pre: as many cells as columns.
+  void add(Cells cells);
+
+  [[nodiscard]] std::string text() const;
+  [[nodiscard]] std::string markdown() const;
+  [[nodiscard]] std::string csv() const;      ///< RFC 4180, true is 1
+  [[nodiscard]] protocol::Json json() const;  ///< a list with an object for each row
+  /// Objects among the cells are cells of the document.
+  void add_to(protocol::ReportDocument& document) const;
+
+ private:
+  struct Column {
+    std::string key, title, alignment, decimals;
+    std::size_t place;  ///< of its cells in a row
+  };
+  [[nodiscard]] std::string lines(std::string_view begin, std::string_view rule,
+                                  std::string (*write)(const Column&, const std::string&)) const;
+
+  std::vector<Column> for_people_{}, for_programs_{};
+  std::vector<Cells> rows_{};
+};
 
 /// Writes a file of results as comma separated values (RFC 4180): `run`, the keys of the axes, the columns.
 /// Lists stand in quotes, as JSON; what was not measured is empty. Memory does not grow with the file.
@@ -26,7 +57,7 @@ namespace chicane::sweep {
 inline constexpr double kSlower = 0.01;
 
 struct Comparison {
-  std::string table{};        ///< of Markdown, a row for each pair
+  ResultTable table;          ///< a row for each pair
   std::uint64_t pairs = 0;    ///< of which both runs are there
   std::uint64_t worse = 0;    ///< of them
   std::uint64_t missing = 0;  ///< runs without the other one
