@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <variant>
 
 #include "chicane/base/math.hpp"
@@ -101,105 +102,69 @@ void ShadowRun::drive(const std::function<bool()>& is_enough) {
 
 namespace {
 
-/// The road of a future from the branch on: how far, and when which third of the lap was passed.
-class Odometer {
- public:
-  /// Distance from the start line of the lap in which the first frame is [m].
-  double add(const telemetry::Frame& frame, const road::Track& track) {
-    const bool is_closed = track.centre().is_closed();
-    const double length = track.lap_length();
-    third_ = length / sim::WorldState::kSectors;
-    most_thirds_ = is_closed ? std::numeric_limits<int>::max() : sim::WorldState::kSectors;
-    if (!has_begun_) {
-      begin(frame, frame.s - track.start_s(), is_closed ? length : 0.0);
-    } else {
-      double step = frame.s - s_;
-      if (is_closed) step -= length * std::round(step / length);
-      go(step, frame.time);
-    }
-    s_ = frame.s;
-    time_ = frame.time;
-    return distance_;
-  }
-  [[nodiscard]] const std::vector<Passage>& passages() const { return passages_; }
-
- private:
-  void begin(const telemetry::Frame& frame, double behind_line, double round) {
-    has_begun_ = true;
-    distance_ = behind_line < 0.0 ? behind_line + round : behind_line;
-    start_ = frame.time;
-    lap_ = frame.lap;
-    passed_ = thirds();
-  }
-  void go(double step, double time) {
-    const double before = distance_;
-    distance_ += step;
-    if (thirds() <= passed_) return;
-    passed_ = thirds();
-    const double share = (passed_ * third_ - before) / step;
-    passages_.push_back({.lap = lap_ + (passed_ - 1) / sim::WorldState::kSectors + 1,
-                         .sector = (passed_ - 1) % sim::WorldState::kSectors + 1,
-                         .time = time_ + share * (time - time_) - start_});
-  }
-  [[nodiscard]] int thirds() const {
-    return std::min(most_thirds_, static_cast<int>(std::floor(distance_ / third_)));
-  }
-
-  bool has_begun_ = false;
-  double third_ = 1.0;                                          // of the lap [m]
-  int most_thirds_ = 0;                                         // an open road is one lap
-  double distance_ = 0.0, s_ = 0.0, time_ = 0.0, start_ = 0.0;  // as of the last frame
-  int lap_ = 0, passed_ = 0;
-  std::vector<Passage> passages_;
-};
-
 /// What a future comes to, from its frames.
 class FutureMeter {
  public:
-  /// The distance that Odometer tells.
+  /// Distance from the start line of the lap in which the first frame is [m].
   double add(const telemetry::Frame& frame, const road::Track& track) {
-    if (count_ == 0) {
-      start_ = frame.time;
-      events_ = frame.off_track_events;
-    }
+    const bool is_first = count_ == 0;
+    if (is_first) start_ = frame.time, lap_ = frame.lap, events_ = frame.off_track_events;
     // The car's true motion, not the measured one: sensors may fail.
     const double speed = frame.has_truth ? hypot(frame.truth.vx, frame.truth.vy) : frame.measurement.speed;
-    future_.duration = frame.time - start_;
     future_.max_lateral_error = std::max(future_.max_lateral_error, std::fabs(frame.lateral_error));
     future_.min_edge_distance =
-        count_ == 0 ? frame.edge_distance : std::min(future_.min_edge_distance, frame.edge_distance);
+        is_first ? frame.edge_distance : std::min(future_.min_edge_distance, frame.edge_distance);
     future_.top_speed = std::max(future_.top_speed, speed);
     future_.off_track_events = frame.off_track_events - events_;
     const bool is_own = frame.guard.rung == controller::Rung::kController && !frame.guard.gated;
-    if (!frame.is_manual && !is_own) {
-      ++future_.interventions;
-    }
+    if (!frame.is_manual && !is_own) ++future_.interventions;
     ++count_;
     speed_sum_ += speed;
     future_.mean_speed = speed_sum_ / static_cast<double>(count_);
-    return road_.add(frame, track);
+    go_to(frame, track);
+    future_.duration = frame.time - start_;
+    return distance_;
   }
   void add(const telemetry::CompletedLap& lap) { future_.lap_times.push_back(lap.lap_time); }
-  [[nodiscard]] Future future() const {
-    Future future = future_;
-    if (count_ == 0) future.min_edge_distance = std::numeric_limits<double>::quiet_NaN();
-    future.passages = road_.passages();
-    return future;
-  }
+  [[nodiscard]] const Future& future() const { return future_; }
   /// How often the line was crossed, as far as a frame behind it was seen.
   [[nodiscard]] int crossings() const {
     return static_cast<int>(
-        std::count_if(road_.passages().begin(), road_.passages().end(),
+        std::count_if(future_.passages.begin(), future_.passages.end(),
                       [](const Passage& each) { return each.sector == sim::WorldState::kSectors; }));
   }
 
  private:
-  Future future_;
-  Odometer road_;
+  /// Adds the way since the last frame, and the passage of a third of the lap on it, interpolated in time.
+  void go_to(const telemetry::Frame& frame, const road::Track& track) {
+    constexpr int kSectors = sim::WorldState::kSectors;
+    const double length = track.lap_length(), third = length / kSectors;
+    const bool is_closed = track.centre().is_closed();
+    const double before = distance_;
+    double step = frame.s - std::exchange(s_, frame.s);
+    if (count_ == 1) {
+      step = frame.s - track.start_s();
+      if (is_closed && step < 0.0) step += length;
+    } else if (is_closed) {
+      step -= length * std::round(step / length);
+    }
+    distance_ += step;
+    int thirds = static_cast<int>(std::floor(distance_ / third));
+    if (!is_closed) thirds = std::min(thirds, kSectors);  // an open road is one lap
+    if (count_ > 1 && thirds > passed_) {
+      const double elapsed = frame.time - start_ - future_.duration;
+      future_.passages.push_back({.lap = lap_ + (thirds - 1) / kSectors + 1,
+                                  .sector = (thirds - 1) % kSectors + 1,
+                                  .time = future_.duration + elapsed * (thirds * third - before) / step});
+    }
+    passed_ = count_ == 1 ? thirds : std::max(passed_, thirds);
+  }
+
+  Future future_{.min_edge_distance = std::numeric_limits<double>::quiet_NaN()};
   std::uint64_t count_ = 0;
-  double start_ = 0.0;
-  double speed_sum_ = 0.0;
-  int events_ = 0;
+  double start_ = 0.0, distance_ = 0.0, s_ = 0.0, speed_sum_ = 0.0;
+  int lap_ = 0, events_ = 0;  ///< of the first frame
+  int passed_ = 0;            ///< thirds
 };
 
 /// A setting or a fault that may change while a run goes on.
