@@ -8,8 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include "chicane/base/math.hpp"
-
 namespace chicane::live {
 namespace {
 
@@ -57,9 +55,7 @@ void RunLog::note(const telemetry::Frame& frame) noexcept {
            .deadline_spent_at = frame.deadline_spent_at,
            .begins = frame.begins,
            .seen = {now.x, now.y, now.psi, now.speed, now.steer, now.throttle},
-           .sent = {sent.steer, sent.throttle},
-           .speed = hypot(frame.truth.vx, frame.truth.vy),
-           .lateral_error = frame.lateral_error});
+           .sent = {sent.steer, sent.throttle}});
 }
 
 /// With the mutex held, as all up to last().

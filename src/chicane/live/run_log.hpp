@@ -23,7 +23,7 @@
 
 namespace chicane::live {
 
-/// Events of the current run, in memory, about 130 bytes a step: scenario, changes, laps, and of each control
+/// Events of the current run, in memory, about 110 bytes a step: scenario, changes, laps, and of each control
 /// step all that a bit-identical computation needs. Readers are other futures (what_if.hpp,
 /// served_run.hpp) and the second car (what_if.hpp).
 ///
@@ -67,8 +67,6 @@ class RunLog {
     bool begins = false;
     std::array<double, 6> seen{};  ///< measured: x, y, psi, speed, steer, throttle
     std::array<double, 2> sent{};  ///< steer, throttle
-    double speed = 0.0;            ///< of the plant [m/s]
-    double lateral_error = 0.0;    ///< from the track's line [m]
   };
   struct Change {
     std::uint64_t cycle = 0;

@@ -208,20 +208,16 @@ bool is_of_the_world(std::string_view key) {
          key == "latency_ms";
 }
 
-Json json_of(const std::array<double, 3>& values) {
-  return {rounded(values[0]), rounded(values[1]), rounded(values[2])};
-}
-
-Json json_of(const std::vector<LapNotes>& laps) {
+Json json_of(const std::vector<telemetry::CompletedLap>& laps) {
   Json all = Json::array();
-  for (const LapNotes& each : laps) {
-    all.push_back({{"lap", each.lap.lap},
-                   {"lap_time_s", rounded(each.lap.lap_time)},
-                   {"sector_times_s", json_of(each.lap.sector_times)},
-                   {"is_clean", each.lap.is_clean},
-                   {"slowest_mps", json_of(each.slowest)},
-                   {"fastest_mps", json_of(each.fastest)},
-                   {"largest_error_m", json_of(each.largest_error)}});
+  for (const telemetry::CompletedLap& each : laps) {
+    const auto& [first, second, third] = each.sector_times;
+    all.push_back({{"lap", each.lap},
+                   {"lap_time_s", rounded(each.lap_time)},
+                   {"sector_times_s", {rounded(first), rounded(second), rounded(third)}},
+                   {"is_clean", each.is_clean},
+                   {"mean_speed_mps", rounded(each.mean_speed)},
+                   {"top_speed_mps", rounded(each.top_speed)}});
   }
   return all;
 }
@@ -244,31 +240,6 @@ Result<scenario::Scenario> with_settings(scenario::Scenario scenario,
 }
 
 }  // namespace
-
-void LapNoter::add(double time, double speed, double lateral_error) {
-  if (rows_.size() >= kMostRows) rows_.pop_front();
-  rows_.push_back({time, speed, lateral_error});
-}
-
-LapNotes LapNoter::finish(const telemetry::CompletedLap& lap) {
-  LapNotes notes{.lap = lap};
-  notes.slowest.fill(std::nan(""));
-  notes.fastest.fill(std::nan(""));
-  notes.largest_error.fill(std::nan(""));
-  const double begin = rows_.empty() ? 0.0 : rows_.back().time - lap.lap_time;
-  for (const Row& row : rows_) {
-    const double time = row.time - begin;
-    if (time < 0.0) continue;
-    const std::size_t third = time < lap.sector_times[0]                         ? 0
-                              : time < lap.sector_times[0] + lap.sector_times[1] ? 1
-                                                                                 : 2;
-    notes.slowest[third] = std::fmin(notes.slowest[third], row.speed);
-    notes.fastest[third] = std::fmax(notes.fastest[third], row.speed);
-    notes.largest_error[third] = std::fmax(notes.largest_error[third], std::fabs(row.lateral_error));
-  }
-  rows_.clear();
-  return notes;
-}
 
 Rival::Rival(RunLog& log, std::function<void()> begin_anew)
     : log_{log}, begin_anew_{std::move(begin_anew)}, worker_{[this] { work(); }, kLook} {}
@@ -309,9 +280,8 @@ void Rival::work() {
 }
 
 void Rival::build(const Request& request) {
-  car_.emplace(run::RunHooks{
-      .on_frame = [this](const telemetry::Frame&) { note(car_->loop()); },
-      .on_lap = [this](const telemetry::CompletedLap& lap) { keep(laps_, own_laps_.finish(lap)); }});
+  car_.emplace(run::RunHooks{.on_frame = [this](const telemetry::Frame&) { note(car_->loop()); },
+                             .on_lap = [this](const telemetry::CompletedLap& lap) { keep(laps_, lap); }});
   const bool is_wanted = !request.settings.empty();
   const Result<void> built = is_wanted ? car_->begin(request.scenario) : Result<void>{};
   {
@@ -346,7 +316,6 @@ void Rival::catch_up() {
 
 void Rival::take(const RunLog::Step& step) {
   constexpr double kRounding = 1e-9;
-  run_laps_.add(step.time, step.speed, step.lateral_error);
   const run::ClosedLoop& loop = car_->loop();
   car_->drive([&] { return loop.time() >= step.time + kRounding; });
   if (loop.is_over()) end(State::kEnded, loop.summary().end_reason);
@@ -361,7 +330,6 @@ void Rival::note(const run::ClosedLoop& loop) {
   const telemetry::Frame& frame = loop.frame();
   const model::State& car = frame.truth;
   const double speed = hypot(car.vx, car.vy);
-  own_laps_.add(frame.time, speed, frame.lateral_error);
   const std::lock_guard lock(mutex_);
   trace_.push_back({frame.time, car.x, car.y, car.psi, frame.applied.steer, speed, loop.world().progress});
   if (trace_.size() > kTrace) trace_.pop_front();
@@ -369,8 +337,6 @@ void Rival::note(const run::ClosedLoop& loop) {
 
 void Rival::begin() {
   car_->loop().restart();
-  own_laps_.begin();
-  run_laps_.begin();
   const std::lock_guard lock(mutex_);
   laps_of_run_.clear();
   laps_.clear();
@@ -390,9 +356,9 @@ void Rival::end(State state, std::string why) {
   why_ = std::move(why);
 }
 
-void Rival::keep(std::vector<LapNotes>& laps, const LapNotes& notes) const {
+void Rival::keep(std::vector<telemetry::CompletedLap>& laps, const telemetry::CompletedLap& lap) const {
   const std::lock_guard lock(mutex_);
-  laps.push_back(notes);
+  laps.push_back(lap);
   if (laps.size() > kMostLaps) laps.erase(laps.begin());
 }
 

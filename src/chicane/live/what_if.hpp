@@ -68,29 +68,6 @@ class WhatIf {
   NewestTask<Request, std::string> task_;  // last
 };
 
-/// What a lap of one of two cars was like, third by third.
-struct LapNotes {
-  telemetry::CompletedLap lap;
-  std::array<double, 3> slowest{}, fastest{};  ///< [m/s]
-  std::array<double, 3> largest_error{};       ///< from the track's line [m]
-};
-
-/// Makes the notes of each lap of one car from its control cycles. Fixed memory but for a lap's rows.
-class LapNoter {
- public:
-  void begin() { rows_.clear(); }
-  void add(double time, double speed, double lateral_error);
-  /// The lap that ended with the last row.
-  [[nodiscard]] LapNotes finish(const telemetry::CompletedLap& lap);
-
- private:
-  static constexpr std::size_t kMostRows = 30'000;  ///< 20 minutes with 25 cycles a second
-  struct Row {
-    double time, speed, lateral_error;
-  };
-  std::deque<Row> rows_;
-};
-
 /// A second car on the stage of a live run: a shadow run on the same track, with the same car, seed and
 /// faults and other settings, from the start line on. It is driven on a thread of its own, of low priority,
 /// up to where the run is by its log; the run's thread does nothing for it.
@@ -128,11 +105,11 @@ class Rival {
   void catch_up();
   void take(const RunLog::Step& step);
   void take(const RunLog::Change& change);
-  void take(const telemetry::CompletedLap& lap) { keep(laps_of_run_, run_laps_.finish(lap)); }
+  void take(const telemetry::CompletedLap& lap) { keep(laps_of_run_, lap); }
   void note(const run::ClosedLoop& loop);
   void begin();
   void end(State state, std::string why);
-  void keep(std::vector<LapNotes>& laps, const LapNotes& notes) const;
+  void keep(std::vector<telemetry::CompletedLap>& laps, const telemetry::CompletedLap& lap) const;
   [[nodiscard]] bool is_racing() const;
 
   RunLog& log_;
@@ -141,7 +118,6 @@ class Rival {
   // The rival's thread:
   std::optional<recording::ShadowRun> car_;
   RunLog::Place place_;  ///< of the run, up to which it has come
-  LapNoter own_laps_, run_laps_;
 
   mutable std::mutex mutex_;  ///< of all below
   std::optional<Request> request_;
@@ -149,7 +125,7 @@ class Rival {
   State state_ = State::kNone;
   std::string why_;
   std::vector<std::pair<std::string, std::string>> settings_;
-  std::vector<LapNotes> laps_of_run_, laps_;
+  std::vector<telemetry::CompletedLap> laps_of_run_, laps_;
   std::deque<std::array<double, kColumns.size()>> trace_;
   Worker worker_;  // last
 };
