@@ -30,7 +30,7 @@
 #include "program.hpp"
 #include "record.hpp"
 
-// The keys of what `chicane replay --json` says are a contract (docs/recording.md).
+// The keys of what `chicane replay --json` says are a contract (docs/viewer.md#recordings).
 
 namespace chicane::apps {
 namespace {

@@ -152,7 +152,7 @@ class Run(Mapping[str, Any]):
 class Recording:
     """A recording that was read.
 
-    head: who recorded what, as text by key (docs/recording.md).
+    head: who recorded what, as text by key (docs/viewer.md#recordings).
     frames: what happened in each control cycle (Frames, all columns float64).
     laps: one dict for each completed lap.
     road: "centre", "left" and "right" as arrays of shape (n, 2) [m]; empty where no track was known."""

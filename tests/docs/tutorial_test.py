@@ -19,7 +19,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 FAST_PAGES = ("README.md", "docs/tutorial.md", "docs/effects.md", "docs/the_five_systems.md")
-PAGES = (*FAST_PAGES, *(f"docs/{name}.md" for name in ("tracks", "identification", "racing", "sweep", "safety", "recording")))
+PAGES = (*FAST_PAGES, *(f"docs/{name}.md" for name in ("tracks", "identification", "racing", "sweep", "safety", "viewer")))
 RUN = """#!/bin/sh
 case "${1:-}" in '' | --laps | --preset) set -- drive "$@" ;; esac
 exec "$PROGRAM" "$@"

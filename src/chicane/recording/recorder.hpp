@@ -21,7 +21,7 @@
 
 namespace chicane::recording {
 
-/// The names in a recording beside its channels (docs/recording.md).
+/// The names in a recording beside its channels (docs/viewer.md#recordings).
 inline constexpr const char* kRecordedScenario = "scenario.yaml";  ///< attachment
 inline constexpr const char* kRecordedRun = "run";                 ///< metadata
 inline constexpr const char* kSimulateMode = "simulate";  ///< Run::mode: the controller was another's

@@ -32,7 +32,7 @@ using RecordedEvent = std::variant<scenario::Scenario, telemetry::Change, Record
 
 /// Who recorded a run, of what.
 struct RecordingHead {
-  std::map<std::string, std::string, std::less<>> entries{};  ///< metadata "run", docs/recording.md
+  std::map<std::string, std::string, std::less<>> entries{};  ///< metadata "run", docs/viewer.md#recordings
   [[nodiscard]] std::string operator[](const std::string& key) const {
     const auto entry = entries.find(key);
     return entry == entries.end() ? "" : entry->second;
