@@ -1,4 +1,4 @@
-import { effect } from '@preact/signals';
+import { effect, untracked } from '@preact/signals';
 import { scheme } from '../lib/appearance';
 import { store } from '../lib/store';
 
@@ -35,9 +35,10 @@ const SERIES = ['ink', 'other', 'plan', 'lost', 'won', 'quiet', 'act', 'edge', '
 /** Of a curve, as a style has it. */
 export const toneOf = (series: number): string => `var(--${SERIES[series] ?? 'quiet'})`;
 
-/** A token as a canvas can use it: light or dark is chosen, and colours are mixed. */
+/** A token as a canvas can use it: light or dark as `scheme` says, and colours are mixed. */
 function tokenColour(name: string): string {
   const probe = document.createElement('i');
+  probe.style.colorScheme = scheme.peek(); // the page may follow after this
   probe.style.color = `var(--${name})`;
   document.documentElement.append(probe);
   const { color } = getComputedStyle(probe);
@@ -72,16 +73,18 @@ const read = (): Theme => ({
   font: getComputedStyle(document.body).fontFamily,
 });
 
-const known = store.data('page', () => ({ theme: null as Theme | null }));
+const known = store.data('page', () => ({ light: null as Theme | null, dark: null as Theme | null }));
 const listeners = new Set<() => void>();
 
 effect(() => {
   void scheme.value;
-  known.theme = null;
-  for (const listener of listeners) listener();
+  untracked(() => {
+    for (const listener of listeners) listener();
+  });
 });
 
-export const theme = (): Theme => (known.theme ??= read());
+/** The colours of the scheme that the page shows, or is about to show. */
+export const theme = (): Theme => (known[scheme.peek()] ??= read());
 
 /** Calls back when the colour scheme changes between light and dark. */
 export function onThemeChange(listener: () => void): () => void {
