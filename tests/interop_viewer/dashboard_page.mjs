@@ -97,7 +97,6 @@ export class DashboardPage {
     const shelf = left.get(browser) ?? left.set(browser, new Map()).get(browser);
     const dashboard = shelf.get(key) ?? (await DashboardPage.#fresh(browser, shape, fluent));
     shelf.delete(key);
-    await dashboard.page.bringToFront(); // a page behind another one gets no frames, and no events of its media
     await dashboard.page.setViewportSize(viewport);
     await dashboard.page.emulateMedia({ colorScheme, reducedMotion: fluent ? null : 'reduce' });
     dashboard.leave = async () => {

@@ -163,8 +163,8 @@ class FutureMeter {
   Future future_{.min_edge_distance = std::numeric_limits<double>::quiet_NaN()};
   std::uint64_t count_ = 0;
   double start_ = 0.0, distance_ = 0.0, s_ = 0.0, speed_sum_ = 0.0;
-  int lap_ = 0, events_ = 0;  ///< of the first frame
-  int passed_ = 0;            ///< thirds
+  int lap_ = 0, events_ = 0;  ///< lap and off-track events of the first frame
+  int passed_ = 0;            ///< thirds of laps, from the start line on
 };
 
 /// A setting or a fault that may change while a run goes on.

@@ -65,7 +65,7 @@ class LeagueTables {
   struct Standing {
     std::string entry;
     int clean = 0, tried = 0, disturbed_clean = 0, disturbed = 0;
-    std::array<double, kFigures.size() + 1> sums{}, counts{};  ///< of the gap and kFigures, where measured
+    std::array<double, kFigures.size() + 1> sums{}, counts{};  ///< gap and kFigures, where measured
 
     /// NaN: nowhere measured.
     [[nodiscard]] double mean(std::size_t i) const { return sums[i] / counts[i]; }

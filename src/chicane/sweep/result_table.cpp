@@ -122,14 +122,14 @@ ResultTable empty_table(const ComparedRuns& found, const std::string& key, const
   return ResultTable(columns);
 }
 
-/// For people.
+/// Text of a cell for people; objects stay.
 Json shown_cell(const Json& cell, const std::string& decimals) {
   if (cell.is_null()) return "–";
   if (cell.is_number_float()) return fmt::format(fmt::runtime("{:" + decimals + "f}"), cell.get<double>());
   return cell.is_object() ? cell : Json(plain_text(cell));
 }
 
-/// For programs.
+/// Text of a cell for programs.
 std::string csv_text(const Json& cell) {
   if (cell.is_boolean()) return cell.get<bool>() ? "1" : "0";
   return cell.is_number() ? number_text(cell.get<double>()) : cell_of(cell);

@@ -39,7 +39,7 @@ class ResultTable {
  private:
   struct Column {
     std::string key, title, alignment, decimals;
-    std::size_t place;  ///< of its cells in a row
+    std::size_t place;  ///< index of its cells in a row
   };
   [[nodiscard]] std::string lines(std::string_view begin, std::string_view rule,
                                   std::string (*write)(const Column&, const std::string&)) const;
