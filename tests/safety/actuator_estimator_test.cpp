@@ -129,6 +129,20 @@ TEST(ActuatorEstimator, SaysWhatIsNotExcited) {
   EXPECT_EQ(car.taken_up, 0);
 }
 
+/// Straight ahead, delay and gain do not show: the offset is driven with all the same.
+TEST(ActuatorEstimator, TakesUpAnOffsetAlone) {
+  for (const double side : {-1.0, 1.0}) {
+    const double offset = side * degrees_to_radians(0.5);
+    Weaving car({.offset = offset, .place_noise = 0.05, .heading_noise = degrees_to_radians(0.3)}, 0.0);
+    car.drive(20.0);
+    EXPECT_GT(car.estimator.learned().delay.deviation, 0.09) << side;
+    const ActuatorAnswer& driven = car.estimator.answer();
+    EXPECT_NEAR(driven.offset, offset, degrees_to_radians(0.2)) << side;
+    EXPECT_EQ(driven.delay, 0.0) << side;
+    EXPECT_EQ(driven.gain, 1.0) << side;
+  }
+}
+
 /// What a model lacks passes for another gain there, surely; only quick steering tells delay and gain apart.
 TEST(ActuatorEstimator, TakesUpNothingFromBendsThatAreAlike) {
   for (const double side : {-1.0, 1.0}) {

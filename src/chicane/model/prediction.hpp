@@ -236,7 +236,7 @@ class PredictionModel {
     // Both wheels of an axle have its slip angle and half its longitudinal force, and loads of their own.
     const T drive = positive<kSmooth>(m.acceleration, kBlend);
     const T brake = drive - m.acceleration;
-    // Lateral acceleration by the tyres (docs/controller.md, eq. 4a), as if both wheels of an axle carried
+    // Lateral acceleration by the tyres (docs/controller.md, eq. 4d), as if both wheels of an axle carried
     // the same: v_x r differs from it while the slip angle of the car changes.
     const T pulls[2] = {T(p.drive_share_front * drive + p.brake_share_front * brake),
                         T((1.0 - p.drive_share_front) * drive + (1.0 - p.brake_share_front) * brake)};

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSlowest = 5.0;          // [m/s] slower, the wheels turn the car too little
 constexpr double kLongestSilence = 0.25;  // [s] between measurements; then the estimators settle first
-constexpr double kMostUse = 0.8;          // of the tyres' peak slip: beyond it no model is exact enough
+constexpr double kMostUse = 0.5;          // of the tyres' peak slip: beyond it no model is exact enough
 constexpr double kCalmFor = 0.5;          // [s] after that, until the estimators have settled
 constexpr double kFarAside = 1.0;         // [m] a measurement that is another thing than noise
 constexpr double kPerfectSensor = 1e-8;   // of m and rad: that of a perfect sensor
@@ -223,14 +223,14 @@ ActuatorEstimator::Solution ActuatorEstimator::solve() const noexcept {
   return found;
 }
 
-/// Delay, gain and offset pass for each other in bends that are much alike: all are known, or none is.
-bool ActuatorEstimator::is_certain() const noexcept {
-  const auto is_known = [&](Unknown i) { return solution_.deviation[i] <= kMostDeviation * kRows[i].usual; };
-  return time_ >= kEnough && is_known(kDelay) && is_known(kGain) && is_known(kOffset);
+bool ActuatorEstimator::is_certain(Unknown i) const noexcept {
+  return time_ >= kEnough && solution_.deviation[i] <= kMostDeviation * kRows[i].usual;
 }
 
+/// Delay and gain pass for each other, and for what the model lacks, in bends that are much alike: both are
+/// known, or neither is. The offset shows on straights as well.
 bool ActuatorEstimator::take_up() noexcept {
-  if (!is_certain()) return false;
+  if (!is_certain(kOffset)) return false;
   const ActuatorAnswer before = answer_;
   const auto follow = [&](double& driven, Unknown i) {
     const double estimate = std::clamp(here_[i] + solution_.value[i], kRows[i].least, kRows[i].most);
@@ -241,8 +241,10 @@ bool ActuatorEstimator::take_up() noexcept {
     driven = estimate;
     taken_up_[i] = deviation;
   };
-  follow(answer_.delay, kDelay);
-  follow(answer_.gain, kGain);
+  if (is_certain(kDelay) && is_certain(kGain)) {
+    follow(answer_.delay, kDelay);
+    follow(answer_.gain, kGain);
+  }
   follow(answer_.offset, kOffset);
   return answer_.delay != before.delay || answer_.gain != before.gain || answer_.offset != before.offset;
 }
