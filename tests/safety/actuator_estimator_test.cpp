@@ -135,7 +135,7 @@ TEST(ActuatorEstimator, TakesUpAnOffsetAlone) {
     const double offset = side * degrees_to_radians(0.5);
     Weaving car({.offset = offset, .place_noise = 0.05, .heading_noise = degrees_to_radians(0.3)}, 0.0);
     car.drive(20.0);
-    EXPECT_GT(car.estimator.learned().delay.deviation, 0.09) << side;
+    EXPECT_GT(car.estimator.learned().delay.deviation, 0.02) << side;
     const ActuatorAnswer& driven = car.estimator.answer();
     EXPECT_NEAR(driven.offset, offset, degrees_to_radians(0.2)) << side;
     EXPECT_EQ(driven.delay, 0.0) << side;
