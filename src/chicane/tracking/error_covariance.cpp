@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kForgetting = 0.03;  // weight of the newest innovation in means
 // Deviation of the acceleration that the model lacks, at least and at most.
-constexpr double kLeastLateral = 0.1, kMostLateral = 4.0;  // [m/s²]
-constexpr double kLeastYaw = 0.03, kMostYaw = 2.0;         // [rad/s²]
-constexpr double kErrorTime = 0.3;                         // [s] duration of such an error where it is noise
+constexpr double kLeastLateral = 0.25, kMostLateral = 4.0;  // [m/s²]
+constexpr double kLeastYaw = 0.125, kMostYaw = 2.0;         // [rad/s²]
+constexpr double kErrorTime = 0.3;                          // [s] duration of such an error where it is noise
 constexpr double kAdapting = 0.1;  // share of one product of innovations that a deviation follows
 constexpr double kLowSpread = 0.5,
                  kSpreadGain = 2.0;    // innovations smaller than expected: the model is better
