@@ -126,7 +126,8 @@ TEST(PredictionModel, HasTheTyreCurvesOfThePlants) {
   for (const double slip : {0.01, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7})
     EXPECT_NEAR(front_force(PredictionModel(udacity), slip, 0.0), curve(slip), 2e-3) << slip;
   // A magic formula without curvature.
-  const VehicleParams road = road_car_params();
+  VehicleParams road = road_car_params();
+  road.height = 0.0;  // load moved to the outer wheel costs grip
   const MagicFormula formula{.stiffness = road.cornering_front / (road.tire_shape * road.friction),
                              .shape = road.tire_shape,
                              .peak = road.friction};
@@ -165,30 +166,48 @@ TEST(PredictionModel, ItsChangeByTimeIsTheLimitOfItsSteps) {
   }
 }
 
+/// A car at 20 m/s all of whose wheels have this slip angle [rad].
+BodyMotion<double> slipping(double slip, double acceleration) {
+  return {.vx = 20.0, .vy = -20.0 * slip, .acceleration = acceleration};
+}
+
 TEST(PredictionModel, LosesForceWhereAnInnerWheelGivesNoMore) {
   const PredictionModel model(road_car_params());
-  const auto forward = [&](double r, double net) {
-    return model.change(BodyMotion<double>{20.0, 0.0, r, 0.0, net}).vx;
-  };
+  const auto forward = [&](double slip, double net) { return model.change(slipping(slip, net)).vx; };
   EXPECT_NEAR(forward(0.0, 4.5), 4.5, 0.01) << "all wheels hold on a straight";
-  EXPECT_LT(forward(0.5, 4.5), 4.4) << "an inner wheel spins in a bend";
-  EXPECT_GT(forward(0.45, -9.5), -9.4) << "or its anti-lock lets go";
-  // The outer wheels go on pulling or braking: into the bend, and out of it.
-  const auto turn = [&](double r, double net) {
-    return model.change(BodyMotion<double>{20.0, 0.0, r, 0.0, net}).r;
+  EXPECT_LT(forward(0.09, 4.5), 4.4) << "an inner wheel spins in a bend";
+  EXPECT_GT(forward(0.05, -9.5), -9.4) << "or its anti-lock lets go";
+  // The outer wheels go on pulling or braking: into the bend, and out of it. Beside that loss, only the front
+  // wheels turn a car without slip at the rear.
+  const auto turn = [&](double steer, double net) {
+    const VehicleParams& car = model.vehicle();
+    const auto change = model.change(BodyMotion<double>{.vx = 20.0, .steer = steer, .acceleration = net});
+    return change.r - car.mass / car.yaw_inertia * car.front_axle * change.vy;
   };
+  EXPECT_NEAR(turn(0.15, 1.0), 0.0, 0.01);
   for (const double side : {1.0, -1.0}) {
-    EXPECT_GT(side * turn(0.5 * side, 5.5), side * turn(0.5 * side, 2.0) + 0.02);
-    EXPECT_DOUBLE_EQ(turn(0.5 * side, 5.5), side * turn(0.5, 5.5));
+    EXPECT_GT(side * turn(0.15 * side, 9.0), 0.05);
+    EXPECT_LT(side * turn(0.15 * side, -9.5), -0.2);
+    EXPECT_DOUBLE_EQ(turn(0.15 * side, 9.0), side * turn(0.15, 9.0));
   }
 }
 
 TEST(PredictionModel, KnowsThatAnInnerWheelIsUnloadedInABend) {
   const PredictionModel model(road_car_params());
-  const auto straight = model.tire_use(BodyMotion<double>{.vx = 20.0, .acceleration = 4.0});
+  const auto straight = model.tire_use(slipping(0.0, 4.0));
+  for (const double side : {1.0, -1.0})
+    EXPECT_GT(model.tire_use(slipping(0.07 * side, 4.0)).along_front, 1.3 * straight.along_front);
+}
+
+/// A car that turns without slip angles has no lateral acceleration.
+TEST(PredictionModel, MovesLoadByTheForceOfTheTyres) {
+  const VehicleParams car = road_car_params();
+  const PredictionModel model(car);
   for (const double side : {1.0, -1.0}) {
-    const auto bend = model.tire_use(BodyMotion<double>{.vx = 20.0, .r = 0.4 * side, .acceleration = 4.0});
-    EXPECT_GT(bend.along_front, 1.3 * straight.along_front);
+    BodyMotion<double> turning{.vx = 20.0, .r = 0.5 * side, .acceleration = 4.0};
+    turning.steer = car.wheelbase() * turning.r / 20.0;
+    turning.vy = car.rear_axle * turning.r;
+    EXPECT_NEAR(model.tire_use(turning).along_front, model.tire_use(slipping(0.0, 4.0)).along_front, 1e-3);
   }
 }
 

@@ -61,7 +61,7 @@ class Weaving {
       estimator.see(now, commanded_);
       const model::Command wanted{
           bends_are_alike ? most_ * sin(0.15 * time_) : most_ * (sin(1.3 * time_) + 0.5 * sin(4.1 * time_)),
-          0.2};
+          throttle};
       const model::Command sent = estimator.answer().command_for(wanted);
       commanded_.add(time_ + kConfiguredDelay + estimator.answer().delay, sent);
       acted_.add(time_ + kConfiguredDelay + truth_.delay,
@@ -72,6 +72,7 @@ class Weaving {
   ActuatorEstimator estimator{model::road_car_params()};
   int taken_up = 0;
   bool bends_are_alike = false;  ///< long, and without quick steering
+  double throttle = 0.2;
 
  private:
   StateEstimator car_;
@@ -129,6 +130,20 @@ TEST(ActuatorEstimator, SaysWhatIsNotExcited) {
   EXPECT_EQ(car.taken_up, 0);
 }
 
+/// Straight ahead, delay and gain do not show: the offset is driven with all the same.
+TEST(ActuatorEstimator, TakesUpAnOffsetAlone) {
+  for (const double side : {-1.0, 1.0}) {
+    const double offset = side * degrees_to_radians(0.5);
+    Weaving car({.offset = offset, .place_noise = 0.05, .heading_noise = degrees_to_radians(0.3)}, 0.0);
+    car.drive(20.0);
+    EXPECT_GT(car.estimator.learned().delay.deviation, 0.02) << side;
+    const ActuatorAnswer& driven = car.estimator.answer();
+    EXPECT_NEAR(driven.offset, offset, degrees_to_radians(0.2)) << side;
+    EXPECT_EQ(driven.delay, 0.0) << side;
+    EXPECT_EQ(driven.gain, 1.0) << side;
+  }
+}
+
 /// What a model lacks passes for another gain there, surely; only quick steering tells delay and gain apart.
 TEST(ActuatorEstimator, TakesUpNothingFromBendsThatAreAlike) {
   for (const double side : {-1.0, 1.0}) {
@@ -141,6 +156,24 @@ TEST(ActuatorEstimator, TakesUpNothingFromBendsThatAreAlike) {
     EXPECT_LT(learned.gain.deviation, 0.03) << side;
     EXPECT_GT(learned.delay.deviation, 0.01) << side;
     EXPECT_EQ(car.taken_up, 0) << side;
+  }
+}
+
+/// A fast car that brakes hard is unstable: the estimators' differences grow there by themselves.
+TEST(ActuatorEstimator, LearnsNothingFromHardBraking) {
+  for (const double side : {-1.0, 1.0}) {
+    Weaving car({.offset = 0.007 * side,
+                 .place_noise = 0.05,
+                 .heading_noise = degrees_to_radians(0.3),
+                 .rear_stiffness = 0.97},
+                0.01);
+    for (int i = 0; i < 20; ++i) {
+      car.throttle = i % 2 == 0 ? 1.0 : -0.8;
+      car.drive(i % 2 == 0 ? 14.0 : 2.5);
+      const controller::LearnedCar learned = car.estimator.learned();
+      EXPECT_NEAR(learned.offset.value, 0.007 * side, 4.0 * learned.offset.deviation) << i;
+      EXPECT_NEAR(learned.gain.value, 1.0, 4.0 * learned.gain.deviation) << i;
+    }
   }
 }
 

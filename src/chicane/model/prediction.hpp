@@ -236,7 +236,18 @@ class PredictionModel {
     // Both wheels of an axle have its slip angle and half its longitudinal force, and loads of their own.
     const T drive = positive<kSmooth>(m.acceleration, kBlend);
     const T brake = drive - m.acceleration;
-    const T sideways = rest * m.vx * m.r;
+    // Lateral acceleration by the tyres (docs/controller.md, eq. 4d), as if both wheels of an axle carried
+    // the same: v_x r differs from it while the slip angle of the car changes.
+    const T pulls[2] = {T(p.drive_share_front * drive + p.brake_share_front * brake),
+                        T((1.0 - p.drive_share_front) * drive + (1.0 - p.brake_share_front) * brake)};
+    const auto lateral = [&](double cornering, const T& slip, const T& load, const T& pull) CHICANE_INLINE {
+      const T z = (cornering * per_friction) * slip;
+      const T use_along = per_friction * pull / load;
+      return cornering * load * slip * secant(T(z * z)) *
+             sqrt(least<kSmooth>(T(1.0 - use_along * use_along)));
+    };
+    const T sideways = rest * (lateral(p.cornering_front, slip_front, T(grip_front * load_front), pulls[0]) +
+                               lateral(p.cornering_rear, slip_rear, T(grip_rear * load_rear), pulls[1]));
     const T side = 2.0 * positive<kSmooth>(sideways, kBlend) - sideways;
     // 1 while driving, when the inner wheel spins; 0 while braking, when anti-lock prevents it.
     const T driving = (drive + kLeastSide) / (drive + brake + kLeastSide);
@@ -250,7 +261,7 @@ class PredictionModel {
                             slip_front,
                             part_front,
                             grip_front,
-                            T(p.drive_share_front * drive + p.brake_share_front * brake),
+                            pulls[0],
                             {},
                             {},
                             {}},
@@ -260,7 +271,7 @@ class PredictionModel {
                             slip_rear,
                             part_rear,
                             grip_rear,
-                            T((1.0 - p.drive_share_front) * drive + (1.0 - p.brake_share_front) * brake),
+                            pulls[1],
                             {},
                             {},
                             {}}};

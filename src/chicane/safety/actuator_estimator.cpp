@@ -15,11 +15,13 @@ namespace {
 
 constexpr double kSlowest = 5.0;          // [m/s] slower, the wheels turn the car too little
 constexpr double kLongestSilence = 0.25;  // [s] between measurements; then the estimators settle first
-constexpr double kMostUse = 0.8;          // of the tyres' peak slip: beyond it no model is exact enough
+constexpr double kMostUse = 0.5;          // of the tyres' peak slip: beyond it no model is exact enough
 constexpr double kCalmFor = 0.5;          // [s] after that, until the estimators have settled
 constexpr double kFarAside = 1.0;         // [m] a measurement that is another thing than noise
 constexpr double kPerfectSensor = 1e-8;   // of m and rad: that of a perfect sensor
 constexpr double kAverage = 0.5;          // [s] over which the estimators forget what they did not expect
+constexpr double kMostApart = 0.1;        // [m] further, the estimators' differences are no slopes
+constexpr double kAverageSliding = 0.2;   // [s] the same beyond kMostUse, where a car may be unstable
 constexpr double kCounted = 0.5;          // [s] that the estimators count from one place at least
 constexpr double kKeptBehind = 0.5;       // share of the sums that is kept where the estimators move on
 constexpr double kFar = 1.0;  // deviations of the estimate from that place, from which on it is another one
@@ -48,12 +50,12 @@ model::VehicleParams without_name(model::VehicleParams vehicle) noexcept {
   return vehicle;
 }
 
-/// Of the axle that uses more, 1 at its peak slip.
+/// Of the axle that uses more: slip over that of the peak, or longitudinal force over the peak force.
 double tire_use(const tracking::StateEstimator& estimator) noexcept {
   const model::State& car = estimator.state();
-  const auto use =
-      estimator.model().tire_use(model::BodyMotion<double>{car.vx, car.vy, car.r, car.steer, 0.0});
-  return std::max(use.front, use.rear);
+  const auto use = estimator.model().tire_use(
+      model::BodyMotion<double>{car.vx, car.vy, car.r, car.steer, estimator.acceleration()});
+  return std::max({use.front, use.rear, std::fabs(use.along_front), std::fabs(use.along_rear)});
 }
 
 /// Estimators of the same car, as many as asked for.
@@ -116,8 +118,15 @@ void ActuatorEstimator::see(const model::Measurement& now,
   }
   const bool is_seen =
       elapsed > 0.0 && elapsed < kLongestSilence && std::isfinite(sum) && std::fabs(n.aside) < kFarAside;
+  double apart = 0.0;
+  for (std::size_t i = 0; i < kUnknowns; ++i) apart = std::max(apart, std::fabs(aside[i] * kRows[i].change));
+  const bool slides = tire_use(last) > kMostUse || apart > kMostApart;
+  for (tracking::StateEstimator& each : estimators_) {
+    each.average_over(slides ? kAverageSliding : kAverage);
+    if (slides) each.set_state(last.state());
+  }
+  if (slides) slid_at_ = now.time;
   if (!is_seen || !(last.state().vx > kSlowest)) return;
-  if (tire_use(last) > kMostUse) slid_at_ = now.time;
   if (std::fabs(now.time - slid_at_) < kCalmFor) return;
   const double kept = kMemory / (kMemory + elapsed);
   const double share = std::min(elapsed / kCorrelated, 1.0);
@@ -148,18 +157,8 @@ void ActuatorEstimator::move_on() noexcept {
     const double next = std::clamp(here_[i] + solution_.value[i], kRows[i].least, kRows[i].most);
     by[i] = next - std::exchange(here_[i], next);
   }
-  // Their states by what each unknown does to them, to first order.
-  const model::State last = estimators_[kUnknowns].state();
-  model::State more{};
-  for (std::size_t i = 0; i < kUnknowns; ++i) {
-    const double share = by[i] / kRows[i].change;
-    const model::State& other = estimators_[i].state();
-    for (double model::State::*each :
-         {&model::State::x, &model::State::y, &model::State::psi, &model::State::vx, &model::State::vy,
-          &model::State::r, &model::State::steer})
-      more.*each += share * (other.*each - last.*each);
-  }
-  for (tracking::StateEstimator& each : estimators_) each.move(more);
+  for (tracking::StateEstimator& each : estimators_) each.set_state(estimators_[kUnknowns].state());
+  slid_at_ = estimators_[kUnknowns].time();
   aside_.shift(by, kKeptBehind);
   heading_.shift(by, kKeptBehind);
   counted_ = 0.0;
@@ -223,14 +222,14 @@ ActuatorEstimator::Solution ActuatorEstimator::solve() const noexcept {
   return found;
 }
 
-/// Delay, gain and offset pass for each other in bends that are much alike: all are known, or none is.
-bool ActuatorEstimator::is_certain() const noexcept {
-  const auto is_known = [&](Unknown i) { return solution_.deviation[i] <= kMostDeviation * kRows[i].usual; };
-  return time_ >= kEnough && is_known(kDelay) && is_known(kGain) && is_known(kOffset);
+bool ActuatorEstimator::is_certain(Unknown i) const noexcept {
+  return time_ >= kEnough && solution_.deviation[i] <= kMostDeviation * kRows[i].usual;
 }
 
+/// Delay and gain pass for each other, and for what the model lacks, in bends that are much alike: both are
+/// known, or neither is. The offset shows on straights as well.
 bool ActuatorEstimator::take_up() noexcept {
-  if (!is_certain()) return false;
+  if (!is_certain(kOffset)) return false;
   const ActuatorAnswer before = answer_;
   const auto follow = [&](double& driven, Unknown i) {
     const double estimate = std::clamp(here_[i] + solution_.value[i], kRows[i].least, kRows[i].most);
@@ -241,8 +240,10 @@ bool ActuatorEstimator::take_up() noexcept {
     driven = estimate;
     taken_up_[i] = deviation;
   };
-  follow(answer_.delay, kDelay);
-  follow(answer_.gain, kGain);
+  if (is_certain(kDelay) && is_certain(kGain)) {
+    follow(answer_.delay, kDelay);
+    follow(answer_.gain, kGain);
+  }
   follow(answer_.offset, kOffset);
   return answer_.delay != before.delay || answer_.gain != before.gain || answer_.offset != before.offset;
 }

@@ -233,17 +233,6 @@ void StateEstimator::take_over(const model::Measurement& now, double dx, double 
     state.vx = std::sqrt(std::max(0.0, now.speed * now.speed - state.vy * state.vy));
 }
 
-void StateEstimator::move(const model::State& by) noexcept {
-  model::State& state = now_.state;
-  state.x += by.x;
-  state.y += by.y;
-  state.psi += by.psi;
-  state.vx += by.vx;
-  state.vy += by.vy;
-  state.r += by.r;
-  state.steer += by.steer;
-}
-
 StateEstimator::Prediction StateEstimator::predict(double time, const CommandHistory& sent) const noexcept {
   Prediction result = now_;
   advance(result, time_, std::min(time, time_ + kLongestGap), sent);

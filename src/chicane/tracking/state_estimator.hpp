@@ -111,8 +111,8 @@ class StateEstimator {
   /// replaced by the model's.
   void correct(const model::Measurement& now, const CommandHistory& sent) noexcept;
   [[nodiscard]] const model::State& state() const noexcept { return now_.state; }
-  /// Adds `by` to the estimate, as the difference by another model.
-  void move(const model::State& by) noexcept;
+  /// Replaces the estimate, as by that of another model.
+  void set_state(const model::State& state) noexcept { now_.state = state; }
   [[nodiscard]] double time() const noexcept { return time_; }  ///< of state() [s]
   [[nodiscard]] bool is_started() const noexcept { return is_started_; }
   [[nodiscard]] double acceleration() const noexcept { return now_.acceleration; }

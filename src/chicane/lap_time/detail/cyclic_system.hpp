@@ -63,8 +63,7 @@ class CyclicSystem {
   int n_, nz_, nx_, na_, nb_;
   int width_;  ///< columns of what eliminating a node spreads: λ of the next one and z of node 0
   std::vector<double> diagonal_, coupling_;
-  std::vector<double> reduced_;  ///< block being eliminated, and that of node 0
-  std::vector<double> spread_;   ///< D_k⁻¹ times both couplings, n × nb × width
+  std::vector<double> spread_;  ///< D_k⁻¹ times both couplings, n × nb × width
   std::vector<SymmetricBlock> blocks_;
 };
 
