@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// `chicane drive` and `chicane limit`: a run with our simulator, live or fast, and the limit of a plant.
 #include <fmt/format.h>
 #include <unistd.h>
 

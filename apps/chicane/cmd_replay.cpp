@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// `chicane replay`: shows a recording, computes it again, or branches it with other settings.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -145,8 +146,8 @@ std::string to_text(const recording::BranchReport& report,
 
 namespace {
 
-/// What the browser is given of a recording: itself, or a copy with an index where it has none, because its
-/// writer was killed, or is compressed.
+/// Recording as the browser gets it: the file itself, or a copy with an index if it is compressed or has none
+/// because its writer was killed.
 class Shown {
  public:
   Shown(const Options& options, LogConverter convert) : options_{options}, convert_{convert} {}

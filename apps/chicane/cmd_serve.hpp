@@ -36,7 +36,7 @@ using SimulateFunction = std::function<Result<wire::SimulateReport>(
     const scenario::Scenario& scenario, const road::Track& track, const wire::SimulateHooks& hooks)>;
 struct ExternalController {
   bool wants_limit = true;  ///< the limit is searched beside the run, and its laps compared with it
-  /// Before the run, on the terminal; empty: nothing.
+  /// Text for the terminal before the run; empty: nothing.
   std::function<std::string(const scenario::Scenario&, const road::Track&)> on_start{};
 };
 /// Another program drives the car that this one simulates: recorded and on the terminal.

@@ -169,7 +169,7 @@ std::string assign(const OptionRow& row, const std::vector<std::string>& given,
 
 namespace {
 
-constexpr std::size_t kWidth = 80;   ///< of a terminal
+constexpr std::size_t kWidth = 80;   ///< width of a terminal
 constexpr std::size_t kIndent = 27;  ///< column at which meanings begin
 
 /// An example that fits the screen and can be typed as it stands.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Parser of the command line, with a fault and a suggestion for each mistake.
 #include "options.hpp"
 
 #include <fmt/format.h>
@@ -41,7 +42,7 @@ std::string command_fault(std::string_view word) {
                      fmt::join(names, ", "), did_you_mean(word, names));
 }
 
-/// Its second line is there when this program cannot do what a package can.
+/// Version text. A second line names what this program lacks and a package has.
 std::string version_text() {
   const std::string left_out = instruction_sets_left_out();
   if (left_out.empty()) return "chicane " CHICANE_VERSION "\n";

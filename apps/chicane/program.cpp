@@ -93,7 +93,7 @@ namespace {
 
 // The globals: a signal handler can reach nothing else.
 std::atomic<std::atomic<bool>*> wanted{nullptr};
-std::atomic<std::int64_t> first_ns{0};  // when the first signal came [ns]; 0: none yet
+std::atomic<std::int64_t> first_ns{0};  // time of the first signal [ns]; 0: none yet
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free &&
               std::atomic<std::atomic<bool>*>::is_always_lock_free);
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Recording of a run from the command line: its file, and the report made of it.
 #include "record.hpp"
 
 #include <fmt/format.h>

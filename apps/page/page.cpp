@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The run of a page that needs no program: functions that worker.js calls, in a browser's worker.
+// A run inside a browser's worker, without a server program: functions that worker.js calls.
 #include <emscripten.h>
 
 #include <memory>
@@ -13,14 +13,14 @@
 
 using namespace chicane;
 
-// What worker.js does with a message for the page.
+// Hands a message for the page to worker.js.
 EM_JS(void, post_to_page, (const char* bytes, int size, bool binary),
       { Module.postToPage(HEAPU8.slice(bytes, bytes + size), binary); });
 
 namespace {
 
 std::unique_ptr<live::WorkerRun> worker_run;
-std::string answer;  // of the last call that gives a text
+std::string answer;  // result of the last call that returns a text
 
 const char* tell(std::string text) {
   answer = std::move(text);

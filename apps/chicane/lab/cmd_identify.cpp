@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// `chicane identify`: estimates a car's parameters from logs, starting from a shipped car, and writes the car
+// file and the page.
 #include <fmt/format.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
@@ -248,7 +250,7 @@ void forget_slow_steering(model::VehicleParams& car) {
   car.steer_rate_limit = std::max(car.steer_rate_limit, kUsualRate * model::Similarity(car).time());
 }
 
-/// Those of the shelf, the nearest by their wheelbase first.
+/// Cars of the shelf, sorted by the difference of their wheelbase.
 std::vector<ShelfCar> shelf_by_wheelbase(double wheelbase) {
   std::vector<ShelfCar> cars;
   for (const protocol::Entry& entry : protocol::entries(protocol::Shelf::kCar)) {
@@ -301,7 +303,7 @@ bool is_nobodys(const std::vector<identify::DriveLog>& logs, const Options& opti
                       [](const identify::DriveLog& log) { return log.is_centre_of_mass; });
 }
 
-/// Wheels that are expected: those of the plant that the search begins with, where it has four.
+/// Expected wheels: the start plant's, if it has four.
 identify::Wheels wheels_of(const scenario::Scenario& start) {
   if (!has_wheels(start)) return {};
   const sim::DoubleTrackParams plant =

@@ -29,7 +29,7 @@ namespace chicane::apps {
 /// one line that renews itself, otherwise a line every ten seconds. One thread at a time.
 class RunCounter {
  public:
-  /// `what`: the word for what is counted.
+  /// `what`: plural noun for the counted things.
   explicit RunCounter(const char* what = "runs");
   /// `driven`: of the `done` ones since the start, for the speed.
   void show(std::uint64_t done, std::uint64_t runs, std::uint64_t driven);
@@ -51,7 +51,7 @@ class RunCounter {
 struct PlanRuns {
   sweep::Plan plan;
   sweep::RunRule rule{};      ///< empty: as a sweep does
-  const char* what = "runs";  ///< the word for what is counted
+  const char* what = "runs";  ///< plural noun for the counted things
   bool keeps_failed = false;  ///< a run that cannot be driven is a line with the reason, and no failure
 };
 
