@@ -223,7 +223,7 @@ template <AnyJet A>
 namespace jet {
 
 template <class T>
-struct Traits {  // of a constant
+struct Traits {  // derivatives of a constant
   static constexpr Variables kFirst = 0;
   static constexpr int kOrder = 0;
   using Value = T;
@@ -345,7 +345,7 @@ template <class A, class B>
 [[nodiscard]] CHICANE_INLINE inline auto smooth_min(const A& a, const B& b, double width) {
   return b - smooth_positive_part(b - a, width);
 }
-/// From 0 to 1, ½ at 0: ½ (1 + tanh(x / width)).
+/// Smooth step from 0 to 1, ½ at 0: ½ (1 + tanh(x / width)).
 template <class T>
 [[nodiscard]] CHICANE_INLINE inline auto smooth_step(const T& x, double width) {
   return 0.5 + 0.5 * tanh(x * (1.0 / width));

@@ -22,7 +22,7 @@ struct SineCosine {
 [[nodiscard]] double log(double x) noexcept;   ///< x > 0; NaN for x < 0, -inf for 0
 [[nodiscard]] double tanh(double x) noexcept;  ///< error up to 4 ulp
 [[nodiscard]] double asin(double x) noexcept;  ///< error up to 4 ulp; NaN beyond ±1
-[[nodiscard]] double acos(double x) noexcept;  ///< as asin
+[[nodiscard]] double acos(double x) noexcept;  ///< same range and accuracy as asin
 /// Whole exponents up to ±64 by multiplication, for any x; others as exp(exponent · log(x)): NaN for x < 0,
 /// relative error about (2 + |exponent · log(x)|) ulp.
 [[nodiscard]] double pow(double x, double exponent) noexcept;

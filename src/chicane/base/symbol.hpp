@@ -8,7 +8,7 @@ namespace chicane {
 // The comments behind deleted functions are what compilers show of them: as long as they have to be.
 // clang-format off
 
-/// What comparisons of symbols answer: to be chosen by, not to be branched on.
+/// Result of comparing symbols: selects between values, cannot be branched on.
 struct Choice {
   operator bool() const = delete;  // NOLINT  no if, ?:, &&, ||, std::max on variables: write select(x > 1.0, a, b), max(a, b), min or abs; & and | of comparisons
 };

@@ -30,7 +30,7 @@ namespace chicane {
 [[nodiscard]] Error refusal(std::string_view key, std::string_view text, std::string_view expected,
                             ErrorCode code = ErrorCode::kInvalidArgument);
 
-/// For messages: the first 60 bytes of foreign text without control characters; "nothing" when empty.
+/// Foreign text for messages: its first 60 bytes without control characters; "nothing" if it is empty.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// RFC 4648, with padding.
@@ -67,7 +67,7 @@ namespace chicane {
   return true;
 }
 
-/// How serious a state of the program is. The numbers are those of ROS 2's diagnostic_msgs/DiagnosticStatus.
+/// Severity of a state of the program. The numbers are those of ROS 2's diagnostic_msgs/DiagnosticStatus.
 enum class Severity : std::uint8_t { kOk = 0, kWarning = 1, kError = 2 };
 
 /// One value of an enumeration, as programs and as people read it.

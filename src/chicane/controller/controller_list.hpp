@@ -27,7 +27,7 @@ inline constexpr auto kGroupText = [] {
 }();
 }  // namespace detail
 
-/// Where a controller's options stand in files and keys: "pure_pursuit" for "pure-pursuit".
+/// Group of a controller's options in files and keys: "pure_pursuit" for "pure-pursuit".
 template <class Entry>
 inline constexpr std::string_view kOptionGroup{detail::kGroupText<Entry>.data(),
                                                detail::kGroupText<Entry>.size()};
@@ -59,7 +59,7 @@ class ControllerList {
   /// The options of all of them: std::get<PidOptions>(options).
   using Options = std::tuple<typename Entries::Options...>;
 
-  /// What can be said of an entry without its types.
+  /// Type-free description of an entry.
   struct Kind {
     std::string_view name;
     std::string_view group;

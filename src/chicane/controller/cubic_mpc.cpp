@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The controller `cubic-mpc`: fit of the line, roll-forward, solve, command.
 #include "chicane/controller/cubic_mpc.hpp"
 
 #include <algorithm>
@@ -96,7 +97,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
            std::isfinite(now.throttle);
   }
 
-  /// Fits the line in the frame of start_, and reports where the measured position lies beside it.
+  /// Fits the line in the frame of start_, and reports the measured position's offset from it.
   bool see_line(const model::Measurement& now) noexcept {
     const LocalPoints local =
         uses_polar_ ? to_car_frame_polar(now, start_.pose) : to_car_frame(now, start_.pose);
@@ -114,7 +115,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
     return true;
   }
 
-  /// In its own frame the car stands at the origin; equations 8 and 9 give the errors there.
+  /// State in the car's own frame: the car stands at the origin; equations 8 and 9 give the errors there.
   [[nodiscard]] CubicProblem::State initial_state(const model::Measurement& now) const noexcept {
     return {0.0,
             0.0,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The cubic controller's inputs: fit of the line ahead in the car's frame, and roll-forward over the latency.
 #include "chicane/controller/cubic_problem.hpp"
 
 #include <algorithm>
@@ -127,7 +128,7 @@ bool fit_cubic(std::span<const Vec2> points, Cubic& fit, int order) noexcept {
   }
   if (!(high - low > 1e-3)) return false;
 
-  // Powers of t = x / scale in [-1, 1]: those of x itself differ by a factor of a million.
+  // Scale to powers of t = x / scale in [-1, 1]: powers of x itself differ by a factor of a million.
   const double scale = std::max(std::fabs(low), std::fabs(high));
   LeastSquares system{order};
   for (const Vec2& point : points) system.add(point.x() / scale, point.y());

@@ -17,8 +17,8 @@
 #include "chicane/tracking/tracking_problem.hpp"
 #include "chicane/tracking/tracking_solver.hpp"
 
-/// What `tracking-mpc` needs around its solver: a first guess without a last answer, the last answer moved to
-/// another line, and what it learns for planned laps (grip of the car, reserve of slip).
+/// Helpers of `tracking-mpc` around its solver: a first guess without a last answer, the last answer moved to
+/// another line, and the terms it learns for planned laps (grip of the car, reserve of slip).
 
 namespace chicane::controller {
 
@@ -165,7 +165,7 @@ class SlipReserve {
 
  private:
   static constexpr double kMemory = 10.0;      ///< cornering that the mean spans [s]
-  static constexpr double kLongestGap = 0.25;  ///< between cycles [s]
+  static constexpr double kLongestGap = 0.25;  ///< longest gap between cycles [s]
   double kept_ = 0.0;                          ///< share of the slip that is kept back, mean over kMemory
   double time_ = 0.0;                          ///< last cycle [s]
   double seen_ = 0.0;                          ///< cornering so far, at most kMemory [s]

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The controller `tracking-mpc`: the control step from measurement to command.
 #include "chicane/controller/tracking_mpc.hpp"
 
 #include <algorithm>
@@ -315,7 +316,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
       const double time = problem_.time(k) + elapsed;
       if (k > 0) {
         horizon_.x[i] = state_at(stage_at(time));
-        // Beyond the end of the old answer: on at its last speed.
+        // Beyond the end of the old answer, continue at its last speed.
         const double beyond = std::max(0.0, time - old_first_ - (last - 1.0) * old_step_);
         horizon_.x[i][Problem::kS] += beyond * horizon_.x[i][Problem::kVx] - begin;
       }
@@ -329,7 +330,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     }
   }
 
-  /// What a path-following law does, simulated.
+  /// Makes a guess by simulating a path-following law.
   void follow_line() noexcept {
     horizon_.horizon = options_.horizon_steps;
     horizon_.x[0] = x0_;
@@ -343,7 +344,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     ask_road(horizon_.horizon, horizon_.x[static_cast<std::size_t>(horizon_.horizon)]);
   }
 
-  /// What the road asks at stage k where the car is about to be in state x.
+  /// Reads the road's demand at stage k for a car near state x.
   void ask_road(int k, const StageState& x) noexcept {
     const double s = x[Problem::kS];
     road::ReferenceLine::Demand demand = line().demand(s_ + s);
