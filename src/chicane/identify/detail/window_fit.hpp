@@ -32,9 +32,9 @@ struct WindowFit {
   /// windows' disagreement does. No larger than the prior's.
   std::vector<double> deviation;
   double correlation = 1.0;                       ///< samples for each one that is independent
-  std::vector<std::vector<double>> correlations;  ///< of theta
-  Noise residual{};                               ///< standard deviations of what is left, by its median
-  double loss = 0.0;                              ///< of samples and prior
+  std::vector<std::vector<double>> correlations;  ///< correlations between entries of theta
+  Noise residual{};                               ///< standard deviations of the residuals, by their median
+  double loss = 0.0;                              ///< weighted squares of samples and prior
   int iterations = 0;
 };
 
