@@ -22,7 +22,7 @@ namespace chicane::lap_time {
 struct LapTimes {
   double lap = 0.0;
   std::array<double, 3> sectors{};
-  std::vector<double> corners{};  ///< corners of the track, each with half of the straights beside it
+  std::vector<double> corners{};  ///< times of corners, each with half of the straights beside it
 };
 
 /// Best lap of a run that was driven again without one thing that costs time (run/laps_without.hpp).
@@ -33,16 +33,16 @@ struct LapWithout {
   int off_track_events = 0;       ///< count in the whole run
 };
 
-/// How much longer `time` is than the limit's, relative: 0.05 is five per cent slower. Not-a-number for one
-/// that was not measured. Pre: limit > 0.
+/// Excess of `time` over the limit, relative: 0.05 is five per cent slower. Not-a-number for a time that was
+/// not measured. Pre: limit > 0.
 [[nodiscard]] constexpr double gap(double time, double limit) noexcept { return time / limit - 1.0; }
 
-/// How far a search for a lap has come. Work is counted, not measured: the same search takes the same work on
-/// every machine, so that a budget ends it at the same place.
+/// Progress of a search for a lap. Work is counted, not measured: the same search takes the same work on
+/// every machine, so that a budget ends it at the same iterate.
 struct PlanProgress {
   double work = 0.0;      ///< done, in seconds of a core that iterates over kNodesPerSecond nodes a second
-  double expected = 0.0;  ///< of a search that goes well [s]; it may take more, up to its budget
-  double lap_time = 0.0;  ///< of the iterate [s]
+  double expected = 0.0;  ///< work of a search without retries [s]; limited by the budget
+  double lap_time = 0.0;  ///< lap time of the iterate [s]
 
   static constexpr double kNodesPerSecond = 12000.0;
 };
@@ -51,13 +51,13 @@ struct PlanProgress {
 /// plus feedback towards it.
 struct Witness {
   double lap_time = 0.0;    ///< the best of them [s]
-  double worst = 0.0;       ///< and the slowest [s]
-  int laps = 0;             ///< in succession, without a boundary event since the start
-  double least_edge = 0.0;  ///< of a contact patch to the edge of the drivable surface [m]
-  road::RacingLine line;    ///< that was driven after; its margin is what it planned to keep
+  double worst = 0.0;       ///< slowest lap [s]
+  int laps = 0;             ///< laps in succession, without a boundary event
+  double least_edge = 0.0;  ///< gap from a contact patch to the edge of the drivable surface [m]
+  road::RacingLine line;    ///< line that was driven; its margin is the planned gap
 };
 
-/// What a search took; work as PlanProgress counts it.
+/// Effort of a search; work as in PlanProgress.
 struct SearchEffort {
   int iterations = 0;
   double work = 0.0;  ///< [s]
@@ -66,32 +66,32 @@ struct SearchEffort {
 /// The fastest lap of a simulated car on a closed road (docs/limit.md): the optimum of the plant's own
 /// equations, which no controller should beat, and the best lap that was driven. The truth lies between.
 struct PlantLimit {
-  LapTimes bound;         ///< of the optimum [s]
-  road::RacingLine line;  ///< of the optimum, without any reserve; no bound where it is_best_so_far
+  LapTimes bound;         ///< times of the optimum [s]
+  road::RacingLine line;  ///< line of the optimum, without reserve; no bound if is_best_so_far
   std::optional<Witness>
       witness{};              ///< none: no plan could be driven without an event, or none was asked for
   bool is_cut_short = false;  ///< the budget ended the search for the witness
-  int nodes = 0;              ///< of the optimum
-  SearchEffort effort{};      ///< of all searches
-  SearchEffort of_optimum{};  ///< of the one without reserve alone
-  double stationarity = 0.0;  ///< of the optimum: largest slope of the Lagrangian, scaled
+  int nodes = 0;              ///< nodes of the optimum
+  SearchEffort effort{};      ///< effort of all searches
+  SearchEffort of_optimum{};  ///< effort of the search without reserve
+  double stationarity = 0.0;  ///< at the optimum: largest slope of the Lagrangian, scaled
   double violation = 0.0;     ///< largest violated equation or inequality, scaled
 
   /// No budget ended a search: the same answer as without one.
   [[nodiscard]] bool is_whole() const noexcept { return !line.is_best_so_far && !is_cut_short; }
-  /// How much slower the witness is than the bound, relative; not-a-number without one.
+  /// Excess of the witness over the bound, relative; not-a-number without a bound.
   [[nodiscard]] double bracket() const noexcept;
 };
 
 struct PlantLimitOptions {
-  double time_step = 0.08;  ///< between nodes, about [s]; [0.01, 0.2]
+  double time_step = 0.08;  ///< time between nodes, about [s]; [0.01, 0.2]
   bool wants_witness = true;
-  int laps = 4;  ///< of the witness, after a flying start
+  int laps = 4;  ///< laps of the witness, after a flying start
   /// Work after which the best lap so far is the answer (PlanProgress) [s], > 0.
   double budget = std::numeric_limits<double>::infinity();
   /// Called with the progress, and the lap time, after each iteration; false ends the search. May be empty.
   std::function<bool(std::string_view stage, int iteration, double lap_time)> go_on{};
-  std::function<void(const PlanProgress&)> on_progress{};  ///< of the optimum; may be empty
+  std::function<void(const PlanProgress&)> on_progress{};  ///< progress towards the optimum; may be empty
 };
 
 /// Finds it. Takes 1 to 60 s and some 10 MB. Deterministic. Keeps nothing between calls.
@@ -107,7 +107,7 @@ struct PlantLimitOptions {
 /// The bound of a plant as driven laps are compared with it (PlantLimit).
 struct Limit {
   LapTimes times;
-  std::vector<road::LinePoint> line;  ///< by rising time, from the start line; the last repeats the first
+  std::vector<road::LinePoint> line;  ///< by rising time from the start line; the last repeats the first
 };
 
 /// Times [s] that a closed lap of `track` takes for each of road::corners_of(), with half of the straights
@@ -122,7 +122,7 @@ struct Limit {
 struct LimitAnswer {
   std::shared_ptr<const Limit> found{};  ///< null: not known
   std::string why_not{};                 ///< empty when it is, or when no reason is known
-  int first_lap = 1;  ///< it holds for laps from this one on; before, the car had other grip or mass
+  int first_lap = 1;                     ///< first lap that it holds for; grip or mass differed before
   std::vector<LapWithout> without{};  ///< laps that explain the gap to it; empty where they were not driven
 };
 

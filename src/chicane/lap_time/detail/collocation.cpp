@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Interior-point search for the fastest lap: barrier steps, line search with a filter, and one cyclic linear
+// system for each iteration.
 #include "chicane/lap_time/detail/collocation.hpp"
 
 #include <algorithm>
@@ -13,15 +15,15 @@ namespace {
 
 using std::size_t;
 
-constexpr double kLeastSlack = 1e-2;     // of the first iterate
+constexpr double kLeastSlack = 1e-2;     // smallest slack at the start
 constexpr double kToBoundary = 0.99;     // share of the way to a slack of zero, at least
 constexpr double kEquationShift = 1e-9;  // keeps dependent equations solvable
-constexpr double kFirstShift = 1e-4;     // of the Hessian when its curvature is wrong
+constexpr double kFirstShift = 1e-4;     // first shift of the Hessian, if its curvature is wrong
 constexpr double kMostShift = 1e10;
 constexpr double kBarrierFall = 0.2;
 constexpr double kBarrierError = 10.0;     // a barrier problem is solved well enough below this times μ
 constexpr double kMultiplierRange = 1e10;  // keeps ν near μ / s
-constexpr double kBarrierShare = 1e-2;     // of the tolerance: a smaller barrier may end the search
+constexpr double kBarrierShare = 1e-2;     // share of the tolerance: a smaller barrier may end the search
 constexpr int kHalvings = 12;
 constexpr double kKick = 0.1;
 
@@ -114,7 +116,7 @@ class Collocation::Search {
   [[nodiscard]] double inequality(const std::vector<double>& out, size_t k, size_t j) const {
     return out[k * nm_ + nx_ + na_ + 1 + j];
   }
-  /// Weight of node k's cost: half of both intervals beside it.
+  /// Weight of node k's cost: half of the intervals before and after it.
   [[nodiscard]] double share(size_t k) const {
     return 0.5 * (steps_[k] + steps_[before(k)]) * options_.cost_scale;
   }
