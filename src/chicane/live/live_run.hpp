@@ -27,7 +27,7 @@
 namespace chicane::live {
 
 struct LiveRunOptions {
-  net::ServerOptions server{};  ///< of the dashboard and other viewers
+  net::ServerOptions server{};  ///< server of the dashboard and other viewers
   std::vector<net::Asset>
       assets{};  ///< files of the dashboard: embedded_assets() in the program; none: no page
   std::optional<double>
@@ -84,7 +84,7 @@ class LiveRun {
   std::optional<RunPublisher> publisher_;  ///< while run() drives
   recording::Recorder* recorder_ = nullptr;
   std::mutex mutex_;
-  std::deque<std::unique_ptr<BuiltRun>> built_;  ///< one for each change that starts anew
+  std::deque<std::unique_ptr<BuiltRun>> built_;  ///< one for each change that starts a new run
   NewestTask<ChosenRun, Result<std::unique_ptr<BuiltRun>>> builder_;  ///< the network thread's
   LiveHooks hooks_;
   RunLog log_{true};

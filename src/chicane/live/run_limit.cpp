@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Limit of the current run: searches beside it, again after a change of grip or mass.
 #include "chicane/live/run_limit.hpp"
 
 #include <chrono>
@@ -41,7 +42,7 @@ void RunLimit::begin() {
   search_.begin({.track = *track_, .scenario = scenario_, .first_lap = first_lap_});
 }
 
-/// From the cache where it is known (run/plan_cache.hpp).
+/// Answer from the cache, if it is known (run/plan_cache.hpp); else from a search.
 lap_time::LimitAnswer RunLimit::found(const Request& request, const std::function<bool()>& is_wanted) {
   const auto bound = [&]() -> Result<lap_time::PlantLimit> {
     if (auto known = run::known_limit(request.scenario, request.track)) return std::move(*known);
@@ -121,7 +122,7 @@ void RunLimit::compare(telemetry::RunSummary& run, const std::atomic<bool>& want
   const Clock::time_point end_of_patience = Clock::now() + patience;
   while (is_awaited(run) && !wants_stop && Clock::now() < end_of_patience) std::this_thread::sleep_for(kNap);
   const bool is_cut_short = is_searching();
-  end();  // from here on no thread writes the answer
+  end();  // no thread writes the answer after this
   if (is_cut_short || answer_ == nullptr) {
     run.why_no_limit = "the run ended before it was computed";
   } else if (answer_->found == nullptr) {

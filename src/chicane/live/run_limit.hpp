@@ -34,7 +34,7 @@ class RunLimit {
   /// empty. It must stay callable as long as this lives.
   explicit RunLimit(std::function<void(const lap_time::LimitAnswer&)> on_news = {});
 
-  /// What viewers get of a run on this road until there are news. An open road has no laps, nor a limit.
+  /// First answer for viewers of a run on this road. An open road has no laps and no limit.
   [[nodiscard]] static lap_time::LimitAnswer first_answer(const road::Track& track);
   /// Another run: gives up the one before, and begins to search where the road is closed. Does not wait.
   void search(const road::Track& track, const scenario::Scenario& scenario);
@@ -45,7 +45,7 @@ class RunLimit {
   /// A run whose limit cannot be known, because `why`.
   void give_up(std::string why);
 
-  /// What is known now, once; null when there is nothing new. Neither waits nor allocates.
+  /// Newest answer, once; null if nothing is new. Neither waits nor allocates.
   [[nodiscard]] std::shared_ptr<const lap_time::LimitAnswer> news() noexcept;
   /// A search goes on.
   [[nodiscard]] bool is_searching() const noexcept { return begins_at_ || search_.is_computing(); }
@@ -75,9 +75,9 @@ class RunLimit {
 
   std::function<void(const lap_time::LimitAnswer&)> on_news_;
   std::shared_ptr<const lap_time::LimitAnswer> answer_;  ///< while a search goes on: written by it
-  std::atomic<bool> has_news_{false};                    ///< it may be read
-  std::optional<road::Track> track_;            ///< of the run; none where there is nothing to search
-  scenario::Scenario scenario_;                 ///< its car, with the grip and mass of the newest search
+  std::atomic<bool> has_news_{false};                    ///< an answer waits to be read
+  std::optional<road::Track> track_;            ///< track of the run; none if nothing is to be searched
+  scenario::Scenario scenario_;                 ///< scenario with the grip and mass of the newest search
   int first_lap_ = 1;                           ///< LimitAnswer::first_lap
   std::optional<Clock::time_point> begins_at_;  ///< the next search, when nothing changes until then
   NewestTask<Request, lap_time::LimitAnswer> search_;  // last: tells on its thread

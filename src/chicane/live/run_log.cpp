@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Events of the current run in memory, with checkpoints to branch from, thinned as the run grows longer.
 #include "chicane/live/run_log.hpp"
 
 #include <fmt/format.h>
@@ -58,7 +59,7 @@ void RunLog::note(const telemetry::Frame& frame) noexcept {
            .sent = {sent.steer, sent.throttle}});
 }
 
-/// With the mutex held, as all up to last().
+/// Moves new events into the log. Here and up to last(): with the mutex held.
 void RunLog::collect() {
   while (Entry* entry = ring_.front()) {
     std::visit([this](auto& note) { take(note); }, *entry);

@@ -38,7 +38,7 @@ namespace chicane::live {
 class RunLog {
  public:
   static constexpr std::size_t kMostEvents = 200'000;  ///< two hours with 25 steps a second
-  static constexpr double kSpacing = 10.0;             ///< of the newest checkpoints [s]
+  static constexpr double kSpacing = 10.0;             ///< spacing of the newest checkpoints [s]
 
   explicit RunLog(bool has_checkpoints, std::size_t most_events = kMostEvents);
 
@@ -53,7 +53,7 @@ class RunLog {
   struct Place {
     std::uint64_t scenario = 0;  ///< number of begin(), from 1; 0: before any run
     std::uint64_t start = 0;     ///< number of the start from the line, rising over all runs
-    std::uint64_t event = 0;     ///< since that start
+    std::uint64_t event = 0;     ///< index of the event since that start
     friend bool operator==(const Place&, const Place&) = default;
     [[nodiscard]] bool is_in_start_of(const Place& other) const {
       return scenario == other.scenario && start == other.start;
@@ -79,7 +79,7 @@ class RunLog {
     Place begin, end;  ///< `begin.event` 0: the whole run since its start
     std::shared_ptr<const scenario::Scenario> scenario;
     std::shared_ptr<const std::vector<Event>> events;
-    /// For recording::branch_run(): of the whole run its scenario first.
+    /// Events for recording::branch_run(), beginning with the run's scenario.
     [[nodiscard]] recording::RunEvents recorded() const;
   };
   /// Any thread: the events from `from` on; the whole run where `from` is no place in the current one. After
@@ -127,11 +127,11 @@ class RunLog {
   std::optional<recording::ShadowRun> shadow_;  ///< none: a run that cannot be followed
   Place followed_;
 
-  std::mutex mutex_;  ///< of all below
+  std::mutex mutex_;  ///< guards all below
   Begin scenario_;
   const char* why_unknown_ = nullptr;
   std::deque<Event> events_;
-  Place first_;                          ///< before the first of events_
+  Place first_;                          ///< place before the first of events_
   std::vector<Checkpoint> checkpoints_;  ///< by rising time; written by the worker
   Worker worker_;                        // last
 };

@@ -19,7 +19,7 @@
 
 namespace chicane::live {
 
-/// What the program hears of a live run. Empty functions are not called. All but `say` on the thread that
+/// Callbacks of a live run; empty functions are not called. All but `say` are called on the thread that
 /// drives.
 struct LiveHooks {
   std::function<void(const telemetry::Frame&)> on_frame{};
@@ -31,7 +31,7 @@ struct LiveHooks {
 /// Listeners of a live run that are no viewers; null: none. All outlive the publisher.
 struct RunListeners {
   recording::Recorder* recorder = nullptr;
-  RunLimit* limit = nullptr;  ///< whose news are recorded
+  RunLimit* limit = nullptr;  ///< limit whose news are recorded
   RunLog* log = nullptr;
   LiveHooks hooks{};
 };
@@ -51,7 +51,7 @@ class RunPublisher {
   /// `viewer` and `settings` outlive this.
   RunPublisher(wire::ViewerEndpoint& viewer, LiveSettings& settings, RunListeners listeners = {});
 
-  /// After each control cycle.
+  /// Publishes a frame; call it after each control cycle.
   void frame(const telemetry::Frame& frame);
   void lap(const telemetry::CompletedLap& lap);
   /// A change was applied.
@@ -64,7 +64,7 @@ class RunPublisher {
   void compare(telemetry::RunSummary& summary, const std::atomic<bool>& wants_stop);
   void say(std::string_view line) const;
 
-  /// Of the last frame [s].
+  /// Time of the last frame [s].
   [[nodiscard]] double time() const { return time_; }
 
  private:

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A served run as viewers see it, with futures that are driven by a plant in place of the external car.
 #include "chicane/live/served_run.hpp"
 
 #include <fmt/format.h>
@@ -37,7 +38,7 @@ double usual_period(const std::vector<Seen>& seen, std::size_t to, double otherw
   return std::clamp(*middle, kShortestPeriod, kLongestPeriod);
 }
 
-/// Where the car was at `time` [s], which the run has come to.
+/// Position of the car at `time` [s], which lies within the run.
 Vec2 place_at(const std::vector<Seen>& seen, double time) {
   const auto after =
       std::find_if(seen.begin() + 1, seen.end() - 1, [&](const Seen& each) { return each.time >= time; });
@@ -157,7 +158,7 @@ Result<recording::BranchReport> ServedFutures::branch(const recording::BranchOpt
   const auto from = std::make_shared<recording::ShadowRun>();
   if (Result<void> begun = follow(*from, scenario, seen, known->at); !begun) return fail(begun.error());
   recording::BranchOptions from_there = options;
-  from_there.at = seen[known->at].time + 1.0;  // behind all that is recorded: the futures begin where it ends
+  from_there.at = seen[known->at].time + 1.0;  // after all that is recorded: the futures begin where it ends
   from_there.drives_both = true;
   from_there.from = from;
   const recording::RunEvents nothing = [](const auto&) { return Result<void>{}; };
@@ -261,7 +262,7 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
   };
   serving.pages = live_pages(settings);
   add_what_if(serving.pages, what_if);
-  if (track_) limit.search(*track_, scenario_);  // before there is a control thread, to which it belongs then
+  if (track_) limit.search(*track_, scenario_);  // the control thread owns it once it starts
   auto summary =
       serve(options_, std::move(controller_), std::move(serving), &viewer, std::move(assets_), stop);
   if (!summary) return summary;

@@ -69,12 +69,11 @@ class ServedRun {
 /// A moment of a car that others simulate, as it was measured.
 struct Seen {
   double time = 0.0;   ///< [s]
-  double delay = 0.0;  ///< from the measurement to the actuators [s]
+  double delay = 0.0;  ///< delay from the measurement to the actuators [s]
   double x = 0.0, y = 0.0, psi = 0.0, speed = 0.0;
   model::Command sent;
 };
-/// How it moved at `seen[i]`, with what is not measured, sideslip and yaw rate, from where it was before.
-/// Pre: i > 0.
+/// Motion of the car at `seen[i]`; sideslip and yaw rate are computed from the sighting before. Pre: i > 0.
 [[nodiscard]] model::State moving(const std::vector<Seen>& seen, std::size_t i);
 
 /// Futures of a run whose car others simulate: both are driven by the simulator that we have of that car, on
@@ -84,7 +83,7 @@ struct Seen {
 /// that was driven.
 class ServedFutures {
  public:
-  static constexpr double kFollowed = 150.0;  ///< of the run before the moment [s]
+  static constexpr double kFollowed = 150.0;  ///< length of the run before the moment [s]
   static constexpr double kCompared = 10.0;   ///< [s]
 
   /// `log` must outlive it.
@@ -95,14 +94,14 @@ class ServedFutures {
   /// Any thread: the road is not the simulator's; branch() says why from now on.
   void give_up(std::string why);
 
-  /// One thread at a time: both futures from `options.at` on, with the settings that hold now, and with those
-  /// of `options`. Fails as recording::branch_run() does, and while less than a second is known.
+  /// Drives both futures from `options.at` on: with the current settings, and with those in `options`. Fails
+  /// as recording::branch_run() does, and if less than a second is known. One thread at a time.
   [[nodiscard]] Result<recording::BranchReport> branch(const recording::BranchOptions& options,
                                                        const recording::BranchHooks& hooks);
 
  private:
   struct Known {
-    std::vector<Seen> seen;  ///< of the newest car
+    std::vector<Seen> seen;  ///< sightings of the newest car
     std::size_t at = 0;      ///< the moment
   };
   [[nodiscard]] Result<Known> known_at(double time);
@@ -111,7 +110,7 @@ class ServedFutures {
 
   RunLog& log_;
   run::Roads roads_;
-  std::mutex mutex_;  ///< of all below
+  std::mutex mutex_;  ///< guards all below
   std::optional<scenario::Scenario> scenario_;
   std::string why_not_;
 };

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Pictures of a drive: the road, the car and its ghost on a canvas, with a text of speed, times and gaps.
 #include "chicane/recording/lap_picture.hpp"
 
 #include <fmt/format.h>
@@ -145,7 +146,7 @@ Colour of_speed(double share) {
   return share < 0.5 ? between(kSlow, kMiddle, 2.0 * share) : between(kMiddle, kFast, 2.0 * share - 1.0);
 }
 
-/// Between two moments; what is no number is that of the first.
+/// Moment between two others, interpolated; a value that is no number in both is taken from the first.
 DrivenMoment moment_at(const std::vector<DrivenMoment>& moments, double time) {
   const double begin = moments.front().time;
   const auto next = std::upper_bound(moments.begin(), moments.end(), begin + time,
@@ -163,7 +164,7 @@ DrivenMoment moment_at(const std::vector<DrivenMoment>& moments, double time) {
   return moment;
 }
 
-/// When a run was at `s` first, after its beginning; none when it was not.
+/// First time after the start at which a run was at `s`; none if it never was.
 std::optional<double> time_at_place(const std::vector<DrivenMoment>& moments, double s, int lap) {
   for (std::size_t i = 0; i + 1 < moments.size(); ++i) {
     const DrivenMoment &a = moments[i], &b = moments[i + 1];
@@ -243,7 +244,7 @@ void LapPicture::draw_road(const Camera& camera, double edge) {
 }
 
 void LapPicture::draw_car(const Camera& camera, const DrivenMoment& moment, const Colour& colour) {
-  const double smallest = 9.0;  // of a car on a picture of the whole road [px]
+  const double smallest = 9.0;  // least size of a car on a picture of the whole road [px]
   const double grown = std::max(1.0, smallest / (camera.scale * (run_.front + run_.rear)));
   const Vec2 ahead{cos(moment.heading), sin(moment.heading)};
   const Vec2 across{-ahead.y(), ahead.x()};

@@ -76,12 +76,12 @@ class ShadowRun {
 /// A recorded run that goes on otherwise from a moment on.
 struct BranchOptions {
   std::string log{};
-  double at = 0.0;                                              ///< on the recording's time line [s]
+  double at = 0.0;                                              ///< moment on the recording's time line [s]
   std::vector<std::pair<std::string, std::string>> settings{};  ///< as --set takes them; empty: no change
-  double duration = 0.0;  ///< from `at` on [s]; 0: to the end of the recording, or `laps`
-  int laps = 0;           ///< until so many laps of the run are completed; 0: no matter
-  int more_laps = 0;      ///< until the line was crossed so often from `at` on; 0: no matter
-  /// The first future is driven on, too, where what is known of it ends before the second one does.
+  double duration = 0.0;  ///< time from `at` on [s]; 0: to the end of the recording, or `laps`
+  int laps = 0;           ///< ends after so many completed laps of the run; 0: no limit
+  int more_laps = 0;      ///< ends after so many crossings of the line since `at`; 0: no limit
+  /// Drives the first future on, too, if its recording ends before the second future does.
   bool drives_both = false;
   /// Begins here instead of at the start, with the events behind it; before `at`. Null: at the start.
   std::shared_ptr<const ShadowRun> from{};
@@ -89,15 +89,15 @@ struct BranchOptions {
 
 /// The end of a third of a lap that was passed.
 struct Passage {
-  int lap = 0;        ///< from 1
-  int sector = 0;     ///< from 1
-  double time = 0.0;  ///< since the branch [s], interpolated
+  int lap = 0;        ///< lap from 1
+  int sector = 0;     ///< sector from 1
+  double time = 0.0;  ///< time since the branch [s], interpolated
 };
 
 /// One future, from the moment of the branch on.
 struct Future {
   double duration = 0.0;            ///< [s]
-  std::vector<double> lap_times{};  ///< of laps completed in it [s]
+  std::vector<double> lap_times{};  ///< times of completed laps [s]
   double max_lateral_error = 0.0;   ///< [m]
   double min_edge_distance = 0.0;   ///< signed, of the outermost tyre [m]; NaN without a control step
   double mean_speed = 0.0;          ///< [m/s]
@@ -117,13 +117,13 @@ struct FutureStep {
 /// The plant used in place of a car that others simulate.
 struct StandIn {
   std::string plant;
-  double compared = 0.0;  ///< so long before the moment both drove from the same place [s]; 0: not compared
-  double apart = 0.0;     ///< and came so far from each other [m]
+  double compared = 0.0;  ///< time before the branch that both drove from the same place [s]; 0: not compared
+  double apart = 0.0;     ///< distance between them at its end [m]
 };
 
 struct BranchReport {
-  double at = 0.0;                 ///< where it begins: the first control step from there on [s]
-  std::uint64_t cycle = 0;         ///< that control step, in its run
+  double at = 0.0;                 ///< first control step from the branch on [s]
+  std::uint64_t cycle = 0;         ///< cycle of that control step in its run
   std::uint64_t steps_before = 0;  ///< computed again on the way to it
   double known_until = 0.0;        ///< the last control step of the recording [s]
   /// The first of all recorded steps that did not come out bit for bit as recorded: from there on the first
@@ -131,17 +131,17 @@ struct BranchReport {
   std::optional<std::uint64_t> first_difference{};
   Future recorded{};
   Future branched{};
-  std::string end_reason{};  ///< why the branch ended before its time; empty when it did not
+  std::string end_reason{};  ///< reason of an early end of the branch; else empty
   std::optional<StandIn> stand_in{};
 };
 
-/// What listens to the second future, whole: the recorded run up to the branch, and what comes then.
+/// Callbacks for the second future and for the recorded run up to the branch.
 struct BranchHooks {
-  std::function<Result<void>(const run::ClosedLoop&)> on_begin{};  ///< of each run in the recording
+  std::function<Result<void>(const run::ClosedLoop&)> on_begin{};  ///< called for each run in the recording
   std::function<void(const telemetry::Change&)> on_change{};
   std::function<void(const telemetry::Frame&)> on_frame{};
   std::function<void(const telemetry::CompletedLap&)> on_lap{};
-  std::function<void(const FutureStep&)> on_future{};  ///< of both, from the branch on, one after the other
+  std::function<void(const FutureStep&)> on_future{};  ///< called for both futures, one after the other
   /// Asked at each control step that is computed, with the time [s] it has come to; false gives up.
   std::function<bool(double time)> go_on{};
 };

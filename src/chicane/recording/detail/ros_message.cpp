@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Reader of ROS 2 messages by the definition in their recording: parses the definition to fields by type,
+// then walks the CDR bytes field by field.
 #include "chicane/recording/detail/ros_message.hpp"
 
 #include <fmt/format.h>
@@ -32,7 +34,7 @@ const std::vector<double>& RosContent::list(std::string_view name) const {
   return found == numbers.end() ? kNone : found->second;
 }
 
-/// A place in the bytes of a message; what lies behind their end is missing for good.
+/// Read position in the bytes of a message. A read beyond their end fails, and so do all later ones.
 class RosReader::Cursor {
  public:
   explicit Cursor(std::string_view bytes) : bytes_{bytes} {}
