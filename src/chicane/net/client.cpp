@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// WebSocket client: connects, sends the upgrade, and reads and writes frames.
 #include "chicane/net/client.hpp"
 
 #include <netdb.h>
@@ -36,7 +37,7 @@ enum Opcode : unsigned char { kContinuation = 0, kText = 1, kBinary = 2, kClose 
 
 tl::unexpected<Error> io_error(std::string message) { return fail(ErrorCode::kIo, std::move(message)); }
 
-/// What the server must answer to `key` (RFC 6455 §4.2.2).
+/// Answer that the server must give to `key` (RFC 6455 §4.2.2).
 std::string accept_of(const std::string& key) {
   boost::uuids::detail::sha1 hash;
   hash.process_bytes(key.data(), key.size());

@@ -13,7 +13,7 @@ namespace chicane::net {
 
 /// A WebSocket address in parts.
 struct Url {
-  std::string host;  ///< without brackets
+  std::string host;  ///< host without brackets
   std::uint16_t port = 80;
   std::string target = "/";  ///< path and query
 };

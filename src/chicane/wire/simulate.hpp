@@ -22,12 +22,12 @@
 
 namespace chicane::wire {
 
-/// What the actuators do at the simulator's end of the connection (docs/protocol.md §5): the
-/// answers are picked up one telemetry later, and when they cease the car is stopped (safety/stop_player.hpp)
-/// by what came with the last one. All times are the simulated world's [s]; they do not decrease. One thread.
+/// Receiver at the simulator's end of the connection (docs/protocol.md §5): answers act one telemetry later,
+/// and when they cease the car is stopped (safety/stop_player.hpp) by the stop plan of the last one. All
+/// times are the simulated world's [s]; they do not decrease. One thread.
 ///
-/// A controller that sends no stop plan is waited for max(0.25 s, 3 times the median of its last nine
-/// cycles): what it answers so slowly as a rule is no silence.
+/// Without a stop plan the receiver waits for max(0.25 s, 3 times the median of the last nine cycles): a
+/// controller that is always so slow is not silent.
 class CommandReceiver {
  public:
   CommandReceiver(const model::VehicleParams& vehicle, safety::Receiver receiver) noexcept
@@ -41,9 +41,9 @@ class CommandReceiver {
   /// The connection has ended: no answer is waited for.
   void disconnected() noexcept;
 
-  /// What the actuators do at `time`; `speed` is their own [m/s].
+  /// Command of the actuators at `time`; `speed` is the car's [m/s].
   [[nodiscard]] model::Command act(double time, double speed) noexcept;
-  /// What act() has said last.
+  /// Command that act() returned last.
   [[nodiscard]] const model::Command& acting() const noexcept { return acting_; }
   /// Command timeout: no command has come for longer than usual, and the receiver stops the car, or has. A
   /// stop by the controller's guard, repeated with each of its commands, does not count.
@@ -62,7 +62,7 @@ class CommandReceiver {
   RecentMedian cycles_;  ///< [s]
 };
 
-/// How the simulator meets a controller program. What it simulates is the scenario's.
+/// Options of a simulator for a controller program. The car and its road are the scenario's.
 struct SimulateOptions {
   std::string url =
       "ws://127.0.0.1:4567/socket.io/?EIO=4&transport=websocket";  ///< the original's, hard-coded there
@@ -70,18 +70,18 @@ struct SimulateOptions {
   /// with us. Its standard output is thrown away, its standard error is ours.
   std::string server_command{};
   double manual_time = 0.0;  ///< a person "drives" for so long first: telemetry is null, the car stands [s]
-  std::chrono::milliseconds retry_after{250};      ///< between attempts to connect
-  std::chrono::milliseconds complain_after{1000};  ///< without an answer
-  std::chrono::milliseconds give_up_after{5000};   ///< without an answer: connect anew
-  std::chrono::milliseconds lost_after{30000};     ///< without a connection: the run ends
-  /// Without any usable answer: the run ends. 0: it waits for ever, connecting anew, as a person would.
+  std::chrono::milliseconds retry_after{250};      ///< time between attempts to connect
+  std::chrono::milliseconds complain_after{1000};  ///< silence before a complaint
+  std::chrono::milliseconds give_up_after{5000};   ///< silence before it reconnects
+  std::chrono::milliseconds lost_after{30000};     ///< time without a connection before the run ends
+  /// Time without any usable answer after which the run ends. 0: it waits for ever and reconnects, as a
+  /// person would.
   std::chrono::milliseconds hopeless_after{0};
 };
 
 struct SimulateHooks {
-  std::function<void(const telemetry::Frame&)> on_frame{};  ///< with each answer
-  std::function<void(const telemetry::CompletedLap&)>
-      on_lap{};                                 ///< when a lap was completed, the last one too
+  std::function<void(const telemetry::Frame&)> on_frame{};       ///< called with each answer
+  std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< called after each lap, the last one too
   std::function<void(std::string_view)> log{};  ///< one line about the connection or a broken answer
 };
 
@@ -90,12 +90,12 @@ struct SimulateReport {
   telemetry::RunSummary run;  ///< step_time is the time to the answer, the controller's own latency included
   std::uint64_t connections = 0;
   std::uint64_t answers = 0;         ///< usable ones
-  std::uint64_t broken_answers = 0;  ///< that would have stalled the original for ever
-  std::uint64_t extra_answers = 0;   ///< that were not asked for
+  std::uint64_t broken_answers = 0;  ///< answers that would have stalled the original for ever
+  std::uint64_t extra_answers = 0;   ///< answers that nobody asked for
   std::uint64_t silences = 0;        ///< telemetry without an answer within give_up_after
   std::uint64_t server_starts = 0;
   std::uint64_t stops = 0;         ///< times the car was stopped because no command came
-  std::uint64_t late_answers = 0;  ///< not used, because the car was being stopped when they came
+  std::uint64_t late_answers = 0;  ///< answers after the car's stop began: not used
 };
 
 /// `chicane simulate`: our car and track as the original simulator's client, in real time

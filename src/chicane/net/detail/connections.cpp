@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Access rules for requests, and the owner of a port that is taken.
 #include "chicane/net/detail/connections.hpp"
 
 #include <arpa/inet.h>
@@ -69,7 +70,7 @@ std::optional<std::string_view> value_of(std::string_view parts, char separator,
   return std::nullopt;
 }
 
-/// Where a link with a token leads; never to another server, as "//host" would.
+/// Target of a link with a token; never another server, as "//host" would be.
 std::string page_of(std::string_view path) {
   return path.starts_with('/') && !path.starts_with("//") && path.find('\\') == std::string_view::npos
              ? std::string(path)
