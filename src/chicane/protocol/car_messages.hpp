@@ -31,9 +31,9 @@ void header_fields(auto& archive, auto& message) {
 struct OdometryMessage {
   static constexpr std::string_view kType = "nav_msgs/msg/Odometry";
   std::int64_t stamp = 0;
-  std::string frame{};        ///< of the pose
-  std::string child_frame{};  ///< of the motion
-  model::Pose pose{};         ///< of the child frame
+  std::string frame{};        ///< frame of the pose
+  std::string child_frame{};  ///< frame of the motion
+  model::Pose pose{};         ///< pose of the child frame
   double vx = 0.0;            ///< along the child frame [m/s]
   double vy = 0.0;            ///< across it, left positive [m/s]
   double yaw_rate = 0.0;      ///< [rad/s]
@@ -157,9 +157,9 @@ struct ScanMessage {
   static constexpr std::size_t kCapacity = 100'000;
   std::int64_t stamp = 0;
   std::string frame{};
-  double angle_min = 0.0;        ///< of the first beam from the frame's x axis, left positive [rad]
+  double angle_min = 0.0;        ///< angle from the frame's x axis to the first beam, left positive [rad]
   double angle_increment = 0.0;  ///< [rad]
-  double scan_time = 0.0;        ///< between scans [s]
+  double scan_time = 0.0;        ///< time between scans [s]
   double range_min = 0.0;        ///< [m]
   double range_max = 0.0;        ///< [m]
   std::vector<float> ranges{};   ///< [m]
@@ -182,7 +182,7 @@ struct TransformMessage {
   std::int64_t stamp = 0;
   std::string frame{};
   std::string child_frame{};
-  model::Pose pose{};  ///< of the child frame
+  model::Pose pose{};  ///< pose of the child frame
   static void fields(auto& archive, auto& message) {
     header_fields(archive, message);
     archive(message.child_frame, message.pose);
@@ -217,12 +217,12 @@ struct BoolMessage {
 /// chicane_msgs/msg/StopPlan: times of the plan are [s] after the stamp.
 struct StopMessage {
   static constexpr std::string_view kType = "chicane_msgs/msg/StopPlan";
-  std::int64_t stamp = 0;  ///< of the odometry that the command answers
+  std::int64_t stamp = 0;  ///< stamp of the odometry that the command answers
   safety::StopPlan stop{};
 };
 template <>
 [[nodiscard]] std::string encode(const StopMessage& message);
-/// None also for a plan with numbers that are not finite, or with times that decrease.
+/// Decoded plan. None if a number is not finite or times decrease.
 template <>
 [[nodiscard]] std::optional<StopMessage> decode(std::string_view bytes);
 
@@ -230,7 +230,7 @@ template <>
 // rmw_cyclonedds sends them: in front of the content stands which client asked, and its number of the
 // request.
 
-/// What a reply repeats of its request.
+/// Fields that a reply repeats from its request.
 struct ServiceCall {
   std::uint64_t client = 0;
   std::int64_t sequence = 0;
@@ -271,7 +271,7 @@ struct SetRequest {
 /// The reply to SetParameters, for each parameter.
 struct SetOutcome {
   bool is_successful = false;
-  std::string reason{};  ///< why not, in a sentence
+  std::string reason{};  ///< reason of a refusal, a sentence
 };
 struct SetReply {
   ServiceCall call{};

@@ -86,7 +86,7 @@ class CsvLines {
     rest_.remove_prefix(std::min(rest_.size(), end + (rest_.substr(end, 2) == "\r\n" ? 2U : 1U)));
     return line;
   }
-  /// Of the line that next() gave, from 1.
+  /// Number of the line that next() returned, from 1.
   [[nodiscard]] int number() const noexcept { return number_; }
 
  private:

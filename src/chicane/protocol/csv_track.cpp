@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Roads from tables of numbers: finds separator, header and columns, and reads the rows. Writes a road as
+// such a table.
 #include "chicane/protocol/track_codec.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +23,7 @@ namespace {
 
 struct Meaning {
   Column column;
-  std::string_view names;  ///< between blanks
+  std::string_view names;  ///< names, separated by blanks
 };
 constexpr std::array kMeanings{
     Meaning{Column::kX, " x_m x x_ref_m x[m] x(m) pos_x position_x easting "},
@@ -114,7 +116,8 @@ class TableReader {
     read_point(trim(line.substr(0, line.find_first_of("#%"))));  // a remark may follow the numbers
   }
 
-  /// Of a line above the first point: the first one without a number in front, and each that names x and y.
+  /// Whether a line above the first point is the header: the first one without a number in front, or any that
+  /// names x and y.
   [[nodiscard]] bool is_header(std::string_view line) const {
     if (names_a_plane(line)) return true;
     const std::vector<std::string_view> values = split(line, separator_of(line));

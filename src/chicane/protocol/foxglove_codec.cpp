@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Foxglove protocol, server side: reads clients' messages, and writes the server's.
 #include "chicane/protocol/foxglove_codec.hpp"
 
 #include <fmt/format.h>
@@ -14,9 +15,9 @@ namespace {
 constexpr char kMessageData = 1;
 constexpr char kTime = 2;
 constexpr char kServiceResponse = 3;
-constexpr char kServiceRequest = 2;  // from the client
+constexpr char kServiceRequest = 2;  // opcode from the client
 
-/// What a client wrote, short enough to be repeated to it.
+/// Client's text, short enough to be repeated in an answer.
 std::string shown(const Json& value) {
   std::string text = json_text(value, JsonLayout::kAscii);
   if (text.size() > 40) text = text.substr(0, 37) + "...";
@@ -235,7 +236,7 @@ std::string advertise_services(std::span<const Service> services) {
     list.push_back({{"id", service.id},
                     {"name", service.name},
                     {"type", service.type},
-                    {"requestSchema", service.request_schema},  // what older viewers read
+                    {"requestSchema", service.request_schema},  // field for older viewers
                     {"responseSchema", service.response_schema},
                     {"request", side("_Request", service.request_schema)},
                     {"response", side("_Response", service.response_schema)}});

@@ -25,7 +25,7 @@ struct Parameter {
   ParameterValue value;
 };
 
-/// Where the tunables of a run live; implemented by the owner of the run. Called on the network thread.
+/// Storage of a run's settings; implemented by the owner of the run. Called on the network thread.
 class ParameterStore {
  public:
   virtual ~ParameterStore() = default;
@@ -35,7 +35,7 @@ class ParameterStore {
   [[nodiscard]] virtual Result<void> set(const Parameter& parameter) = 0;
   /// Called at each tick of the viewers: what was begun goes on, such as a run that is being built.
   virtual void update() {}
-  /// What has another value than at the last call, by any client or the program itself.
+  /// Settings that changed since the last call, by any client or the program itself.
   [[nodiscard]] virtual std::vector<Parameter> news() { return {}; }
   /// Sentences for all operators since the last call: what was accepted and failed afterwards.
   [[nodiscard]] virtual std::vector<std::string> complaints() { return {}; }
@@ -78,8 +78,8 @@ struct CallService {
 
 /// Our own addition to the protocol, of readers that ask for pacing (wire/viewer.hpp): what was read so far.
 struct Received {
-  std::uint64_t bytes = 0;  ///< of binary messages, since the connection began
-  double at = 0.0;          ///< by the reader's clock, which gets it back: any finite number
+  std::uint64_t bytes = 0;  ///< binary messages since the connection began [byte]
+  double at = 0.0;          ///< time by the reader's clock, echoed to it: any finite number
 };
 
 using ClientMessage = std::variant<Subscribe, Unsubscribe, GetParameters, SetParameters, SubscribeParameters,
@@ -114,7 +114,7 @@ struct Service {
 
 enum class StatusLevel { kInfo = 0, kWarning = 1, kError = 2 };
 
-/// What a server can do beside sending messages.
+/// Features of a server in addition to sending messages.
 struct Capabilities {
   bool parameters = false;
   bool services = false;
@@ -127,7 +127,7 @@ struct Capabilities {
 [[nodiscard]] std::string status(StatusLevel level, std::string_view message);
 /// The answer to Received: its `at`, and for how long it was held here [s]. The next frame follows.
 [[nodiscard]] std::string heard(double at, double held);
-/// So many messages of the past are still to come on "/chicane/past".
+/// Number of messages of the past that are still to come on "/chicane/past".
 [[nodiscard]] std::string past_left(std::size_t messages);
 [[nodiscard]] std::string parameter_values(std::span<const Parameter> parameters,
                                            const std::optional<std::string>& request = {});

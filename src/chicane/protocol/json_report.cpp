@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Summaries of runs as JSON for machines and as text for people, and the reading of such JSON.
 #include "chicane/protocol/json_report.hpp"
 
 #include <fmt/format.h>
@@ -177,7 +178,7 @@ Json guard_reasons(const telemetry::RunSummary& run) {
   return reasons;
 }
 
-/// Each quantity that was estimated, with its standard deviation; null where none was.
+/// Estimated quantities with their standard deviations; null for any that was not estimated.
 Json to_object(const controller::LearnedCar& learned) {
   Json json = Json::object();
   const auto add = [&](const std::string& name, std::string_view unit, const controller::Estimate& estimate,
@@ -252,7 +253,7 @@ TimeSummary times_of(const Json& json) {
           .max = 1e-6 * number_member(json, "max")};
 }
 
-/// How long it took, and how it ended.
+/// Duration of the run, and the reason of its end.
 std::string outcome(const RunSummary& run) {
   std::string text;
   if (run.wall_time > 0.0) {

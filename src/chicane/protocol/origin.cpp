@@ -54,7 +54,7 @@ std::string readable(std::string_view text) {
   return out;
 }
 
-/// What a reader of the road assumed, without the file's name and line.
+/// Assumptions of the road's reader, without the file's name and line.
 std::vector<std::string> notes_of(const std::string& file, const std::vector<std::string>& notices) {
   std::vector<std::string> notes;
   for (const std::string& notice : notices) {

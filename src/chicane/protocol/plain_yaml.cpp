@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Reader of a subset of YAML without a library, for the page in the browser.
 #include "chicane/protocol/yaml_tree.hpp"
 
 #include <fmt/format.h>

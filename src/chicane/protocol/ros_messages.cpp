@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Topics of a run in ROS 2's standard types, their definitions, and the list of all topics.
 #include "chicane/protocol/ros_messages.hpp"
 
 #include <fmt/format.h>
@@ -287,7 +288,7 @@ void collect(const RosDefinition& definition, std::vector<RosDefinition>& found)
   }
 }
 
-/// Without `encode` one of our own messages.
+/// Topic; without `encode` one of our own messages.
 RosTopic topic(std::string_view name, std::string_view type, Cadence cadence,
                std::string (*encode)(const Frame&, const Run&) = nullptr) {
   const OwnMessage* own = find_own(short_name(type));

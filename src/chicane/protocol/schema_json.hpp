@@ -20,9 +20,9 @@ namespace chicane::protocol {
 /// hands, a fault.
 struct Control {
   std::string_view key;  ///< "manual.steer"
-  Option option;         ///< its kind, range and meaning; has no field
+  Option option;         ///< kind, range and meaning; has no field
   Value initial = false;
-  const sim::FaultKind* fault = nullptr;  ///< of a switch for a fault; else null
+  const sim::FaultKind* fault = nullptr;  ///< fault that this switches; else null
 };
 
 /// Options of controls: on or off, and a number without a unit.
@@ -54,8 +54,8 @@ struct Control {
 /// and a strength of 0.5, each of which may be left out. kInvalidArgument with what was expected.
 [[nodiscard]] Result<sim::FaultEvent> read_switch(std::string_view name, std::string_view value);
 
-/// What a scenario file says of one fault, as it is written: {name: half_grip, at_s: 12, for_s: 5, strength:
-/// 0.5}. Empty: left out.
+/// One fault of a scenario file, as text: {name: half_grip, at_s: 12, for_s: 5, strength: 0.5}. Empty: left
+/// out.
 struct FaultText {
   std::string name, at, duration, strength;
 };
@@ -71,7 +71,8 @@ struct FaultText {
 /// A switch "fault.half_grip" for each, for viewers.
 [[nodiscard]] std::vector<Control> fault_controls();
 
-/// For messages: "one of `chicane list faults`", and the nearest name when a typing mistake explains it.
+/// Expected word for messages: "one of `chicane list faults`", with the nearest name if a typing mistake
+/// explains the word.
 [[nodiscard]] std::string expected_fault(std::string_view word);
 
 }  // namespace chicane::protocol

@@ -19,7 +19,7 @@ using Kind = YamlNode::Kind;
 
 constexpr std::size_t kMostBytes = 256U << 10U;
 
-/// What must hold for the bytes before a YAML parser sees them.
+/// Checks on the bytes before a YAML parser gets them.
 Result<void> check_bytes(std::string_view text, const std::string& file) {
   if (text.size() > kMostBytes) {
     return fail(ErrorCode::kParse,

@@ -25,7 +25,7 @@ struct XmlDocument {
   std::vector<std::ptrdiff_t> line_ends = {};
 
   [[nodiscard]] pugi::xml_node root() const { return tree.document_element(); }
-  /// Where a node begins, from 1.
+  /// Line on which a node begins, from 1.
   [[nodiscard]] int line_of(pugi::xml_node node) const;
   /// All elements of a name, in the order of the document.
   [[nodiscard]] std::vector<pugi::xml_node> find_all(std::string_view name) const;
