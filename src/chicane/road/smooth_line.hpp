@@ -12,11 +12,11 @@ namespace chicane::road {
 /// Noisy, unevenly spaced points as evenly spaced points of a smooth line.
 struct SmoothLine {
   std::vector<Vec2> knots;        ///< spaced by `spacing` [m]; a closed line's last knot precedes its first
-  std::vector<double> parameter;  ///< of each given point: arc length along the smooth line [m]
+  std::vector<double> parameter;  ///< arc length of each given point along the smooth line [m]
   double length = 0.0;            ///< [m]
-  double spacing = 0.0;           ///< of the knots [m]
+  double spacing = 0.0;           ///< spacing of the knots [m]
   double smoothing_length = 0.0;  ///< ℓ, equation (1) of docs/tracks.md [m]
-  double rms_deviation = 0.0;     ///< of the points from the line, across it [m]
+  double rms_deviation = 0.0;     ///< deviation of the points from the line, across it [m]
   double max_deviation = 0.0;     ///< [m]
 };
 

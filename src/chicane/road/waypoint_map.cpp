@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Map of waypoints: matches new ones to known ones, closes the loop, and keeps the curve through them as
+// settled knots.
 #include "chicane/road/waypoint_map.hpp"
 
 #include <algorithm>
@@ -120,7 +122,7 @@ bool WaypointLine::extend(const WaypointMap& map, int newest) noexcept {
     window[static_cast<std::size_t>(i)] = points[static_cast<std::size_t>(first + i) % points.size()];
   if (!raw_.rebuild({window.data(), static_cast<std::size_t>(count)}, false)) return false;
 
-  // Arc length of the whole line less that of this spline: they agree where the settled part ends.
+  // Shift from this spline's arc length to the whole line's: they agree where the settled part ends.
   const double shift = along(settled_) - raw_.arc_length(settled_ - first);
   const double end = shift + raw_.length();
   const int last_knot = static_cast<int>(std::min(std::ceil((end + kTail) / kSpacing), 1e6));
