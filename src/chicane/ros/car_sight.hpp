@@ -43,7 +43,7 @@ class CarSight {
   [[nodiscard]] model::Command acting(double time) const noexcept;
 
   scenario::Scenario scenario_;
-  double base_ahead_;  ///< of the centre of mass before the base [m]
+  double base_ahead_;  ///< distance of the centre of mass ahead of the base [m]
   std::optional<road::Track> waypoints_;
   std::vector<Vec2> path_;
   std::array<Sent, 64> sent_{};
@@ -61,17 +61,17 @@ class FrameTree {
 
   /// Leaves out numbers that are not finite.
   void put(const protocol::TransformMessage& transform);
-  /// Where `frame` lies in `in`; none where their chains of parents do not meet.
+  /// Pose of `frame` in `in`; none if their chains of parents do not meet.
   [[nodiscard]] std::optional<model::Pose> find(const std::string& in, const std::string& frame) const;
 
  private:
   struct Link {
     std::string parent{};
-    model::Pose pose{};  ///< in the parent
+    model::Pose pose{};  ///< pose in the parent
   };
   [[nodiscard]] std::map<std::string, model::Pose> seen_from_parents(const std::string& frame) const;
 
-  std::map<std::string, Link> links_;  ///< by the child
+  std::map<std::string, Link> links_;  ///< links by child
 };
 
 }  // namespace chicane::ros

@@ -13,7 +13,7 @@
 
 namespace chicane::ros {
 
-/// Where partners are looked for.
+/// Options for finding partners.
 struct NetworkOptions {
   int domain = 0;                       ///< ROS_DOMAIN_ID, [0, 232]
   std::string interface = "lo";         ///< network interface by name; "auto": the one that DDS prefers
@@ -30,15 +30,15 @@ struct Qos {
 /// One message that arrived, its bytes as in RosTopic: CDR with its four-byte header.
 struct Sample {
   std::string bytes{};
-  std::int64_t sent = 0;     ///< by the writer's system clock [ns since 1970]
+  std::int64_t sent = 0;     ///< time by the writer's system clock [ns since 1970]
   std::uint64_t writer = 0;  ///< handle of the one that sent it: another number is another writer
 };
 
 /// A reader or writer that another program has.
 struct Endpoint {
   bool is_writer = false;
-  std::string topic{};  ///< as in ROS 2: "/odom"
-  std::string type{};   ///< as in ROS 2: "nav_msgs/msg/Odometry"
+  std::string topic{};  ///< name in ROS 2: "/odom"
+  std::string type{};   ///< name in ROS 2: "nav_msgs/msg/Odometry"
   Qos qos{};
 };
 
@@ -77,7 +77,7 @@ class Participant {
                                                                const std::string& type, const Qos& qos) = 0;
   /// Comes back when a reader has messages, or after `patience`.
   virtual void wait(std::chrono::nanoseconds patience) = 0;
-  /// What other programs read and write in this domain. Allocates.
+  /// Endpoints of other programs in this domain. Allocates.
   [[nodiscard]] virtual std::vector<Endpoint> others() = 0;
 };
 

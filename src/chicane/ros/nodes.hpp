@@ -30,7 +30,7 @@ struct TopicNames {
   std::string scan = "/scan";                    ///< sensor_msgs/msg/LaserScan, of the simulator
 };
 
-/// What a drive message means to the car.
+/// Meaning of a drive message to the car.
 struct DriveOptions {
   bool is_by_speed = true;  ///< the car holds `speed`; false: it takes `acceleration`
   /// The car's own speed controller closes a gap of speed in about this time [s], (0, 5]: the speed that is
@@ -44,14 +44,14 @@ struct NodeOptions {
   TopicNames topics{};
   protocol::FrameNames frames{.map = "map", .odom = "map", .base = "ego_racecar/base_link"};
   DriveOptions drive{};
-  /// Of the odometry's child frame: the middle of the rear axle; false: the centre of mass.
+  /// Origin of the odometry's child frame: the middle of the rear axle; false: the centre of mass.
   bool is_base_at_rear_axle = true;
-  bool is_time_simulated = false;  ///< the controller's time is that of /clock
+  bool is_time_simulated = false;  ///< the controller's time is /clock's
   /// Seconds of the simulator in a second of the clock, > 0; it then sends /clock. 0: as many, without.
   double pace = 0.0;
-  std::string map_file{};  ///< of the simulator: /scan sees this occupancy map; empty: the road's edges
-  Qos odom_qos{.is_reliable = false};  ///< of the controller's reader; the simulator sends reliably
-  Qos drive_qos{};                     ///< of the controller's writer; the simulator reads best effort
+  std::string map_file{};              ///< map that the simulated /scan sees; empty: the road's edges
+  Qos odom_qos{.is_reliable = false};  ///< for the controller's reader; the simulator sends reliably
+  Qos drive_qos{};                     ///< for the controller's writer; the simulator reads best effort
 };
 
 /// The walls of an occupancy map (protocol/occupancy_map.hpp): cells darker than occupied_thresh; unknown
