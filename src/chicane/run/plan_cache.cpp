@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Cache of plans and limits: their names by hash, their bytes, and the searches that fill it.
 #include "chicane/run/plan_cache.hpp"
 
 #include <array>
@@ -129,7 +130,7 @@ class Reader {
     get(number);
     value = number != 0.0;
   }
-  /// Of things with at least `size` bytes each; 0 where there are not so many.
+  /// Reads a count of things with at least `size` bytes each; 0 if so many cannot follow.
   [[nodiscard]] std::size_t count(std::size_t size) {
     double number = 0.0;
     get(number);

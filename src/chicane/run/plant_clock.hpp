@@ -11,7 +11,7 @@
 
 namespace chicane::run {
 
-/// What the time of a car is counted by that another program simulates.
+/// Options of an external car's clock.
 struct PlantClockOptions {
   bool is_estimated = false;  ///< false: by arrival; true: by the ratio that the measurements show
   bool is_measured = false;   ///< true: by Measurement::time, the simulator's own
@@ -46,9 +46,9 @@ class PlantClock {
   [[nodiscard]] double at(Clock::time_point wall) const;
   /// Run time in which a command acts that the wall's clock expects after `delay` [s].
   [[nodiscard]] double delay(double delay) const { return step_ > 0.0 ? step_ : ratio_ * delay; }
-  [[nodiscard]] double ratio() const { return ratio_; }     ///< of run time to the wall's time
+  [[nodiscard]] double ratio() const { return ratio_; }     ///< run time over wall time
   [[nodiscard]] double lock_step() const { return step_; }  ///< [s]; 0: by its own clock
-  /// How time is counted, as a sentence for people.
+  /// Sentence for people on how time is counted.
   [[nodiscard]] std::string news() const;
 
  private:
@@ -78,9 +78,9 @@ class PlantClock {
 
   PlantClockOptions options_;
   model::VehicleParams vehicle_;
-  double size_;  ///< of the car over one in full size
+  double size_;  ///< size of the car over full size
   Clock::time_point wall_;
-  double time_ = 0.0;  ///< of the run, at wall_ [s]
+  double time_ = 0.0;  ///< run time at wall_ [s]
   double ratio_ = 1.0;
   double step_;
   bool has_last_ = false;
@@ -91,7 +91,7 @@ class PlantClock {
   std::size_t count_ = 0;
   double sampled_ = 0.0;               ///< time that is counted beyond the ratio's [s]
   int unusable_ = 0;                   ///< messages since the last measurement
-  double ahead_ = 0.0;                 ///< of the simulator's own time, the run's is [s]
+  double ahead_ = 0.0;                 ///< run time minus the simulator's own time [s]
   double asked_ = 0.0, gained_ = 0.0;  ///< speed that the pedal should have given lately, and has [m/s]
 };
 

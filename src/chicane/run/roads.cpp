@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Roads shared by many runs: finds a remembered one that fits a scenario, or makes it.
 #include "chicane/run/roads.hpp"
 
 #include <algorithm>
@@ -65,7 +66,7 @@ Result<const Roads::Prepared*> Roads::of(const scenario::Scenario& scenario, con
   if (!track) return fail(track.error());
   Result<road::Track> waypoints = make_waypoints(*track, scenario.vehicle.scale);
   if (!waypoints) return fail(waypoints.error());
-  // Of a road that the car does not fit nothing is planned.
+  // Plan nothing for a road that the car does not fit.
   std::optional<scenario::Scenario> has_room;
   if (races(scenario)) {
     if (const Result<void> fits = run::check_room(scenario, *track); !fits) return fail(fits.error());

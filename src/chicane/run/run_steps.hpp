@@ -35,14 +35,13 @@ class RunSteps {
   LapPlanner planner_;
 };
 
-/// What other threads may ask of a run that is going on. Any thread; each request is taken up at the next
-/// control step.
+/// Requests of other threads to a running run. Any thread; each takes effect at the next control step.
 struct RunControls {
   std::atomic<bool> is_paused{false};
   std::atomic<int> steps{0};  ///< control cycles to do while paused
   std::atomic<bool> wants_restart{false};
   std::atomic<bool> wants_stop{false};
-  SettingQueue settings{};  ///< that change, from one thread
+  SettingQueue settings{};  ///< changes of settings, from one thread
 };
 
 /// Steps of a run that is watched and changed while it goes on, without a clock: whoever owns it says when
@@ -55,9 +54,9 @@ class LiveSteps {
             LapPlanner::Clock clock = LapPlanner::Clock::kReal)
       : loop_{loop}, budget_{budget}, controls_{controls}, hooks_{hooks}, steps_{loop, hooks, clock} {}
 
-  /// The next change that waits starts the run anew: nothing is done any more.
+  /// Whether the next waiting change restarts the run: then nothing more is done.
   [[nodiscard]] bool is_to_start_anew() const noexcept { return is_to_start_anew_; }
-  /// There was no frame since the run began.
+  /// Whether the run has had no frame yet.
   [[nodiscard]] bool is_unseen() const noexcept { return is_unseen_; }
 
   /// One physics step, preceded by a control step when one is due: true when there was one.
@@ -66,7 +65,7 @@ class LiveSteps {
   void one_cycle();
   /// Physics up to the next control step.
   void finish_cycle() { steps_.finish_cycle(); }
-  /// Applies what waits, up to a change that starts the run anew.
+  /// Applies waiting changes, up to one that restarts the run.
   void take_up_changes();
   /// Puts the car back at the start if that is asked for; true when it was.
   bool restart_if_wanted();
@@ -84,7 +83,7 @@ class LiveSteps {
 };
 
 struct RealtimeOptions {
-  double budget_share = 0.8;  ///< of the control period that a control step may take; (0, 1]
+  double budget_share = 0.8;  ///< largest share of the control period for a control step; (0, 1]
   std::optional<double> step_budget = std::nullopt;  ///< instead of the share [s]; 0 = no bound
   bool stay_at_end = false;                          ///< drive on after the last lap until asked to stop
 };

@@ -28,7 +28,7 @@ struct SimulatedCar {
 
   SimulatedCar(const scenario::Scenario& scenario, road::Track road, road::Track shown,
                std::unique_ptr<sim::Plant> car, AccountTerms terms);
-  /// With copies of plant and road. Without a plant where that cannot be copied (sim/plant.hpp).
+  /// Copies plant and road. Without a plant if that cannot be copied (sim/plant.hpp).
   SimulatedCar(const SimulatedCar& other);
   SimulatedCar& operator=(const SimulatedCar&) = delete;
   ~SimulatedCar() = default;
@@ -70,17 +70,17 @@ class StopNews {
   using Say = std::function<void(std::string_view)>;
   StopNews(const scenario::Scenario& scenario, Say say);
 
-  /// After physics before which the car had `speed` [m/s]. `is_timed_out`: the receiver stops the car. `why`
-  /// gives the reason, a clause. True when a stop began.
+  /// Reports stops; call it after physics that began at `speed` [m/s]. `is_timed_out`: the receiver stops the
+  /// car. `why` gives the reason, a clause. True when a stop began.
   bool look(const SimulatedCar& car, bool is_timed_out, double speed,
             const std::function<std::string()>& why);
 
  private:
   const double standing_;  ///< [m/s]
   Say say_;
-  bool is_timed_out_ = false;  ///< at the last look
+  bool is_timed_out_ = false;  ///< timed out at the last look
   bool is_said_ = false;       ///< the stop that goes on
-  bool is_moving_ = false;     ///< in it
+  bool is_moving_ = false;     ///< the car moves during that stop
 };
 
 }  // namespace chicane::run
