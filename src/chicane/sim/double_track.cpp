@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// The four-wheel plant: tyre slips with relaxation, load transfer, drive, brakes and rolling, integrated in
+// parts of a step.
 #include "chicane/sim/double_track.hpp"
 
 #include <algorithm>
@@ -122,7 +124,7 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
   m.load_quadratic = (1.0 - p.load_sensitivity) * (p.downforce_front + p.downforce_rear) / p.mass;
   m.steer_helper = 0.0;
   m.helper_gap = 0.0;
-  // What speeds the car up turns its wheels up, too.
+  // Inertia of the car and its wheels: a force along speeds up both.
   const double inertia = p.mass + 4.0 * p.wheel_inertia / (p.wheel_radius * p.wheel_radius);
   m.drive_acceleration = p.drive_force / inertia;
   m.drive_power_per_mass = p.drive_power / inertia;
