@@ -151,7 +151,7 @@ class Descent {
   double moved_ = 0.0;
   int taken_ = 0;   ///< steps since the descent began
   int smooth_ = 0;  ///< whole unshifted ones in a row
-  int needed_ = 2;  ///< of these before full steps are tried again
+  int needed_ = 2;  ///< count of them before full steps are tried again
 };
 
 }  // namespace chicane::solver

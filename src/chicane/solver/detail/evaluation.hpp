@@ -40,7 +40,7 @@ class Evaluation {
   /// One stage as a value: a pack of equal lanes, so that its code carries the tag of the instruction set;
   /// for functions that may branch a number that knows the functions of models.
   using One = std::conditional_t<kIsStructured, Pack<Arch, 2>, Plain>;
-  /// What the values and derivatives of terminal residuals are made of.
+  /// Scalar for values and derivatives of terminal residuals.
   using EndValue = std::conditional_t<kIsStructured, Pack<Arch, 2>, double>;
 
   template <class Next, class Residual, class Constraint>
@@ -244,7 +244,7 @@ class Evaluation {
       });
     }
   }
-  /// What a function returned over the variables from `begin` on.
+  /// Places a function's result among the variables from `begin` on.
   template <class T, std::size_t Count>
   static void put(const std::array<BlockJet<T>, Count>& from, int begin,
                   std::array<WideRow<T, kVariables>, Count>& rows) noexcept {

@@ -7,8 +7,7 @@
 
 namespace chicane::solver {
 
-/// How good a point of the barrier problem is: by how much its equations are missed, and its cost with
-/// barriers.
+/// Quality of a point of the barrier problem: violation of its equations, and cost with barriers.
 struct Merit {
   double miss = 0.0;
   double cost = 0.0;  ///< `logs` times the barrier less than without

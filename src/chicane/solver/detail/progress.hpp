@@ -88,7 +88,7 @@ class Course {
   double its_defect_ = 0.0;
 };
 
-/// Watches what is missed from round to round of an augmented Lagrangian.
+/// Watches the violation from round to round of an augmented Lagrangian.
 class RoundProgress {
  public:
   /// No round yet: there is nothing that misses could have come down from.
@@ -103,8 +103,8 @@ class RoundProgress {
   }
   /// The last rounds have come closer than the first one.
   [[nodiscard]] bool is_good() const noexcept { return idle_ == 0 && best_ < first_; }
-  /// Three rounds in turn were not enough; short ones with a `miss` that is small beside that of the `guess`
-  /// may be eight.
+  /// Whether three rounds in turn were not enough; eight are allowed to short rounds whose `miss` is small
+  /// beside the `guess`'s.
   [[nodiscard]] bool is_lost(double miss, double guess, int iterations) const noexcept {
     return idle_ >= (miss <= kSmall * guess && iterations <= kShort ? 8 : 3);
   }

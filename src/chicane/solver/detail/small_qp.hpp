@@ -12,7 +12,7 @@
 
 namespace chicane::solver {
 
-/// Where an input stands in the working set: free, or at one of its bounds.
+/// State of an input in the working set: free, or at one of its bounds.
 enum class Hold : std::int8_t { kLow = -1, kFree = 0, kHigh = 1 };
 
 /// The working-set rule of the primal-dual active set method: an input beyond a bound is held there, a held
@@ -182,7 +182,7 @@ struct InputBlock {
   }
 
  private:
-  /// A pivot this small beside its own entry is noise.
+  /// Limit below which a pivot is noise, relative to its own entry.
   CHICANE_INLINE static double noise(double entry) noexcept { return 1e-10 * std::fabs(entry) + 1e-12; }
   /// a d − b c
   CHICANE_INLINE static double cross(double a, double d, double b, double c) noexcept {

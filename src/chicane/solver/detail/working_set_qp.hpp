@@ -22,7 +22,7 @@ class WorkingSetQp {
 
   enum class Outcome {
     kSolved,
-    kCircles,  ///< there is no step: the working set cycles
+    kCircles,  ///< no step: the working set cycles
     kSpent     ///< nor here: the deadline came first
   };
 
