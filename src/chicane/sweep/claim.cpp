@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Claims: reads the statements of a write-up with cases and conditions, and evaluates them on results.
 #include "chicane/sweep/claim.hpp"
 
 #include <fmt/format.h>
@@ -169,7 +170,7 @@ class ClaimReader : private detail::SettingsReader {
   }
 
   const std::string& file_;
-  std::string quotations_;  // without its comments
+  std::string quotations_;  // text of quotations, without its comments
   std::vector<Claim> claims_;
   std::set<std::string> ids_;
 };

@@ -24,9 +24,9 @@ struct Case {
 /// clean: an optimum among what keeps to the road.
 struct Condition {
   struct Value {
-    std::string name{};  ///< of the case; empty: the number is `constant`
-    std::string
-        column{};  ///< of trial.hpp, "lap_times_s[-1]", or "clean": all laps driven, no tyre off the road
+    std::string name{};    ///< name of the case; empty: the number is `constant`
+    std::string column{};  ///< column of trial.hpp, "lap_times_s[-1]", or "clean": all laps driven, no tyre
+                           ///< off the road
     double constant = 0.0;
   };
   std::string text{};
@@ -39,14 +39,13 @@ struct Claim {
   std::string id{};      ///< "B7"
   std::string says{};    ///< paraphrased
   std::string quotes{};  ///< the write-up's own words, at most kMostQuotedWords; empty: they were not found
-  std::string ours{};    ///< what the preset has of ours, for the verdict: "with our weights"
-  Settings settings{};   ///< of all cases, the preset among them
+  std::string ours{};    ///< our additions to the preset, for the verdict: "with our weights"
+  Settings settings{};   ///< settings of all cases, the preset among them
   std::vector<Case> cases{};
   std::size_t grid_size = 0;  ///< the last so many cases are points of a grid, with names made of its values
   std::vector<Condition> conditions{};  ///< true when all hold
   std::vector<std::string> shows{};     ///< columns
-  /// Of a statement about what there is, which no run can try: "works", "partly" or "not so", and where to
-  /// see.
+  /// Verdict on a statement that no run can try: "works", "partly" or "not so", and where to see it.
   std::string found{}, see{};
 
   [[nodiscard]] bool is_tried() const noexcept { return !cases.empty(); }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Reader of plans: the grammar of docs/sweep.md, with a fault for each line that breaks it.
 #include "chicane/sweep/plan_codec.hpp"
 
 #include <fmt/format.h>
@@ -121,7 +122,7 @@ using protocol::YamlEntry;
 using protocol::YamlNode;
 
 constexpr std::size_t kMostAxes = 20;
-constexpr std::string_view kFolder = "/*.csv";  ///< after a folder: all tracks in it
+constexpr std::string_view kFolder = "/*.csv";  ///< suffix of a folder: all tracks in it
 constexpr double kMostSamples = 4294967295.0;
 
 class PlanReader : private detail::SettingsReader {

@@ -58,8 +58,8 @@ inline constexpr double kSlower = 0.01;
 
 struct Comparison {
   ResultTable table;          ///< a row for each pair
-  std::uint64_t pairs = 0;    ///< of which both runs are there
-  std::uint64_t worse = 0;    ///< of them
+  std::uint64_t pairs = 0;    ///< pairs of which both runs exist
+  std::uint64_t worse = 0;    ///< pairs in which this one is worse
   std::uint64_t missing = 0;  ///< runs without the other one
 };
 
@@ -100,7 +100,7 @@ struct ByNumber {
 
 /// A run as a map sees it.
 struct MapRun {
-  std::vector<std::string> values{};  ///< of the axes, in intervals where they are many
+  std::vector<std::string> values{};  ///< values of the axes, in intervals if they are many
   bool is_clean = false;
 };
 
@@ -114,7 +114,7 @@ struct HeatMap {
   std::string title{};  ///< the values of axes that are texts: "weighted, udacity"; empty: all runs
   std::string row_key{}, column_key{};
   std::vector<std::string> rows{}, columns{};
-  std::vector<std::vector<Cell>> cells{};  ///< by row and column; no runs: nothing was driven there
+  std::vector<std::vector<Cell>> cells{};  ///< cells by row and column; no runs: nothing was driven there
 };
 
 /// One map for each pair of axes of numbers and each combination of values of the others, which are texts;
@@ -125,7 +125,7 @@ struct HeatMap {
                                              const std::vector<MapRun>& runs,
                                              const std::vector<Settings>& marks, std::size_t most);
 
-/// In letters of equal width: `·` where no run is clean, `[ ]` around what is marked.
+/// Map in letters of equal width: `·` if no run is clean, `[ ]` around marked cells.
 [[nodiscard]] std::string map_text(const HeatMap& map);
 
 }  // namespace chicane::sweep::detail

@@ -10,22 +10,22 @@
 #include "chicane/sweep/plan.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
-/// What a sweep keeps of a run: nothing that a clock measured.
+/// Columns that a sweep keeps of a run: none that a clock measured.
 
 namespace chicane::sweep {
 
 /// One column of the results.
 struct Column {
-  std::string_view name;     ///< with its unit: "rms_lateral_error_m"
+  std::string_view name;     ///< name with its unit: "rms_lateral_error_m"
   std::string_view meaning;  ///< one sentence
-  /// As JSON: a number, true, false, null where nothing was measured, a text, a list of numbers or an object
-  /// of counts.
+  /// JSON of the value: a number, true, false, null if nothing was measured, a text, a list of numbers or an
+  /// object of counts.
   std::string (*text)(const telemetry::RunSummary&) = nullptr;
 };
 
 /// Columns of a run that has searched (plan.hpp), before all others: the value found, null where there is
-/// none, and how many runs it took. The other columns are those of the run with that value, or of the one
-/// with the smallest value.
+/// none, and how many runs it took. The other columns are for the run with that value, or with the smallest
+/// value tried.
 inline constexpr std::string_view kSearchValue = "search_value";
 inline constexpr std::string_view kSearchTrials = "search_trials";
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// MCAP files: writer with compressed chunks and an index, and a reader that survives damage.
 #include "chicane/telemetry/mcap.hpp"
 
 #include <fcntl.h>

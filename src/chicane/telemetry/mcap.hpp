@@ -14,8 +14,9 @@
 
 #include "chicane/base/result.hpp"
 
-/// What writer and reader of MCAP files share (https://mcap.dev/spec, version 1): numbers are little endian,
-/// strings are preceded by their 32-bit length, records by one byte for their kind and their 64-bit length.
+/// Format that writer and reader of MCAP files share (https://mcap.dev/spec, version 1): numbers are little
+/// endian, strings are preceded by their 32-bit length, records by one byte for their kind and their 64-bit
+/// length.
 
 namespace chicane::telemetry::mcap {
 
@@ -140,10 +141,10 @@ class McapWriter {
 
  private:
   struct Channel {
-    std::string record;  ///< for the summary
+    std::string record;  ///< record for the summary
     std::string schema_record;
     std::uint64_t messages = 0;
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  ///< of this chunk: log time, offset
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  ///< index of this chunk: log time, offset
   };
 
   McapWriter(std::string path, int file, bool is_compressed)
@@ -190,7 +191,7 @@ struct McapVisitor {
   std::function<void(std::string_view name, const std::map<std::string, std::string>&)> on_metadata{};
 };
 
-/// How much of a file there was.
+/// Extent of a file that was read.
 struct McapReport {
   std::uint64_t messages = 0;
   std::uint64_t chunks = 0;   ///< intact ones
@@ -214,9 +215,9 @@ struct McapReport {
 namespace chicane::telemetry::zstd {
 
 [[nodiscard]] bool is_available() noexcept;
-/// At the fastest level. Pre: is_available().
+/// Compresses at the fastest level. Pre: is_available().
 [[nodiscard]] std::string compress(std::string_view bytes);
-/// None when it is damaged, or is not of `size` bytes. Pre: is_available().
+/// Decompresses. None if the bytes are damaged, or do not yield `size` bytes. Pre: is_available().
 [[nodiscard]] std::optional<std::string> decompress(std::string_view bytes, std::uint64_t size);
 
 }  // namespace chicane::telemetry::zstd
