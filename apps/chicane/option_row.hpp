@@ -47,7 +47,7 @@ struct OptionRule {
   std::vector<std::string_view> excludes{};  ///< options with which it is refused
   const char* environment = nullptr;         ///< variable that gives the value if the option does not
   bool is_required = false;
-  bool is_once = false;        ///< for a Take: a second use is refused
+  bool is_once = false;        ///< refuses a second use, for a Take
   bool shows_default = false;  ///< help shows the target's value before parsing
 };
 

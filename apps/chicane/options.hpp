@@ -159,8 +159,8 @@ struct Options {
   Video video{};
 
   struct Campaign {
-    std::vector<std::string> faults{};  ///< names; empty: all, or for pairs those of signals and computer
-    bool has_pairs = false;             ///< also each pair of faults at once
+    std::vector<std::string> faults{};  ///< names; empty: all, for pairs of signals and computer
+    bool has_pairs = false;             ///< adds each pair of faults at once
     std::vector<double> durations{};    ///< [s]; empty: each fault's own
     std::vector<std::string> tracks{"lakeside", "oval", "hairpins", "speedway"};
     std::vector<std::string> cars{"udacity", "road-car"};

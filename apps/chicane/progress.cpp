@@ -130,7 +130,7 @@ constexpr std::chrono::milliseconds kGoodbyeOfPage{50};
 
 /// Road in SVG as a stroke of its mean width, with a dashed stroke on it; the caller appends the dash length.
 std::string picture_of(const road::Track& track) {
-  constexpr int kPoints = 240;
+  constexpr int kPoints = 240;  // samples along the road
   std::string path;
   Vec2 low = track.centre().at(0.0).position, high = low;
   double width = 0.0;

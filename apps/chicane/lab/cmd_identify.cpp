@@ -37,7 +37,7 @@ namespace {
 using identify::Estimate;
 using identify::Identification;
 
-constexpr std::size_t kMostColumns = 1000;
+constexpr std::size_t kMostColumns = 1000;  // limit of a column's index
 
 Result<identify::LogOptions> log_options(const Options::Identify& options) {
   identify::LogOptions log{.odom_topic = options.odom_topic, .drive_topic = options.drive_topic};
@@ -267,8 +267,8 @@ std::vector<ShelfCar> shelf_by_wheelbase(double wheelbase) {
 /// The car of the shelf that the search begins with where nobody says: of those that turn as the logs do, the
 /// one from which a rough search explains them best.
 Result<std::string> car_for(const std::vector<identify::DriveLog>& logs, const std::function<bool()>& go_on) {
-  constexpr double kNear = 0.35;  // logarithm of the ratio of wheelbases
-  constexpr std::size_t kMostTried = 4;
+  constexpr double kNear = 0.35;         // logarithm of the ratio of wheelbases
+  constexpr std::size_t kMostTried = 4;  // limit of shipped cars that are tried as a start
   const double wheelbase = identify::turning_wheelbase(logs);
   const std::vector<ShelfCar> cars =
       std::isfinite(wheelbase) ? shelf_by_wheelbase(wheelbase) : std::vector<ShelfCar>{};

@@ -121,7 +121,7 @@ std::string preview_of(const road::Track& track, const protocol::TrackFile& cont
   document.add_text(words);
   for (const std::string& warning : content.warnings) document.add_text(warning);
   document.begin_map("what was recognised [m]", "x [m]");
-  const Vec2 margin{0.05 * extent, 0.05 * extent};
+  const Vec2 margin{0.05 * extent, 0.05 * extent};  // around the road
   if (const auto map = protocol::read_map(content.file)) add_map(document, *map, low - margin, high + margin);
   const std::size_t step = content.points.size() / kMostPoints + 1;
   for (std::size_t i = 0; i < content.points.size(); i += step) points.push_back(content.points[i].position);
@@ -207,7 +207,7 @@ Result<Imported> read_road(const Options::Import& import) {
         fmt::format("{}: size: {:.0f} m wide on average, expected at most {:g} m: is "
                     "the file in metres (a map: is its resolution)?",
                     import.file, width, kWideRoad));
-  const double usual = std::clamp(width / kPointsAcross, 0.05, 2.0);
+  const double usual = std::clamp(width / kPointsAcross, 0.05, 2.0);  // [m]
   Result<road::Track> track = protocol::make_track(*content);
   if (!track) return fail(track.error());
   Imported road{.content = std::move(*content),
@@ -228,7 +228,7 @@ TrackFile resampled(const Imported& road) {
   out.options.spacing = road.spacing;
   const double length = road.track.length();
   const int count = std::max(8, static_cast<int>(std::lround(length / road.spacing)));
-  const auto rounded = [](double value) { return std::round(1e4 * value) / 1e4; };
+  const auto rounded = [](double value) { return std::round(1e4 * value) / 1e4; };  // 0.1 mm
   for (int i = 0; i <= (out.is_closed ? count - 1 : count); ++i) {
     const double s = length * i / count;
     const Vec2 place = road.track.centre().at(s).position;

@@ -216,7 +216,7 @@ namespace {
 
 using protocol::Json;
 
-constexpr double kKmph = 3.6;
+constexpr double kKmph = 3.6;  // km/h for 1 m/s
 
 /// Lane change of one car: its lines are planned once for all controllers.
 struct CarOnCourse {
