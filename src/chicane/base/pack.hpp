@@ -364,7 +364,7 @@ template <class Arch, std::size_t N>
   return sqrt(x * x + y * y);
 }
 
-// With a constant.
+// Hypotenuse of a pack and a constant.
 template <class Arch, std::size_t N>
 [[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> hypot(const Pack<Arch, N>& x, double y) noexcept {
   return hypot(x, Pack<Arch, N>(y));

@@ -143,7 +143,7 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
     return result_;
   }
 
-  static constexpr int kReferencePoints = 32;
+  static constexpr int kReferencePoints = 32;  // points of the shown line
 
   std::string_view name_;
   Law law_;

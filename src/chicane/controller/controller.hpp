@@ -48,7 +48,7 @@ struct PlanPoint {
 
 /// Plan of a controller: predicted motion with its commands, and the line it follows. Data only.
 struct Plan {
-  static constexpr int kCapacity = 256;
+  static constexpr int kCapacity = 256;       ///< limit of points
   int size = 0;                               ///< points in use; 0 = no plan
   std::array<PlanPoint, kCapacity> points{};  ///< points[0] is where the first command acts
   int reference_size = 0;
@@ -111,7 +111,7 @@ enum class Answer : signed char {
 
 /// Report of one step.
 struct StepReport {
-  solver::SolveReport solve{.status = solver::SolveStatus::kOptimal};  ///< as without a solver
+  solver::SolveReport solve{.status = solver::SolveStatus::kOptimal};  ///< default without a solver
   /// Time when the command acts [s], clock of the run; NaN: measurement time plus its delay.
   double act_time = std::numeric_limits<double>::quiet_NaN();
   double lateral_error = 0.0;    ///< offset of the measured position from the line [m], left positive

@@ -49,7 +49,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
     result_.report = {};
     result_.report.solve.status = solver::SolveStatus::kNotFinite;  // until there is an answer
     if (!is_finite(now)) return no_answer(now);
-    start_ = roll_forward_.predict(now);  // where the car is when the command acts
+    start_ = roll_forward_.predict(now);  // state when the command acts
     start_time_ = now.time + roll_forward_.compensated();
     if (!see_line(now)) return no_answer(now);  // the waypoints from there, as a cubic
     shift_warm_start();                         // the last answer, moved on by the time since
@@ -60,7 +60,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
 
   void configure(const CubicMpcOptions& options, const model::VehicleParams& vehicle) noexcept override {
     const double steer_sign = options.steering_right_positive ? -1.0 : 1.0;
-    const bool means_the_same = steer_sign == steer_sign_;  // of the last answer's inputs
+    const bool means_the_same = steer_sign == steer_sign_;  // inputs of the last answer stay valid
     const double ratio = options.step_length / problem_.dt;
     uses_polar_ = options.polar_waypoints;
     line_order_ = options.line_order;
@@ -207,15 +207,15 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
 
   bool uses_polar_;
   int line_order_;
-  double steer_sign_;  ///< from the model's own steering sign to ours, and back
+  double steer_sign_;  ///< factor from the model's own steering sign to ours, and back
   int stages_;         ///< intervals: one less than states
   RollForward roll_forward_;
   CubicProblem problem_;
   Owned<CubicSolver> solver_;
-  Motion start_;              ///< of the horizon
+  Motion start_;              ///< start of the horizon
   double start_time_ = 0.0;   ///< [s]
-  CubicTrajectory answer_;    ///< of the last usable solve, in the frame of its start
-  double answer_time_ = 0.0;  ///< when it started [s]
+  CubicTrajectory answer_;    ///< last usable solve, in the frame of its start
+  double answer_time_ = 0.0;  ///< start of answer_ [s]
   bool has_answer_ = false;
   StepResult result_;
 };
@@ -223,7 +223,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
 using C = CubicMpcOptions;
 constexpr double kHighestWeight = 1e6;
 constexpr std::array<std::string_view, 5> kLatencyHandlings{
-    "none", "roll-forward", "measured", "position-only", "inside-model"};  // in the order of the enum
+    "none", "roll-forward", "measured", "position-only", "inside-model"};  // names in the order of the enum
 constexpr std::array kOptions{
     option<&C::horizon_steps>("horizon_steps", unit::kNone, 2, CubicProblem::kCapacity,
                               "N, the steps the plan looks ahead."),

@@ -145,7 +145,7 @@ namespace {
 
 /// No answer is half a second late: beyond it a measurement of the loop time says more about the clock than
 /// about the loop.
-constexpr double kMaxLatency = 0.5;
+constexpr double kMaxLatency = 0.5;  // [s]
 
 }  // namespace
 

@@ -286,7 +286,7 @@ struct CubicProblem {
   }
   static double weight_root(double weight) noexcept { return sqrt(2.0 * weight); }
 
-  double lateral_by_x_ = 0.0, lateral_by_y_ = -1.0;  ///< of DescribedModel
+  double lateral_by_x_ = 0.0, lateral_by_y_ = -1.0;  ///< terms of DescribedModel
 };
 
 }  // namespace chicane::controller

@@ -50,7 +50,7 @@ struct CubicTerms {
 [[nodiscard]] inline std::uint32_t bounds_met(const std::array<double, 2>& u,
                                               const std::array<double, 2>& low,
                                               const std::array<double, 2>& high) noexcept {
-  constexpr double kTouch = 1e-6;
+  constexpr double kTouch = 1e-6;  // tolerance at a bound, in the input's unit
   std::uint32_t bits = 0;
   if (u[0] <= low[0] + kTouch || u[0] >= high[0] - kTouch) bits |= bit(Constraint::kSteerLimit);
   if (u[1] >= high[1] - kTouch) bits |= bit(Constraint::kThrottleMax);

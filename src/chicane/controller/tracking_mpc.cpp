@@ -454,7 +454,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   TrackingMpcOptions options_;
-  model::VehicleParams configured_;  ///< whose grip may differ from the model's
+  model::VehicleParams configured_;  ///< its grip may differ from the model's
   model::PredictionModel model_;
   SlipReserve reserve_;
   LearnedGrip grip_{model_};
@@ -471,17 +471,17 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   StepResult result_;
   double s_ = 0.0;  ///< arc length on the line where the command acts
   double act_time_ = 0.0;
-  double sent_time_ = 0.0;            ///< from which the last command acts [s]
+  double sent_time_ = 0.0;            ///< time from which the last command acts [s]
   double old_first_ = 0.0;            ///< length of the first stage of the last answer [s]
-  double old_step_ = 0.0;             ///< of its other stages [s]
-  int iterations_ = kMostIterations;  ///< of the solver in this step
+  double old_step_ = 0.0;             ///< step of its other stages [s]
+  int iterations_ = kMostIterations;  ///< iterations of the solver in this step
   unsigned revision_ = 0;
   bool has_place_ = false;
   bool has_horizon_ = false;
-  bool is_returning_ = false;      ///< to the road, and has not joined it yet
-  Absence blind_{kBlindAfter};     ///< of measurements that tell where the car is
-  Absence roadless_{kBlindAfter};  ///< of waypoints
-  Absence late_{kBlindAfter};      ///< of answers, for want of time
+  bool is_returning_ = false;      ///< on the way to the road, and has not joined it yet
+  Absence blind_{kBlindAfter};     ///< no measurements that locate the car
+  Absence roadless_{kBlindAfter};  ///< no waypoints
+  Absence late_{kBlindAfter};      ///< no answers, for want of time
 };
 
 }  // namespace

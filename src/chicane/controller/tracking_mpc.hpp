@@ -53,7 +53,7 @@ struct TrackingMpcOptions {
   /// Grip that the first lap is planned with, over the vehicle parameters' grip.
   [[nodiscard]] double first_grip() const noexcept { return learns() ? kUnprovenGrip : 1.0; }
   [[nodiscard]] bool learns() const noexcept { return racing_line && learn_grip; }
-  static constexpr double kUnprovenGrip = 0.6;
+  static constexpr double kUnprovenGrip = 0.6;  ///< grip of the first lap, over the configured grip
   /// Options for turning waypoints into the road.
   [[nodiscard]] road::RoadOptions road() const noexcept {
     return {.half_width = assumed_half_width,

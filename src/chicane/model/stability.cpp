@@ -90,7 +90,7 @@ namespace {
 
 constexpr double kHalfPi = 1.5707963267948966;
 constexpr double kStep = 0.01;  // step between tested slips
-constexpr int kFrontSlips = 9;
+constexpr int kFrontSlips = 9;  // front slips at which stability is checked
 
 }  // namespace
 

@@ -171,7 +171,7 @@ class SlidingBound {
   /// no force is left to correct it.
   template <class T>
   [[nodiscard]] static T share(const T& v) noexcept {
-    constexpr double kAll = 42.0, kNone = 47.0;
+    constexpr double kAll = 42.0, kNone = 47.0;  // [m/s]
     const T t = (kNone - v) * (1.0 / (kNone - kAll));
     if (value_of(t) <= 0.0) return T(0.0);
     if (value_of(t) >= 1.0) return T(1.0);

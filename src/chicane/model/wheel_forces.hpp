@@ -142,7 +142,7 @@ struct Rounded {
 /// 0 from `end` on, for the slip in the direction of the force.
 template <class Corners, class T>
 [[nodiscard]] T torque_share(const T& slip, double start, double end) {
-  constexpr double kCorner = 0.02;
+  constexpr double kCorner = 0.02;  // rounding of both corners
   return Corners::share(T((end - slip) / (end - start)), kCorner);
 }
 
