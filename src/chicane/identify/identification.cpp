@@ -24,11 +24,11 @@
 namespace chicane::identify {
 namespace {
 
-constexpr double kWindow = 5.0;      ///< length of a window for a car in full size [s]
-constexpr double kSeen = 0.5;        ///< samples from which a prediction starts [s]
-constexpr double kLeastSpeed = 3.0;  ///< in full size: below it tyres creep and brakes hold [m/s]
-constexpr std::size_t kMostWindows = 400;
-constexpr int kRoughSteps = 12;
+constexpr double kWindow = 5.0;            ///< length of a window for a car in full size [s]
+constexpr double kSeen = 0.5;              ///< samples from which a prediction starts [s]
+constexpr double kLeastSpeed = 3.0;        ///< in full size: below it tyres creep and brakes hold [m/s]
+constexpr std::size_t kMostWindows = 400;  ///< limit of windows in the fit
+constexpr int kRoughSteps = 12;            ///< steps of the rough round
 constexpr double kRoughAccuracy = 3e-2,
                  kAccuracy = 1e-3;  ///< in deviations of the prior: an interval is a tenth of one
 constexpr std::string_view kRotating = "rotating";  ///< estimated with the others, and not of use to anybody
@@ -393,7 +393,7 @@ double turning_wheelbase(const std::vector<DriveLog>& logs) {
   constexpr double kLate = 0.15;        // [s] a usual delay and lag
   constexpr double kSpan = 0.2;         // [s] over which the yaw rate is taken
   constexpr double kLeastSteer = 0.03;  // [rad]
-  constexpr std::size_t kFewest = 20;
+  constexpr std::size_t kFewest = 20;   // samples in bends needed for a wheelbase
   // Least squares of steer = wheelbase · curvature + understeer · sideways acceleration.
   double cc = 0.0, ca = 0.0, aa = 0.0, cs = 0.0, as = 0.0;
   std::size_t count = 0;

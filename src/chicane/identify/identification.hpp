@@ -65,7 +65,7 @@ struct PredictedStretch {
 
 /// Count of samples by an axle's slip over the slip of its peak force.
 struct SlipCover {
-  static constexpr double kBin = 0.05;
+  static constexpr double kBin = 0.05;  ///< width of a bin
   std::array<int, 30> front{}, rear{};  ///< the last holds all beyond, too
 };
 

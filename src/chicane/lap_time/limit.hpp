@@ -110,9 +110,9 @@ struct Limit {
   std::vector<road::LinePoint> line;  ///< by rising time from the start line; the last repeats the first
 };
 
-/// Times [s] that a closed lap of `track` takes for each of road::corners_of(), with half of the straights
-/// beside it: road::corner_sectors(). Between the line's points the time is linear: within 1 ms. Empty for an
-/// empty line. Allocates.
+/// Times [s] of a closed lap of `track` for each of road::corners_of(), with half of the straights beside it:
+/// road::corner_sectors(). Between the line's points the time is linear: within 1 ms. Empty for an empty
+/// line. Allocates.
 [[nodiscard]] std::vector<double> corner_times(const road::Track& track, const road::RacingLine& line);
 
 /// Times and line of the bound, from the start line of `track` on; times of its corners, too.

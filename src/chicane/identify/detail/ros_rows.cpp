@@ -94,7 +94,7 @@ namespace {
 constexpr int kMostBytes = 16 << 20;  // limit of one message
 constexpr int kMostTopics = 10'000;
 constexpr long long kMostSteps = 2'000'000'000;  // limit of SQLite's machine: some minutes
-constexpr int kStepsBetween = 100'000;
+constexpr int kStepsBetween = 100'000;           // SQLite's steps between two checks of the limit
 
 using Database = std::unique_ptr<sqlite3, decltype(&sqlite3_close)>;
 using Statement = std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)>;

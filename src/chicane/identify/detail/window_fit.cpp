@@ -10,10 +10,10 @@
 namespace chicane::identify {
 namespace {
 
-constexpr int kStartSize = 6;
+constexpr int kStartSize = 6;           // numbers of a Start
 constexpr double kHuber = 2.5;          ///< deviations from which on a residual counts linearly
 constexpr double kSideslipSpeed = 1.0;  ///< standard deviation of v_y at a start [m/s]
-constexpr Start kStartStep{1e-4, 1e-4, 1e-5, 1e-4, 1e-4, 1e-5};
+constexpr Start kStartStep{1e-4, 1e-4, 1e-5, 1e-4, 1e-4, 1e-5};  // steps of derivatives, units of Start
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -282,7 +282,7 @@ class Correlation {
 WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,
                       const Prior& of_numbers, const std::vector<double>& from, const Noise& noise,
                       double accuracy, const std::function<bool()>& go_on) {
-  constexpr int kMostIterations = 40;
+  constexpr int kMostIterations = 40;  // limit of Gauss-Newton steps
   const Expectation prior(of_numbers);
   VectorXd theta = mapped(from);
   WindowFit fit;

@@ -33,10 +33,10 @@ class NodeFunctions {
 class Collocation {
  public:
   struct Options {
-    double tolerance = 1e-6;
-    double first_barrier = 0.1;
-    double last_barrier = 1e-8;
-    double cost_scale = 20.0;  ///< scale at which the cost of a node is about 1
+    double tolerance = 1e-6;     ///< limit of stationarity, violation and complementarity, scaled
+    double first_barrier = 0.1;  ///< μ at the start
+    double last_barrier = 1e-8;  ///< μ at the end
+    double cost_scale = 20.0;    ///< scale at which the cost of a node is about 1
     int most_iterations = 600;
     /// Progress callback: iteration, cost and largest violated equation; false ends the search. May be empty.
     std::function<bool(int, double, double)> go_on{};

@@ -32,10 +32,10 @@ class SymmetricBlock {
   mutable std::vector<double> work_;
 };
 
-/// Symmetric linear system of a ring of nodes (docs/limit.md, section 3). Node k has unknowns
-/// b_k = (z_k, λ_k, η_k): its variables, the multipliers of the interval that ends at it, and those of its
-/// own equations. Matrix: dense blocks on the diagonal, and B_k = ∂(interval from k to k + 1)/∂z_k between
-/// λ_{k+1} and z_k, cyclic. Nodes 1 … N−1 are eliminated in turn; what they leave falls on node 0.
+/// Symmetric linear system of a ring of nodes (docs/limit.md, section 3). Node k has unknowns b_k = (z_k,
+/// λ_k, η_k): its variables, the multipliers of the interval that ends at it, and those of its own equations.
+/// Matrix: dense blocks on the diagonal, and B_k = ∂(interval from k to k + 1)/∂z_k between λ_{k+1} and z_k,
+/// cyclic. Nodes 1 … N−1 are eliminated in turn, and their remainders are added to node 0.
 class CyclicSystem {
  public:
   CyclicSystem(int nodes, int variables, int states, int equations);

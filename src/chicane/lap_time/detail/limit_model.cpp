@@ -117,9 +117,9 @@ class UdacityLimit final : public WithModel<UdacityModel> {
   }
 
  private:
-  static constexpr double kSeen = 0.625;     ///< mean over the parts of a step of the remaining turn
-  static constexpr double kMostSlip = 0.19;  ///< [rad]
-  static constexpr double kNearLock = 0.985;
+  static constexpr double kSeen = 0.625;      ///< mean over the parts of a step of the remaining turn
+  static constexpr double kMostSlip = 0.19;   ///< [rad]
+  static constexpr double kNearLock = 0.985;  ///< share of the force at which wheels lock
   double friction_ = 1.0;
 };
 

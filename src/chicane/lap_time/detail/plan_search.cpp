@@ -160,7 +160,7 @@ Result<NodePlan> PlanSearch::find() {
                 is_out_of_budget_ ? kNoBudget : "limit: no optimum from any first guess");
   if (is_out_of_budget_) return best_so_far(std::move(best));
   const auto variables = static_cast<std::size_t>(model_.functions().variables);
-  for (const double barrier : {kWarmBarrier, 1e-2, 1e-3}) {
+  for (const double barrier : {kWarmBarrier, 1e-2, 1e-3}) {  // after the warm start two colder ones
     NodePlan fine;
     fine.road = nodes;
     fine.z = moved(best, fine.road, variables);
@@ -389,7 +389,7 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
   std::vector<double> gains(2 * driven);
   std::vector<double> x(driven);
   const double dt = plant.step_length();
-  const double most_time = (laps + 2.0) * 1.5 * plan.lap_time;
+  const double most_time = (laps + 2.0) * 1.5 * plan.lap_time;  // half as long again as planned
   for (double time = 0.0; time < most_time && judge.state().lap < laps;) {
     const sim::WorldState& seen = judge.state();
     table.at(seen.s, z.data(), gains.data());

@@ -30,10 +30,10 @@ struct UdacityModel {
 
   sim::UdacityCarParams car{};
   const RoadNodes* road = nullptr;
-  double margin = 0.0;         ///< kept from the edges [m]
-  double slip_share = kNoCap;  ///< largest slip of the front tyres over that of peak force
-  static constexpr double kNoCap = 10.0;
-  double brake_share = 1.0;  ///< share of the force at which the rear wheels lock
+  double margin = 0.0;                    ///< kept from the edges [m]
+  double slip_share = kNoCap;             ///< cap on slip of the front tyres over that of peak force
+  static constexpr double kNoCap = 10.0;  ///< caps nothing
+  double brake_share = 1.0;               ///< share of the force at which the rear wheels lock
   double steer_weight = 1e-5, pedal_weight = 1e-5;
 
   /// Mean delay of the helper at the tyres, over the parts of a step [s].
@@ -152,7 +152,7 @@ struct UdacityModel {
     return (1.0 - kSlipLoss) * 0.5 * car.drive_torque * per_radius / car.mass;
   }
   [[nodiscard]] double damping() const {
-    constexpr double kRimsFaster = 1.05;
+    constexpr double kRimsFaster = 1.05;  // rim speed over road speed
     return kRimsFaster * 2.0 * car.wheel_damping *
            (1.0 / (car.front_radius * car.front_radius) + 1.0 / (car.rear_radius * car.rear_radius)) /
            car.mass;
@@ -185,7 +185,7 @@ struct DoubleTrackModel {
   const RoadNodes* road = nullptr;
   double margin = 0.0;  ///< kept from the edges [m]
   double grip_share = 1.0;
-  double slip_share = kNoCap;  ///< largest combined slip over that of peak force
+  double slip_share = kNoCap;  ///< cap on combined slip over that of peak force
   double steer_weight = 1e-5, pedal_weight = 1e-5;
 
   template <class T>
@@ -286,13 +286,13 @@ struct DoubleTrackModel {
     }
   }
 
-  static constexpr double kNoCap = 10.0;
+  static constexpr double kNoCap = 10.0;  ///< caps nothing
 
  private:
   using Corners = model::Rounded;
-  static constexpr double kPedalCorner = 0.01;
-  static constexpr double kLoadCorner = 50.0;  ///< [N]
-  static constexpr double kLeastSlip = 1e-3;
+  static constexpr double kPedalCorner = 0.01;  ///< rounding of the pedal's corner at 0
+  static constexpr double kLoadCorner = 50.0;   ///< [N]
+  static constexpr double kLeastSlip = 1e-3;    ///< rounding of the slip's size at 0
 };
 
 /// The car as a controller models it (model/prediction.hpp) in continuous time (docs/racing.md,
@@ -314,7 +314,7 @@ struct VehicleModel {
   bool slides = false;  ///< the rear tyres slip as far as `sliding` permits
   const RoadNodes* road = nullptr;
   double margin = 0.0;         ///< kept from the edges [m]
-  double slip_share = 1.0;     ///< largest slip of an axle over that of its peak
+  double slip_share = 1.0;     ///< cap on slip of an axle over that of its peak
   double brake_share = 1.0;    ///< share of the largest useful deceleration
   double speed_limit = 100.0;  ///< [m/s]
   double steer_weight = 1e-3;  ///< weight of the steering's rate squared, in time [s/rad²·s]
