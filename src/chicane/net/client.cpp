@@ -29,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::milliseconds;
 
 constexpr std::size_t kMaxMessage = 1U << 20U;  // a reply with hundreds of points is 20 kB
-constexpr std::size_t kMaxHeader = 1U << 14U;
+constexpr std::size_t kMaxHeader = 1U << 14U;   // [byte]
 constexpr std::string_view kKeyGuid = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11";  // RFC 6455 §1.3
 
 /// Frame types of RFC 6455 §5.2.

@@ -154,7 +154,7 @@ struct PoseMessage {
 /// sensor_msgs/msg/LaserScan.
 struct ScanMessage {
   static constexpr std::string_view kType = "sensor_msgs/msg/LaserScan";
-  static constexpr std::size_t kCapacity = 100'000;
+  static constexpr std::size_t kCapacity = 100'000;  ///< beams; longer scans are refused
   std::int64_t stamp = 0;
   std::string frame{};
   double angle_min = 0.0;        ///< angle from the frame's x axis to the first beam, left positive [rad]
@@ -178,7 +178,7 @@ struct ScanMessage {
 
 /// geometry_msgs/msg/TransformStamped, in the plane.
 struct TransformMessage {
-  static constexpr std::size_t kSmallest = 72;
+  static constexpr std::size_t kSmallest = 72;  ///< [byte]
   std::int64_t stamp = 0;
   std::string frame{};
   std::string child_frame{};
@@ -192,7 +192,7 @@ struct TransformMessage {
 /// tf2_msgs/msg/TFMessage.
 struct TransformsMessage {
   static constexpr std::string_view kType = "tf2_msgs/msg/TFMessage";
-  static constexpr std::size_t kCapacity = 100'000;
+  static constexpr std::size_t kCapacity = 100'000;  ///< transforms; longer lists are refused
   std::vector<TransformMessage> transforms{};
   static void fields(auto& archive, auto& message) {
     archive.list(message.transforms, TransformMessage::kSmallest, kCapacity,

@@ -14,7 +14,7 @@
 
 /// The server's side of the Foxglove WebSocket protocol, version 1 (github.com/foxglove/ws-protocol,
 /// docs/spec.md), as pure functions between structs and bytes. Both of its sub-protocol names mean the same
-/// bytes. Who is subscribed to what is the caller's business (wire/viewer.hpp).
+/// bytes. The caller keeps the subscriptions (wire/viewer.hpp).
 namespace chicane::protocol::foxglove {
 
 using ParameterValue = std::variant<std::monostate, bool, double, std::string, std::vector<double>>;

@@ -35,7 +35,7 @@ struct JsonError {
 /// Parses a text; the error names the position of the fault.
 [[nodiscard]] tl::expected<Json, JsonError> read_json(std::string_view text);
 
-/// What a page of results shows, as JSON for the page that draws it (web/src/document): sections of prose,
+/// Contents of a page of results, as JSON for the page that draws it (web/src/document): sections of prose,
 /// tables, grids, charts and maps, in the order in which they are added. Texts are plain; words between
 /// backticks are code.
 ///

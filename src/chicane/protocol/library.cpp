@@ -26,8 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMostBytes = 64U << 20U;
-constexpr std::size_t kMostPresets = 8;  // presets that build on presets
+constexpr std::uintmax_t kMostBytes = 64U << 20U;  // [byte]
+constexpr std::size_t kMostPresets = 8;            // presets that build on presets
 
 struct ShelfNames {
   std::string_view singular, folder;

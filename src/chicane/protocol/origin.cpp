@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view kLogRemark = "[log] ";
 constexpr std::string_view kTo = " to ";
 constexpr std::size_t kMostRemarks = 12;
-constexpr std::size_t kLongestRemark = 300;
+constexpr std::size_t kLongestRemark = 300;  // [byte]
 constexpr std::size_t kMostParameters = 200;
 
 /// "  mass_kg: 3.4  # [log] 3.2 to 3.6".

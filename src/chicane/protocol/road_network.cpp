@@ -313,8 +313,9 @@ void lay_out(const XmlDocument& xml, xml_node road, bool is_forward, RoadRows& r
   }
 }
 
-/// Every kSpacing the mean place within kReach, weighted by a triangle: where an arc meets a straight the
-/// curvature rises along twice the reach, and an arc of radius R moves inwards by kReach² / 12 R. Edges stay.
+/// Smooths a line: every kSpacing the mean place within kReach, weighted by a triangle. Where an arc meets a
+/// straight the curvature rises along twice the reach, and an arc of radius R moves inwards by kReach² / 12
+/// R. Edges stay.
 std::vector<road::TrackPoint> eased(const std::vector<road::TrackPoint>& points, bool closed) {
   const auto n = static_cast<std::ptrdiff_t>(points.size());
   const auto at = [&](std::ptrdiff_t i) -> const Vec2& {

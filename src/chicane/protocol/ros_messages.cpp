@@ -298,7 +298,7 @@ RosTopic topic(std::string_view name, std::string_view type, Cadence cadence,
 }  // namespace
 
 RoadLines road_lines(const road::Track& track, double spacing) {
-  constexpr double kMaxPoints = 20'000.0;
+  constexpr double kMaxPoints = 20'000.0;  // limit of points in a line
   const road::Path& centre = track.centre();
   const double step = std::max(spacing, centre.length() / kMaxPoints);
   const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(centre.length() / step)));
@@ -380,7 +380,7 @@ std::string encode_service_response(bool success, std::string_view message) {
 }
 
 std::uint64_t to_nanoseconds(double seconds) noexcept {
-  constexpr double kLast = 2147483647.0;
+  constexpr double kLast = 2147483647.0;  // largest time in ROS's int32 [s]
   return static_cast<std::uint64_t>(std::llround(1e9 * std::clamp(or_zero(seconds), 0.0, kLast)));
 }
 

@@ -11,8 +11,8 @@
 #include "chicane/scenario/scenario.hpp"
 
 /// Table of all settings: the rows of each options struct (base/option.hpp) under the keys of YAML files,
-/// --set, the command line's help, the dashboard's sliders and docs/reference/configuration.md. To add a
-/// tunable is to add a row beside its field.
+/// --set, the command line's help, the dashboard's sliders and docs/reference/configuration.md. A new setting
+/// is a new row beside its field.
 namespace chicane::protocol {
 
 using Kind = OptionKind;

@@ -36,8 +36,8 @@ struct Control {
 /// The shelf of a setting whose text may name a file: "preset", "car", "track".
 [[nodiscard]] std::optional<Shelf> shelf_of(std::string_view key);
 
-/// What a page needs to draw sliders, as JSON: an array of {"key", "group", "kind": "number" | "integer" |
-/// "bool" | "choice" | "text", "unit", "minimum", "maximum", "may_be_infinite", "choices", "default",
+/// Settings as JSON, for a page that draws sliders: an array of {"key", "group", "kind": "number" | "integer"
+/// | "bool" | "choice" | "text", "unit", "minimum", "maximum", "may_be_infinite", "choices", "default",
 /// "start", "meaning", "is_live", "is_fixed"}, for faults "fault": {"group", "duration_s", "strength",
 /// "weakest", "strongest", "strength_meaning"}, the schema's rows that `is_offered` lets in, then the
 /// controls. `defaults` says what "default" is, `start` with what the run started; controls have no "start".

@@ -47,7 +47,7 @@ struct TrackFile {
 inline constexpr double kMaxTrackWidth = 1000.0;  ///< limit to one side [m]
 inline constexpr double kMaxTrackScale = 1000.0;
 inline constexpr std::size_t kMaxTrackPoints = 1'000'000;
-inline constexpr std::size_t kMaxTrackBytes = std::size_t{64} << 20U;
+inline constexpr std::size_t kMaxTrackBytes = std::size_t{64} << 20U;  // [byte]
 
 /// A kind of file that roads are read from, by the end of its name.
 struct TrackFormat {

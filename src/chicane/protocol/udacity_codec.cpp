@@ -376,7 +376,7 @@ std::string encode_stop(const safety::StopPlan& stop, double sampled) {
     const safety::StopPoint& point = stop.points[static_cast<std::size_t>(i)];
     const std::array numbers{point.time - sampled, point.distance, point.speed,
                              -point.command.steer / kSteerUnit, point.command.throttle};
-    constexpr std::array kUnits{1e-3, 1e-3, 1e-3, 1e-4, 1e-4};
+    constexpr std::array kUnits{1e-3, 1e-3, 1e-3, 1e-4, 1e-4};  // resolution of each column
     text += k == 0 ? "[" : ",[";
     for (std::size_t n = 0; n < numbers.size(); ++n) {
       if (!std::isfinite(numbers[n])) return {};

@@ -17,7 +17,7 @@ namespace {
 
 using Kind = YamlNode::Kind;
 
-constexpr std::size_t kMostBytes = 256U << 10U;
+constexpr std::size_t kMostBytes = 256U << 10U;  // [byte]
 
 /// Checks on the bytes before a YAML parser gets them.
 Result<void> check_bytes(std::string_view text, const std::string& file) {

@@ -35,8 +35,8 @@ struct ServeOptions : run::ExternalDriveOptions {
   /// Silence of a client before it gets the Engine.IO open packet. Stock clients wait for the packet; the
   /// original speaks first, and would double its loop if it got one.
   std::chrono::nanoseconds open_after = std::chrono::seconds{1};
-  std::chrono::nanoseconds quiet_after = std::chrono::seconds{1};   ///< until another connection may drive
-  std::chrono::nanoseconds silent_after = std::chrono::seconds{3};  ///< until a report of missing telemetry
+  std::chrono::nanoseconds quiet_after = std::chrono::seconds{1};   ///< silence until another may drive
+  std::chrono::nanoseconds silent_after = std::chrono::seconds{3};  ///< silence until it is reported
 };
 
 /// Callbacks of the server; the inherited ones are called on the control thread.

@@ -28,7 +28,7 @@
 namespace chicane::wire {
 namespace {
 
-constexpr double kPatienceInCycles = 3.0;
+constexpr double kPatienceInCycles = 3.0;  // patience over the usual cycle
 
 }  // namespace
 

@@ -16,7 +16,7 @@ namespace chicane::protocol {
 /// An XML document whose elements have no namespace prefix. This header is for our own sources and not
 /// installed.
 struct XmlDocument {
-  static constexpr std::size_t kMostBytes = std::size_t{32} << 20U;
+  static constexpr std::size_t kMostBytes = std::size_t{32} << 20U;  ///< [byte]
   static constexpr std::ptrdiff_t kMostTags = 2'000'000;
   static constexpr int kMostDepth = 64;
 
