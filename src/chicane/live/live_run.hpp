@@ -38,7 +38,7 @@ struct LiveRunOptions {
 };
 
 /// A run with our simulator, paced by the clock, which people watch and change while it goes on: the loop,
-/// its viewers, recording, limit and settings, and what each thread hands to which.
+/// its viewers, recording, limit and settings, and the data that threads exchange.
 ///
 /// Threads, and what each owns: the thread of run() the loop, the recorder's input and RunPublisher; the
 /// network thread LiveSettings, the viewers and the runs that were built; a builder, a searcher of the limit

@@ -64,14 +64,14 @@ struct LiveSettingsOptions {
   std::function<void(const scenario::Scenario&)> on_accepted{};
 };
 
-/// The settings of a run that goes on, for viewers to read and set: every tunable of the schema under its own
-/// key, "run.pace", "manual.is_on", "manual.steer", "manual.throttle" and the faults (docs/viewer.md).
+/// Settings of a running run, for viewers to read and set: every setting of the schema under its own key,
+/// "run.pace", "manual.is_on", "manual.steer", "manual.throttle" and the faults (docs/viewer.md).
 ///
 /// A value is read and checked here, on the network thread, and then waits as data in a queue until the
-/// control thread applies it between two cycles. get() and list() show what was accepted last: what holds
-/// from the next control step on, or, for what starts the run anew, when the other run has been built. Until
-/// then the old one goes on, changes count for both, and another choice takes the place of the one before.
-/// All member functions but tell() are the network thread's.
+/// control thread applies it between two cycles. get() and list() show the last accepted value: it holds from
+/// the next control step on, or, if it restarts the run, once the other run has been built. Until then the
+/// old run continues, changes count for both, and another choice replaces the one before. All member
+/// functions but tell() are the network thread's.
 ///
 /// Viewers are strangers. They choose presets, cars and tracks of the library by name, and no file but those
 /// the run was started with; no sentence for them quotes a file. Settings of the guard and of the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Limit of the current run: searches beside it, again after a change of grip or mass.
+// Limit of the current run: searched during the run, again after a change of grip or mass.
 #include "chicane/live/run_limit.hpp"
 
 #include <chrono>
@@ -12,8 +12,8 @@
 namespace chicane::live {
 namespace {
 
-constexpr auto kNap = std::chrono::milliseconds(10);
-constexpr auto kSettle = std::chrono::milliseconds(300);
+constexpr auto kNap = std::chrono::milliseconds(10);      // period of asking for the answer
+constexpr auto kSettle = std::chrono::milliseconds(300);  // time without changes before a new search
 constexpr const char* kChanged = "the car's grip or mass has changed: it is being computed anew";
 constexpr const char* kOpenRoad = "the road is open: it has no laps";
 

@@ -38,9 +38,9 @@ class RunLimit {
   [[nodiscard]] static lap_time::LimitAnswer first_answer(const road::Track& track);
   /// Another run: gives up the one before, and begins to search where the road is closed. Does not wait.
   void search(const road::Track& track, const scenario::Scenario& scenario);
-  /// After each control cycle of a run whose settings change while it goes on: with another grip or mass of
-  /// the car, what was found no longer holds. Says so, and searches again for the laps that begin from then
-  /// on, once they have stood still for a moment. Does not wait.
+  /// Follows settings that change during a run; call it after each control cycle. With another grip or mass
+  /// the limit is void: reports that, and searches again for the laps from then on, once both have not
+  /// changed for a moment. Does not wait.
   void follow(const scenario::Scenario& now, const telemetry::Frame& frame);
   /// A run whose limit cannot be known, because `why`.
   void give_up(std::string why);

@@ -28,7 +28,7 @@ constexpr double kMostDelay = 0.5;                              // [s]
 
 /// The middle one of the times between the newest measurements.
 double usual_period(const std::vector<Seen>& seen, std::size_t to, double otherwise) {
-  constexpr std::size_t kLooked = 100;
+  constexpr std::size_t kLooked = 100;  // limit of sightings that give the usual period
   std::vector<double> periods;
   for (std::size_t i = to; i > 0 && periods.size() < kLooked; --i)
     periods.push_back(seen[i].time - seen[i - 1].time);
@@ -158,7 +158,7 @@ Result<recording::BranchReport> ServedFutures::branch(const recording::BranchOpt
   const auto from = std::make_shared<recording::ShadowRun>();
   if (Result<void> begun = follow(*from, scenario, seen, known->at); !begun) return fail(begun.error());
   recording::BranchOptions from_there = options;
-  from_there.at = seen[known->at].time + 1.0;  // after all that is recorded: the futures begin where it ends
+  from_there.at = seen[known->at].time + 1.0;  // after the record: the futures begin where it ends
   from_there.drives_both = true;
   from_there.from = from;
   const recording::RunEvents nothing = [](const auto&) { return Result<void>{}; };

@@ -116,12 +116,12 @@ Result<std::string> text_of(const Json& value) {
 Result<WhatIfQuestion> read_question(std::string_view text) {
   const Json json = protocol::parse_json(text);
   if (!json.is_object()) return refuse("the question", "a JSON object");
-  constexpr double kEver = 1e9;
+  constexpr double kEver = 1e9;  // later than any run [s]
   const auto at = number_of(json, "at_s", 0.0, kEver, kEver);
   if (!at) return fail(at.error());
   const auto duration = number_of(json, "for_s", 0.1, WhatIfQuestion::kLongest, WhatIfQuestion::kLongest);
   if (!duration) return fail(duration.error());
-  const auto laps = number_of(json, "laps", 0.0, 10.0, 0.0);
+  const auto laps = number_of(json, "laps", 0.0, 10.0, 0.0);  // at most ten
   if (!laps) return fail(laps.error());
   const auto log = number_of(json, "log", 0.0, 1000.0, 0.0);
   if (!log) return fail(log.error());
@@ -318,7 +318,7 @@ void Rival::catch_up() {
 }
 
 void Rival::take(const RunLog::Step& step) {
-  constexpr double kRounding = 1e-9;
+  constexpr double kRounding = 1e-9;  // rounding of times [s]
   const run::ClosedLoop& loop = car_->loop();
   car_->drive([&] { return loop.time() >= step.time + kRounding; });
   if (loop.is_over()) end(State::kEnded, loop.summary().end_reason);

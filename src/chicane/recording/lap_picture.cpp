@@ -18,7 +18,7 @@ namespace chicane::recording {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kMostMoments = 4'000'000;
+constexpr std::size_t kMostMoments = 4'000'000;  // limit of control steps read
 
 std::vector<Vec2> points_of(const RosContent& message, std::string_view x, std::string_view y) {
   const std::vector<double>& xs = message.list(x);

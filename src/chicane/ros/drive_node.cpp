@@ -387,7 +387,7 @@ class DriveNode {
   CarSight sight_;
   ClockWatch clock_;
   FrameTree frames_;
-  std::optional<bool> has_transform_{};  ///< there is a transform from odometry to map; reported
+  std::optional<bool> has_transform_{};  ///< whether odometry has a transform to the map, as reported last
   PartnerWatch partners_;
   wire::ServeSummary summary_;
   protocol::StopMessage stop_message_;

@@ -50,8 +50,8 @@ struct NodeOptions {
   /// Seconds of the simulator in a second of the clock, > 0; it then sends /clock. 0: as many, without.
   double pace = 0.0;
   std::string map_file{};              ///< map that the simulated /scan sees; empty: the road's edges
-  Qos odom_qos{.is_reliable = false};  ///< for the controller's reader; the simulator sends reliably
-  Qos drive_qos{};                     ///< for the controller's writer; the simulator reads best effort
+  Qos odom_qos{.is_reliable = false};  ///< settings of the controller's reader; the simulator sends reliably
+  Qos drive_qos{};                     ///< settings of its writer; the simulator reads best effort
 };
 
 /// The walls of an occupancy map (protocol/occupancy_map.hpp): cells darker than occupied_thresh; unknown
@@ -61,10 +61,9 @@ struct NodeOptions {
 /// `chicane ros`: wire::serve for a car that speaks ROS 2. Reads odometry, answers each with a command, and
 /// publishes the run (run_publisher.hpp). Dashboard, settings and recording are those of `serve`.
 ///
-/// A control cycle begins with odometry, at most one each 0.75 control periods. Where none comes in time the
-/// cycle is one in which nothing was measured, and the guard decides; after kAbsence of that cycles end until
-/// odometry comes again. The car is stopped by the stop at hand when TopicNames::stop says so, and drives on
-/// from rest alone.
+/// A control cycle begins with odometry, at most one each 0.75 control periods. If none comes in time the
+/// cycle has no measurement, and the guard decides; after kAbsence without odometry cycles end until it
+/// returns. TopicNames::stop makes the car execute its stop plan; it continues only from rest.
 ///
 /// Uses of the options: track, lap, scenario, step_budget, forget_after, silent_after, server (dashboard).
 /// kIo when DDS or the port fails.

@@ -18,7 +18,7 @@ namespace chicane::ros {
 /// simulator sends (odometry, transforms, drive, clock). Only topics with a reader are encoded. One thread.
 ///
 /// The estimate of the car goes as /chicane/odom. Stamps are those of the system clock. The road's lines are
-/// transient local: who comes late gets them, too.
+/// transient local: late readers get them, too.
 class RunPublisher {
  public:
   /// `run` outlives this. kIo when DDS refuses a topic.

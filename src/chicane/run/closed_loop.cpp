@@ -164,7 +164,7 @@ void ClosedLoop::watch_faults() noexcept {
 /// receiver's own braking.
 model::Command ClosedLoop::acting() noexcept {
   const double late = faults_.extra_delay(scenario_.latency);
-  const model::Command& arrived = car_.in_flight.at(time() + 1e-9 - late);
+  const model::Command& arrived = car_.in_flight.at(time() + 1e-9 - late);  // 1e-9 s: rounding
   model::Command command = faults_.done(car_.receiver.guard(arrived, time() - late, car_.speed()));
   if (interceptor_.actuated) interceptor_.actuated(time(), command);
   return command;

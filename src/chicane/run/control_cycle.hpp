@@ -35,9 +35,8 @@ struct CycleInput {
 ///
 ///     measurement → plausibility → controller → fallback → gate → what is sent → frame
 ///
-/// What is between measurement and gate is safety::Guard's. A model car is seen by it in full size
-/// (model/vehicle.hpp); frames and stops are of the car as it is. No allocation; one thread; objects are
-/// independent.
+/// safety::Guard does all between measurement and gate. It gets a model car in full size (model/vehicle.hpp);
+/// frames and stops have the actual size. No allocation; one thread; objects are independent.
 class ControlCycle {
  public:
   /// Pre: `controller` is not null. The scenario's vehicle gives the model's parameters, its guard watches.

@@ -32,7 +32,7 @@ int parts_of(const DoubleTrackParams& p) noexcept {
       0.5 * p.mass * DoubleTrackParams::kGravity * std::max(p.front_axle, p.rear_axle) / p.wheelbase();
   const double stiffness = load * p.friction * p.shape * std::max(p.stiffness_front, p.stiffness_rear);
   const double squared = p.wheel_radius * p.wheel_radius * stiffness / (p.wheel_inertia * p.relaxation_along);
-  constexpr double kMostParts = 50.0;
+  constexpr double kMostParts = 50.0;  // limit of parts in a step
   return static_cast<int>(
       std::clamp(std::ceil(DoubleTrack::kStepLength * std::sqrt(squared) / kMostTurn), 1.0, kMostParts));
 }

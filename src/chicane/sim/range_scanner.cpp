@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kPiece = 32;  // points of a wall in one circle
 constexpr double kInside = 0.02;    // share of the road's width: a wall so far inside crosses the road
 constexpr double kTwoPi = 2.0 * 3.14159265358979323846;
-constexpr double kMaxWallPoints = 400'000.0;
+constexpr double kMaxWallPoints = 400'000.0;  // limit of points of both walls
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -135,7 +135,7 @@ std::vector<std::vector<Vec2>> RangeScanner::walls() const {
 
 namespace {
 
-constexpr int kMostRoom = 255;
+constexpr int kMostRoom = 255;  // limit of a stored distance [cells]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Range of t in which x0 + t u lies in [0, size], for one axis.

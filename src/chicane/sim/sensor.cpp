@@ -102,7 +102,7 @@ double ActuationDelay::last_time() const noexcept {
 
 const model::Command& ActuationDelay::at(double time) noexcept {
   // A command due within a nanosecond is due: sums of step lengths round.
-  constexpr double kRounding = 1e-9;
+  constexpr double kRounding = 1e-9;  // rounding of times [s]
   while (count_ > 0 && waiting_[static_cast<std::size_t>(first_)].time <= time + kRounding) {
     acting_ = waiting_[static_cast<std::size_t>(first_)].command;
     first_ = (first_ + 1) % kCapacity;

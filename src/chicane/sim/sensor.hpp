@@ -72,7 +72,7 @@ class ActuationDelay {
     double time = 0.0;
     model::Command command;
   };
-  static constexpr int kCapacity = 128;
+  static constexpr int kCapacity = 128;  ///< commands in flight
   std::array<Entry, kCapacity> waiting_{};
   int first_ = 0;
   int count_ = 0;

@@ -90,7 +90,7 @@ namespace {
 
 constexpr double kAdvance = 0.82;  // step from letter to letter, in letter sizes
 constexpr double kStroke = 0.13;   // thickness of letters, in sizes
-constexpr int kDiscCorners = 24;
+constexpr int kDiscCorners = 24;   // corners of the polygon for a disc
 
 std::uint8_t mixed(std::uint8_t below, std::uint8_t above, double share) {
   return static_cast<std::uint8_t>(std::lround(below + share * (above - below)));

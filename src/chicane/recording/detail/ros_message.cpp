@@ -13,8 +13,8 @@
 namespace chicane::recording {
 namespace {
 
-constexpr int kMostDepth = 8;
-constexpr std::size_t kMostElements = 1U << 20U;
+constexpr int kMostDepth = 8;                     // limit of nested messages
+constexpr std::size_t kMostElements = 1U << 20U;  // limit of a list's elements and a text's bytes
 
 }  // namespace
 
@@ -61,7 +61,7 @@ class RosReader::Cursor {
   }
 
  private:
-  static constexpr std::size_t kHeader = 4;
+  static constexpr std::size_t kHeader = 4;  ///< encapsulation header [byte]
 
   bool take(void* to, std::size_t size) {
     at_ = kHeader + (at_ - kHeader + size - 1) / size * size;
