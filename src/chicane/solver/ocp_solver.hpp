@@ -119,11 +119,11 @@ class OcpSolver {
   static constexpr std::size_t kSize = Capacity;
   static constexpr std::size_t kFirstHorizon = 5;  ///< first of the growing horizons
   static constexpr std::size_t kMaxGrowth = 16;
-  static constexpr double kGoodEnoughToGrow = 1e-1;
+  static constexpr double kGoodEnoughToGrow = 1e-1;  ///< residual at which the horizon grows
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static constexpr double kDefectShare = 1e-7;   ///< share of the tolerance: Hessians amplify defects
-  static constexpr double kDefectFloor = 2e-15;  ///< limit by rounding
-  static constexpr double kRounding = 2.2e-16;
+  static constexpr double kDefectShare = 1e-7;    ///< share of the tolerance: Hessians amplify defects
+  static constexpr double kDefectFloor = 2e-15;   ///< limit by rounding
+  static constexpr double kRounding = 2.2e-16;    ///< rounding of doubles
   static constexpr double kFloorResidual = 1e-6;  ///< most that kAtFloor may have
   static constexpr bool kCanFilter = has_filter_method<P>();
   /// Steps this short: exact curvature from here on. Dense problems pay for it.
@@ -315,7 +315,7 @@ class OcpSolver {
   /// Structured problems have second derivatives almost for free. Dense ones cost as much as several
   /// iterations: only where Gauss–Newton needs more than that.
   [[nodiscard]] bool curvature_pays() const noexcept {
-    constexpr double kIterations = 6.0;
+    constexpr double kIterations = 6.0;  // iterations to the tolerance that cost less
     return has_cheap_curvature<P>() || progress_.is_slow(0.1 * options_.tolerance, kIterations);
   }
   /// Gauss–Newton would need tens of iterations, or the filter method has brought a point near the solution:

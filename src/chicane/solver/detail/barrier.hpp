@@ -201,7 +201,7 @@ class Barrier {
   /// Lowers the barrier after a full step, the faster the longer the slacks let it be, and the shorter the
   /// longest move of an input was.
   void lower(double length, double longest) noexcept {
-    constexpr double kNear = 0.1;
+    constexpr double kNear = 0.1;  // change that counts as small
     const double least = longest <= kNear ? 0.01 : 0.1;
     const double share = length > 0.9 ? std::min(least, std::sqrt(mu_)) : (length > 0.5 ? 0.2 : 0.6);
     mu_ = std::max(final_, share * mu_);

@@ -67,8 +67,8 @@ class Descent {
   /// any more, or the deadline came first.
   bool step(const P& problem, const Linearised& now, Lq& lq, Slacks& slacks, Point& t,
             const Deadline& deadline, int& sweeps) noexcept {
-    constexpr int kAttempts = 12;
-    constexpr int kHalvings = 6;
+    constexpr int kAttempts = 12;  // trials with a larger shift each
+    constexpr int kHalvings = 6;   // trials of a shorter step each
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       ++sweeps;
       lq.backward(t.horizon, shift_, true);

@@ -19,8 +19,8 @@ struct Merit {
 /// Wächter, Biegler 2006). A fixed number of them: the ones that exclude least are forgotten.
 class Filter {
  public:
-  static constexpr double kMissMargin = 1e-5;
-  static constexpr double kCostMargin = 1e-8;
+  static constexpr double kMissMargin = 1e-5;  ///< margin of the miss, relative
+  static constexpr double kCostMargin = 1e-8;  ///< margin of the cost, over the miss
 
   /// Empty but for an upper limit of the miss.
   void reset(double most_miss) noexcept {
@@ -52,7 +52,7 @@ class Filter {
   }
 
  private:
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMost = 64;  ///< limit of entries
   std::array<Merit, kMost> entry_{};
   std::size_t count_ = 0;
   double most_miss_ = 0.0;

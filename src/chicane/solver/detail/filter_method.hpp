@@ -107,7 +107,7 @@ class FilterMethod {
   }
   /// Goes on with a lower barrier from where it left off. False when there is none.
   bool resume(Linearised& now, Slacks& slacks, Point& t) noexcept {
-    constexpr double kLeast = 1e-13;
+    constexpr double kLeast = 1e-13;  // least barrier, in units of costs
     if (final_mu_ <= kLeast * unit_) return false;
     final_mu_ = std::max(kLeast * unit_, 1e-2 * final_mu_);
     floor_ = {};
@@ -164,11 +164,11 @@ class FilterMethod {
   }
 
  private:
-  static constexpr double kNearBarrier = 1e-3;
+  static constexpr double kNearBarrier = 1e-3;  ///< first barrier near a solution
   static constexpr double kFirstBarrier = 0.1;  ///< first barrier where gradients are at most kSteep
-  static constexpr double kSteep = 100.0;
+  static constexpr double kSteep = 100.0;       ///< slope of costs that needs no scaling
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static constexpr double kShort = 0.1;
+  static constexpr double kShort = 0.1;  ///< length of a short step
   static constexpr int kShortInSuccession = 3, kMostLeaps = 4;
   static constexpr double kRowWeight = 1e6;  ///< ρ of rows that must hold, and the penalty of hard limits, in
   static constexpr double kHardPenalty = 1e6;  ///< the unit of costs
@@ -302,7 +302,7 @@ class FilterMethod {
   /// share of the defects.
   Outcome search(const P& problem, Linearised& now, const Lq& lq, Slacks& slacks, Point& t, const Merit& here,
                  const Deadline& deadline) noexcept {
-    constexpr int kPatience = 4;
+    constexpr int kPatience = 4;  // trials before a simulation is tried
     const double fraction = std::max(0.99, 1.0 - mu_ / unit_);
     const StepLengths own = bounds_.find(lq, step_, mu_, fraction);
     const StepLengths soft = soft_.find(problem, slacks, step_, fraction);
@@ -417,7 +417,7 @@ class FilterMethod {
 
   /// First a larger shift, then new multipliers and slacks, then a simulation, which has no defects.
   Outcome recover(const P& problem, const Lq& lq, Point& t) noexcept {
-    constexpr int kMostSimulations = 8;
+    constexpr int kMostSimulations = 8;  // limit in one solve
     candidate_ = t;
     ++failures_;
     if (failures_ == 1) {
@@ -452,7 +452,7 @@ class FilterMethod {
   Point step_;
   Point candidate_;  ///< point of the line search; between iterations the present one
   alignas(64) double residual_[kNx][kStageStride<Capacity>]{};  ///< optimality in the states
-  double multipliers_[kNx][Capacity]{};                         ///< of the dynamics at the last hand-over
+  double multipliers_[kNx][Capacity]{};                         ///< multipliers at the last hand-over
   double gradient_[Capacity][kNz]{};                            ///< gradients of the stage costs
   double mu_ = kFirstBarrier;
   double final_mu_ = 1e-6;

@@ -167,7 +167,7 @@ class BoundBarrier {
   }
   /// Moves to the point of the last measure(); multipliers by `dual_length` of their direction.
   void move(double dual_length, double mu) noexcept {
-    constexpr double kFar = 1e10;
+    constexpr double kFar = 1e10;  // range of z around μ / t, as a factor
     each([&](std::size_t, Kind, Side& side, std::size_t k, const auto& exists) {
       const V t = V::load(side.at + k);
       const V z = V::load(side.z + k) + dual_length * V::load(side.dz + k);
@@ -178,7 +178,7 @@ class BoundBarrier {
 
   /// Bounds at a thousandth of their width or less become the working set of `qp`.
   void choose_working_set(Solver& qp) const noexcept {
-    constexpr double kActive = 1e-3;
+    constexpr double kActive = 1e-3;  // share of the width that counts as at the bound
     for (std::size_t k = 0; k < horizon_; ++k) {
       for (std::size_t m = 0; m < kNu; ++m) {
         if (!has_width(qp, k, m)) continue;
@@ -312,7 +312,7 @@ class SoftSteps {
   }
   /// Moves to the point of the last measure(); multipliers by `dual_length` of their direction.
   void move(Slacks& slacks, std::size_t horizon, double dual_length) noexcept {
-    constexpr double kFar = 1e10;
+    constexpr double kFar = 1e10;  // range of multipliers around the central path
     const double mu = slacks.mu();
     for (std::size_t k = 0; k < horizon; k += 8) {
       for (std::size_t c = 0; c < slacks.count(); ++c) {

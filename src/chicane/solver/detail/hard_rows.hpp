@@ -272,7 +272,7 @@ class HardRows {
   /// Moves to the point of the last measure(); multipliers of equalities that must hold by `length` of their
   /// direction, others by `dual_length`.
   void move(P& problem, double length, double dual_length, double mu, std::size_t horizon) noexcept {
-    constexpr double kFar = 1e10;
+    constexpr double kFar = 1e10;  // range of y around μ / n, as a factor
     const double by = is_elastic() ? dual_length : length;
     for (std::size_t n = 0; n < kStageRows; ++n) {
       for (std::size_t k = 0; k < horizon; k += 8) {
@@ -305,8 +305,8 @@ class HardRows {
 
  private:
   static constexpr std::size_t kStride = kStageStride<Capacity>;
-  static constexpr double kPush = 1e-2;
-  static constexpr double kNearlyNone = 1e-12;
+  static constexpr double kPush = 1e-2;         ///< least start of n, relative to h
+  static constexpr double kNearlyNone = 1e-12;  ///< weight of a row without effect
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   template <class T, std::size_t N>
   using Of = std::array<T, (N > 0 ? N : 1)>;

@@ -89,7 +89,7 @@ class HardSolver {
   static constexpr std::size_t kNh = Problem::kEqualities, kNc = P::kNc;
   static constexpr std::size_t kNeh = Problem::kEndEqualities;
   static constexpr std::size_t kEnd = kNeh + Problem::kEndConstraints;
-  static constexpr int kMostRounds = 40;
+  static constexpr int kMostRounds = 40;  ///< limit of rounds
   static constexpr int kTrialSpent = -1;
   static constexpr double kFirstShare = 10.0;  ///< cost of the guess over its weighted violation
   static constexpr double kLeastWeight = 1e-2, kMostFirstWeight = 10.0, kMostWeight = 1e9;

@@ -106,7 +106,7 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
 /// by more than rounding does.
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::bring_inside() noexcept {
-  constexpr double kMoved = 1e-12;
+  constexpr double kMoved = 1e-12;  // change that is more than rounding, relative
   bool has_moved = false;
   for (std::size_t m = 0; m < kNu; ++m) {
     for (std::size_t k = 0; k < t_.horizon; ++k) {

@@ -40,7 +40,7 @@ class Progress {
   }
 
  private:
-  static constexpr double kImprovement = 0.9;
+  static constexpr double kImprovement = 0.9;  ///< step that counts as shorter, relative
   static constexpr int kPatience = 2;
   double shortest_ = std::numeric_limits<double>::infinity();
   double last_ = std::numeric_limits<double>::infinity();
@@ -61,7 +61,7 @@ class FloorWatch {
   void note_step(bool is_tiny) noexcept { tiny_ = is_tiny ? tiny_ + 1 : 0; }
 
  private:
-  static constexpr double kFalls = 0.9;
+  static constexpr double kFalls = 0.9;  ///< residual that counts as less, relative
   static constexpr int kMostIdle = 6, kMostTiny = 2;
   double least_ = std::numeric_limits<double>::infinity();
   int idle_ = 0;  ///< residuals since it fell
@@ -83,7 +83,7 @@ class Course {
   }
 
  private:
-  static constexpr double kDearer = 5.0;
+  static constexpr double kDearer = 5.0;  ///< cost that counts as lost, relative
   double least_cost_ = std::numeric_limits<double>::infinity();
   double its_defect_ = 0.0;
 };
@@ -111,8 +111,8 @@ class RoundProgress {
 
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static constexpr double kSmall = 1e-2;
-  static constexpr int kShort = 10;  ///< iterations
+  static constexpr double kSmall = 1e-2;  ///< miss that counts as small, relative to the guess
+  static constexpr int kShort = 10;       ///< iterations
   double first_ = kInfinity;
   double best_ = kInfinity;
   int idle_ = 0;

@@ -20,7 +20,7 @@ enum class Hold : std::int8_t { kLow = -1, kFree = 0, kHigh = 1 };
 /// interval without width is always held.
 [[nodiscard]] CHICANE_INLINE inline Hold next_hold(Hold hold, double u, double slope, double low, double high,
                                                    double curvature) noexcept {
-  constexpr double kTolerance = 1e-10;
+  constexpr double kTolerance = 1e-10;  // [unit of the input]
   if (!(high > low)) return Hold::kLow;
   if (hold == Hold::kFree) {
     if (u > high + kTolerance) return Hold::kHigh;
