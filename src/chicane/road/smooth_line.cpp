@@ -20,9 +20,9 @@ constexpr int kParameterPasses = 3;  // chord length, then twice the arc length 
 constexpr int kOverlapPoints = 16;  // a closed line is unrolled by at least this many points at both ends ...
 constexpr double kOverlapLengths =
     30.0;  // ... and limit in smoothing lengths: points beyond have no influence
-constexpr std::size_t kMaxKnots = 200'000;
-constexpr double kMinLength = 1.0;    // least length of a line [m]
-constexpr double kLeastShare = 0.01;  // least length of the line over the length of its chords
+constexpr std::size_t kMaxKnots = 200'000;  // limit of a line's knots
+constexpr double kMinLength = 1.0;          // least length of a line [m]
+constexpr double kLeastShare = 0.01;        // least length of the line over the length of its chords
 constexpr double kMostShare = 2.0;
 constexpr double kMostUnrolled = 4e6;       // points
 constexpr double kMaxShareOfLength = 0.02;  // limit of ℓ over the length of a short line

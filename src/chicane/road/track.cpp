@@ -339,7 +339,7 @@ constexpr double kNarrowest = 6.0;               // road in full size [m]
 
 /// Size of a road over full size.
 double size_of(const Track& track) {
-  constexpr int kPlaces = 64;
+  constexpr int kPlaces = 64;  // samples along the track
   double width = 0.0;
   for (int i = 0; i < kPlaces; ++i) {
     const double s = track.length() * i / kPlaces;

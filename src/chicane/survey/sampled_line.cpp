@@ -67,8 +67,8 @@ double median(std::vector<double> values) {
 
 namespace {
 
-constexpr double kRadius = 6378137.0;  // radius of the equator, WGS 84 [m]
-constexpr double kSquaredEccentricity = 6.69437999014e-3;
+constexpr double kRadius = 6378137.0;                      // radius of the equator, WGS 84 [m]
+constexpr double kSquaredEccentricity = 6.69437999014e-3;  // WGS 84
 
 /// [deg] in (-180, 180], also across the date line.
 double difference(double a, double b) noexcept { return std::remainder(a - b, 360.0); }

@@ -19,7 +19,7 @@
 namespace chicane::sweep::detail {
 namespace {
 
-constexpr double kMostCount = 4294967295.0;
+constexpr double kMostCount = 4294967295.0;  // largest 32-bit number
 constexpr double kLeastFactor = 1.01;
 constexpr double kLeastWithin = 1e-4;
 
@@ -123,7 +123,7 @@ using protocol::YamlNode;
 
 constexpr std::size_t kMostAxes = 20;
 constexpr std::string_view kFolder = "/*.csv";  ///< suffix of a folder: all tracks in it
-constexpr double kMostSamples = 4294967295.0;
+constexpr double kMostSamples = 4294967295.0;   // largest 32-bit number
 
 class PlanReader : private detail::SettingsReader {
  public:

@@ -27,7 +27,7 @@ using json = protocol::Json;
 
 constexpr std::size_t kMostValues = 60;  // limit of values on an axis in tables; more become intervals
 constexpr int kMostBins = 12;
-constexpr std::size_t kMostMaps = 60;
+constexpr std::size_t kMostMaps = 60;  // limit of maps on a page
 
 /// Columns that are summed up, where a sweep has kept them.
 struct Shown {

@@ -129,7 +129,7 @@ std::string tune_head(const TuneTask& task, const scenario::Scenario& scenario,
 namespace chicane::sweep {
 namespace {
 
-constexpr int kTuningDigits = 6;
+constexpr int kTuningDigits = 6;            // digits of a tuned value
 constexpr double kTimeLimitByHand = 600.0;  // [s]
 constexpr double kPatience = 1.5;           // limit over the time of the tuning by hand
 
@@ -224,7 +224,7 @@ class Tuner {
   }
 
  private:
-  static constexpr double kWorst = 1e6;
+  static constexpr double kWorst = 1e6;  ///< objective of a tuning that was not driven
   using Run = Result<std::optional<telemetry::RunSummary>>;
   /// Result of a trial with the tuning by hand.
   struct ByHand {
