@@ -225,8 +225,8 @@ std::string road_in_words(const road::Track& track) {
   return text;
 }
 
-/// A file with a plant and nothing that a car file may not hold is a car; every other is what a run can start
-/// from.
+/// Whether a file is a car: it has a plant and no key that a car file may not have. Every other file is a
+/// scenario.
 bool is_car(const protocol::Document& document, const std::string& file) {
   const auto& settings = document.assignments;
   const bool has_plant =

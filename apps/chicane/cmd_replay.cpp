@@ -108,7 +108,7 @@ std::string to_json(const recording::BranchReport& report) {
                {"branch", json_of(report.branched)}});
 }
 
-/// Two columns: what was, and what comes of `settings`.
+/// Table in two columns: the recorded run, and the result of `settings`.
 std::string to_text(const recording::BranchReport& report,
                     const std::vector<std::pair<std::string, std::string>>& settings) {
   std::string changes;

@@ -35,7 +35,8 @@ std::string limits(const Interval& within) {
   return within.least > 0.0 ? " > 0" : " >= 0";
 }
 
-/// Reads a value into the target of a row. Returns what was expected where it does not fit, else nothing.
+/// Reads a value into the target of a row. Returns the expectation if the value does not fit, else an empty
+/// text.
 struct Assign {
   const OptionRow& row;
   const std::string& text;

@@ -50,7 +50,7 @@ std::string version_text() {
                      built_instruction_sets(), left_out);
 }
 
-/// The words of a command line, taken apart by the names of its options; what they mean is the rows'.
+/// Words of a command line, separated by the names of its options; the rows give them their meaning.
 class Words {
  public:
   explicit Words(const Rows& rows) : rows_(rows) {
@@ -95,7 +95,7 @@ class Words {
   }
 
  private:
-  /// The first word that is no option, and the one that it may have meant.
+  /// First word that is no option, with the most similar option.
   std::string unexpected() const {
     const std::vector<std::string> unknown = app_.remaining();
     const auto flag = std::find_if(unknown.begin(), unknown.end(),

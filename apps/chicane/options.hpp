@@ -38,7 +38,7 @@ struct Options {
   bool is_manual = false;                ///< drive: a person has the wheel
   std::string record_file;               ///< empty: nothing is recorded
   bool is_compressed = false;            ///< the recording
-  bool is_bag = false;                   ///< metadata.yaml beside the recording
+  bool is_bag = false;                   ///< writes metadata.yaml next to the recording
   std::string report_file;               ///< empty: no report is written at the end
   std::vector<std::string> faults{};     ///< drive: NAME@SECOND+SECONDS*STRENGTH
   std::string address = "127.0.0.1";
@@ -61,7 +61,7 @@ struct Options {
   bool wants_verification = false;     ///< replay: nothing else is done
   std::optional<double> branch_at;     ///< replay: on the recording's time line [s]
   double for_s = 0.0;                  ///< replay: length of the branch; 0: to the end of the recording
-  int branch_laps = 0;                 ///< replay: of the run; 0: no matter
+  int branch_laps = 0;                 ///< replay: laps of the run; 0: no limit
   std::string output_file;             ///< replay: the branch's recording; report: the page
   std::string maps_page;               ///< report: Markdown, for the maps of a sweep; empty: none
   std::string comparison{};            ///< report: KEY=VALUE of a sweep; empty: nothing is compared

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Commands that are programs of their own, so that no other command waits for what they need.
+// Commands in programs of their own, so that no other command waits for their libraries.
 #include "program.hpp"
 
 #include <fmt/format.h>

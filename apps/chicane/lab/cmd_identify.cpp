@@ -264,8 +264,8 @@ std::vector<ShelfCar> shelf_by_wheelbase(double wheelbase) {
   return cars;
 }
 
-/// The car of the shelf that the search begins with where nobody says: of those that turn as the logs do, the
-/// one from which a rough search explains them best.
+/// Shelf car that the search begins with unless one is given: among the cars that turn as the logs do, the
+/// best fit of a rough search.
 Result<std::string> car_for(const std::vector<identify::DriveLog>& logs, const std::function<bool()>& go_on) {
   constexpr double kNear = 0.35;         // logarithm of the ratio of wheelbases
   constexpr std::size_t kMostTried = 4;  // limit of shipped cars that are tried as a start
