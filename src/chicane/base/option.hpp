@@ -163,8 +163,8 @@ template <auto... Members>
 
 /// The value in the option's unit; `owner` is the struct that the row was made for, here and below.
 [[nodiscard]] OptionValue get(const Option& option, const void* owner);
-/// Fails with refusal(), and changes nothing, for a wrong type or a value out of range; `key` is what the
-/// message calls it.
+/// Sets a value. Fails with refusal(), and changes nothing, for a wrong type or a value out of range; `key`
+/// is the name in the message.
 [[nodiscard]] Result<void> set(const Option& option, std::string_view key, void* owner,
                                const OptionValue& value);
 

@@ -16,9 +16,9 @@ Choice operator&(Choice, Choice);
 Choice operator|(Choice, Choice);
 Choice operator!(Choice);
 
-/// Stands for a variable of which nothing is known. The solver tries the functions of a structured problem
-/// with symbols before it makes anything of them, so that what a jet or a pack cannot do is refused first, in
-/// few lines. Declared only, never called.
+/// Placeholder for a variable of unknown type. The solver calls the functions of a structured problem with
+/// symbols before any other type, so that operations that no jet or pack has are refused first, in few lines.
+/// Declared only, never called.
 struct Symbol {
   Symbol();
   Symbol(double constant);         // NOLINT: constants mix freely with symbols, as in formulas

@@ -89,7 +89,8 @@ class ControllerList {
     (visit.template operator()<Entries>(), ...);
   }
 
-  /// kInvalidArgument "controller: got mpc, expected one of pid, ..." and what the entry's own function says.
+  /// Makes a controller. kInvalidArgument "controller: got mpc, expected one of pid, ...", or the error of
+  /// the entry's own function.
   [[nodiscard]] static Result<std::unique_ptr<Controller>> make(std::string_view name, const Options& options,
                                                                 const model::VehicleParams& vehicle) {
     if (const Kind* kind = find(name)) return kind->make(options, vehicle);

@@ -167,8 +167,8 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
     return result_;
   }
 
-  /// The answer in W. Inside the model an input acts one stage late: it stands beside the state that it
-  /// meets.
+  /// Writes the answer in W. With the latency inside the model an input acts one stage late, and is listed
+  /// with the state that it acts on.
   void write_plan() noexcept {
     Plan& plan = result_.plan;
     const int late = problem_.acts_late ? 1 : 0;

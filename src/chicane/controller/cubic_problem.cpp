@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kRows = model::Measurement::kMaxWaypoints;
 constexpr std::size_t kColumns = 4;
 
-/// A column that keeps less than this share of its length after the columns before it tells nothing new.
+/// Share of its length that a column must keep after the columns before it; below it adds no information.
 constexpr double kRankTolerance = 1e-9;
 
 template <class Convert>

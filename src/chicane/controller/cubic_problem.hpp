@@ -52,10 +52,10 @@ struct LocalPoints {
 /// rounding.
 [[nodiscard]] LocalPoints to_car_frame_polar(const model::Measurement& now, const model::Pose& car) noexcept;
 
-/// Least-squares polynomial of `order` (1 to 3) through points by Householder QR. Where the points cannot
-/// tell the higher powers (fewer than four different x), those coefficients are 0. False, and `fit`
-/// unchanged, for fewer than two points, or less than 1 mm of extent along x. Pre: finite points, at most
-/// LocalPoints' capacity.
+/// Least-squares polynomial of `order` (1 to 3) through points by Householder QR. Higher powers that the
+/// points do not determine (fewer than four different x) get coefficient 0. False, and `fit` unchanged, for
+/// fewer than two points, or less than 1 mm of extent along x. Pre: finite points, at most LocalPoints'
+/// capacity.
 [[nodiscard]] bool fit_cubic(std::span<const Vec2> points, Cubic& fit, int order = 3) noexcept;
 
 /// The model of the five write-ups (docs/the_five_systems.md, equations 1 to 6): a kinematic bicycle by

@@ -34,7 +34,7 @@ constexpr double kFarFromLine = 15.0;       // [m] further away it returns to th
 constexpr double kLost = 100.0;             // [m] further away it does not return by itself
 constexpr double kSlow = 6.0;               // [m/s] below which it may turn round
 constexpr double kJoining = 0.2;            // [rad] to the road at which a car that returns has joined it
-constexpr double kSpeedAhead = 4.0;         // [m/s] wanted at most beyond what the last answer reaches
+constexpr double kSpeedAhead = 4.0;         // [m/s] largest speed demand above the last answer's reach
 constexpr double kSteadySpeed = 25.0;  // [m/s] from which on the weight on the steering rate grows as v²
 constexpr double kLongestHold = 0.3;   // [s] the first command is assumed to be held at most this long
 constexpr double kBlindAfter = 0.3;    // [s] without a measurement, or a waypoint: stop
@@ -197,7 +197,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     if (change == LearnedGrip::Change::kModel) grip_.begin(estimator_, model_);
   }
 
-  /// Room beside the line at s [m] ahead, where the line has moved sideways by `offset` [m].
+  /// Room at both sides of the line at s [m] ahead, where the line has moved sideways by `offset` [m].
   [[nodiscard]] road::Road::Room room_at(double s, double offset) const noexcept {
     if (!road_.is_raced()) return road_.seen().room(offset);
     const model::VehicleParams& car = model_.vehicle();
@@ -262,8 +262,8 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     return true;
   }
 
-  /// The problem of this step and its first guess: the last answer, moved on by the time that has passed, or
-  /// what a path-following law does where there is none.
+  /// Prepares the problem of this step and its first guess: the last answer, shifted by the elapsed time, or
+  /// without one the motion by a path-following law.
   void prepare(double act_time) noexcept {
     problem_.model = &model_;  // here, so that a copy asks its own
     const double elapsed = act_time - act_time_;

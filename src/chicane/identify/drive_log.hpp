@@ -17,7 +17,7 @@ struct Sample {
   double time = 0.0;                                           ///< [s]
   double x = 0.0;                                              ///< x of the reference point [m]
   double y = 0.0;                                              ///< [m]
-  double psi = 0.0;                                            ///< [rad], not wrapped: it goes on past π
+  double psi = 0.0;                                            ///< [rad], not wrapped at π
   double speed = 0.0;                                          ///< [m/s], >= 0
   double yaw_rate = std::numeric_limits<double>::quiet_NaN();  ///< [rad/s]; NaN: not measured
 };
@@ -56,7 +56,7 @@ struct LogOptions {
 /// CSV columns are found by name, with their unit behind (`_deg`, `_rad`, `_mps`, `_kmh`, `_mph`, `_ms`,
 /// `_s`): time, x, y, psi (yaw, heading), speed (v, vx), yaw_rate, steer (steering, delta), throttle (pedal).
 ///
-/// kIo; kParse with file and line for what is no log, and for values that cannot be what their column says:
+/// kIo; kParse with file and line for a file that is no log, and for values that contradict their column:
 /// steering in degrees, a speed in other units than the path, steering or yaw positive to the right.
 [[nodiscard]] Result<std::vector<DriveLog>> read_log(const std::string& file, const LogOptions& options);
 /// The samples and commands of a log in the order of time, as they are: for showing them. Values that are not

@@ -43,8 +43,8 @@ struct Row {
   double deviation;                       ///< [SI], or of the logarithm
   std::function<void(Car&, double)> put;  ///< a value in SI
   double per_full_size = 1.0;             ///< value for the actual car [SI] over the value in full size
-  /// Root mean square of what the fit is off by from perfect logs, where the model lacks what the shipped
-  /// cars' plants have (studies/tables/identification.py --noise 0) [as deviation]: samples do not reduce it.
+  /// Root mean square error of the fit with perfect logs, where the model lacks effects of the shipped cars'
+  /// plants (studies/tables/identification.py --noise 0) [as deviation]: samples do not reduce it.
   double model_error = 0.0;
 };
 
@@ -141,7 +141,7 @@ Prior prior_of(const std::vector<Row>& rows, const model::VehicleParams& start, 
   return prior;
 }
 
-/// Stretches of `length` [s] without standing; the start is what the samples say.
+/// Adds stretches of `length` [s] without standing; the start is taken from the samples.
 void add_windows(const std::vector<DriveLog>& logs, std::size_t log, double from, double to, double length,
                  double least_speed, std::vector<Window>& windows) {
   const std::vector<Sample>& samples = logs[log].samples;

@@ -37,7 +37,7 @@ struct Estimate {
   double value = 0.0;
   double low = 0.0, high = 0.0;  ///< 95 % interval
   double assumed = 0.0;          ///< value before the log
-  bool is_excited = true;        ///< the log narrows what was assumed to less than two fifths
+  bool is_excited = true;        ///< the log narrows the prior to less than two fifths
 };
 
 /// Prediction errors from half a second of samples on.
@@ -56,8 +56,8 @@ struct Compared {
   double model_x = 0.0, model_y = 0.0, model_psi = 0.0, model_speed = 0.0;
 };
 
-/// A stretch of a log's held-out end: the model knows the samples until `known`, and goes on from there by
-/// the commands alone.
+/// Stretch of a log's held-out end: the model gets samples up to `known`, and continues by the commands
+/// alone.
 struct PredictedStretch {
   double known = 0.0;  ///< [s]
   std::vector<Compared> samples;
@@ -70,7 +70,7 @@ struct SlipCover {
 };
 
 struct Identification {
-  model::VehicleParams vehicle;  ///< the start's, with what was estimated
+  model::VehicleParams vehicle;  ///< start's parameters with the estimated ones
   Wheels wheels;                 ///< wheels that no controller's model has
   double delay = 0.0;            ///< time from command to effect [s]
   std::vector<Estimate> estimates;
@@ -105,23 +105,23 @@ struct Identification {
 inline constexpr double kWrongModel = 2.0;
 inline constexpr double kRaceUse = 0.6, kLeastRaceUse = 0.4;
 
-/// Wheelbase of a car without slip that would turn as the logs do, by their gentler bends [m]: enough to tell
-/// whose car it is. NaN where there is hardly a bend.
+/// Wheelbase of a car without slip that would turn as the logs do, by their gentler bends [m]: enough to
+/// recognise the car. NaN almost without bends.
 [[nodiscard]] double turning_wheelbase(const std::vector<DriveLog>& logs);
 
 struct IdentifyOptions {
   double hold_out = 0.3;  ///< share of each log, at its end, kept for the prediction errors, in [0, 0.8]
   bool is_rough = false;  ///< few stretches and steps: enough to compare cars to begin with by their loss
   Wheels wheels{};        ///< expected wheels of the car `start`
-  /// Called with the share done; false ends the search, and the best so far is the result.
+  /// Called with the share done; false ends the search with the best result so far.
   std::function<bool(double)> progress = [](double) { return true; };
 };
 
 /// Finds delay, lags, offset, wheelbase, tyres, inertia, drive, brakes and drag of the car that drove `logs`.
-/// `start` gives what logs cannot tell (mass, track width, tyre shape, limits) and what to expect of the
-/// rest.
+/// `start` gives parameters that logs do not determine (mass, track width, tyre shape, limits) and the prior
+/// of the rest.
 ///
-/// kInvalidArgument where the logs have less than ten seconds of driving.
+/// kInvalidArgument if the logs have less than ten seconds of driving.
 [[nodiscard]] Result<Identification> identify(const std::vector<DriveLog>& logs,
                                               const model::VehicleParams& start,
                                               const IdentifyOptions& options = {});

@@ -33,7 +33,7 @@ struct Pose {
   double psi = 0.0;  ///< [rad]
 };
 
-/// Input of a controller in one cycle: exactly what the original simulator's telemetry holds, in our axes
+/// Input of a controller in one cycle: exactly the content of the original simulator's telemetry, in our axes
 /// and units.
 struct Measurement {
   static constexpr int kMaxWaypoints = 32;

@@ -97,9 +97,9 @@ template <Pairs Set>
   return result;
 }
 
-/// A value with its derivatives, of which only those are stored that are not zero by construction: which ones
-/// is part of the type. Sums and products have the types that follow from the rules of calculus, so the
-/// sparsity pattern of a problem is read off the return types of its functions, and zeros are never computed.
+/// A value with its derivatives. Only derivatives that are not zero by construction are stored; the type says
+/// which. Sums and products have the types that follow from the rules of calculus, so the sparsity pattern of
+/// a problem is read off the return types of its functions, and zeros are never computed.
 ///
 /// V is double, or a pack of doubles with one stage in each lane. `First`: variables with a first derivative;
 /// `Unit`: those of them where it is exactly 1 (not stored). With Order 2 also second derivatives, for the

@@ -11,9 +11,9 @@
 
 namespace chicane::identify {
 
-/// A car on four wheels as it is fitted (docs/identification.md, eq. 3, 4): the forces of the
-/// controllers' model, with what that model leaves out and a log near the limit shows. Tyres build up force
-/// over a way, load moves with a lag, angles are not small. Plain arithmetic, no allocation.
+/// Four-wheel car for the fit (docs/identification.md, eq. 3, 4): the forces of the controllers' model, and
+/// effects that a log near the limit shows beyond it. Tyres build up force over a distance, load moves with a
+/// lag, angles are not small. Plain arithmetic, no allocation.
 ///
 /// Pre: a tyre of the magic formula, no steering helper (has_four_wheels()).
 class FourWheels {
@@ -58,12 +58,12 @@ class FourWheels {
   std::array<Tire, 2> tires_{};  ///< tyres of front and rear axle
 };
 
-/// Whether FourWheels can stand for that car.
+/// Whether FourWheels can represent a car.
 [[nodiscard]] inline bool has_four_wheels(const model::VehicleParams& vehicle) noexcept {
   return vehicle.steer_helper == 0.0 && vehicle.tire_shape > 1.0 && vehicle.friction_coupling > 0.0;
 }
 
-/// A car as it is fitted: the controllers' model, and what lies between a command and the car.
+/// Car of the fit: the controllers' model, and the delays and lags between a command and the car.
 struct Car {
   model::VehicleParams vehicle;
   double delay = 0.1;         ///< time from command to effect [s]

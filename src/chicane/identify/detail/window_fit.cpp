@@ -167,7 +167,7 @@ double loss_of_prior(const Expectation& prior, const VectorXd& theta) {
   return 0.5 * (theta - prior.mean).cwiseQuotient(prior.deviation).squaredNorm();
 }
 
-/// All windows at one theta: what they say of it, and how their starts follow.
+/// All windows linearised at one theta: information on theta, and the slopes of their starts.
 struct Linearised {
   MatrixXd information;
   VectorXd slope;
@@ -271,7 +271,7 @@ class Correlation {
   }
 
  private:
-  static constexpr Eigen::Index kMost = 100;  ///< samples in a second that are looked at
+  static constexpr Eigen::Index kMost = 100;  ///< limit of samples in a second
   static constexpr Eigen::Index kKinds = 4;   ///< kinds of residuals: yaw rate follows from yaw
   MatrixXd sums_ = MatrixXd::Zero(kMost + 1, kKinds);
   Eigen::Index reach_ = 0;
