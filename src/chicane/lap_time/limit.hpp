@@ -47,8 +47,8 @@ struct PlanProgress {
   static constexpr double kNodesPerSecond = 12000.0;
 };
 
-/// Laps that were really driven in the plant: with its whole state, without latency, what a plan asks for
-/// plus feedback towards it.
+/// Laps driven in the plant, with its whole state and without latency: the plan's commands plus feedback
+/// towards the plan.
 struct Witness {
   double lap_time = 0.0;    ///< the best of them [s]
   double worst = 0.0;       ///< slowest lap [s]
@@ -87,7 +87,7 @@ struct PlantLimitOptions {
   double time_step = 0.08;  ///< time between nodes, about [s]; [0.01, 0.2]
   bool wants_witness = true;
   int laps = 4;  ///< laps of the witness, after a flying start
-  /// Work after which the best lap so far is the answer (PlanProgress) [s], > 0.
+  /// Limit of the work [s], > 0 (PlanProgress). The best lap so far is the answer then.
   double budget = std::numeric_limits<double>::infinity();
   /// Called with the progress, and the lap time, after each iteration; false ends the search. May be empty.
   std::function<bool(std::string_view stage, int iteration, double lap_time)> go_on{};

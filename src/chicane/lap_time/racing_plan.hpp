@@ -23,7 +23,8 @@ struct RacingPlanOptions {
   double delay = model::SlidingBound::kAssumedDelay;  ///< ... with this delay of the controller [s], > 0
   double speed_limit = 100.0;                         ///< [m/s], > 3
   double time_step = 0.08;                            ///< time between nodes, about [s]; [0.01, 0.2]
-  /// Work after which the best plan so far is the answer (PlanProgress) [s], > 0. The same on every machine.
+  /// Limit of the work [s], > 0 (PlanProgress). The best plan so far is the answer then, the same on every
+  /// machine.
   double budget = std::numeric_limits<double>::infinity();
   /// Called with the progress, and the lap time, after each iteration; false ends the search. May be empty.
   std::function<bool(int iteration, double lap_time)> go_on{};

@@ -6,7 +6,7 @@
 namespace chicane::lap_time {
 
 /// P A Pᵀ = L D Lᵀ of a dense symmetric matrix that need not be definite, with pivots of one or two rows
-/// (Bunch, Kaufman 1977). Its pivots tell how many eigenvalues are negative (Sylvester).
+/// (Bunch, Kaufman 1977). Its pivots give the number of negative eigenvalues (Sylvester).
 class SymmetricBlock {
  public:
   /// Factors A, given with both triangles by rows, n × n. False if it is singular.
@@ -28,7 +28,7 @@ class SymmetricBlock {
   int negative_ = 0;
   std::vector<double> a_;    ///< L below the diagonal, D on it
   std::vector<double> off_;  ///< lower entries of D: (k + 1, k) in a pivot of two rows, else 0
-  std::vector<int> order_;   ///< row of A that stands in row i
+  std::vector<int> order_;   ///< row of A in row i
   mutable std::vector<double> work_;
 };
 

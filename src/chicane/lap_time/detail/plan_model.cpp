@@ -182,7 +182,7 @@ Result<void> bends_fit(RoadNodes road, const CarSize& car, const Fit& fit, doubl
   };
   const Collocation::Report report = problem.solve(z, options);
   has_answer = !report.is_stopped && report.violation <= 1e-2;
-  if (!has_answer) return {};  // the search itself will tell
+  if (!has_answer) return {};  // left to the search itself
   if (can_be_followed()) return {};
   return fail(
       ErrorCode::kInvalidArgument,

@@ -131,7 +131,7 @@ struct CarSize {
 /// Limits of a bend that a car can pass.
 struct Fit {
   double reserve = 1.0 / 1.02;  ///< smallest radius allowed over the radius at full lock
-  double surely = 4.0;  ///< a middle of the road with so many times the radius at full lock needs no look
+  double surely = 4.0;          ///< radius over the full lock's above which a bend is not checked
   double beside = std::numeric_limits<double>::infinity();  ///< largest offset of the car from the middle [m]
   double scale = 1.0;                                       ///< scale of the lengths in messages
   std::function<bool()> go_on{};  ///< asked before each iteration; false: no answer, as if it fitted

@@ -85,7 +85,7 @@ struct UdacityModel {
       fy += z + rear_side;
       moment += car.front_axle * z - car.rear_axle * rear_side - y * (x + rear_pull_each);
     }
-    // The plant's parts of a step add half the square of what a force changes in them to the energy.
+    // The plant's parts of a step add energy: half the square of a force's change in them.
     const T gain = (0.5 * sim::UdacityCar::kStepLength / sim::UdacityCar::kParts) * (fx * fx + fy * fy) /
                    (vx * vx + vy * vy);
     const T stay = 1.0 - car.steer_helper * (1.0 - left_out);
@@ -391,8 +391,8 @@ struct VehicleModel {
   }
 
   static constexpr double kLeastLateral = 0.1;    ///< [m/s²]
-  static constexpr double kMostSteerRate = 10.0;  ///< [rad/s]; stands for at once
-  static constexpr double kMostPower = 1e4;       ///< [W/kg]; stands for none
+  static constexpr double kMostSteerRate = 10.0;  ///< [rad/s]; represents an instant change
+  static constexpr double kMostPower = 1e4;       ///< [W/kg]; represents no limit
   static constexpr double kMostAlong = 0.95;      ///< share of a tyre's force: the rest holds the course
   static constexpr double kLeastSpeed = 2.5;      ///< [m/s]
   /// Decrease of slip_share with speed [s/m]: at speed yaw is damped less, and the car covers more road
