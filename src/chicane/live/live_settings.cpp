@@ -76,7 +76,7 @@ std::vector<Control> run_controls(bool has_world, const std::vector<Control>& fa
   return controls;
 }
 
-/// JSON has no infinity: its name stands for it.
+/// JSON has no infinity: send its name.
 foxglove::ParameterValue outside(const Value& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return *flag;
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
@@ -205,8 +205,8 @@ Result<void> LiveSettings::set_row(const protocol::Parameter& row, const Value& 
   return change_live(*setting, std::move(changed));
 }
 
-/// Changes the current run, and the one that is being built to `changed`. A change that is valid only in
-/// the latter waits for it.
+/// Changes the current run, and the one in construction to `changed`. A change that is valid only in the
+/// latter waits for it.
 Result<void> LiveSettings::change_live(const run::Setting& setting, scenario::Scenario changed) {
   const auto& field = std::get<run::FieldValue>(setting.action);
   scenario::Scenario now = scenario_;
@@ -266,7 +266,7 @@ Result<void> LiveSettings::start_anew(telemetry::Change choice, scenario::Scenar
   return {};
 }
 
-/// A name of the library, or what the run was started with, which may be a file.
+/// Accepts a name of the library, or the value at the run's start, which may be a file.
 Result<void> LiveSettings::check_choice(std::string_view key, const std::string& value) const {
   const std::optional<protocol::Shelf> shelf = protocol::shelf_of(key);
   if (!shelf || value == protocol::get_text(options_.scenario, *protocol::find(key))) return {};
@@ -297,7 +297,7 @@ void LiveSettings::update() {
 
 std::vector<std::string> LiveSettings::complaints() { return std::exchange(complaints_, {}); }
 
-/// The run that was built is the next one; what was changed meanwhile follows it.
+/// Hands over a built run as the next one; later changes follow it.
 void LiveSettings::hand_over(Building building) {
   ++runs_;
   static_cast<void>(send({.change = building.run.choices.back(), .action = {}}));

@@ -23,7 +23,7 @@
 
 namespace chicane::live {
 
-/// A run that was chosen while another one goes on.
+/// A run that was chosen during another one.
 struct ChosenRun {
   scenario::Scenario scenario;
   std::vector<telemetry::Change> choices{};  ///< choices of viewers, each key once, in order
@@ -48,10 +48,10 @@ struct LiveSettingsOptions {
   /// Whether we simulate: offers what concerns the world, its pace and manual driving, too. Otherwise only
   /// the controller.
   bool has_world = true;
-  /// Faults to switch, beside the rest: "fault.…".
+  /// Faults to switch, in addition to the rest: "fault.…".
   std::vector<protocol::Control> faults{};
-  /// Begins to build another run beside the one that goes on, in place of one that is being built. Does not
-  /// wait. Null: what cannot change while the run goes on is not offered.
+  /// Begins to build another run in parallel, replacing one in construction. Does not wait. Null: settings
+  /// that need another run are not offered.
   std::function<void(ChosenRun)> build{};
   /// Result of the newest build; none while it goes on. A built run is handed over to the control thread
   /// before this returns; the thread takes it at the change that `starts_anew`.
@@ -89,8 +89,8 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   /// other, and when too many changes wait.
   [[nodiscard]] Result<void> set(const protocol::foxglove::Parameter& parameter) override;
 
-  /// The control thread: a change was applied, or happened by itself. Never waits; when update() has not been
-  /// called for long, viewers do not hear of it.
+  /// Reports from the control thread that a change was applied, or happened by itself. Never waits; viewers
+  /// miss it if update() has not been called for long.
   void tell(const telemetry::Change& change) noexcept { static_cast<void>(announced_.push(change)); }
   [[nodiscard]] std::vector<telemetry::Change> applied() override;
   [[nodiscard]] std::vector<protocol::foxglove::Parameter> news() override;
@@ -98,8 +98,8 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   void update() override;
   [[nodiscard]] std::vector<std::string> complaints() override;
 
-  /// GET /schema.json; "default" is what the chosen preset gives with the chosen car, "start" what the run
-  /// started with.
+  /// Text for GET /schema.json; "default" is the chosen preset's value with the chosen car, "start" the value
+  /// at the run's start.
   [[nodiscard]] std::string schema_json() const;
   /// Another number when schema_json() may be another.
   [[nodiscard]] std::uint64_t schema_version() const { return runs_; }

@@ -76,7 +76,7 @@ void RunLimit::follow(const scenario::Scenario& now, const telemetry::Frame& fra
       searched.friction_scale != asked.friction_scale || searched.mass_scale != asked.mass_scale;
   const bool counts_anew = frame.begins && first_lap_ > 1;
   if (is_other || counts_anew) {
-    constexpr int kNext = 2;  // laps count from 1, and the one that goes on has begun with the car of before
+    constexpr int kNext = 2;  // laps count from 1, and the running one began with the earlier car
     searched.friction_scale = asked.friction_scale;
     searched.mass_scale = asked.mass_scale;
     first_lap_ = frame.begins ? 1 : frame.lap + kNext;
@@ -95,7 +95,7 @@ void RunLimit::give_up(std::string why) {
   answer_ = std::make_shared<const lap_time::LimitAnswer>(lap_time::LimitAnswer{.why_not = std::move(why)});
 }
 
-/// The search before tells nothing any more.
+/// Drops the previous search.
 void RunLimit::retire() {
   search_.cancel();
   has_news_ = false;

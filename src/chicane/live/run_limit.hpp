@@ -19,9 +19,9 @@
 
 namespace chicane::live {
 
-/// The limit of the current run, whoever drives and whoever simulates: searched in parallel, sent to
-/// viewers and recordings when it is known, and set beside the laps at the end. One thread, the control
-/// thread, but for `on_news`.
+/// The limit of the current run, for any controller and simulator: searched in parallel, sent to viewers and
+/// recordings when it is known, and compared with the laps at the end. One thread, the control thread, but
+/// for `on_news`.
 class RunLimit {
  public:
   /// Longest wait for a limit behind the end of a run.
@@ -30,7 +30,7 @@ class RunLimit {
   /// a track that ships.
   static constexpr double kBudget = 60.0;
 
-  /// `on_news` hears, mostly on another thread, what a search has found and what no longer holds; may be
+  /// `on_news` gets the result of a search, or the news that it is void, mostly on another thread; may be
   /// empty. It must stay callable as long as this lives.
   explicit RunLimit(std::function<void(const lap_time::LimitAnswer&)> on_news = {});
 
@@ -47,16 +47,16 @@ class RunLimit {
 
   /// Newest answer, once; null if nothing is new. Neither waits nor allocates.
   [[nodiscard]] std::shared_ptr<const lap_time::LimitAnswer> news() noexcept;
-  /// A search goes on.
+  /// Whether a search is running.
   [[nodiscard]] bool is_searching() const noexcept { return begins_at_ || search_.is_computing(); }
 
-  /// A search goes on, and there are laps to set beside what it will find.
+  /// Whether a search is running, and there are laps to compare with its result.
   [[nodiscard]] bool is_awaited(const telemetry::RunSummary& run) const noexcept;
 
-  /// No more news: ends a search that goes on. Does not wait.
+  /// Ends a running search and all news. Does not wait.
   void end();
-  /// The run has ended: sets its laps beside the limit, or says why not. Waits while is_awaited(), until
-  /// `wants_stop`, and for no longer than `patience`.
+  /// Ends the run: compares its laps with the limit, or gives the reason against it. Waits while
+  /// is_awaited(), until `wants_stop`, and for no longer than `patience`.
   void compare(telemetry::RunSummary& run, const std::atomic<bool>& wants_stop,
                std::chrono::milliseconds patience = kPatience);
 
@@ -74,13 +74,13 @@ class RunLimit {
   void tell(lap_time::LimitAnswer answer);
 
   std::function<void(const lap_time::LimitAnswer&)> on_news_;
-  std::shared_ptr<const lap_time::LimitAnswer> answer_;  ///< while a search goes on: written by it
+  std::shared_ptr<const lap_time::LimitAnswer> answer_;  ///< written by the search while it runs
   std::atomic<bool> has_news_{false};                    ///< an answer waits to be read
   std::optional<road::Track> track_;            ///< track of the run; none if nothing is to be searched
   scenario::Scenario scenario_;                 ///< scenario with the grip and mass of the newest search
   int first_lap_ = 1;                           ///< LimitAnswer::first_lap
   std::optional<Clock::time_point> begins_at_;  ///< the next search, when nothing changes until then
-  NewestTask<Request, lap_time::LimitAnswer> search_;  // last: tells on its thread
+  NewestTask<Request, lap_time::LimitAnswer> search_;  // last: calls back on its thread
 };
 
 }  // namespace chicane::live

@@ -27,14 +27,14 @@ namespace chicane::live {
 /// step all that a bit-identical computation needs. Readers are other futures (what_if.hpp,
 /// served_run.hpp) and the second car (what_if.hpp).
 ///
-/// The control thread notes through one ring; it neither waits nor allocates, but in begin(). A thread of low
+/// The control thread writes to one ring; it neither waits nor allocates, except in begin(). A thread of low
 /// priority collects. The log keeps the newest `most_events` events. After an overflow of the ring the run is
-/// unknown until its next start: since() says so.
+/// unknown until its next start: since() fails.
 ///
 /// With checkpoints the same thread computes the run a second time, at the cost of the run's own control
-/// steps, and keeps copies: kSpacing apart for the last moments, farther apart the longer ago. The distance
-/// from a moment back to a checkpoint is at most its age. A run of T seconds needs some 2 log2(T / kSpacing)
-/// copies of 8 MB.
+/// steps, and keeps copies, kSpacing apart for the last moments and farther apart for earlier ones. The
+/// distance from a moment back to a checkpoint is at most its age. A run of T seconds needs some 2 log2(T /
+/// kSpacing) copies of 8 MB.
 class RunLog {
  public:
   static constexpr std::size_t kMostEvents = 200'000;  ///< two hours with 25 steps a second
@@ -89,8 +89,8 @@ class RunLog {
   /// Any thread: behind the newest event.
   [[nodiscard]] Place end();
 
-  /// Any thread: branches the run, from a checkpoint where there is one before `options.at`. Fails as
-  /// recording::branch_run() and since() do, and for a moment that is not known any more.
+  /// Branches the run, from a checkpoint if there is one before `options.at`. Fails as
+  /// recording::branch_run() and since() do, and for a moment that the log has dropped. Any thread.
   [[nodiscard]] Result<recording::BranchReport> branch(const recording::BranchOptions& options,
                                                        const recording::BranchHooks& hooks);
 

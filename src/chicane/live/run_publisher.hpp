@@ -43,8 +43,8 @@ struct RunListeners {
 /// `viewer` outlives the settings.
 [[nodiscard]] LiveSettingsOptions with_viewer(wire::ViewerEndpoint& viewer, LiveSettingsOptions options);
 
-/// Hands what happens in a live run to viewers, to the settings that they see, and to its listeners. Adds
-/// what nobody asked for: that a fault began or ended by itself, and, once for each run, that it is over. One
+/// Hands the events of a live run to viewers, to the settings that they see, and to its listeners. Adds
+/// events without a request: a fault began or ended by itself, and, once for each run, the run is over. One
 /// thread, the one that drives.
 class RunPublisher {
  public:
@@ -56,7 +56,8 @@ class RunPublisher {
   void lap(const telemetry::CompletedLap& lap);
   /// A change was applied.
   void change(const telemetry::Change& change);
-  /// The run is over: tells viewers why, and gives true, the first time. A run that is driven on stays over.
+  /// Ends the run: sends viewers the reason, and returns true, the first time. A run that is driven on stays
+  /// over.
   bool end(const telemetry::RunSummary& summary);
   [[nodiscard]] bool has_reported_end() const { return has_reported_end_; }
   /// Compares the laps of a run that has ended with its limit, and records the limit. Waits for it as

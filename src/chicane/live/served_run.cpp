@@ -109,7 +109,7 @@ Result<ServedFutures::Known> ServedFutures::known_at(double time) {
   return known;
 }
 
-/// Begins `car` as a run of ours that has seen what this one saw up to `to`, and goes on from there.
+/// Begins `car` as a run of ours with this run's sightings up to `to`, and continues from there.
 Result<void> ServedFutures::follow(recording::ShadowRun& car, scenario::Scenario scenario,
                                    const std::vector<Seen>& seen, std::size_t to) {
   scenario = run::endless(std::move(scenario));

@@ -50,8 +50,8 @@ class ServedRun {
   /// Deadline of each control step [s]; 0: none.
   [[nodiscard]] double step_budget() const;
 
-  /// Answers simulators until `stop`. `recorder` may be null; `on_listening` hears the port once, on this
-  /// thread. Once per object. kIo with the sentence that helps when the port is taken.
+  /// Answers simulators until `stop`. `recorder` may be null; `on_listening` gets the port once, on this
+  /// thread. Once per object. kIo if the port is taken, with the remedy.
   [[nodiscard]] Result<wire::ServeSummary> run(recording::Recorder* recorder, const LiveHooks& hooks,
                                                const std::function<void(std::uint16_t)>& on_listening,
                                                const std::atomic<bool>& stop,
@@ -76,11 +76,10 @@ struct Seen {
 /// Motion of the car at `seen[i]`; sideslip and yaw rate are computed from the sighting before. Pre: i > 0.
 [[nodiscard]] model::State moving(const std::vector<Seen>& seen, std::size_t i);
 
-/// Futures of a run whose car others simulate: both are driven by the simulator that we have of that car, on
-/// the road that is known, from where the car was. Our controller sees the minutes before once more, so that
-/// it knows what it knew: the road that it learned, and the commands on their way. How far our car is to be
-/// trusted is measured: over the ten seconds before the moment it is driven, too, and compared with the one
-/// that was driven.
+/// Futures of a run whose car another program simulates: both are driven by our own simulator of that car, on
+/// the known road, from the car's place. Our controller sees the minutes before again, to restore its state:
+/// the learned road, and the commands in flight. The accuracy of our simulator is measured: it drives the ten
+/// seconds before the moment, too, and is compared with the external car.
 class ServedFutures {
  public:
   static constexpr double kFollowed = 150.0;  ///< length of the run before the moment [s]

@@ -84,9 +84,9 @@ class Rival {
   /// line.
   Rival(RunLog& log, std::function<void()> begin_anew);
 
-  /// The network thread: {"settings":{"latency_ms":60}} begins a race of `scenario`, {} ends it. The number
-  /// of the race, as a text. kInvalidArgument in a sentence for viewers: for a setting that is unknown, out
-  /// of range, or cannot change while a run goes on.
+  /// Begins a race of `scenario`, on the network thread: {"settings":{"latency_ms":60}}; {} ends it. Returns
+  /// the number of the race, as a text. kInvalidArgument in a sentence for viewers: for a setting that is
+  /// unknown, out of range, or fixed during a run.
   [[nodiscard]] Result<std::string> ask(std::string_view json, const scenario::Scenario& scenario);
   /// GET /rival.json (docs/viewer.md). Any thread.
   [[nodiscard]] std::string answer() const;

@@ -22,9 +22,9 @@
 
 namespace chicane::live {
 
-/// A server without a network, for a run inside of the page that shows it: one connection, whose messages are
-/// handed to a function, and a clock that its owner moves. Like one with a network it holds back what the
-/// page has not taken yet, of frames the newest only. One thread.
+/// Server without a network, for a run inside the page that shows it: one connection, whose messages go to a
+/// function, and a clock that its owner moves. Like a network server it keeps messages until the page takes
+/// them, and of frames only the newest. One thread.
 class WorkerServer final : public net::Server {
  public:
   using Send = std::function<void(std::string_view bytes, bool binary)>;

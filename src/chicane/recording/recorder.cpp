@@ -113,7 +113,7 @@ Result<void> Recorder::flush() {
   return done ? writer_->flush() : done;
 }
 
-/// Says at once that the disk does not take what it is given, and when it does again.
+/// Reports at once that the disk refuses writes, and when it accepts them again.
 void Recorder::note(const Result<void>& flushed) {
   if (is_failing_ == !flushed) return;
   is_failing_ = !flushed;

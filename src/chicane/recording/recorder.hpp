@@ -120,7 +120,7 @@ class Recorder {
   telemetry::LapLedger ledger_;
   std::uint64_t earlier_runs_ = 0;  ///< log time minus the run's own time [ns]
   std::uint64_t missing_ = 0;       ///< frames
-  bool is_failing_ = false;         ///< the disk did not take what it was given last
+  bool is_failing_ = false;         ///< the disk refused the last write
   bool is_undescribed_ = false;     ///< the run's description waits for room
   Result<void> state_;
   std::thread thread_;

@@ -169,7 +169,7 @@ class FutureMeter {
   int passed_ = 0;            ///< thirds of laps, from the start line on
 };
 
-/// A setting or a fault that may change while a run goes on.
+/// Reads a setting or a fault that may change during a run.
 Result<run::Setting> read_live(const telemetry::Change& change) {
   const std::string_view key = change.name.view();
   const protocol::Parameter* row = protocol::find(key);
@@ -186,8 +186,8 @@ Result<run::Setting> read_live(const telemetry::Change& change) {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
-/// The recorded run computed again up to the branch, and two futures from there on: the run itself, which is
-/// the recorded one for as long as there is one, and a copy of it with the settings.
+/// The recorded run computed again up to the branch, and two futures from there on: the run itself, as
+/// recorded until the recording ends, and a copy with the settings.
 class Branching {
  public:
   Branching(const BranchOptions& options, const BranchHooks& hooks)
@@ -209,7 +209,7 @@ class Branching {
                               options_.at, last_log_time_));
     }
     report_.known_until = last_log_time_;
-    was_.car.finish_cycle();  // a recording ends with the last control step, a run may have gone on to a line
+    was_.car.finish_cycle();  // a recording ends at a control step, a run may have continued to a line
     if (options_.drives_both && !is_over_) drive_on(was_);
     drive_on(is_);
     if (has_given_up_) return fail(ErrorCode::kInvalidArgument, "given up");
@@ -353,7 +353,7 @@ class Branching {
     if (hooks_.on_change) hooks_.on_change(change);
   }
 
-  /// Nothing more of what was recorded is computed: of two futures that are driven, the first `ends`.
+  /// Stops computing the record: the first of two driven futures `ends`.
   bool is_left_behind(bool ends) { return is_over_ = is_over_ || (ends && options_.drives_both); }
   [[nodiscard]] bool may_go_on(double time) const { return !hooks_.go_on || hooks_.go_on(time); }
   [[nodiscard]] bool has_all_laps(const Side& side) const {
@@ -372,7 +372,7 @@ class Branching {
   BranchReport report_;
   Side was_, is_;
   bool has_branched_ = false;
-  bool is_over_ = false;  ///< the first future: what was recorded ends it
+  bool is_over_ = false;  ///< the first future ended with the record
   bool has_given_up_ = false;
   double start_ = 0.0;          ///< start of the run at the branch [s]
   double last_log_time_ = 0.0;  ///< [s]

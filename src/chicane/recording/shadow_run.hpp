@@ -26,7 +26,7 @@ using RunEvents = std::function<Result<void>(const std::function<Result<void>(co
 /// One thread.
 class ShadowRun {
  public:
-  /// `hooks`: on_frame and on_change hear of drive(), on_lap of all laps.
+  /// `hooks`: on_frame and on_change are called during drive(), on_lap for all laps.
   explicit ShadowRun(run::RunHooks hooks = {}) : hooks_{std::move(hooks)} {}
 
   /// Begins from a scenario, without an end after its laps. Fails as ClosedLoop::create() does.
@@ -42,7 +42,7 @@ class ShadowRun {
   [[nodiscard]] Result<void> follow(const RecordedEvent& event);
   /// Log time of the last control step that was followed [s].
   [[nodiscard]] double time() const noexcept { return time_; }
-  /// Number of the control step behind it.
+  /// Number of the next control step.
   [[nodiscard]] std::uint64_t next_cycle() const noexcept { return next_cycle_; }
   /// Cycle of the first control step whose measurement or command differed from the followed one in any bit:
   /// a difference anywhere in plant or controller shows there.
@@ -73,7 +73,7 @@ class ShadowRun {
   std::optional<std::uint64_t> first_difference_;
 };
 
-/// A recorded run that goes on otherwise from a moment on.
+/// Options for a branch: a recorded run that continues with other settings from a moment on.
 struct BranchOptions {
   std::string log{};
   double at = 0.0;                                              ///< moment on the recording's time line [s]
@@ -83,7 +83,7 @@ struct BranchOptions {
   int more_laps = 0;      ///< ends after so many crossings of the line since `at`; 0: no limit
   /// Drives the first future on, too, if its recording ends before the second future does.
   bool drives_both = false;
-  /// Begins here instead of at the start, with the events behind it; before `at`. Null: at the start.
+  /// Starting point, with the events behind it, before `at`. Null: the start of the run.
   std::shared_ptr<const ShadowRun> from{};
 };
 
@@ -126,8 +126,8 @@ struct BranchReport {
   std::uint64_t cycle = 0;         ///< cycle of that control step in its run
   std::uint64_t steps_before = 0;  ///< computed again on the way to it
   double known_until = 0.0;        ///< the last control step of the recording [s]
-  /// The first of all recorded steps that did not come out bit for bit as recorded: from there on the first
-  /// future is what this program computes, not what was.
+  /// First recorded step that was not reproduced bit for bit: from there on the first future is this
+  /// program's result, not the record.
   std::optional<std::uint64_t> first_difference{};
   Future recorded{};
   Future branched{};
@@ -146,9 +146,9 @@ struct BranchHooks {
   std::function<bool(double time)> go_on{};
 };
 
-/// Computes a recorded run of `drive` again from its start, controller and plant, and drives a copy of it on
+/// Computes a recorded run of `drive` again from its start, controller and plant, and continues a copy of it
 /// from `options.at` with other settings, in virtual time. Fails with kInvalidArgument when the moment is not
-/// in the recording, a setting is unknown, out of range or cannot change in a run that goes on, when
+/// in the recording, a setting is unknown, out of range or cannot change during a run, when
 /// BranchHooks::go_on gives up, when the recording is not of our simulator, or when controller or plant
 /// cannot be copied.
 [[nodiscard]] Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks);
