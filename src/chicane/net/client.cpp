@@ -117,7 +117,7 @@ class Socket {
     return {};
   }
 
-  /// Appends what has arrived to `buffer`; false when nothing came until `end`.
+  /// Appends the bytes that arrive to `buffer`; false if none came until `end`.
   Result<bool> receive(std::string& buffer, Clock::time_point end) {
     std::array<char, 16384> chunk;
     for (;;) {

@@ -132,7 +132,7 @@ class Site {
 /// where the system has none to give.
 [[nodiscard]] Result<std::string> make_token();
 
-/// Whether `given` is `token`, in a time that tells nothing but the length. Never for an empty token.
+/// Whether `given` is `token`, in a time that reveals nothing but the length. Never for an empty token.
 [[nodiscard]] bool is_token(std::string_view given, std::string_view token) noexcept;
 
 }  // namespace chicane::net

@@ -66,7 +66,7 @@ struct Core {
   std::unordered_map<ConnectionId, std::shared_ptr<WebSocket>> connections;
   ConnectionId next_id = 1;
   bool is_stopping = false;
-  asio::io_context io{1};  // the last one: what it holds uses the others when it ends
+  asio::io_context io{1};  // last: its handlers use the others when it ends
 
   [[nodiscard]] std::size_t open() const { return static_cast<std::size_t>(ticket.use_count()) - 1; }
   [[nodiscard]] bool is_crowded() const {
@@ -299,7 +299,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     reply(core_.site.answer(view(request.target()), asked), asked);
   }
 
-  /// Refuses what whoever started the program can change, and may want to know.
+  /// Refuses a request for a reason that the operator can change and may want to know.
   void turn_away(http::status status, std::string words) {
     ErrorCodeBoost ignored;
     const std::string peer = stream_.socket().remote_endpoint(ignored).address().to_string(ignored);

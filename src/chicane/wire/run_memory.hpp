@@ -63,7 +63,7 @@ class RunMemory {
 
 /// Limit of bytes in flight to a reader that acknowledges them, so that the next message arrives soon:
 /// congestion control by delay, after LEDBAT (RFC 6817). The window grows while acknowledgements come soon
-/// after the message, and shrinks to what the link carries in that time where they come later. It covers
+/// after the message, and shrinks to the link's capacity in that time if they come later. It covers
 /// everything between the two programs: sockets, proxies, and a reader that is busy for long. One thread.
 class LinkPace {
  public:
@@ -72,7 +72,7 @@ class LinkPace {
   static constexpr std::size_t kFirst = std::size_t{24} << 10U;  ///< window at the beginning [byte]
   static constexpr std::size_t kMost = std::size_t{1} << 20U;    ///< window [byte]
 
-  /// A message of so many bytes was sent at `now` [s].
+  /// Counts a message of `bytes` bytes sent at `now` [s].
   void sent(std::size_t bytes, double now) {
     sent_ += bytes;
     on_way_.push_back({sent_, in_flight(), now});

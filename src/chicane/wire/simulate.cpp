@@ -35,7 +35,7 @@ constexpr double kPatienceInCycles = 3.0;  // patience over the usual cycle
 bool CommandReceiver::sampled(double time) noexcept {
   const double asked = std::exchange(sampled_, time);
   if (!waiting_) return true;
-  // A controller's habit tells when it has fallen silent.
+  // The usual cycle of the controller defines its silence.
   cycles_.add(time - asked);
   patience_ = std::max(kPatienceInCycles * cycles_.value(0.0), safety::StopPlayer::kPatience);
   player_.set_patience(patience_);
@@ -172,7 +172,7 @@ class Simulation {
       why_ = fmt::format("no usable answer within {:g} s", seconds(options_.hopeless_after));
   }
 
-  /// Attempts run beside the physics, politely spaced.
+  /// Connects while the physics runs, with pauses between attempts.
   void connect(Clock::time_point now) {
     if (attempt_.valid()) {
       if (attempt_.wait_for(kNap) != std::future_status::ready) return;

@@ -33,8 +33,8 @@ class CommandReceiver {
   CommandReceiver(const model::VehicleParams& vehicle, safety::Receiver receiver) noexcept
       : player_{vehicle, 0.0, receiver} {}
 
-  /// Telemetry is sampled at `time`, and the answer to the one before acts from now on. An answer that came
-  /// after the command timeout is too old for that: it is not used; false says so.
+  /// Samples telemetry at `time`; the previous answer acts from now on. False: that answer came after the
+  /// command timeout, is too old and is not used.
   bool sampled(double time) noexcept;
   /// The answer to the last telemetry has come.
   void answered(const protocol::UdacitySteer& steer) noexcept;
@@ -69,7 +69,7 @@ struct SimulateOptions {
   /// Shell command that starts the controller; empty = it runs already. Started again when it dies, ended
   /// with us. Its standard output is thrown away, its standard error is ours.
   std::string server_command{};
-  double manual_time = 0.0;  ///< a person "drives" for so long first: telemetry is null, the car stands [s]
+  double manual_time = 0.0;  ///< time of manual driving at the start: telemetry is null, the car stands [s]
   std::chrono::milliseconds retry_after{250};      ///< time between attempts to connect
   std::chrono::milliseconds complain_after{1000};  ///< silence before a complaint
   std::chrono::milliseconds give_up_after{5000};   ///< silence before it reconnects
@@ -91,18 +91,18 @@ struct SimulateReport {
   std::uint64_t connections = 0;
   std::uint64_t answers = 0;         ///< usable ones
   std::uint64_t broken_answers = 0;  ///< answers that would have stalled the original for ever
-  std::uint64_t extra_answers = 0;   ///< answers that nobody asked for
+  std::uint64_t extra_answers = 0;   ///< answers without a request
   std::uint64_t silences = 0;        ///< telemetry without an answer within give_up_after
   std::uint64_t server_starts = 0;
   std::uint64_t stops = 0;         ///< times the car was stopped because no command came
   std::uint64_t late_answers = 0;  ///< answers after the car's stop began: not used
 };
 
-/// `chicane simulate`: our car and track as the original simulator's client, in real time
-/// (docs/protocol.md §5). Physics never waits; each answer is picked up `scenario.turn_around`
-/// after it came, when the next telemetry is sampled, and acts from there until the next one. A broken answer
-/// is named, counted, and driven past with the command that was. When commands cease the car is stopped as
-/// `scenario.guard.receiver` says; when they come again it drives on.
+/// `chicane simulate`: our car and track as the original simulator's client, in real time (docs/protocol.md
+/// §5). Physics never waits; each answer takes effect `scenario.turn_around` after it came, when the next
+/// telemetry is sampled, and acts until the next one. A broken answer is reported and counted, and the
+/// previous command stays. When commands cease `scenario.guard.receiver` stops the car; when they return it
+/// continues.
 ///
 /// Uses of the scenario: track, car, plant_options, vehicle, guard.receiver, sensor, seed, laps, time_limit,
 /// turn_around, waypoints_sent. Ends when the laps are driven, the car is lost, time is up, the controller
@@ -125,8 +125,8 @@ class ServerProcess {
 
   [[nodiscard]] std::uint64_t starts() const { return starts_; }
 
-  /// Starts it, at first and after its death, but at most once a second. Always by the same thread, which
-  /// lives as long as this: the guard watches that one. Nothing happens for an empty command.
+  /// Starts the command, also after its death, but at most once a second. Call it from one thread that lives
+  /// as long as this: the guard process watches that thread. No effect for an empty command.
   void keep_running(std::chrono::steady_clock::time_point now);
 
  private:

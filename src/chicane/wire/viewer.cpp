@@ -326,8 +326,8 @@ void ViewerEndpoint::send_newest(net::ConnectionId id, Client& client) {
   }
 }
 
-/// A page of what it has not been sent; the next one when it has read this. All at once would be more than
-/// may wait for a connection.
+/// Sends a page of unsent messages; the next page when this one has been read. All at once would exceed a
+/// connection's queue.
 void ViewerEndpoint::send_kept(net::ConnectionId id, Client& client) {
   const auto send_page = [&](std::uint32_t channel, std::uint64_t& next, auto from) {
     const auto wanted = client.subscriptions.find(channel);

@@ -48,9 +48,10 @@ struct ViewerOptions {
 /// WebSocket protocol (docs/viewer.md). The newest frame wins on its way from the control thread, and again
 /// on its way to each viewer: slow ones see fewer frames and hold nothing up.
 ///
-/// Who may watch only (net::UpgradeRequest::may_control) gets everything but services and set parameters.
+/// Viewers that may only watch (net::UpgradeRequest::may_control) get everything but services and set
+/// parameters.
 ///
-/// Laps and changes of the run are sent from its beginning to whoever subscribes. The query of a viewer's
+/// Laps and changes of the run are sent from its beginning to every subscriber. The query of a viewer's
 /// address may ask for more: "past" offers the topic "/chicane/past", the frames of the last minutes before
 /// it came (run_memory.hpp), the newest first, behind the present; "paced" sends no more than the viewer
 /// acknowledges in time (run_memory.hpp, foxglove::Received), the newest frame before everything else.
@@ -98,7 +99,7 @@ class ViewerEndpoint final : public Endpoint {
   struct Client {
     bool may_control = false;
     bool wants_past = false;
-    std::optional<LinkPace> pace{};  ///< none: it gets everything as soon as it is there
+    std::optional<LinkPace> pace{};  ///< none: all messages are sent at once
     std::uint64_t past_before = 0;   ///< frames of memory_ with lower numbers are still to be sent
     bool is_behind = false;          ///< paced, and the newest frame is not sent yet
     double whole_sent_at = 0.0;      ///< time of the last message with plan and all else [s]

@@ -148,7 +148,7 @@ bool Doorkeeper::is_own(std::string_view origin, std::string_view host) const {
   return origin_is_allowed(origin, host, {});
 }
 
-// Browsers keep cookies by host, not by port: the name tells programs on one machine apart.
+// Name with the port: browsers keep cookies by host, so that programs on one machine need different names.
 std::string Doorkeeper::cookie_name() const { return fmt::format("chicane-{}", port); }
 
 std::string Doorkeeper::cookie() const {

@@ -22,8 +22,8 @@ namespace chicane::net {
 [[nodiscard]] bool host_is_allowed(std::string_view host, std::string_view address,
                                    const std::vector<std::string>& allowed);
 
-/// Does an Origin header name the same host and port as the Host header, by HTTP without TLS as this server
-/// speaks it, or stand in `allowed` word for word?
+/// Whether an Origin header names the same host and port as the Host header, by HTTP without TLS as this
+/// server speaks it, or is in `allowed` word for word.
 [[nodiscard]] bool origin_is_allowed(std::string_view origin, std::string_view host,
                                      const std::vector<std::string>& allowed);
 
@@ -48,7 +48,7 @@ struct Admission {
                            ///< kept as a cookie
   std::string words{};     ///< text of the answer
   std::string location{};  ///< same server, without the token
-  bool may_watch = false;  ///< read what the run shows
+  bool may_watch = false;  ///< reads the run
   bool may_control = false;  ///< change the state of the run
 };
 
