@@ -55,7 +55,7 @@ inline std::optional<double> number(std::string_view text, char separator) {
   return text.find('.') == std::string_view::npos ? number(with_point) : std::nullopt;
 }
 
-/// A number as it is meant, finite or not, or its place left empty: the field of a row, never of a header.
+/// Whether a text is a number, finite or not, or an empty field: part of a row, never of a header.
 inline bool stands_for_a_number(std::string_view text) {
   return text.empty() || number(text) || text == "nan" || text == "NaN" || text == "inf" || text == "-inf" ||
          text == "None";

@@ -237,7 +237,7 @@ class TableReader {
   int line_ = 0;
 };
 
-/// Degrees of latitude and longitude in columns that are taken for metres.
+/// Rejects degrees of latitude and longitude in columns read as metres.
 void check_extent(RoadRows& rows) {
   if (rows.error) return;
   const Vec2& first = rows.content.points.front().position;

@@ -181,7 +181,7 @@ Json to_json(const Parameter& parameter) {
   Json json{{"name", parameter.name}};
   if (const auto* flag = std::get_if<bool>(&parameter.value)) json["value"] = *flag;
   if (const auto* text = std::get_if<std::string>(&parameter.value)) json["value"] = *text;
-  // JSON knows one kind of number: the type tells viewers that 3 may become 3.5.
+  // JSON has one kind of number: the type shows viewers that 3 may become 3.5.
   if (const auto* number = std::get_if<double>(&parameter.value)) {
     json["value"] = *number;
     json["type"] = "float64";

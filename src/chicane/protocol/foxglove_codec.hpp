@@ -33,11 +33,11 @@ class ParameterStore {
   [[nodiscard]] virtual std::optional<Parameter> get(std::string_view name) const = 0;
   /// Fails with a sentence for the operator ("tracking_mpc.step_length_s: got 3, expected 0.01 to 0.2").
   [[nodiscard]] virtual Result<void> set(const Parameter& parameter) = 0;
-  /// Called at each tick of the viewers: what was begun goes on, such as a run that is being built.
+  /// Continues work under way, such as building another run. Called at each tick of the viewers.
   virtual void update() {}
   /// Settings that changed since the last call, by any client or the program itself.
   [[nodiscard]] virtual std::vector<Parameter> news() { return {}; }
-  /// Sentences for all operators since the last call: what was accepted and failed afterwards.
+  /// Sentences for all operators since the last call: changes that were accepted and failed later.
   [[nodiscard]] virtual std::vector<std::string> complaints() { return {}; }
   /// The changes that the run has taken up since the last call.
   [[nodiscard]] virtual std::vector<telemetry::Change> applied() { return {}; }
@@ -76,7 +76,7 @@ struct CallService {
   std::string payload;
 };
 
-/// Our own addition to the protocol, of readers that ask for pacing (wire/viewer.hpp): what was read so far.
+/// Our own addition to the protocol, from readers that ask for pacing (wire/viewer.hpp): amount read so far.
 struct Received {
   std::uint64_t bytes = 0;  ///< binary messages since the connection began [byte]
   double at = 0.0;          ///< time by the reader's clock, echoed to it: any finite number

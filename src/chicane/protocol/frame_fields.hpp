@@ -22,7 +22,7 @@ struct Stamp {
 using FrameValue = std::variant<Stamp, bool, std::int8_t, std::uint8_t, std::int32_t, std::uint32_t,
                                 std::uint64_t, double, std::span<const double>>;
 
-/// A name for one value of a field that tells cases apart.
+/// Name for one value of an enumerated field.
 struct FrameConstant {
   std::string_view name;  ///< "RUNG_BRAKE"
   int value = 0;

@@ -168,7 +168,7 @@ Json to_object(const std::optional<safety::GuardOptions>& guard) {
   return json;
 }
 
-/// Steps by what the guard found; what it never found is left out.
+/// Count of steps by the guard's findings; findings without steps are left out.
 Json guard_reasons(const telemetry::RunSummary& run) {
   Json reasons = Json::object();
   for (std::size_t i = 1; i < run.guard_reasons.size(); ++i) {

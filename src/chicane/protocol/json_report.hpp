@@ -18,7 +18,7 @@ namespace chicane::protocol {
 /// and state_hash. Null is not-a-number. kParse for any other text.
 [[nodiscard]] Result<telemetry::RunSummary> read_run(std::string_view json);
 
-/// The same for people: one line for each lap, then what the run was like.
+/// Summary for people: one line for each lap, then the run as a whole.
 [[nodiscard]] std::string to_table(const telemetry::RunSummary& run);
 
 /// Names of a run's guard for results, recordings and viewers.

@@ -40,7 +40,7 @@ struct OccupancyMap {
 };
 
 /// The map of a YAML file that names an image (PGM or PNG), resolution [m], origin [x, y, yaw], negate,
-/// occupied_thresh and free_thresh; the image lies beside the file. Modes "trinary" and "scale"; "raw" is
+/// occupied_thresh and free_thresh; the image is in the file's folder. Modes "trinary" and "scale"; "raw" is
 /// refused. Fails with kNotFound, kIo, or kParse: "map.yaml:3: resolution: got -1, expected ...".
 [[nodiscard]] Result<OccupancyMap> parse_map(std::string_view text, const std::string& file);
 /// The same of a file.

@@ -101,7 +101,7 @@ class PlainReader {
   int line_ = 0;
   YamlTree tree_;
   std::vector<Open> open_;
-  YamlNode* waiting_ = nullptr;  ///< the value of the last key, where nothing stands behind it
+  YamlNode* waiting_ = nullptr;  ///< value of the last key, if its line has none
 };
 
 }  // namespace

@@ -416,7 +416,7 @@ Type type_of(const Setting& parameter) {
 
 }  // namespace
 
-/// rcl_interfaces/msg/ParameterValue: all kinds of value, of which the first number says the one that holds.
+/// rcl_interfaces/msg/ParameterValue: a field for each kind of value; the first number selects the valid one.
 void value_fields(WritingArchive& archive, const Setting& parameter) {
   const Type type = type_of(parameter);
   const auto* number = std::get_if<double>(&parameter.value);

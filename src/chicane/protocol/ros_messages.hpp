@@ -116,7 +116,7 @@ struct RosTopic {
 [[nodiscard]] std::optional<std::string> decode_ask(std::string_view request);
 [[nodiscard]] std::string encode_service_response(bool success, std::string_view message);
 
-/// Seconds of the run as nanoseconds, clamped to what a ROS 2 time can hold; not-a-number gives 0.
+/// Seconds of the run as nanoseconds, clamped to the range of a ROS 2 time; not-a-number gives 0.
 [[nodiscard]] std::uint64_t to_nanoseconds(double seconds) noexcept;
 
 }  // namespace chicane::protocol

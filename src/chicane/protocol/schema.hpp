@@ -31,8 +31,8 @@ struct Parameter {
 [[nodiscard]] std::span<const Parameter> list();
 /// Whether a run takes the change up at its next control step; otherwise it must restart.
 [[nodiscard]] bool is_live(const Parameter& parameter);
-/// Whether only whoever starts a run may set it: the guard, and the model of the car that the guard and the
-/// limits of its commands follow from. Viewers are shown the value; futures that only predict may vary it.
+/// Whether only the operator may set it, at the start: the guard, and the car's model, which the guard and
+/// the limits of its commands follow from. Viewers see the value; futures that only predict may vary it.
 [[nodiscard]] bool is_fixed(const Parameter& parameter);
 /// The row of `key`; nullptr when there is none. Finds a key renamed in this version by its old name, too, so
 /// that files and recordings of the last version keep their meaning.

@@ -16,8 +16,8 @@
 
 namespace chicane::protocol {
 
-/// Something to set that exists only while a run goes on, beside the tunables of the schema: pace, a person's
-/// hands, a fault.
+/// Control that exists only during a run, in addition to the schema's settings: pace, manual driving, a
+/// fault.
 struct Control {
   std::string_view key;  ///< "manual.steer"
   Option option;         ///< kind, range and meaning; has no field
@@ -47,11 +47,11 @@ struct Control {
                                       std::span<const Control> controls);
 
 /// "half_grip@12+5*0.5": half_grip at 12 s, for 5 s, of strength 0.5. Duration and strength may be left out.
-/// kInvalidArgument with what was expected.
+/// kInvalidArgument with the expectation.
 [[nodiscard]] Result<sim::FaultEvent> parse_fault(std::string_view text);
 
 /// The value of the switch "fault.half_grip" as an event at 0 s: "true", or "+5*0.5" for a duration of 5 s
-/// and a strength of 0.5, each of which may be left out. kInvalidArgument with what was expected.
+/// and a strength of 0.5, each of which may be left out. kInvalidArgument with the expectation.
 [[nodiscard]] Result<sim::FaultEvent> read_switch(std::string_view name, std::string_view value);
 
 /// One fault of a scenario file, as text: {name: half_grip, at_s: 12, for_s: 5, strength: 0.5}. Empty: left

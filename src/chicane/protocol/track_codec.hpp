@@ -56,7 +56,7 @@ struct TrackFormat {
   /// message "tracks/x.csv:14: w_tr_left_m: got -4, expected a width > 0 and <= 1000 m".
   Result<TrackFile> (*parse)(std::string_view text, const std::string& file,
                              const TrackReadOptions& options) = nullptr;
-  /// Whether a file is of this format by its content; nullptr where only its name tells.
+  /// Recognises a file of this format by its content; nullptr if only the name shows it.
   bool (*recognises)(std::string_view text) noexcept = nullptr;
 };
 
@@ -98,8 +98,8 @@ struct TrackFormat {
 
 inline constexpr TrackFormat kCsvTrack{".csv", &parse_csv_track};
 
-// Roads as other programs keep them (docs/tracks.md), each recognised by its content. What a file cannot
-// tell is assumed, and said in TrackFile::warnings with the option of `chicane import` that sets it.
+// Roads as other programs keep them (docs/tracks.md), each recognised by its content. Values that a file
+// lacks are assumed, and named in TrackFile::warnings with the option of `chicane import` that sets them.
 
 /// All of them; the first that recognises a text reads it.
 [[nodiscard]] std::span<const TrackFormat> foreign_tracks() noexcept;
@@ -107,7 +107,7 @@ inline constexpr TrackFormat kCsvTrack{".csv", &parse_csv_track};
 /// Kind of a road's file, by its content: "occupancy map", "GPX", "cones", "table of points".
 [[nodiscard]] std::string_view road_kind(std::string_view text) noexcept;
 
-/// ROS's map_server: free space of a map with walls. The image is read from beside the file.
+/// ROS's map_server: free space of a map with walls. The image is read from the file's folder.
 [[nodiscard]] Result<TrackFile> parse_map_track(std::string_view text, const std::string& file,
                                                 const TrackReadOptions& options);
 /// Cones in CSV: rows of x, y and a colour.

@@ -22,8 +22,8 @@ namespace chicane::protocol {
 /// Node for messages: "a map", "a list", "nothing", or its text, quoted as in the file.
 [[nodiscard]] std::string shown(const YamlNode& node);
 
-/// Reads the nodes of one file by tables of keys. What does not fit is a fault, "FILE:LINE: KEY: got X,
-/// expected Y"; reading goes on, and all faults, at most kMostFaults, make one error.
+/// Reads the nodes of one file by tables of keys. A mismatch is a fault, "FILE:LINE: KEY: got X, expected Y";
+/// reading continues, and all faults, at most kMostFaults, make one error.
 class YamlReader {
  public:
   static constexpr std::size_t kMostFaults = 50;

@@ -57,10 +57,10 @@ struct YamlTree {
 /// Parses one document of at most 256 KiB event by event: memory and time are proportional to the text and
 /// end at the limits above (docs/decisions/0016-yaml-by-events.md). kParse, "FILE:LINE: …", for text that is
 /// not YAML or not UTF-8, indented by tabs, several documents, deeper nesting, more nodes, an alias of
-/// nothing or of what it is part of.
+/// nothing or of its own parent.
 [[nodiscard]] Result<YamlTree> parse_yaml(std::string_view text, const std::string& file);
 
-/// Parses what the shipped presets and cars are written in: maps of plain scalars, nested by spaces, with
+/// Parses the subset of YAML in shipped presets and cars: maps of plain scalars, nested by spaces, with
 /// comments. Gives the tree that parse_yaml() gives. For builds without yaml-cpp (apps/page): its files are
 /// our own, so that this is a check and no defence. kParse, "FILE:LINE: ...", for everything else that YAML
 /// has: lists, quotes, braces, tags, anchors, several documents, tabs.

@@ -60,8 +60,8 @@ enum class Column : std::uint8_t {
   kUnknown
 };
 
-/// Rows of points as a reader finds them in a file, checked cell by cell. The first fault stays: a reader
-/// goes on or stops, build() fails with it.
+/// Rows of points as a reader finds them in a file, checked cell by cell. The first fault is kept: a reader
+/// may continue or stop, build() fails with it.
 struct RoadRows {
   struct Named {
     std::string name;  ///< name of the file, for messages
