@@ -247,8 +247,8 @@ void SpeedPlan::finish_limits(ReferenceLine& line) noexcept {
   limit_to(std::max(end, kLowestSpeed), SpeedLimiter::kSight, line.samples().back());
 }
 
-/// Once round a closed line from its slowest place, whose speed nothing lowers any more; an open one from its
-/// beginning.
+/// Limits the acceleration once round a closed line from its slowest place, whose speed is final; on an open
+/// line from its beginning.
 void SpeedPlan::accelerate(ReferenceLine& line, int turn) noexcept {
   const int laps = static_cast<int>(line.samples().size()) - 1;
   const int at = (slowest_ + turn) % laps;
@@ -291,7 +291,7 @@ constexpr int kFewestIntervals = 5;  // the smoother needs six knots
 
 enum Phase { kTake, kSmooth, kMove, kShape, kSample, kSpeed, kDone };
 
-/// Eq. 9: what the curvature's slope costs relative to curvature is the yaw inertia against the tyres' share.
+/// Weight of the curvature's slope relative to curvature (eq. 9): the yaw inertia against the tyres' share.
 double slope_length(const model::VehicleParams& vehicle) noexcept {
   const double length = vehicle.yaw_inertia / (vehicle.mass * vehicle.rear_axle);
   return std::clamp(length / std::max(0.05, 1.0 - vehicle.steer_helper), 1.0, 10.0);

@@ -12,8 +12,8 @@
 
 namespace chicane::road {
 
-/// Work that is spread over control cycles: loops that stop when a cycle's share is used up and go on where
-/// they stopped. What is done in a cycle depends on the counted work alone, never on a clock.
+/// Work spread over control cycles: loops that stop when a cycle's share is used up and continue in the next
+/// one. A cycle's part depends on the counted work alone, never on a clock.
 class Instalments {
  public:
   /// Back to the first turn of the first loop.
@@ -46,8 +46,8 @@ class Instalments {
 ///
 /// The strip |n| <= width is kept by raising the weight w where n is too large and lowering it elsewhere, a
 /// few passes over. ℓ is the length over which the car's yaw inertia makes a change of curvature as dear as
-/// curvature itself. Each pass is one positive definite system with three entries beside the diagonal: a
-/// sweep forwards, a sweep back.
+/// curvature itself. Each pass is one positive definite system with three off-diagonals: a sweep forwards, a
+/// sweep back.
 ///
 /// All memory is reserved at construction. The work comes in instalments of about 10 ns; a whole smoothing is
 /// work_for() of them.
@@ -58,8 +58,8 @@ class LineSmoother {
   void configure(double width, double slope_length) noexcept;
 
   /// A new line: `knots` of them [6, capacity], `spacing` [m] apart. The caller fills curvature() before
-  /// advance(). With `period` > 0 the line closes after so many knots and goes on round: places `period`
-  /// apart are the same and have the same weight.
+  /// advance(). With `period` > 0 the line closes after so many knots and repeats: places `period` apart are
+  /// the same and have the same weight.
   void begin(int knots, double spacing, int period) noexcept;
   [[nodiscard]] std::span<double> curvature() noexcept { return curvature_; }  ///< [1/m]
   /// Does up to `work` and takes it off; true when the offsets are there.
@@ -168,7 +168,7 @@ class LinePlanner {
   /// change there.
   [[nodiscard]] bool advance(int work, const WaypointLine& source, ReferenceLine& line) noexcept;
 
-  /// Samples of a line planned from so many knots.
+  /// Number of samples of a line planned from `knots` knots.
   [[nodiscard]] static constexpr int samples_for(int knots) noexcept { return 5 * knots / 2 + 2; }
 
  private:

@@ -333,8 +333,8 @@ void Path::for_each_segment(double s_low, double s_high, Visit&& visit) const no
 }
 
 Projection Path::search(const Vec2& point, double s_low, double s_high) const noexcept {
-  // A segment stays within `bulge` of its chord: after the one with the nearest chord, only segments that can
-  // still hold a nearer point are looked at closely.
+  // A segment with the distance of its chord. A segment stays within `bulge` of its chord: after the one with
+  // the nearest chord, only segments that can hold a nearer point are searched.
   struct Part {
     const Segment* segment = nullptr;
     double low = 0.0;

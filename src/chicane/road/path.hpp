@@ -65,8 +65,8 @@ class Path {
   /// Change of heading over a closed lap [rad]: 2π for a simple counter-clockwise loop, −2π for a clockwise
   /// one.
   [[nodiscard]] double turning() const noexcept { return turning_; }
-  /// Any s: wrapped when closed, extended by a straight line beyond the ends when open. The heading goes on
-  /// continuously beyond the first lap: at(s + length()).heading = at(s).heading + turning(). Zero for an
+  /// Point at any s: wrapped when closed, extended by a straight line beyond the ends when open. The heading
+  /// is continuous beyond the first lap: at(s + length()).heading = at(s).heading + turning(). Zero for an
   /// empty path, NaN for NaN.
   [[nodiscard]] PathPoint at(double s) const noexcept;
   /// s in [0, length) for a closed path; clamped to [0, length] for an open one.

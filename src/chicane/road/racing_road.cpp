@@ -77,7 +77,7 @@ std::vector<LinePoint> line_points(const Track& track, const RacingLine& line) {
   }
   const std::size_t last = points.size() - 1;
   const bool is_closed = centre.is_closed();
-  // The end of a lap has the heading of its beginning, and what the road has turned.
+  // At the end of a lap the heading is the start's plus the road's turning.
   if (is_closed)
     points[last].heading =
         points[0].heading + kTwoPi * std::round((points[last].heading - points[0].heading) / kTwoPi);
@@ -122,8 +122,8 @@ std::vector<double> arc_lengths(std::span<const road::LinePoint> lap) {
 }
 
 constexpr std::size_t kLeastPoints = 8;
-// A car stops kBehindTheEnd behind a point: kBeforeTheEnd before the end of an open road, or its finish where
-// less room is behind that, so that it is passed [m].
+// A car stops kBehindTheEnd behind a point: kBeforeTheEnd before the end of an open road, or before its
+// finish if less room is behind that, so that the finish is passed [m].
 constexpr double kBeforeTheEnd = 14.0;
 constexpr double kBehindTheEnd = 2.0;
 constexpr double kFootReach = 12.0;  // reach along the road, from the foot of a sample to the next foot [m]

@@ -31,8 +31,8 @@ struct RacingLinePoint {
   double throttle = 0.0;       ///< the pedal asked for here, [-1, 1]
 };
 
-/// A lap planned for one car on one closed road, as plain data: what a limit hands to controllers, files and
-/// views that do not know how it was found (docs/limit.md).
+/// A lap planned for one car on one closed road, as plain data for controllers, files and views, which do not
+/// depend on the method (docs/limit.md).
 struct RacingLine {
   std::string car{};                      ///< name of the plant that it was planned for
   std::string track{};                    ///< name of the road
@@ -177,8 +177,7 @@ class DrivenRoad {
   }
   [[nodiscard]] bool is_raced() const noexcept { return lap_ != nullptr; }
 
-  /// Takes in the waypoints of a measurement, where they tell anything. False when a learned lap had to be
-  /// given up.
+  /// Adds the waypoints of a measurement, if they are new. False if a learned lap had to be dropped.
   [[nodiscard]] bool add(const model::Measurement& now) noexcept {
     if (!is_raced() || is_learned()) seen_.add(now);
     if (!is_learned() || !seen_.closed_waypoints().empty()) return true;
@@ -193,7 +192,7 @@ class DrivenRoad {
 
   /// Line in W; empty if nothing is known.
   [[nodiscard]] const ReferenceLine& line() const noexcept { return lap_ ? lap_->line() : seen_.line(); }
-  /// Changes with every other line: positions along an older one mean nothing any more.
+  /// Number of the line: positions along an older one are void.
   [[nodiscard]] unsigned revision() const noexcept { return seen_.revision() + laps_; }
   /// The planned lap; null: none.
   [[nodiscard]] const RacingRoad* lap() const noexcept { return lap_.get(); }

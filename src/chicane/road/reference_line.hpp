@@ -41,7 +41,7 @@ inline constexpr std::array kSpeedLimiterWords{CHICANE_SPEED_LIMITERS(CHICANE_WO
 struct LapTerms {
   double grip = 1.0;    ///< grip over the grip of the vehicle's parameters
   bool slides = false;  ///< slip beyond the tyres' peak, where that is stable
-  double slip = 1.0;    ///< most slip of an axle, over what the options allow
+  double slip = 1.0;    ///< largest slip of an axle, over the options' limit
 
   friend bool operator==(const LapTerms&, const LapTerms&) = default;
 };
@@ -102,8 +102,8 @@ class ReferenceLine {
   [[nodiscard]] double length() const noexcept { return length_; }
   [[nodiscard]] double spacing() const noexcept { return spacing_; }
 
-  /// Any s: wrapped when closed, straight on beyond open ends. The heading goes on beyond the first lap. Pre:
-  /// not empty.
+  /// Point at any s: wrapped when closed, straight beyond open ends. The heading is continuous beyond the
+  /// first lap. Pre: not empty.
   [[nodiscard]] CurvePoint at(double s) const noexcept;
   [[nodiscard]] Demand demand(double s) const noexcept;
   /// Among all samples, O(n); pre: not empty, finite.

@@ -17,7 +17,7 @@ struct RoadOptions {
   double half_width = 3.0;  ///< room for the centre of mass each side of the waypoint line [m]
   double smoothing_width =
       1.5;  ///< the reference line may leave the waypoint line by this much [m]; 0 = none
-  bool remember_waypoints = true;  ///< false: only what the last measurement shows
+  bool remember_waypoints = true;  ///< false: waypoints of the last measurement only
   SpeedPlanOptions speed{};
 
   friend bool operator==(const RoadOptions&, const RoadOptions&) = default;
@@ -49,11 +49,12 @@ class Road {
     double left = 0.0;   ///< [m]
     double right = 0.0;  ///< [m]
   };
-  /// Room for the centre of mass beside the reference line where it has moved sideways by `offset` [m].
+  /// Room for the centre of mass on both sides of the reference line where it has moved sideways by `offset`
+  /// [m].
   [[nodiscard]] Room room(double offset) const noexcept {
     return {options_.half_width - offset, options_.half_width + offset};
   }
-  /// Increases with every new line: positions along an older one mean nothing any more.
+  /// Number of the line: positions along an older one are void.
   [[nodiscard]] unsigned revision() const noexcept { return revision_; }
   /// The waypoints of a closed road in driving order, once its lap is planned; empty before.
   [[nodiscard]] std::span<const Vec2> closed_waypoints() const noexcept {
@@ -65,7 +66,7 @@ class Road {
   static constexpr int kMostShares = 8;      ///< limit in one measurement, however long ago the last one is
   static constexpr int kLapWork = 1500;      ///< units of LinePlanner in each share
   static constexpr int kStretchKnots = 128;  ///< 380 m
-  static constexpr double kBehind = 60.0;    ///< [m] the line begins so far behind the first waypoint seen
+  static constexpr double kBehind = 60.0;    ///< [m] start of the line behind the first waypoint seen
 
   void configure_planners() noexcept;
   [[nodiscard]] int shares_until(double time) noexcept;

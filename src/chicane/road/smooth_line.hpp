@@ -27,8 +27,8 @@ struct SmoothLine {
 /// line would leave the points by more than their noise explains: rms > σ or any > 4 σ, with m = 2 any > 2 σ
 /// (plus millimetres, for σ = 0).
 ///
-/// Pre: finite points, at least two different. Fails with kInvalidArgument when the line needs more than
-/// 200,000 knots, and where there are so many to each point that rounding wins. Memory: 400,000 knots.
+/// Pre: finite points, at least two different. Fails with kInvalidArgument if the line needs more than
+/// 200,000 knots, or so many to each point that rounding dominates. Memory: 400,000 knots.
 [[nodiscard]] Result<SmoothLine> smooth_line(std::span<const Vec2> points, bool closed, double spacing,
                                              double sigma);
 

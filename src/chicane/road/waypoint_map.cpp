@@ -44,9 +44,8 @@ int WaypointMap::find(const Vec2& point) const noexcept {
   return -1;
 }
 
-/// Whether waypoint `i` of a measurement is the map's first one come round again. On a road that crosses
-/// itself another passage may have a waypoint in the same place: the one that follows decides, where it is
-/// seen.
+/// Whether waypoint `i` of a measurement is the map's first one again. On a road that crosses itself another
+/// passage may have a waypoint in the same place: the next waypoint decides, if it is visible.
 WaypointMap::Loop WaypointMap::closes(std::span<const Vec2> seen, std::size_t i) const noexcept {
   if (points_.size() < kFewestForLoop || !is_same(points_.front(), seen[i])) return Loop::kOpen;
   if (i + 1 < seen.size()) return is_same(points_[1], seen[i + 1]) ? Loop::kClosed : Loop::kOpen;

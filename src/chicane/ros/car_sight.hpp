@@ -15,8 +15,8 @@
 
 namespace chicane::ros {
 
-/// Makes of odometry what a controller measures: the centre of mass in W, the road ahead as waypoints, and
-/// the command that acts now, which odometry does not tell. One thread.
+/// Turns odometry into a controller's measurement: the centre of mass in W, the road ahead as waypoints, and
+/// the command that acts now, which odometry lacks. One thread.
 class CarSight {
  public:
   /// `track`: the road, or null where it comes as a path. `is_base_at_rear_axle`: NodeOptions'.
@@ -50,10 +50,10 @@ class CarSight {
   std::size_t count_ = 0;
 };
 
-/// The pose of what has `inner` in a frame, seen from where that frame has `frame`.
+/// Pose of a body with `inner` in a frame, seen from the parent in which that frame has `frame`.
 [[nodiscard]] model::Pose composed(const model::Pose& frame, const model::Pose& inner) noexcept;
 
-/// Frames and where they lie in the plane, as /tf and /tf_static tell it: the newest of each. One thread.
+/// Frames and their poses in the plane, as /tf and /tf_static give them: the newest of each. One thread.
 class FrameTree {
  public:
   static constexpr std::size_t kCapacity = 1000;  ///< frames; transforms of further ones are left out

@@ -41,7 +41,7 @@ struct WantedPartner {
 /// clock: both come in.
 class PartnerWatch {
  public:
-  /// `missed_after`: without a partner for so long it is missed [s].
+  /// `missed_after`: time without a partner after which it is reported as missing [s].
   PartnerWatch(std::vector<WantedPartner> wanted, NetworkOptions network, double missed_after = 3.0);
 
   /// Reports due at `time` [s], rising. `others`: Participant::others(); `matched`: the partners of each

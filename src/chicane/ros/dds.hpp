@@ -16,7 +16,7 @@ namespace chicane::ros {
 /// Options for finding partners.
 struct NetworkOptions {
   int domain = 0;                       ///< ROS_DOMAIN_ID, [0, 232]
-  std::string interface = "lo";         ///< network interface by name; "auto": the one that DDS prefers
+  std::string interface = "lo";         ///< network interface by name; "auto": DDS's choice
   std::vector<std::string> peers = {};  ///< addresses that are asked one by one, where there is no multicast
 };
 
@@ -31,7 +31,7 @@ struct Qos {
 struct Sample {
   std::string bytes{};
   std::int64_t sent = 0;     ///< time by the writer's system clock [ns since 1970]
-  std::uint64_t writer = 0;  ///< handle of the one that sent it: another number is another writer
+  std::uint64_t writer = 0;  ///< handle of the writer: another number is another writer
 };
 
 /// A reader or writer that another program has.
@@ -94,7 +94,7 @@ class Endpoints {
   void send(std::unique_ptr<Writer>& to, const std::string& topic, std::string_view type, Qos qos) {
     if (!topic.empty() && made_) take(to, at_.writer(topic, std::string(type), qos));
   }
-  /// The error of the one that could not be made.
+  /// Error of the object that could not be made.
   [[nodiscard]] const Result<void>& made() const noexcept { return made_; }
 
  private:

@@ -400,7 +400,7 @@ class DriveNode {
   protocol::OdometryMessage odometry_;
   Clock::time_point arrived_{}, moment_{}, last_cycle_{}, looked_{};
   bool is_fresh_ = false;    ///< odometry waits for a cycle
-  bool is_driving_ = false;  ///< cycles go on, with odometry or without
+  bool is_driving_ = false;  ///< cycles continue, with odometry or without
   bool was_blind_ = false;   ///< the last cycle had no odometry
   bool is_silent_ = false;   ///< missing odometry was reported
   bool is_stopped_ = false;  ///< stopped by request

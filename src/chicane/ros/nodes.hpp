@@ -74,8 +74,8 @@ struct NodeOptions {
 
 /// `chicane ros --simulate`: our car and track as ROS 2 topics, in real time: odometry, transform, IMU and
 /// laser scan out, drive commands in. The car waits for the first command. Each command acts
-/// `scenario.latency` after it arrived; when they cease the car is stopped as `scenario.guard.receiver` says,
-/// by the stop plan that came with the last one where there was one.
+/// `scenario.latency` after it arrived. When they cease `scenario.guard.receiver` stops the car, by the last
+/// command's stop plan if it had one.
 ///
 /// Uses of the scenario: track, car, plant_options, vehicle, guard.receiver, sensor, seed, laps, time_limit,
 /// latency, control_period (of the odometry). Ends when the laps are driven, the car is lost, time is up, or

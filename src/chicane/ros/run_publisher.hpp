@@ -57,7 +57,7 @@ class ParameterServices {
   [[nodiscard]] static Result<std::unique_ptr<ParameterServices>> create(
       Participant& participant, protocol::foxglove::ParameterStore& store, Run run);
 
-  /// Hands what was asked since the last call to the store's thread, which answers.
+  /// Hands requests since the last call to the store's thread, which answers.
   void serve();
 
  private:

@@ -209,14 +209,14 @@ class SimNode {
     writer_ = writer;
     if (report_.connections++ > 0) return log_.say(fmt::format("another sender on {}", node_.topics.drive));
     const double ahead = elapsed(Clock::now());
-    began_ += duration(ahead / pace_);  // the world begins with the first command, and the stamps go on
+    began_ += duration(ahead / pace_);  // the world begins with the first command, and the stamps continue
     epoch_ += static_cast<std::int64_t>(std::llround(1e9 * ahead));
     next_odometry_ = next_scan_ = 0.0;
     if (topics_.clock) next_tick_ = 0.0;
     log_.say(fmt::format("first command on {}", node_.topics.drive));
   }
 
-  /// A command waits for its moment as what was wanted: the pedal follows from the speed then.
+  /// Queues a command with its demand: the pedal is computed at the speed when it acts.
   void accept(const protocol::DriveMessage& message) {
     ++report_.answers;
     const double time = car_.world.time();

@@ -39,7 +39,7 @@ constexpr int kNested = 1;
 constexpr int kArray = 48;      // added for a fixed size
 constexpr int kSequence = 144;  // added for any size
 
-/// One definition of a schema: what the hash needs of it.
+/// One definition of a schema: the parts that the hash needs.
 struct Definition {
   std::string fields{};              ///< JSON, one object for each field, joined
   std::vector<std::string> parts{};  ///< types it refers to

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kMostFine = 16'000'000;   // cells of the distance field
 constexpr std::size_t kMostCoarse = 1'000'000;  // cells in which the way round is searched
-constexpr double kLeastInfield = 1.0;           // diagonal of what can be driven round [m]
+constexpr double kLeastInfield = 1.0;           // least diagonal of an infield [m]
 constexpr double kMostReach = 1.6;  // a side is at most this many clearances wide: pockets are no road
 constexpr int kRounds = 40;         // rounds of moving the line to the middle
 
@@ -393,7 +393,7 @@ class LoopFinder {
         shown(one), shown(other), (one - other).norm() * cell_, is_unseen ? ", where cells are unknown" : "");
   }
 
-  /// Whether the room at an end of a road stops at cells that nobody has seen.
+  /// Whether the room at an end of a road stops at unknown cells.
   [[nodiscard]] bool ends_unseen(const Vec2& end) const {
     const double reach = std::min(room_at(end) + 2.0, 200.0);
     const int most = static_cast<int>(reach);

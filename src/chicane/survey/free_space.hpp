@@ -44,7 +44,7 @@ struct FreeLoop {
 /// short one far from walls. Unknown cells are no road. More than 16 million cells are joined first: memory
 /// stays below 20 bytes for each cell.
 ///
-/// kParse if there is no loop: "... open between (3.2, -1.0) and ...", with what is known of the places.
+/// kParse if there is no loop: "... open between (3.2, -1.0) and ...", with details of the places.
 [[nodiscard]] Result<FreeLoop> find_loop(const FreeSpace& space, const LoopOptions& options);
 
 }  // namespace chicane::survey
