@@ -50,7 +50,7 @@ class Account {
   static constexpr double kLostDistance = 25.0;  ///< [m]
   static constexpr double kLostTime = 30.0;      ///< [s]
   static constexpr double kNearer = 1.0;         ///< [m] that count as coming nearer
-  static constexpr double kStoodTime = 3.0;      ///< [s] of standing that a time limit's sentence tells
+  static constexpr double kStoodTime = 3.0;      ///< [s] of standing that a time limit's sentence mentions
   static constexpr double kTimePerLap = 600.0;   ///< [s] where no time limit was given
   static constexpr int kLapsRemembered = 1000;   ///< one by one, beyond those asked for
 
@@ -58,8 +58,8 @@ class Account {
 
   /// Restarts with the same terms: everything is counted from zero.
   void restart();
-  /// The same run goes on with another car, or with the same one from another place: what was counted stays,
-  /// the running lap does not count.
+  /// Continues the same run with another car, or with the same one from another place: counts stay, the
+  /// running lap does not count.
   void resume() noexcept;
 
   /// Other laps, time limit and latency are asked for from now on; the names stay. Does not allocate.
@@ -83,7 +83,7 @@ class Account {
   /// Removes the limits on laps and time: from now on only a lost car ends the run.
   void drive_on() noexcept;
 
-  /// `duration`: of the run [s]; without one as long as was measured. Allocates.
+  /// `duration`: of the run [s]; without it the measured one. Allocates.
   [[nodiscard]] telemetry::RunSummary summary(std::optional<double> duration = std::nullopt) const;
 
  private:
@@ -119,8 +119,8 @@ class LapLearner {
 
   /// A new run from wherever the car is seen next.
   void reset() noexcept;
-  /// Time rises from sighting to sighting; `speed` [m/s] tells a car that drives from one that was moved: the
-  /// running lap of the latter begins where it is.
+  /// Time rises from sighting to sighting; `speed` [m/s] distinguishes a car that drives from one that was
+  /// moved: the latter's running lap begins at its place.
   void see(double time, const model::Pose& car, double speed) noexcept;
 
   /// Laps and their times; all else at its default.
@@ -154,9 +154,9 @@ class Roadside {
 
   /// Another car, or the same one from another place: the running lap does not count, the rest stays.
   void resume() noexcept;
-  /// The car drives on another road than configured: what was judged by it is forgotten.
+  /// Drops the track and all judgements by it: the car drives on another road than configured.
   void forget_track();
-  /// Writes place, edges and laps of what was measured into the frame, and counts it. Allocates nothing.
+  /// Writes place, edges and laps by the measurement into the frame, and counts it. Allocates nothing.
   void judge(telemetry::Frame& frame) noexcept;
   /// The lap that was just completed, once.
   [[nodiscard]] std::optional<telemetry::CompletedLap> take_lap() noexcept { return account_.take_lap(); }

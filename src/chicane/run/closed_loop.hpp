@@ -121,7 +121,7 @@ class ClosedLoop {
   [[nodiscard]] const telemetry::Frame& frame() const noexcept { return frame_; }
   [[nodiscard]] const road::Track& track() const noexcept { return car_.track; }
   [[nodiscard]] const sim::WorldState& world() const noexcept { return car_.world.state(); }
-  /// The car as it is now, after the last physics step.
+  /// State of the car after the last physics step.
   [[nodiscard]] const model::State& car() const noexcept { return car_.plant->state(); }
   [[nodiscard]] const scenario::Scenario& scenario() const noexcept { return scenario_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return cycle_.controller(); }

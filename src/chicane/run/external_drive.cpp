@@ -107,7 +107,7 @@ void ExternalDrive::count_time(const Sighting& sighting) {
   if (hooks_.on_clock) hooks_.on_clock(clock_.news());
 }
 
-/// A configured track that is not the one whose waypoints are shown is not used any more.
+/// Drops a configured track that does not match the visible waypoints.
 void ExternalDrive::check_road(const Sighting& sighting) {
   if (options_.track == nullptr || is_other_road_ || !sighting.measured) return;
   const auto distance = distance_to_other_road(*options_.track, *sighting.measured);

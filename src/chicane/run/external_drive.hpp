@@ -42,7 +42,8 @@ struct ExternalDriveHooks {
   std::function<void(const telemetry::Change&)> on_change{};     ///< one was taken up
   std::function<void(const telemetry::Frame&)> on_frame{};       ///< called after each cycle
   std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< a lap was completed
-  /// The car drives on another road than ExternalDriveOptions::track, so far from it at most [m]. Once.
+  /// Reports that the car drives on another road than ExternalDriveOptions::track, with the largest distance
+  /// from it [m]. Once.
   std::function<void(double)> on_other_road{};
   std::function<void(std::string_view)> on_clock{};  ///< time is counted otherwise: a sentence for people
 };
@@ -68,7 +69,7 @@ class ExternalDrive {
 
   /// Another car, or the same one after it was away: nothing learned is trusted.
   void begin();
-  /// Time between the last two cycles, if the one that comes now is `received`; none at the beginning [s].
+  /// Time between the last two cycles, if the current one is `received`; none at the start [s].
   [[nodiscard]] std::optional<double> gap(Clock::time_point received) const;
   /// A person drives, or the car was put elsewhere: the next measurement is the first of a run.
   void begin_anew();

@@ -25,7 +25,7 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kStood = 1.0;         // [s] a car that stands so long has come to rest
+constexpr double kStood = 1.0;         // [s] at standstill after which a car has come to rest
 constexpr double kTimeToGetGoing = 5;  // [s] for a car that the fault has stopped
 constexpr double kRounding = 1e-9;     // [s] sums of step lengths round
 constexpr double kLongestLaps = 1800;  // [s] for the two laps without a fault; longer ones are not waited for
@@ -87,7 +87,7 @@ class SharedOutcomes {
   void* memory_;
 };
 
-/// Ends this process with the one that forked it: its open files, and their locks, are let go.
+/// Ends this process with its parent: open files and their locks are released.
 void end_with_parent() noexcept {
 #ifdef __linux__
   static_cast<void>(prctl(PR_SET_PDEATHSIG, SIGKILL));

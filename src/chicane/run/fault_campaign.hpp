@@ -63,11 +63,11 @@ struct FlyingLap {
 [[nodiscard]] Result<FlyingLap> drive_undisturbed(const scenario::Scenario& scenario,
                                                   double wait = kLongestWait, const Factories& make = {});
 /// Drives trials of `scenario` without its own faults, each from the start of a run. Deterministic; no trial
-/// depends on others. What comes before a fault is driven once for all: from its onset on a trial is a copy
-/// of the process (fork), at most `jobs` of them at a time, and a trial that crashes is an error that names
-/// it. The outcomes are in the order of the trials, whatever the number of processes. `on_done` gets, in
-/// this process, how many are done; false ends early, with the outcomes so far (a trial that was not driven
-/// has an infinite least_edge). Pre: no other thread of this process holds a lock.
+/// depends on others. The time before a fault is driven once for all: from its onset on a trial is a copy of
+/// the process (fork), at most `jobs` of them at a time, and a trial that crashes is an error that names it.
+/// The outcomes are in the order of the trials, whatever the number of processes. `on_done` gets, in this
+/// process, how many are done; false ends early, with the outcomes so far (a trial that was not driven has an
+/// infinite least_edge). Pre: no other thread of this process holds a lock.
 [[nodiscard]] Result<std::vector<FaultOutcome>> drive_trials(
     const scenario::Scenario& scenario, const FlyingLap& lap, const std::vector<FaultTrial>& trials, int jobs,
     const std::function<bool(std::size_t)>& on_done = {}, const Factories& make = {});

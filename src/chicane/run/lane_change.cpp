@@ -23,7 +23,7 @@ constexpr double kGap = 1.0;         // [m] between entry and side lane
 constexpr double kIntoEntry = 3.0;   // [m] of the entry lane in which the line begins to turn
 constexpr double kIntoSide = 5.0;    // [m] of the side lane, at either end
 constexpr double kIntoExit = 4.0;    // [m]
-constexpr double kBeside = 6.0;      // [m] of space beside the line where there are no cones
+constexpr double kBeside = 6.0;      // [m] of space at the sides of the line where there are no cones
 constexpr double kReach = 1.0;       // [m] of the edges beyond the cones: what reaches beyond the axles
 constexpr double kFarPoints = 20.0;  // [m] between points before and behind the course
 constexpr double kEdgePoints = 0.5;  // [m] between points in it
@@ -40,9 +40,9 @@ constexpr double kWayStep = 5.0 / 3.6;  // [m/s] between speeds that a way is pl
 constexpr double kUsedRoom = 0.2;   // share of the space beside the body in the entry lane that the line uses
 constexpr double kPlanStep = 0.04;  // [s] between nodes of a plan, about
 constexpr double kStopping = 10.0;  // [m/s²] at the end of the road, which no car reaches
-constexpr double kShown = 6.0;      // [m] of road beside the waypoints that are shown
+constexpr double kShown = 6.0;      // [m] of road at the sides of the shown waypoints
 constexpr double kWaypoints = 3.0;  // [m] between waypoints in the course
-constexpr double kFarWaypoints = 20.0;  // [m] and before and behind it
+constexpr double kFarWaypoints = 20.0;  // [m] between waypoints before and behind it
 constexpr double kSpeedGain = 2.0;      // [1/s]
 constexpr double kNoPedal = 0.01;       // [m/s²] that drive and brakes give, known to the controller
 constexpr double kMostTime = 60.0;      // [s]
@@ -84,7 +84,7 @@ double margin_of(const model::VehicleParams& car) {
   return beside_tyres - kUsedRoom * beside_body;
 }
 
-/// The scenario as it is driven there: without an end, faults and guard.
+/// Scenario for the course: without an end, faults and guard.
 scenario::Scenario on_course(const scenario::Scenario& driven) {
   scenario::Scenario scenario = endless(driven);
   scenario.guard.mode = safety::GuardMode::kOff;

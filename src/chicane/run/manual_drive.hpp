@@ -21,8 +21,8 @@ class ManualDrive {
 
   void set(const ManualSetting& setting) noexcept;
   [[nodiscard]] bool is_on() const noexcept { return is_on_; }
-  /// The person's command to a car that is measured so. The steering is a share of the lock. Full braking is
-  /// all that is useful; near standstill a negative throttle is passed on as it is, which reverses cars that
+  /// The person's command for a measured car. The steering is a share of the lock. Full braking is the
+  /// largest useful one; near standstill a negative throttle is passed on unchanged, which reverses cars that
   /// can.
   [[nodiscard]] model::Command command(const model::Measurement& now,
                                        const model::VehicleParams& vehicle) noexcept;

@@ -56,7 +56,7 @@ class Name {
   void add(std::span<const Option> options, const void* owner) {
     for (const Option& option : options) add(option.read(owner));
   }
-  /// All that a search can ask of a road: its smoothed line and widths come of these points alone.
+  /// Adds a road: its smoothed line and widths, on which a search depends, follow from these points alone.
   void add(const road::Track& track) {
     constexpr double kSpacing = 1.0;  // [m]
     add(std::string_view(track.name()));

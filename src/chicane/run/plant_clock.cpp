@@ -13,21 +13,21 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kFullSize = 4.5;       // [m] length of a car
-constexpr double kLegWay = 0.5;         // [m] of one leg, for a car in full size
-constexpr double kLeastSpeed = 0.5;     // [m/s] that tells a time, for a car in full size
-constexpr double kLongestCycle = 1.0;   // [s] between answers; longer ones are silences
-constexpr double kLongestStep = 5.0;    // [s] between measurements that say anything of each other
-constexpr std::size_t kLeastLegs = 5;   // legs needed to judge a clock
-constexpr double kLeastWallTime = 0.6;  // least wall time of these legs [s]
-constexpr double kClockAcross = 0.3;    // share of the way that a car may move across its heading
-constexpr double kJump = 0.3;           // [m] allowed in addition
-constexpr double kSpeedJump = 2.0;      // [m/s] allowed in addition
-constexpr double kMostBraking = 20.0;   // [m/s²] by which a speed changes
-constexpr double kDrives = 0.1;         // pedal that drives
-constexpr double kPedalMemory = 3.0;    // [s]
-constexpr double kLeastAsked = 1.0;     // [m/s] after which a pedal tells a clock from a speed
-constexpr double kSteadier = 0.5;       // share of the other's deviation with which one explanation is better
+constexpr double kFullSize = 4.5;         // [m] length of a car
+constexpr double kLegWay = 0.5;           // [m] of one leg, for a car in full size
+constexpr double kLeastSpeed = 0.5;       // [m/s] needed to judge a time, for a car in full size
+constexpr double kLongestCycle = 1.0;     // [s] between answers; longer ones are silences
+constexpr double kLongestStep = 5.0;      // [s] between measurements that say anything of each other
+constexpr std::size_t kLeastLegs = 5;     // legs needed to judge a clock
+constexpr double kLeastWallTime = 0.6;    // least wall time of these legs [s]
+constexpr double kClockAcross = 0.3;      // share of the way that a car may move across its heading
+constexpr double kJump = 0.3;             // [m] allowed in addition
+constexpr double kSpeedJump = 2.0;        // [m/s] allowed in addition
+constexpr double kMostBraking = 20.0;     // [m/s²] by which a speed changes
+constexpr double kDrives = 0.1;           // pedal that drives
+constexpr double kPedalMemory = 3.0;      // [s]
+constexpr double kLeastAsked = 1.0;       // [m/s] change by the pedal that distinguishes a clock from a speed
+constexpr double kSteadier = 0.5;         // deviation over the other's below which one explanation is better
 constexpr double kLeastDeviation = 0.02;  // deviation below which both clocks fit
 constexpr double kFollowed = 0.1;         // share of a difference that is made up for with each leg
 constexpr double kBurst = 0.5;            // share by which a step in lock step differs that had to wait

@@ -18,12 +18,12 @@ struct PlantClockOptions {
   double lock_step = 0.0;     ///< time that the simulator advances with each answer [s]; 0: by its own clock
 };
 
-/// Time of the run of a car that another program simulates (docs/protocol.md, "Time"). A
-/// displacement over its speed is the time that the simulator has advanced by. Over the last measurements of
-/// a car that drives it tells whether the simulator runs at a ratio of the wall's time, or in lock step: by
-/// the same time with each answer. Noise and delays of a busy machine change neither.
+/// Time of the run of a car that another program simulates (docs/protocol.md, "Time"). A displacement over
+/// its speed is the time that the simulator has advanced by. Over the last measurements of a driving car it
+/// shows whether the simulator runs at a ratio of the wall's time, or in lock step: by the same time with
+/// each answer. Noise and delays of a busy machine change neither.
 ///
-/// A simulator that tells its own time needs none of that.
+/// A simulator that sends its own time needs none of that.
 ///
 /// A speed in another unit looks like another clock, but for the acceleration that a pedal gives: no ratio is
 /// taken up that contradicts it. No allocation but in news(); one thread.
@@ -36,10 +36,10 @@ class PlantClock {
 
   PlantClock(const PlantClockOptions& options, const model::VehicleParams& vehicle, Clock::time_point start);
 
-  /// Another car: nothing is known of its clock. The time goes on.
+  /// Resets for another car, with an unknown clock. The run's time continues.
   void begin();
-  /// A message came at `received`, with `measured` (null: nothing usable), while `acting` acted on the car.
-  /// True: time is counted otherwise from now on, what was computed by the time before does not hold.
+  /// Takes a message that came at `received`, with `measured` (null: nothing usable), while `acting` acted on
+  /// the car. True: the clock has changed, and results by the earlier time are void.
   bool advance(Clock::time_point received, const model::Measurement* measured, const model::Command& acting);
 
   /// Time of the run [s] at a moment of the wall's clock.

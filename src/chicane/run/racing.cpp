@@ -165,7 +165,7 @@ std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Con
     return {};
   }
   if (!wanted_since_ || time < *wanted_since_) {
-    if (thread_.joinable()) return {};  // one that nobody waits for any more
+    if (thread_.joinable()) return {};  // its result is no longer awaited
     wanted_since_ = time;
     ready_since_.reset();
     has_answered_ = false;

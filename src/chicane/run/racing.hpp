@@ -38,13 +38,13 @@ struct PlanHooks {
 };
 
 /// The lap that a scenario's controller races by: the minimum-time line of the car it assumes on `track`,
-/// with the shares of grip and brakes and the margin to the edges that its settings leave. Null where the
-/// settings do not ask for one, or let it know waypoints only (GuardRoad::kWaypoints), and where the search
-/// finds none: the controller then follows its reference. Takes 1 to 30 s (lap_time::plan_racing_line), or
-/// milliseconds from the cache (plan_cache.hpp). Where TrackingMpcOptions::plan_budget ends the search, the
-/// best plan so far. The same scenario and track give the same bits.
+/// with the shares of grip and brakes and the margin to the edges in its settings. Null if the settings do
+/// not ask for one, or allow waypoints only (GuardRoad::kWaypoints), or the search finds none: the controller
+/// then follows its reference. Takes 1 to 30 s (lap_time::plan_racing_line), or milliseconds from the cache
+/// (plan_cache.hpp). If TrackingMpcOptions::plan_budget ends the search, the best plan so far. The same
+/// scenario and track give the same bits.
 ///
-/// kInvalidArgument names why there is no such lap: a road that is too narrow or too tight, or
+/// kInvalidArgument names the reason for no lap: a road that is too narrow or too tight, or
 /// must_stop_planning().
 [[nodiscard]] Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenario& scenario,
                                                                        const road::Track* track,

@@ -38,7 +38,7 @@ bool plan_same_lap(const scenario::Scenario& a, const scenario::Scenario& b) {
                   &std::get<Entry::Options>(b.controllers));
 }
 
-/// Whether the same road comes of both.
+/// Whether both scenarios have the same road.
 bool is_same_road(const scenario::Scenario& a, const scenario::Scenario& b) {
   return a.track == b.track && a.size_of_track() == b.size_of_track() && a.vehicle.scale == b.vehicle.scale &&
          a.friction_low == b.friction_low && are_same(safety::guard_options(), &a.guard, &b.guard) &&

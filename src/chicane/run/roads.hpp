@@ -17,7 +17,7 @@
 
 namespace chicane::run {
 
-/// Waypoints may lie so far beyond a road's edge and still be its [m]: maps of one road differ.
+/// Distance beyond a road's edge within which waypoints still belong to it [m]: maps of one road differ.
 inline constexpr double kBesideRoad = 5.0;
 
 /// Whether the waypoints that are shown belong to another road than `track`: at least half of them, of two or

@@ -15,7 +15,7 @@ namespace chicane::run {
 /// controller wants (LapPlanner). One thread.
 class RunSteps {
  public:
-  /// `clock`: whether laps are planned beside the run. `loop` and `hooks` outlive this.
+  /// `clock`: whether laps are planned during the run. `loop` and `hooks` outlive this.
   RunSteps(ClosedLoop& loop, const RunHooks& hooks, LapPlanner::Clock clock = LapPlanner::Clock::kVirtual)
       : loop_{loop}, hooks_{hooks}, planner_{clock} {}
 
@@ -44,9 +44,9 @@ struct RunControls {
   SettingQueue settings{};  ///< changes of settings, from one thread
 };
 
-/// Steps of a run that is watched and changed while it goes on, without a clock: whoever owns it says when
-/// (run_realtime() by the computer's clock, live/worker_run.hpp by a browser's). Changes are taken up
-/// between two control cycles. One thread.
+/// Steps of a run that is watched and changed meanwhile, without a clock: the owner paces them
+/// (run_realtime() by the computer's clock, live/worker_run.hpp by a browser's). Changes take effect between
+/// two control cycles. One thread.
 class LiveSteps {
  public:
   /// `budget` [s] bounds each control step; 0: no bound. `clock`: as of RunSteps. All outlive this.
@@ -89,8 +89,7 @@ struct RealtimeOptions {
 };
 
 /// Runs an experiment at ClosedLoop::pace() by the clock. A loop that falls behind more than 100 ms does not
-/// catch up: it goes on from where it is (missed time is skipped, as a plant that is not simulated would have
-/// skipped it for the controller).
+/// catch up: it skips the missed time, as a controller of a real car would miss it.
 ///
 /// Changes that wait are applied between two cycles, also while paused. Returns, except at the end, when
 /// the next one `starts_anew`; it is left in the queue.

@@ -52,8 +52,8 @@ using ChangeQueue = ThreadQueue<telemetry::Change>;
 [[nodiscard]] Result<Setting> set_field(scenario::Scenario& scenario, const protocol::Parameter& row,
                                         const protocol::Value& value);
 /// Reads a change that is text: a key of the schema whose value is no text, "run.pace", "manual.…" or
-/// "fault.…"; of a recording "run.racing_line", too. Fails as --set does, with the key, what was got and what
-/// was expected. Allocates.
+/// "fault.…"; of a recording "run.racing_line", too. Fails as --set does, with the key, the value and the
+/// expectation. Allocates.
 [[nodiscard]] Result<Setting> read_setting(const telemetry::Change& change);
 
 /// Sets the field. No allocation.

@@ -46,8 +46,8 @@ struct SimulatedCar {
   [[nodiscard]] double catch_up(double time, const std::function<model::Command()>& act);
   /// Telemetry now, with as many waypoints at most.
   [[nodiscard]] model::Measurement sense(int waypoint_count) noexcept;
-  /// Writes a measurement, the command that acted then, and what the world knows into the frame of a
-  /// controller that is another program.
+  /// Writes a measurement, the command that acted then, and the world's state into the frame of a controller
+  /// in another program.
   void write(const model::Measurement& seen, const model::Command& applied,
              telemetry::Frame& frame) const noexcept;
   /// Counts a cycle of a controller that is another program, whose answer is `frame.result.command`.
@@ -79,7 +79,7 @@ class StopNews {
   const double standing_;  ///< [m/s]
   Say say_;
   bool is_timed_out_ = false;  ///< timed out at the last look
-  bool is_said_ = false;       ///< the stop that goes on
+  bool is_said_ = false;       ///< the current stop was reported
   bool is_moving_ = false;     ///< the car moves during that stop
 };
 

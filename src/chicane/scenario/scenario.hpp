@@ -38,8 +38,8 @@ struct Scenario {
 
   model::VehicleParams vehicle = model::udacity_params();  ///< the controller's model of it
   double friction_low =
-      std::numeric_limits<double>::infinity();  ///< least friction that the car is known to have: what a race
-                                                ///< is planned with; 0: not known; infinite: vehicle.friction
+      std::numeric_limits<double>::infinity();  ///< least known friction of the car, for the plan of a race;
+                                                ///< 0: not known; infinite: vehicle.friction
   safety::GuardOptions guard;                   ///< guard over the controller
   sim::DoubleTrackParams plant_params;  ///< for the plant `double-track`, whose model follows from them
   sim::PlantDeviation plant_options;

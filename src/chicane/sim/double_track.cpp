@@ -133,7 +133,7 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
   m.drag_linear = 0.0;
   m.drag_quadratic = (p.drag + p.rolling_resistance * (p.downforce_front + p.downforce_rear)) / inertia;
   m.brake_acceleration = p.brake_force / inertia;
-  // Anti-lock takes what the tyres cannot give.
+  // Anti-lock limits braking to the tyres' friction.
   m.brake_throttle_limit = std::min(1.0, p.friction * DoubleTrackParams::kGravity / m.brake_acceleration);
   m.reverse_speed = 0.0;
   m.brake_latch_speed = 0.0;

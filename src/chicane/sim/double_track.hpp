@@ -97,8 +97,8 @@ struct DoubleTrackParams : model::CarBody {
 /// The fields with their units and ranges, for files and messages.
 [[nodiscard]] std::span<const Option> double_track_options() noexcept;
 
-/// A controller's model of that car: what it is built of, and what follows from it, as the inertia of its
-/// wheels and the friction that its tyres lose under downforce (docs/model.md, eq. 23–27). `name`,
+/// A controller's model of that car: its parameters, and values derived from them, such as the inertia with
+/// its wheels and the friction that its tyres lose under downforce (docs/model.md, eq. 23–27). `name`,
 /// `length` and `width` are not the plant's: they stay as in `body`.
 [[nodiscard]] model::VehicleParams model_of(const DoubleTrackParams& plant, model::VehicleParams body = {});
 

@@ -49,12 +49,12 @@ struct FaultKind {
   std::string_view stream{};            ///< seed of its random numbers: at most eight letters
   FaultPlace place = FaultPlace::kValue;
 
-  /// Changes what the controller gets as `measured`; `now` is the true measurement.
+  /// Changes the controller's measurement, `measured`; `now` is the true one.
   void (*measure)(FaultMemory&, const model::Measurement& now,
                   model::Measurement& measured) noexcept = nullptr;
   /// Whether a command gets lost on its way.
   bool (*loses_command)(FaultMemory&) noexcept = nullptr;
-  /// Changes what the actuators do; `asked` is the command that arrived.
+  /// Changes the command that actuators execute, `done`; `asked` is the command that arrived.
   void (*actuate)(FaultMemory&, const model::Command& asked, model::Command& done) noexcept = nullptr;
   /// Time that commands arrive later than the controller assumes, when it assumes `latency` [s].
   double (*extra_delay)(double strength, double latency) noexcept = nullptr;
@@ -75,7 +75,7 @@ struct FaultKind {
 /// Fault of this name; none if it is not in the list.
 [[nodiscard]] std::optional<Fault> fault_named(std::string_view name) noexcept;
 
-/// A fault with its time: what a scenario holds.
+/// A fault with its time, as scenarios have it.
 struct FaultEvent {
   Fault fault{};
   double at = 0.0;        ///< start [s]; >= 0

@@ -36,7 +36,7 @@ struct SensorOptions {
 class Sensor {
  public:
   Sensor(const SensorOptions& options, std::uint64_t seed) noexcept : options_{options}, random_{seed} {}
-  /// Other options from now on; the stream of random numbers goes on.
+  /// Applies other options from now on; the stream of random numbers continues.
   void configure(const SensorOptions& options) noexcept { options_ = options; }
   [[nodiscard]] model::Measurement sample(double time, const Plant& plant) noexcept;
 
@@ -79,8 +79,8 @@ class ActuationDelay {
   model::Command acting_;
 };
 
-/// Delay that chance adds to a command sent at `time` [s]: evenly distributed in [0, most) [s]. The same for
-/// the same seed and time, whatever was drawn before: a run that is continued from within goes on as it did.
+/// Random delay of a command sent at `time` [s]: evenly distributed in [0, most) [s]. A function of seed and
+/// time alone, so that a branched run continues unchanged.
 [[nodiscard]] double random_delay(std::uint64_t seed, double time, double most) noexcept;
 
 }  // namespace chicane::sim
