@@ -10,7 +10,7 @@
 
 // Implementation behind the handles of chicane/solver.h. Every source with a problem for C includes it.
 
-/// A problem: its sizes, and what a solver of it does.
+/// A problem: its sizes, and the functions of its solver.
 struct chicane_problem {
   chicane_sizes sizes;
   const char* name;

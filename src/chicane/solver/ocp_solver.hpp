@@ -97,7 +97,7 @@ class OcpSolver {
   // ---- the filter method alone, for HardSolver
 
   /// Follows the barrier from a guess, low where it `is_near`, in at most `most` iterations, counted in
-  /// `report`. True where it gets there: solve_again() goes on with full steps. Rows that must hold are
+  /// `report`. True if it gets there: solve_again() continues with full steps. Rows that must hold are
   /// equations then (detail/hard_rows.hpp), and `problem` gets their multipliers.
   bool follow_barrier(P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline, int most,
                       bool is_near, SolveReport& report) noexcept;
@@ -108,7 +108,7 @@ class OcpSolver {
   [[nodiscard]] double adjoint(int k, int i) const noexcept { return now_.adjoint[i][k]; }
   /// The multiplier of the bounds of input m of stage k: d(cost)/d(bound), 0 between them.
   [[nodiscard]] double bound_multiplier(int k, int m) const noexcept { return now_.slope[m][k]; }
-  /// The multiplier of soft constraint c of stage k: what a unit more room would save.
+  /// Multiplier of soft constraint c of stage k: cost saved by a unit of room.
   [[nodiscard]] double constraint_multiplier(int k, int c) const noexcept {
     return barrier_.multiplier(static_cast<std::size_t>(c), static_cast<std::size_t>(k));
   }
@@ -344,8 +344,8 @@ class OcpSolver {
 
   // ---- globalisation
 
-  /// True when this is the best iterate so far: by its residuals while steps are full, the latest one while
-  /// the cost descends.
+  /// Whether this is the best iterate so far: by its residuals while steps are full, the latest one while the
+  /// cost descends. Keeps it then.
   bool keep_best(const SolveReport& report) noexcept {
     if (!is_finite(report)) return false;
     if (full_steps_ && has_best_ && !progress_.is_good() && residual(report) >= residual(best_report_))

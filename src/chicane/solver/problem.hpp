@@ -120,8 +120,7 @@ using Seeds = decltype(make_seeds<V, Order, Begin>(std::make_integer_sequence<in
 
 }  // namespace detail
 
-/// The states and inputs of a stage as jets, each of its own type: what the functions of a structured problem
-/// are called with.
+/// States and inputs of a stage as jets, each of its own type: arguments of a structured problem's functions.
 template <class P, class V, int Order>
 using StateJets = detail::Seeds<V, Order, 0, P::kNx>;
 template <class P, class V, int Order>

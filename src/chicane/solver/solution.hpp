@@ -67,8 +67,8 @@ struct FeedbackReport {
   int sweeps = 0;          ///< Riccati sweeps backwards that a change of active bounds took
 };
 
-/// Finds the violation that a report tells: the largest, but one above its cap before all others, which may
-/// be in other units.
+/// Finds the violation for a report: the largest, but one above its cap before all others, which may have
+/// other units.
 class WorstViolation {
  public:
   CHICANE_INLINE void consider(double value, double cap, std::size_t stage, std::size_t constraint) noexcept {

@@ -124,8 +124,8 @@ class Barrier {
     return sum;
   }
 
-  /// Calls add(k, j, what the slope of the stage's model by variable j has more of since the barrier was
-  /// `from`) (eq. 20).
+  /// Calls add(k, j, change), with the change of the slope of the stage's model by variable j since the
+  /// barrier was `from` (eq. 20).
   template <class Add>
   void each_pull(const P& problem, double from, std::size_t horizon, const Add& add) const noexcept {
     for (std::size_t k = 0; k < horizon && count() > 0; k += 8) {

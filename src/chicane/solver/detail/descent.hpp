@@ -35,7 +35,7 @@ class Descent {
     shift_ = 0.0;
     forget();
   }
-  /// A new horizon: what was learned about full steps no longer counts.
+  /// Resets for a new horizon: experience with full steps is void.
   void forget() noexcept { needed_ = 2; }
   /// Descents begin here.
   void begin() noexcept { smooth_ = taken_ = 0; }
@@ -63,8 +63,8 @@ class Descent {
     return true;
   }
 
-  /// One step from t, at which `now` is the linearisation. False when no step length and no shift lowers it
-  /// any more, or the deadline came first.
+  /// Takes one step from t, at which `now` is the linearisation. False if no step length and no shift lowers
+  /// the cost, or the deadline came first.
   bool step(const P& problem, const Linearised& now, Lq& lq, Slacks& slacks, Point& t,
             const Deadline& deadline, int& sweeps) noexcept {
     constexpr int kAttempts = 12;  // trials with a larger shift each

@@ -78,7 +78,7 @@ class Evaluation {
   }
 
   static constexpr std::size_t kHardRows = static_cast<std::size_t>(P::kNr) - own_residuals<P>();
-  /// One stage, or one in each lane, without derivatives: what a line search needs.
+  /// One stage, or one in each lane, without derivatives, for a line search.
   template <class T>
   struct ValuesOf {
     T cost;                         ///< ½‖r‖² of the problem's own residuals
@@ -295,7 +295,7 @@ class Evaluation {
     jet::repeat<Count>([&](auto n) CHICANE_INLINE { std::get<n>(result).v = V::load(values[n] + k0); });
     return result;
   }
-  /// Variables of a problem whose rows say themselves what they depend on.
+  /// Variables of a problem whose rows name their own dependencies.
   template <class T, int Order, int Count, class Values>
   CHICANE_INLINE static auto sparse(const Values& values, std::size_t k0) noexcept {
     std::array<SparseSeed<T, Order>, static_cast<std::size_t>(Count)> result;

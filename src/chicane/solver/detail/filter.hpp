@@ -15,8 +15,8 @@ struct Merit {
   [[nodiscard]] bool is_finite() const noexcept { return std::isfinite(miss + cost); }
 };
 
-/// Remembers pairs of miss and cost that no later point may be worse than in both (Fletcher, Leyffer 2002;
-/// Wächter, Biegler 2006). A fixed number of them: the ones that exclude least are forgotten.
+/// Set of pairs of miss and cost; no later point may be worse in both (Fletcher, Leyffer 2002; Wächter,
+/// Biegler 2006). Its size is fixed: the pairs that exclude least are dropped.
 class Filter {
  public:
   static constexpr double kMissMargin = 1e-5;  ///< margin of the miss, relative

@@ -288,7 +288,7 @@ class SoftSteps {
     return {std::min(1.0, fraction / std::max(largest(primal), 1e-30)),
             std::min(1.0, fraction / std::max(largest(dual), 1e-30))};
   }
-  /// Slope along the direction of what the slacks cost, less what the stages' gradients have of it.
+  /// Slope of the slacks' cost along the direction, less the part that the stages' gradients contain.
   [[nodiscard]] double slope() const noexcept { return slope_; }
 
   /// Adds miss, cost without barriers and logarithms of constraint c of the stages from k on, which has

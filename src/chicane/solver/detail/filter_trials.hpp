@@ -8,7 +8,7 @@
 
 namespace chicane::solver {
 
-// Trial points of the filter method: what they miss and cost, and those that come from simulations.
+// Trial points of the filter method: their violation and cost, and points by simulation.
 
 template <OcpProblem P, std::size_t Capacity, class Arch>
 Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]] Linearised& now,

@@ -17,8 +17,7 @@
 
 namespace chicane::solver {
 
-/// Whether some residuals of a problem stand for rows that must hold (detail/augmented.hpp): those behind its
-/// own.
+/// Whether residuals after a problem's own represent rows that must hold (detail/augmented.hpp).
 template <class P>
 inline constexpr bool kHasHardRows = requires {
   P::kOwnResiduals;
@@ -193,7 +192,7 @@ class HardRows {
     }
     return {fraction / std::max(most_primal, 1e-30), fraction / std::max(most_dual, 1e-30)};
   }
-  /// Slope along the direction of what the rows cost, less what the stages' gradients have of them.
+  /// Slope of the rows' cost along the direction, less the part that the stages' gradients contain.
   [[nodiscard]] double slope() const noexcept { return slope_; }
 
   /// The value of row n of eight stages from k on, whose residual is `value`.

@@ -341,7 +341,7 @@ class HardSolver {
     if constexpr (detail::SaysWhatIsHard<P>) return problem.is_hard(static_cast<int>(c));
     return false;
   }
-  /// Cost and misses of a trajectory; keeps the values of rows, and tells the worst.
+  /// Computes cost and misses of a trajectory; keeps the values of rows, and reports the worst.
   Misses measure(const P& problem, const Trajectory& t, HardReport* report) noexcept {
     Misses misses;
     double worst = 0.0;

@@ -44,9 +44,8 @@ class LqSolver {
   Hold hold[Lq::kStages][kNu]{};  ///< working set
   using Feedback = solver::Feedback<kNu, kLanes>;
   Feedback feedback[Lq::kStages]{};
-  alignas(
-      64) double dx[Capacity + 1][kLanes]{};  ///< step of the states; of the first one as it is set, else 0
-  double du[Capacity][kNu]{};                 ///< step of the inputs
+  alignas(64) double dx[Capacity + 1][kLanes]{};  ///< step of the states; of the first one as set, else 0
+  double du[Capacity][kNu]{};                     ///< step of the inputs
 
   /// Factorises all stages with `shift` added to the input blocks. `choose`: take the working set of each
   /// stage from its own small box problem (that is control-limited differential dynamic programming; the step

@@ -31,7 +31,7 @@ class Progress {
   [[nodiscard]] bool is_good() const noexcept { return idle_ == 0; }
   /// Steps have not become shorter for a while.
   [[nodiscard]] bool is_lost() const noexcept { return idle_ >= kPatience; }
-  /// The shortest step so far.
+  /// Shortest step up to now.
   [[nodiscard]] double shortest() const noexcept { return shortest_; }
   /// Whether more than `iterations` further steps would be needed to get as short as `length`, at the present
   /// linear rate.
@@ -68,8 +68,8 @@ class FloorWatch {
   int tiny_ = 0;  ///< steps in succession
 };
 
-/// Watches cost and defects of full steps: those that make both worse lead to a local optimum that nobody
-/// wants, or to none.
+/// Watches cost and defects of full steps: steps that make both worse lead to a poor local optimum, or to
+/// none.
 class Course {
  public:
   /// Takes note of an iterate. Whether it costs five times as much as the cheapest before it, with more

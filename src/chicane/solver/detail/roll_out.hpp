@@ -116,7 +116,7 @@ class RollOut {
       });
     }
   }
-  /// x⁺ of the eight stages from k on, of sums without what they are added to.
+  /// Computes x⁺ of the eight stages from k on, for sums without their start.
   template <std::size_t Level, class Point>
   CHICANE_INLINE static auto changes(const P& problem, const Point& t, std::size_t k) noexcept {
     std::array<V, kNx> x;

@@ -31,8 +31,8 @@ enum class Hold : std::int8_t { kLow = -1, kFree = 0, kHigh = 1 };
   return inward > kTolerance * (1.0 + std::fabs(curvature)) ? Hold::kFree : hold;
 }
 
-/// min ½ uᵀ H u + gᵀ u s.t. low <= u <= high for a handful of inputs: the box problem of one stage.
-/// `Arch` only tells apart what different files are compiled for.
+/// min ½ uᵀ H u + gᵀ u s.t. low <= u <= high for a handful of inputs: the box problem of one stage. `Arch`
+/// only separates the code of files that are compiled for different instruction sets.
 template <std::size_t N, class Arch = arch::Native>
 struct SmallQp {
   double H[N][N]{};
