@@ -13,15 +13,15 @@
 /// A statement of a write-up, and how it is tried.
 namespace chicane::sweep {
 
-/// One run of the trial, beside what the claim says of all.
+/// One run of the trial, with its additions to the claim's settings.
 struct Case {
   std::string name{};
   Settings settings{};
 };
 
 /// `N40.top_speed_mps > N25.top_speed_mps * 1.02`: one number of a case, a comparison, and a number or one of
-/// another case, times a factor or plus a term. The other case `each` stands for every other one that is
-/// clean: an optimum among what keeps to the road.
+/// another case, times a factor or plus a term. The other case `each` means every other clean one: an optimum
+/// among runs on the road.
 struct Condition {
   struct Value {
     std::string name{};    ///< name of the case; empty: the number is `constant`
@@ -42,7 +42,7 @@ struct Claim {
   std::string ours{};    ///< our additions to the preset, for the verdict: "with our weights"
   Settings settings{};   ///< settings of all cases, the preset among them
   std::vector<Case> cases{};
-  std::size_t grid_size = 0;  ///< the last so many cases are points of a grid, with names made of its values
+  std::size_t grid_size = 0;  ///< number of last cases that are points of a grid, named by their values
   std::vector<Condition> conditions{};  ///< true when all hold
   std::vector<std::string> shows{};     ///< columns
   /// Verdict on a statement that no run can try: "works", "partly" or "not so", and where to see it.

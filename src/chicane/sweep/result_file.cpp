@@ -255,7 +255,7 @@ Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, c
 
 namespace {
 
-constexpr std::size_t kMostNamed = 10000;  // missing runs that are looked at for a message
+constexpr std::size_t kMostNamed = 10000;  // limit of missing runs in a message's search
 constexpr std::size_t kMostRanges = 10;
 
 /// Line of each run: 16 bytes a run, found or not.

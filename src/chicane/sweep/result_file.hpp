@@ -23,10 +23,10 @@ namespace chicane::sweep {
 /// Settings as an object of texts, and back. Throws Json::exception for another value.
 [[nodiscard]] protocol::Json json_of(const Settings& settings);
 [[nodiscard]] Settings settings_in(const protocol::Json& json);
-/// A text as it is, all else as JSON.
+/// Text unchanged, all else as JSON.
 [[nodiscard]] std::string plain_text(const protocol::Json& value);
 
-/// The first line, without its line break: what has to agree for results to belong together.
+/// First line, without its line break: results with the same line belong together.
 [[nodiscard]] std::string header_of(const Plan& plan);
 
 /// Content of the first line.
@@ -74,8 +74,8 @@ struct FileContents {
     const std::string& file, const std::function<Result<void>(const Header&)>& on_header,
     const std::function<Result<void>(std::uint64_t run, const protocol::Json&)>& on_run);
 
-/// A file that grows by lines, of which the first says what the others belong to. One process writes it. Each
-/// line is written by one call, whole or not at all.
+/// File that grows by lines; the first line identifies the rest. One process writes it. Each line is written
+/// by one call, whole or not at all.
 class LineFile {
  public:
   /// No file: append() does nothing.

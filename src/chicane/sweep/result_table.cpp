@@ -70,7 +70,7 @@ std::string worse_text(const ComparedRun& run, const ComparedRun& other) {
   return slower > kSlower ? fmt::format("{:.1f} % slower", 100.0 * slower) : "";
 }
 
-/// Runs by what they have in common, in the order of the plan, and by the value that is compared.
+/// Runs by their common settings, in the order of the plan, and by the compared value.
 struct ComparedRuns {
   std::vector<std::string> keys{};  ///< keys that they share
   std::map<std::uint64_t, std::map<std::string, ComparedRun>> by_first_run{};
@@ -112,7 +112,7 @@ std::string csv_cell(const std::string& text) {
   return quoted + "\"";
 }
 
-/// A text as it is, all else as JSON; nothing for null.
+/// Text unchanged, all else as JSON; empty for null.
 std::string cell_of(const Json& value) { return value.is_null() ? "" : csv_cell(plain_text(value)); }
 
 ResultTable empty_table(const ComparedRuns& found, const std::string& key, const std::string& value) {

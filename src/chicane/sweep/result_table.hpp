@@ -49,7 +49,7 @@ class ResultTable {
 };
 
 /// Writes a file of results as comma separated values (RFC 4180): `run`, the keys of the axes, the columns.
-/// Lists stand in quotes, as JSON; what was not measured is empty. Memory does not grow with the file.
+/// Lists are quoted JSON; values that were not measured are empty. Memory does not grow with the file.
 /// kParse, kIo.
 [[nodiscard]] Result<void> write_csv(const std::string& results, const std::string& csv);
 
@@ -63,11 +63,11 @@ struct Comparison {
   std::uint64_t missing = 0;  ///< runs without the other one
 };
 
-/// Compares each run with the one that has `value` for `key` and is otherwise the same: laps, times off the
-/// road, and the guard's reasons. A run is worse where it leaves the road or does not complete its laps and
-/// the other one does neither, or where its laps take kSlower longer in the mean. Needs the columns
-/// completed, off_track_events and lap_times_s; guard_reasons is shown where it is kept. kInvalidArgument for
-/// a key that is no axis; otherwise fails as read_lines() does.
+/// Compares each run with its twin that has `value` for `key`: laps, times off the road, and the guard's
+/// reasons. A run is worse where it leaves the road or does not complete its laps and the other one does
+/// neither, or where its laps take kSlower longer in the mean. Needs the columns completed, off_track_events
+/// and lap_times_s; guard_reasons is shown where it is kept. kInvalidArgument for a key that is no axis;
+/// otherwise fails as read_lines() does.
 [[nodiscard]] Result<Comparison> compare(const std::vector<std::string>& results, const std::string& key,
                                          const std::string& value);
 
@@ -77,7 +77,7 @@ struct SummaryDocument {
   std::string text{};
 };
 
-/// Sums up the results of a sweep, one file or the files of its parts: what was driven, one table for each
+/// Sums up the results of a sweep, one file or the files of its parts: the driven runs, one table for each
 /// axis, heat maps of pairs of axes, distributions, and the runs with the command that drives each (the first
 /// kMostListed). Runs that are missing are left out, and counted. Fails as read_lines() does.
 inline constexpr std::size_t kMostListed = 2000;
@@ -93,7 +93,7 @@ inline constexpr std::size_t kMostListed = 2000;
 
 namespace chicane::sweep::detail {
 
-/// Orders numbers as numbers, and texts behind them.
+/// Orders numbers as numbers, and texts after them.
 struct ByNumber {
   [[nodiscard]] bool operator()(const std::string& a, const std::string& b) const;
 };

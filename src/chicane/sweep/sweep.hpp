@@ -65,8 +65,8 @@ struct SweepOptions {
 using RunRule = std::function<Result<std::optional<std::string>>(std::uint64_t run, run::Roads& roads)>;
 
 /// Drives the runs of a shard that are not in the file yet, each by `rule`. Each run depends on the plan and
-/// its number alone: not on threads, shards, order or what was driven before. Ends early with what there is
-/// when `stop` is set; kIo when the file cannot be written, with all runs so far in it.
+/// its number alone: not on threads, shards, order or earlier runs. Ends early with partial results when
+/// `stop` is set; kIo when the file cannot be written, with all runs so far in it.
 [[nodiscard]] Result<Progress> drive_plan(const Plan& plan, const run::Shard& shard,
                                           const SweepOptions& options, const RunRule& rule,
                                           const std::atomic<bool>& stop);

@@ -43,7 +43,7 @@ inline constexpr std::string_view kSearchTrials = "search_trials";
 //   fault.for_s, fault.strength
 
 /// Whether `text` may be the value of `key` in some run. kNotFound for an unknown key, with a suggestion;
-/// kInvalidArgument with what was expected.
+/// kInvalidArgument with the expectation.
 [[nodiscard]] Result<void> check_setting(std::string_view key, const std::string& text);
 
 /// The experiment that `settings` ask for; later ones win.
@@ -52,14 +52,14 @@ inline constexpr std::string_view kSearchTrials = "search_trials";
 /// The scenario of request_of(). Fails as protocol::compose() does.
 [[nodiscard]] Result<scenario::Scenario> scenario_of(const Settings& settings);
 
-/// One word of a shell: in quotes where it would not be taken as it is.
+/// One word of a shell, quoted if it has special characters.
 [[nodiscard]] std::string shell_word(const std::string& text);
 
 /// The command that drives it again: `chicane drive --fast --preset weighted --set laps=2 …`.
 [[nodiscard]] std::string command_of(const Settings& settings);
 
 /// The address at which the dashboard of `chicane drive` offers to drive it (docs/viewer.md):
-/// `http://localhost:4567/#run?preset=weighted&latency_ms=130`. Empty for what a link cannot hold: files,
+/// `http://localhost:4567/#run?preset=weighted&latency_ms=130`. Empty if a link cannot hold it: files,
 /// scenarios, faults, and settings that no run could take.
 [[nodiscard]] std::string link_of(const Settings& settings);
 

@@ -29,7 +29,7 @@ struct TuneTask {
   int evaluations = 500;  ///< different tunings to try, but for a search that finds no new ones
   std::uint64_t seed = 1;
   int jobs = 1;
-  std::string log{};  ///< file with a line for each evaluation; one that is there goes on. Empty: none
+  std::string log{};  ///< file with a line for each evaluation; continued if it exists. Empty: none
 };
 
 /// A trial: settings in addition to the task's and the tuning's.
@@ -37,7 +37,7 @@ struct TuneTrial {
   std::string_view name;
   Settings settings{};
 };
-/// The trials of a tuning, two laps from standstill each: as it is, with 30 ms more and less latency than
+/// The trials of a tuning, two laps from standstill each: unchanged, with 30 ms more and less latency than
 /// `latency` [s], with 10 % less grip, and twice with 5 cm of noise on the measured position.
 [[nodiscard]] std::vector<TuneTrial> tune_trials(double latency);
 
@@ -81,12 +81,11 @@ struct Tuning {
 [[nodiscard]] std::vector<std::string> default_keys(const scenario::Scenario& scenario);
 
 /// Searches each key from a tenth to ten times its value, speeds and horizons from half to twice, inside its
-/// range. All that passes every trial is better than what does not, and what fails later is better than what
-/// fails sooner; the optimisers ask for this order alone, so what a losing tuning would do in the trials that
-/// are not driven does not matter. Deterministic for a seed, also when a log is gone on with. Ends early with
-/// the best so far when `stop` is set. `on_better` hears each improvement. kInvalidArgument for keys that are
-/// no numbers and for a log of another task or program; kIo where this was built without NLopt or the log
-/// cannot be written.
+/// range. A tuning that passes every trial is better than one that fails, and a later failure is better than
+/// an earlier one. The optimisers need this order alone, so that a losing tuning's remaining trials are not
+/// driven. Deterministic for a seed, also when a log is continued. Ends early with the best so far when
+/// `stop` is set. `on_better` gets each improvement. kInvalidArgument for keys that are no numbers and for a
+/// log of another task or program; kIo where this was built without NLopt or the log cannot be written.
 [[nodiscard]] Result<Tuning> tune(const TuneTask& task, const std::atomic<bool>& stop,
                                   const std::function<void(int, const Verdict&)>& on_better = {});
 

@@ -111,7 +111,7 @@ bool is_true(Kind kind, double grip, double pedal) noexcept {
 Kind warning_of(GuardReason reason) noexcept {
   switch (reason) {
     case GuardReason::kNone:
-    case GuardReason::kStuck:  // the pedal says so; a standing car shows in its motion
+    case GuardReason::kStuck:  // by the pedal; a standing car shows in its motion
       return Kind::kStands;
     case GuardReason::kOtherSteering:
       return Kind::kOtherSteering;

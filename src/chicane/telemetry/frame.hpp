@@ -62,7 +62,7 @@ struct Situation {
       -1.0;  ///< time of the run at which the newest event with an alarm began [s]; < 0: none yet
   double stands_since = -1.0;  ///< time of the run at which the car came to rest [s]; < 0: it moves
   double alarmed_at = -1.0;    ///< time of the run of the last cycle with an alarm [s]; < 0: none yet
-  std::uint32_t alarms = 0;    ///< events so far that a person has to know of
+  std::uint32_t alarms = 0;    ///< count of events that a person must know
   std::string_view remedy{};   ///< SituationTerms::remedy
 };
 
@@ -79,9 +79,9 @@ struct SituationTerms {
   std::string_view remedy = kKeysRemedy;    ///< text in static storage
 };
 
-/// A sentence that is still true is kept so long [s].
+/// Time for which a sentence that is still true is kept [s].
 inline constexpr double kSentenceHeld = 0.7;
-/// Standing for longer, a car that nobody drives by hand is stuck [s].
+/// Time at standstill after which a car without a person at the wheel is stuck [s].
 inline constexpr double kStuckAfter = 3.0;
 /// Alarms with a shorter pause between them are one event [s].
 inline constexpr double kAlarmPause = 1.0;

@@ -124,7 +124,7 @@ class McapWriter {
 
   /// A stream of CDR messages of a ROS 2 type; its number, from 0. `schema` is in the form of "ros2msg".
   std::uint16_t add_channel(std::string_view topic, std::string_view type, std::string_view schema);
-  /// Keys and texts that say what the file is about; at once in the file.
+  /// Writes keys and texts about the file's content; at once in the file.
   Result<void> add_metadata(std::string_view name, const std::map<std::string, std::string>& entries);
   /// A file in the file, with a CRC of its own; at once in the file.
   Result<void> add_attachment(std::string_view name, std::string_view media_type, std::string_view bytes);

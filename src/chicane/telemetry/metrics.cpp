@@ -199,7 +199,7 @@ LapSetup LapLedger::setup(double end, double lap_time) const {
   LapSetup setup;
   std::map<std::string, std::string> settings;
   std::map<std::string, bool> faults;  // faults that acted in the lap, or still act
-  double by_hand_since = end;          // later than this nobody's hands count
+  double by_hand_since = end;          // manual driving after this time is ignored
   double by_hand = 0.0;
   for (const Noted& each : log_) {
     if (each.time > end) break;

@@ -90,7 +90,7 @@ struct TimeSummary {
   double max = 0.0;
 };
 
-/// Everything one run is judged by. The run time fills in what was asked (track to laps_wanted, completed);
+/// Summary by which one run is judged. The run time fills in the request (track to laps_wanted, completed);
 /// Metrics the rest.
 struct RunSummary {
   std::string track, car, controller, preset;
@@ -135,7 +135,7 @@ struct RunSummary {
   return (run.completed || run.laps_wanted == 0) && run.off_track_events == 0;
 }
 
-/// Sets a run beside the limit: its times, and the gap of each lap (docs/limit.md, eq. 10) from number
+/// Compares a run with the limit: its times, and the gap of each lap (docs/limit.md, eq. 10) from number
 /// `first_lap`, counted from 1, on.
 void compare_with_limit(RunSummary& run, const lap_time::LapTimes& limit, int first_lap = 1);
 
@@ -146,8 +146,8 @@ void compare_with_limit(RunSummary& run, const lap_time::LapTimes& limit, int fi
 /// distance to the edge, from the controller's measurements.
 class Metrics {
  public:
-  /// Remembers up to `lap_capacity` laps one by one (more are only counted), with the times of so many
-  /// `corners`. `deadline` [s]: longer steps are misses.
+  /// Keeps up to `lap_capacity` laps (more are only counted), with the times of `corners` corners each.
+  /// `deadline` [s]: longer steps are misses.
   Metrics(int lap_capacity, double deadline, std::size_t corners = 0);
 
   void add_physics(const PhysicsSample& sample) noexcept;
@@ -165,7 +165,8 @@ class Metrics {
   [[nodiscard]] const LapSummary& last_lap() const noexcept { return last_lap_; }
   [[nodiscard]] int off_track_events() const noexcept { return off_track_events_; }
   [[nodiscard]] std::uint64_t state_hash() const noexcept { return hash_.value(); }
-  /// The run so far; what the run time knows (names, seed, completed) is left at its defaults. Allocates.
+  /// Summary of the run so far; fields of the run time (names, seed, completed) keep their defaults.
+  /// Allocates.
   [[nodiscard]] RunSummary summary() const;
 
  private:
