@@ -36,6 +36,7 @@ std::vector<std::string> RunNotices::look_at(const telemetry::Frame& frame) {
   last_time_ = frame.time;
   const Situation& now = frame.situation;
   if (now.driver == Situation::Driver::kPerson) said_.clear();
+  // No event: report the end of the last one.
   if (!is_replaced(now) && severity_of(now) != Severity::kError) {
     std::string line = ended(frame.time);
     return line.empty() ? std::vector<std::string>{} : std::vector{std::move(line)};
@@ -47,6 +48,7 @@ std::vector<std::string> RunNotices::look_at(const telemetry::Frame& frame) {
   }
   goes_on_ = true;
   if (is_replaced(now)) ++replaced_;
+  // One sentence for a new event, and another one when it changes.
   const bool is_held = now.kind == telemetry::SituationKind::kGuardHolds;
   if (is_held && !is_stuck(now, frame.time) && !begins) return {};  // a known stop that has ended
   std::string text = sentence_of(now);

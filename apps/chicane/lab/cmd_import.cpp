@@ -278,6 +278,7 @@ std::string description_of(const Imported& road, const std::string& file) {
 
 Result<void> import_and_tell(const Options& options) {
   const Options::Import& import = options.import_;
+  // Check the names of all outputs before any work.
   if (Result<void> named = check_page_name("--preview", import.preview); !named) return named;
   for (const std::string& file : {options.output_file, import.preview})
     if (Result<void> writable = check_writable(file); !writable) return writable;
@@ -301,6 +302,7 @@ Result<void> import_and_tell(const Options& options) {
         import.preview, preview_of(road->track, road->content, in_words(*road)), live::document_bundle());
     if (!kept) return fail(kept.error());
   }
+  // Report on stdout.
   if (options.is_json) {
     fmt::print("{}", in_json(*road));
     return {};

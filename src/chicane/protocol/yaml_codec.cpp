@@ -311,6 +311,7 @@ Result<void> apply_layers(std::span<const Document> layers, scenario::Scenario& 
     }
     if (layer.faults) changed.faults = *layer.faults;
   }
+  // Contradictions are reported where their key was set.
   for (const Contradiction& contradiction : contradictions(changed)) {
     std::string where = places[contradiction.key];
     if (where.empty()) where = layers.empty() ? "" : place(layers.back().file, 0);

@@ -201,6 +201,7 @@ void ClosedLoop::control(double budget, const GivenStep* given, const model::Com
   }
   if (manual_.is_on()) input.manual = manual_.command(frame_.measurement, scenario_.vehicle);
   if (sent != nullptr) input.manual = *sent;
+  // The frame: state of the world, the controller's step, its command.
   observe(car_.world, frame_);
   frame_.pace = pace_;
   frame_.applied = acting();
@@ -209,6 +210,7 @@ void ClosedLoop::control(double budget, const GivenStep* given, const model::Com
     input.deadline = Deadline::after(std::chrono::nanoseconds(static_cast<long long>(budget * 1e9)));
   cycle_.step(input, frame_);
   if (budget > 0.0) step_time_ += 0.1 * (std::min(frame_.step_time, budget) - step_time_);
+  // Send the command, with its random delay.
   if (faults_.is_delivered()) {
     configured_act_time_ = frame_.measurement.time + frame_.measurement.delay;
     const double act_time =

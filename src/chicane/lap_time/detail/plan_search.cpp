@@ -139,6 +139,7 @@ Result<NodePlan> PlanSearch::find() {
   expected_ = work_ + (kEnough * kIterationsOfStart * static_cast<double>(coarse.s.size()) +
                        kIterationsOfFine * static_cast<double>(nodes.s.size())) /
                           PlanProgress::kNodesPerSecond;
+  // Coarse nodes: the best of kEnough optima.
   NodePlan best;
   int found = 0;
   for (const Start& start : kStarts) {
@@ -160,6 +161,7 @@ Result<NodePlan> PlanSearch::find() {
                 is_out_of_budget_ ? kNoBudget : "limit: no optimum from any first guess");
   if (is_out_of_budget_) return best_so_far(std::move(best));
   const auto variables = static_cast<std::size_t>(model_.functions().variables);
+  // Fine nodes: from the best coarse plan.
   for (const double barrier : {kWarmBarrier, 1e-2, 1e-3}) {  // after the warm start two colder ones
     NodePlan fine;
     fine.road = nodes;
@@ -281,6 +283,7 @@ RingFeedback::RingFeedback(const LimitModel& model, const RoadNodes& road, const
         right[i * m + j] = 0.5 * h * (slopes[k][i * m + j] + slopes[next][i * m + j]);
     }
     const Matrix f = solved(std::move(left), std::move(right), n, m);
+    // Q = Fᵀ P F plus the weights of the step.
     Matrix pf(n * m, 0.0);
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t l = 0; l < n; ++l)
@@ -292,6 +295,7 @@ RingFeedback::RingFeedback(const LimitModel& model, const RoadNodes& road, const
     const double dt = h * std::max(1e-3, 1.0 / z[k * variables + kVx]);
     for (std::size_t i = 0; i < n; ++i) q[i * m + i] += dt * error[i];
     for (std::size_t i = 0; i < 2; ++i) q[(n + i) * m + n + i] += dt * weight[i];
+    // Gains: the inverse of the inputs' 2 × 2 block times their rows.
     const double a = q[n * m + n];
     const double b = q[n * m + n + 1];
     const double c = q[(n + 1) * m + n + 1];
@@ -301,6 +305,7 @@ RingFeedback::RingFeedback(const LimitModel& model, const RoadNodes& road, const
       gain[j] = (c * q[n * m + j] - b * q[(n + 1) * m + j]) / det;
       gain[n + j] = (a * q[(n + 1) * m + j] - b * q[n * m + j]) / det;
     }
+    // P of this node: the Riccati step.
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j)
         p[i * n + j] = q[i * m + j] - q[n * m + i] * gain[j] - q[(n + 1) * m + i] * gain[n + j];
@@ -373,6 +378,7 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
   const PlanTable table(plan, feedback, variables, driven, track.length());
   const road::Path& line = track.centre();
 
+  // Start on the plan, at its straightest node.
   const std::size_t first = straightest(plan, variables);
   const double* z0 = plan.z.data() + first * variables;
   const road::PathPoint foot = line.at(plan.road.s[first]);
@@ -404,6 +410,7 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
       const double error = i == kHeading ? wrap_angle(x[i] - z[i]) : x[i] - z[i];
       for (std::size_t j = 0; j < 2; ++j) inputs[j] -= gains[j * driven + i] * error;
     }
+    // One step of the plant, and its judgement.
     const model::Command asked = model.command(plant.state(), ahead.data(), inputs);
     plant.advance(asked);
     model.see(asked, plant.output(), dt);

@@ -95,6 +95,7 @@ Result<RosReader> RosReader::create(std::string_view definition) {
     std::string rest;
     words >> rest;
     if (field.name.find('=') != std::string::npos || rest.starts_with("=")) continue;  // a constant
+    // An array: "[]" is counted in the message, "[3]" is fixed.
     if (const std::size_t open = field.type.find('['); open != std::string::npos) {
       const std::string inside = field.type.substr(open + 1, field.type.find(']') - open - 1);
       field.many = inside.empty() ? Field::Many::kCounted : Field::Many::kFixed;
@@ -106,6 +107,7 @@ Result<RosReader> RosReader::create(std::string_view definition) {
     }
     reader.types_[type].push_back(std::move(field));
   }
+  // Every type that a field has must be defined.
   for (const auto& [name, fields] : reader.types_) {
     for (const Field& field : fields) {
       const bool is_message =
@@ -146,6 +148,7 @@ bool RosReader::read_type(const std::string& type, const std::string& name, Curs
   if (type == "int32") return keep(cursor.get<std::int32_t>(value));
   if (type == "uint64") return keep(cursor.get<std::uint64_t>(value));
   if (type == "int64") return keep(cursor.get<std::int64_t>(value));
+  // A message: its fields in turn.
   const auto fields = types_.find(type);
   if (fields == types_.end() || depth > kMostDepth) return false;
   for (const Field& field : fields->second) {

@@ -91,9 +91,9 @@ class HardSolver {
   static constexpr std::size_t kEnd = kNeh + Problem::kEndConstraints;
   static constexpr int kMostRounds = 40;  ///< limit of rounds
   static constexpr int kTrialSpent = -1;
-  static constexpr double kFirstShare = 10.0;  ///< cost of the guess over its weighted violation
+  static constexpr double kFirstShare = 10.0;  ///< weighted violation of the guess over its cost
   static constexpr double kLeastWeight = 1e-2, kMostFirstWeight = 10.0, kMostWeight = 1e9;
-  static constexpr std::array kHeavier{10.0, 1e3};  ///< times these, where the first ones lead nowhere
+  static constexpr std::array kHeavier{10.0, 1e3};  ///< factors of the first weights, if those fail
 
   /// Violations of a trajectory by row: the largest of each.
   struct Misses {
