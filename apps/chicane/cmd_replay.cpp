@@ -55,7 +55,7 @@ Json json_of(const recording::Future& future) {
           {"off_track_events", future.off_track_events}};
 }
 
-/// "0.50" or a dash, in a column of ten characters.
+/// Number in a column of ten characters: "0.50" or a dash.
 std::string cell(double value) {
   return std::isfinite(value) ? fmt::format("{:12.2f}", value) : fmt::format("{:>12}", "-");
 }
@@ -175,7 +175,7 @@ class Shown {
     return {};
   }
   [[nodiscard]] const std::vector<live::ServedLog>& logs() const { return logs_; }
-  /// Another future of one of them. Viewers get names, not files.
+  /// Branches one of the recordings. Viewers get names, not files.
   [[nodiscard]] Result<recording::BranchReport> branch(const live::WhatIfQuestion& question,
                                                        const recording::BranchHooks& hooks) const {
     if (question.log >= logs_.size()) {

@@ -39,7 +39,7 @@ struct ExternalController {
   /// Text for the terminal before the run; empty: nothing.
   std::function<std::string(const scenario::Scenario&, const road::Track&)> on_start{};
 };
-/// Another program drives the car that this one simulates: recorded and on the terminal.
+/// Simulates the car for another program that drives it: recorded and on the terminal.
 [[nodiscard]] Result<wire::SimulateReport> drive_by_external(const Options& options,
                                                              const ExternalController& external,
                                                              const std::atomic<bool>& stop,

@@ -193,7 +193,7 @@ struct Options {
   std::string reference_folder;           ///< bench: problems with known optima; empty: none
 };
 
-/// Nothing is left to do: text was printed.
+/// Result of a command line that only prints text.
 struct Done {
   ExitCode code = kSuccess;
 };

@@ -133,7 +133,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Seen from the folder of this program: a build folder, bin and libexec/chicane of an installation.
+/// Places of the other programs, from this program's folder: a build folder, bin and libexec/chicane of an
+/// installation.
 constexpr const char* kPlaces[] = {"", "../libexec/chicane", "../../bin"};
 
 bool is_program(const fs::path& file) {

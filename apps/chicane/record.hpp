@@ -28,7 +28,7 @@ class KeptRun {
                                                               const scenario::Scenario& scenario,
                                                               double step_budget);
 
-  /// Null without --record and --report.
+  /// Recorder; null without --record and --report.
   [[nodiscard]] recording::Recorder* recorder() const { return recorder_.get(); }
   /// Passes a frame, lap or change to Recorder::record.
   template <class What>

@@ -159,7 +159,7 @@ OptionRow shard_row(std::string& shard) {
           take, kOnce};
 }
 
-/// "2", or "inf" for a fault that lasts.
+/// Option for durations: "2", or "inf" for a lasting fault.
 OptionRow durations_row(std::vector<double>& durations) {
   const auto take = [&durations](const std::string& text) -> std::string {
     const auto seconds =
