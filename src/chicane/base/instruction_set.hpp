@@ -65,8 +65,8 @@ enum class InstructionSet : std::uint8_t { kBaseline, kAvx2, kAvx512, kNeon };
 
 [[nodiscard]] std::string_view to_string(InstructionSet set) noexcept;
 
-/// "fused" where a · b + c rounds once, else "plain". Instruction sets with the same word compute the same
-/// bits; a recording names it, and replays bit by bit on any machine that has it.
+/// Word for the arithmetic: "fused" if a · b + c rounds once, else "plain". Instruction sets with the same
+/// word compute the same bits; a recording names it, and replays bit by bit on any machine that has it.
 [[nodiscard]] std::string_view arithmetic(InstructionSet set) noexcept;
 
 /// Whether this processor has the instruction set.

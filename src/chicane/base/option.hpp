@@ -30,7 +30,7 @@ namespace chicane {
 // that uses them. Configuration keys, command line, range checks and docs/reference/configuration.md follow
 // from these rows.
 
-/// Inside C++ all is SI; outside, every number carries its unit in the key's suffix. SI value = value outside
+/// Unit of a number outside C++, where keys carry it as a suffix; inside all is SI. SI value = value outside
 /// · factor / divisor.
 struct Unit {
   std::string_view name;    ///< unit for people: "m/s", "ms", "deg"; empty for pure numbers
@@ -158,7 +158,7 @@ template <auto... Members>
 /// Expected value for messages: "an integer in [2, 200]", "a number in [0, 500] ms", "one of pid, stanley",
 /// "true or false".
 [[nodiscard]] std::string expectation(const Option& option);
-/// "pid.integral_gain: got -1, expected a number in [0, 10] rad/(m s)".
+/// Error of a value: "pid.integral_gain: got -1, expected a number in [0, 10] rad/(m s)".
 [[nodiscard]] Error refusal(std::string_view key, std::string_view got, const Option& option);
 
 /// The value in the option's unit; `owner` is the struct that the row was made for, here and below.

@@ -191,7 +191,7 @@ class CopyableController : public Controller, public Copyable {
   }
 };
 
-/// Null for a controller that is not Copyable.
+/// Copy of a controller; null if it is not Copyable.
 [[nodiscard]] inline std::unique_ptr<Controller> copy_of(const Controller& controller) {
   const auto* copyable = dynamic_cast<const Copyable*>(&controller);
   return copyable == nullptr ? nullptr : copyable->copy();

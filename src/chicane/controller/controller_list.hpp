@@ -75,7 +75,7 @@ class ControllerList {
     static constexpr std::array<Kind, sizeof...(Entries)> kKinds{kind<Entries>()...};
     return kKinds;
   }
-  /// Null when there is none.
+  /// Entry of this name; null if there is none.
   [[nodiscard]] static const Kind* find(std::string_view name) noexcept {
     for (const Kind& kind : kinds()) {
       if (kind.name == name) return &kind;

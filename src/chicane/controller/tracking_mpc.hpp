@@ -63,7 +63,7 @@ struct TrackingMpcOptions {
   }
 };
 
-/// kInvalidArgument names an option out of the range that its row states.
+/// Makes the controller. kInvalidArgument names an option outside the range in its row.
 [[nodiscard]] Result<std::unique_ptr<Controller>> make_tracking_mpc(const TrackingMpcOptions& options,
                                                                     const model::VehicleParams& vehicle);
 

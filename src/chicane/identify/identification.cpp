@@ -60,7 +60,7 @@ double per_full_size(std::string_view unit, const model::Similarity& to) {
   return 1.0;  // ratios, angles, accelerations
 }
 
-/// The log of the same motion in full size.
+/// Log of the same motion in full size.
 DriveLog full_size(DriveLog log, const model::Similarity& to) {
   for (Sample& sample : log.samples) {
     sample.time *= to.time();
@@ -163,7 +163,7 @@ void add_windows(const std::vector<DriveLog>& logs, std::size_t log, double from
   }
 }
 
-/// Measured, and as the model has it.
+/// Measurement and prediction side by side.
 Compared compared(const Sample& seen, const Expected& e) {
   return {seen.time, seen.x, seen.y, seen.psi, seen.speed, e[0], e[1], e[2], e[3]};
 }
@@ -235,7 +235,7 @@ Compared kept_motion(const PredictedStretch& stretch, const Compared& at) {
           .model_psi = last->psi + rate * ahead};
 }
 
-/// One, two and three seconds ahead.
+/// Errors of predictions one, two and three seconds ahead.
 std::vector<PredictionError> prediction_errors(const std::vector<PredictedStretch>& stretches) {
   std::vector<PredictionError> found;
   for (const double ahead : {1.0, 2.0, 3.0}) {
@@ -278,7 +278,7 @@ void thin(std::vector<Window>& windows, std::size_t most) {
   }
 }
 
-/// `logs` are in full size; `configured` is the car in its own size.
+/// Identifies a car in full size; `logs` are in full size, `configured` is the car in its own size.
 Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
                                           const model::VehicleParams& configured,
                                           const IdentifyOptions& options) {
@@ -367,7 +367,7 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
   for (Estimate& each : found.estimates) {
     if (each.key == "latency_ms")
       for (double* number : {&each.value, &each.low, &each.high}) *number = std::max(0.0, *number);
-    // The curve's beginning says little of its peak.
+    // The beginning of the curve says little about its peak.
     if (each.key == "friction" && !found.knows_tires()) each.is_excited = false;
   }
   found.correlations = std::move(fit.correlations);

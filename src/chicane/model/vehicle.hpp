@@ -145,8 +145,8 @@ struct VehicleParams : CarBody {
 /// The fields with their units and ranges, for files and messages.
 [[nodiscard]] std::span<const Option> vehicle_options() noexcept;
 
-/// kInvalidArgument "vehicle.mass_kg: got -900, expected a number in [0.1, 100000] kg" for the first field
-/// out of its range.
+/// Checks all fields. kInvalidArgument "vehicle.mass_kg: got -900, expected a number in [0.1, 100000] kg" for
+/// the first one outside its range.
 [[nodiscard]] Result<void> validate(const VehicleParams& params);
 
 /// Longitudinal acceleration [m/s²] of the car at speed v [m/s] for a throttle in [-1, 1] (the law above,

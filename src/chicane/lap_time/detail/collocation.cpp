@@ -336,7 +336,7 @@ class Collocation::Search {
         return true;
       }
     }
-    // Nothing along here is better by the filter: it is forgotten, and a short step leaves the place.
+    // The filter accepts no point along this direction: clear it, and leave the place by a short step.
     filter_.clear();
     take(kKick * primal, dual, mu);
     return true;

@@ -47,8 +47,8 @@ class CyclicSystem {
     return coupling_.data() + index(k) * states_by_variables();
   }
 
-  /// False if singular, or if the number of negative eigenvalues differs from the number of multipliers: the
-  /// Hessian is then not positive definite on the equations.
+  /// Factors the matrix. False if singular, or if the number of negative eigenvalues differs from the number
+  /// of multipliers: the Hessian is then not positive definite on the equations.
   [[nodiscard]] bool factor();
   /// Solves in place, with refinement; b holds the blocks one after the other.
   void solve(std::vector<double>& b) const;

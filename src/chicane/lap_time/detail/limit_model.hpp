@@ -33,7 +33,7 @@ class LimitModel : public PlanModel {
   [[nodiscard]] virtual int driven() const = 0;
   [[nodiscard]] virtual int input() const = 0;
   [[nodiscard]] virtual std::vector<double> error_weights() const = 0;
-  /// Several are tried: plans at the limit differ in how well they are followed.
+  /// Weights of the feedback to try in turn: plans at the limit differ in how well they are followed.
   [[nodiscard]] virtual std::span<const Tuning> tunings() const = 0;
   /// The drive has no more to give at a plan's variables.
   [[nodiscard]] virtual bool is_spent(const double* z) const = 0;
