@@ -135,7 +135,7 @@ telemetry::RunSummary LiveRun::drive() {
   }
 }
 
-/// Goes on with the run that the next change begins. False when there is none.
+/// Takes over the run that the next change begins. False if there is none.
 bool LiveRun::take_over() {
   const run::Setting* next = controls_.settings.front();
   if (next == nullptr || !next->change.starts_anew || controls_.wants_stop) return false;
@@ -156,7 +156,7 @@ bool LiveRun::take_over() {
   return true;
 }
 
-/// The network thread: a run that was built is the loop's to take.
+/// Hands a built run to the loop. Network thread.
 std::optional<Result<void>> LiveRun::built() {
   auto result = builder_.take();
   if (!result) return std::nullopt;

@@ -101,7 +101,7 @@ Result<void> validated(const scenario::Scenario& scenario) {
   return {};
 }
 
-/// "track = oval, car = road-car"
+/// Choices in words: "track = oval, car = road-car".
 std::string words(const std::vector<telemetry::Change>& choices) {
   std::string text;
   for (const telemetry::Change& choice : choices)

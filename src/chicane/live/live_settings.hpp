@@ -101,7 +101,7 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   /// Text for GET /schema.json; "default" is the chosen preset's value with the chosen car, "start" the value
   /// at the run's start.
   [[nodiscard]] std::string schema_json() const;
-  /// Another number when schema_json() may be another.
+  /// Number that changes when schema_json() may have changed.
   [[nodiscard]] std::uint64_t schema_version() const { return runs_; }
   /// GET /preset.yaml: what runs, as a preset.
   [[nodiscard]] std::string preset_yaml() const;
@@ -109,7 +109,7 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   [[nodiscard]] const scenario::Scenario& scenario() const { return scenario_; }
 
  private:
-  /// Another run that is on its way.
+  /// Another run in construction.
   struct Building {
     ChosenRun run;                                           ///< changes since it was begun included
     scenario::Scenario base{};                               ///< scenario of its preset with its car

@@ -36,7 +36,8 @@ class RunLimit {
 
   /// First answer for viewers of a run on this road. An open road has no laps and no limit.
   [[nodiscard]] static lap_time::LimitAnswer first_answer(const road::Track& track);
-  /// Another run: gives up the one before, and begins to search where the road is closed. Does not wait.
+  /// Starts another run: gives up the earlier search, and begins a new one if the road is closed. Does not
+  /// wait.
   void search(const road::Track& track, const scenario::Scenario& scenario);
   /// Follows settings that change during a run; call it after each control cycle. With another grip or mass
   /// the limit is void: reports that, and searches again for the laps from then on, once both have not

@@ -82,11 +82,11 @@ class RunLog {
     /// Events for recording::branch_run(), beginning with the run's scenario.
     [[nodiscard]] recording::RunEvents recorded() const;
   };
-  /// Any thread: the events from `from` on; the whole run where `from` is no place in the current one. After
-  /// a restart the run is known from its start line, with its settings. kInvalidArgument with the reason
-  /// when the run is not known.
+  /// Events from `from` on; of the whole run if `from` is no place in the current one. After a restart the
+  /// run is known from its start line, with its settings. kInvalidArgument with the reason if the run is not
+  /// known. Any thread.
   [[nodiscard]] Result<Excerpt> since(Place from);
-  /// Any thread: behind the newest event.
+  /// Place after the newest event. Any thread.
   [[nodiscard]] Place end();
 
   /// Branches the run, from a checkpoint if there is one before `options.at`. Fails as

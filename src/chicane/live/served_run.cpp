@@ -89,7 +89,7 @@ Result<ServedFutures::Known> ServedFutures::known_at(double time) {
     const auto& [x, y, psi, speed, steer, throttle] = step->seen;
     if (!std::isfinite(x + y + psi + speed)) continue;
     if (!seen.empty() && step->time <= seen.back().time) continue;
-    // Another car, or one that was put elsewhere.
+    // A long gap: another car, or the same one in another place.
     if (!seen.empty() && step->time - seen.back().time > kLongestGap) seen.clear();
     seen.push_back({.time = step->time,
                     .delay = std::clamp(step->delay, 0.0, kMostDelay),

@@ -88,9 +88,9 @@ class ServedFutures {
   /// `log` must outlive it.
   explicit ServedFutures(RunLog& log) : log_{log} {}
 
-  /// Any thread: the settings that hold from now on; the scenario's track is the simulator's road.
+  /// Sets the settings that hold from now on; the scenario's track is the simulator's road. Any thread.
   void assume(const scenario::Scenario& scenario);
-  /// Any thread: the road is not the simulator's; branch() says why from now on.
+  /// Stops all futures: the road is not the simulator's; branch() gives `why` from now on. Any thread.
   void give_up(std::string why);
 
   /// Drives both futures from `options.at` on: with the current settings, and with those in `options`. Fails

@@ -28,7 +28,7 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  /// Any thread. Does not wait.
+  /// Wakes the thread and does not wait. Any thread.
   void wake();
 
  private:
@@ -62,7 +62,7 @@ class NewestTask {
   NewestTask(const NewestTask&) = delete;
   NewestTask& operator=(const NewestTask&) = delete;
 
-  /// Any thread, as the rest.
+  /// Begins a request, replacing an earlier one. Any thread, as for all functions below.
   void begin(Request request) {
     const std::lock_guard lock(mutex_);
     request_ = std::move(request);

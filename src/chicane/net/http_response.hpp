@@ -48,7 +48,7 @@ class Body {
       : owned_{std::move(bytes)}, view_{*owned_}, size_{owned_->size()} {}
   /// Body of bytes that live as long as the program.
   static Body of_view(std::string_view bytes);
-  /// kIo when it cannot be read.
+  /// Body from a file. kIo if it cannot be read.
   [[nodiscard]] static Result<Body> open(const std::string& file);
 
   [[nodiscard]] std::uint64_t size() const { return size_; }

@@ -61,7 +61,7 @@ inline bool stands_for_a_number(std::string_view text) {
          text == "None";
 }
 
-/// "v_mps", "x[m]": a word that may name a column.
+/// Whether a word may name a column: "v_mps", "x[m]".
 inline bool is_name(std::string_view text) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
   const auto may_follow = [&](char c) {
@@ -77,7 +77,7 @@ class CsvLines {
   explicit CsvLines(std::string_view text) : rest_{text} {
     if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
   }
-  /// Nothing behind the last one.
+  /// Next line; none after the last one.
   std::optional<std::string_view> next() {
     if (rest_.empty()) return std::nullopt;
     ++number_;

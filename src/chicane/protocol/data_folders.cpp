@@ -17,7 +17,7 @@
 #include <sys/auxv.h>
 #endif
 
-// Defined by programs that were compiled with an installation, see data_folders.hpp; null in all others.
+// Symbol of programs that were compiled with an installation, see data_folders.hpp; null in all others.
 extern "C" {
 [[gnu::weak]] extern const char chicane_installed_header[];
 }

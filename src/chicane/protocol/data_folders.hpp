@@ -36,8 +36,8 @@ struct DataOrigins {
 }  // namespace chicane::protocol
 
 #ifdef CHICANE_USES_INSTALLATION
-// Defined by the CMake targets and the .pc files of an installation. A program that includes this header then
-// knows where the installation lies, wherever it was moved to before.
+// Symbol from the CMake targets and .pc files of an installation. A program that includes this header then
+// knows the installation's place, also after it was moved.
 extern "C" {
 [[gnu::used]] inline constexpr char chicane_installed_header[] = __FILE__;
 }

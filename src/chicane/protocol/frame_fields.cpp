@@ -52,7 +52,7 @@ constexpr FrameConstant constant(std::string_view name, Enum value, std::string_
 
 using ConstantName = std::array<char, 40>;  // ends with a zero
 
-/// "RUNG_" and "guard_stop": "RUNG_GUARD_STOP".
+/// Names of constants: "RUNG_" and "guard_stop" give "RUNG_GUARD_STOP".
 template <class Enum, std::size_t N>
 consteval std::array<ConstantName, N> capital_names(std::string_view prefix,
                                                     const std::array<Word<Enum>, N>& words) {

@@ -55,7 +55,7 @@ Json to_object(const std::vector<road::Corner>& corners) {
   return json;
 }
 
-/// "corners [s]         1 left 10.44   2 right 3.80", three a line.
+/// Times of corners, three a line: "corners [s]         1 left 10.44   2 right 3.80".
 std::string corner_lines(const RunSummary& run, const LapSummary& lap) {
   std::string text;
   for (std::size_t i = 0; i < lap.corner_times.size() && i < run.corners.size(); ++i) {
@@ -138,7 +138,7 @@ Json to_object(const TimeSummary& time) {
       {"p50", 1e6 * time.p50}, {"p99", 1e6 * time.p99}, {"p999", 1e6 * time.p999}, {"max", 1e6 * time.max}};
 }
 
-/// "8.93 8.80 9.14", or "-" for a stretch that was no lap.
+/// Times of sectors: "8.93 8.80 9.14", or "-" for a stretch that was no lap.
 std::string sectors(const LapSummary& lap) {
   const auto& times = lap.sector_times;
   if (!std::isfinite(times[0] + times[1] + times[2])) return "-";
@@ -194,8 +194,8 @@ Json to_object(const controller::LearnedCar& learned) {
   return json.empty() ? Json(nullptr) : json;
 }
 
-/// "learned            delay +58 ± 6 ms, ...": two standard deviations; empty unless a run identifies its
-/// car.
+/// Line of learned values: "learned            delay +58 ± 6 ms, ...", with two standard deviations; empty
+/// unless a run identifies its car.
 std::string learned_line(const controller::LearnedCar& learned) {
   if (!std::isfinite(learned.delay.value)) return "";
   std::string text;

@@ -21,7 +21,7 @@ constexpr std::size_t kMostRemarks = 12;
 constexpr std::size_t kLongestRemark = 300;  // [byte]
 constexpr std::size_t kMostParameters = 200;
 
-/// "  mass_kg: 3.4  # [log] 3.2 to 3.6".
+/// Value in a line of a car file: "  mass_kg: 3.4  # [log] 3.2 to 3.6".
 std::optional<IdentifiedValue> identified_line(std::string_view line) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const std::size_t colon = line.find(": ");

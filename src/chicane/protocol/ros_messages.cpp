@@ -252,7 +252,7 @@ std::string encode_racing_line(const Frame&, const Run& run) {
   return encode_line(0.0, run, line);
 }
 
-/// "nav_msgs/msg/Odometry" → "nav_msgs/Odometry"
+/// Name without "msg": "nav_msgs/msg/Odometry" → "nav_msgs/Odometry".
 std::string short_name(std::string_view type) {
   std::string name{type};
   if (const auto at = name.find("/msg/"); at != std::string::npos) name.erase(at, 4);
@@ -265,7 +265,7 @@ const OwnMessage* find_own(std::string_view name) {
   return nullptr;
 }
 
-/// Empty text: there is none of that name.
+/// Definition of a type; empty text if there is none of that name.
 RosDefinition definition_of(std::string_view name) {
   if (const OwnMessage* own = find_own(name)) return {own->name, own->definition};
   for (const RosDefinition& each : kRosDefinitions)

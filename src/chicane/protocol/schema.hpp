@@ -49,8 +49,8 @@ struct Parameter {
 /// Fault of an unknown key for messages: "got an unknown key, expected ...", with the suggestion.
 [[nodiscard]] std::string unknown_key(std::string_view key, std::string_view driver = {});
 [[nodiscard]] Value get(const scenario::Scenario& scenario, const Parameter& parameter);
-/// kInvalidArgument "latency_ms: got 900, expected a number in [0, 500] ms", and no change, for a wrong type
-/// or range.
+/// Sets a value. kInvalidArgument "latency_ms: got 900, expected a number in [0, 500] ms", and no change, for
+/// a wrong type or range.
 [[nodiscard]] Result<void> set(scenario::Scenario& scenario, const Parameter& parameter, const Value& value);
 
 /// Text in the C locale whatever the environment says, "20", "0.025", "inf", "true", "pid"; same errors as

@@ -46,8 +46,8 @@ struct Control {
                                       const std::function<bool(const Parameter&)>& is_offered,
                                       std::span<const Control> controls);
 
-/// "half_grip@12+5*0.5": half_grip at 12 s, for 5 s, of strength 0.5. Duration and strength may be left out.
-/// kInvalidArgument with the expectation.
+/// Event from "half_grip@12+5*0.5": half_grip at 12 s, for 5 s, of strength 0.5. Duration and strength may be
+/// left out. kInvalidArgument with the expectation.
 [[nodiscard]] Result<sim::FaultEvent> parse_fault(std::string_view text);
 
 /// The value of the switch "fault.half_grip" as an event at 0 s: "true", or "+5*0.5" for a duration of 5 s
@@ -59,7 +59,7 @@ struct Control {
 struct FaultText {
   std::string name, at, duration, strength;
 };
-/// kInvalidArgument "faults.for_s: got -1, expected a number in [0.001, 1000000]".
+/// Event from its texts. kInvalidArgument "faults.for_s: got -1, expected a number in [0.001, 1000000]".
 [[nodiscard]] Result<sim::FaultEvent> read_fault(const FaultText& text);
 
 /// `{name: half_grip, at_s: 12, for_s: 5, strength: 0.5}`, which reads back into the same bits.

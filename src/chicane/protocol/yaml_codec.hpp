@@ -16,7 +16,7 @@
 
 namespace chicane::protocol {
 
-/// "presets/x.yaml:7: ", "presets/x.yaml: " without a line, nothing without a file.
+/// Place for messages: "presets/x.yaml:7: ", "presets/x.yaml: " without a line, nothing without a file.
 [[nodiscard]] std::string place(const std::string& file, int line);
 
 /// Node for messages: "a map", "a list", "nothing", or its text, quoted as in the file.
@@ -43,7 +43,7 @@ class YamlReader {
   void fault(int line, std::string_view key, std::string_view what);
   /// `error` has the key in its message.
   void fault(int line, const Error& error);
-  /// "got NODE, expected EXPECTED" on the node's line.
+  /// Adds the fault "got NODE, expected EXPECTED" on the node's line.
   void refuse(const YamlNode& node, std::string_view key, std::string_view expected);
   /// The same of an entry's value, on the line of its key.
   void refuse(const YamlEntry& entry, std::string_view expected);

@@ -54,7 +54,7 @@ class RunReader {
   void add_frame(const RosContent& frame) {
     DrivenMoment moment;
     moment.time = frame.number("time_s");
-    // Another run of the same recording begins: only the last one is kept.
+    // A time that falls begins another run of the same recording: keep only the last one.
     if (!run_.moments.empty() && moment.time < run_.moments.back().time) {
       run_.moments.clear();
       run_.last_lap = 0;
@@ -140,7 +140,7 @@ Colour between(const Colour& a, const Colour& b, double share) {
   return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue)};
 }
 
-/// Red where the plan is slow, green where it is fast.
+/// Colour of a speed: red where the plan is slow, green where it is fast.
 Colour of_speed(double share) {
   constexpr Colour kSlow{240, 80, 90}, kMiddle{250, 210, 80}, kFast{70, 220, 170};
   return share < 0.5 ? between(kSlow, kMiddle, 2.0 * share) : between(kMiddle, kFast, 2.0 * share - 1.0);

@@ -80,7 +80,7 @@ class UdacityEndpoint::Control {
     thread_.join();
     run_ = drive_.summary();
   }
-  /// Empty before stop().
+  /// Summary of the run; empty before stop().
   [[nodiscard]] const telemetry::RunSummary& run() const { return run_; }
 
   void push(const Request& request) {
@@ -118,7 +118,7 @@ class UdacityEndpoint::Control {
     }
   }
 
-  /// Another simulator, or the same one again: nothing learned is trusted.
+  /// Begins with another simulator, or the same one again: learned values are dropped.
   void begin(net::ConnectionId from) {
     driven_ = from;
     drive_.begin();

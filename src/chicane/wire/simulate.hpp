@@ -36,17 +36,17 @@ class CommandReceiver {
   /// Samples telemetry at `time`; the previous answer acts from now on. False: that answer came after the
   /// command timeout, is too old and is not used.
   bool sampled(double time) noexcept;
-  /// The answer to the last telemetry has come.
+  /// Reports that the answer to the last telemetry has come.
   void answered(const protocol::UdacitySteer& steer) noexcept;
-  /// The connection has ended: no answer is waited for.
+  /// Reports that the connection has ended: no answer is awaited.
   void disconnected() noexcept;
 
   /// Command of the actuators at `time`; `speed` is the car's [m/s].
   [[nodiscard]] model::Command act(double time, double speed) noexcept;
   /// Command that act() returned last.
   [[nodiscard]] const model::Command& acting() const noexcept { return acting_; }
-  /// Command timeout: no command has come for longer than usual, and the receiver stops the car, or has. A
-  /// stop by the controller's guard, repeated with each of its commands, does not count.
+  /// Whether the command has timed out: none has come for longer than usual, and the receiver stops the car,
+  /// or has. A stop by the controller's guard, repeated with each of its commands, does not count.
   [[nodiscard]] bool is_timed_out() const noexcept { return is_timed_out_; }
 
  private:
@@ -85,7 +85,7 @@ struct SimulateHooks {
   std::function<void(std::string_view)> log{};  ///< one line about the connection or a broken answer
 };
 
-/// A run, as `drive` reports it, and how the controller program behaved.
+/// Report on a run, as `drive` gives it, and on the controller program.
 struct SimulateReport {
   telemetry::RunSummary run;  ///< step_time is the time to the answer, the controller's own latency included
   std::uint64_t connections = 0;
@@ -113,14 +113,13 @@ struct SimulateReport {
                                               const std::atomic<bool>& stop);
 
 /// The controller program that we started ourselves, by a shell, in a process group of its own with a guard
-/// at its head. The group ends with this object, and also where our process dies without a word: the guard
-/// sees to that.
+/// at its head. The group ends with this object; if our process dies, the guard ends it.
 class ServerProcess {
  public:
   ServerProcess(std::string command, SparseLog& log) : command_{std::move(command)}, log_{log} {}
   ServerProcess(const ServerProcess&) = delete;
   ServerProcess& operator=(const ServerProcess&) = delete;
-  /// Asks all of the group to end, and makes them after a second.
+  /// Asks all of the group to end, and kills them after a second.
   ~ServerProcess();
 
   [[nodiscard]] std::uint64_t starts() const { return starts_; }

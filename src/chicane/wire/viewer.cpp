@@ -161,7 +161,7 @@ void ViewerEndpoint::dismiss(const Patience& patience) {
   gone.get_future().wait();
 }
 
-/// Nothing of the run is left that it has asked for.
+/// Whether a viewer has everything of the run that it asked for.
 bool ViewerEndpoint::has_all(net::ConnectionId id, const Client& client) const {
   const auto is_sent = [&](std::uint32_t channel, const KeptMessage* next) {
     return next == nullptr || !client.subscriptions.contains(channel);

@@ -29,9 +29,10 @@ struct ViewerServices {
   std::function<Result<void>(bool paused)> pause;  ///< "/pause", std_srvs/srv/SetBool
   std::function<Result<void>()> step;   ///< "/step", std_srvs/srv/Trigger: one control cycle while paused
   std::function<Result<void>()> reset;  ///< "/reset", std_srvs/srv/Trigger: restarts the run
-  /// "/what_if", chicane_msgs/srv/Ask: begins to compute another future; its number as a text.
+  /// Service "/what_if", chicane_msgs/srv/Ask: begins to compute another future; its number as a text.
   std::function<Result<std::string>(std::string_view question)> what_if{};
-  /// "/rival", chicane_msgs/srv/Ask: begins or ends a race against a second car; its number as a text.
+  /// Service "/rival", chicane_msgs/srv/Ask: begins or ends a race against a second car; its number as a
+  /// text.
   std::function<Result<std::string>(std::string_view question)> rival{};
 };
 
@@ -65,8 +66,8 @@ class ViewerEndpoint final : public Endpoint {
   void publish(const telemetry::Frame& frame) noexcept { latest_.put(frame); }
   /// The same thread: a lap was completed at `time` [s], before the next frame.
   void publish(const telemetry::CompletedLap& lap, double time) noexcept { latest_lap_.put({lap, time}); }
-  /// Another track, car or controller from now on; Run::building and is_paused stay as they are. Any thread,
-  /// but not while on_start runs.
+  /// Sets another track, car or controller; Run::building and is_paused stay unchanged. Any thread, but not
+  /// while on_start runs.
   void set_run(protocol::Run run);
   /// Publishes news of the run's limit. Any thread.
   void set_limit(lap_time::LimitAnswer answer);

@@ -26,7 +26,7 @@ bool equal(std::string_view a, std::string_view b) {
                     [](char x, char y) { return lower(x) == lower(y); });
 }
 
-/// "name:port" or "[::1]:port" without the port and the brackets; empty when the port is not a number.
+/// Host of "name:port" or "[::1]:port", without port and brackets; empty if the port is no number.
 std::string_view without_port(std::string_view host) {
   std::string_view name = host;
   std::string_view port;

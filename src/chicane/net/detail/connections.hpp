@@ -111,7 +111,7 @@ class SendQueue {
   SendQueue& operator=(const SendQueue&) = delete;
   ~SendQueue() { drop_waiting(false); }
 
-  /// False when `most` wait already.
+  /// Adds a message. False if `most` wait already.
   [[nodiscard]] bool add(Outgoing message, bool is_writing, std::size_t most) {
     if (message.delivery == Delivery::kNewest) {
       const auto waiting =

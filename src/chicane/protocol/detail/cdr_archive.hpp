@@ -279,7 +279,7 @@ template <class Message>
   return archive.bytes();
 }
 
-/// Nothing where the bytes are no such message, or it is not sound.
+/// Message from its bytes; none if they are no such message, or an unsound one.
 template <class Message>
 [[nodiscard]] std::optional<Message> decode(std::string_view bytes) {
   ReadingArchive archive{bytes};

@@ -16,7 +16,7 @@ namespace chicane::protocol {
 
 inline constexpr double kClosingCopy = 1e-3;  ///< a point this near to another one repeats it [m]
 
-/// "f.csv:3: x_m: got abc, expected a finite number"; line 0: of the whole file.
+/// Error of a cell: "f.csv:3: x_m: got abc, expected a finite number"; line 0: of the whole file.
 [[nodiscard]] Error fault_of(std::string_view file, int line, std::string_view key, std::string_view got,
                              std::string_view expected);
 /// Adds "f.csv:3: what" to the warnings; line 0: of the whole file.
