@@ -132,8 +132,8 @@ class RacingRoad {
   [[nodiscard]] Road::Room room(double s) const noexcept;
   /// Angle from the body's heading to the line's, where the car is planned to slide [rad], left positive.
   [[nodiscard]] double sideslip(double s) const noexcept;
-  /// Planned for the road that the controller has learned from waypoints, with an assumed width: of no use
-  /// when the waypoints are forgotten.
+  /// Whether it was planned for a road learned from waypoints, with an assumed width: void when the waypoints
+  /// are dropped.
   [[nodiscard]] bool is_learned() const noexcept { return basis_.is_learned; }
   /// Grip, slides and slip that it was planned for.
   [[nodiscard]] const LapTerms& terms() const noexcept { return basis_.terms; }

@@ -106,7 +106,7 @@ class ReferenceLine {
   /// first lap. Pre: not empty.
   [[nodiscard]] CurvePoint at(double s) const noexcept;
   [[nodiscard]] Demand demand(double s) const noexcept;
-  /// Among all samples, O(n); pre: not empty, finite.
+  /// Projects among all samples, O(n); pre: not empty, finite.
   [[nodiscard]] Projection project(const Vec2& point) const noexcept;
   /// Projects a car that moves along `heading` [rad]. If the line passes the point more than once, each time
   /// by less than `reach` [m] farther than the nearest time, the pass whose direction fits best. O(n).
@@ -116,7 +116,7 @@ class ReferenceLine {
   [[nodiscard]] Projection find(const Vec2& point, double heading, double reach, const double* last,
                                 double far) const noexcept;
   static constexpr double kWindow = 30.0;  ///< [m]
-  /// Within `window` [m] before and after `guess`.
+  /// Projects within `window` [m] before and after `guess`.
   [[nodiscard]] Projection project(const Vec2& point, double guess, double window) const noexcept;
 
  private:

@@ -22,8 +22,8 @@ class CarSight {
   /// `track`: the road, or null where it comes as a path. `is_base_at_rear_axle`: NodeOptions'.
   CarSight(const scenario::Scenario& scenario, const road::Track* track, bool is_base_at_rear_axle);
 
-  /// Another road: the points of a nav_msgs/Path in driving order, a lap when the last lies near the first.
-  /// No change for one that is no road. Allocates.
+  /// Takes another road: the points of a nav_msgs/Path in driving order, a lap if the last is near the first.
+  /// No change for points that are no road. Allocates.
   [[nodiscard]] Result<void> use_path(const std::vector<Vec2>& points);
   [[nodiscard]] bool has_road() const { return waypoints_.has_value(); }
 

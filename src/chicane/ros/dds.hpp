@@ -66,7 +66,7 @@ class Reader {
 /// thread, but for Writer. One object for a domain and process at a time.
 class Participant {
  public:
-  /// kIo with the sentence that helps, as where there is no such interface.
+  /// Joins the domain. kIo with the remedy, for example for an unknown interface.
   [[nodiscard]] static Result<std::unique_ptr<Participant>> create(const NetworkOptions& options);
 
   virtual ~Participant() = default;

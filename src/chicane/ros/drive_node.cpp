@@ -170,7 +170,7 @@ class DriveNode {
     }
   }
 
-  /// Another sender: another car, or the same after a restart.
+  /// Begins with another sender: another car, or the same after a restart.
   void begin(std::uint64_t writer, const protocol::OdometryMessage& first) {
     writer_ = writer;
     ++summary_.connections;

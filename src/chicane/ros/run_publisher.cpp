@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kDiagnosticsPeriod = 0.2;  // [s]
 constexpr double kRunPeriod = 1.0;          // [s]
-// Sent by the car or its simulator, drawn by Foxglove alone, or long and asked for by viewers.
+// Topics left out: sent by the car or its simulator, drawn by Foxglove alone, or long and only on request.
 constexpr std::array<std::string_view, 7> kNotOurs{
     "/tf", "/drive", "/clock", "/scene", "/chicane/change", "/chicane/limit", "/track/racing_line"};
 

@@ -335,7 +335,7 @@ class SimNode {
         {{stamp(0.0), node_.frames.base, scanner_frame(), {.x = scanner_ahead_}}}})));
   }
 
-  /// "ego_racecar/base_link" → "ego_racecar/laser"
+  /// Frame of the laser: "ego_racecar/base_link" → "ego_racecar/laser".
   [[nodiscard]] std::string scanner_frame() const {
     const std::size_t slash = node_.frames.base.rfind('/');
     return (slash == std::string::npos ? "" : node_.frames.base.substr(0, slash + 1)) + "laser";

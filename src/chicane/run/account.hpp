@@ -152,7 +152,8 @@ class Roadside {
   /// `track` may be null: then laps are timed, and nothing is judged. It outlives this.
   Roadside(const road::Track* track, const scenario::Scenario& scenario);
 
-  /// Another car, or the same one from another place: the running lap does not count, the rest stays.
+  /// Continues with another car, or the same one from another place: the running lap does not count, the rest
+  /// stays.
   void resume() noexcept;
   /// Drops the track and all judgements by it: the car drives on another road than configured.
   void forget_track();

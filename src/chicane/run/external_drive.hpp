@@ -36,7 +36,7 @@ struct ExternalDriveOptions {
   PlantClockOptions clock{};  ///< options of the run's clock
 };
 
-/// Empty functions are not called.
+/// Callbacks of an ExternalDrive; empty functions are not called.
 struct ExternalDriveHooks {
   SettingQueue* settings = nullptr;  ///< changes to apply before the next cycle; outlives the drive
   std::function<void(const telemetry::Change&)> on_change{};     ///< one was taken up
@@ -67,7 +67,7 @@ class ExternalDrive {
   ExternalDrive(ExternalDriveOptions options, std::unique_ptr<controller::Controller> controller,
                 const ExternalDriveHooks& hooks);
 
-  /// Another car, or the same one after it was away: nothing learned is trusted.
+  /// Begins with another car, or the same one after an absence: learned values are dropped.
   void begin();
   /// Time between the last two cycles, if the current one is `received`; none at the start [s].
   [[nodiscard]] std::optional<double> gap(Clock::time_point received) const;

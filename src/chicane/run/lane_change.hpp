@@ -69,7 +69,8 @@ class LaneChange {
   static constexpr int kSlowest = 30;  ///< [km/h]
   static constexpr int kFastest = 200;
 
-  /// kInvalidArgument for a model car, and as lap_time::plan_racing_line().
+  /// Creates the lane change of a car. kInvalidArgument for a model car; otherwise fails as
+  /// lap_time::plan_racing_line().
   [[nodiscard]] static Result<LaneChange> create(const model::VehicleParams& vehicle);
 
   /// Drives it once: the speed [m/s] is held up to 2 m behind the entry, where the throttle is released for

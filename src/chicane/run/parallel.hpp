@@ -30,11 +30,11 @@ struct Shard {
   [[nodiscard]] std::uint64_t size(std::uint64_t runs) const noexcept {
     return runs / count + (runs % count > index ? 1 : 0);
   }
-  /// "results.3-of-7.jsonl" for "results.jsonl"; the name itself where everything is ours.
+  /// File of this shard: "results.3-of-7.jsonl" for "results.jsonl"; the name itself if everything is ours.
   [[nodiscard]] std::string file_of(const std::string& file) const;
 };
 
-/// "3/7", counted from 1. kInvalidArgument otherwise.
+/// Shard from "3/7", counted from 1. kInvalidArgument otherwise.
 [[nodiscard]] Result<Shard> parse_shard(std::string_view text);
 
 /// Shard by the environment of this process's launcher: the place in a Slurm array (SLURM_ARRAY_TASK_ID),

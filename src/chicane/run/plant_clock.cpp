@@ -150,7 +150,7 @@ PlantClock::Leg PlantClock::step_of(double wall, const model::Measurement& now,
   return {.wall = wall, .plant = plant, .way = way, .steps = 1};
 }
 
-/// True: another leg is complete.
+/// Adds a step to the running leg. True: a leg is complete.
 bool PlantClock::add(const Leg& step) {
   leg_ = {leg_.wall + step.wall, leg_.plant + step.plant, leg_.way + step.way, leg_.steps + 1};
   if (leg_.way < kLegWay * size_) return false;

@@ -37,7 +37,7 @@ struct SimulatedCar {
   [[nodiscard]] static Result<std::unique_ptr<SimulatedCar>> create(const scenario::Scenario& scenario,
                                                                     double latency);
 
-  /// Another run from the start of the road.
+  /// Starts another run from the start of the road.
   void restart(const scenario::Scenario& scenario);
   /// One physics step with the command that acts.
   void advance(const model::Command& command, bool is_manual = false) noexcept;

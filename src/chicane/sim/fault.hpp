@@ -110,7 +110,7 @@ class FaultLab {
 
   /// Measurement that the controller gets instead of `now`. With a lost link it has only the time.
   [[nodiscard]] model::Measurement seen(const model::Measurement& now) noexcept;
-  /// False when a command gets lost on its way.
+  /// Whether a command arrives; false if it gets lost.
   [[nodiscard]] bool is_delivered() noexcept;
   /// Command that the actuators execute instead of `command`.
   [[nodiscard]] model::Command done(const model::Command& command) noexcept;

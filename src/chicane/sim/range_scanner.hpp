@@ -26,7 +26,7 @@ struct RangeScannerOptions {
   [[nodiscard]] double increment() const noexcept { return field_of_view / (beams - 1); }
 };
 
-/// kInvalidArgument for options out of range.
+/// Checks the options. kInvalidArgument if one is out of range.
 [[nodiscard]] Result<void> check(const RangeScannerOptions& options);
 
 /// Distances from a point to the walls of a road, which stand along its edges, outside the kerbs. Where a
@@ -36,7 +36,7 @@ struct RangeScannerOptions {
 /// seen: no other car, no height.
 class RangeScanner {
  public:
-  /// kInvalidArgument for options out of range.
+  /// Creates a scanner of a road. kInvalidArgument for options out of range.
   [[nodiscard]] static Result<RangeScanner> create(const road::Track& track,
                                                    const RangeScannerOptions& options = {});
 
@@ -86,7 +86,8 @@ struct OccupancyGrid {
 /// A byte for each cell: how many cells around it are free, so that a beam takes free room in large steps.
 class MapScanner {
  public:
-  /// kInvalidArgument for options out of range, or a grid whose numbers do not fit each other.
+  /// Creates a scanner of a map. kInvalidArgument for options out of range, or a grid with inconsistent
+  /// numbers.
   [[nodiscard]] static Result<MapScanner> create(const OccupancyGrid& grid,
                                                  const RangeScannerOptions& options = {});
 
