@@ -397,7 +397,8 @@ class OcpSolver {
 
   // ---- endings
 
-  /// Within the loose tolerance; the barrier, too, which is what complementarity lacks to zero.
+  /// Whether the report is within the loose tolerance, the barrier included, which complementarity lacks to
+  /// zero.
   [[nodiscard]] bool is_close(const SolveReport& report) const noexcept {
     const double gap = kCanFilter && barrier_.count() > 0 ? barrier_.mu() : 0.0;
     const double digits = kCanFilter ? kRounding * std::fabs(report.cost) : 0.0;  // rounding of a cost

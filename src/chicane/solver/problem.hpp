@@ -135,7 +135,7 @@ template <class T, class Row>
 /// A number that knows the functions of models, as jets do.
 using Plain = Jet<double, 1, 0>;
 
-/// Checked by detail/problem_check.hpp, whose messages say what to write.
+/// Concept of a problem; detail/problem_check.hpp checks it with messages that name the remedy.
 template <class P>
 concept OcpProblem = detail::is_problem<P>();
 

@@ -25,7 +25,7 @@ namespace {
 using protocol::YamlEntry;
 using protocol::YamlNode;
 
-/// "lap_times_s[-1]" into name and place.
+/// Place of a column: "lap_times_s[-1]" as name and index.
 struct ColumnPlace {
   std::string name;
   std::optional<int> place;

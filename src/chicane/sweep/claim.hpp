@@ -69,7 +69,7 @@ using CaseResults = std::map<std::string, protocol::Json>;
 /// comments with #. kParse with all faults and their lines.
 [[nodiscard]] Result<std::vector<Claim>> parse_claims(std::string_view text, const std::string& file,
                                                       std::string_view quotations = "");
-/// "claims/quotations/NAME.txt" of "claims/NAME.yaml".
+/// File of quotations: "claims/quotations/NAME.txt" for "claims/NAME.yaml".
 [[nodiscard]] std::string quotations_file(const std::string& file);
 
 }  // namespace chicane::sweep

@@ -120,7 +120,7 @@ class BesideFile {
   [[nodiscard]] bool has_bound(const std::string& track, const std::string& car) const;
   [[nodiscard]] bool has_trial(const ExternalTrial& trial) const;
 
-  /// Any thread; kIo.
+  /// Adds the limit of a car on a track. kIo. Any thread.
   [[nodiscard]] Result<void> add_bound(const std::string& track, const std::string& car,
                                        const Result<double>& bound);
   [[nodiscard]] Result<void> add_times(std::uint64_t run, const telemetry::RunSummary& summary);

@@ -17,7 +17,8 @@
 /// one run, `{"run":17,…}`, in the order in which they ended.
 namespace chicane::sweep {
 
-/// "chicane 0.3.0 (1f0c5e8a9b27)": the version, and a digest of the sources that runs can depend on.
+/// Name of this program, "chicane 0.3.0 (1f0c5e8a9b27)": the version, and a digest of the sources that runs
+/// can depend on.
 [[nodiscard]] std::string program_name();
 
 /// Settings as an object of texts, and back. Throws Json::exception for another value.
@@ -91,7 +92,7 @@ class LineFile {
   LineFile& operator=(LineFile&& other) noexcept;
   ~LineFile();
 
-  /// Any thread. kIo, and the file is as before, when the disk is full or gone.
+  /// Appends a line. kIo, and the file is unchanged, if the disk is full or gone. Any thread.
   [[nodiscard]] Result<void> append(std::string_view line);
 
  private:
@@ -137,7 +138,7 @@ struct MergeSummary {
 /// run with two different results; kParse for lines that are none; kIo.
 [[nodiscard]] Result<MergeSummary> merge(const std::vector<std::string>& files, const std::string& output);
 
-/// "17-20, 33 and 5 more", of numbers that rise.
+/// Rising numbers as ranges: "17-20, 33 and 5 more".
 [[nodiscard]] std::string ranges_text(const std::vector<std::uint64_t>& numbers, std::uint64_t more = 0);
 
 }  // namespace chicane::sweep

@@ -22,7 +22,7 @@ namespace {
 
 using protocol::Json;
 
-/// Figures of one run that are compared.
+/// Compared figures of one run.
 struct ComparedRun {
   std::vector<double> laps{};  ///< times [s]
   std::int64_t off = 0;        ///< times off the road
@@ -58,7 +58,7 @@ ComparedRun compared_run(const Json& json) {
   return run;
 }
 
-/// Why `run` is worse than `other`; empty: it is not.
+/// Reason why `run` is worse than `other`; empty: it is not.
 std::string worse_text(const ComparedRun& run, const ComparedRun& other) {
   if (!other.is_clean()) return "";
   if (!run.error.empty()) return "cannot be driven";

@@ -45,9 +45,9 @@ class TuneLog {
   /// kParse "FILE:LINE: …"; kIo.
   [[nodiscard]] static Result<TuneLog> open(const std::string& path, const std::string& head);
 
-  /// Null: not driven yet.
+  /// Verdict on a tuning; null: not driven yet.
   [[nodiscard]] const Verdict* find(const Settings& values) const;
-  /// kIo when the line cannot be written.
+  /// Adds a verdict. kIo if its line cannot be written.
   [[nodiscard]] Result<void> add(const Settings& values, const Verdict& verdict);
 
  private:
@@ -173,7 +173,7 @@ class Tuner {
         stop_{stop},
         on_better_{on_better} {}
 
-  /// First of all.
+  /// Drives the tuning by hand, before all others.
   void judge_by_hand() {
     is_by_hand_ = true;
     for (std::size_t i = 0; i < trials_.size(); ++i) add(tuning_.by_hand, i, run(i, {}, kTimeLimitByHand));
@@ -250,7 +250,8 @@ class Tuner {
     return -10.0 * verdict.margin + 0.1 * lap;
   }
 
-  /// Only the order counts: trials passed, then how the next one was failed, then how nearly.
+  /// Score of a verdict; only its order counts: trials passed, then the failure of the next one, then its
+  /// margin.
   [[nodiscard]] double score_of(const Verdict& verdict) const {
     const int missing = static_cast<int>(trials_.size()) - verdict.passed;
     if (missing == 0) return objective(verdict);

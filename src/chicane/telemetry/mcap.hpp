@@ -112,8 +112,8 @@ namespace chicane::telemetry {
 /// same words.
 class McapWriter {
  public:
-  /// kIo when the file exists already or cannot be made: a recording is never written over. `is_compressed`:
-  /// chunks by Zstandard; kInvalidArgument when this program was built without it.
+  /// Creates a file. kIo if it exists already or cannot be made: a recording is never overwritten.
+  /// `is_compressed`: chunks by Zstandard; kInvalidArgument if this program was built without it.
   [[nodiscard]] static Result<std::unique_ptr<McapWriter>> create(const std::string& path,
                                                                   std::string_view library,
                                                                   bool is_compressed = false);

@@ -129,8 +129,8 @@ struct RunSummary {
       0;  ///< hash of every plant state and command: same scenario and seed, same number, everywhere
 };
 
-/// True when every wanted lap is completed and no tyre left the road. A run until stopped wants
-/// no number of laps.
+/// Whether every wanted lap is completed and no tyre left the road. A run until stopped wants no number of
+/// laps.
 [[nodiscard]] inline bool completed_on_road(const RunSummary& run) noexcept {
   return (run.completed || run.laps_wanted == 0) && run.off_track_events == 0;
 }
@@ -225,7 +225,7 @@ class LapLedger {
  public:
   static constexpr std::size_t kMostKept = 1024;  ///< changes, one by one
 
-  /// Another run with other choices: nothing was changed yet.
+  /// Begins another run with other choices: all changes are dropped.
   void begin() { log_.clear(); }
   /// Restarts the same run: settings and driver stay, faults end.
   void restart();

@@ -46,7 +46,8 @@ class Descent {
   [[nodiscard]] double moved() const noexcept { return moved_; }
   /// Near enough to the solution for exact curvature.
   [[nodiscard]] bool is_under_way() const noexcept { return taken_ > 3; }
-  /// Whole unshifted steps were taken: full steps may be tried again. Each yes makes the next one harder.
+  /// Whether whole unshifted steps were taken, so that full steps may be tried again. Each yes makes the next
+  /// one harder.
   bool is_smooth() noexcept {
     if (smooth_ < needed_) return false;
     smooth_ = 0;

@@ -22,7 +22,7 @@ class Filter {
   static constexpr double kMissMargin = 1e-5;  ///< margin of the miss, relative
   static constexpr double kCostMargin = 1e-8;  ///< margin of the cost, over the miss
 
-  /// Empty but for an upper limit of the miss.
+  /// Empties the filter, except for an upper limit of the miss.
   void reset(double most_miss) noexcept {
     count_ = 0;
     most_miss_ = most_miss;

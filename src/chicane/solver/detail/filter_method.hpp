@@ -415,7 +415,8 @@ class FilterMethod {
 
   // ---- when no step is good
 
-  /// First a larger shift, then new multipliers and slacks, then a simulation, which has no defects.
+  /// Recovers: first by a larger shift, then by new multipliers and slacks, then by a simulation, which has
+  /// no defects.
   Outcome recover(const P& problem, const Lq& lq, Point& t) noexcept {
     constexpr int kMostSimulations = 8;  // limit in one solve
     candidate_ = t;
