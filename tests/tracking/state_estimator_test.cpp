@@ -35,7 +35,7 @@ TEST_F(Estimating, CountsWithTheGapOfTheSteerHelperWhereItIsAskedTo) {
     estimator.reset();
     estimator.mind_helper_gap(minds);
     estimator.correct({.time = 0.0, .psi = turning.psi, .speed = turning.vx}, sent);
-    estimator.move({.r = turning.r - estimator.state().r});
+    estimator.set_state(turning);
     return estimator.predict(time, sent).state.vy;
   };
   EXPECT_EQ(vy_after(0.03, true), vy_after(0.03, false)) << "the heading is 1.56";

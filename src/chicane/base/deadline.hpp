@@ -53,8 +53,6 @@ class Deadline {
     if (log_->spent_at == 0 && is_past()) log_->spent_at = log_->asked;
     return log_->spent_at > 0 && log_->asked >= log_->spent_at;
   }
-  /// Whether the budget has no end: never() and stopwatch().
-  [[nodiscard]] bool is_never() const noexcept { return !end_.has_value(); }
   /// Time since the budget was made [s]; 0 for never(). For reports only, not for decisions.
   [[nodiscard]] double elapsed() const noexcept {
     return start_.has_value() ? std::chrono::duration<double>(Clock::now() - *start_).count() : 0.0;

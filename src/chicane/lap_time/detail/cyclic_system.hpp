@@ -61,10 +61,9 @@ class CyclicSystem {
   void subtract_product(const std::vector<double>& x, std::vector<double>& rest) const;
 
   int n_, nz_, nx_, na_, nb_;
-  int width_;  ///< columns of what eliminating a node spreads: λ of the next one and z of node 0
+  int width_;  ///< columns of an eliminated node's fill-in: λ of the next node, z of node 0
   std::vector<double> diagonal_, coupling_;
-  std::vector<double> reduced_;  ///< block in elimination, and block of node 0
-  std::vector<double> spread_;   ///< D_k⁻¹ times both couplings, n × nb × width
+  std::vector<double> spread_;  ///< D_k⁻¹ times both couplings, n × nb × width
   std::vector<SymmetricBlock> blocks_;
 };
 

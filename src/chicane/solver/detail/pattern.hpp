@@ -108,8 +108,6 @@ struct Layout {
   /// Rows over the states that sweeps read as registers are kept as such where they are wide, with more than
   /// two entries; the others are put together from numbers.
   static constexpr std::size_t kNarrow = 2;
-  /// Whether row i of L has entries among the states.
-  static constexpr bool has_cost_row(std::size_t i) noexcept { return count(kL[i]) > 0; }
   static constexpr bool is_wide_cost(std::size_t i) noexcept { return count(kL[i]) > kNarrow; }
   /// Whether state i of the next stage is its own value and something: that 1 is not stored.
   static constexpr bool is_sum(std::size_t i) noexcept { return Pattern::kF[i][i] == Entry::kOne; }
