@@ -33,7 +33,7 @@ std::string_view view(const char* bytes, int size) { return {bytes, static_cast<
 
 extern "C" {
 
-/// Begins a run as `chicane drive` would. What went wrong; empty when nothing did.
+/// Begins a run as `chicane drive` would. Returns the fault, or an empty text.
 EMSCRIPTEN_KEEPALIVE const char* page_begin() {
   const auto scenario = protocol::compose({});
   if (!scenario) return tell(scenario.error().message);
@@ -62,7 +62,7 @@ EMSCRIPTEN_KEEPALIVE const char* page_get(const char* path) {
   return tell(content->shared ? *content->shared : content->bytes);
 }
 
-/// Drives to where the run is at `now` [s], for at most `patience` [s] of the clock.
+/// Drives up to the run's time at `now` [s], for at most `patience` [s] of the clock.
 EMSCRIPTEN_KEEPALIVE void page_advance(double now, double patience) {
   const double end = emscripten_get_now() + 1e3 * patience;
   worker_run->advance(now, [end] { return emscripten_get_now() < end; });

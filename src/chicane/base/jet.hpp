@@ -208,7 +208,7 @@ requires(AnyJet<A> || AnyJet<B>)
     [[nodiscard]] CHICANE_INLINE inline constexpr auto min(const A& a, const B& b) {
   return select(a < b, a, b);
 }
-/// max(a, 0): what exceeds a limit.
+/// max(a, 0): the excess over a limit.
 template <AnyJet A>
 [[nodiscard]] CHICANE_INLINE inline constexpr auto positive_part(const A& a) {
   return select(a.v > 0.0, a, 0.0);
@@ -251,8 +251,7 @@ requires(AnyLooseJet<T> || ...) struct Common<T...> : LooseOf<T...> {
 
 }  // namespace jet
 
-/// A type that holds each of T… and is closed under arithmetic: what homogeneous code (struct Motion<T>) runs
-/// on.
+/// Type that holds each of T… and is closed under arithmetic, for homogeneous code (struct Motion<T>).
 template <class... T>
 using Common = typename jet::Common<std::remove_cvref_t<T>...>::Type;
 

@@ -31,7 +31,7 @@ constexpr std::size_t kMostWindows = 400;  ///< limit of windows in the fit
 constexpr int kRoughSteps = 12;            ///< steps of the rough round
 constexpr double kRoughAccuracy = 3e-2,
                  kAccuracy = 1e-3;  ///< in deviations of the prior: an interval is a tenth of one
-constexpr std::string_view kRotating = "rotating";  ///< estimated with the others, and not of use to anybody
+constexpr std::string_view kRotating = "rotating";  ///< estimated with the others, but not reported
 constexpr std::size_t kFewWindows = 12;             ///< windows of the first, rough round
 
 /// Estimated number: where it is stored in a car in full size, and its prior.

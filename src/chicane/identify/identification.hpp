@@ -13,16 +13,16 @@
 namespace chicane::identify {
 
 /// Forward slips at which a controller of the wheels begins to take torque away, and has taken all of it.
-/// Infinite where there is none.
+/// Infinite without such a controller.
 struct SlipLimit {
   double start = 0.1, end = 0.18;
 };
 
 /// Effects of the wheels that no controller's model has, and that a log near the limit shows.
 struct Wheels {
-  double relaxation = 0.3;  ///< way over which a tyre builds up its force across [m]
+  double relaxation = 0.3;  ///< distance over which a tyre builds up its lateral force [m]
   double load_lag = 0.06;   ///< time constant of the load transfer [s]
-  double rotating = 1.05;   ///< mass with the inertia of what turns, over mass
+  double rotating = 1.05;   ///< mass with the inertia of rotating parts, over mass
   SlipLimit brakes{};       ///< slip limits of anti-lock
   SlipLimit drive{};        ///< slip limits of traction control
 };
@@ -66,7 +66,7 @@ struct PredictedStretch {
 /// Count of samples by an axle's slip over the slip of its peak force.
 struct SlipCover {
   static constexpr double kBin = 0.05;  ///< width of a bin
-  std::array<int, 30> front{}, rear{};  ///< the last holds all beyond, too
+  std::array<int, 30> front{}, rear{};  ///< count by bin; the last holds all beyond
 };
 
 struct Identification {
@@ -85,17 +85,17 @@ struct Identification {
   std::vector<PredictedStretch> stretches;        ///< stretches that held_out averages
   std::vector<Compared> fitted;                   ///< samples that were fitted, each window from its start
   SlipCover slip;
-  /// Samples for each one that is independent: 1 where the model explains all but noise. Intervals count it.
+  /// Samples for each independent one: 1 if the model explains all but noise. Intervals count it.
   double correlation = 1.0;
   double loss = 0.0;      ///< minimised sum (docs/identification.md, eq. 6)
   bool has_pedal = true;  ///< the log has a pedal; else drive and brakes are taken from `start`
   /// Whether the car predicts the held-out motion one second ahead better than keeping speed and yaw rate
-  /// does, or within 0.1 m and 1 degree. True where nothing was held out.
+  /// does, or within 0.1 m and 1 degree. True if nothing was held out.
   [[nodiscard]] bool predicts() const noexcept;
   /// Whether the tyres were used enough for a lap near the limit: kRaceUse of the peak's slip at the axle
   /// that limits the car, kLeastRaceUse at the other one.
   [[nodiscard]] bool knows_tires() const noexcept;
-  /// Lower end of the friction's interval; 0 where the tyres are not known.
+  /// Lower end of the friction's interval; 0 if the tyres are not known.
   [[nodiscard]] double least_friction() const noexcept;
   /// The friction that both axles have used.
   [[nodiscard]] double shown_friction() const noexcept;
@@ -111,7 +111,7 @@ inline constexpr double kRaceUse = 0.6, kLeastRaceUse = 0.4;
 
 struct IdentifyOptions {
   double hold_out = 0.3;  ///< share of each log, at its end, kept for the prediction errors, in [0, 0.8]
-  bool is_rough = false;  ///< few stretches and steps: enough to compare cars to begin with by their loss
+  bool is_rough = false;  ///< few stretches and steps: enough to compare starting cars by their loss
   Wheels wheels{};        ///< expected wheels of the car `start`
   /// Called with the share done; false ends the search with the best result so far.
   std::function<bool(double)> progress = [](double) { return true; };

@@ -25,9 +25,9 @@ struct LapTimes {
   std::vector<double> corners{};  ///< times of corners, each with half of the straights beside it
 };
 
-/// Best lap of a run that was driven again without one thing that costs time (run/laps_without.hpp).
+/// Best lap of a run that was repeated without one cause of lost time (run/laps_without.hpp).
 struct LapWithout {
-  std::string cause;  ///< name of the thing that was taken away: "latency"
+  std::string cause;                                           ///< name of the cause: "latency"
   double lap_time = std::numeric_limits<double>::quiet_NaN();  ///< [s]; not-a-number: no lap was completed
   std::vector<double> corners{};  ///< times as LapTimes::corners; empty without a lap
   int off_track_events = 0;       ///< count in the whole run
@@ -50,7 +50,7 @@ struct PlanProgress {
 /// Laps driven in the plant, with its whole state and without latency: the plan's commands plus feedback
 /// towards the plan.
 struct Witness {
-  double lap_time = 0.0;    ///< the best of them [s]
+  double lap_time = 0.0;    ///< fastest lap [s]
   double worst = 0.0;       ///< slowest lap [s]
   int laps = 0;             ///< laps in succession, without a boundary event
   double least_edge = 0.0;  ///< gap from a contact patch to the edge of the drivable surface [m]
@@ -77,7 +77,7 @@ struct PlantLimit {
   double stationarity = 0.0;  ///< at the optimum: largest slope of the Lagrangian, scaled
   double violation = 0.0;     ///< largest violated equation or inequality, scaled
 
-  /// No budget ended a search: the same answer as without one.
+  /// Whether no budget ended a search: the answer is the same without one.
   [[nodiscard]] bool is_whole() const noexcept { return !line.is_best_so_far && !is_cut_short; }
   /// Excess of the witness over the bound, relative; not-a-number without a bound.
   [[nodiscard]] double bracket() const noexcept;
@@ -94,7 +94,8 @@ struct PlantLimitOptions {
   std::function<void(const PlanProgress&)> on_progress{};  ///< progress towards the optimum; may be empty
 };
 
-/// Finds it. Takes 1 to 60 s and some 10 MB. Deterministic. Keeps nothing between calls.
+/// Finds the limit of a plant on a track. Takes 1 to 60 s and some 10 MB. Deterministic. Keeps nothing
+/// between calls.
 ///
 /// `params`: of the plant `double-track`. kNotFound for a plant that has no model here; kInvalidArgument for
 /// an open road, a road too narrow for the car or with a bend too tight for its full lock (names the place
@@ -104,7 +105,7 @@ struct PlantLimitOptions {
                                                   const PlantLimitOptions& options = {},
                                                   const sim::DoubleTrackParams& params = {});
 
-/// The bound of a plant as driven laps are compared with it (PlantLimit).
+/// Bound of a plant (PlantLimit), as driven laps are compared with it.
 struct Limit {
   LapTimes times;
   std::vector<road::LinePoint> line;  ///< by rising time from the start line; the last repeats the first
@@ -115,15 +116,15 @@ struct Limit {
 /// line. Allocates.
 [[nodiscard]] std::vector<double> corner_times(const road::Track& track, const road::RacingLine& line);
 
-/// Times and line of the bound, from the start line of `track` on; times of its corners, too.
+/// Times and line of the bound, from the start line of `track` on, with the times of its corners.
 [[nodiscard]] Limit bound_from_start(const road::Track& track, const PlantLimit& limit);
 
-/// The limit of a run, or in one sentence why there is none (yet).
+/// Limit of a run, or one sentence on why there is none (yet).
 struct LimitAnswer {
   std::shared_ptr<const Limit> found{};  ///< null: not known
-  std::string why_not{};                 ///< empty when it is, or when no reason is known
+  std::string why_not{};                 ///< empty if it is known, or without a reason
   int first_lap = 1;                     ///< first lap that it holds for; grip or mass differed before
-  std::vector<LapWithout> without{};  ///< laps that explain the gap to it; empty where they were not driven
+  std::vector<LapWithout> without{};     ///< laps that explain the gap to it; empty: not driven
 };
 
 }  // namespace chicane::lap_time

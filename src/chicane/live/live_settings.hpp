@@ -53,8 +53,8 @@ struct LiveSettingsOptions {
   /// Begins to build another run in parallel, replacing one in construction. Does not wait. Null: settings
   /// that need another run are not offered.
   std::function<void(ChosenRun)> build{};
-  /// Result of the newest build; none while it goes on. A built run is handed over to the control thread
-  /// before this returns; the thread takes it at the change that `starts_anew`.
+  /// Result of the newest build; none during a build. A built run is handed over to the control thread before
+  /// this returns; the thread takes it at the change that `starts_anew`.
   std::function<std::optional<Result<void>>()> built{};
   /// Description of the current build: "track = oval"; empty: none.
   std::function<void(const std::string&)> on_building{};

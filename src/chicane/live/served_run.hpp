@@ -33,19 +33,19 @@ using ServeFunction = std::function<Result<wire::ServeSummary>(
     std::vector<net::Asset>, const std::atomic<bool>&)>;
 
 /// A run in which the car is simulated by another program and the controller is ours: the endpoint for the
-/// simulator, viewers, recording, limit and settings, and what each thread hands to which, as LiveRun does
-/// for a run with our simulator.
+/// simulator, viewers, recording, limit and settings, and the data that threads exchange, as in LiveRun for
+/// our simulator.
 class ServedRun {
  public:
-  /// `track`: the road that the simulator drives on, where it is known: laps are timed, and there is a limit.
-  /// `assets`: files of the dashboard. `lap`: planned, of a controller that races (run/racing.hpp).
+  /// `track`: the simulator's road, if it is known: laps are timed, and there is a limit. `assets`: files of
+  /// the dashboard. `lap`: planned, of a controller that races (run/racing.hpp).
   ServedRun(const net::ServerOptions& server, const scenario::Scenario& scenario,
             std::unique_ptr<controller::Controller> controller, std::optional<road::Track> track,
             std::vector<net::Asset> assets = {}, std::shared_ptr<const road::RacingRoad> lap = nullptr);
   ServedRun(const ServedRun&) = delete;
   ServedRun& operator=(const ServedRun&) = delete;
 
-  /// The run, for a recording.
+  /// Description of the run, for a recording.
   [[nodiscard]] const protocol::Run& description() const { return description_; }
   /// Deadline of each control step [s]; 0: none.
   [[nodiscard]] double step_budget() const;
@@ -66,7 +66,7 @@ class ServedRun {
   std::vector<net::Asset> assets_;
 };
 
-/// A moment of a car that others simulate, as it was measured.
+/// Measured moment of a car that another program simulates.
 struct Seen {
   double time = 0.0;   ///< [s]
   double delay = 0.0;  ///< delay from the measurement to the actuators [s]
@@ -101,7 +101,7 @@ class ServedFutures {
  private:
   struct Known {
     std::vector<Seen> seen;  ///< sightings of the newest car
-    std::size_t at = 0;      ///< the moment
+    std::size_t at = 0;      ///< index of the moment
   };
   [[nodiscard]] Result<Known> known_at(double time);
   [[nodiscard]] Result<void> follow(recording::ShadowRun& car, scenario::Scenario scenario,

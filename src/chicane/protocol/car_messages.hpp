@@ -16,8 +16,8 @@
 #include "chicane/safety/stop_player.hpp"
 
 /// Messages that a controller and a car exchange as ROS 2 programs, and that the topics of ros_messages.hpp
-/// consist of. CDR as there. Each message names its fields once, for both directions. Stamps are nanoseconds
-/// since 1970.
+/// consist of. In CDR. Each message names its fields once, for both directions. Stamps are nanoseconds since
+/// 1970.
 
 namespace chicane::protocol {
 
@@ -54,8 +54,8 @@ struct DriveMessage {
   std::int64_t stamp = 0;
   std::string frame{};
   double steer = 0.0;         ///< road-wheel angle, left positive [rad]
-  double speed = 0.0;         ///< wanted [m/s]
-  double acceleration = 0.0;  ///< wanted [m/s²]
+  double speed = 0.0;         ///< requested speed [m/s]
+  double acceleration = 0.0;  ///< requested acceleration [m/s²]
   static void fields(auto& archive, auto& message) {
     header_fields(archive, message);
     archive.template as<float>(message.steer);
@@ -132,7 +132,7 @@ struct PathMessage {
     return true;
   }
 };
-/// Poses along a polyline, each looking at the next point.
+/// Poses along a polyline, each with the direction to the next point.
 [[nodiscard]] PathMessage path_along(std::int64_t stamp, const std::string& frame,
                                      std::span<const Vec2> line);
 
@@ -244,7 +244,7 @@ void descriptor_fields(WritingArchive& archive, const foxglove::Parameter& param
 inline constexpr std::size_t kMostParameters = 100'000;
 
 /// rcl_interfaces/srv/GetParameters and DescribeParameters, and ListParameters, whose prefixes these are.
-/// What follows the names is left unread.
+/// Bytes after the names are not read.
 struct NamesRequest {
   ServiceCall call{};
   std::vector<std::string> names{};

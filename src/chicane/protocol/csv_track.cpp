@@ -195,8 +195,8 @@ class TableReader {
       warn_of_width(rows_.content, rows_.options, line_);
   }
 
-  /// Numbers without a line of names: two columns can hardly be anything but a line of points. What more
-  /// columns are is never guessed: widths, height, speed and heading look alike.
+  /// Handles numbers without a line of names: two columns are a line of points. More columns are never
+  /// guessed: widths, height, speed and heading look alike.
   void assume_header(std::size_t count) {
     if (has_tags_) return read_header("tag,x,y");
     if (!rows_.options.columns.empty()) return read_header(rows_.options.columns);
@@ -223,7 +223,7 @@ class TableReader {
     rows_.add(line_, values, separator_);
   }
 
-  /// A comment that names columns, but not x and y.
+  /// Handles a comment that names columns, but not x and y.
   struct OtherNames {
     int line = 0;
     std::string text;
@@ -256,7 +256,7 @@ void check_extent(RoadRows& rows) {
                "metres: project the points to a plane first");
 }
 
-/// Headings are always recomputed; a column that counts from elsewhere is worth a word.
+/// Warns if a column of headings has another zero; headings are always recomputed.
 void compare_headings(RoadRows& rows) {
   const std::vector<road::TrackPoint>& points = rows.content.points;
   const std::vector<double>& headings = rows.headings;

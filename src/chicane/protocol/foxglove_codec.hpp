@@ -39,7 +39,7 @@ class ParameterStore {
   [[nodiscard]] virtual std::vector<Parameter> news() { return {}; }
   /// Sentences for all operators since the last call: changes that were accepted and failed later.
   [[nodiscard]] virtual std::vector<std::string> complaints() { return {}; }
-  /// The changes that the run has taken up since the last call.
+  /// Changes that the run has applied since the last call.
   [[nodiscard]] virtual std::vector<telemetry::Change> applied() { return {}; }
 };
 
@@ -120,12 +120,12 @@ struct Capabilities {
   bool services = false;
 };
 
-/// `session` changes when a new run begins: viewers then forget what they have drawn.
+/// Greeting of a connection. `session` changes when a new run begins: viewers then drop their drawings.
 [[nodiscard]] std::string server_info(std::string_view name, std::string_view session, Capabilities can);
 [[nodiscard]] std::string advertise(std::span<const Channel> channels);
 [[nodiscard]] std::string advertise_services(std::span<const Service> services);
 [[nodiscard]] std::string status(StatusLevel level, std::string_view message);
-/// The answer to Received: its `at`, and for how long it was held here [s]. The next frame follows.
+/// Answer to Received: its `at`, and the time for which it was held here [s]. The next frame follows.
 [[nodiscard]] std::string heard(double at, double held);
 /// Number of messages of the past that are still to come on "/chicane/past".
 [[nodiscard]] std::string past_left(std::size_t messages);

@@ -57,7 +57,7 @@ struct Run {
   lap_time::LimitAnswer limit{};
   telemetry::LapSetup lap_setup{};  ///< setup of the lap that is reported next
   std::string building{};    ///< another run that is being built, in words: "track = oval"; empty: none
-  std::string end{};         ///< "finished", "stopped" or "failed"; empty: it goes on
+  std::string end{};         ///< "finished", "stopped" or "failed"; empty: it is running
   std::string end_reason{};  ///< reason of the end, one sentence; empty if it finished
   GuardFacts guard{};        ///< guard over the controller
   FrameNames frames{};

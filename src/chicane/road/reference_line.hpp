@@ -91,8 +91,8 @@ class ReferenceLine {
   explicit ReferenceLine(int capacity) { samples_.resize(static_cast<std::size_t>(capacity)); }
 
   void clear() noexcept { count_ = 0; }
-  /// Makes room for samples 0..intervals at s = i · length / intervals. A closed line has its first sample
-  /// once more as its last, a lap later. False, and cleared, beyond the capacity.
+  /// Makes room for samples 0..intervals at s = i · length / intervals. A closed line repeats its first
+  /// sample as its last, a lap later. False, and cleared, beyond the capacity.
   [[nodiscard]] bool shape(double length, int intervals, bool is_closed) noexcept;
   [[nodiscard]] std::span<Sample> samples() noexcept { return {samples_.data(), count_}; }
   [[nodiscard]] std::span<const Sample> samples() const noexcept { return {samples_.data(), count_}; }

@@ -18,7 +18,7 @@
 
 namespace chicane::run {
 
-/// The road as the scenario's guard knows it at first; `track`: where it may know it, or null. Milliseconds.
+/// Road that the scenario's guard starts with; `track`: the track it may use, or null. Takes milliseconds.
 [[nodiscard]] road::KnownRoad known_road(const scenario::Scenario& scenario, const road::Track* track);
 
 /// Input of a control cycle besides the measurement. Recorded in the frame: with it and the measurement a

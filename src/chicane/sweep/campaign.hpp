@@ -62,7 +62,7 @@ struct CampaignGroup {
   std::string error{};  ///< reason why nothing was tried; empty: something was
 };
 
-/// The run that drives a trial once more (trial.hpp).
+/// Settings of the run that repeats a trial (trial.hpp).
 [[nodiscard]] Settings settings_of(const Settings& fixed, const CampaignGroup& group,
                                    const CampaignTrial& trial);
 
