@@ -15,7 +15,7 @@
 namespace chicane::apps {
 namespace {
 
-/// An address of this machine that others may reach; empty when it has none.
+/// Address of this machine that others may reach; empty if it has none.
 std::string own_address() {
   ifaddrs* all = nullptr;
   if (::getifaddrs(&all) != 0) return {};
@@ -32,7 +32,7 @@ std::string own_address() {
   return found;
 }
 
-/// The host that a browser is to ask for.
+/// Host that a browser asks for.
 std::string host_of(const std::string& address) {
   if (address == "127.0.0.1") return "localhost";
   if (address == "0.0.0.0" || address == "::") {

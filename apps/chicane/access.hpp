@@ -10,11 +10,11 @@
 
 namespace chicane::apps {
 
-/// Where to listen, and who may come in, as the command line says; with a new token unless --no-token.
+/// Listening address and access rules from the command line, with a new token unless --no-token.
 /// kInvalidArgument for --no-token on an address that other machines reach.
 [[nodiscard]] Result<net::ServerOptions> server_options(const Options& options);
 
-/// What a person opens: "http://localhost:4567/?token=...". The token stays in the browser as a cookie.
+/// Address that a person opens: "http://localhost:4567/?token=...". The browser keeps the token as a cookie.
 [[nodiscard]] std::string link(const net::ServerOptions& server, std::uint16_t port);
 
 }  // namespace chicane::apps

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// `chicane drive` and `chicane limit`: a run with our simulator, live or fast, and the limit of a plant.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -27,12 +28,12 @@
 namespace chicane::apps {
 namespace {
 
-/// Whether a run with a dashboard may go on until it is stopped: nobody has asked for a number of laps.
+/// Whether a run with a dashboard continues until it is stopped: no number of laps is given.
 bool may_stay(const Options& options) {
   return !has_setting(options, "laps") && !options.is_fast && !options.is_json;
 }
 
-/// Whether somebody sees that a run has ended and can end the program.
+/// Whether a person watches the terminal and can end the program.
 bool is_watched() { return isatty(STDOUT_FILENO) == 1 && isatty(STDERR_FILENO) == 1; }
 
 /// Command by which the program was started, for the page: run.sh sets it.
@@ -74,7 +75,7 @@ Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop
 }
 
 constexpr const char* kNotAsked = "not asked for (--limit)";
-/// Reason in a recording: its reader gives no options to this run any more.
+/// Reason in a recording whose reader can no longer give options to this run.
 constexpr const char* kNotLookedFor = "this run was driven without looking for it";
 
 lap_time::LimitAnswer answer_of(const road::Track& track, const lap_time::PlantLimit& limit) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// `chicane list` and `chicane check`: the names on all shelves, and the faults of files.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -30,7 +31,7 @@ using protocol::Shelf;
 /// A meaning behind `begin`: one line for programs, lines of 80 columns on a terminal. `columns`: of `begin`.
 void print_entry(std::string_view begin, std::string_view meaning, std::size_t columns) {
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
-  constexpr std::size_t kWide = 40;  // columns before a meaning that leave it no room beside them
+  constexpr std::size_t kWide = 40;  // columns before a meaning beyond which it moves to the next line
   const std::size_t indent = columns > kWide ? 4 : columns;
   fmt::print("{}{}", begin, is_terminal ? wrapped(meaning, indent, columns) : std::string(meaning) + "\n");
 }
@@ -55,7 +56,7 @@ void print_cars(bool is_markdown) {
       "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   for (const protocol::Entry& entry : protocol::entries(Shelf::kCar)) {
     const Result<scenario::Scenario> scenario = protocol::compose({"", {{"car", entry.name}}});
-    if (!scenario) continue;  // `chicane check` says what is wrong with it
+    if (!scenario) continue;  // `chicane check` reports the fault
     const model::VehicleParams& car = scenario->vehicle;
     const double front = car.wheelbase() / std::tan(car.steer_limit);
     fmt::print(
@@ -224,8 +225,8 @@ std::string road_in_words(const road::Track& track) {
   return text;
 }
 
-/// A file with a plant and nothing that a car file may not hold is a car; every other is what a run can start
-/// from.
+/// Whether a file is a car: it has a plant and no key that a car file may not have. Every other file is a
+/// scenario.
 bool is_car(const protocol::Document& document, const std::string& file) {
   const auto& settings = document.assignments;
   const bool has_plant =

@@ -122,7 +122,7 @@ Value value_of(const OptionRow& option) {
   return value;
 }
 
-/// Text in single quotes; `quote` stands for each single quote within.
+/// Text in single quotes; `quote` replaces each single quote inside.
 std::string quoted(std::string_view text, std::string_view quote) {
   std::string result;
   for (const char c : text) result += c == '\'' ? std::string(quote) : std::string(1, c);

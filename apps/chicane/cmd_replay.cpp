@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// `chicane replay`: shows a recording, computes it again, or branches it with other settings.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -54,7 +55,7 @@ Json json_of(const recording::Future& future) {
           {"off_track_events", future.off_track_events}};
 }
 
-/// "0.50" or a dash, in a column of ten characters.
+/// Number in a column of ten characters: "0.50" or a dash.
 std::string cell(double value) {
   return std::isfinite(value) ? fmt::format("{:12.2f}", value) : fmt::format("{:>12}", "-");
 }
@@ -107,7 +108,7 @@ std::string to_json(const recording::BranchReport& report) {
                {"branch", json_of(report.branched)}});
 }
 
-/// Two columns: what was, and what comes of `settings`.
+/// Table in two columns: the recorded run, and the result of `settings`.
 std::string to_text(const recording::BranchReport& report,
                     const std::vector<std::pair<std::string, std::string>>& settings) {
   std::string changes;
@@ -145,8 +146,8 @@ std::string to_text(const recording::BranchReport& report,
 
 namespace {
 
-/// What the browser is given of a recording: itself, or a copy with an index where it has none, because its
-/// writer was killed, or is compressed.
+/// Recording as the browser gets it: the file itself, or a copy with an index if it is compressed or has none
+/// because its writer was killed.
 class Shown {
  public:
   Shown(const Options& options, LogConverter convert) : options_{options}, convert_{convert} {}
@@ -174,7 +175,7 @@ class Shown {
     return {};
   }
   [[nodiscard]] const std::vector<live::ServedLog>& logs() const { return logs_; }
-  /// Another future of one of them. Viewers get names, not files.
+  /// Branches one of the recordings. Viewers get names, not files.
   [[nodiscard]] Result<recording::BranchReport> branch(const live::WhatIfQuestion& question,
                                                        const recording::BranchHooks& hooks) const {
     if (question.log >= logs_.size()) {

@@ -20,9 +20,9 @@
 namespace chicane::apps {
 
 /// The controller of `scenario` drives a car that another program simulates, until `stop`: recorded, on the
-/// terminal and in the dashboard. Without a track the road is what the simulator sends. `partner` completes
-/// "default (tracking-mpc) waits for ...", and knows the port of the dashboard. Ctrl-C sets
-/// `stop`, which is static or one of main's, once the controller is ready.
+/// terminal and in the dashboard. Without a track the road comes from the simulator. `partner` completes
+/// "default (tracking-mpc) waits for ...", and knows the port of the dashboard. Ctrl-C sets `stop`, a static
+/// or a variable of main(), once the controller is ready.
 [[nodiscard]] Result<wire::ServeSummary> drive_external_car(
     const Options& options, scenario::Scenario scenario, std::optional<road::Track> track,
     const std::function<std::string(std::uint16_t)>& partner, std::atomic<bool>& stop,
@@ -31,15 +31,15 @@ namespace chicane::apps {
 ExitCode print(const Options& options, const wire::ServeSummary& summary, std::string_view answers,
                std::string_view partners);
 
-/// Simulates the car of a scenario on a road, and tells the hooks.
+/// Simulates the car of a scenario on a road, and calls the hooks.
 using SimulateFunction = std::function<Result<wire::SimulateReport>(
     const scenario::Scenario& scenario, const road::Track& track, const wire::SimulateHooks& hooks)>;
 struct ExternalController {
-  bool wants_limit = true;  ///< the limit is searched beside the run, and its laps compared with it
-  /// Before the run, on the terminal; empty: nothing.
+  bool wants_limit = true;  ///< searches the limit during the run, and compares its laps with it
+  /// Text for the terminal before the run; empty: nothing.
   std::function<std::string(const scenario::Scenario&, const road::Track&)> on_start{};
 };
-/// Another program drives the car that this one simulates: recorded and on the terminal.
+/// Simulates the car for another program that drives it: recorded and on the terminal.
 [[nodiscard]] Result<wire::SimulateReport> drive_by_external(const Options& options,
                                                              const ExternalController& external,
                                                              const std::atomic<bool>& stop,

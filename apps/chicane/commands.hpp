@@ -21,13 +21,13 @@ struct Command {
   std::string_view example;
   ExitCode (*run)(const Options&) = nullptr;
   Rows (*rows)(Options& options) = nullptr;  ///< null: it has no options
-  bool is_planning = false;                  ///< it plans laps or finds limits, which it may keep
+  bool is_planning = false;                  ///< plans laps or finds limits, which it may cache
 };
 
 /// All commands, in the order of the help, group by group.
 [[nodiscard]] std::span<const Command> commands();
 
-/// The options of a command, with those of all commands that plan; their targets are in `options`.
+/// Options of a command, with the planning options if it plans; their targets are in `options`.
 [[nodiscard]] Rows options_of(const Command& command, Options& options);
 
 [[nodiscard]] ExitCode drive(const Options& options);
@@ -36,7 +36,7 @@ struct Command {
 [[nodiscard]] ExitCode limit(const Options& options);
 [[nodiscard]] ExitCode check(const Options& options);
 [[nodiscard]] ExitCode list(const Options& options);
-/// What `chicane list` takes.
+/// Shelves that `chicane list` accepts.
 [[nodiscard]] std::vector<std::string> list_names();
 [[nodiscard]] ExitCode completion(const Options& options);
 [[nodiscard]] ExitCode manual(const Options& options);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Experiment of a command line: its scenario, road, run and limit, and the summary in three forms.
 #include "experiment.hpp"
 
 #include <fmt/format.h>
@@ -48,7 +49,7 @@ Result<std::unique_ptr<run::ClosedLoop>> prepared(const scenario::Scenario& scen
                                                   const run::PlanHooks& hooks) {
   run::Roads roads;
   if (auto road = roads.of(scenario, run::make_track, hooks); !road) return fail(road.error());
-  return run::ClosedLoop::create(scenario, roads);  // on that road, which it remembers
+  return run::ClosedLoop::create(scenario, roads);  // answered from the remembered road
 }
 
 std::string guard_notice(const safety::GuardOptions& guard) {

@@ -47,11 +47,11 @@ void print_notices(const scenario::Scenario& scenario);
 
 struct LimitQuestion {
   bool wants_witness = true;
-  double budget = 600.0;  ///< time of work; the best lap so far is the answer then [s]
+  double budget = 600.0;  ///< limit of work; the best lap so far is the answer then [s]
 };
 
-/// The limit of an experiment's plant, found while the caller waits; tells on stderr how it goes. `wall_time`
-/// becomes how long it took [s]. Fails as run::limit_of() does; `wants_stop` ends it.
+/// Limit of an experiment's plant, searched while the caller waits; reports progress on stderr. `wall_time`
+/// gets the duration [s]. Fails as run::limit_of() does; `wants_stop` ends the search.
 [[nodiscard]] Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario,
                                                     const road::Track& track, const LimitQuestion& question,
                                                     const std::atomic<bool>& wants_stop, double& wall_time);

@@ -35,7 +35,8 @@ std::string limits(const Interval& within) {
   return within.least > 0.0 ? " > 0" : " >= 0";
 }
 
-/// Reads a value into the target of a row. Returns what was expected where it does not fit, else nothing.
+/// Reads a value into the target of a row. Returns the expectation if the value does not fit, else an empty
+/// text.
 struct Assign {
   const OptionRow& row;
   const std::string& text;
@@ -169,7 +170,7 @@ std::string assign(const OptionRow& row, const std::vector<std::string>& given,
 
 namespace {
 
-constexpr std::size_t kWidth = 80;   ///< of a terminal
+constexpr std::size_t kWidth = 80;   ///< width of a terminal
 constexpr std::size_t kIndent = 27;  ///< column at which meanings begin
 
 /// An example that fits the screen and can be typed as it stands.

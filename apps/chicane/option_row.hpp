@@ -16,7 +16,7 @@
 /// completion are made of them.
 namespace chicane::apps {
 
-/// Another name for a setting of `chicane list parameters`.
+/// Target of an option that is another name for a setting of `chicane list parameters`.
 struct Setting {
   std::string_view key;
 };
@@ -24,7 +24,7 @@ struct Setting {
 struct Off {
   bool* value;
 };
-/// Takes one value. Returns what was expected of it; empty where it was taken.
+/// Function that takes one value. Returns the expectation that the value misses, or an empty text.
 using Take = std::function<std::string(const std::string& text)>;
 
 /// Variable or function that receives the values of an option.
@@ -45,13 +45,13 @@ struct OptionRule {
   std::string_view shelf{};                  ///< shelf of `chicane list` that has its names
   std::string_view needs{};                  ///< option without which it is refused
   std::vector<std::string_view> excludes{};  ///< options with which it is refused
-  const char* environment = nullptr;         ///< variable with its value where it is not given
+  const char* environment = nullptr;         ///< variable that gives the value if the option does not
   bool is_required = false;
-  bool is_once = false;        ///< with a Take: refused a second time
-  bool shows_default = false;  ///< the target's value before parsing stands in the help
+  bool is_once = false;        ///< refuses a second use, for a Take
+  bool shows_default = false;  ///< help shows the target's value before parsing
 };
 
-/// Both rules: where both have a field, it is b's.
+/// Union of both rules; a field that both have is taken from b.
 [[nodiscard]] OptionRule operator|(OptionRule a, const OptionRule& b);
 
 [[nodiscard]] inline OptionRule between(double least, double most) {
@@ -70,9 +70,9 @@ inline const OptionRule kRequired{.is_required = true}, kOnce{.is_once = true}, 
 
 /// One option, flag or positional argument of a command.
 struct OptionRow {
-  std::string names;       ///< as typed: "-o,--output"; without dashes: a positional argument
+  std::string names;       ///< names as typed: "-o,--output"; without dashes: a positional argument
   std::string_view value;  ///< name of its value, "NAME|FILE"; empty: a flag; with ",...": a list with commas
-  std::string meaning;     ///< what it is or does: starts with a noun or a verb
+  std::string meaning;     ///< meaning of the option; starts with a noun or a verb
   Target to;               ///< std::vector and Take: may be repeated, unless is_once
   OptionRule rule{};
 
@@ -80,11 +80,12 @@ struct OptionRow {
   [[nodiscard]] bool is_flag() const { return value.empty(); }
   [[nodiscard]] bool takes_list() const { return value.ends_with(",..."); }
   [[nodiscard]] bool takes_several() const;
-  /// "-o" and "--output"; none of a positional argument.
+  /// All names: "-o" and "--output"; none for a positional argument.
   [[nodiscard]] std::vector<std::string> typed_names() const;
-  /// The long one, or the positional's.
+  /// The long name, or the positional argument's.
   [[nodiscard]] std::string name() const;
-  /// "a number in [0.05, 20]", "one of bash, zsh, fish", "NAME|FILE (chicane list cars)".
+  /// Expected value in words: "a number in [0.05, 20]", "one of bash, zsh, fish", "NAME|FILE (chicane list
+  /// cars)".
   [[nodiscard]] std::string expectation() const;
   /// The target's value as text; empty unless rule.shows_default.
   [[nodiscard]] std::string default_text() const;
@@ -97,10 +98,10 @@ using Rows = std::vector<OptionRow>;
 [[nodiscard]] std::string assign(const OptionRow& row, const std::vector<std::string>& given,
                                  std::vector<std::pair<std::string, std::string>>& settings);
 
-/// Notes after the meaning of a row: " (0.05 to 20; default 1; with --simulate)"; empty where nothing.
+/// Notes after the meaning of a row: " (0.05 to 20; default 1; with --simulate)"; may be empty.
 [[nodiscard]] std::string notes(const OptionRow& row);
-/// Words in lines of 80 columns that begin at column `indent`; the first word goes on at column `begun`, or
-/// on a new line where that is beyond `indent`. Ends with a line break.
+/// Words in lines of 80 columns that begin at column `indent`. The first line continues at column `begun`; if
+/// that is beyond `indent`, on a new line. Ends with a line break.
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t indent, std::size_t begun);
 /// The help of a command, at most 80 columns wide.
 [[nodiscard]] std::string command_help(std::string_view name, std::string_view summary, const Rows& rows,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Parser of the command line, with a fault and a suggestion for each mistake.
 #include "options.hpp"
 
 #include <fmt/format.h>
@@ -41,7 +42,7 @@ std::string command_fault(std::string_view word) {
                      fmt::join(names, ", "), did_you_mean(word, names));
 }
 
-/// Its second line is there when this program cannot do what a package can.
+/// Version text. A second line names what this program lacks and a package has.
 std::string version_text() {
   const std::string left_out = instruction_sets_left_out();
   if (left_out.empty()) return "chicane " CHICANE_VERSION "\n";
@@ -49,7 +50,7 @@ std::string version_text() {
                      built_instruction_sets(), left_out);
 }
 
-/// The words of a command line, taken apart by the names of its options; what they mean is the rows'.
+/// Words of a command line, separated by the names of its options; the rows give them their meaning.
 class Words {
  public:
   explicit Words(const Rows& rows) : rows_(rows) {
@@ -94,7 +95,7 @@ class Words {
   }
 
  private:
-  /// The first word that is no option, and the one that it may have meant.
+  /// First word that is no option, with the most similar option.
   std::string unexpected() const {
     const std::vector<std::string> unknown = app_.remaining();
     const auto flag = std::find_if(unknown.begin(), unknown.end(),

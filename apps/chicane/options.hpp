@@ -11,7 +11,7 @@
 /// The command line as plain data, so that no command knows how it is parsed.
 namespace chicane::apps {
 
-/// What a process tells its caller. A contract: scripts depend on it.
+/// Exit codes of the program. A contract: scripts depend on them.
 enum ExitCode : int {
   kSuccess = 0,
   kRunFailed = 1,    ///< the run left the road, or did not do all its laps
@@ -21,7 +21,7 @@ enum ExitCode : int {
 
 struct Options {
   std::string command;
-  std::vector<std::string> words{};  ///< behind the command, as they were given
+  std::vector<std::string> words{};  ///< arguments after the command, as given
 
   std::string scenario_file;  ///< empty: none
   std::vector<std::pair<std::string, std::string>>
@@ -29,7 +29,7 @@ struct Options {
   std::string speed_mps;  ///< reference of whichever controller drives; empty: its own
   std::string speed_mph;  ///< speed as typed in mph; empty: typed in m/s
 
-  bool is_fast = false;  ///< as fast as possible, no sockets
+  bool is_fast = false;  ///< drives as fast as possible, without sockets
   bool is_json = false;
   std::optional<double> pace;  ///< drive: run seconds per second of the clock
   std::string sim_time;        ///< serve: field of telemetry with the simulator's time; empty: none
@@ -38,12 +38,12 @@ struct Options {
   bool is_manual = false;                ///< drive: a person has the wheel
   std::string record_file;               ///< empty: nothing is recorded
   bool is_compressed = false;            ///< the recording
-  bool is_bag = false;                   ///< metadata.yaml beside the recording
+  bool is_bag = false;                   ///< writes metadata.yaml next to the recording
   std::string report_file;               ///< empty: no report is written at the end
   std::vector<std::string> faults{};     ///< drive: NAME@SECOND+SECONDS*STRENGTH
   std::string address = "127.0.0.1";
   std::uint16_t port = 4567;
-  bool needs_token = true;                     ///< to change something (docs/reference/security.md)
+  bool needs_token = true;                     ///< changes need a token (docs/reference/security.md)
   std::vector<std::string> allowed_hosts{};    ///< names by which the port may be asked for
   std::vector<std::string> allowed_origins{};  ///< pages that may connect, beside our own
 
@@ -61,7 +61,7 @@ struct Options {
   bool wants_verification = false;     ///< replay: nothing else is done
   std::optional<double> branch_at;     ///< replay: on the recording's time line [s]
   double for_s = 0.0;                  ///< replay: length of the branch; 0: to the end of the recording
-  int branch_laps = 0;                 ///< replay: of the run; 0: no matter
+  int branch_laps = 0;                 ///< replay: laps of the run; 0: no limit
   std::string output_file;             ///< replay: the branch's recording; report: the page
   std::string maps_page;               ///< report: Markdown, for the maps of a sweep; empty: none
   std::string comparison{};            ///< report: KEY=VALUE of a sweep; empty: nothing is compared
@@ -85,7 +85,7 @@ struct Options {
     std::string map_frame = "map", base_frame = "ego_racecar/base_link", base_at = "rear-axle";
     bool is_time_simulated = false;
     double pace = 0.0;       ///< seconds of the simulator in one of the clock; 0: one, without /clock
-    std::string map_file{};  ///< whose walls /scan sees; empty: those of the track
+    std::string map_file{};  ///< map whose walls /scan sees; empty: the track's walls
     std::string drive_by = "speed";
     double speed_lead = 0.25;  ///< [s]
     std::string odom_qos = "best-effort", drive_qos = "reliable";
@@ -95,7 +95,7 @@ struct Options {
   struct Identify {
     double hold_out = 0.3;               ///< share of each log for the prediction errors
     std::vector<std::string> columns{};  ///< MEANING=NAME or POSITION=MEANING of a CSV file
-    double budget_s = 120.0;             ///< of the search
+    double budget_s = 120.0;             ///< budget of the search
     bool is_forced = false;              ///< writes a car that does not predict its log
     std::string odom_topic{}, drive_topic{};
   };
@@ -106,7 +106,7 @@ struct Options {
     std::optional<double> width{}, smoothing{}, spacing{};  ///< [m]
     std::string direction{};                                ///< cw, ccw, reversed; empty: the file's
     std::vector<double> start{};                            ///< x and y [m]; empty: the file's
-    double least_width = 0.4;                               ///< of a map's road [m]
+    double least_width = 0.4;                               ///< narrowest road in a map [m]
     std::string columns{};
     bool is_closed = false, is_open = false;
   };
@@ -131,50 +131,50 @@ struct Options {
   struct Claims {
     std::vector<std::string> ids{};  ///< empty: all
     std::string folder = "studies/claims";
-    std::string page{};     ///< to write; empty: details on stdout
+    std::string page{};     ///< page to write; empty: details on stdout
     bool is_check = false;  ///< compare only
   };
   Claims claims{};
 
   struct League {
     std::string file{};
-    std::string page{};                  ///< of docs/, written below its marker; empty: none
-    std::vector<std::string> servers{};  ///< commands of external programs, beside those of the file
+    std::string page{};                  ///< page of docs/, written below its marker; empty: none
+    std::vector<std::string> servers{};  ///< commands of external programs, added to the file's
     bool wants_programs = true;          ///< false: no external ones are started
-    double patience = 15.0;              ///< with a program that does not answer [s]
+    double patience = 15.0;              ///< wait for a program that does not answer [s]
   };
   League league{};
 
   struct Video {
     std::string ghost{};  ///< another recording; empty: none
-    int lap = -1;         ///< from 1; 0: the whole run; -1: the last whole lap
-    double from = 0.0;    ///< after the beginning of the lap [s]
+    int lap = -1;         ///< lap from 1; 0: the whole run; -1: the last whole lap
+    double from = 0.0;    ///< time since the lap began [s]
     double length = 0.0;  ///< [s]; 0: to its end
     double rate = 30.0;   ///< pictures in a second
     double speed = 1.0;   ///< seconds of the run in one of the film
     int width = 1280;     ///< [px]
-    int quality = 0;      ///< of .webp; 0: as the encoder likes
+    int quality = 0;      ///< quality of .webp; 0: the encoder's default
     bool is_whole = false;
   };
   Video video{};
 
   struct Campaign {
-    std::vector<std::string> faults{};  ///< names; empty: all, with pairs those of signals and computer
-    bool has_pairs = false;             ///< also each two of them at once
+    std::vector<std::string> faults{};  ///< names; empty: all, for pairs of signals and computer
+    bool has_pairs = false;             ///< adds each pair of faults at once
     std::vector<double> durations{};    ///< [s]; empty: each fault's own
     std::vector<std::string> tracks{"lakeside", "oval", "hairpins", "speedway"};
     std::vector<std::string> cars{"udacity", "road-car"};
     std::vector<std::string> presets{"default"};
-    double step = 0.5;       ///< between onsets [s]
+    double step = 0.5;       ///< time between onsets [s]
     int onsets = 0;          ///< random moments of each group; 0: one each step
     std::uint64_t seed = 1;  ///< seed of the random moments
   };
   Campaign campaign{};
 
   struct Recover {
-    int starts = 120;        ///< for each car and track
-    std::uint64_t seed = 1;  ///< of the starts
-    int only = 0;            ///< this start alone, from 1; 0: all
+    int starts = 120;        ///< starts for each car and track
+    std::uint64_t seed = 1;  ///< seed of the starts
+    int only = 0;            ///< number of the only start, from 1; 0: all
     std::vector<std::string> tracks{"lakeside", "oval", "hairpins", "speedway"};
     std::vector<std::string> cars{"udacity", "road-car"};
   };
@@ -193,7 +193,7 @@ struct Options {
   std::string reference_folder;           ///< bench: problems with known optima; empty: none
 };
 
-/// Nothing is left to do: text was printed.
+/// Result of a command line that only prints text.
 struct Done {
   ExitCode code = kSuccess;
 };

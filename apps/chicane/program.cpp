@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Commands that are programs of their own, so that no other command waits for what they need.
+// Commands in programs of their own, so that no other command waits for their libraries.
 #include "program.hpp"
 
 #include <fmt/format.h>
@@ -93,7 +93,7 @@ namespace {
 
 // The globals: a signal handler can reach nothing else.
 std::atomic<std::atomic<bool>*> wanted{nullptr};
-std::atomic<std::int64_t> first_ns{0};  // when the first signal came [ns]; 0: none yet
+std::atomic<std::int64_t> first_ns{0};  // time of the first signal [ns]; 0: none yet
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free &&
               std::atomic<std::atomic<bool>*>::is_always_lock_free);
 
@@ -133,7 +133,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Seen from the folder of this program: a build folder, bin and libexec/chicane of an installation.
+/// Places of the other programs, from this program's folder: a build folder, bin and libexec/chicane of an
+/// installation.
 constexpr const char* kPlaces[] = {"", "../libexec/chicane", "../../bin"};
 
 bool is_program(const fs::path& file) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Progress on the terminal: notices and the line of a run, the line of a completed lap, and the wait for a
+// plan, with a page at the dashboard's address meanwhile.
 #include "progress.hpp"
 
 #include <fmt/format.h>
@@ -30,10 +32,11 @@ bool is_stuck(const Situation& now, double time) {
 }  // namespace
 
 std::vector<std::string> RunNotices::look_at(const telemetry::Frame& frame) {
-  if (frame.time < last_time_) *this = {};  // another run
+  if (frame.time < last_time_) *this = {};  // another run began
   last_time_ = frame.time;
   const Situation& now = frame.situation;
   if (now.driver == Situation::Driver::kPerson) said_.clear();
+  // No event: report the end of the last one.
   if (!is_replaced(now) && severity_of(now) != Severity::kError) {
     std::string line = ended(frame.time);
     return line.empty() ? std::vector<std::string>{} : std::vector{std::move(line)};
@@ -45,8 +48,9 @@ std::vector<std::string> RunNotices::look_at(const telemetry::Frame& frame) {
   }
   goes_on_ = true;
   if (is_replaced(now)) ++replaced_;
+  // One sentence for a new event, and another one when it changes.
   const bool is_held = now.kind == telemetry::SituationKind::kGuardHolds;
-  if (is_held && !is_stuck(now, frame.time) && !begins) return {};  // a stop that is said, and has ended
+  if (is_held && !is_stuck(now, frame.time) && !begins) return {};  // a known stop that has ended
   std::string text = sentence_of(now);
   if (const auto reason = reason_of(now); !reason.empty() && (begins || !is_held))
     text.append(": ").append(reason);
@@ -57,7 +61,7 @@ std::vector<std::string> RunNotices::look_at(const telemetry::Frame& frame) {
   return {fmt::format("{:.1f} s: {}", frame.time, said_)};
 }
 
-/// The line that says so, once, after a pause.
+/// Line that reports the end of an event, once, after a pause.
 std::string RunNotices::ended(double time) {
   if (std::exchange(goes_on_, false)) ended_ = time;
   if (said_.empty() || time - ended_ < telemetry::kAlarmPause) return "";
@@ -71,7 +75,7 @@ std::string RunNotices::ended(double time) {
 namespace {
 
 constexpr std::chrono::milliseconds kTerminalPeriod{100};
-constexpr double kLinePeriod = 10.0;  // [s] of the run
+constexpr double kLinePeriod = 10.0;  // seconds of the run
 
 std::string line(const telemetry::Frame& frame) {
   const double speed = frame.measurement.speed;
@@ -88,7 +92,7 @@ std::string line(const telemetry::Frame& frame) {
 }  // namespace
 
 std::string line_of(const telemetry::CompletedLap& lap) {
-  const std::string_view verdict = !std::isfinite(lap.min_edge_distance) ? ""  // the road is not known
+  const std::string_view verdict = !std::isfinite(lap.min_edge_distance) ? ""  // road unknown
                                    : lap.is_clean                        ? ", clean"
                                                                          : ", off the road";
   return fmt::format("lap {}: {:.2f} s, {:.1f} mph in the mean{}", lap.lap, lap.lap_time,
@@ -108,7 +112,7 @@ void Progress::show(const telemetry::Frame& frame) {
     if (now < next_) return;
     next_ = now + kTerminalPeriod;
     has_line_ = true;
-    fmt::print(stderr, "\r{}\x1b[K", line(frame));  // and clear what is left of the line before
+    fmt::print(stderr, "\r{}\x1b[K", line(frame));  // clears the rest of the old line
     std::fflush(stderr);
   } else if (frame.time >= next_run_time_) {
     next_run_time_ = frame.time + kLinePeriod;
@@ -126,9 +130,9 @@ constexpr std::chrono::milliseconds kRedrawPeriod{100};
 constexpr std::chrono::seconds kReportPeriod{10};
 constexpr std::chrono::milliseconds kGoodbyeOfPage{50};
 
-/// A road as a stroke of its mean width, in SVG, and over it another, up to the length of its dashes.
+/// Road in SVG as a stroke of its mean width, with a dashed stroke on it; the caller appends the dash length.
 std::string picture_of(const road::Track& track) {
-  constexpr int kPoints = 240;
+  constexpr int kPoints = 240;  // samples along the road
   std::string path;
   Vec2 low = track.centre().at(0.0).position, high = low;
   double width = 0.0;
@@ -147,7 +151,8 @@ std::string picture_of(const road::Track& track) {
       width, path, 0.25 * width);
 }
 
-/// `done`: of the work [%], as a share of the road in the colour of plans (web/src/styles/tokens.css).
+/// Page shown while a lap is planned; `done`: share of the work [%], drawn on the road in the colour of plans
+/// (web/src/styles/tokens.css).
 net::Content waiting_page(const std::string& road, const std::string& line, double done, double lap_time) {
   return {
       .content_type = "text/html; charset=utf-8",
@@ -168,13 +173,13 @@ net::Content waiting_page(const std::string& road, const std::string& line, doub
 
 }  // namespace
 
-/// What the network thread answers while this one plans.
+/// State shared with the network thread, which answers while this one plans.
 struct PlanWait::Page {
   std::string road;
   std::mutex mutex;
   std::string line;
   lap_time::PlanProgress now;
-  std::unique_ptr<net::Server> server;  // last: it ends first
+  std::unique_ptr<net::Server> server;  // last: destroyed first
 };
 
 std::string plan_line(const lap_time::PlanProgress& now, double elapsed, double budget) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Recording of a run from the command line: its file, and the report made of it.
 #include "record.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +18,7 @@ namespace chicane::apps {
 
 namespace {
 
-/// Checked before the run rather than after it.
+/// Checks before the run that its recording can become a report.
 Result<void> can_be_reported(const std::string& file) {
   if (live::document_bundle().script.empty()) {
     return fail(

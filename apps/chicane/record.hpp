@@ -28,7 +28,7 @@ class KeptRun {
                                                               const scenario::Scenario& scenario,
                                                               double step_budget);
 
-  /// Null without --record and --report.
+  /// Recorder; null without --record and --report.
   [[nodiscard]] recording::Recorder* recorder() const { return recorder_.get(); }
   /// Passes a frame, lap or change to Recorder::record.
   template <class What>
@@ -45,7 +45,7 @@ class KeptRun {
 
   std::string record_file_;
   std::string report_file_;
-  bool is_bag_;                                        ///< metadata.yaml is written beside the recording
+  bool is_bag_;                                        ///< writes metadata.yaml next to the recording
   std::optional<recording::TemporaryFile> temporary_;  ///< recording for a report without --record
   std::unique_ptr<recording::Recorder> recorder_;
 };

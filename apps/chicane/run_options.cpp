@@ -61,7 +61,7 @@ Rows topic_rows(Options& o) {
           {"--drive-topic", "TOPIC", "Commands of a bag that has several", &o.identify.drive_topic}};
 }
 
-/// Options that read logs of other programs; `excludes`: the one that has no use for them.
+/// Options that read logs of other programs; `excludes`: option that excludes them.
 Rows foreign_rows(Options& o, std::vector<std::string_view> excludes) {
   return joined(
       {{{"--track", "NAME|FILE", "Road of a log of another program", Setting{"track"}, without(excludes)},

@@ -159,7 +159,7 @@ OptionRow shard_row(std::string& shard) {
           take, kOnce};
 }
 
-/// "2", or "inf" for a fault that lasts.
+/// Option for durations: "2", or "inf" for a lasting fault.
 OptionRow durations_row(std::vector<double>& durations) {
   const auto take = [&durations](const std::string& text) -> std::string {
     const auto seconds =
@@ -172,7 +172,7 @@ OptionRow durations_row(std::vector<double>& durations) {
           "Durations of the faults [s], with commas; inf: to the end; each fault's own when left out", take};
 }
 
-/// On which tracks, in which cars, with which settings many runs are driven.
+/// Options for the tracks, cars and settings of many runs.
 template <class Runs>
 Rows where_rows(Runs& runs, Options& o) {
   return {names_row("--tracks", runs.tracks, "Names or files, with commas"),

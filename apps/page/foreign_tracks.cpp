@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// In the place of protocol/foreign_tracks.cpp: the page has no library for images and XML, and reads its own
-// files.
+// Replaces protocol/foreign_tracks.cpp in the page, which has no library for images and XML and reads its own
+// files only.
 #include "chicane/protocol/track_codec.hpp"
 
 namespace chicane::protocol {

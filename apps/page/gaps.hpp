@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the C++ library of Emscripten 3.1.6 (LLVM 13's) lacks of C++20: included before everything else.
+// Parts of C++20 that the library of Emscripten 3.1.6 (LLVM 13) lacks. Included before everything else.
 #pragma once
 
 #include <bit>

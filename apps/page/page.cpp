@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The run of a page that needs no program: functions that worker.js calls, in a browser's worker.
+// A run inside a browser's worker, without a server program: functions that worker.js calls.
 #include <emscripten.h>
 
 #include <memory>
@@ -13,14 +13,14 @@
 
 using namespace chicane;
 
-// What worker.js does with a message for the page.
+// Hands a message for the page to worker.js.
 EM_JS(void, post_to_page, (const char* bytes, int size, bool binary),
       { Module.postToPage(HEAPU8.slice(bytes, bytes + size), binary); });
 
 namespace {
 
 std::unique_ptr<live::WorkerRun> worker_run;
-std::string answer;  // of the last call that gives a text
+std::string answer;  // result of the last call that returns a text
 
 const char* tell(std::string text) {
   answer = std::move(text);
@@ -33,7 +33,7 @@ std::string_view view(const char* bytes, int size) { return {bytes, static_cast<
 
 extern "C" {
 
-/// Begins a run as `chicane drive` would. What went wrong; empty when nothing did.
+/// Begins a run as `chicane drive` would. Returns the fault, or an empty text.
 EMSCRIPTEN_KEEPALIVE const char* page_begin() {
   const auto scenario = protocol::compose({});
   if (!scenario) return tell(scenario.error().message);
@@ -62,7 +62,7 @@ EMSCRIPTEN_KEEPALIVE const char* page_get(const char* path) {
   return tell(content->shared ? *content->shared : content->bytes);
 }
 
-/// Drives to where the run is at `now` [s], for at most `patience` [s] of the clock.
+/// Drives up to the run's time at `now` [s], for at most `patience` [s] of the clock.
 EMSCRIPTEN_KEEPALIVE void page_advance(double now, double patience) {
   const double end = emscripten_get_now() + 1e3 * patience;
   worker_run->advance(now, [end] { return emscripten_get_now() < end; });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// In the place of protocol/yaml_tree.cpp: the page reads its own files only, and has no yaml-cpp.
+// Replaces protocol/yaml_tree.cpp in the page, which reads its own files only and has no yaml-cpp.
 #include "chicane/protocol/yaml_tree.hpp"
 
 namespace chicane::protocol {

@@ -12,7 +12,7 @@
 #define CHICANE_DETAIL_TEXT(number) #number
 #define CHICANE_DETAIL_VERSION(major, minor, patch) \
   CHICANE_DETAIL_TEXT(major) "." CHICANE_DETAIL_TEXT(minor) "." CHICANE_DETAIL_TEXT(patch)
-/// "MAJOR.MINOR.PATCH" as a string literal.
+/// The version, "MAJOR.MINOR.PATCH", as a string literal.
 #define CHICANE_VERSION \
   CHICANE_DETAIL_VERSION(CHICANE_VERSION_MAJOR, CHICANE_VERSION_MINOR, CHICANE_VERSION_PATCH)
 

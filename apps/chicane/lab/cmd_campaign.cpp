@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// `chicane campaign`: faults, alone and in pairs, at each moment of a flying lap.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +34,7 @@ struct Row {
   double least_edge = std::numeric_limits<double>::infinity();  ///< [m]
   double duration = 0.0;                                        ///< duration of the faults [s]
   std::string worst{};                                          ///< the command that drives that trial
-  bool is_worst_anyway = false;                                 ///< it is off the road without the fault, too
+  bool is_worst_anyway = false;                                 ///< off the road even without the fault
 
   [[nodiscard]] auto key() const { return std::tie(car, preset, fault, lasts); }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// `chicane claims`: tries the statements of write-ups on each lake and in each reading of speed, and writes
+// the page of verdicts or compares it. The trials are runs of one plan.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,10 +28,10 @@ namespace {
 using sweep::Claim;
 using sweep::Settings;
 
-/// The waypoints that the course hands out: not shipped, fetched by tools/fetch_circuits.sh.
+/// Waypoint file of the course: not shipped, tools/fetch_circuits.sh fetches it.
 constexpr std::string_view kCourseFile = "circuits/lake_track_waypoints.csv";
 
-/// How the numbers of a write-up are taken, where it says nothing of telemetry's miles per hour.
+/// Reading of a write-up's numbers: settings that say which speeds are in miles per hour.
 struct Reading {
   std::string_view name;
   Settings settings;
@@ -42,7 +44,7 @@ const std::array<Reading, 3>& readings() {
   return kReadings;
 }
 
-/// The reading that the claim's preset has.
+/// The reading that the claim's preset sets.
 const Reading& own_reading(const Claim& claim) {
   const auto scenario = sweep::scenario_of(claim.settings);
   const auto is_set = [&](const char* key) {
@@ -52,7 +54,7 @@ const Reading& own_reading(const Claim& claim) {
   return readings()[is_throughout ? 2 : is_set("cubic_mpc.speed_in_mph") ? 1 : 0];
 }
 
-/// Readings of speed in which a claim is tried: all of them, or that of its preset alone.
+/// Track on which claims are tried: in all readings of speed, or in the reading of the claim's preset alone.
 struct Lake {
   std::string_view name;
   std::string track;
@@ -75,7 +77,7 @@ const std::array<Lake, kLakes>& lakes() {
   return kAll;
 }
 
-/// All claims of the folder, by file and place.
+/// Claims of all files in the folder, sorted by file name; `wanted`: ids to keep, empty: all.
 Result<std::vector<Claim>> read_claims(const std::string& folder, const std::vector<std::string>& wanted) {
   std::vector<std::string> files;
   std::error_code error;
@@ -103,7 +105,7 @@ Result<std::vector<Claim>> read_claims(const std::string& folder, const std::vec
   return claims;
 }
 
-/// Settings of one case in one world. The claim's own win over the reading's.
+/// Settings of one case on one lake. The claim's settings replace the reading's.
 Settings settings_of(const Claim& claim, const sweep::Case& each, const Lake& lake, const Reading& reading) {
   Settings settings{{"guard.mode", "off"}, {"laps", "3"}, {"time_limit_s", "400"}, {"track", lake.track}};
   settings.insert(settings.end(), reading.settings.begin(), reading.settings.end());
@@ -112,12 +114,12 @@ Settings settings_of(const Claim& claim, const sweep::Case& each, const Lake& la
   return settings;
 }
 
-/// Results of runs by their commands: many claims have the same.
+/// Runs by their command: claims that share a command share its run.
 class Trials {
  public:
   void add(const Settings& settings) { wanted_.emplace(sweep::command_of(settings), settings); }
 
-  /// False: it was stopped.
+  /// Drives all added runs. False: stopped before the end.
   Result<bool> drive(int jobs, const std::string& results, const std::atomic<bool>& stop) {
     sweep::Axis axis = sweep::list_axis("trial", {});
     axis.size = wanted_.size();
@@ -148,7 +150,7 @@ class Trials {
   std::map<std::string, protocol::Json> lines_;
 };
 
-/// Whether a claim holds on a lake, by reading; none where it is not tried.
+/// Whether a claim holds on a lake, for each reading; none where it is not tried.
 using Marks = std::array<std::optional<bool>, 3>;
 
 Marks marks_of(const Claim& claim, const Trials& trials, const Lake& lake) {
@@ -170,7 +172,7 @@ std::string cell_of(const Marks& marks) {
   return cell;
 }
 
-/// true, false, not reproduced with our values, or on what it depends.
+/// Verdict in words: true, false, not reproduced with our values, or what the outcome depends on.
 std::string verdict_of(const Claim& claim, const std::string& lakeside, const std::string& original) {
   const std::string all = lakeside + original;
   if (all.find("no") == std::string::npos) return "**true**";
@@ -189,7 +191,7 @@ std::string figure(double value) {
              : number_text(std::fabs(value) < 1e-9 ? 0.0 : value, std::fabs(value) >= 100.0 ? 4 : 3);
 }
 
-/// The least and the most of the clean points of a grid: "12 of 15 clean, least 7/0.1: 0.219, most ...".
+/// Smallest and largest value of a grid's clean points: "12 of 15 clean, least 7/0.1: 0.219, most ...".
 std::string grid_figures(const Claim& claim, const Trials& trials, const Lake& lake, const Reading& reading,
                          const std::string& column) {
   std::vector<std::pair<double, std::string>> clean;
@@ -205,7 +207,7 @@ std::string grid_figures(const Claim& claim, const Trials& trials, const Lake& l
                      least->second, figure(least->first), most->second, figure(most->first));
 }
 
-/// "N25: 50.7, N40: 69.8" in one world.
+/// Figures of a claim on one lake in one reading: "N25: 50.7, N40: 69.8".
 std::string figures_of(const Claim& claim, const Trials& trials, const Lake& lake, const Reading& reading) {
   std::string text;
   for (const std::string& column : claim.shows) {
@@ -220,7 +222,7 @@ std::string figures_of(const Claim& claim, const Trials& trials, const Lake& lak
   return text;
 }
 
-/// The cell of an older page, for a lake that is not there; `column` 0 is the id.
+/// Cell of the existing page, for a lake whose file is missing; `column` 0 is the id.
 std::string older_cell(const std::string& page, const std::string& id, int column) {
   const std::size_t row = page.find(fmt::format("\n| {} |", id));
   if (row == std::string::npos) return "";
@@ -230,13 +232,13 @@ std::string older_cell(const std::string& page, const std::string& id, int colum
   return end == std::string::npos || end < at + 3 ? "" : page.substr(at + 2, end - at - 3);
 }
 
-/// The statement, and the write-up's own words where they were found.
+/// The statement, with the write-up's own words if they were found.
 std::string statement_of(const Claim& claim) {
   return claim.quotes.empty() ? claim.says : fmt::format("{}: “{}”", claim.says, claim.quotes);
 }
 
-/// A row of the page: id, statement, verdict, a cell for each lake, figures. The verdict is that of the lakes
-/// that ship.
+/// Row of the page: id, statement, verdict, a cell for each lake, figures. The verdict counts the shipped
+/// lakes.
 std::vector<protocol::Json> row_of(const Claim& claim, const Trials& trials, const std::string& older) {
   if (!claim.is_tried()) return {claim.id, statement_of(claim), claim.found, "", "", "", claim.see};
   const auto& all = lakes();
@@ -253,7 +255,7 @@ std::vector<protocol::Json> row_of(const Claim& claim, const Trials& trials, con
           figures_of(claim, trials, all[0], own_reading(claim))};
 }
 
-/// A table for each write-up.
+/// Markdown tables, one for each write-up.
 std::string rows_of(const std::vector<Claim>& claims, const Trials& trials, const std::string& older) {
   std::vector<std::string> columns{"", "statement", "verdict"};
   for (const Lake& lake : lakes()) columns.emplace_back(lake.name);
@@ -267,7 +269,7 @@ std::string rows_of(const std::vector<Claim>& claims, const Trials& trials, cons
   return text;
 }
 
-/// Everything about a few claims: conditions, figures of every world, and the command of every run.
+/// Report on a few claims: conditions, figures on each lake, and the command of each run.
 std::string details_of(const std::vector<Claim>& claims, const Trials& trials) {
   std::string text;
   for (const Claim& claim : claims) {
@@ -297,7 +299,7 @@ std::string details_of(const std::vector<Claim>& claims, const Trials& trials) {
 
 constexpr std::string_view kBegin = "<!-- claims: chicane claims -->\n";
 
-/// The line of a page that begins with `start`.
+/// Line of a page that begins with `start`.
 std::string line_with(const std::string& page, const std::string& start) {
   const std::size_t row = page.find("\n" + start);
   return row == std::string::npos ? "no such row" : page.substr(row + 1, page.find('\n', row + 1) - row - 1);

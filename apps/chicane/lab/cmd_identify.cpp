@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// `chicane identify`: estimates a car's parameters from logs, starting from a shipped car, and writes the car
+// file and the page.
 #include <fmt/format.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
@@ -35,7 +37,7 @@ namespace {
 using identify::Estimate;
 using identify::Identification;
 
-constexpr std::size_t kMostColumns = 1000;
+constexpr std::size_t kMostColumns = 1000;  // limit of a column's index
 
 Result<identify::LogOptions> log_options(const Options::Identify& options) {
   identify::LogOptions log{.odom_topic = options.odom_topic, .drive_topic = options.drive_topic};
@@ -248,7 +250,7 @@ void forget_slow_steering(model::VehicleParams& car) {
   car.steer_rate_limit = std::max(car.steer_rate_limit, kUsualRate * model::Similarity(car).time());
 }
 
-/// Those of the shelf, the nearest by their wheelbase first.
+/// Cars of the shelf, sorted by the difference of their wheelbase.
 std::vector<ShelfCar> shelf_by_wheelbase(double wheelbase) {
   std::vector<ShelfCar> cars;
   for (const protocol::Entry& entry : protocol::entries(protocol::Shelf::kCar)) {
@@ -262,11 +264,11 @@ std::vector<ShelfCar> shelf_by_wheelbase(double wheelbase) {
   return cars;
 }
 
-/// The car of the shelf that the search begins with where nobody says: of those that turn as the logs do, the
-/// one from which a rough search explains them best.
+/// Shelf car that the search begins with unless one is given: among the cars that turn as the logs do, the
+/// best fit of a rough search.
 Result<std::string> car_for(const std::vector<identify::DriveLog>& logs, const std::function<bool()>& go_on) {
-  constexpr double kNear = 0.35;  // logarithm of the ratio of wheelbases
-  constexpr std::size_t kMostTried = 4;
+  constexpr double kNear = 0.35;         // logarithm of the ratio of wheelbases
+  constexpr std::size_t kMostTried = 4;  // limit of shipped cars that are tried as a start
   const double wheelbase = identify::turning_wheelbase(logs);
   const std::vector<ShelfCar> cars =
       std::isfinite(wheelbase) ? shelf_by_wheelbase(wheelbase) : std::vector<ShelfCar>{};
@@ -301,7 +303,7 @@ bool is_nobodys(const std::vector<identify::DriveLog>& logs, const Options& opti
                       [](const identify::DriveLog& log) { return log.is_centre_of_mass; });
 }
 
-/// Wheels that are expected: those of the plant that the search begins with, where it has four.
+/// Expected wheels: the start plant's, if it has four.
 identify::Wheels wheels_of(const scenario::Scenario& start) {
   if (!has_wheels(start)) return {};
   const sim::DoubleTrackParams plant =

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// `chicane import`: reads a road from a file of any known format, checks that it can be driven, and writes it
+// as CSV with a preview of what was recognised.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -30,9 +32,9 @@ namespace {
 
 using protocol::ReportDocument;
 
-constexpr int kSteps = 800;                // along the road
-constexpr double kCells = 500.0;           // along the longer side of a map
-constexpr std::size_t kMostPoints = 4000;  // points of a file drawn at most
+constexpr int kSteps = 800;                // samples along the road in the preview
+constexpr double kCells = 500.0;           // cells along the longer side of a map
+constexpr std::size_t kMostPoints = 4000;  // limit of drawn points of a file
 
 /// State of a place on a map.
 enum Place { kWall, kFree, kUnknown, kOutside };
@@ -47,7 +49,7 @@ Place place_in(const protocol::OccupancyMap& map, const survey::FreeSpace& space
   return dark < map.free && !map.is_unknown(column, y) ? kFree : kUnknown;
 }
 
-/// The map between two corners, as rectangles one step high.
+/// Draws the map between two corners as rectangles one step high.
 void add_map(ReportDocument& document, const protocol::OccupancyMap& map, const Vec2& low, const Vec2& high) {
   const survey::FreeSpace space{.width = map.image.width,
                                 .height = map.image.height,
@@ -78,7 +80,7 @@ std::vector<double> numbers_of(const std::vector<Vec2>& places) {
   return numbers;
 }
 
-/// The start line, and an arrow in the direction of driving; `extent` of the road [m].
+/// Draws the start line and an arrow in the direction of driving; `extent`: size of the road [m].
 void add_start(ReportDocument& document, const road::Track& track, double extent) {
   const auto start = track.centre().at(track.start_s());
   const double left = track.left_width(track.start_s()), right = track.right_width(track.start_s());
@@ -95,8 +97,8 @@ void add_start(ReportDocument& document, const road::Track& track, double extent
 
 }  // namespace
 
-/// A document (protocol/json.hpp) with `words` and a map of what was recognised: the map or the
-/// points of the file, edges, line, start and its direction.
+/// Preview document (protocol/json.hpp) with `words` and a drawing of what was recognised: the map or the
+/// points of the file, edges, line, start and direction.
 std::string preview_of(const road::Track& track, const protocol::TrackFile& content,
                        const std::string& words) {
   std::vector<Vec2> line, left, right, points;
@@ -119,7 +121,7 @@ std::string preview_of(const road::Track& track, const protocol::TrackFile& cont
   document.add_text(words);
   for (const std::string& warning : content.warnings) document.add_text(warning);
   document.begin_map("what was recognised [m]", "x [m]");
-  const Vec2 margin{0.05 * extent, 0.05 * extent};
+  const Vec2 margin{0.05 * extent, 0.05 * extent};  // around the road
   if (const auto map = protocol::read_map(content.file)) add_map(document, *map, low - margin, high + margin);
   const std::size_t step = content.points.size() / kMostPoints + 1;
   for (std::size_t i = 0; i < content.points.size(); i += step) points.push_back(content.points[i].position);
@@ -136,21 +138,21 @@ namespace {
 using protocol::TrackFile;
 using protocol::TrackReadOptions;
 
-constexpr double kModelRoad = 3.0;     // a narrower road is that of a model car [m]
-constexpr double kWideRoad = 30.0;     // a wider road may have another unit [m]
+constexpr double kModelRoad = 3.0;     // narrower roads are for model cars [m]
+constexpr double kWideRoad = 30.0;     // wider roads may be in another unit [m]
 constexpr double kModelScale = 0.1;    // scale of a model road's assumed noise and spacing
-constexpr double kPointsAcross = 5.0;  // spacing of the points is the width over this
+constexpr double kPointsAcross = 5.0;  // width over the spacing of the points
 
-/// A road as it was read, and as it is written.
+/// Road as read, with the figures of the report.
 struct Imported {
   TrackFile content;
   road::Track track;
-  std::string kind;         ///< "occupancy map"
+  std::string kind;         ///< format of the file: "occupancy map"
   double spacing = 0.0;     ///< distance between the written points [m]
-  double mean_width = 0.0;  ///< [m]
+  double mean_width = 0.0;  ///< mean width of the road [m]
   road::PointFit fit{};
-  double narrowest = 1e9, widest = 0.0;  ///< [m]
-  double sharpest = 0.0;                 ///< curvature [1/m]
+  double narrowest = 1e9, widest = 0.0;  ///< least and largest width [m]
+  double sharpest = 0.0;                 ///< largest curvature [1/m]
 
   [[nodiscard]] bool is_model() const noexcept { return mean_width < kModelRoad; }
 };
@@ -177,7 +179,7 @@ double mean_width(const TrackFile& content) {
   return sum / static_cast<double>(content.points.size());
 }
 
-/// How far the points of the file are from the line, and what the road is like.
+/// Measures the distance of the file's points from the line, and the road's widths and curvature.
 void measure(Imported& road) {
   const road::Path& centre = road.track.centre();
   road.fit = road::point_fit(road.track);
@@ -205,7 +207,7 @@ Result<Imported> read_road(const Options::Import& import) {
         fmt::format("{}: size: {:.0f} m wide on average, expected at most {:g} m: is "
                     "the file in metres (a map: is its resolution)?",
                     import.file, width, kWideRoad));
-  const double usual = std::clamp(width / kPointsAcross, 0.05, 2.0);
+  const double usual = std::clamp(width / kPointsAcross, 0.05, 2.0);  // [m]
   Result<road::Track> track = protocol::make_track(*content);
   if (!track) return fail(track.error());
   Imported road{.content = std::move(*content),
@@ -217,7 +219,7 @@ Result<Imported> read_road(const Options::Import& import) {
   return road;
 }
 
-/// The smooth line as evenly spaced points, which need no smoothing any more.
+/// The smooth line as evenly spaced points, which need no further smoothing.
 TrackFile resampled(const Imported& road) {
   TrackFile out;
   out.is_closed = road.track.centre().is_closed();
@@ -226,7 +228,7 @@ TrackFile resampled(const Imported& road) {
   out.options.spacing = road.spacing;
   const double length = road.track.length();
   const int count = std::max(8, static_cast<int>(std::lround(length / road.spacing)));
-  const auto rounded = [](double value) { return std::round(1e4 * value) / 1e4; };
+  const auto rounded = [](double value) { return std::round(1e4 * value) / 1e4; };  // 0.1 mm
   for (int i = 0; i <= (out.is_closed ? count - 1 : count); ++i) {
     const double s = length * i / count;
     const Vec2 place = road.track.centre().at(s).position;
@@ -262,7 +264,7 @@ std::string in_json(const Imported& road) {
   return json.dump(2) + "\n";
 }
 
-/// The head of the written file: what was read, how well the line fits, what was assumed.
+/// Head of the written file: source, fit of the line, assumptions.
 std::string description_of(const Imported& road, const std::string& file) {
   std::string text = fmt::format(
       "From {} by chicane import\n{}{}: its {} points are {:.3f} m from the line (rms), {:.3f} m at most",
@@ -276,6 +278,7 @@ std::string description_of(const Imported& road, const std::string& file) {
 
 Result<void> import_and_tell(const Options& options) {
   const Options::Import& import = options.import_;
+  // Check the names of all outputs before any work.
   if (Result<void> named = check_page_name("--preview", import.preview); !named) return named;
   for (const std::string& file : {options.output_file, import.preview})
     if (Result<void> writable = check_writable(file); !writable) return writable;
@@ -287,7 +290,7 @@ Result<void> import_and_tell(const Options& options) {
   if (!road) return fail(road.error());
   for (const std::string& warning : road->content.warnings) fmt::print(stderr, "{}\n", warning);
   const std::string csv = protocol::write_csv_track(resampled(*road), description_of(*road, import.file));
-  // The written file is read again: it has to be a road.
+  // Read the written file back: it must be a road.
   const Result<TrackFile> again = protocol::parse_track(
       csv, options.output_file.empty() ? import.file : options.output_file, {.scale = road->content.scale});
   if (!again) return fail(again.error());
@@ -299,6 +302,7 @@ Result<void> import_and_tell(const Options& options) {
         import.preview, preview_of(road->track, road->content, in_words(*road)), live::document_bundle());
     if (!kept) return fail(kept.error());
   }
+  // Report on stdout.
   if (options.is_json) {
     fmt::print("{}", in_json(*road));
     return {};

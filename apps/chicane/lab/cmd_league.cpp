@@ -42,7 +42,7 @@ using Clock = std::chrono::steady_clock;
 using sweep::ExternalTrial;
 using sweep::League;
 
-constexpr std::chrono::milliseconds kPollPeriod{100};  // of the simulator's output
+constexpr std::chrono::milliseconds kPollPeriod{100};  // period of reading the simulator's output
 // DDS domains of ROS 2 programs, by process number. DDS has 0 to 232; people use the low ones.
 constexpr int kRosDomain = 110, kRosDomains = 80;
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// `chicane recover` and `chicane lane-change`: many starts beside the road, and the speed limit of a double
+// lane change.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -214,9 +216,9 @@ namespace {
 
 using protocol::Json;
 
-constexpr double kKmph = 3.6;
+constexpr double kKmph = 3.6;  // km/h for 1 m/s
 
-/// The lane change of one car: its lines are planned once for all who drive it.
+/// Lane change of one car: its lines are planned once for all controllers.
 struct CarOnCourse {
   std::mutex mutex{};
   std::optional<run::LaneChange> change{};

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Pages of recordings: a comparison, the summary of a sweep, the logs of a folder; and films.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -79,7 +80,7 @@ ExitCode report_logs(const Options& options) {
       .output = options.output_file, .logs = {}, .bundle = live::document_bundle()};
   std::list<recording::TemporaryFile> copies;
   for (const std::string& file : options.log_files) {
-    std::error_code error;  // of a file that is not there: no reason to stop
+    std::error_code error;  // ignored: the file may not exist
     if (std::filesystem::equivalent(file, options.output_file, error)) {
       return report(Error{ErrorCode::kInvalidArgument,
                           fmt::format("--output: got {}, expected another file than a recording that is read",

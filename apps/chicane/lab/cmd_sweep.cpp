@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// `chicane sweep`, `merge` and `tune`: many runs of one plan, their results in one file, and options tuned by
+// an optimiser.
 #include <fmt/format.h>
 
 #include <atomic>

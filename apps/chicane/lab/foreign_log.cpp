@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From the log of another program to a recording of ours: each sample becomes a frame.
+// Converts the log of another program to a recording of ours: each sample becomes a frame.
 #include "lab/foreign_log.hpp"
 
 #include <fmt/format.h>

@@ -7,7 +7,7 @@
 
 namespace chicane::apps {
 
-/// Words on the page of an identification, beside its figures.
+/// Texts on the page of an identification, around its figures.
 struct IdentifyPageWords {
   std::string logs;     ///< names of the files
   std::string advice;   ///< sentences, a line each; may be empty

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Commands that drive many runs: threads, progress with the time left, and tables of results.
 #include "lab/many_runs.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +28,7 @@ namespace {
 constexpr std::chrono::milliseconds kTerminalPeriod{200}, kLogPeriod{10000};
 constexpr int kKeptMemory = 1 << 30;  // [byte] more than a run allocates at a time
 
-/// In two digits or more: minutes from 90 s, hours from 90 min.
+/// Time left in two digits or more: minutes from 90 s, hours from 90 min.
 std::string time_left(double seconds) {
   if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
   if (seconds < 90.0 * 60.0) return fmt::format("{:.0f} min", seconds / 60.0);

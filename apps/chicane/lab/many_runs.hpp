@@ -21,7 +21,7 @@ namespace chicane::apps {
 /// them for the next one. Ctrl-C and SIGTERM set the flag that is returned (program.hpp).
 [[nodiscard]] std::atomic<bool>& begin_many_runs();
 
-/// Replaces what a page has behind `marker`; a page without one is replaced. kIo.
+/// Replaces the part of a page behind `marker`, or a whole page without one. kIo.
 [[nodiscard]] Result<void> write_below(const std::string& page, std::string_view marker,
                                        const std::string& text);
 
@@ -29,7 +29,7 @@ namespace chicane::apps {
 /// one line that renews itself, otherwise a line every ten seconds. One thread at a time.
 class RunCounter {
  public:
-  /// `what`: the word for what is counted.
+  /// `what`: plural noun for the counted things.
   explicit RunCounter(const char* what = "runs");
   /// `driven`: of the `done` ones since the start, for the speed.
   void show(std::uint64_t done, std::uint64_t runs, std::uint64_t driven);
@@ -51,7 +51,7 @@ class RunCounter {
 struct PlanRuns {
   sweep::Plan plan;
   sweep::RunRule rule{};      ///< empty: as a sweep does
-  const char* what = "runs";  ///< the word for what is counted
+  const char* what = "runs";  ///< plural noun for the counted things
   bool keeps_failed = false;  ///< a run that cannot be driven is a line with the reason, and no failure
 };
 
@@ -61,7 +61,7 @@ struct RunLines {
   sweep::Progress progress;
 };
 
-/// Drives them with `jobs` threads, 0: as many as there are processors, and tells on stderr how far it is.
+/// Drives the runs with `jobs` threads, 0: as many as there are processors, and reports progress on stderr.
 /// The lines are kept in `results`, where an older file is completed; empty: nowhere. Fails as
 /// sweep::drive_plan() does, and with the first line of a run that cannot be driven.
 [[nodiscard]] Result<RunLines> drive_runs(const PlanRuns& runs, int jobs, const std::string& results,
@@ -69,7 +69,7 @@ struct RunLines {
 
 /// Prints `{"rows": [...]}` on stdout.
 void print_rows(protocol::Json rows);
-/// Prints a table on stdout as it is asked for: text, Markdown or the rows of print_rows().
+/// Prints a table on stdout in the chosen form: text, Markdown or the rows of print_rows().
 void print_table(const Options& options, const sweep::ResultTable& table);
 
 }  // namespace chicane::apps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is asked of the compiler: checks of our own code, and one function out of many.
+// Macros for the compiler: checks of our own code, and forced inlining.
 #pragma once
 
 #include <cstdio>

@@ -13,7 +13,7 @@ namespace chicane {
 /// Questions that a Deadline was asked. With them a replay repeats a step without its clock: the step stops
 /// at the same question again.
 struct DeadlineLog {
-  std::uint32_t asked = 0;     ///< number of questions so far
+  std::uint32_t asked = 0;     ///< count of questions
   std::uint32_t spent_at = 0;  ///< number of the first question answered with "spent", from 1; 0: none
 };
 

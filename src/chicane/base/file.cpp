@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Writing of files: a new file is written beside its place and renamed at the end, so that no reader sees
+// half a file. Descriptors, and files in folders that take no new file, are written directly.
 #include "chicane/base/file.hpp"
 
 #include <fcntl.h>
@@ -22,8 +24,8 @@ tl::unexpected<Error> cannot_be_written(const std::string& path, int reason) {
   return fail(ErrorCode::kIo, path + ": cannot be written: " + std::strerror(reason));
 }
 
-/// Whether `path` names an open descriptor. Its file belongs to the program that opened it: appended to,
-/// never replaced.
+/// Whether `path` names an open descriptor. The file belongs to the program that opened it: append, never
+/// replace.
 bool is_descriptor(std::string_view path) {
   constexpr std::array<std::string_view, 3> kFolders{"/dev/std", "/dev/fd/", "/proc/"};
   return std::any_of(kFolders.begin(), kFolders.end(), [&](auto folder) { return path.starts_with(folder); });
@@ -60,10 +62,10 @@ FileWriter::FileWriter(std::string path, unsigned mode) : path_{std::move(path)}
 
   if (descriptor_ < 0) {
     part_.clear();
-    // A folder that takes no new file: the old one is written directly.
+    // The folder takes no new file: write the old file directly.
     require(exists && (errno == EACCES || errno == EPERM || errno == EROFS));
   } else if (exists) {
-    static_cast<void>(!::fchown(descriptor_, old.st_uid, old.st_gid));  // only root may: a failure is none
+    static_cast<void>(!::fchown(descriptor_, old.st_uid, old.st_gid));  // only root may: failure ignored
     require(::fchmod(descriptor_, old.st_mode & 07777U) == 0);
   }
 }

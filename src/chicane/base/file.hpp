@@ -22,7 +22,7 @@ class FileWriter {
 
   /// Does nothing after a failure, which check() and finish() return.
   void write(std::string_view bytes);
-  /// kIo with the reason of the first failure.
+  /// First failure so far, kIo with its reason.
   [[nodiscard]] Result<void> check() const;
   /// Flushes to the disk and renames. kIo; the old file stays then.
   [[nodiscard]] Result<void> finish();

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Choice of the instruction set: what the processor supports, what was built, and what the user asks for.
 #include "chicane/base/instruction_set.hpp"
 
 #include <array>

@@ -26,7 +26,7 @@ namespace chicane {
 /// Instruction sets a translation unit can be compiled for. Everything compiled for one of them carries its
 /// tag as a template argument, so that the linker never takes its code for another's.
 namespace arch {
-struct Baseline {  ///< what every processor of the family has; SSE2 on x86-64
+struct Baseline {  ///< features of every processor of the family; SSE2 on x86-64
   static constexpr std::size_t kWidth = 2;
   static constexpr bool kFused = false;
 };
@@ -43,7 +43,7 @@ struct Neon {  ///< aarch64 with fused arithmetic
   static constexpr bool kFused = true;
 };
 #if defined(CHICANE_ARCH)
-using Native = CHICANE_ARCH;  ///< of this translation unit (cmake/InstructionSets.cmake)
+using Native = CHICANE_ARCH;  ///< instruction set of this translation unit (cmake/InstructionSets.cmake)
 #else
 using Native = Baseline;
 #endif
@@ -65,8 +65,8 @@ enum class InstructionSet : std::uint8_t { kBaseline, kAvx2, kAvx512, kNeon };
 
 [[nodiscard]] std::string_view to_string(InstructionSet set) noexcept;
 
-/// "fused" where a · b + c rounds once, else "plain". Instruction sets with the same word compute the same
-/// bits; a recording names it, and replays bit by bit on any machine that has it.
+/// Word for the arithmetic: "fused" if a · b + c rounds once, else "plain". Instruction sets with the same
+/// word compute the same bits; a recording names it, and replays bit by bit on any machine that has it.
 [[nodiscard]] std::string_view arithmetic(InstructionSet set) noexcept;
 
 /// Whether this processor has the instruction set.
@@ -97,8 +97,8 @@ enum class InstructionSet : std::uint8_t { kBaseline, kAvx2, kAvx512, kNeon };
 [[nodiscard]] InstructionSet chosen_instruction_set() noexcept;
 /// Chooses for the whole process; for replays and tests. Any thread may call it. Pre: is_available(set).
 void choose_instruction_set(InstructionSet set) noexcept;
-/// What CHICANE_SIMD asks for; the best one when it is not set. Fails like instruction_set_by_name(), and
-/// when none is available.
+/// Instruction set that CHICANE_SIMD names; if it is not set, the best one. Fails like
+/// instruction_set_by_name(), and if none is available.
 [[nodiscard]] Result<InstructionSet> environment_instruction_set();
 
 /// Calls f with the tag of `set`; sets of other families of processors, and those left out, are not compiled.

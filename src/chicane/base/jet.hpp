@@ -208,7 +208,7 @@ requires(AnyJet<A> || AnyJet<B>)
     [[nodiscard]] CHICANE_INLINE inline constexpr auto min(const A& a, const B& b) {
   return select(a < b, a, b);
 }
-/// max(a, 0): what exceeds a limit.
+/// max(a, 0): the excess over a limit.
 template <AnyJet A>
 [[nodiscard]] CHICANE_INLINE inline constexpr auto positive_part(const A& a) {
   return select(a.v > 0.0, a, 0.0);
@@ -223,7 +223,7 @@ template <AnyJet A>
 namespace jet {
 
 template <class T>
-struct Traits {  // of a constant
+struct Traits {  // derivatives of a constant
   static constexpr Variables kFirst = 0;
   static constexpr int kOrder = 0;
   using Value = T;
@@ -251,8 +251,7 @@ requires(AnyLooseJet<T> || ...) struct Common<T...> : LooseOf<T...> {
 
 }  // namespace jet
 
-/// A type that holds each of T… and is closed under arithmetic: what homogeneous code (struct Motion<T>) runs
-/// on.
+/// Type that holds each of T… and is closed under arithmetic, for homogeneous code (struct Motion<T>).
 template <class... T>
 using Common = typename jet::Common<std::remove_cvref_t<T>...>::Type;
 
@@ -345,7 +344,7 @@ template <class A, class B>
 [[nodiscard]] CHICANE_INLINE inline auto smooth_min(const A& a, const B& b, double width) {
   return b - smooth_positive_part(b - a, width);
 }
-/// From 0 to 1, ½ at 0: ½ (1 + tanh(x / width)).
+/// Smooth step from 0 to 1, ½ at 0: ½ (1 + tanh(x / width)).
 template <class T>
 [[nodiscard]] CHICANE_INLINE inline auto smooth_step(const T& x, double width) {
   return 0.5 + 0.5 * tanh(x * (1.0 / width));

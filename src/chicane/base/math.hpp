@@ -22,9 +22,9 @@ struct SineCosine {
 [[nodiscard]] double log(double x) noexcept;   ///< x > 0; NaN for x < 0, -inf for 0
 [[nodiscard]] double tanh(double x) noexcept;  ///< error up to 4 ulp
 [[nodiscard]] double asin(double x) noexcept;  ///< error up to 4 ulp; NaN beyond ±1
-[[nodiscard]] double acos(double x) noexcept;  ///< as asin
-/// Whole exponents up to ±64 by multiplication, for any x; others as exp(exponent · log(x)): NaN for x < 0,
-/// relative error about (2 + |exponent · log(x)|) ulp.
+[[nodiscard]] double acos(double x) noexcept;  ///< same range and accuracy as asin
+/// Power. Whole exponents up to ±64 by multiplication, for any x; others as exp(exponent · log(x)): NaN for x
+/// < 0, relative error about (2 + |exponent · log(x)|) ulp.
 [[nodiscard]] double pow(double x, double exponent) noexcept;
 
 /// IEEE 754 prescribes the bits of these.

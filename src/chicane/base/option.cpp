@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Reading, writing and checking of options by their rows.
 #include "chicane/base/option.hpp"
 
 #include <algorithm>

@@ -26,14 +26,14 @@ namespace chicane {
   return std::clamp(value, low, high);
 }
 
-// What can be set: each options struct has a table of its fields with name, unit, range and meaning, beside
-// the code that uses them. Configuration keys, command line, range checks and
-// docs/reference/configuration.md follow from these rows.
+// Settings: each options struct has a table of its fields with name, unit, range and meaning, beside the code
+// that uses them. Configuration keys, command line, range checks and docs/reference/configuration.md follow
+// from these rows.
 
-/// Inside C++ all is SI; outside, every number carries its unit in the key's suffix. SI value = value outside
+/// Unit of a number outside C++, where keys carry it as a suffix; inside all is SI. SI value = value outside
 /// · factor / divisor.
 struct Unit {
-  std::string_view name;    ///< for people: "m/s", "ms", "deg"; empty for pure numbers
+  std::string_view name;    ///< unit for people: "m/s", "ms", "deg"; empty for pure numbers
   std::string_view suffix;  ///< the end of the key: "_mps", "_ms", "_deg"; empty where the name needs none
   double factor = 1.0;
   double divisor = 1.0;
@@ -54,7 +54,7 @@ inline constexpr Unit kDegreePerSecond{"deg/s", "_degps", kPi / 180.0, 1.0};
 inline constexpr Unit kKilogram{"kg", "_kg"};
 inline constexpr Unit kInertia{"kg m²", "_kgm2"};
 inline constexpr Unit kPowerPerMass{"W/kg", "_wpkg"};
-/// Of weights and gains: shown to people; the key names what is weighed and carries no suffix.
+/// Unit of weights and gains: shown to people; the key names the weighed quantity and has no suffix.
 [[nodiscard]] constexpr Unit per(std::string_view name) noexcept { return {name, "", 1.0, 1.0}; }
 }  // namespace unit
 
@@ -65,15 +65,15 @@ using OptionValue = std::variant<double, bool, std::string>;
 
 /// One row: a field of some options struct. Made by option<&PidOptions::integral_gain>(...).
 struct Option {
-  std::string_view name;  ///< of the field, without its unit: "speed_reference"
+  std::string_view name;  ///< name of the field, without its unit: "speed_reference"
   OptionKind kind = OptionKind::kNumber;
   Unit unit;
-  double minimum = 0.0;  ///< in `unit`, allowed itself; numbers and integers only
+  double minimum = 0.0;  ///< least value in `unit`, allowed itself; numbers and integers only
   double maximum = 0.0;
   std::string_view meaning;                            ///< one sentence
-  std::span<const std::string_view> choices{};         ///< in the order of the enum, where it is one
-  bool may_be_infinite = false;                        ///< beside [minimum, maximum], "inf" means no limit
-  OptionValue (*read)(const void*) = nullptr;          ///< as the field has it: SI, an enum as its number
+  std::span<const std::string_view> choices{};         ///< names in the order of the enum, if it is one
+  bool may_be_infinite = false;                        ///< accepts "inf" (no limit) beside [minimum, maximum]
+  OptionValue (*read)(const void*) = nullptr;          ///< reads the field: SI, an enum as its number
   void (*write)(void*, const OptionValue&) = nullptr;  ///< the same way
 
   [[nodiscard]] constexpr Option or_infinite() const noexcept {
@@ -155,15 +155,16 @@ template <auto... Members>
 
 /// The key of an option outside C++: "pid.speed_reference_mps"; without a group "latency_ms".
 [[nodiscard]] std::string option_key(std::string_view group, const Option& option);
-/// For messages: "an integer in [2, 200]", "a number in [0, 500] ms", "one of pid, stanley", "true or false".
+/// Expected value for messages: "an integer in [2, 200]", "a number in [0, 500] ms", "one of pid, stanley",
+/// "true or false".
 [[nodiscard]] std::string expectation(const Option& option);
-/// "pid.integral_gain: got -1, expected a number in [0, 10] rad/(m s)".
+/// Error of a value: "pid.integral_gain: got -1, expected a number in [0, 10] rad/(m s)".
 [[nodiscard]] Error refusal(std::string_view key, std::string_view got, const Option& option);
 
 /// The value in the option's unit; `owner` is the struct that the row was made for, here and below.
 [[nodiscard]] OptionValue get(const Option& option, const void* owner);
-/// Fails with refusal(), and changes nothing, for a wrong type or a value out of range; `key` is what the
-/// message calls it.
+/// Sets a value. Fails with refusal(), and changes nothing, for a wrong type or a value out of range; `key`
+/// is the name in the message.
 [[nodiscard]] Result<void> set(const Option& option, std::string_view key, void* owner,
                                const OptionValue& value);
 

@@ -6,8 +6,9 @@
 
 namespace chicane {
 
-/// As std::unique_ptr, but a copy owns a copy: copy_of(const T&), found by argument-dependent lookup, makes
-/// it, and may return null where there is none. For parts behind an interface of what is copied as a value.
+/// Pointer like std::unique_ptr whose copy owns a copy, made by copy_of(const T&), which argument-dependent
+/// lookup finds and which may return null. For parts behind an interface of objects that are copied as
+/// values.
 template <class T>
 class Owned {
  public:

@@ -145,7 +145,7 @@ struct Pack {
       }
     }
   }
-  /// From N doubles at an address that is a multiple of 8 N bytes.
+  /// Loads N doubles from an address that is a multiple of 8 N bytes.
   CHICANE_INLINE static Pack load(const double* from) noexcept {
     Pack r;
     for (std::size_t p = 0; p < kParts; ++p) r.part[p] = Memory::load(from + p * kWidth);
@@ -219,7 +219,7 @@ struct Pack {
   CHICANE_INLINE friend Pack min(const Pack& a, const Pack& b) noexcept { return each<Ops::min>(a, b); }
   CHICANE_INLINE friend Pack max(const Pack& a, const Pack& b) noexcept { return each<Ops::max>(a, b); }
   CHICANE_INLINE friend Pack sqrt(const Pack& a) noexcept { return each<Ops::sqrt>(a); }
-  /// To the nearest integer, ties to even.
+  /// Rounds to the nearest integer, ties to even.
   CHICANE_INLINE friend Pack round(const Pack& a) noexcept { return each<Ops::round>(a); }
   CHICANE_INLINE friend BitsType bits_of(const Pack& a) noexcept {
     return pack_detail::by_parts<Ops::to_bits, BitsType>(a);
@@ -233,7 +233,7 @@ struct Pack {
   }
   /// Lanes that are numbers.
   CHICANE_INLINE friend MaskType is_finite(const Pack& a) noexcept { return a - a == Pack(0.0); }
-  /// By halves, so that the order does not depend on registers.
+  /// Sums by halves, so that the order does not depend on registers.
   CHICANE_INLINE friend double sum(const Pack& a) noexcept {
     return reduce(a, [](double x, double y) CHICANE_INLINE { return x + y; });
   }
@@ -262,7 +262,7 @@ struct Pack {
   }
 };
 
-/// Of a pack whose lanes are equal.
+/// The common value of a pack whose lanes are equal.
 template <class Arch, std::size_t N>
 [[nodiscard]] CHICANE_INLINE inline double value_of(const Pack<Arch, N>& x) noexcept {
   return x[0];
@@ -364,7 +364,7 @@ template <class Arch, std::size_t N>
   return sqrt(x * x + y * y);
 }
 
-// With a constant.
+// Hypotenuse of a pack and a constant.
 template <class Arch, std::size_t N>
 [[nodiscard]] CHICANE_INLINE inline Pack<Arch, N> hypot(const Pack<Arch, N>& x, double y) noexcept {
   return hypot(x, Pack<Arch, N>(y));

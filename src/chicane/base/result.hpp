@@ -7,7 +7,7 @@
 
 namespace chicane {
 
-/// What went wrong in the world outside the program.
+/// Kinds of failures in the world outside the program.
 enum class ErrorCode { kInvalidArgument, kParse, kUnsupportedVersion, kNotFound, kIo };
 
 /// A message that can be understood without the source: "scenarios/wet.yaml:14: car.mass_kg: got -900,

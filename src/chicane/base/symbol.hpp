@@ -8,7 +8,7 @@ namespace chicane {
 // The comments behind deleted functions are what compilers show of them: as long as they have to be.
 // clang-format off
 
-/// What comparisons of symbols answer: to be chosen by, not to be branched on.
+/// Result of comparing symbols: selects between values, cannot be branched on.
 struct Choice {
   operator bool() const = delete;  // NOLINT  no if, ?:, &&, ||, std::max on variables: write select(x > 1.0, a, b), max(a, b), min or abs; & and | of comparisons
 };
@@ -16,9 +16,9 @@ Choice operator&(Choice, Choice);
 Choice operator|(Choice, Choice);
 Choice operator!(Choice);
 
-/// Stands for a variable of which nothing is known. The solver tries the functions of a structured problem
-/// with symbols before it makes anything of them, so that what a jet or a pack cannot do is refused first, in
-/// few lines. Declared only, never called.
+/// Placeholder for a variable of unknown type. The solver calls the functions of a structured problem with
+/// symbols before any other type, so that operations that no jet or pack has are refused first, in few lines.
+/// Declared only, never called.
 struct Symbol {
   Symbol();
   Symbol(double constant);         // NOLINT: constants mix freely with symbols, as in formulas

@@ -52,7 +52,7 @@ Error refusal(std::string_view key, std::string_view text, std::string_view expe
 
 std::string number_text(double value) {
   const double size = std::fabs(value);
-  // Without an exponent while that is as exact and short: doubles have 16 digits.
+  // Prefer digits without an exponent if they are as exact and short: doubles have 16 digits.
   const bool is_plain = size == 0.0 || !std::isfinite(value) || (size >= 1e-4 && size < 1e16);
   return written(value, is_plain ? std::chars_format::fixed : std::chars_format::scientific);
 }

@@ -13,30 +13,31 @@
 
 namespace chicane {
 
-/// The shortest text that reads back as the same bits: "0.1", "1000000", "1e-05", "nan", "-inf". A point in
-/// every locale.
+/// The shortest text that reads back as the same bits: "0.1", "1000000", "1e-05", "nan", "-inf". Decimal
+/// point in every locale.
 [[nodiscard]] std::string number_text(double value);
-/// Rounded to `digits` significant ones: "0.05", "66.7". A point in every locale.
+/// Text with `digits` significant digits: "0.05", "66.7". Decimal point in every locale.
 [[nodiscard]] std::string number_text(double value, int digits);
 
 /// The finite number that a whole text is: digits with a point in every locale, no blank, no plus sign.
 [[nodiscard]] std::optional<double> number_in(std::string_view text) noexcept;
 /// A whole number of digits alone.
 [[nodiscard]] std::optional<std::uint64_t> count_in(std::string_view text) noexcept;
-/// Clamped to [low, high] where it rounds to a border; else refusal(key, text, "a number in [low, high]").
+/// Number in `text`, clamped to [low, high] if it rounds to a border; else refusal(key, text, "a number in
+/// [low, high]").
 [[nodiscard]] Result<double> number_in(std::string_view key, std::string_view text, double low, double high);
 
-/// "KEY: got TEXT, expected EXPECTED", the text as printable() shows it.
+/// Error "KEY: got TEXT, expected EXPECTED", the text as printable() shows it.
 [[nodiscard]] Error refusal(std::string_view key, std::string_view text, std::string_view expected,
                             ErrorCode code = ErrorCode::kInvalidArgument);
 
-/// For messages: the first 60 bytes of foreign text without control characters; "nothing" when empty.
+/// Foreign text for messages: its first 60 bytes without control characters; "nothing" if it is empty.
 [[nodiscard]] std::string printable(std::string_view text);
 
-/// RFC 4648, with padding.
+/// Base64 by RFC 4648, with padding.
 [[nodiscard]] std::string base64(std::string_view bytes);
 
-/// "udacity, road-car".
+/// Words as a list: "udacity, road-car".
 [[nodiscard]] std::string joined(std::span<const std::string_view> words);
 
 /// Length of the UTF-8 sequence at the beginning of `text`; 0 when it is none (RFC 3629: no overlong forms,
@@ -67,7 +68,7 @@ namespace chicane {
   return true;
 }
 
-/// How serious a state of the program is. The numbers are those of ROS 2's diagnostic_msgs/DiagnosticStatus.
+/// Severity of a state of the program. The numbers are those of ROS 2's diagnostic_msgs/DiagnosticStatus.
 enum class Severity : std::uint8_t { kOk = 0, kWarning = 1, kError = 2 };
 
 /// One value of an enumeration, as programs and as people read it.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The baselines PID, pure pursuit and Stanley: steering laws with a common speed hold.
 #include "chicane/controller/baselines.hpp"
 
 #include <algorithm>
@@ -14,13 +15,13 @@
 namespace chicane::controller {
 namespace {
 
-/// What a steering law looks at.
+/// Input of a steering law.
 struct View {
   const road::Path& line;  ///< through the waypoints just measured
   road::Projection here;   ///< nearest place to the centre of mass
   double heading_error;    ///< yaw minus the line's heading there [rad]
   const model::Measurement& now;
-  double elapsed;  ///< since the step before [s], 0 when unknown
+  double elapsed;  ///< time since the previous step [s], 0 if unknown
 };
 
 /// A curve through waypoints; skips those that are not finite or repeat the one before.
@@ -142,7 +143,7 @@ class Baseline final : public CopyableController<Baseline<Law>>, public Tunable<
     return result_;
   }
 
-  static constexpr int kReferencePoints = 32;
+  static constexpr int kReferencePoints = 32;  // points of the shown line
 
   std::string_view name_;
   Law law_;
@@ -251,7 +252,7 @@ Result<std::unique_ptr<Controller>> make(const typename Law::Options& options,
   return std::make_unique<Baseline<Law>>(Entry::kName, options, vehicle);
 }
 
-/// The rows of a law, and behind them those of its speed hold, which is at `Speed`.
+/// Option rows of a law, followed by the rows of its speed hold, which is the member `Speed`.
 template <auto Speed, std::size_t N>
 constexpr std::array<Option, N + 3> with_speed_hold(const std::array<Option, N>& law) {
   std::array<Option, N + 3> all{};
@@ -289,8 +290,8 @@ constexpr auto kStanleyOptions = with_speed_hold<&StanleyOptions::speed>(std::ar
 });
 
 constexpr double kComfortableBraking = 3.0;  ///< assumed on the way to a curve [m/s²]
-constexpr double kSampleSpacing = 2.0;       ///< at which the curvature ahead is looked at [m]
-constexpr int kMaxSamples = 100;             ///< and how often
+constexpr double kSampleSpacing = 2.0;       ///< spacing of curvature samples ahead [m]
+constexpr int kMaxSamples = 100;             ///< limit of these samples
 
 }  // namespace
 

@@ -42,7 +42,7 @@ struct StanleyOptions {
   SpeedHoldOptions speed;
 };
 
-/// kInvalidArgument names an option out of the range that its row states, here and below.
+/// Makes a controller. kInvalidArgument names an option outside the range in its row, here and below.
 [[nodiscard]] Result<std::unique_ptr<Controller>> make_pid(const PidOptions& options,
                                                            const model::VehicleParams& vehicle);
 [[nodiscard]] Result<std::unique_ptr<Controller>> make_pure_pursuit(const PurePursuitOptions& options,

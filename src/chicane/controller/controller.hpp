@@ -39,16 +39,16 @@ struct LearnedCar {
 /// One predicted moment.
 struct PlanPoint {
   double time = 0.0;       ///< [s], clock of the run
-  double x = 0.0;          ///< in W [m]
-  double y = 0.0;          ///< in W [m]
+  double x = 0.0;          ///< position in W [m]
+  double y = 0.0;          ///< position in W [m]
   double psi = 0.0;        ///< [rad]
   double speed = 0.0;      ///< [m/s]
   model::Command command;  ///< held from this moment to the next point's
 };
 
-/// What a controller intends: predicted motion with its commands, and the line it tries to follow. Data only.
+/// Plan of a controller: predicted motion with its commands, and the line it follows. Data only.
 struct Plan {
-  static constexpr int kCapacity = 256;
+  static constexpr int kCapacity = 256;       ///< limit of points
   int size = 0;                               ///< points in use; 0 = no plan
   std::array<PlanPoint, kCapacity> points{};  ///< points[0] is where the first command acts
   int reference_size = 0;
@@ -111,15 +111,15 @@ enum class Answer : signed char {
 
 /// Report of one step.
 struct StepReport {
-  solver::SolveReport solve{.status = solver::SolveStatus::kOptimal};  ///< as it is where nothing is solved
+  solver::SolveReport solve{.status = solver::SolveStatus::kOptimal};  ///< default without a solver
   /// Time when the command acts [s], clock of the run; NaN: measurement time plus its delay.
   double act_time = std::numeric_limits<double>::quiet_NaN();
-  double lateral_error = 0.0;    ///< of the measured position from the reference line [m], left positive
+  double lateral_error = 0.0;    ///< offset of the measured position from the line [m], left positive
   double heading_error = 0.0;    ///< measured yaw minus the line's heading [rad]
   double speed_reference = 0.0;  ///< wanted at the point where the command acts [m/s]
   double delay = 0.0;            ///< compensated: from measurement to actuation [s]
   double sight = 0.0;            ///< length of known road ahead [m]
-  double solve_time = 0.0;  ///< of the optimisation alone [s], as the deadline's clock saw it; 0 without one
+  double solve_time = 0.0;  ///< time of the optimisation alone [s], by the deadline's clock; 0 without one
   bool has_map = false;     ///< the learned road is a closed lap
   Explanation explanation;  ///< empty without an answer
   LearnedCar learned;       ///< grip: the controller's word, where it learns that; the rest: the guard's
@@ -191,7 +191,7 @@ class CopyableController : public Controller, public Copyable {
   }
 };
 
-/// Null for a controller that is not Copyable.
+/// Copy of a controller; null if it is not Copyable.
 [[nodiscard]] inline std::unique_ptr<Controller> copy_of(const Controller& controller) {
   const auto* copyable = dynamic_cast<const Copyable*>(&controller);
   return copyable == nullptr ? nullptr : copyable->copy();

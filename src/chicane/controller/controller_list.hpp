@@ -27,7 +27,7 @@ inline constexpr auto kGroupText = [] {
 }();
 }  // namespace detail
 
-/// Where a controller's options stand in files and keys: "pure_pursuit" for "pure-pursuit".
+/// Group of a controller's options in files and keys: "pure_pursuit" for "pure-pursuit".
 template <class Entry>
 inline constexpr std::string_view kOptionGroup{detail::kGroupText<Entry>.data(),
                                                detail::kGroupText<Entry>.size()};
@@ -59,7 +59,7 @@ class ControllerList {
   /// The options of all of them: std::get<PidOptions>(options).
   using Options = std::tuple<typename Entries::Options...>;
 
-  /// What can be said of an entry without its types.
+  /// Type-free description of an entry.
   struct Kind {
     std::string_view name;
     std::string_view group;
@@ -75,7 +75,7 @@ class ControllerList {
     static constexpr std::array<Kind, sizeof...(Entries)> kKinds{kind<Entries>()...};
     return kKinds;
   }
-  /// Null when there is none.
+  /// Entry of this name; null if there is none.
   [[nodiscard]] static const Kind* find(std::string_view name) noexcept {
     for (const Kind& kind : kinds()) {
       if (kind.name == name) return &kind;
@@ -89,7 +89,8 @@ class ControllerList {
     (visit.template operator()<Entries>(), ...);
   }
 
-  /// kInvalidArgument "controller: got mpc, expected one of pid, ..." and what the entry's own function says.
+  /// Makes a controller. kInvalidArgument "controller: got mpc, expected one of pid, ...", or the error of
+  /// the entry's own function.
   [[nodiscard]] static Result<std::unique_ptr<Controller>> make(std::string_view name, const Options& options,
                                                                 const model::VehicleParams& vehicle) {
     if (const Kind* kind = find(name)) return kind->make(options, vehicle);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The controller `cubic-mpc`: fit of the line, roll-forward, solve, command.
 #include "chicane/controller/cubic_mpc.hpp"
 
 #include <algorithm>
@@ -48,7 +49,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
     result_.report = {};
     result_.report.solve.status = solver::SolveStatus::kNotFinite;  // until there is an answer
     if (!is_finite(now)) return no_answer(now);
-    start_ = roll_forward_.predict(now);  // where the car is when the command acts
+    start_ = roll_forward_.predict(now);  // state when the command acts
     start_time_ = now.time + roll_forward_.compensated();
     if (!see_line(now)) return no_answer(now);  // the waypoints from there, as a cubic
     shift_warm_start();                         // the last answer, moved on by the time since
@@ -59,7 +60,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
 
   void configure(const CubicMpcOptions& options, const model::VehicleParams& vehicle) noexcept override {
     const double steer_sign = options.steering_right_positive ? -1.0 : 1.0;
-    const bool means_the_same = steer_sign == steer_sign_;  // of the last answer's inputs
+    const bool means_the_same = steer_sign == steer_sign_;  // inputs of the last answer stay valid
     const double ratio = options.step_length / problem_.dt;
     uses_polar_ = options.polar_waypoints;
     line_order_ = options.line_order;
@@ -96,7 +97,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
            std::isfinite(now.throttle);
   }
 
-  /// Fits the line in the frame of start_, and reports where the measured position lies beside it.
+  /// Fits the line in the frame of start_, and reports the measured position's offset from it.
   bool see_line(const model::Measurement& now) noexcept {
     const LocalPoints local =
         uses_polar_ ? to_car_frame_polar(now, start_.pose) : to_car_frame(now, start_.pose);
@@ -114,7 +115,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
     return true;
   }
 
-  /// In its own frame the car stands at the origin; equations 8 and 9 give the errors there.
+  /// State in the car's own frame: the car stands at the origin; equations 8 and 9 give the errors there.
   [[nodiscard]] CubicProblem::State initial_state(const model::Measurement& now) const noexcept {
     return {0.0,
             0.0,
@@ -166,8 +167,8 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
     return result_;
   }
 
-  /// The answer in W. Inside the model an input acts one stage late: it stands beside the state that it
-  /// meets.
+  /// Writes the answer in W. With the latency inside the model an input acts one stage late, and is listed
+  /// with the state that it acts on.
   void write_plan() noexcept {
     Plan& plan = result_.plan;
     const int late = problem_.acts_late ? 1 : 0;
@@ -206,15 +207,15 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
 
   bool uses_polar_;
   int line_order_;
-  double steer_sign_;  ///< from the model's own steering sign to ours, and back
+  double steer_sign_;  ///< factor from the model's own steering sign to ours, and back
   int stages_;         ///< intervals: one less than states
   RollForward roll_forward_;
   CubicProblem problem_;
   Owned<CubicSolver> solver_;
-  Motion start_;              ///< of the horizon
+  Motion start_;              ///< start of the horizon
   double start_time_ = 0.0;   ///< [s]
-  CubicTrajectory answer_;    ///< of the last usable solve, in the frame of its start
-  double answer_time_ = 0.0;  ///< when it started [s]
+  CubicTrajectory answer_;    ///< last usable solve, in the frame of its start
+  double answer_time_ = 0.0;  ///< start of answer_ [s]
   bool has_answer_ = false;
   StepResult result_;
 };
@@ -222,7 +223,7 @@ class CubicMpc final : public CopyableController<CubicMpc>, public Tunable<Cubic
 using C = CubicMpcOptions;
 constexpr double kHighestWeight = 1e6;
 constexpr std::array<std::string_view, 5> kLatencyHandlings{
-    "none", "roll-forward", "measured", "position-only", "inside-model"};  // in the order of the enum
+    "none", "roll-forward", "measured", "position-only", "inside-model"};  // names in the order of the enum
 constexpr std::array kOptions{
     option<&C::horizon_steps>("horizon_steps", unit::kNone, 2, CubicProblem::kCapacity,
                               "N, the steps the plan looks ahead."),

@@ -13,9 +13,9 @@
 
 namespace chicane::controller {
 
-/// How the described controller treats the time between measurement and actuation.
+/// Treatment of the time between measurement and actuation.
 enum class LatencyHandling {
-  kNone,          ///< not at all
+  kNone,          ///< no compensation
   kRollForward,   ///< whole kinematic state rolled forward by `latency`
   kMeasured,      ///< the same by the measured loop time, averaged with the value before
   kPositionOnly,  ///< only x and y rolled forward by `latency`
@@ -36,7 +36,8 @@ struct CubicMpcOptions {
   /// The model takes telemetry's miles per hour for metres per second: it sees 2.24 times as far, and steers
   /// that much less. The delay is still rolled forward in m/s.
   bool speed_in_mph = false;
-  /// So does the roll-forward: the car is predicted 2.24 times as far along, as if the latency were longer.
+  /// Whether the roll-forward reads speeds in mph, too: it then predicts 2.24 times the distance, as with a
+  /// longer latency.
   bool roll_forward_in_mph = false;
   /// Write-up of `measured-latency`: equation 5 with cte = y − f(x) (docs/the_five_systems.md).
   bool lateral_error_to_left = false;
@@ -45,17 +46,17 @@ struct CubicMpcOptions {
   /// The same write-up: equation 5 as cte⁺ = cte + v sin eψ dt, the distance from the line's tangent at the
   /// beginning. Needs heading_error_integrated.
   bool lateral_error_integrated = false;
-  int line_order = 3;  ///< of the polynomial through the waypoints, 1 to 3
+  int line_order = 3;  ///< order of the polynomial through the waypoints, 1 to 3
   /// Equation 16 with its term a tan δ τ² / (2 L_f).
   bool latency_acceleration_term = true;
-  double weight_lateral = 200.0;        ///< on cte² [1/m²]
-  double weight_heading = 200.0;        ///< on eψ² [1/rad²]
-  double weight_speed = 0.1;            ///< on (v − v_ref)² [s²/m²]
-  double weight_steer = 1.0;            ///< on δ² [1/rad²]
-  double weight_throttle = 1.0;         ///< on a²
-  double weight_steer_change = 10.0;    ///< on (δ_{k+1} − δ_k)² [1/rad²]
-  double weight_throttle_change = 1.0;  ///< on (a_{k+1} − a_k)²
-  double weight_speed_steer = 0.0;      ///< on (v δ)² [s²/(m² rad²)]
+  double weight_lateral = 200.0;        ///< weight of cte² [1/m²]
+  double weight_heading = 200.0;        ///< weight of eψ² [1/rad²]
+  double weight_speed = 0.1;            ///< weight of (v − v_ref)² [s²/m²]
+  double weight_steer = 1.0;            ///< weight of δ² [1/rad²]
+  double weight_throttle = 1.0;         ///< weight of a²
+  double weight_steer_change = 10.0;    ///< weight of (δ_{k+1} − δ_k)² [1/rad²]
+  double weight_throttle_change = 1.0;  ///< weight of (a_{k+1} − a_k)²
+  double weight_speed_steer = 0.0;      ///< weight of (v δ)² [s²/(m² rad²)]
 };
 
 /// Builds it. Pre of use: waypoints in every measurement (it keeps no map). kInvalidArgument names an option

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The cubic controller's inputs: fit of the line ahead in the car's frame, and roll-forward over the latency.
 #include "chicane/controller/cubic_problem.hpp"
 
 #include <algorithm>
@@ -13,7 +14,7 @@ namespace {
 constexpr std::size_t kRows = model::Measurement::kMaxWaypoints;
 constexpr std::size_t kColumns = 4;
 
-/// A column that keeps less than this share of its length after the columns before it tells nothing new.
+/// Share of its length that a column must keep after the columns before it; below it adds no information.
 constexpr double kRankTolerance = 1e-9;
 
 template <class Convert>
@@ -127,7 +128,7 @@ bool fit_cubic(std::span<const Vec2> points, Cubic& fit, int order) noexcept {
   }
   if (!(high - low > 1e-3)) return false;
 
-  // Powers of t = x / scale in [-1, 1]: those of x itself differ by a factor of a million.
+  // Scale to powers of t = x / scale in [-1, 1]: powers of x itself differ by a factor of a million.
   const double scale = std::max(std::fabs(low), std::fabs(high));
   LeastSquares system{order};
   for (const Vec2& point : points) system.add(point.x() / scale, point.y());
@@ -144,7 +145,7 @@ namespace {
 
 /// No answer is half a second late: beyond it a measurement of the loop time says more about the clock than
 /// about the loop.
-constexpr double kMaxLatency = 0.5;
+constexpr double kMaxLatency = 0.5;  // [s]
 
 }  // namespace
 

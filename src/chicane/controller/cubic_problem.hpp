@@ -52,10 +52,10 @@ struct LocalPoints {
 /// rounding.
 [[nodiscard]] LocalPoints to_car_frame_polar(const model::Measurement& now, const model::Pose& car) noexcept;
 
-/// Least-squares polynomial of `order` (1 to 3) through points by Householder QR. Where the points cannot
-/// tell the higher powers (fewer than four different x), those coefficients are 0. False, and `fit`
-/// unchanged, for fewer than two points, or less than 1 mm of extent along x. Pre: finite points, at most
-/// LocalPoints' capacity.
+/// Least-squares polynomial of `order` (1 to 3) through points by Householder QR. Higher powers that the
+/// points do not determine (fewer than four different x) get coefficient 0. False, and `fit` unchanged, for
+/// fewer than two points, or less than 1 mm of extent along x. Pre: finite points, at most LocalPoints'
+/// capacity.
 [[nodiscard]] bool fit_cubic(std::span<const Vec2> points, Cubic& fit, int order = 3) noexcept;
 
 /// The model of the five write-ups (docs/the_five_systems.md, equations 1 to 6): a kinematic bicycle by
@@ -127,7 +127,7 @@ struct Motion {
 /// Chooses among them, and keeps the measured latency. Latency lies in [0, 0.5] s whatever is measured.
 class RollForward {
  public:
-  /// `speed_unit`: what is taken for 1 m/s on the way; `has_term`: equation 16 with its last term.
+  /// `speed_unit`: speed that the formula treats as 1 m/s; `has_term`: equation 16 includes its last term.
   RollForward(LatencyHandling handling, double latency, double kinematic_length, double speed_unit = 1.0,
               bool has_term = true) noexcept
       : handling_{handling},
@@ -140,7 +140,7 @@ class RollForward {
   /// The measured motion at the time the command acts, by the described means. Pre: finite pose, speed and
   /// commands.
   [[nodiscard]] Motion predict(const model::Measurement& now) noexcept;
-  /// What the last predict() compensated [s]; 0 when nothing is rolled forward.
+  /// Latency that the last predict() compensated [s]; 0 without roll-forward.
   [[nodiscard]] double compensated() const noexcept;
   void reset() noexcept { latency_ = first_latency_; }
   /// Other settings; a measured latency stays measured.
@@ -246,7 +246,7 @@ struct CubicProblem {
   double turn_per_metre;  ///< ±1 / L_f: + for steering positive left, − for the simulator's own sign [1/m]
   double steer_limit;     ///< [rad]
   double speed_unit;      ///< the model's v for 1 m/s
-  double speed_reference;        ///< as the model's v
+  double speed_reference;        ///< reference speed in the model's unit
   double error_sign;             ///< DescribedModel; −1 in the write-up of `measured-latency`
   double heading_reach;          ///< DescribedModel; 0 in the write-up of `measured-latency`
   bool is_lateral_recursive;     ///< the same write-up's cte⁺ = cte + v sin eψ dt; pre: heading_reach is 0
@@ -261,7 +261,7 @@ struct CubicProblem {
     first_lateral_error = line.at(0.0);
     if (!is_lateral_recursive) return;
     const double slope = line.slope(0.0);
-    const double cosine = 1.0 / hypot(1.0, slope);  // of eψ_0 = −arctan f′(0)
+    const double cosine = 1.0 / hypot(1.0, slope);  // cosine of eψ_0 = −arctan f′(0)
     lateral_by_x_ = -error_sign * slope * cosine;
     lateral_by_y_ = error_sign * cosine;
   }
@@ -277,7 +277,8 @@ struct CubicProblem {
             .lateral_by_x = lateral_by_x_,
             .lateral_by_y = lateral_by_y_};
   }
-  /// The input that drives a stage: its own, or inside the model that of the stage before (equation 13).
+  /// Input that drives a stage: its own, or with the latency inside the model the previous stage's (equation
+  /// 13).
   template <class Last, class Own>
   [[nodiscard]] auto acting(const Last& last, const Own& own) const noexcept {
     const double late = acts_late ? 1.0 : 0.0;
@@ -285,7 +286,7 @@ struct CubicProblem {
   }
   static double weight_root(double weight) noexcept { return sqrt(2.0 * weight); }
 
-  double lateral_by_x_ = 0.0, lateral_by_y_ = -1.0;  ///< of DescribedModel
+  double lateral_by_x_ = 0.0, lateral_by_y_ = -1.0;  ///< terms of DescribedModel
 };
 
 }  // namespace chicane::controller

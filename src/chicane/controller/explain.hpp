@@ -15,8 +15,8 @@
 #include "chicane/solver/problem.hpp"
 #include "chicane/tracking/tracking_problem.hpp"
 
-/// What an optimal control problem's answer says about itself: cost by term, active constraints. Evaluates
-/// the residuals once along the plan (about 40 ns a stage), after the solver is done; changes nothing.
+/// Explanation of an optimal control problem's answer: cost by term, active constraints. Evaluates the
+/// residuals once along the plan (about 40 ns a stage), after the solver is done; changes nothing.
 namespace chicane::controller {
 
 /// Groups of TrackingProblem's residuals, in the order of their names.
@@ -50,7 +50,7 @@ struct CubicTerms {
 [[nodiscard]] inline std::uint32_t bounds_met(const std::array<double, 2>& u,
                                               const std::array<double, 2>& low,
                                               const std::array<double, 2>& high) noexcept {
-  constexpr double kTouch = 1e-6;
+  constexpr double kTouch = 1e-6;  // tolerance at a bound, in the input's unit
   std::uint32_t bits = 0;
   if (u[0] <= low[0] + kTouch || u[0] >= high[0] - kTouch) bits |= bit(Constraint::kSteerLimit);
   if (u[1] >= high[1] - kTouch) bits |= bit(Constraint::kThrottleMax);
@@ -85,8 +85,8 @@ void explain(const Problem& problem, const Trajectory& answer, Explanation& expl
   pay(solver::to_array<double>(problem.terminal_residual(end)), Terms::kEnd);
 }
 
-/// What limits a car of `speed` [m/s] that may drive `limit` [m/s] where `by` says why. With the throttle at
-/// its bound and the limit not reached it is the drive.
+/// Limiter of a car at `speed` [m/s] whose limit is `limit` [m/s] for the reason `by`: the drive, if the
+/// throttle is at its bound and the limit is not reached.
 [[nodiscard]] inline SpeedLimiter limiter_of(double speed, double limit, SpeedLimiter by,
                                              std::uint32_t active_now) noexcept {
   constexpr double kReached = 0.5;  // [m/s]
@@ -96,14 +96,14 @@ void explain(const Problem& problem, const Trajectory& answer, Explanation& expl
   return !is_reached && by == SpeedLimiter::kAsked ? SpeedLimiter::kPartThrottle : by;
 }
 
-/// What keeps a car from driving a planned lap faster at a place of it: a constraint that is active in the
-/// first stage, else what the lap was planned against there.
+/// Limiter of a planned lap at a place: a constraint that is active in the first stage, else the limit that
+/// the lap was planned against there.
 [[nodiscard]] inline SpeedLimiter limiter_of_lap(const road::ReferenceLine::Demand& planned,
                                                  const model::VehicleParams& car,
                                                  std::uint32_t active_now) noexcept {
   constexpr double kSlowing = 0.5;  // planned deceleration beyond rolling [m/s²]
-  constexpr double kNearly = 0.9;   // of the grip and of the steering rate
-  constexpr double kNoMore = 0.3;   // of the drive's acceleration is left [m/s²]
+  constexpr double kNearly = 0.9;   // share of the grip and of the steering rate
+  constexpr double kNoMore = 0.3;   // acceleration that the drive still has [m/s²]
   const auto is_active = [&](auto... constraints) { return (active_now & (bit(constraints) | ...)) != 0U; };
   if (is_active(Constraint::kThrottleMax)) return SpeedLimiter::kPower;
   const double v = planned.speed;
@@ -124,7 +124,8 @@ void explain(const Problem& problem, const Trajectory& answer, Explanation& expl
   return SpeedLimiter::kPlan;
 }
 
-/// Speed and limiter of what is planned where the command acts; `raced`: the car that a lap was planned for.
+/// Reports planned speed and limiter at the place where the command acts; `raced`: the car that a lap was
+/// planned for.
 inline void explain_speed(const road::ReferenceLine::Demand& planned, double speed,
                           const model::VehicleParams* raced, Explanation& explanation) noexcept {
   explanation.speed_limit = planned.speed;

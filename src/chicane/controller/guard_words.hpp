@@ -23,7 +23,7 @@
   ROW(kStopOnRoad, "stop_on_road", kError, "the controller has no plan and stops the car along the road")        \
   ROW(kGuardStop, "guard_stop", kError, "the guard stops the car on the known road")
 
-/// kWarning: the controller goes on driving, with less throttle. kError: it does not.
+/// kWarning: the controller continues to drive, with less throttle. kError: it does not.
 #define CHICANE_GUARD_REASONS(ROW)                                                                               \
   ROW(kNone, "none", kOk, "the guard found nothing")                                                             \
   ROW(kNoAnswer, "no_answer", kError, "the controller has no answer")                                            \

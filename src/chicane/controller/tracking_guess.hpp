@@ -17,8 +17,8 @@
 #include "chicane/tracking/tracking_problem.hpp"
 #include "chicane/tracking/tracking_solver.hpp"
 
-/// What `tracking-mpc` needs around its solver: a first guess without a last answer, the last answer moved to
-/// another line, and what it learns for planned laps (grip of the car, reserve of slip).
+/// Helpers of `tracking-mpc` around its solver: a first guess without a last answer, the last answer moved to
+/// another line, and the terms it learns for planned laps (grip of the car, reserve of slip).
 
 namespace chicane::controller {
 
@@ -32,8 +32,8 @@ namespace chicane::controller {
   return {problem.model->vehicle().wheelbase() * curvature, problem.road.speed.at(k) - x[Problem::kVx]};
 }
 
-/// Limits a guess to 5 m and 0.6 rad from the line and to driving forwards: farther away a linearisation
-/// tells nothing.
+/// Limits a guess to 5 m and 0.6 rad from the line and to driving forwards: farther away a linearisation is
+/// useless.
 inline void clamp_to_road(tracking::TrackingProblem::State& x) noexcept {
   using Problem = tracking::TrackingProblem;
   x[Problem::kD] = std::clamp(x[Problem::kD], -5.0, 5.0);
@@ -165,10 +165,10 @@ class SlipReserve {
 
  private:
   static constexpr double kMemory = 10.0;      ///< cornering that the mean spans [s]
-  static constexpr double kLongestGap = 0.25;  ///< between cycles [s]
+  static constexpr double kLongestGap = 0.25;  ///< longest gap between cycles [s]
   double kept_ = 0.0;                          ///< share of the slip that is kept back, mean over kMemory
   double time_ = 0.0;                          ///< last cycle [s]
-  double seen_ = 0.0;                          ///< cornering so far, at most kMemory [s]
+  double seen_ = 0.0;                          ///< cornering time, at most kMemory [s]
 };
 
 /// Grip of a racing car, learned from what its tyres show: one value for the model, the estimate, and one for

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The controller `tracking-mpc`: the control step from measurement to command.
 #include "chicane/controller/tracking_mpc.hpp"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ constexpr double kFarFromLine = 15.0;       // [m] further away it returns to th
 constexpr double kLost = 100.0;             // [m] further away it does not return by itself
 constexpr double kSlow = 6.0;               // [m/s] below which it may turn round
 constexpr double kJoining = 0.2;            // [rad] to the road at which a car that returns has joined it
-constexpr double kSpeedAhead = 4.0;         // [m/s] wanted at most beyond what the last answer reaches
+constexpr double kSpeedAhead = 4.0;         // [m/s] largest speed demand above the last answer's reach
 constexpr double kSteadySpeed = 25.0;  // [m/s] from which on the weight on the steering rate grows as v²
 constexpr double kLongestHold = 0.3;   // [s] the first command is assumed to be held at most this long
 constexpr double kBlindAfter = 0.3;    // [s] without a measurement, or a waypoint: stop
@@ -196,7 +197,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     if (change == LearnedGrip::Change::kModel) grip_.begin(estimator_, model_);
   }
 
-  /// Room beside the line at s [m] ahead, where the line has moved sideways by `offset` [m].
+  /// Room at both sides of the line at s [m] ahead, where the line has moved sideways by `offset` [m].
   [[nodiscard]] road::Road::Room room_at(double s, double offset) const noexcept {
     if (!road_.is_raced()) return road_.seen().room(offset);
     const model::VehicleParams& car = model_.vehicle();
@@ -261,8 +262,8 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     return true;
   }
 
-  /// The problem of this step and its first guess: the last answer, moved on by the time that has passed, or
-  /// what a path-following law does where there is none.
+  /// Prepares the problem of this step and its first guess: the last answer, shifted by the elapsed time, or
+  /// without one the motion by a path-following law.
   void prepare(double act_time) noexcept {
     problem_.model = &model_;  // here, so that a copy asks its own
     const double elapsed = act_time - act_time_;
@@ -315,7 +316,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
       const double time = problem_.time(k) + elapsed;
       if (k > 0) {
         horizon_.x[i] = state_at(stage_at(time));
-        // Beyond the end of the old answer: on at its last speed.
+        // Beyond the end of the old answer, continue at its last speed.
         const double beyond = std::max(0.0, time - old_first_ - (last - 1.0) * old_step_);
         horizon_.x[i][Problem::kS] += beyond * horizon_.x[i][Problem::kVx] - begin;
       }
@@ -329,7 +330,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     }
   }
 
-  /// What a path-following law does, simulated.
+  /// Makes a guess by simulating a path-following law.
   void follow_line() noexcept {
     horizon_.horizon = options_.horizon_steps;
     horizon_.x[0] = x0_;
@@ -343,7 +344,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
     ask_road(horizon_.horizon, horizon_.x[static_cast<std::size_t>(horizon_.horizon)]);
   }
 
-  /// What the road asks at stage k where the car is about to be in state x.
+  /// Reads the road's demand at stage k for a car near state x.
   void ask_road(int k, const StageState& x) noexcept {
     const double s = x[Problem::kS];
     road::ReferenceLine::Demand demand = line().demand(s_ + s);
@@ -453,7 +454,7 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   }
 
   TrackingMpcOptions options_;
-  model::VehicleParams configured_;  ///< whose grip may differ from the model's
+  model::VehicleParams configured_;  ///< its grip may differ from the model's
   model::PredictionModel model_;
   SlipReserve reserve_;
   LearnedGrip grip_{model_};
@@ -470,17 +471,17 @@ class TrackingMpc final : public CopyableController<TrackingMpc>, public Tunable
   StepResult result_;
   double s_ = 0.0;  ///< arc length on the line where the command acts
   double act_time_ = 0.0;
-  double sent_time_ = 0.0;            ///< from which the last command acts [s]
+  double sent_time_ = 0.0;            ///< time from which the last command acts [s]
   double old_first_ = 0.0;            ///< length of the first stage of the last answer [s]
-  double old_step_ = 0.0;             ///< of its other stages [s]
-  int iterations_ = kMostIterations;  ///< of the solver in this step
+  double old_step_ = 0.0;             ///< step of its other stages [s]
+  int iterations_ = kMostIterations;  ///< iterations of the solver in this step
   unsigned revision_ = 0;
   bool has_place_ = false;
   bool has_horizon_ = false;
-  bool is_returning_ = false;      ///< to the road, and has not joined it yet
-  Absence blind_{kBlindAfter};     ///< of measurements that tell where the car is
-  Absence roadless_{kBlindAfter};  ///< of waypoints
-  Absence late_{kBlindAfter};      ///< of answers, for want of time
+  bool is_returning_ = false;      ///< on the way to the road, and has not joined it yet
+  Absence blind_{kBlindAfter};     ///< no measurements that locate the car
+  Absence roadless_{kBlindAfter};  ///< no waypoints
+  Absence late_{kBlindAfter};      ///< no answers, for want of time
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Table of options of the controller `tracking-mpc`.
 #include <array>
 
 #include "chicane/controller/tracking_mpc.hpp"

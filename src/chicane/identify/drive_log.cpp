@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Logs of driving: recordings, bags and CSV files become samples and commands; units and signs are checked
+// against the path.
 #include "chicane/identify/drive_log.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +25,7 @@
 namespace chicane::identify {
 namespace {
 
-/// What a column holds.
+/// Quantity of a column.
 enum Quantity { kTime, kX, kY, kPsi, kSpeed, kYawRate, kSteer, kThrottle, kQuantities };
 
 struct Meaning {
@@ -211,9 +213,9 @@ std::vector<DriveLog> parts_of(LogRows rows, const std::string& file) {
 /// place, which lengthens a path from sample to sample.
 struct Agreement {
   double path = 0.0, speed_path = 0.0;  ///< driven by place, and by speed [m]
-  double along = 0.0;                   ///< of the path in the direction of yaw [m]
+  double along = 0.0;                   ///< path in the direction of yaw [m]
   double turned_right = 0.0,
-         turned_left = 0.0;  ///< of the path's own turning, against yaw's and with it [rad]
+         turned_left = 0.0;                      ///< turning of the path, against yaw's and with it [rad]
   double steer_with = 0.0, steer_against = 0.0;  ///< steering with the turning, and against it [rad s]
   double most_steer = 0.0;                       ///< [rad]
 
@@ -291,7 +293,7 @@ Result<LogRows> read_rows(const std::string& file, const LogOptions& options) {
   return text ? read_csv_rows(*text, file, options) : fail(text.error());
 }
 
-/// The file, or those of a bag, which is a folder for rosbag2.
+/// The file, or all files of a bag, which is a folder in rosbag2.
 Result<std::vector<std::string>> files_of(const std::string& path) {
   std::error_code trouble;
   if (!std::filesystem::is_directory(path, trouble)) return std::vector<std::string>{path};

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Identification: rows of estimated numbers, windows of the logs, the rounds of fitting, and prediction
+// errors.
 #include "chicane/identify/identification.hpp"
 
 #include <fmt/format.h>
@@ -22,17 +24,17 @@
 namespace chicane::identify {
 namespace {
 
-constexpr double kWindow = 5.0;      ///< of a car in full size [s]
-constexpr double kSeen = 0.5;        ///< samples from which a prediction starts [s]
-constexpr double kLeastSpeed = 3.0;  ///< of a car in full size: below it tyres creep, and brakes hold [m/s]
-constexpr std::size_t kMostWindows = 400;
-constexpr int kRoughSteps = 12;
+constexpr double kWindow = 5.0;            ///< length of a window for a car in full size [s]
+constexpr double kSeen = 0.5;              ///< samples from which a prediction starts [s]
+constexpr double kLeastSpeed = 3.0;        ///< in full size: below it tyres creep and brakes hold [m/s]
+constexpr std::size_t kMostWindows = 400;  ///< limit of windows in the fit
+constexpr int kRoughSteps = 12;            ///< steps of the rough round
 constexpr double kRoughAccuracy = 3e-2,
-                 kAccuracy = 1e-3;  ///< of the prior's deviation: an interval is a tenth of it
-constexpr std::string_view kRotating = "rotating";  ///< estimated with the others, and not of use to anybody
-constexpr std::size_t kFewWindows = 12;             ///< for a rough look
+                 kAccuracy = 1e-3;  ///< in deviations of the prior: an interval is a tenth of one
+constexpr std::string_view kRotating = "rotating";  ///< estimated with the others, but not reported
+constexpr std::size_t kFewWindows = 12;             ///< windows of the first, rough round
 
-/// A number that is estimated: where it is in a car in full size, and what is expected of it.
+/// Estimated number: where it is stored in a car in full size, and its prior.
 struct Row {
   std::string key;
   Unit unit;
@@ -40,13 +42,13 @@ struct Row {
   double mean;                            ///< [SI]
   double deviation;                       ///< [SI], or of the logarithm
   std::function<void(Car&, double)> put;  ///< a value in SI
-  double per_full_size = 1.0;             ///< of the car as it is [SI], over that of the car in full size
-  /// Root mean square of what the fit is off by from perfect logs, where the model lacks what the shipped
-  /// cars' plants have (studies/tables/identification.py --noise 0) [as deviation]: samples do not reduce it.
+  double per_full_size = 1.0;             ///< value for the actual car [SI] over the value in full size
+  /// Root mean square error of the fit with perfect logs, where the model lacks effects of the shipped cars'
+  /// plants (studies/tables/identification.py --noise 0) [as deviation]: samples do not reduce it.
   double model_error = 0.0;
 };
 
-/// What numbers with this unit are in the car as it is, over those in full size (model/vehicle.hpp).
+/// Scale of numbers with this unit: actual car over full size (model/vehicle.hpp).
 double per_full_size(std::string_view unit, const model::Similarity& to) {
   const double length = to.length(), time = to.time();
   if (unit == "ms") return 1.0 / time;
@@ -58,7 +60,7 @@ double per_full_size(std::string_view unit, const model::Similarity& to) {
   return 1.0;  // ratios, angles, accelerations
 }
 
-/// The log of the same motion in full size.
+/// Log of the same motion in full size.
 DriveLog full_size(DriveLog log, const model::Similarity& to) {
   for (Sample& sample : log.samples) {
     sample.time *= to.time();
@@ -83,7 +85,7 @@ void put(Car& car, double value) {
   (car.*....*Members) = value;
 }
 
-/// Those that the car has, in the order of its report. `start`: in full size.
+/// Rows of the numbers that the car has, in the order of its report. `start`: in full size.
 std::vector<Row> rows_for(const model::VehicleParams& start, const Wheels& wheels, bool has_pedal,
                           bool is_centre_of_mass) {
   std::vector<Row> rows{{"latency_ms", unit::kMillisecond, false, 0.1, 0.1, put<&Car::delay>}};
@@ -139,7 +141,7 @@ Prior prior_of(const std::vector<Row>& rows, const model::VehicleParams& start, 
   return prior;
 }
 
-/// Stretches of `length` [s] without standing; the start is what the samples say.
+/// Adds stretches of `length` [s] without standing; the start is taken from the samples.
 void add_windows(const std::vector<DriveLog>& logs, std::size_t log, double from, double to, double length,
                  double least_speed, std::vector<Window>& windows) {
   const std::vector<Sample>& samples = logs[log].samples;
@@ -161,12 +163,12 @@ void add_windows(const std::vector<DriveLog>& logs, std::size_t log, double from
   }
 }
 
-/// Measured, and as the model has it.
+/// Measurement and prediction side by side.
 Compared compared(const Sample& seen, const Expected& e) {
   return {seen.time, seen.x, seen.y, seen.psi, seen.speed, e[0], e[1], e[2], e[3]};
 }
 
-/// The windows as the found car drives them: what is left of the samples, and how far the tyres were used.
+/// Evaluates the windows with the estimated car: residuals of the samples, and used share of the tyres.
 void look_back(const std::vector<DriveLog>& logs, const std::vector<Window>& windows, const Car& car,
                Identification& found) {
   const model::PredictionModel model(car.vehicle);
@@ -216,7 +218,7 @@ std::vector<PredictedStretch> predict(const std::vector<DriveLog>& logs, std::ve
   return stretches;
 }
 
-/// Where a car would be that keeps the speed and the mean yaw rate of the samples that are known.
+/// Pose of a car that keeps the speed and mean yaw rate of the known samples.
 Compared kept_motion(const PredictedStretch& stretch, const Compared& at) {
   const Compared& first = stretch.samples.front();
   const Compared* last = &first;
@@ -233,7 +235,7 @@ Compared kept_motion(const PredictedStretch& stretch, const Compared& at) {
           .model_psi = last->psi + rate * ahead};
 }
 
-/// One, two and three seconds ahead.
+/// Errors of predictions one, two and three seconds ahead.
 std::vector<PredictionError> prediction_errors(const std::vector<PredictedStretch>& stretches) {
   std::vector<PredictionError> found;
   for (const double ahead : {1.0, 2.0, 3.0}) {
@@ -260,7 +262,7 @@ std::vector<PredictionError> prediction_errors(const std::vector<PredictedStretc
   return found;
 }
 
-/// From full size to the car's own.
+/// Scales a comparison from full size to the actual car.
 Compared own_size(Compared each, const model::Similarity& from) {
   each.time /= from.time();
   for (double* length : {&each.x, &each.y, &each.model_x, &each.model_y}) *length /= from.length();
@@ -268,7 +270,7 @@ Compared own_size(Compared each, const model::Similarity& from) {
   return each;
 }
 
-/// Every other one, until there are few enough.
+/// Keeps every other window until there are few enough.
 void thin(std::vector<Window>& windows, std::size_t most) {
   while (windows.size() > most) {
     std::size_t number = 0;
@@ -276,7 +278,7 @@ void thin(std::vector<Window>& windows, std::size_t most) {
   }
 }
 
-/// `logs` are in full size; `configured` is the car in its own size.
+/// Identifies a car in full size; `logs` are in full size, `configured` is the car in its own size.
 Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
                                           const model::VehicleParams& configured,
                                           const IdentifyOptions& options) {
@@ -329,13 +331,13 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
                         goes_on = options.progress((round + std::min(1.0, 0.07 * step)) / rounds);
                         return goes_on && (step++ < kRoughSteps || !options.is_rough);
                       });
-    // Both directions of the place are alike.
+    // Use one deviation for both directions of the place.
     fit.residual[0] = fit.residual[1] = std::max(fit.residual[0], fit.residual[1]);
     for (std::size_t kind = 0; kind < noise.size(); ++kind)
       noise[kind] = std::max(fit.residual[kind], least[kind]);
   }
   for (std::size_t i = 0; i < rows.size() && round < 2 && !goes_on; ++i) {
-    if (first.deviation[i] == prior.deviation[i]) continue;  // else held by the first round, not found
+    if (first.deviation[i] == prior.deviation[i]) continue;  // fixed in the first round: not estimated
     fit.theta[i] = prior.mean[i];
     fit.deviation[i] = prior.deviation[i];
   }
@@ -365,7 +367,7 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
   for (Estimate& each : found.estimates) {
     if (each.key == "latency_ms")
       for (double* number : {&each.value, &each.low, &each.high}) *number = std::max(0.0, *number);
-    // The curve's beginning says little of its peak.
+    // The beginning of the curve says little about its peak.
     if (each.key == "friction" && !found.knows_tires()) each.is_excited = false;
   }
   found.correlations = std::move(fit.correlations);
@@ -391,7 +393,7 @@ double turning_wheelbase(const std::vector<DriveLog>& logs) {
   constexpr double kLate = 0.15;        // [s] a usual delay and lag
   constexpr double kSpan = 0.2;         // [s] over which the yaw rate is taken
   constexpr double kLeastSteer = 0.03;  // [rad]
-  constexpr std::size_t kFewest = 20;
+  constexpr std::size_t kFewest = 20;   // samples in bends needed for a wheelbase
   // Least squares of steer = wheelbase · curvature + understeer · sideways acceleration.
   double cc = 0.0, ca = 0.0, aa = 0.0, cs = 0.0, as = 0.0;
   std::size_t count = 0;
@@ -448,7 +450,7 @@ double Identification::shown_friction() const noexcept {
 
 Result<Identification> identify(const std::vector<DriveLog>& logs, const model::VehicleParams& start,
                                 const IdentifyOptions& options) {
-  // A model car is fitted in full size, as controllers see it: the model's floors are those of such a car.
+  // A model car is fitted in full size, as controllers see it: the model's lower bounds are for such a car.
   const model::Similarity similarity(start);
   if (similarity.is_identity()) return identify_full_size(logs, start, options);
   std::vector<DriveLog> scaled;

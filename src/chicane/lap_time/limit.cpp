@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Limit of a plant on a track: the search for the optimum, then plans with more and more reserve until one
+// can be driven as a witness.
 #include "chicane/lap_time/limit.hpp"
 
 #include <algorithm>

@@ -22,42 +22,42 @@ namespace chicane::lap_time {
 struct LapTimes {
   double lap = 0.0;
   std::array<double, 3> sectors{};
-  std::vector<double> corners{};  ///< corners of the track, each with half of the straights beside it
+  std::vector<double> corners{};  ///< times of corners, each with half of the straights beside it
 };
 
-/// Best lap of a run that was driven again without one thing that costs time (run/laps_without.hpp).
+/// Best lap of a run that was repeated without one cause of lost time (run/laps_without.hpp).
 struct LapWithout {
-  std::string cause;  ///< name of the thing that was taken away: "latency"
+  std::string cause;                                           ///< name of the cause: "latency"
   double lap_time = std::numeric_limits<double>::quiet_NaN();  ///< [s]; not-a-number: no lap was completed
   std::vector<double> corners{};  ///< times as LapTimes::corners; empty without a lap
   int off_track_events = 0;       ///< count in the whole run
 };
 
-/// How much longer `time` is than the limit's, relative: 0.05 is five per cent slower. Not-a-number for one
-/// that was not measured. Pre: limit > 0.
+/// Excess of `time` over the limit, relative: 0.05 is five per cent slower. Not-a-number for a time that was
+/// not measured. Pre: limit > 0.
 [[nodiscard]] constexpr double gap(double time, double limit) noexcept { return time / limit - 1.0; }
 
-/// How far a search for a lap has come. Work is counted, not measured: the same search takes the same work on
-/// every machine, so that a budget ends it at the same place.
+/// Progress of a search for a lap. Work is counted, not measured: the same search takes the same work on
+/// every machine, so that a budget ends it at the same iterate.
 struct PlanProgress {
   double work = 0.0;      ///< done, in seconds of a core that iterates over kNodesPerSecond nodes a second
-  double expected = 0.0;  ///< of a search that goes well [s]; it may take more, up to its budget
-  double lap_time = 0.0;  ///< of the iterate [s]
+  double expected = 0.0;  ///< work of a search without retries [s]; limited by the budget
+  double lap_time = 0.0;  ///< lap time of the iterate [s]
 
   static constexpr double kNodesPerSecond = 12000.0;
 };
 
-/// Laps that were really driven in the plant: with its whole state, without latency, what a plan asks for
-/// plus feedback towards it.
+/// Laps driven in the plant, with its whole state and without latency: the plan's commands plus feedback
+/// towards the plan.
 struct Witness {
-  double lap_time = 0.0;    ///< the best of them [s]
-  double worst = 0.0;       ///< and the slowest [s]
-  int laps = 0;             ///< in succession, without a boundary event since the start
-  double least_edge = 0.0;  ///< of a contact patch to the edge of the drivable surface [m]
-  road::RacingLine line;    ///< that was driven after; its margin is what it planned to keep
+  double lap_time = 0.0;    ///< fastest lap [s]
+  double worst = 0.0;       ///< slowest lap [s]
+  int laps = 0;             ///< laps in succession, without a boundary event
+  double least_edge = 0.0;  ///< gap from a contact patch to the edge of the drivable surface [m]
+  road::RacingLine line;    ///< line that was driven; its margin is the planned gap
 };
 
-/// What a search took; work as PlanProgress counts it.
+/// Effort of a search; work as in PlanProgress.
 struct SearchEffort {
   int iterations = 0;
   double work = 0.0;  ///< [s]
@@ -66,35 +66,36 @@ struct SearchEffort {
 /// The fastest lap of a simulated car on a closed road (docs/limit.md): the optimum of the plant's own
 /// equations, which no controller should beat, and the best lap that was driven. The truth lies between.
 struct PlantLimit {
-  LapTimes bound;         ///< of the optimum [s]
-  road::RacingLine line;  ///< of the optimum, without any reserve; no bound where it is_best_so_far
+  LapTimes bound;         ///< times of the optimum [s]
+  road::RacingLine line;  ///< line of the optimum, without reserve; no bound if is_best_so_far
   std::optional<Witness>
       witness{};              ///< none: no plan could be driven without an event, or none was asked for
   bool is_cut_short = false;  ///< the budget ended the search for the witness
-  int nodes = 0;              ///< of the optimum
-  SearchEffort effort{};      ///< of all searches
-  SearchEffort of_optimum{};  ///< of the one without reserve alone
-  double stationarity = 0.0;  ///< of the optimum: largest slope of the Lagrangian, scaled
+  int nodes = 0;              ///< nodes of the optimum
+  SearchEffort effort{};      ///< effort of all searches
+  SearchEffort of_optimum{};  ///< effort of the search without reserve
+  double stationarity = 0.0;  ///< at the optimum: largest slope of the Lagrangian, scaled
   double violation = 0.0;     ///< largest violated equation or inequality, scaled
 
-  /// No budget ended a search: the same answer as without one.
+  /// Whether no budget ended a search: the answer is the same without one.
   [[nodiscard]] bool is_whole() const noexcept { return !line.is_best_so_far && !is_cut_short; }
-  /// How much slower the witness is than the bound, relative; not-a-number without one.
+  /// Excess of the witness over the bound, relative; not-a-number without a bound.
   [[nodiscard]] double bracket() const noexcept;
 };
 
 struct PlantLimitOptions {
-  double time_step = 0.08;  ///< between nodes, about [s]; [0.01, 0.2]
+  double time_step = 0.08;  ///< time between nodes, about [s]; [0.01, 0.2]
   bool wants_witness = true;
-  int laps = 4;  ///< of the witness, after a flying start
-  /// Work after which the best lap so far is the answer (PlanProgress) [s], > 0.
+  int laps = 4;  ///< laps of the witness, after a flying start
+  /// Limit of the work [s], > 0 (PlanProgress). The best lap so far is the answer then.
   double budget = std::numeric_limits<double>::infinity();
   /// Called with the progress, and the lap time, after each iteration; false ends the search. May be empty.
   std::function<bool(std::string_view stage, int iteration, double lap_time)> go_on{};
-  std::function<void(const PlanProgress&)> on_progress{};  ///< of the optimum; may be empty
+  std::function<void(const PlanProgress&)> on_progress{};  ///< progress towards the optimum; may be empty
 };
 
-/// Finds it. Takes 1 to 60 s and some 10 MB. Deterministic. Keeps nothing between calls.
+/// Finds the limit of a plant on a track. Takes 1 to 60 s and some 10 MB. Deterministic. Keeps nothing
+/// between calls.
 ///
 /// `params`: of the plant `double-track`. kNotFound for a plant that has no model here; kInvalidArgument for
 /// an open road, a road too narrow for the car or with a bend too tight for its full lock (names the place
@@ -104,26 +105,26 @@ struct PlantLimitOptions {
                                                   const PlantLimitOptions& options = {},
                                                   const sim::DoubleTrackParams& params = {});
 
-/// The bound of a plant as driven laps are compared with it (PlantLimit).
+/// Bound of a plant (PlantLimit), as driven laps are compared with it.
 struct Limit {
   LapTimes times;
-  std::vector<road::LinePoint> line;  ///< by rising time, from the start line; the last repeats the first
+  std::vector<road::LinePoint> line;  ///< by rising time from the start line; the last repeats the first
 };
 
-/// Times [s] that a closed lap of `track` takes for each of road::corners_of(), with half of the straights
-/// beside it: road::corner_sectors(). Between the line's points the time is linear: within 1 ms. Empty for an
-/// empty line. Allocates.
+/// Times [s] of a closed lap of `track` for each of road::corners_of(), with half of the straights beside it:
+/// road::corner_sectors(). Between the line's points the time is linear: within 1 ms. Empty for an empty
+/// line. Allocates.
 [[nodiscard]] std::vector<double> corner_times(const road::Track& track, const road::RacingLine& line);
 
-/// Times and line of the bound, from the start line of `track` on; times of its corners, too.
+/// Times and line of the bound, from the start line of `track` on, with the times of its corners.
 [[nodiscard]] Limit bound_from_start(const road::Track& track, const PlantLimit& limit);
 
-/// The limit of a run, or in one sentence why there is none (yet).
+/// Limit of a run, or one sentence on why there is none (yet).
 struct LimitAnswer {
   std::shared_ptr<const Limit> found{};  ///< null: not known
-  std::string why_not{};                 ///< empty when it is, or when no reason is known
-  int first_lap = 1;  ///< it holds for laps from this one on; before, the car had other grip or mass
-  std::vector<LapWithout> without{};  ///< laps that explain the gap to it; empty where they were not driven
+  std::string why_not{};                 ///< empty if it is known, or without a reason
+  int first_lap = 1;                     ///< first lap that it holds for; grip or mass differed before
+  std::vector<LapWithout> without{};     ///< laps that explain the gap to it; empty: not driven
 };
 
 }  // namespace chicane::lap_time

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The lap that a controller races by: its own model of the car for PlanSearch, and the search with other
-// nodes where it fails.
+// Lap that a controller races by: PlanSearch with the controller's own model of the car, repeated with other
+// nodes if it fails.
 #include "chicane/lap_time/racing_plan.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kQuickSteering =
     1.2;                             // [rad/s] steering as quick needs no bound on braking that turns the car
-constexpr double kTolerance = 1e-4;  // of the optimum: about a millisecond of a lap
+constexpr double kTolerance = 1e-4;  // tolerance of the optimum: about 1 ms of a lap
 constexpr int kSteerRate = kPedal + 1, kPedalRate = kPedal + 2;  // inputs follow the states of CommonState
 
 [[nodiscard]] bool are_in_range(const RacingPlanOptions& options) {
@@ -123,7 +123,8 @@ Result<road::RacingLine> plan_racing_line(const road::Track& track, const model:
                      .grip_share = options.grip_share,
                      .slip_share = options.slip_share,
                      .brake_share = options.brake_share});
-  // Where tyres saturate the search may not converge on some nodes: 0.85 and 1.2 times the step give others.
+  // Other nodes: where tyres saturate the search may fail on some, and 0.85 or 1.2 times the step gives
+  // others.
   Result<NodePlan> plan = fail(ErrorCode::kInvalidArgument, "");
   double work = 0.0;
   for (const double step : {1.0, 0.85, 1.2}) {

@@ -13,21 +13,22 @@
 
 namespace chicane::lap_time {
 
-/// What a plan to race by leaves unused.
+/// Reserves of a plan to race by.
 struct RacingPlanOptions {
   double margin = 0.0;       ///< distance of each contact patch to its edge, kerb included [m], >= 0
-  double grip_share = 1.0;   ///< of the friction, (0, 1]
-  double slip_share = 1.0;   ///< most slip of an axle over that of its peak force, (0, 2]
-  double brake_share = 1.0;  ///< of the largest useful deceleration, (0, 1]
+  double grip_share = 1.0;   ///< share of the friction, (0, 1]
+  double slip_share = 1.0;   ///< largest axle slip over the slip of peak force, (0, 2]
+  double brake_share = 1.0;  ///< share of the largest useful deceleration, (0, 1]
   bool slides = false;       ///< the rear tyres beyond their peak where model::SlidingBound permits it ...
   double delay = model::SlidingBound::kAssumedDelay;  ///< ... with this delay of the controller [s], > 0
   double speed_limit = 100.0;                         ///< [m/s], > 3
-  double time_step = 0.08;                            ///< between nodes, about [s]; [0.01, 0.2]
-  /// Work after which the best plan so far is the answer (PlanProgress) [s], > 0. The same on every machine.
+  double time_step = 0.08;                            ///< time between nodes, about [s]; [0.01, 0.2]
+  /// Limit of the work [s], > 0 (PlanProgress). The best plan so far is the answer then, the same on every
+  /// machine.
   double budget = std::numeric_limits<double>::infinity();
   /// Called with the progress, and the lap time, after each iteration; false ends the search. May be empty.
   std::function<bool(int iteration, double lap_time)> go_on{};
-  std::function<void(const PlanProgress&)> on_progress{};  ///< after each iteration; may be empty
+  std::function<void(const PlanProgress&)> on_progress{};  ///< called after each iteration; may be empty
 };
 
 /// The fastest lap of a car as a controller models it (model::PredictionModel), with its yaw motion,

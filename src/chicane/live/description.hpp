@@ -21,7 +21,7 @@ void describe(const scenario::Scenario& scenario, protocol::Run& run);
 [[nodiscard]] protocol::Run description(const run::ClosedLoop& loop);
 
 /// The files of the dashboard, gzip-compressed inside the program (target chicane_web_assets,
-/// cmake/EmbedWeb.cmake). A program built without Node holds one plain page that says so.
+/// cmake/EmbedWeb.cmake). A program built without Node holds one plain page with that message.
 [[nodiscard]] std::vector<net::Asset> embedded_assets();
 
 /// The page that draws reports of recordings (recording/html_report.hpp) and documents

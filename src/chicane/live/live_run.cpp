@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Loop of a live run: paces the control cycles, takes over runs that were built, and ends recorder and
+// viewers in order.
 #include "chicane/live/live_run.hpp"
 
 #include <utility>
@@ -20,7 +22,7 @@ wire::ViewerServices services(run::RunControls& controls, WhatIf& what_if, Rival
   return services;
 }
 
-/// What viewers get of a run that begins now.
+/// Description of a run for viewers, at its start.
 protocol::Run live_description(const run::ClosedLoop& loop) {
   protocol::Run run = description(loop);
   run.limit = RunLimit::first_answer(loop.track());
@@ -67,7 +69,7 @@ Result<std::unique_ptr<LiveRun>> LiveRun::create(const LiveRunOptions& options,
 }
 
 Result<void> LiveRun::open() {
-  // What the command line says beside the scenario goes the way that viewers' changes go.
+  // Send the command line's settings the way that viewers' changes take.
   if (options_.pace) {
     if (Result<void> set = settings_.set({"run.pace", *options_.pace}); !set) return set;
   }
@@ -133,7 +135,7 @@ telemetry::RunSummary LiveRun::drive() {
   }
 }
 
-/// Goes on with the run that the next change begins. False when there is none.
+/// Takes over the run that the next change begins. False if there is none.
 bool LiveRun::take_over() {
   const run::Setting* next = controls_.settings.front();
   if (next == nullptr || !next->change.starts_anew || controls_.wants_stop) return false;
@@ -144,7 +146,7 @@ bool LiveRun::take_over() {
     built_.pop_front();
   }
   loop_ = std::move(run->loop);
-  limit_.end();  // or its news could come after the description of another road
+  limit_.end();  // end it here: its news must not follow the description of another road
   viewer_.set_run(std::move(run->description));
   log_.begin(run->recorded->scenario);
   if (recorder_ != nullptr) recorder_->record(std::move(run->recorded));
@@ -154,7 +156,7 @@ bool LiveRun::take_over() {
   return true;
 }
 
-/// The network thread: a run that was built is the loop's to take.
+/// Hands a built run to the loop. Network thread.
 std::optional<Result<void>> LiveRun::built() {
   auto result = builder_.take();
   if (!result) return std::nullopt;

@@ -27,7 +27,7 @@
 namespace chicane::live {
 
 struct LiveRunOptions {
-  net::ServerOptions server{};  ///< of the dashboard and other viewers
+  net::ServerOptions server{};  ///< server of the dashboard and other viewers
   std::vector<net::Asset>
       assets{};  ///< files of the dashboard: embedded_assets() in the program; none: no page
   std::optional<double>
@@ -37,19 +37,19 @@ struct LiveRunOptions {
   bool is_manual = false;        ///< a person drives from the beginning
 };
 
-/// A run with our simulator, paced by the clock, which people watch and change while it goes on: the loop,
-/// its viewers, recording, limit and settings, and what each thread hands to which.
+/// A run with our simulator, paced by the clock, which people watch and change meanwhile: the loop, its
+/// viewers, recording, limit and settings, and the data that threads exchange.
 ///
 /// Threads, and what each owns: the thread of run() the loop, the recorder's input and RunPublisher; the
 /// network thread LiveSettings, the viewers and the runs that were built; a builder, a searcher of the limit
 /// and the recorder's writer have one each, and so do RunLog, WhatIf and Rival. The network thread hands
 /// changes to the loop through RunControls::settings and built runs through a queue under the one mutex here,
-/// which is held for a pointer's move. A setting that cannot change while a run goes on starts another one:
-/// built beside it, taken over between two cycles.
+/// which is held for a pointer's move. A setting that cannot change during a run starts another one: built in
+/// parallel, taken over between two cycles.
 class LiveRun {
  public:
-  /// Opens the port. `controls` belongs to whoever may stop the run, and outlives this. kIo with the sentence
-  /// that helps when the port is taken; kInvalidArgument for a pace out of range.
+  /// Opens the port. `controls` belongs to the caller, who may stop the run, and outlives this. kIo if the
+  /// port is taken, with the remedy; kInvalidArgument for a pace out of range.
   [[nodiscard]] static Result<std::unique_ptr<LiveRun>> create(const LiveRunOptions& options,
                                                                std::unique_ptr<run::ClosedLoop> loop,
                                                                run::RunControls& controls);
@@ -84,13 +84,13 @@ class LiveRun {
   std::optional<RunPublisher> publisher_;  ///< while run() drives
   recording::Recorder* recorder_ = nullptr;
   std::mutex mutex_;
-  std::deque<std::unique_ptr<BuiltRun>> built_;  ///< one for each change that starts anew
+  std::deque<std::unique_ptr<BuiltRun>> built_;  ///< one for each change that starts a new run
   NewestTask<ChosenRun, Result<std::unique_ptr<BuiltRun>>> builder_;  ///< the network thread's
   LiveHooks hooks_;
   RunLog log_{true};
   WhatIf what_if_;
   Rival rival_;
-  RunLimit limit_;                       ///< ends before everything it tells
+  RunLimit limit_;                       ///< destroyed before everything that it calls
   std::unique_ptr<net::Server> server_;  ///< ends first: it calls all of the above
 };
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Settings of a live run: checks viewers' values, queues them for the control thread, and builds another run
+// for those that cannot change while one goes on.
 #include "chicane/live/live_settings.hpp"
 
 #include <fmt/format.h>
@@ -35,7 +37,7 @@ using protocol::Control;
 using protocol::Kind;
 using protocol::Value;
 
-/// Settings of a preset say nothing of the world: those of the run that goes on stay.
+/// Settings of the world, which a preset leaves as they are in the current run.
 constexpr std::array<std::string_view, 7> kOfTheWorld{
     "laps", "seed", "latency_ms", "latency_jitter_ms", "time_limit_s", "turn_around_ms", "waypoints_sent"};
 
@@ -44,7 +46,7 @@ bool is_of_the_world(const protocol::Parameter& row) {
          std::find(kOfTheWorld.begin(), kOfTheWorld.end(), row.key) != kOfTheWorld.end();
 }
 
-/// The car of another scenario: the model of it, and what is simulated.
+/// Copies the car of another scenario: its model and its plant.
 void take_car(scenario::Scenario& scenario, const scenario::Scenario& from) {
   scenario.vehicle = from.vehicle;
   scenario.friction_low = from.friction_low;
@@ -52,7 +54,7 @@ void take_car(scenario::Scenario& scenario, const scenario::Scenario& from) {
   scenario.plant_params = from.plant_params;
 }
 
-/// What a preset gives with a car, on the track that is driven.
+/// Scenario of a preset with a car, on the current track.
 Result<scenario::Scenario> composed(const scenario::Scenario& of) {
   return protocol::compose(
       {.scenario_file = {}, .settings = {{"preset", of.preset}, {"car", of.car}, {"track", of.track}}});
@@ -74,7 +76,7 @@ std::vector<Control> run_controls(bool has_world, const std::vector<Control>& fa
   return controls;
 }
 
-/// JSON has no infinity: its name stands for it.
+/// JSON has no infinity: send its name.
 foxglove::ParameterValue outside(const Value& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return *flag;
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
@@ -83,7 +85,7 @@ foxglove::ParameterValue outside(const Value& value) {
   return std::string("inf");
 }
 
-/// What a viewer sent, as a setting has it.
+/// Value of a setting in inner units, from a viewer's message.
 Result<Value> inside(std::string_view key, const Option& option, const foxglove::ParameterValue& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return Value(*flag);
   if (const auto* number = std::get_if<double>(&value)) return Value(*number);
@@ -99,7 +101,7 @@ Result<void> validated(const scenario::Scenario& scenario) {
   return {};
 }
 
-/// "track = oval, car = road-car"
+/// Choices in words: "track = oval, car = road-car".
 std::string words(const std::vector<telemetry::Change>& choices) {
   std::string text;
   for (const telemetry::Change& choice : choices)
@@ -203,8 +205,8 @@ Result<void> LiveSettings::set_row(const protocol::Parameter& row, const Value& 
   return change_live(*setting, std::move(changed));
 }
 
-/// Changes the current run, and the one that is being built to `changed`. A change that is valid only in
-/// the latter waits for it.
+/// Changes the current run, and the one in construction to `changed`. A change that is valid only in the
+/// latter waits for it.
 Result<void> LiveSettings::change_live(const run::Setting& setting, scenario::Scenario changed) {
   const auto& field = std::get<run::FieldValue>(setting.action);
   scenario::Scenario now = scenario_;
@@ -243,7 +245,7 @@ Result<void> LiveSettings::start_anew(telemetry::Change choice, scenario::Scenar
     changed = std::move(fresh);
   } else if (key == "car") {
     take_car(changed, value == options_.scenario.car ? options_.scenario : *base);
-    // Delay and sampling are the car's where its file, or that of the car before, states them.
+    // Delay and sampling belong to the car if its file, or the previous car's, states them.
     scenario::Scenario before = changed;
     before.car = shown_scenario().car;
     if (const Result<scenario::Scenario> of = composed(before)) {
@@ -264,14 +266,14 @@ Result<void> LiveSettings::start_anew(telemetry::Change choice, scenario::Scenar
   return {};
 }
 
-/// A name of the library, or what the run was started with, which may be a file.
+/// Accepts a name of the library, or the value at the run's start, which may be a file.
 Result<void> LiveSettings::check_choice(std::string_view key, const std::string& value) const {
   const std::optional<protocol::Shelf> shelf = protocol::shelf_of(key);
   if (!shelf || value == protocol::get_text(options_.scenario, *protocol::find(key))) return {};
   return protocol::check_name(*shelf, value);
 }
 
-/// What a file holds is for whoever started the program.
+/// Viewer's version of an error: contents of files are for the operator only.
 tl::unexpected<Error> LiveSettings::hide(std::string_view what, const Error& error) const {
   if (options_.say) options_.say(fmt::format("{}: {}", what, error.message));
   return fail(error.code, fmt::format("{}; the program's own output says why", what));
@@ -279,7 +281,7 @@ tl::unexpected<Error> LiveSettings::hide(std::string_view what, const Error& err
 
 void LiveSettings::update() {
   const bool has_room =
-      building_ && requests_.room() >= 1 + building_->later.size() + controls_.size();  // else the next time
+      building_ && requests_.room() >= 1 + building_->later.size() + controls_.size();  // queue has room
   const auto built = has_room ? options_.built() : std::nullopt;
   if (!built) return;
   Building building = std::move(*building_);
@@ -295,7 +297,7 @@ void LiveSettings::update() {
 
 std::vector<std::string> LiveSettings::complaints() { return std::exchange(complaints_, {}); }
 
-/// The run that was built is the next one; what was changed meanwhile follows it.
+/// Hands over a built run as the next one; later changes follow it.
 void LiveSettings::hand_over(Building building) {
   ++runs_;
   static_cast<void>(send({.change = building.run.choices.back(), .action = {}}));
@@ -306,8 +308,8 @@ void LiveSettings::hand_over(Building building) {
   hand_over_controls();
 }
 
-/// What the choice of another run brings along is how it started; what was changed before it, and while it
-/// was built, stays a change. A preset leaves nothing of before.
+/// Settings that come with the choice of another run are part of its start; settings changed before, or while
+/// it was built, remain changes. With another preset all settings are part of the start.
 void LiveSettings::begin_with(const Building& building) {
   const scenario::Scenario& next = building.run.scenario;
   const bool is_other_preset = next.preset != scenario_.preset;
@@ -318,7 +320,7 @@ void LiveSettings::begin_with(const Building& building) {
   }
 }
 
-/// The run that starts anew knows neither its pace nor manual driving; faults end with the old one.
+/// Sends pace and manual driving again: a new run knows neither. Faults end with the old run.
 void LiveSettings::hand_over_controls() {
   for (const Control& control : controls_) {
     Value& value = control_values_.find(control.key)->second;
@@ -344,7 +346,7 @@ std::vector<telemetry::Change> LiveSettings::applied() {
       value->second = change->value.view() != "false";
       has_news_ = true;
     }
-    // Its description is from when it was built.
+    // The description is as old as the build: report the scenario again.
     if (change->starts_anew && options_.on_accepted) options_.on_accepted(scenario_);
     changes.push_back(*change);
     announced_.pop();

@@ -23,17 +23,17 @@
 
 namespace chicane::live {
 
-/// A run that was chosen while another one goes on.
+/// A run that was chosen during another one.
 struct ChosenRun {
   scenario::Scenario scenario;
-  std::vector<telemetry::Change> choices{};  ///< what was chosen, each key once, in order
+  std::vector<telemetry::Change> choices{};  ///< choices of viewers, each key once, in order
 };
 
 /// A run that may begin, with all that takes time to make.
 struct BuiltRun {
   std::unique_ptr<run::ClosedLoop> loop;
-  protocol::Run description;                               ///< for viewers
-  std::unique_ptr<const recording::RecordedRun> recorded;  ///< for the recording
+  protocol::Run description;                               ///< description for viewers
+  std::unique_ptr<const recording::RecordedRun> recorded;  ///< description for the recording
   std::vector<telemetry::Change> choices{};
 };
 
@@ -44,35 +44,34 @@ using Describe = std::function<protocol::Run(const run::ClosedLoop&)>;
 [[nodiscard]] Result<std::unique_ptr<BuiltRun>> build_run(ChosenRun run, const Describe& describe);
 
 struct LiveSettingsOptions {
-  scenario::Scenario scenario;  ///< what runs
+  scenario::Scenario scenario;  ///< scenario of the current run
   /// Whether we simulate: offers what concerns the world, its pace and manual driving, too. Otherwise only
   /// the controller.
   bool has_world = true;
-  /// Faults to switch, beside the rest: "fault.…".
+  /// Faults to switch, in addition to the rest: "fault.…".
   std::vector<protocol::Control> faults{};
-  /// Begins to build another run beside the one that goes on, in place of one that is being built. Does not
-  /// wait. Null: what cannot change while the run goes on is not offered.
+  /// Begins to build another run in parallel, replacing one in construction. Does not wait. Null: settings
+  /// that need another run are not offered.
   std::function<void(ChosenRun)> build{};
-  /// What became of the newest build; none while it goes on. A run that was built is handed over to the
-  /// control thread before this returns: it takes it when it meets the change that `starts_anew`.
+  /// Result of the newest build; none during a build. A built run is handed over to the control thread before
+  /// this returns; the thread takes it at the change that `starts_anew`.
   std::function<std::optional<Result<void>>()> built{};
-  /// What is being built, in words: "track = oval"; empty: nothing any more.
+  /// Description of the current build: "track = oval"; empty: none.
   std::function<void(const std::string&)> on_building{};
-  /// For whoever started the program, and not for viewers: why a choice of theirs failed, where that tells of
-  /// files.
+  /// Notice for the operator, not for viewers: why a viewer's choice failed, if the reason names files.
   std::function<void(std::string_view)> say{};
-  /// After each accepted change of the scenario that runs, and when another one has begun.
+  /// Called after each accepted change of the current scenario, and when another run has begun.
   std::function<void(const scenario::Scenario&)> on_accepted{};
 };
 
-/// The settings of a run that goes on, for viewers to read and set: every tunable of the schema under its own
-/// key, "run.pace", "manual.is_on", "manual.steer", "manual.throttle" and the faults (docs/viewer.md).
+/// Settings of a running run, for viewers to read and set: every setting of the schema under its own key,
+/// "run.pace", "manual.is_on", "manual.steer", "manual.throttle" and the faults (docs/viewer.md).
 ///
 /// A value is read and checked here, on the network thread, and then waits as data in a queue until the
-/// control thread applies it between two cycles. get() and list() show what was accepted last: what holds
-/// from the next control step on, or, for what starts the run anew, when the other run has been built. Until
-/// then the old one goes on, changes count for both, and another choice takes the place of the one before.
-/// All member functions but tell() are the network thread's.
+/// control thread applies it between two cycles. get() and list() show the last accepted value: it holds from
+/// the next control step on, or, if it restarts the run, once the other run has been built. Until then the
+/// old run continues, changes count for both, and another choice replaces the one before. All member
+/// functions but tell() are the network thread's.
 ///
 /// Viewers are strangers. They choose presets, cars and tracks of the library by name, and no file but those
 /// the run was started with; no sentence for them quotes a file. Settings of the guard and of the
@@ -90,8 +89,8 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   /// other, and when too many changes wait.
   [[nodiscard]] Result<void> set(const protocol::foxglove::Parameter& parameter) override;
 
-  /// The control thread: a change was applied, or happened by itself. Never waits; when update() has not been
-  /// called for long, viewers do not hear of it.
+  /// Reports from the control thread that a change was applied, or happened by itself. Never waits; viewers
+  /// miss it if update() has not been called for long.
   void tell(const telemetry::Change& change) noexcept { static_cast<void>(announced_.push(change)); }
   [[nodiscard]] std::vector<telemetry::Change> applied() override;
   [[nodiscard]] std::vector<protocol::foxglove::Parameter> news() override;
@@ -99,21 +98,21 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   void update() override;
   [[nodiscard]] std::vector<std::string> complaints() override;
 
-  /// GET /schema.json; "default" is what the chosen preset gives with the chosen car, "start" what the run
-  /// started with.
+  /// Text for GET /schema.json; "default" is the chosen preset's value with the chosen car, "start" the value
+  /// at the run's start.
   [[nodiscard]] std::string schema_json() const;
-  /// Another number when schema_json() may be another.
+  /// Number that changes when schema_json() may have changed.
   [[nodiscard]] std::uint64_t schema_version() const { return runs_; }
   /// GET /preset.yaml: what runs, as a preset.
   [[nodiscard]] std::string preset_yaml() const;
-  /// What runs, or has been handed over to run.
+  /// Scenario that runs, or has been handed over to run.
   [[nodiscard]] const scenario::Scenario& scenario() const { return scenario_; }
 
  private:
-  /// Another run that is on its way.
+  /// Another run in construction.
   struct Building {
     ChosenRun run;                                           ///< changes since it was begun included
-    scenario::Scenario base{};                               ///< what its preset gives with its car
+    scenario::Scenario base{};                               ///< scenario of its preset with its car
     std::map<std::string, run::Setting, std::less<>> later;  ///< live changes since then, by key
   };
 
@@ -136,14 +135,14 @@ class LiveSettings final : public protocol::foxglove::ParameterStore {
   run::SettingQueue& requests_;
   run::ChangeQueue announced_;
   scenario::Scenario scenario_;
-  scenario::Scenario base_;   ///< what its preset gives with its car
-  scenario::Scenario start_;  ///< what the run started with
+  scenario::Scenario base_;   ///< scenario of its preset with its car
+  scenario::Scenario start_;  ///< scenario at the start of the run
   std::optional<Building> building_;
   std::vector<protocol::Control> controls_;
   std::map<std::string, protocol::Value, std::less<>> control_values_;
-  std::vector<protocol::foxglove::Parameter> shown_;  ///< as news() reported last
+  std::vector<protocol::foxglove::Parameter> shown_;  ///< parameters that news() reported last
   bool has_news_ = false;
-  std::uint64_t runs_ = 0;  ///< that have been handed over
+  std::uint64_t runs_ = 0;  ///< count of runs handed over
   std::vector<std::string> complaints_;
 };
 

@@ -12,9 +12,9 @@ namespace chicane::live {
 
 /// A recording for the dashboard to open.
 struct ServedLog {
-  std::string name;  ///< for people: "run.mcap", "branch at 12.0 s"
+  std::string name;  ///< name for people: "run.mcap", "branch at 12.0 s"
   std::string file;
-  std::string settings{};  ///< /schema.json of what can be changed in another future of it; empty: none
+  std::string settings{};  ///< /schema.json of the settings for other futures; empty: none
 };
 
 /// GET /mode.json of a run that is going on: {"mode":"live"}.

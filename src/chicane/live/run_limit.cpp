@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Limit of the current run: searched during the run, again after a change of grip or mass.
 #include "chicane/live/run_limit.hpp"
 
 #include <chrono>
@@ -11,8 +12,8 @@
 namespace chicane::live {
 namespace {
 
-constexpr auto kNap = std::chrono::milliseconds(10);
-constexpr auto kSettle = std::chrono::milliseconds(300);
+constexpr auto kNap = std::chrono::milliseconds(10);      // period of asking for the answer
+constexpr auto kSettle = std::chrono::milliseconds(300);  // time without changes before a new search
 constexpr const char* kChanged = "the car's grip or mass has changed: it is being computed anew";
 constexpr const char* kOpenRoad = "the road is open: it has no laps";
 
@@ -41,7 +42,7 @@ void RunLimit::begin() {
   search_.begin({.track = *track_, .scenario = scenario_, .first_lap = first_lap_});
 }
 
-/// From the cache where it is known (run/plan_cache.hpp).
+/// Answer from the cache, if it is known (run/plan_cache.hpp); else from a search.
 lap_time::LimitAnswer RunLimit::found(const Request& request, const std::function<bool()>& is_wanted) {
   const auto bound = [&]() -> Result<lap_time::PlantLimit> {
     if (auto known = run::known_limit(request.scenario, request.track)) return std::move(*known);
@@ -75,7 +76,7 @@ void RunLimit::follow(const scenario::Scenario& now, const telemetry::Frame& fra
       searched.friction_scale != asked.friction_scale || searched.mass_scale != asked.mass_scale;
   const bool counts_anew = frame.begins && first_lap_ > 1;
   if (is_other || counts_anew) {
-    constexpr int kNext = 2;  // laps count from 1, and the one that goes on has begun with the car of before
+    constexpr int kNext = 2;  // laps count from 1, and the running one began with the earlier car
     searched.friction_scale = asked.friction_scale;
     searched.mass_scale = asked.mass_scale;
     first_lap_ = frame.begins ? 1 : frame.lap + kNext;
@@ -94,7 +95,7 @@ void RunLimit::give_up(std::string why) {
   answer_ = std::make_shared<const lap_time::LimitAnswer>(lap_time::LimitAnswer{.why_not = std::move(why)});
 }
 
-/// The search before tells nothing any more.
+/// Drops the previous search.
 void RunLimit::retire() {
   search_.cancel();
   has_news_ = false;
@@ -121,7 +122,7 @@ void RunLimit::compare(telemetry::RunSummary& run, const std::atomic<bool>& want
   const Clock::time_point end_of_patience = Clock::now() + patience;
   while (is_awaited(run) && !wants_stop && Clock::now() < end_of_patience) std::this_thread::sleep_for(kNap);
   const bool is_cut_short = is_searching();
-  end();  // from here on no thread writes the answer
+  end();  // no thread writes the answer after this
   if (is_cut_short || answer_ == nullptr) {
     run.why_no_limit = "the run ended before it was computed";
   } else if (answer_->found == nullptr) {

@@ -19,9 +19,9 @@
 
 namespace chicane::live {
 
-/// The limit of the current run, whoever drives and whoever simulates: searched in parallel, sent to
-/// viewers and recordings when it is known, and set beside the laps at the end. One thread, the control
-/// thread, but for `on_news`.
+/// The limit of the current run, for any controller and simulator: searched in parallel, sent to viewers and
+/// recordings when it is known, and compared with the laps at the end. One thread, the control thread, but
+/// for `on_news`.
 class RunLimit {
  public:
   /// Longest wait for a limit behind the end of a run.
@@ -30,33 +30,34 @@ class RunLimit {
   /// a track that ships.
   static constexpr double kBudget = 60.0;
 
-  /// `on_news` hears, mostly on another thread, what a search has found and what no longer holds; may be
+  /// `on_news` gets the result of a search, or the news that it is void, mostly on another thread; may be
   /// empty. It must stay callable as long as this lives.
   explicit RunLimit(std::function<void(const lap_time::LimitAnswer&)> on_news = {});
 
-  /// What viewers get of a run on this road until there are news. An open road has no laps, nor a limit.
+  /// First answer for viewers of a run on this road. An open road has no laps and no limit.
   [[nodiscard]] static lap_time::LimitAnswer first_answer(const road::Track& track);
-  /// Another run: gives up the one before, and begins to search where the road is closed. Does not wait.
+  /// Starts another run: gives up the earlier search, and begins a new one if the road is closed. Does not
+  /// wait.
   void search(const road::Track& track, const scenario::Scenario& scenario);
-  /// After each control cycle of a run whose settings change while it goes on: with another grip or mass of
-  /// the car, what was found no longer holds. Says so, and searches again for the laps that begin from then
-  /// on, once they have stood still for a moment. Does not wait.
+  /// Follows settings that change during a run; call it after each control cycle. With another grip or mass
+  /// the limit is void: reports that, and searches again for the laps from then on, once both have not
+  /// changed for a moment. Does not wait.
   void follow(const scenario::Scenario& now, const telemetry::Frame& frame);
   /// A run whose limit cannot be known, because `why`.
   void give_up(std::string why);
 
-  /// What is known now, once; null when there is nothing new. Neither waits nor allocates.
+  /// Newest answer, once; null if nothing is new. Neither waits nor allocates.
   [[nodiscard]] std::shared_ptr<const lap_time::LimitAnswer> news() noexcept;
-  /// A search goes on.
+  /// Whether a search is running.
   [[nodiscard]] bool is_searching() const noexcept { return begins_at_ || search_.is_computing(); }
 
-  /// A search goes on, and there are laps to set beside what it will find.
+  /// Whether a search is running, and there are laps to compare with its result.
   [[nodiscard]] bool is_awaited(const telemetry::RunSummary& run) const noexcept;
 
-  /// No more news: ends a search that goes on. Does not wait.
+  /// Ends a running search and all news. Does not wait.
   void end();
-  /// The run has ended: sets its laps beside the limit, or says why not. Waits while is_awaited(), until
-  /// `wants_stop`, and for no longer than `patience`.
+  /// Ends the run: compares its laps with the limit, or gives the reason against it. Waits while
+  /// is_awaited(), until `wants_stop`, and for no longer than `patience`.
   void compare(telemetry::RunSummary& run, const std::atomic<bool>& wants_stop,
                std::chrono::milliseconds patience = kPatience);
 
@@ -74,13 +75,13 @@ class RunLimit {
   void tell(lap_time::LimitAnswer answer);
 
   std::function<void(const lap_time::LimitAnswer&)> on_news_;
-  std::shared_ptr<const lap_time::LimitAnswer> answer_;  ///< while a search goes on: written by it
-  std::atomic<bool> has_news_{false};                    ///< it may be read
-  std::optional<road::Track> track_;            ///< of the run; none where there is nothing to search
-  scenario::Scenario scenario_;                 ///< its car, with the grip and mass of the newest search
+  std::shared_ptr<const lap_time::LimitAnswer> answer_;  ///< written by the search while it runs
+  std::atomic<bool> has_news_{false};                    ///< an answer waits to be read
+  std::optional<road::Track> track_;            ///< track of the run; none if nothing is to be searched
+  scenario::Scenario scenario_;                 ///< scenario with the grip and mass of the newest search
   int first_lap_ = 1;                           ///< LimitAnswer::first_lap
   std::optional<Clock::time_point> begins_at_;  ///< the next search, when nothing changes until then
-  NewestTask<Request, lap_time::LimitAnswer> search_;  // last: tells on its thread
+  NewestTask<Request, lap_time::LimitAnswer> search_;  // last: calls back on its thread
 };
 
 }  // namespace chicane::live

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Events of the current run in memory, with checkpoints to branch from, thinned as the run grows longer.
 #include "chicane/live/run_log.hpp"
 
 #include <fmt/format.h>
@@ -58,7 +59,7 @@ void RunLog::note(const telemetry::Frame& frame) noexcept {
            .sent = {sent.steer, sent.throttle}});
 }
 
-/// With the mutex held, as all up to last().
+/// Moves new events into the log. Here and up to last(): with the mutex held.
 void RunLog::collect() {
   while (Entry* entry = ring_.front()) {
     std::visit([this](auto& note) { take(note); }, *entry);
@@ -93,7 +94,7 @@ void RunLog::add(Event event) {
   ++first_.event;
 }
 
-/// The car stands at the start again: settings stay, faults and what was driven do not.
+/// Restarts the log: the car is at the start again; settings stay, faults and driven steps do not.
 void RunLog::start_anew(const Step& first) {
   std::deque<Event> kept;
   for (Event& event : events_) {
@@ -154,7 +155,7 @@ RunLog::Place RunLog::end() {
   return last();
 }
 
-/// The worker: the events since the last time, and the shadow run behind them.
+/// Takes the events since the last call, on the worker, and drives the shadow run behind them.
 void RunLog::follow() {
   if (!has_checkpoints_) return static_cast<void>(end());
   const Result<Excerpt> news = since(followed_);
@@ -173,7 +174,7 @@ void RunLog::follow() {
     if (step == nullptr) continue;
     static_cast<void>(shadow_->follow(recorded_of(*step)));
     keep(place);
-    static_cast<void>(end());  // however far behind it is, the ring is emptied
+    static_cast<void>(end());  // empties the ring, however late it is
   }
 }
 

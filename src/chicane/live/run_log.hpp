@@ -27,18 +27,18 @@ namespace chicane::live {
 /// step all that a bit-identical computation needs. Readers are other futures (what_if.hpp,
 /// served_run.hpp) and the second car (what_if.hpp).
 ///
-/// The control thread notes through one ring; it neither waits nor allocates, but in begin(). A thread of low
+/// The control thread writes to one ring; it neither waits nor allocates, except in begin(). A thread of low
 /// priority collects. The log keeps the newest `most_events` events. After an overflow of the ring the run is
-/// unknown until its next start: since() says so.
+/// unknown until its next start: since() fails.
 ///
 /// With checkpoints the same thread computes the run a second time, at the cost of the run's own control
-/// steps, and keeps copies: kSpacing apart for the last moments, farther apart the longer ago. The distance
-/// from a moment back to a checkpoint is at most its age. A run of T seconds needs some 2 log2(T / kSpacing)
-/// copies of 8 MB.
+/// steps, and keeps copies, kSpacing apart for the last moments and farther apart for earlier ones. The
+/// distance from a moment back to a checkpoint is at most its age. A run of T seconds needs some 2 log2(T /
+/// kSpacing) copies of 8 MB.
 class RunLog {
  public:
   static constexpr std::size_t kMostEvents = 200'000;  ///< two hours with 25 steps a second
-  static constexpr double kSpacing = 10.0;             ///< of the newest checkpoints [s]
+  static constexpr double kSpacing = 10.0;             ///< spacing of the newest checkpoints [s]
 
   explicit RunLog(bool has_checkpoints, std::size_t most_events = kMostEvents);
 
@@ -53,7 +53,7 @@ class RunLog {
   struct Place {
     std::uint64_t scenario = 0;  ///< number of begin(), from 1; 0: before any run
     std::uint64_t start = 0;     ///< number of the start from the line, rising over all runs
-    std::uint64_t event = 0;     ///< since that start
+    std::uint64_t event = 0;     ///< index of the event since that start
     friend bool operator==(const Place&, const Place&) = default;
     [[nodiscard]] bool is_in_start_of(const Place& other) const {
       return scenario == other.scenario && start == other.start;
@@ -79,18 +79,18 @@ class RunLog {
     Place begin, end;  ///< `begin.event` 0: the whole run since its start
     std::shared_ptr<const scenario::Scenario> scenario;
     std::shared_ptr<const std::vector<Event>> events;
-    /// For recording::branch_run(): of the whole run its scenario first.
+    /// Events for recording::branch_run(), beginning with the run's scenario.
     [[nodiscard]] recording::RunEvents recorded() const;
   };
-  /// Any thread: the events from `from` on; the whole run where `from` is no place in the current one. After
-  /// a restart the run is known from its start line, with its settings. kInvalidArgument with the reason
-  /// when the run is not known.
+  /// Events from `from` on; of the whole run if `from` is no place in the current one. After a restart the
+  /// run is known from its start line, with its settings. kInvalidArgument with the reason if the run is not
+  /// known. Any thread.
   [[nodiscard]] Result<Excerpt> since(Place from);
-  /// Any thread: behind the newest event.
+  /// Place after the newest event. Any thread.
   [[nodiscard]] Place end();
 
-  /// Any thread: branches the run, from a checkpoint where there is one before `options.at`. Fails as
-  /// recording::branch_run() and since() do, and for a moment that is not known any more.
+  /// Branches the run, from a checkpoint if there is one before `options.at`. Fails as
+  /// recording::branch_run() and since() do, and for a moment that the log has dropped. Any thread.
   [[nodiscard]] Result<recording::BranchReport> branch(const recording::BranchOptions& options,
                                                        const recording::BranchHooks& hooks);
 
@@ -127,11 +127,11 @@ class RunLog {
   std::optional<recording::ShadowRun> shadow_;  ///< none: a run that cannot be followed
   Place followed_;
 
-  std::mutex mutex_;  ///< of all below
+  std::mutex mutex_;  ///< guards all below
   Begin scenario_;
   const char* why_unknown_ = nullptr;
   std::deque<Event> events_;
-  Place first_;                          ///< before the first of events_
+  Place first_;                          ///< place before the first of events_
   std::vector<Checkpoint> checkpoints_;  ///< by rising time; written by the worker
   Worker worker_;                        // last
 };

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Sends each cycle's frame to viewers, recorder and log, and reports laps and the end of a run.
 #include "chicane/live/run_publisher.hpp"
 
 #include <string>

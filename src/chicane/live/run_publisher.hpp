@@ -19,7 +19,7 @@
 
 namespace chicane::live {
 
-/// What the program hears of a live run. Empty functions are not called. All but `say` on the thread that
+/// Callbacks of a live run; empty functions are not called. All but `say` are called on the thread that
 /// drives.
 struct LiveHooks {
   std::function<void(const telemetry::Frame&)> on_frame{};
@@ -31,7 +31,7 @@ struct LiveHooks {
 /// Listeners of a live run that are no viewers; null: none. All outlive the publisher.
 struct RunListeners {
   recording::Recorder* recorder = nullptr;
-  RunLimit* limit = nullptr;  ///< whose news are recorded
+  RunLimit* limit = nullptr;  ///< limit whose news are recorded
   RunLog* log = nullptr;
   LiveHooks hooks{};
 };
@@ -43,20 +43,21 @@ struct RunListeners {
 /// `viewer` outlives the settings.
 [[nodiscard]] LiveSettingsOptions with_viewer(wire::ViewerEndpoint& viewer, LiveSettingsOptions options);
 
-/// Hands what happens in a live run to viewers, to the settings that they see, and to its listeners. Adds
-/// what nobody asked for: that a fault began or ended by itself, and, once for each run, that it is over. One
+/// Hands the events of a live run to viewers, to the settings that they see, and to its listeners. Adds
+/// events without a request: a fault began or ended by itself, and, once for each run, the run is over. One
 /// thread, the one that drives.
 class RunPublisher {
  public:
   /// `viewer` and `settings` outlive this.
   RunPublisher(wire::ViewerEndpoint& viewer, LiveSettings& settings, RunListeners listeners = {});
 
-  /// After each control cycle.
+  /// Publishes a frame; call it after each control cycle.
   void frame(const telemetry::Frame& frame);
   void lap(const telemetry::CompletedLap& lap);
   /// A change was applied.
   void change(const telemetry::Change& change);
-  /// The run is over: tells viewers why, and gives true, the first time. A run that is driven on stays over.
+  /// Ends the run: sends viewers the reason, and returns true, the first time. A run that is driven on stays
+  /// over.
   bool end(const telemetry::RunSummary& summary);
   [[nodiscard]] bool has_reported_end() const { return has_reported_end_; }
   /// Compares the laps of a run that has ended with its limit, and records the limit. Waits for it as
@@ -64,7 +65,7 @@ class RunPublisher {
   void compare(telemetry::RunSummary& summary, const std::atomic<bool>& wants_stop);
   void say(std::string_view line) const;
 
-  /// Of the last frame [s].
+  /// Time of the last frame [s].
   [[nodiscard]] double time() const { return time_; }
 
  private:

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A served run as viewers see it, with futures that are driven by a plant in place of the external car.
 #include "chicane/live/served_run.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +28,7 @@ constexpr double kMostDelay = 0.5;                              // [s]
 
 /// The middle one of the times between the newest measurements.
 double usual_period(const std::vector<Seen>& seen, std::size_t to, double otherwise) {
-  constexpr std::size_t kLooked = 100;
+  constexpr std::size_t kLooked = 100;  // limit of sightings that give the usual period
   std::vector<double> periods;
   for (std::size_t i = to; i > 0 && periods.size() < kLooked; --i)
     periods.push_back(seen[i].time - seen[i - 1].time);
@@ -37,7 +38,7 @@ double usual_period(const std::vector<Seen>& seen, std::size_t to, double otherw
   return std::clamp(*middle, kShortestPeriod, kLongestPeriod);
 }
 
-/// Where the car was at `time` [s], which the run has come to.
+/// Position of the car at `time` [s], which lies within the run.
 Vec2 place_at(const std::vector<Seen>& seen, double time) {
   const auto after =
       std::find_if(seen.begin() + 1, seen.end() - 1, [&](const Seen& each) { return each.time >= time; });
@@ -88,7 +89,7 @@ Result<ServedFutures::Known> ServedFutures::known_at(double time) {
     const auto& [x, y, psi, speed, steer, throttle] = step->seen;
     if (!std::isfinite(x + y + psi + speed)) continue;
     if (!seen.empty() && step->time <= seen.back().time) continue;
-    // Another car, or one that was put elsewhere.
+    // A long gap: another car, or the same one in another place.
     if (!seen.empty() && step->time - seen.back().time > kLongestGap) seen.clear();
     seen.push_back({.time = step->time,
                     .delay = std::clamp(step->delay, 0.0, kMostDelay),
@@ -108,7 +109,7 @@ Result<ServedFutures::Known> ServedFutures::known_at(double time) {
   return known;
 }
 
-/// Begins `car` as a run of ours that has seen what this one saw up to `to`, and goes on from there.
+/// Begins `car` as a run of ours with this run's sightings up to `to`, and continues from there.
 Result<void> ServedFutures::follow(recording::ShadowRun& car, scenario::Scenario scenario,
                                    const std::vector<Seen>& seen, std::size_t to) {
   scenario = run::endless(std::move(scenario));
@@ -157,7 +158,7 @@ Result<recording::BranchReport> ServedFutures::branch(const recording::BranchOpt
   const auto from = std::make_shared<recording::ShadowRun>();
   if (Result<void> begun = follow(*from, scenario, seen, known->at); !begun) return fail(begun.error());
   recording::BranchOptions from_there = options;
-  from_there.at = seen[known->at].time + 1.0;  // behind all that is recorded: the futures begin where it ends
+  from_there.at = seen[known->at].time + 1.0;  // after the record: the futures begin where it ends
   from_there.drives_both = true;
   from_there.from = from;
   const recording::RunEvents nothing = [](const auto&) { return Result<void>{}; };
@@ -261,7 +262,7 @@ Result<wire::ServeSummary> ServedRun::run(recording::Recorder* recorder, const L
   };
   serving.pages = live_pages(settings);
   add_what_if(serving.pages, what_if);
-  if (track_) limit.search(*track_, scenario_);  // before there is a control thread, to which it belongs then
+  if (track_) limit.search(*track_, scenario_);  // the control thread owns it once it starts
   auto summary =
       serve(options_, std::move(controller_), std::move(serving), &viewer, std::move(assets_), stop);
   if (!summary) return summary;

@@ -33,25 +33,25 @@ using ServeFunction = std::function<Result<wire::ServeSummary>(
     std::vector<net::Asset>, const std::atomic<bool>&)>;
 
 /// A run in which the car is simulated by another program and the controller is ours: the endpoint for the
-/// simulator, viewers, recording, limit and settings, and what each thread hands to which, as LiveRun does
-/// for a run with our simulator.
+/// simulator, viewers, recording, limit and settings, and the data that threads exchange, as in LiveRun for
+/// our simulator.
 class ServedRun {
  public:
-  /// `track`: the road that the simulator drives on, where it is known: laps are timed, and there is a limit.
-  /// `assets`: files of the dashboard. `lap`: planned, of a controller that races (run/racing.hpp).
+  /// `track`: the simulator's road, if it is known: laps are timed, and there is a limit. `assets`: files of
+  /// the dashboard. `lap`: planned, of a controller that races (run/racing.hpp).
   ServedRun(const net::ServerOptions& server, const scenario::Scenario& scenario,
             std::unique_ptr<controller::Controller> controller, std::optional<road::Track> track,
             std::vector<net::Asset> assets = {}, std::shared_ptr<const road::RacingRoad> lap = nullptr);
   ServedRun(const ServedRun&) = delete;
   ServedRun& operator=(const ServedRun&) = delete;
 
-  /// The run, for a recording.
+  /// Description of the run, for a recording.
   [[nodiscard]] const protocol::Run& description() const { return description_; }
   /// Deadline of each control step [s]; 0: none.
   [[nodiscard]] double step_budget() const;
 
-  /// Answers simulators until `stop`. `recorder` may be null; `on_listening` hears the port once, on this
-  /// thread. Once per object. kIo with the sentence that helps when the port is taken.
+  /// Answers simulators until `stop`. `recorder` may be null; `on_listening` gets the port once, on this
+  /// thread. Once per object. kIo if the port is taken, with the remedy.
   [[nodiscard]] Result<wire::ServeSummary> run(recording::Recorder* recorder, const LiveHooks& hooks,
                                                const std::function<void(std::uint16_t)>& on_listening,
                                                const std::atomic<bool>& stop,
@@ -66,44 +66,42 @@ class ServedRun {
   std::vector<net::Asset> assets_;
 };
 
-/// A moment of a car that others simulate, as it was measured.
+/// Measured moment of a car that another program simulates.
 struct Seen {
   double time = 0.0;   ///< [s]
-  double delay = 0.0;  ///< from the measurement to the actuators [s]
+  double delay = 0.0;  ///< delay from the measurement to the actuators [s]
   double x = 0.0, y = 0.0, psi = 0.0, speed = 0.0;
   model::Command sent;
 };
-/// How it moved at `seen[i]`, with what is not measured, sideslip and yaw rate, from where it was before.
-/// Pre: i > 0.
+/// Motion of the car at `seen[i]`; sideslip and yaw rate are computed from the sighting before. Pre: i > 0.
 [[nodiscard]] model::State moving(const std::vector<Seen>& seen, std::size_t i);
 
-/// Futures of a run whose car others simulate: both are driven by the simulator that we have of that car, on
-/// the road that is known, from where the car was. Our controller sees the minutes before once more, so that
-/// it knows what it knew: the road that it learned, and the commands on their way. How far our car is to be
-/// trusted is measured: over the ten seconds before the moment it is driven, too, and compared with the one
-/// that was driven.
+/// Futures of a run whose car another program simulates: both are driven by our own simulator of that car, on
+/// the known road, from the car's place. Our controller sees the minutes before again, to restore its state:
+/// the learned road, and the commands in flight. The accuracy of our simulator is measured: it drives the ten
+/// seconds before the moment, too, and is compared with the external car.
 class ServedFutures {
  public:
-  static constexpr double kFollowed = 150.0;  ///< of the run before the moment [s]
+  static constexpr double kFollowed = 150.0;  ///< length of the run before the moment [s]
   static constexpr double kCompared = 10.0;   ///< [s]
 
   /// `log` must outlive it.
   explicit ServedFutures(RunLog& log) : log_{log} {}
 
-  /// Any thread: the settings that hold from now on; the scenario's track is the simulator's road.
+  /// Sets the settings that hold from now on; the scenario's track is the simulator's road. Any thread.
   void assume(const scenario::Scenario& scenario);
-  /// Any thread: the road is not the simulator's; branch() says why from now on.
+  /// Stops all futures: the road is not the simulator's; branch() gives `why` from now on. Any thread.
   void give_up(std::string why);
 
-  /// One thread at a time: both futures from `options.at` on, with the settings that hold now, and with those
-  /// of `options`. Fails as recording::branch_run() does, and while less than a second is known.
+  /// Drives both futures from `options.at` on: with the current settings, and with those in `options`. Fails
+  /// as recording::branch_run() does, and if less than a second is known. One thread at a time.
   [[nodiscard]] Result<recording::BranchReport> branch(const recording::BranchOptions& options,
                                                        const recording::BranchHooks& hooks);
 
  private:
   struct Known {
-    std::vector<Seen> seen;  ///< of the newest car
-    std::size_t at = 0;      ///< the moment
+    std::vector<Seen> seen;  ///< sightings of the newest car
+    std::size_t at = 0;      ///< index of the moment
   };
   [[nodiscard]] Result<Known> known_at(double time);
   [[nodiscard]] Result<void> follow(recording::ShadowRun& car, scenario::Scenario scenario,
@@ -111,7 +109,7 @@ class ServedFutures {
 
   RunLog& log_;
   run::Roads roads_;
-  std::mutex mutex_;  ///< of all below
+  std::mutex mutex_;  ///< guards all below
   std::optional<scenario::Scenario> scenario_;
   std::string why_not_;
 };

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Shadow runs for viewers: WhatIf computes both futures of a question on a thread of its own, Rival drives a
+// second car along a live run. Answers are JSON.
 #include "chicane/live/what_if.hpp"
 
 #include <fmt/format.h>
@@ -22,11 +24,11 @@
 namespace chicane::live {
 namespace {
 
-/// Three digits behind the point are a millimetre and a millisecond. What is not finite is null in JSON.
+/// Rounds to millimetres and milliseconds. A value that is not finite becomes null in JSON.
 double rounded(double value) { return std::round(value * 1e3) / 1e3; }
 
-/// {"time_s": [...], ...} of `rows`, each an array of numbers in the order of `names`; every `stride`-th one
-/// and the last.
+/// Columns of `rows` as JSON, {"time_s": [...], ...}: each row has its numbers in the order of `names`. Every
+/// `stride`-th row and the last are kept.
 template <std::size_t kCount, class Rows>
 protocol::Json columns(const std::array<const char*, kCount>& names, const Rows& rows,
                        std::size_t stride = 1) {
@@ -41,13 +43,13 @@ protocol::Json columns(const std::array<const char*, kCount>& names, const Rows&
 
 using protocol::Json;
 
-constexpr std::size_t kMostRows = 1500;  // of each trace
+constexpr std::size_t kMostRows = 1500;  // limit of rows in a trace
 
 tl::unexpected<Error> refuse(std::string_view what, std::string_view expected) {
   return fail(ErrorCode::kInvalidArgument, fmt::format("what if: {}: expected {}", what, expected));
 }
 
-/// The rows of one future, as columns.
+/// Trace of one future: rows of numbers, sent as columns.
 struct Trace {
   static constexpr std::size_t kColumns = 10;
   static constexpr std::array<const char*, kColumns> kNames{
@@ -92,7 +94,7 @@ Json json_of(const WhatIfQuestion& question) {
   return {{"log", question.log}, {"settings", std::move(settings)}};
 }
 
-/// A number in [least, most]; absent and null: `otherwise`.
+/// Number in [least, most] under `name`; `otherwise` if it is absent or null.
 Result<double> number_of(const Json& json, const char* name, double least, double most, double otherwise) {
   const auto found = json.find(name);
   if (found == json.end() || found->is_null()) return otherwise;
@@ -114,12 +116,12 @@ Result<std::string> text_of(const Json& value) {
 Result<WhatIfQuestion> read_question(std::string_view text) {
   const Json json = protocol::parse_json(text);
   if (!json.is_object()) return refuse("the question", "a JSON object");
-  constexpr double kEver = 1e9;
+  constexpr double kEver = 1e9;  // later than any run [s]
   const auto at = number_of(json, "at_s", 0.0, kEver, kEver);
   if (!at) return fail(at.error());
   const auto duration = number_of(json, "for_s", 0.1, WhatIfQuestion::kLongest, WhatIfQuestion::kLongest);
   if (!duration) return fail(duration.error());
-  const auto laps = number_of(json, "laps", 0.0, 10.0, 0.0);
+  const auto laps = number_of(json, "laps", 0.0, 10.0, 0.0);  // at most ten
   if (!laps) return fail(laps.error());
   const auto log = number_of(json, "log", 0.0, 1000.0, 0.0);
   if (!log) return fail(log.error());
@@ -200,9 +202,9 @@ namespace {
 
 using protocol::Json;
 
-constexpr auto kLook = std::chrono::milliseconds(5);  // between two looks at what the run did
+constexpr auto kLook = std::chrono::milliseconds(5);  // period between reads of the run's log
 
-/// What both cars feel: the world, not the controller.
+/// Whether a setting acts on the world, and so on both cars, rather than on the controller.
 bool is_of_the_world(std::string_view key) {
   return key.starts_with("fault.") || key.starts_with("plant_options.") || key.starts_with("sensor.") ||
          key == "latency_ms";
@@ -222,7 +224,8 @@ Json json_of(const std::vector<telemetry::CompletedLap>& laps) {
   return all;
 }
 
-/// Each is known, may change while a run goes on, and has that value.
+/// Scenario with `settings`. Fails for a setting that is unknown, fixed during a run, out of range, or acts
+/// on the world.
 Result<scenario::Scenario> with_settings(scenario::Scenario scenario,
                                          const std::vector<std::pair<std::string, std::string>>& settings) {
   for (const auto& [key, value] : settings) {
@@ -235,7 +238,7 @@ Result<scenario::Scenario> with_settings(scenario::Scenario scenario,
   }
   for (const protocol::Contradiction& found : protocol::contradictions(scenario))
     return fail(ErrorCode::kInvalidArgument, std::string(found.key) + ": " + found.message);
-  scenario.laps = 0;  // as long as the run goes on
+  scenario.laps = 0;  // the race lasts as long as the run
   return scenario;
 }
 
@@ -298,7 +301,7 @@ void Rival::build(const Request& request) {
   begin_anew_();
 }
 
-/// Drives to where the run is.
+/// Drives the rival up to the run's time.
 void Rival::catch_up() {
   const Result<RunLog::Excerpt> news = log_.since(place_);
   if (!news && is_racing()) return end(State::kEnded, "this computer could not keep up with both cars");
@@ -307,7 +310,7 @@ void Rival::catch_up() {
   if (before.scenario != 0 && before.scenario != place_.scenario)
     return end(State::kEnded, "the run began with other choices");
   if (news->begin != before) begin();
-  if (!is_racing()) return;  // it begins with the run's next beginning
+  if (!is_racing()) return;  // the race starts with the run's next start
   for (const RunLog::Event& event : *news->events) {
     std::visit([this](const auto& one) { take(one); }, event);
     if (!car_) return;
@@ -315,7 +318,7 @@ void Rival::catch_up() {
 }
 
 void Rival::take(const RunLog::Step& step) {
-  constexpr double kRounding = 1e-9;
+  constexpr double kRounding = 1e-9;  // rounding of times [s]
   const run::ClosedLoop& loop = car_->loop();
   car_->drive([&] { return loop.time() >= step.time + kRounding; });
   if (loop.is_over()) end(State::kEnded, loop.summary().end_reason);

@@ -25,10 +25,10 @@
 
 namespace chicane::live {
 
-/// "What if" of a run: from a moment on, with other settings.
+/// Question of a viewer: how would the run continue from a moment on with other settings?
 struct WhatIfQuestion {
-  std::size_t log = 0;                       ///< which of several recordings; 0 in a live run
-  recording::BranchOptions options{};        ///< `drives_both`: what was, or would be, beside it
+  std::size_t log = 0;                       ///< index of the recording; 0 in a live run
+  recording::BranchOptions options{};        ///< `drives_both`: the recorded future is driven on, too
   static constexpr double kLongest = 600.0;  ///< [s] of each future
   static constexpr std::size_t kMostSettings = 64;
 };
@@ -63,7 +63,7 @@ class WhatIf {
 
   Compute compute_;
   std::uint64_t newest_ = 0;        ///< number of the last question
-  std::atomic<double> share_{0.0};  ///< of the question that is being computed
+  std::atomic<double> share_{0.0};  ///< share of the current question that is computed
   std::string answer_ = R"({"id":0,"state":"none"})";
   NewestTask<Request, std::string> task_;  // last
 };
@@ -84,9 +84,9 @@ class Rival {
   /// line.
   Rival(RunLog& log, std::function<void()> begin_anew);
 
-  /// The network thread: {"settings":{"latency_ms":60}} begins a race of `scenario`, {} ends it. The number
-  /// of the race, as a text. kInvalidArgument in a sentence for viewers: for a setting that is unknown, out
-  /// of range, or cannot change while a run goes on.
+  /// Begins a race of `scenario`, on the network thread: {"settings":{"latency_ms":60}}; {} ends it. Returns
+  /// the number of the race, as a text. kInvalidArgument in a sentence for viewers: for a setting that is
+  /// unknown, out of range, or fixed during a run.
   [[nodiscard]] Result<std::string> ask(std::string_view json, const scenario::Scenario& scenario);
   /// GET /rival.json (docs/viewer.md). Any thread.
   [[nodiscard]] std::string answer() const;
@@ -117,9 +117,9 @@ class Rival {
 
   // The rival's thread:
   std::optional<recording::ShadowRun> car_;
-  RunLog::Place place_;  ///< of the run, up to which it has come
+  RunLog::Place place_;  ///< place in the run's log that the rival has reached
 
-  mutable std::mutex mutex_;  ///< of all below
+  mutable std::mutex mutex_;  ///< guards all below
   std::optional<Request> request_;
   std::uint64_t newest_ = 0;
   State state_ = State::kNone;

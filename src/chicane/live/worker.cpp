@@ -28,9 +28,9 @@ void Worker::wake() {
 }
 
 void Worker::run() {
-  // Behind everything else, yet not starved: on cores that others keep busy, a tenth of one thread's share.
+  // Nice value behind everything else, yet not starved: on busy cores a tenth of one thread's share.
   constexpr int kLowPriority = 10;
-  static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // of this thread, on Linux
+  static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // sets this thread only, on Linux
   std::unique_lock lock(mutex_);
   const auto is_due = [this] { return is_awake_ || is_ending_; };
   for (;;) {

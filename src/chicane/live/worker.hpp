@@ -28,7 +28,7 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  /// Any thread. Does not wait.
+  /// Wakes the thread and does not wait. Any thread.
   void wake();
 
  private:
@@ -36,7 +36,7 @@ class Worker {
 
   std::function<void()> work_;
   Period period_;
-  std::mutex mutex_;  ///< of all below
+  std::mutex mutex_;  ///< guards all below
   std::condition_variable changed_;
   bool is_awake_ = false;
   bool is_ending_ = false;
@@ -53,8 +53,8 @@ class NewestTask {
   using Compute = std::function<Answer(Request request, const std::function<bool()>& is_wanted)>;
   using OnAnswer = std::function<void(const Answer&)>;
 
-  /// Both are called on the thread; `on_answer` with each answer that is still wanted, and must call nothing
-  /// of this.
+  /// Both are called on the worker's thread. `on_answer` gets each answer that is still wanted, and must not
+  /// call this object.
   explicit NewestTask(Compute compute, OnAnswer on_answer = {})
       : compute_{std::move(compute)}, on_answer_{std::move(on_answer)}, worker_{[this] { work(); }} {}
   /// Cancels, and waits for the thread.
@@ -62,7 +62,7 @@ class NewestTask {
   NewestTask(const NewestTask&) = delete;
   NewestTask& operator=(const NewestTask&) = delete;
 
-  /// Any thread, as the rest.
+  /// Begins a request, replacing an earlier one. Any thread, as for all functions below.
   void begin(Request request) {
     const std::lock_guard lock(mutex_);
     request_ = std::move(request);
@@ -70,7 +70,7 @@ class NewestTask {
     ++newest_;
     worker_.wake();
   }
-  /// There is no answer, nor a call of `on_answer`, any more. Waits for no more than a call under way.
+  /// Drops request and answer; `on_answer` is not called any more. Waits for a call under way at most.
   void cancel() {
     const std::lock_guard lock(mutex_);
     request_.reset();
@@ -82,7 +82,7 @@ class NewestTask {
     const std::lock_guard lock(mutex_);
     return std::exchange(answer_, std::nullopt);
   }
-  /// There is a request without an answer.
+  /// Whether a request waits for its answer.
   [[nodiscard]] bool is_computing() const {
     const std::lock_guard lock(mutex_);
     return request_ || (computed_ > 0 && computed_ == newest_);
@@ -105,7 +105,7 @@ class NewestTask {
 
   Compute compute_;
   OnAnswer on_answer_;
-  mutable std::mutex mutex_;  ///< of all below
+  mutable std::mutex mutex_;  ///< guards all below
   std::optional<Request> request_;
   std::atomic<std::uint64_t> newest_{0};  ///< number of the last request; read without the mutex
   std::uint64_t computed_ = 0;            ///< number of the request that is being computed; 0: none

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Run inside a browser's worker: the server interface over messages to the page, and the clock that the page
+// passes on.
 #include "chicane/live/worker_run.hpp"
 
 #include <fmt/format.h>
@@ -45,7 +47,7 @@ void WorkerServer::acknowledge(std::size_t count) {
 
 void WorkerServer::pass_time(double now) {
   now_ = std::max(now_, now);
-  // What a task adds for now waits for the next call: nothing can go round for ever.
+  // A task added now runs in the next call: no endless loop.
   std::vector<std::function<void()>> due;
   const auto end = tasks_.upper_bound(now_);
   for (auto task = tasks_.begin(); task != end; ++task) due.push_back(std::move(task->second));

@@ -22,9 +22,9 @@
 
 namespace chicane::live {
 
-/// A server without a network, for a run inside of the page that shows it: one connection, whose messages are
-/// handed to a function, and a clock that its owner moves. Like one with a network it holds back what the
-/// page has not taken yet, of frames the newest only. One thread.
+/// Server without a network, for a run inside the page that shows it: one connection, whose messages go to a
+/// function, and a clock that its owner moves. Like a network server it keeps messages until the page takes
+/// them, and of frames only the newest. One thread.
 class WorkerServer final : public net::Server {
  public:
   using Send = std::function<void(std::string_view bytes, bool binary)>;
@@ -33,7 +33,7 @@ class WorkerServer final : public net::Server {
 
   WorkerServer(net::ServerHandlers handlers, Send send);
 
-  /// The page connects; anew when it was connected before. False when it is refused.
+  /// Connects the page, replacing its earlier connection. False if it is refused.
   bool connect();
   void receive(std::string_view bytes, bool binary);
   /// The page has taken `count` messages more.
@@ -41,7 +41,7 @@ class WorkerServer final : public net::Server {
   [[nodiscard]] std::optional<net::Content> get(std::string_view path) const {
     return handlers_.on_get(path);
   }
-  /// The clock shows `now` [s], from any beginning: does what is due.
+  /// Moves the clock to `now` [s], which has any zero, and runs due tasks.
   void pass_time(double now);
 
   using net::Server::send;
@@ -68,14 +68,14 @@ class WorkerServer final : public net::Server {
   std::deque<Held> held_;
   std::size_t in_flight_ = 0;
   double now_ = 0.0;                                    ///< [s]
-  std::multimap<double, std::function<void()>> tasks_;  ///< by when they are due [s]
+  std::multimap<double, std::function<void()>> tasks_;  ///< tasks by due time [s]
 };
 
-/// A run with our simulator that is watched and changed like LiveRun, in one thread and without a network: a
-/// browser's worker, which owns clock and page (apps/page). No control step has a deadline, so that a run
-/// that nobody changes is that of `drive --fast`, bit for bit, whatever the pace. Drives on after its end.
+/// Run with our simulator, watched and changed like LiveRun, in one thread without a network: a browser's
+/// worker owns clock and page (apps/page). No control step has a deadline, so that an unchanged run has the
+/// bits of `drive --fast` at any pace. Continues after its end.
 ///
-/// Left out, beside what needs a network or files: the recording, other futures (WhatIf) and the limit.
+/// Left out: everything that needs a network or files, the recording, other futures (WhatIf) and the limit.
 class WorkerRun {
  public:
   /// Fails as ClosedLoop::create does. `send` is given each message for the page.
@@ -88,13 +88,12 @@ class WorkerRun {
   bool connect() { return server_->connect(); }
   void receive(std::string_view bytes, bool binary) { server_->receive(bytes, binary); }
   void acknowledge(std::size_t count) { server_->acknowledge(count); }
-  /// What a GET of `path` gives: those of live_pages(), and /run.json: time, laps, and once the run is over
-  /// its state_hash, and which arithmetic computed it.
+  /// Answer to a GET of `path`: live_pages(), and /run.json with time, laps, and after the run its state_hash
+  /// and the arithmetic that computed it.
   [[nodiscard]] std::optional<net::Content> get(std::string_view path) const { return server_->get(path); }
 
-  /// Drives to where the run is when the clock shows `now` [s], as it is asked for by its pace, and sends
-  /// what is new. `go_on` is asked after each control cycle; where it says no, the run is late and skips the
-  /// time it has missed.
+  /// Drives to the run's time at `now` [s] of the clock, by its pace, and sends the news. `go_on` is asked
+  /// after each control cycle; if it returns false, the run is late and skips the missed time.
   void advance(double now, const std::function<bool()>& go_on);
 
   [[nodiscard]] const run::ClosedLoop& loop() const { return *loop_; }
@@ -109,7 +108,7 @@ class WorkerRun {
 
   run::RunControls controls_;
   std::unique_ptr<run::ClosedLoop> loop_;
-  std::optional<ChosenRun> request_;  ///< to be built
+  std::optional<ChosenRun> request_;  ///< run to be built
   std::unique_ptr<BuiltRun> built_;
   LiveSettings settings_;
   wire::ViewerEndpoint viewer_;
@@ -118,7 +117,7 @@ class WorkerRun {
   run::RunHooks hooks_;
   std::optional<run::LiveSteps> steps_;
   std::optional<telemetry::RunSummary> ended_;  ///< the run as it was when it was over
-  /// Where the run was at a moment of the clock, and how fast it goes on from there.
+  /// Run time at a moment of the clock, and pace from there on.
   struct Anchor {
     double time = 0.0;   ///< [s]
     double clock = 0.0;  ///< [s]

@@ -9,15 +9,15 @@
 
 namespace chicane::model {
 
-/// Steering with a longer time constant than this is slow [s of a car in full size]: what is asked of it runs
-/// ahead of the wheel by far more than the wheel moves until the next command. Controller and gate then count
-/// the rate of the wheel. Below, the change of what is asked stands in for it, as weights and limits of
-/// cars in full size were chosen with (docs/decisions/0039-rates-of-slow-steering.md).
+/// Time constant above which steering counts as slow [s of a car in full size]: the demand then runs far
+/// ahead of the wheel, and controller and gate limit the rate of the wheel. Below, they limit the rate of the
+/// demand, for which weights and limits of cars in full size were chosen
+/// (docs/decisions/0039-rates-of-slow-steering.md).
 inline constexpr double kSlowSteering = 0.3;
 
-/// From the value asked for to the value at the wheel: range, first-order lag, rate limit, in this order
-/// (docs/model.md, eq. 13). Exact for a value asked for that is held over the step while the rate does not
-/// bind. Plain data and one function, no allocation.
+/// Actuator from demand to wheel: range, first-order lag, rate limit, in this order (docs/model.md, eq. 13).
+/// Exact for a demand that is held over the step while the rate does not bind. Plain data and one function,
+/// no allocation.
 struct Actuator {
   double low = -1.0;  ///< range of the value
   double high = 1.0;
@@ -33,10 +33,10 @@ struct Actuator {
   }
 };
 
-// What a steer helper leaves out: the original simulator's does nothing for one step of physics when the
+// Gap in the effect of a steer helper: the original simulator's does nothing for one step of physics when the
 // heading passes +y, where its yaw angle wraps (docs/limit.md, eq. 11 and 12).
 
-inline constexpr double kHelperGapHeading = 0.5 * kPi;  ///< in W [rad]
+inline constexpr double kHelperGapHeading = 0.5 * kPi;  ///< heading in W [rad]
 
 /// Share of the way from heading `from` to heading `to` [rad] at which the gap is passed, (0, 1]; 0: it is
 /// not.

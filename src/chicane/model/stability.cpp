@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Bounds that keep the car stable for a controller with delay: braking in a bend, and slip of the rear tyres
+// beyond their peak.
 #include "chicane/model/stability.hpp"
 
 #include <algorithm>
@@ -11,10 +13,10 @@ namespace chicane::model {
 namespace {
 
 constexpr double kGravity = 9.81;    // [m/s²]
-constexpr int kHalvings = 8;         // of the range of forces, for the table
-constexpr double kMostUse = 0.999;   // beyond it an axle slides
+constexpr int kHalvings = 8;         // halvings of the range of forces, for the table
+constexpr double kMostUse = 0.999;   // beyond this use an axle slides
 constexpr double kLeastUse = 1e-6;   // below it its curve is its tangent
-constexpr double kLeastLoad = 0.05;  // of that at rest: a lifted axle
+constexpr double kLeastLoad = 0.05;  // load of a lifted axle, over the load at rest
 constexpr double kRealTyre = 1.5;    // shape of the curve where the car's is not a magic formula
 constexpr double kMostAngle = 1.57;  // [rad] c arctan(z / c) ends there
 
@@ -87,8 +89,8 @@ double BrakingStability::most_braking(double v, double use) const noexcept {
 namespace {
 
 constexpr double kHalfPi = 1.5707963267948966;
-constexpr double kStep = 0.01;  // between slips that are tried
-constexpr int kFrontSlips = 9;
+constexpr double kStep = 0.01;  // step between tested slips
+constexpr int kFrontSlips = 9;  // front slips at which stability is checked
 
 }  // namespace
 

@@ -13,7 +13,7 @@
 
 namespace chicane::model {
 
-/// How much the lateral forces of the axles grow with their slip angles, over the car's mass [m/s² per rad].
+/// Slopes of the axles' lateral forces over their slip angles, divided by the car's mass [m/s² per rad].
 struct AxleSlopes {
   double front;
   double rear;
@@ -40,9 +40,9 @@ struct AxleSlopes {
   return std::sqrt(std::max(damping * damping - spring, 0.0)) - damping;
 }
 
-/// How hard a car may brake in a bend before it turns away from its path faster than a controller with delay
-/// can catch: braking unloads the rear axle, whose tyres then use more of their curve than the front ones and
-/// answer less to more slip (docs/controller.md, eq. 14a–14c).
+/// Bound on braking in a bend, so that the car does not turn away from its path faster than a controller with
+/// delay can catch. Braking unloads the rear axle, whose tyres then use more of their curve than the front
+/// ones and answer less to more slip (docs/controller.md, eq. 14a–14c).
 class BrakingStability {
  public:
   /// The unstable pole that is left to the controller: in 100 ms an error grows by a tenth [1/s].
@@ -86,14 +86,14 @@ class BrakingStability {
  private:
   struct Axle {
     double cornering = 0.0;  ///< [1/rad]
-    double share = 0.0;      ///< of the load at rest
+    double share = 0.0;      ///< share of the load at rest
     double transfer = 0.0;   ///< share of that load which a unit of braking force over load adds
     double pull = 0.0;       ///< the axle's share of the braking force over its share of the load
   };
   /// Change of the axle's lateral force by its slip angle over the car's load [1/rad].
   [[nodiscard]] double slope(const Axle& axle, double use, double force_over_load) const noexcept;
 
-  /// Where in a table of kSize values: the first of a cell, and the share of the second.
+  /// Cell of a table of kSize values: its first index, and the weight of the next value.
   template <int kSize, class T>
   [[nodiscard]] static std::pair<int, T> cell(const T& position) noexcept {
     if (!(value_of(position) > 0.0)) return {0, T(0.0)};
@@ -101,7 +101,7 @@ class BrakingStability {
     const int i = std::min(static_cast<int>(value_of(position)), kSize - 2);
     return {i, position - static_cast<double>(i)};
   }
-  /// Of the table, continued straight by one row and column.
+  /// Value of the table, continued straight by one row and column.
   [[nodiscard]] double value(int i, int k) const noexcept {
     if (i < 0) return 2.0 * value(0, k) - value(1, k);
     if (i >= kSpeeds) return 2.0 * value(kSpeeds - 1, k) - value(kSpeeds - 2, k);
@@ -110,7 +110,7 @@ class BrakingStability {
     if (k >= kUses) return 2.0 * row[kUses - 1] - row[kUses - 2];
     return row[static_cast<std::size_t>(k)];
   }
-  /// From at[1] to at[2], with the slopes of their neighbours (Catmull, Rom 1974).
+  /// Interpolates from at[1] to at[2], with the slopes of their neighbours (Catmull, Rom 1974).
   template <class T>
   [[nodiscard]] static T cubic(const T* at, const T& share) noexcept {
     const T out = 0.5 * (at[2] - at[0]);
@@ -130,13 +130,13 @@ class BrakingStability {
   std::array<std::array<double, kUses>, kSpeeds> most_{};
 };
 
-/// How far beyond the peak of their curve the rear tyres may slip so that a controller with delay still holds
-/// the car: yaw and sideslip have a pole to the right there, and an error grows by it until a command acts
-/// (docs/limit.md, eq. 13 to 17). Slips are over that of the peak.
+/// Bound on the rear tyres' slip beyond the peak of their curve, up to which a controller with delay still
+/// holds the car: yaw and sideslip have a pole to the right there, and an error grows by it until a command
+/// acts (docs/limit.md, eq. 13 to 17). Slips are over the slip at the peak.
 class SlidingBound {
  public:
-  static constexpr double kMostGrowth = 1.5;  ///< of an error within the delay
-  static constexpr double kFrontSlope = 0.5;  ///< of the curve at rest that the front tyres keep: they steer
+  static constexpr double kMostGrowth = 1.5;  ///< largest growth of an error within the delay
+  static constexpr double kFrontSlope = 0.5;  ///< share of the slope at rest that the front tyres keep
   static constexpr double kMostSlip =
       1.5;  ///< two thirds of the way to where the original curve falls most steeply
   static constexpr double kAssumedDelay = 0.14;  ///< [s] 100 ms of latency and a control period
@@ -166,12 +166,12 @@ class SlidingBound {
     return value(i) +
            share * (out + share * ((3.0 * rise - 2.0 * out - in) + share * (out + in - 2.0 * rise)));
   }
-  /// How much of these bounds a lap has at speed v [m/s], 0 to 1; the rest are those of a lap that does not
-  /// slide. All below 42 m/s, nothing above 47. An error of place grows with the speed, and at the peak of
-  /// the tyres nothing is left to take it back.
+  /// Share of these bounds in a lap at speed v [m/s], 0 to 1; the remainder is for a lap that does not slide.
+  /// Full below 42 m/s, none above 47: an error of place grows with the speed, and at the peak of the tyres
+  /// no force is left to correct it.
   template <class T>
   [[nodiscard]] static T share(const T& v) noexcept {
-    constexpr double kAll = 42.0, kNone = 47.0;
+    constexpr double kAll = 42.0, kNone = 47.0;  // [m/s]
     const T t = (kNone - v) * (1.0 / (kNone - kAll));
     if (value_of(t) <= 0.0) return T(0.0);
     if (value_of(t) >= 1.0) return T(1.0);

@@ -20,7 +20,7 @@ struct State {
   double steer = 0.0;  ///< road-wheel angle now [rad], left positive
 };
 
-/// What a controller asks of the car.
+/// Command of a controller to the car.
 struct Command {
   double steer = 0.0;     ///< road-wheel angle [rad], left positive, |steer| <= VehicleParams::steer_limit
   double throttle = 0.0;  ///< one pedal in [-1, 1]: positive drives, negative brakes
@@ -33,12 +33,12 @@ struct Pose {
   double psi = 0.0;  ///< [rad]
 };
 
-/// Input of a controller in one cycle: exactly what the original simulator's telemetry holds, in our axes
+/// Input of a controller in one cycle: exactly the content of the original simulator's telemetry, in our axes
 /// and units.
 struct Measurement {
   static constexpr int kMaxWaypoints = 32;
 
-  double time = 0.0;   ///< when it was sampled [s], monotonic clock of the run
+  double time = 0.0;   ///< sampling time [s], monotonic clock of the run
   double x = 0.0;      ///< position of the centre of mass in W [m]
   double y = 0.0;      ///< [m]
   double psi = 0.0;    ///< yaw [rad], wrapped or not
@@ -54,7 +54,7 @@ struct Measurement {
 
   int waypoint_count = 0;  ///< [0, kMaxWaypoints]
   std::array<Vec2, kMaxWaypoints>
-      waypoints{};  ///< in W [m], in driving order; the first may lie behind the car
+      waypoints{};  ///< position in W [m], in driving order; the first may be behind the car
 };
 
 }  // namespace chicane::model

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Parameter sets of two cars, and their longitudinal model: acceleration by pedal, and pedal by acceleration.
 #include "chicane/model/vehicle.hpp"
 
 #include <algorithm>
@@ -115,7 +116,7 @@ double lowest_throttle(const VehicleParams& p, double v) noexcept {
 }
 
 double longitudinal_acceleration(const VehicleParams& p, double throttle, double v) noexcept {
-  const double pedal = std::clamp(throttle, lowest_throttle(p, v), 1.0);  // beyond it the wheels are locked
+  const double pedal = std::clamp(throttle, lowest_throttle(p, v), 1.0);  // the wheels lock beyond it
   const double negative = v < p.reverse_speed ? p.reverse_acceleration : p.brake_acceleration;
   const double force =
       pedal >= 0.0 ? std::min(p.drive_acceleration * pedal, drive_limit(p, v)) : negative * pedal;

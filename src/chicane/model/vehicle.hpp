@@ -16,33 +16,33 @@ namespace chicane::model {
 /// An axle, as shares of the car.
 struct Axle {
   double x;            ///< ahead of the centre of mass [m]
-  double half_track;   ///< from its middle to the centre of a wheel [m]
-  double rest;         ///< of the load at rest, for each of its wheels
-  double roll_share;   ///< of the load that moves to the outer wheels in a bend
-  double drive_share;  ///< of the drive force
-  double brake_share;  ///< of the braking force
+  double half_track;   ///< distance from its middle to the centre of a wheel [m]
+  double rest;         ///< load of each of its wheels at rest, over the car's
+  double roll_share;   ///< share of the load moved to the outer wheels in a bend
+  double drive_share;  ///< share of the drive force
+  double brake_share;  ///< share of the braking force
 };
 
-/// Parameters that plants and controllers' models of a car share. Defaults are those of an ordinary car, the
-/// plant `road-car`; origin of each number: docs/model.md, table 2.
+/// Parameters that plants and controllers' models share. Defaults are for an ordinary car, the plant
+/// `road-car`; origin of each number: docs/model.md, table 2.
 struct CarBody {
-  double front_axle = 1.25;         ///< centre of mass to front axle [m]
-  double rear_axle = 1.45;          ///< centre of mass to rear axle [m]
-  double track_width = 1.60;        ///< between the centres of the wheels of an axle [m]
-  double tire_width = 0.205;        ///< width of a contact patch [m]
-  double mass = 1300.0;             ///< [kg]
-  double yaw_inertia = 2000.0;      ///< [kg m²]
-  double height = 0.50;             ///< of the centre of mass above the road; 0: no load transfer [m]
-  double roll_share_front = 0.58;   ///< of the load that moves to the outer wheels in a bend
-  double brake_share_front = 0.72;  ///< of the braking force; the front locks first up to 0.9 g, as UN
-                                    ///< R13-H asks of road cars
-  double drive_share_front = 0.40;  ///< of the drive force; open differentials
-  double friction = 1.20;           ///< peak force over load, at rest
-  double load_sensitivity = 0.08;   ///< share of the friction that a tyre loses when its load doubles
-  double steer_limit = 0.4363323129985824;       ///< of the road wheels, 25° [rad]
+  double front_axle = 1.25;        ///< centre of mass to front axle [m]
+  double rear_axle = 1.45;         ///< centre of mass to rear axle [m]
+  double track_width = 1.60;       ///< distance between the wheel centres of an axle [m]
+  double tire_width = 0.205;       ///< width of a contact patch [m]
+  double mass = 1300.0;            ///< [kg]
+  double yaw_inertia = 2000.0;     ///< [kg m²]
+  double height = 0.50;            ///< height of the centre of mass; 0: no load transfer [m]
+  double roll_share_front = 0.58;  ///< front share of the load moved across in a bend
+  double brake_share_front =
+      0.72;  ///< front share of braking; the front locks first up to 0.9 g, as UN R13-H asks of road cars
+  double drive_share_front = 0.40;          ///< front share of the drive; open differentials
+  double friction = 1.20;                   ///< peak force over load, at rest
+  double load_sensitivity = 0.08;           ///< share of the friction that a tyre loses when its load doubles
+  double steer_limit = 0.4363323129985824;  ///< largest road-wheel angle, 25° [rad]
   double steer_rate_limit = 1.5707963267948966;  ///< 90°/s [rad/s]
   double steer_lag = 0.05;                       ///< time constant of the steering [s], 0 = instant
-  double drive_lag = 0.1;                        ///< of drive and brakes [s]
+  double drive_lag = 0.1;                        ///< time constant of drive and brakes [s]
 
   [[nodiscard]] double wheelbase() const noexcept { return front_axle + rear_axle; }
   [[nodiscard]] double half_track() const noexcept { return 0.5 * track_width; }
@@ -81,8 +81,8 @@ struct VehicleParams : CarBody {
 
   std::string name = "udacity";
 
-  double scale = 1.0;  ///< of a model car, 0.1 for 1:10: settings of controller and guard in metres and
-                       ///< seconds are those of the car in full size (Similarity)
+  double scale = 1.0;  ///< scale of a model car, 0.1 for 1:10: settings of controller and guard in metres and
+                       ///< seconds are for a car in full size (Similarity)
 
   // Geometry.
   double length = 4.47;            ///< body [m]
@@ -97,12 +97,11 @@ struct VehicleParams : CarBody {
   double friction_coupling =
       0.0;  ///< 1 = friction ellipse (a real tyre), 0 = braking and cornering do not share force
   double load_constant = 12.22;    ///< normal acceleration at rest [m/s²]
-  double load_per_speed = 0.0923;  ///< its growth with speed (downforce) [1/s]
-  double load_quadratic = 0.0;     ///< and with its square [1/m]
+  double load_per_speed = 0.0923;  ///< growth of the load with speed (downforce) [1/s]
+  double load_quadratic = 0.0;     ///< growth of the load with squared speed [1/m]
   double steer_helper =
       0.768;  ///< share of each yaw change by which the car turns its velocity along; 0 = a real car
-  double helper_gap =
-      0.0;  ///< for which the helper does nothing when the heading passes +y [s] (actuator.hpp)
+  double helper_gap = 0.0;  ///< gap of the helper when the heading passes +y [s] (actuator.hpp)
 
   // Longitudinal: a = drive_acceleration · throttle − drag_linear · v − drag_quadratic · v² for throttle >=
   // 0, and − brake_acceleration · |throttle| − drag for throttle < 0 (reverse_acceleration below
@@ -146,8 +145,8 @@ struct VehicleParams : CarBody {
 /// The fields with their units and ranges, for files and messages.
 [[nodiscard]] std::span<const Option> vehicle_options() noexcept;
 
-/// kInvalidArgument "vehicle.mass_kg: got -900, expected a number in [0.1, 100000] kg" for the first field
-/// out of its range.
+/// Checks all fields. kInvalidArgument "vehicle.mass_kg: got -900, expected a number in [0.1, 100000] kg" for
+/// the first one outside its range.
 [[nodiscard]] Result<void> validate(const VehicleParams& params);
 
 /// Longitudinal acceleration [m/s²] of the car at speed v [m/s] for a throttle in [-1, 1] (the law above,
@@ -191,7 +190,7 @@ class Similarity {
   explicit Similarity(const VehicleParams& car) noexcept : Similarity{car.scale} {}
 
   [[nodiscard]] bool is_identity() const noexcept { return length_ == 1.0; }
-  [[nodiscard]] double length() const noexcept { return length_; }  ///< in full size over that of the model
+  [[nodiscard]] double length() const noexcept { return length_; }  ///< full size over model size
   [[nodiscard]] double time() const noexcept { return time_; }
   [[nodiscard]] double speed() const noexcept { return time_; }
 

@@ -138,11 +138,11 @@ struct Rounded {
   }
 };
 
-/// What anti-lock leaves of a brake, or traction control of a drive: 1 up to `start`, nothing from `end` on,
-/// of the slip in the direction of the force.
+/// Share of a brake that anti-lock passes, or of a drive that traction control passes: 1 up to slip `start`,
+/// 0 from `end` on, for the slip in the direction of the force.
 template <class Corners, class T>
 [[nodiscard]] T torque_share(const T& slip, double start, double end) {
-  constexpr double kCorner = 0.02;
+  constexpr double kCorner = 0.02;  // rounding of both corners
   return Corners::share(T((end - slip) / (end - start)), kCorner);
 }
 

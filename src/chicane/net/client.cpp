@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// WebSocket client: connects, sends the upgrade, and reads and writes frames.
 #include "chicane/net/client.hpp"
 
 #include <netdb.h>
@@ -28,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::milliseconds;
 
 constexpr std::size_t kMaxMessage = 1U << 20U;  // a reply with hundreds of points is 20 kB
-constexpr std::size_t kMaxHeader = 1U << 14U;
+constexpr std::size_t kMaxHeader = 1U << 14U;   // [byte]
 constexpr std::string_view kKeyGuid = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11";  // RFC 6455 §1.3
 
 /// Frame types of RFC 6455 §5.2.
@@ -36,7 +37,7 @@ enum Opcode : unsigned char { kContinuation = 0, kText = 1, kBinary = 2, kClose 
 
 tl::unexpected<Error> io_error(std::string message) { return fail(ErrorCode::kIo, std::move(message)); }
 
-/// What the server must answer to `key` (RFC 6455 §4.2.2).
+/// Answer that the server must give to `key` (RFC 6455 §4.2.2).
 std::string accept_of(const std::string& key) {
   boost::uuids::detail::sha1 hash;
   hash.process_bytes(key.data(), key.size());
@@ -116,7 +117,7 @@ class Socket {
     return {};
   }
 
-  /// Appends what has arrived to `buffer`; false when nothing came until `end`.
+  /// Appends the bytes that arrive to `buffer`; false if none came until `end`.
   Result<bool> receive(std::string& buffer, Clock::time_point end) {
     std::array<char, 16384> chunk;
     for (;;) {

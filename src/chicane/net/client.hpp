@@ -13,12 +13,12 @@ namespace chicane::net {
 
 /// A WebSocket address in parts.
 struct Url {
-  std::string host;  ///< without brackets
+  std::string host;  ///< host without brackets
   std::uint16_t port = 80;
   std::string target = "/";  ///< path and query
 };
 
-/// "ws://host[:port][/path]"; kInvalidArgument in words otherwise.
+/// Parts of "ws://host[:port][/path]"; kInvalidArgument in words otherwise.
 [[nodiscard]] Result<Url> parse_url(const std::string& text);
 
 /// WebSocket client with time-outs, blocking, for one thread: the simulator's side of the wire. Sends the
@@ -27,7 +27,7 @@ struct Url {
 /// one frame.
 class Client {
  public:
-  /// kIo with the reason when there is no connection and upgrade within `timeout`.
+  /// Connects. kIo with the reason if there is no connection and upgrade within `timeout`.
   [[nodiscard]] static Result<std::unique_ptr<Client>> connect(const std::string& url,
                                                                std::chrono::milliseconds timeout);
   /// Sends a close frame when the connection stands, and does not wait for the answer.

@@ -16,13 +16,13 @@
 
 namespace chicane::net {
 
-/// What answers a GET of one path: bytes, or a file on disk.
+/// Answer to a GET of one path: bytes, or a file on disk.
 struct Content {
   std::string content_type{};
   std::string bytes{};
   std::shared_ptr<const std::string> shared{};  ///< instead of `bytes`, for what many ask for
-  std::string file{};                           ///< when not empty, the content is this file's as it is now
-  std::string save_as{};  ///< when not empty, a browser saves it under this name; no quotes, no line ends
+  std::string file{};                           ///< if not empty: content is this file's at each answer
+  std::string save_as{};  ///< if not empty: browsers save under this name; no quotes, no line ends
 };
 
 /// Part of a content, in bytes from its start.
@@ -31,9 +31,9 @@ struct ByteRange {
   std::uint64_t count = 0;
 };
 
-/// What a Range header asks of `size` bytes: one range, "bytes=0-99", "bytes=100-" or "bytes=-50" (RFC 9110
-/// §14.1.2), cut at the end. None when it asks for nothing we serve in parts (another unit, several ranges,
-/// not a range): then the whole is sent. A range without a single byte in it has count 0.
+/// Range that a Range header asks for out of `size` bytes: "bytes=0-99", "bytes=100-" or "bytes=-50" (RFC
+/// 9110 §14.1.2), cut at the end. None for a form that we do not serve in parts (another unit, several
+/// ranges, no range): then the whole is sent. A range without a single byte in it has count 0.
 [[nodiscard]] std::optional<ByteRange> parse_range(std::string_view header, std::uint64_t size);
 
 /// An ETag that changes with the content.
@@ -46,13 +46,13 @@ class Body {
   explicit Body(std::string bytes) : Body(std::make_shared<const std::string>(std::move(bytes))) {}
   explicit Body(std::shared_ptr<const std::string> bytes)
       : owned_{std::move(bytes)}, view_{*owned_}, size_{owned_->size()} {}
-  /// Of bytes that live as long as the program.
+  /// Body of bytes that live as long as the program.
   static Body of_view(std::string_view bytes);
-  /// kIo when it cannot be read.
+  /// Body from a file. kIo if it cannot be read.
   [[nodiscard]] static Result<Body> open(const std::string& file);
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Of the whole, before restrict_to().
+  /// Tag of the whole content, before restrict_to().
   [[nodiscard]] std::string tag() const;
   void restrict_to(ByteRange range);
   /// Takes the next at most 32 KiB; false when nothing is left, or when a file has become shorter than it
@@ -62,11 +62,11 @@ class Body {
 
  private:
   std::shared_ptr<const std::string> owned_{};
-  std::string_view view_{};  ///< of owned_, or of the program
+  std::string_view view_{};  ///< view of owned_, or of the program's bytes
   std::ifstream file_{};
   std::string file_tag_{};
-  std::uint64_t at_ = 0;    ///< of the next byte
-  std::uint64_t size_ = 0;  ///< what is left
+  std::uint64_t at_ = 0;    ///< position of the next byte
+  std::uint64_t size_ = 0;  ///< bytes left
 };
 
 /// A request, as far as an answer depends on it. Empty where a header is absent.
@@ -94,8 +94,7 @@ class HttpResponse {
                                              bool is_gzip, std::string_view tag, const HttpRequest& request);
 
   void add(std::string_view name, std::string_view value);
-  /// What is sent before the body. Pages may open sockets to the `host` that the request named, and to no
-  /// other.
+  /// Head of the answer. Pages may open sockets to the `host` that the request named, and to no other.
   [[nodiscard]] std::string head(const HttpRequest& request, std::string_view host = {}) const;
   [[nodiscard]] Body& body() { return body_; }
 
@@ -114,7 +113,7 @@ struct Asset {
   bool gzip = false;
 };
 
-/// What GET is answered with: contents that the program makes, then assets.
+/// Contents for GET: made by the program, then assets.
 class Site {
  public:
   using OnGet = std::function<std::optional<Content>(std::string_view path)>;
@@ -133,7 +132,7 @@ class Site {
 /// where the system has none to give.
 [[nodiscard]] Result<std::string> make_token();
 
-/// Whether `given` is `token`, in a time that tells nothing but the length. Never for an empty token.
+/// Whether `given` is `token`, in a time that reveals nothing but the length. Never for an empty token.
 [[nodiscard]] bool is_token(std::string_view given, std::string_view token) noexcept;
 
 }  // namespace chicane::net

@@ -2,7 +2,7 @@
 // The only file that includes Boost.Beast.
 #include "chicane/net/server.hpp"
 
-#include <utility>  // before Asio: Boost 1.74 lacks the include
+#include <utility>  // before Asio: Boost 1.74 lacks this include
 
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/io_context.hpp>
@@ -39,10 +39,10 @@ using ErrorCodeBoost = boost::system::error_code;
 std::string_view view(boost::string_view text) { return {text.data(), text.size()}; }
 boost::string_view view(std::string_view text) { return {text.data(), text.size()}; }
 constexpr int kSendBuffer = 32 * 1024;  // a reader that stalls holds this much kernel memory, not megabytes
-constexpr std::chrono::seconds kAnswerTimeout{30};      // for one piece of an answer on a slow line
-constexpr std::chrono::seconds kLingerTimeout{1};       // so that a refusal is read before the socket goes
+constexpr std::chrono::seconds kAnswerTimeout{30};      // limit for one piece of an answer on a slow line
+constexpr std::chrono::seconds kLingerTimeout{1};       // time for the client to read a refusal
 constexpr std::chrono::milliseconds kAcceptPause{100};  // when descriptors are used up, for example
-constexpr std::size_t kKeptBuffer = 4096;               // between two messages [byte]
+constexpr std::size_t kKeptBuffer = 4096;               // buffer kept between two messages [byte]
 constexpr std::size_t kMostReserved = 8;                // connections that viewers leave to others
 
 class WebSocket;
@@ -54,7 +54,7 @@ bool accepts_gzip(const http::request<http::empty_body>& request) {
   return http::ext_list{accepted}.exists("gzip") || http::ext_list{accepted}.exists("*");
 }
 
-/// What connections need of their server. Everything runs on its one thread; `ticket` counts open sockets.
+/// State of the server that connections share. Runs on one thread; `ticket` counts open sockets.
 struct Core {
   ServerOptions options;
   ServerHandlers handlers;
@@ -62,11 +62,11 @@ struct Core {
   std::shared_ptr<int> ticket = std::make_shared<int>(0);
   Doorkeeper door{};
   WaitingBytes waiting{};
-  std::list<HttpConnection*> visitors{};  // without an upgrade, the longest silent first
+  std::list<HttpConnection*> visitors{};  // connections without an upgrade, longest silent first
   std::unordered_map<ConnectionId, std::shared_ptr<WebSocket>> connections;
   ConnectionId next_id = 1;
   bool is_stopping = false;
-  asio::io_context io{1};  // the last one: what it holds uses the others when it ends
+  asio::io_context io{1};  // last: its handlers use the others when it ends
 
   [[nodiscard]] std::size_t open() const { return static_cast<std::size_t>(ticket.use_count()) - 1; }
   [[nodiscard]] bool is_crowded() const {
@@ -221,7 +221,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
  private:
   /// Somebody new needs the place.
   void give_way() {
-    core_.visitors.splice(core_.visitors.end(), core_.visitors, place_);  // it goes in a moment
+    core_.visitors.splice(core_.visitors.end(), core_.visitors, place_);  // about to be closed
     stream_.close();
   }
 
@@ -299,7 +299,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     reply(core_.site.answer(view(request.target()), asked), asked);
   }
 
-  /// Refuses what whoever started the program can change, and may want to know.
+  /// Refuses a request for a reason that the operator can change and may want to know.
   void turn_away(http::status status, std::string words) {
     ErrorCodeBoost ignored;
     const std::string peer = stream_.socket().remote_endpoint(ignored).address().to_string(ignored);
@@ -328,7 +328,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
                       [self = shared_from_this(), keep_alive](ErrorCodeBoost ec, std::size_t) {
                         if (ec) return;
                         if (self->body_.next(self->piece_)) return self->write(keep_alive);
-                        if (self->body_.is_short()) return;  // of less than the announced length
+                        if (self->body_.is_short()) return;  // body shorter than announced
                         if (keep_alive) return self->read();
                         self->linger();
                       });
@@ -355,9 +355,9 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   beast::flat_buffer buffer_{core_.options.max_header + 2 * kKeptBuffer};
   std::optional<http::request_parser<http::empty_body>> parser_;
   std::array<char, 1024> rest_{};
-  std::string host_;   ///< that the last request named, once it was found to be ours
-  std::string piece_;  ///< of the answer, while it is written
-  Body body_;          ///< what follows it
+  std::string host_;   ///< host of the last request, once it was accepted
+  std::string piece_;  ///< part of the answer in writing
+  Body body_;          ///< rest of the answer
 };
 
 class BeastServer final : public Server {

@@ -28,18 +28,18 @@ struct UpgradeRequest {
   std::string peer{};    ///< "127.0.0.1:51234"
   std::string origin{};  ///< empty when absent
   std::string host{};
-  std::vector<std::string> subprotocols{};  ///< as offered, in order
+  std::vector<std::string> subprotocols{};  ///< subprotocols as offered, in order
   bool may_watch = false;                   ///< may read: frames, settings, files
   bool may_control = false;                 ///< may change settings and call services
   bool is_crowded = false;                  ///< no connection is free for viewers, only for others
 };
 
-/// What to do with an upgrade. Refused before anybody is asked: a Host that is not ours (see
-/// ServerOptions::allowed_hosts), an Origin that is neither Host nor allowed, a wrong token, a connection too
-/// many. What may_watch and may_control forbid is for the endpoint to refuse (docs/reference/security.md).
+/// Answer to an upgrade. The server itself refuses a Host that is not ours (see
+/// ServerOptions::allowed_hosts), an Origin that is neither Host nor allowed, a wrong token, and a connection
+/// too many. The endpoint refuses what may_watch and may_control forbid (docs/reference/security.md).
 struct UpgradeAnswer {
   bool accept = false;
-  std::string subprotocol{};  ///< one of those offered, or empty
+  std::string subprotocol{};  ///< one of the offered ones, or empty
   int status = 403;           ///< HTTP status when refused
   std::string reason{};       ///< one sentence, sent as the body when refused
   int endpoint = 0;           ///< caller's own tag, handed back with every event
@@ -53,11 +53,11 @@ struct ServerOptions {
   std::string address = "127.0.0.1";  ///< numeric; "::" listens on every IPv6 and IPv4 address
   std::uint16_t port = 4567;          ///< 0 = any free port (see Server::port)
   std::size_t max_message = 65536;    ///< larger messages close the connection with 1009 [byte]
-  std::size_t max_header = 8192;      ///< of an HTTP request; larger ones get 431 [byte]
+  std::size_t max_header = 8192;      ///< limit of an HTTP request's head; larger ones get 431 [byte]
   /// Connections beyond get 503. When all are taken, a new one replaces the oldest without an upgrade. The
   /// last eighth, at most 8, is not for WebSocket viewers.
   std::size_t max_connections = 1024;
-  /// For a whole HTTP request, and between two on one connection.
+  /// Time for a whole HTTP request, and between two on one connection.
   std::chrono::milliseconds handshake_timeout{5000};
   /// A WebSocket peer that has sent nothing for half of it is pinged; one that stays silent for all of it is
   /// closed. That also ends peers that stopped reading, because they never see the ping.
@@ -71,14 +71,14 @@ struct ServerOptions {
   std::size_t max_waiting = 64UL << 20U;
   std::vector<std::string> allowed_hosts{};    ///< further names without port, e.g. "car.local"
   std::vector<std::string> allowed_origins{};  ///< pages beside our own, e.g. "https://app.foxglove.dev"
-  /// What a visitor must show who wants to change something, or see something on an address that other
-  /// machines reach (http_response.hpp, docs/reference/security.md); empty: nothing.
+  /// Token of visitors who change something, or who see something on an address that other machines reach
+  /// (http_response.hpp, docs/reference/security.md); empty: none is needed.
   std::string token{};
 };
 
 /// Called on the network thread, one at a time. They must not block. None is called once ~Server has begun.
 struct ServerHandlers {
-  std::function<void(Server&)> on_start{};  ///< before the first connection; may be empty
+  std::function<void(Server&)> on_start{};  ///< called before the first connection; may be empty
   std::function<UpgradeAnswer(const UpgradeRequest&)> on_upgrade{};
   std::function<void(ConnectionId, int endpoint)> on_open{};
   std::function<void(ConnectionId, int endpoint, std::string_view bytes, bool binary)> on_message{};
@@ -93,7 +93,7 @@ struct ServerHandlers {
   std::function<void(std::string_view peer, std::string_view words)> on_refused{};
 };
 
-/// How a message waits for a slow reader.
+/// Queueing of a message for a slow reader.
 enum class Delivery {
   kReliable,  ///< queued in order; a connection whose queue is full is closed
   kNewest,    ///< replaces a waiting message of the same `topic`: slow clients lose frames, we lose nothing

@@ -16,8 +16,8 @@
 #include "chicane/safety/stop_player.hpp"
 
 /// Messages that a controller and a car exchange as ROS 2 programs, and that the topics of ros_messages.hpp
-/// consist of. CDR as there. Each message names its fields once, for both directions. Stamps are nanoseconds
-/// since 1970.
+/// consist of. In CDR. Each message names its fields once, for both directions. Stamps are nanoseconds since
+/// 1970.
 
 namespace chicane::protocol {
 
@@ -31,9 +31,9 @@ void header_fields(auto& archive, auto& message) {
 struct OdometryMessage {
   static constexpr std::string_view kType = "nav_msgs/msg/Odometry";
   std::int64_t stamp = 0;
-  std::string frame{};        ///< of the pose
-  std::string child_frame{};  ///< of the motion
-  model::Pose pose{};         ///< of the child frame
+  std::string frame{};        ///< frame of the pose
+  std::string child_frame{};  ///< frame of the motion
+  model::Pose pose{};         ///< pose of the child frame
   double vx = 0.0;            ///< along the child frame [m/s]
   double vy = 0.0;            ///< across it, left positive [m/s]
   double yaw_rate = 0.0;      ///< [rad/s]
@@ -54,8 +54,8 @@ struct DriveMessage {
   std::int64_t stamp = 0;
   std::string frame{};
   double steer = 0.0;         ///< road-wheel angle, left positive [rad]
-  double speed = 0.0;         ///< wanted [m/s]
-  double acceleration = 0.0;  ///< wanted [m/s²]
+  double speed = 0.0;         ///< requested speed [m/s]
+  double acceleration = 0.0;  ///< requested acceleration [m/s²]
   static void fields(auto& archive, auto& message) {
     header_fields(archive, message);
     archive.template as<float>(message.steer);
@@ -132,7 +132,7 @@ struct PathMessage {
     return true;
   }
 };
-/// Poses along a polyline, each looking at the next point.
+/// Poses along a polyline, each with the direction to the next point.
 [[nodiscard]] PathMessage path_along(std::int64_t stamp, const std::string& frame,
                                      std::span<const Vec2> line);
 
@@ -154,12 +154,12 @@ struct PoseMessage {
 /// sensor_msgs/msg/LaserScan.
 struct ScanMessage {
   static constexpr std::string_view kType = "sensor_msgs/msg/LaserScan";
-  static constexpr std::size_t kCapacity = 100'000;
+  static constexpr std::size_t kCapacity = 100'000;  ///< beams; longer scans are refused
   std::int64_t stamp = 0;
   std::string frame{};
-  double angle_min = 0.0;        ///< of the first beam from the frame's x axis, left positive [rad]
+  double angle_min = 0.0;        ///< angle from the frame's x axis to the first beam, left positive [rad]
   double angle_increment = 0.0;  ///< [rad]
-  double scan_time = 0.0;        ///< between scans [s]
+  double scan_time = 0.0;        ///< time between scans [s]
   double range_min = 0.0;        ///< [m]
   double range_max = 0.0;        ///< [m]
   std::vector<float> ranges{};   ///< [m]
@@ -178,11 +178,11 @@ struct ScanMessage {
 
 /// geometry_msgs/msg/TransformStamped, in the plane.
 struct TransformMessage {
-  static constexpr std::size_t kSmallest = 72;
+  static constexpr std::size_t kSmallest = 72;  ///< [byte]
   std::int64_t stamp = 0;
   std::string frame{};
   std::string child_frame{};
-  model::Pose pose{};  ///< of the child frame
+  model::Pose pose{};  ///< pose of the child frame
   static void fields(auto& archive, auto& message) {
     header_fields(archive, message);
     archive(message.child_frame, message.pose);
@@ -192,7 +192,7 @@ struct TransformMessage {
 /// tf2_msgs/msg/TFMessage.
 struct TransformsMessage {
   static constexpr std::string_view kType = "tf2_msgs/msg/TFMessage";
-  static constexpr std::size_t kCapacity = 100'000;
+  static constexpr std::size_t kCapacity = 100'000;  ///< transforms; longer lists are refused
   std::vector<TransformMessage> transforms{};
   static void fields(auto& archive, auto& message) {
     archive.list(message.transforms, TransformMessage::kSmallest, kCapacity,
@@ -217,12 +217,12 @@ struct BoolMessage {
 /// chicane_msgs/msg/StopPlan: times of the plan are [s] after the stamp.
 struct StopMessage {
   static constexpr std::string_view kType = "chicane_msgs/msg/StopPlan";
-  std::int64_t stamp = 0;  ///< of the odometry that the command answers
+  std::int64_t stamp = 0;  ///< stamp of the odometry that the command answers
   safety::StopPlan stop{};
 };
 template <>
 [[nodiscard]] std::string encode(const StopMessage& message);
-/// None also for a plan with numbers that are not finite, or with times that decrease.
+/// Decoded plan. None if a number is not finite or times decrease.
 template <>
 [[nodiscard]] std::optional<StopMessage> decode(std::string_view bytes);
 
@@ -230,7 +230,7 @@ template <>
 // rmw_cyclonedds sends them: in front of the content stands which client asked, and its number of the
 // request.
 
-/// What a reply repeats of its request.
+/// Fields that a reply repeats from its request.
 struct ServiceCall {
   std::uint64_t client = 0;
   std::int64_t sequence = 0;
@@ -244,7 +244,7 @@ void descriptor_fields(WritingArchive& archive, const foxglove::Parameter& param
 inline constexpr std::size_t kMostParameters = 100'000;
 
 /// rcl_interfaces/srv/GetParameters and DescribeParameters, and ListParameters, whose prefixes these are.
-/// What follows the names is left unread.
+/// Bytes after the names are not read.
 struct NamesRequest {
   ServiceCall call{};
   std::vector<std::string> names{};
@@ -271,7 +271,7 @@ struct SetRequest {
 /// The reply to SetParameters, for each parameter.
 struct SetOutcome {
   bool is_successful = false;
-  std::string reason{};  ///< why not, in a sentence
+  std::string reason{};  ///< reason of a refusal, a sentence
 };
 struct SetReply {
   ServiceCall call{};

@@ -55,13 +55,13 @@ inline std::optional<double> number(std::string_view text, char separator) {
   return text.find('.') == std::string_view::npos ? number(with_point) : std::nullopt;
 }
 
-/// A number as it is meant, finite or not, or its place left empty: the field of a row, never of a header.
+/// Whether a text is a number, finite or not, or an empty field: part of a row, never of a header.
 inline bool stands_for_a_number(std::string_view text) {
   return text.empty() || number(text) || text == "nan" || text == "NaN" || text == "inf" || text == "-inf" ||
          text == "None";
 }
 
-/// "v_mps", "x[m]": a word that may name a column.
+/// Whether a word may name a column: "v_mps", "x[m]".
 inline bool is_name(std::string_view text) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
   const auto may_follow = [&](char c) {
@@ -77,7 +77,7 @@ class CsvLines {
   explicit CsvLines(std::string_view text) : rest_{text} {
     if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
   }
-  /// Nothing behind the last one.
+  /// Next line; none after the last one.
   std::optional<std::string_view> next() {
     if (rest_.empty()) return std::nullopt;
     ++number_;
@@ -86,7 +86,7 @@ class CsvLines {
     rest_.remove_prefix(std::min(rest_.size(), end + (rest_.substr(end, 2) == "\r\n" ? 2U : 1U)));
     return line;
   }
-  /// Of the line that next() gave, from 1.
+  /// Number of the line that next() returned, from 1.
   [[nodiscard]] int number() const noexcept { return number_; }
 
  private:

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Roads from tables of numbers: finds separator, header and columns, and reads the rows. Writes a road as
+// such a table.
 #include "chicane/protocol/track_codec.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +23,7 @@ namespace {
 
 struct Meaning {
   Column column;
-  std::string_view names;  ///< between blanks
+  std::string_view names;  ///< names, separated by blanks
 };
 constexpr std::array kMeanings{
     Meaning{Column::kX, " x_m x x_ref_m x[m] x(m) pos_x position_x easting "},
@@ -114,7 +116,8 @@ class TableReader {
     read_point(trim(line.substr(0, line.find_first_of("#%"))));  // a remark may follow the numbers
   }
 
-  /// Of a line above the first point: the first one without a number in front, and each that names x and y.
+  /// Whether a line above the first point is the header: the first one without a number in front, or any that
+  /// names x and y.
   [[nodiscard]] bool is_header(std::string_view line) const {
     if (names_a_plane(line)) return true;
     const std::vector<std::string_view> values = split(line, separator_of(line));
@@ -192,8 +195,8 @@ class TableReader {
       warn_of_width(rows_.content, rows_.options, line_);
   }
 
-  /// Numbers without a line of names: two columns can hardly be anything but a line of points. What more
-  /// columns are is never guessed: widths, height, speed and heading look alike.
+  /// Handles numbers without a line of names: two columns are a line of points. More columns are never
+  /// guessed: widths, height, speed and heading look alike.
   void assume_header(std::size_t count) {
     if (has_tags_) return read_header("tag,x,y");
     if (!rows_.options.columns.empty()) return read_header(rows_.options.columns);
@@ -220,7 +223,7 @@ class TableReader {
     rows_.add(line_, values, separator_);
   }
 
-  /// A comment that names columns, but not x and y.
+  /// Handles a comment that names columns, but not x and y.
   struct OtherNames {
     int line = 0;
     std::string text;
@@ -234,7 +237,7 @@ class TableReader {
   int line_ = 0;
 };
 
-/// Degrees of latitude and longitude in columns that are taken for metres.
+/// Rejects degrees of latitude and longitude in columns read as metres.
 void check_extent(RoadRows& rows) {
   if (rows.error) return;
   const Vec2& first = rows.content.points.front().position;
@@ -253,7 +256,7 @@ void check_extent(RoadRows& rows) {
                "metres: project the points to a plane first");
 }
 
-/// Headings are always recomputed; a column that counts from elsewhere is worth a word.
+/// Warns if a column of headings has another zero; headings are always recomputed.
 void compare_headings(RoadRows& rows) {
   const std::vector<road::TrackPoint>& points = rows.content.points;
   const std::vector<double>& headings = rows.headings;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Folders of the shipped files, from the places of program and library, and the build ids of both.
 #include "chicane/protocol/data_folders.hpp"
 
 #include <elf.h>
@@ -16,7 +17,7 @@
 #include <sys/auxv.h>
 #endif
 
-// Defined by programs that were compiled with an installation, see data_folders.hpp; null in all others.
+// Symbol of programs that were compiled with an installation, see data_folders.hpp; null in all others.
 extern "C" {
 [[gnu::weak]] extern const char chicane_installed_header[];
 }
@@ -42,8 +43,8 @@ std::string running_program() {
 #endif
 }
 
-/// Where the library is part of the program this is the name that the program was called by, which is a path
-/// only if it has a slash.
+/// In a statically linked program this is the name that it was called by, which is a path only if it has a
+/// slash.
 std::string containing_object() {
 #ifdef __linux__
   Dl_info info{};
@@ -107,7 +108,7 @@ void add_build_id(const char* at, const char* end, std::string& ids) {
   }
 }
 
-/// Of one loaded file; the program comes first.
+/// Adds the build id of one loaded file; the program comes first.
 int add_build_ids(dl_phdr_info* info, std::size_t, void* data) {
   auto& ids = *static_cast<std::string*>(data);
   const bool is_program = ids.empty();

@@ -9,12 +9,12 @@
 
 namespace chicane::protocol {
 
-/// What the search for folders starts from. Empty where it is unknown.
+/// Places from which the search for folders starts; empty if unknown.
 struct DataOrigins {
   std::string environment{};  ///< value of the variable CHICANE_DATA_DIR: a folder with the folder `presets`
   std::string program{};      ///< file of the running program, absolute
   std::string shared_object{};  ///< file of the shared object that contains this library, absolute
-  std::string header{};  ///< this header in the installation that the program was compiled with, absolute
+  std::string header{};         ///< absolute path of this header in the build's installation
 };
 
 /// The origins of this process. Reads the environment and, where the system has it, /proc. Without /proc the
@@ -36,8 +36,8 @@ struct DataOrigins {
 }  // namespace chicane::protocol
 
 #ifdef CHICANE_USES_INSTALLATION
-// Defined by the CMake targets and the .pc files of an installation. A program that includes this header then
-// knows where the installation lies, wherever it was moved to before.
+// Symbol from the CMake targets and .pc files of an installation. A program that includes this header then
+// knows the installation's place, also after it was moved.
 extern "C" {
 [[gnu::used]] inline constexpr char chicane_installed_header[] = __FILE__;
 }

@@ -231,8 +231,8 @@ Result<TrackFile> parse_yaml_cones(std::string_view text, const std::string& fil
 
 bool is_cone(const std::string& tag) { return lower(tag).find("cone") != std::string::npos; }
 
-/// Each cone is an `include` or a `model` whose URI or name has its colour, or a `link` of a whole course
-/// whose mesh has.
+/// Cones of an SDF world: an `include` or `model` whose URI or name has a colour, or a `link` of a whole
+/// course whose mesh has.
 Result<TrackFile> track_of_sdf(const XmlDocument& xml, const TrackReadOptions& options) {
   RoadRows rows = cone_rows(xml.file, options);
   for (const pugi::xml_node pose : xml.find_all("pose")) {
@@ -255,7 +255,7 @@ Result<TrackFile> track_of_sdf(const XmlDocument& xml, const TrackReadOptions& o
 
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{16} << 20U;  // of JSON, which takes many times as much memory
+constexpr std::size_t kMostBytes = std::size_t{16} << 20U;  // limit of a JSON file, whose tree is far larger
 
 /// A member of an object or an element of a list; null where there is none.
 template <typename Key>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Foxglove protocol, server side: reads clients' messages, and writes the server's.
 #include "chicane/protocol/foxglove_codec.hpp"
 
 #include <fmt/format.h>
@@ -14,9 +15,9 @@ namespace {
 constexpr char kMessageData = 1;
 constexpr char kTime = 2;
 constexpr char kServiceResponse = 3;
-constexpr char kServiceRequest = 2;  // from the client
+constexpr char kServiceRequest = 2;  // opcode from the client
 
-/// What a client wrote, short enough to be repeated to it.
+/// Client's text, short enough to be repeated in an answer.
 std::string shown(const Json& value) {
   std::string text = json_text(value, JsonLayout::kAscii);
   if (text.size() > 40) text = text.substr(0, 37) + "...";
@@ -180,7 +181,7 @@ Json to_json(const Parameter& parameter) {
   Json json{{"name", parameter.name}};
   if (const auto* flag = std::get_if<bool>(&parameter.value)) json["value"] = *flag;
   if (const auto* text = std::get_if<std::string>(&parameter.value)) json["value"] = *text;
-  // JSON knows one kind of number: the type tells viewers that 3 may become 3.5.
+  // JSON has one kind of number: the type shows viewers that 3 may become 3.5.
   if (const auto* number = std::get_if<double>(&parameter.value)) {
     json["value"] = *number;
     json["type"] = "float64";
@@ -235,7 +236,7 @@ std::string advertise_services(std::span<const Service> services) {
     list.push_back({{"id", service.id},
                     {"name", service.name},
                     {"type", service.type},
-                    {"requestSchema", service.request_schema},  // what older viewers read
+                    {"requestSchema", service.request_schema},  // field for older viewers
                     {"responseSchema", service.response_schema},
                     {"request", side("_Request", service.request_schema)},
                     {"response", side("_Response", service.response_schema)}});

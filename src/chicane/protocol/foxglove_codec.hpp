@@ -14,7 +14,7 @@
 
 /// The server's side of the Foxglove WebSocket protocol, version 1 (github.com/foxglove/ws-protocol,
 /// docs/spec.md), as pure functions between structs and bytes. Both of its sub-protocol names mean the same
-/// bytes. Who is subscribed to what is the caller's business (wire/viewer.hpp).
+/// bytes. The caller keeps the subscriptions (wire/viewer.hpp).
 namespace chicane::protocol::foxglove {
 
 using ParameterValue = std::variant<std::monostate, bool, double, std::string, std::vector<double>>;
@@ -25,7 +25,7 @@ struct Parameter {
   ParameterValue value;
 };
 
-/// Where the tunables of a run live; implemented by the owner of the run. Called on the network thread.
+/// Storage of a run's settings; implemented by the owner of the run. Called on the network thread.
 class ParameterStore {
  public:
   virtual ~ParameterStore() = default;
@@ -33,13 +33,13 @@ class ParameterStore {
   [[nodiscard]] virtual std::optional<Parameter> get(std::string_view name) const = 0;
   /// Fails with a sentence for the operator ("tracking_mpc.step_length_s: got 3, expected 0.01 to 0.2").
   [[nodiscard]] virtual Result<void> set(const Parameter& parameter) = 0;
-  /// Called at each tick of the viewers: what was begun goes on, such as a run that is being built.
+  /// Continues work under way, such as building another run. Called at each tick of the viewers.
   virtual void update() {}
-  /// What has another value than at the last call, by any client or the program itself.
+  /// Settings that changed since the last call, by any client or the program itself.
   [[nodiscard]] virtual std::vector<Parameter> news() { return {}; }
-  /// Sentences for all operators since the last call: what was accepted and failed afterwards.
+  /// Sentences for all operators since the last call: changes that were accepted and failed later.
   [[nodiscard]] virtual std::vector<std::string> complaints() { return {}; }
-  /// The changes that the run has taken up since the last call.
+  /// Changes that the run has applied since the last call.
   [[nodiscard]] virtual std::vector<telemetry::Change> applied() { return {}; }
 };
 
@@ -76,10 +76,10 @@ struct CallService {
   std::string payload;
 };
 
-/// Our own addition to the protocol, of readers that ask for pacing (wire/viewer.hpp): what was read so far.
+/// Our own addition to the protocol, from readers that ask for pacing (wire/viewer.hpp): amount read so far.
 struct Received {
-  std::uint64_t bytes = 0;  ///< of binary messages, since the connection began
-  double at = 0.0;          ///< by the reader's clock, which gets it back: any finite number
+  std::uint64_t bytes = 0;  ///< binary messages since the connection began [byte]
+  double at = 0.0;          ///< time by the reader's clock, echoed to it: any finite number
 };
 
 using ClientMessage = std::variant<Subscribe, Unsubscribe, GetParameters, SetParameters, SubscribeParameters,
@@ -114,20 +114,20 @@ struct Service {
 
 enum class StatusLevel { kInfo = 0, kWarning = 1, kError = 2 };
 
-/// What a server can do beside sending messages.
+/// Features of a server in addition to sending messages.
 struct Capabilities {
   bool parameters = false;
   bool services = false;
 };
 
-/// `session` changes when a new run begins: viewers then forget what they have drawn.
+/// Greeting of a connection. `session` changes when a new run begins: viewers then drop their drawings.
 [[nodiscard]] std::string server_info(std::string_view name, std::string_view session, Capabilities can);
 [[nodiscard]] std::string advertise(std::span<const Channel> channels);
 [[nodiscard]] std::string advertise_services(std::span<const Service> services);
 [[nodiscard]] std::string status(StatusLevel level, std::string_view message);
-/// The answer to Received: its `at`, and for how long it was held here [s]. The next frame follows.
+/// Answer to Received: its `at`, and the time for which it was held here [s]. The next frame follows.
 [[nodiscard]] std::string heard(double at, double held);
-/// So many messages of the past are still to come on "/chicane/past".
+/// Number of messages of the past that are still to come on "/chicane/past".
 [[nodiscard]] std::string past_left(std::size_t messages);
 [[nodiscard]] std::string parameter_values(std::span<const Parameter> parameters,
                                            const std::optional<std::string>& request = {});

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Fields of a frame as rows: type, name, meaning and value of each, for recordings, ROS and the dashboard.
 #include "chicane/protocol/frame_fields.hpp"
 
 #include <algorithm>
@@ -51,7 +52,7 @@ constexpr FrameConstant constant(std::string_view name, Enum value, std::string_
 
 using ConstantName = std::array<char, 40>;  // ends with a zero
 
-/// "RUNG_" and "guard_stop": "RUNG_GUARD_STOP".
+/// Names of constants: "RUNG_" and "guard_stop" give "RUNG_GUARD_STOP".
 template <class Enum, std::size_t N>
 consteval std::array<ConstantName, N> capital_names(std::string_view prefix,
                                                     const std::array<Word<Enum>, N>& words) {
@@ -78,9 +79,9 @@ constexpr std::array<FrameConstant, N> constants(const std::array<ConstantName, 
   return rows;
 }
 
-/// What only a judge of the road knows: an external simulator tells none of it.
+/// Value that only a judge of the road has; not-a-number with an external simulator.
 double judged(const Frame& frame, double value) { return frame.is_judged ? value : kNaN; }
-/// What only the simulated car knows.
+/// Value that only a simulated car has.
 double simulated(const Frame& frame, double value) { return frame.has_truth ? value : kNaN; }
 
 double speed(const Frame& frame) {

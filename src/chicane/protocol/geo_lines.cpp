@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Roads from lines in geographic coordinates: GPX, KML and OpenStreetMap.
 #include <fmt/format.h>
 
 #include <algorithm>

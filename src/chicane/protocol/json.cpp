@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// JSON texts, and documents for the page that draws results.
 #include "chicane/protocol/json.hpp"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ tl::expected<Json, JsonError> read_json(std::string_view text) {
 
 namespace {
 
-constexpr double kSteps = 1e4;  ///< of an axis, at least
+constexpr double kSteps = 1e4;  ///< least resolution of an axis, in steps
 
 /// Steps per unit, a power of ten, to which the coordinates of an axis, every other of `values`, are rounded.
 double steps_per_unit(const std::vector<double>& values, std::size_t axis) {

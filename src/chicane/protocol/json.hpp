@@ -17,9 +17,9 @@ namespace chicane::protocol {
 using Json = nlohmann::ordered_json;
 
 enum class JsonLayout {
-  kLine,      ///< on one line, without a line break at its end
-  kAscii,     ///< the same with \u escapes in the place of what is not ASCII
-  kIndented,  ///< by two spaces, without a line break at its end
+  kLine,      ///< one line, without a line break at its end
+  kAscii,     ///< one line with \u escapes for non-ASCII characters
+  kIndented,  ///< indented by two spaces, without a line break at its end
 };
 
 /// UTF-8 text of `json`; bytes that are no UTF-8 become U+FFFD. A number that is not finite becomes null.
@@ -29,14 +29,13 @@ enum class JsonLayout {
 [[nodiscard]] Json parse_json(std::string_view text);
 
 struct JsonError {
-  std::optional<std::size_t>
-      byte;  ///< where the text is no JSON, counted from 1; nothing when a number is too large
+  std::optional<std::size_t> byte;  ///< position of the error, from 1; nothing if a number is too large
 };
 
-/// The same for those who say where the text is wrong.
+/// Parses a text; the error names the position of the fault.
 [[nodiscard]] tl::expected<Json, JsonError> read_json(std::string_view text);
 
-/// What a page of results shows, as JSON for the page that draws it (web/src/document): sections of prose,
+/// Contents of a page of results, as JSON for the page that draws it (web/src/document): sections of prose,
 /// tables, grids, charts and maps, in the order in which they are added. Texts are plain; words between
 /// backticks are code.
 ///
@@ -63,8 +62,8 @@ class ReportDocument {
   void begin_chart(std::string_view title, std::string_view x_name);
   void begin_map(std::string_view title, std::string_view x_name);
   /// `draw`: line or dots through x, y, ...; cells x, y, width, height, ...; mark, an upright stroke at each
-  /// x. `tone`: ink for what is, other for what is compared with it, good; soft, faint and paper for grounds.
-  /// Names are in the legend. Values are kept as exactly as a screen shows them.
+  /// x. `tone`: ink for the subject, other for its comparison, good; soft, faint and paper for grounds. Names
+  /// are in the legend. Values are kept as exactly as a screen shows them.
   void add_series(std::string_view draw, std::string_view tone, std::string_view name,
                   const std::vector<double>& values);
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Summaries of runs as JSON for machines and as text for people, and the reading of such JSON.
 #include "chicane/protocol/json_report.hpp"
 
 #include <fmt/format.h>
@@ -54,7 +55,7 @@ Json to_object(const std::vector<road::Corner>& corners) {
   return json;
 }
 
-/// "corners [s]         1 left 10.44   2 right 3.80", three a line.
+/// Times of corners, three a line: "corners [s]         1 left 10.44   2 right 3.80".
 std::string corner_lines(const RunSummary& run, const LapSummary& lap) {
   std::string text;
   for (std::size_t i = 0; i < lap.corner_times.size() && i < run.corners.size(); ++i) {
@@ -137,7 +138,7 @@ Json to_object(const TimeSummary& time) {
       {"p50", 1e6 * time.p50}, {"p99", 1e6 * time.p99}, {"p999", 1e6 * time.p999}, {"max", 1e6 * time.max}};
 }
 
-/// "8.93 8.80 9.14", or "-" for a stretch that was no lap.
+/// Times of sectors: "8.93 8.80 9.14", or "-" for a stretch that was no lap.
 std::string sectors(const LapSummary& lap) {
   const auto& times = lap.sector_times;
   if (!std::isfinite(times[0] + times[1] + times[2])) return "-";
@@ -167,7 +168,7 @@ Json to_object(const std::optional<safety::GuardOptions>& guard) {
   return json;
 }
 
-/// Steps by what the guard found; what it never found is left out.
+/// Count of steps by the guard's findings; findings without steps are left out.
 Json guard_reasons(const telemetry::RunSummary& run) {
   Json reasons = Json::object();
   for (std::size_t i = 1; i < run.guard_reasons.size(); ++i) {
@@ -177,7 +178,7 @@ Json guard_reasons(const telemetry::RunSummary& run) {
   return reasons;
 }
 
-/// Each quantity that was estimated, with its standard deviation; null where none was.
+/// Estimated quantities with their standard deviations; null for any that was not estimated.
 Json to_object(const controller::LearnedCar& learned) {
   Json json = Json::object();
   const auto add = [&](const std::string& name, std::string_view unit, const controller::Estimate& estimate,
@@ -193,8 +194,8 @@ Json to_object(const controller::LearnedCar& learned) {
   return json.empty() ? Json(nullptr) : json;
 }
 
-/// "learned            delay +58 ± 6 ms, ...": two standard deviations; empty unless a run identifies its
-/// car.
+/// Line of learned values: "learned            delay +58 ± 6 ms, ...", with two standard deviations; empty
+/// unless a run identifies its car.
 std::string learned_line(const controller::LearnedCar& learned) {
   if (!std::isfinite(learned.delay.value)) return "";
   std::string text;
@@ -252,7 +253,7 @@ TimeSummary times_of(const Json& json) {
           .max = 1e-6 * number_member(json, "max")};
 }
 
-/// How long it took, and how it ended.
+/// Duration of the run, and the reason of its end.
 std::string outcome(const RunSummary& run) {
   std::string text;
   if (run.wall_time > 0.0) {

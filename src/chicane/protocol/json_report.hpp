@@ -14,11 +14,11 @@ namespace chicane::protocol {
 /// a line break.
 [[nodiscard]] std::string to_json(const telemetry::RunSummary& run);
 
-/// What to_json() wrote, for results of runs in other processes: all but guard, limit, solver and state_hash.
-/// Null is not-a-number. kParse where it is no such object.
+/// Summary from the JSON of to_json(), for results of runs in other processes: all but guard, limit, solver
+/// and state_hash. Null is not-a-number. kParse for any other text.
 [[nodiscard]] Result<telemetry::RunSummary> read_run(std::string_view json);
 
-/// The same for people: one line for each lap, then what the run was like.
+/// Summary for people: one line for each lap, then the run as a whole.
 [[nodiscard]] std::string to_table(const telemetry::RunSummary& run);
 
 /// Names of a run's guard for results, recordings and viewers.

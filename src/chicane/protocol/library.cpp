@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Shipped files by name, and the composition of a scenario: preset, car, track and settings in layers, with
+// every fault of all of them.
 #include "chicane/protocol/library.hpp"
 
 #include <fmt/format.h>
@@ -24,8 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMostBytes = 64U << 20U;
-constexpr std::size_t kMostPresets = 8;  // presets that build on presets
+constexpr std::uintmax_t kMostBytes = 64U << 20U;  // [byte]
+constexpr std::size_t kMostPresets = 8;            // presets that build on presets
 
 struct ShelfNames {
   std::string_view singular, folder;
@@ -67,7 +69,7 @@ bool is_path(std::string_view name) {
   return name.find('/') != std::string_view::npos || !fs::path(name).extension().empty();
 }
 
-/// Where a shelf was looked for, and what helps.
+/// Message for an empty shelf: searched folders, and the remedy.
 std::string nothing_found(Shelf shelf) {
   const std::string_view folder = names(shelf).folder;
   return fmt::format("found no {} in {}; set CHICANE_DATA_DIR to the folder that holds the folder {}", folder,
@@ -122,7 +124,7 @@ Result<Document> read_document(Shelf shelf, const Reference& reference, Remember
   });
 }
 
-/// Of a track only that there is one.
+/// Checks that a track exists; its document has no settings.
 Result<Document> find_track(const Reference& reference, RememberedFiles& files) {
   return files.document(Shelf::kTrack, reference.name, [&]() -> Result<Document> {
     const Result<std::string> file = locate(Shelf::kTrack, reference);
@@ -133,7 +135,7 @@ Result<Document> find_track(const Reference& reference, RememberedFiles& files) 
   });
 }
 
-/// What the last layer that sets `key` wants.
+/// Reference in the last layer that sets `key`.
 Reference last_reference(const std::vector<Document>& layers, std::string_view key,
                          const std::string& otherwise) {
   Reference found{otherwise};
@@ -172,7 +174,7 @@ Document parse_settings(const Request& request, Faults& faults) {
   Document document;
   for (const auto& [key, text] : request.settings) {
     const Parameter* parameter = find(key);
-    if (parameter == nullptr) continue;  // of refuse_unknown()
+    if (parameter == nullptr) continue;  // reported by refuse_unknown()
     scenario::Scenario scratch;
     if (const Result<void> checked = set_text(scratch, key, text); !checked) {
       faults.add(checked.error());
@@ -185,7 +187,7 @@ Document parse_settings(const Request& request, Faults& faults) {
   return document;
 }
 
-/// Settings with a key that there is none of; who drives is known only when all files are read.
+/// Refuses settings with unknown keys. Needs all files: only then the controller is known.
 void refuse_unknown(const Request& request, std::string_view driver, Faults& faults) {
   for (const auto& [key, text] : request.settings) {
     if (find(key) == nullptr)
@@ -193,7 +195,7 @@ void refuse_unknown(const Request& request, std::string_view driver, Faults& fau
   }
 }
 
-/// Settings that were asked for and do nothing: those of controllers that do not drive.
+/// Notes settings without effect: options of controllers that do not drive.
 void note_idle(const Document& asked, scenario::Scenario& scenario) {
   for (const Assignment& assignment : asked.assignments) {
     const Parameter& parameter = *assignment.parameter;
@@ -204,8 +206,8 @@ void note_idle(const Document& asked, scenario::Scenario& scenario) {
   }
 }
 
-/// What the reader of a road's file assumed. The road has the size that its file says: only shipped tracks
-/// follow the scale of the car.
+/// Notes the assumptions of the road's reader. The road has the size in its file: only shipped tracks follow
+/// the scale of the car.
 Result<void> note_track(bool is_asked_for, scenario::Scenario& scenario) {
   const double scale = scenario.vehicle.scale;
   if (!is_path(scenario.track)) {
@@ -417,7 +419,7 @@ Result<scenario::Scenario> compose(const Request& request, RememberedFiles& file
     }
   }
   layers.push_back(std::move(settings));
-  const std::size_t asked = layers.size();  // by the user, apart from presets and car
+  const std::size_t asked = layers.size();  // user's layers, without presets and car
 
   std::vector<Document> presets = read_presets(preset, files, faults);
   layers.insert(layers.begin(), std::make_move_iterator(presets.begin()),

@@ -28,11 +28,12 @@ struct Entry {
 /// All entries of a shelf by name, each name once.
 [[nodiscard]] std::vector<Entry> entries(Shelf shelf);
 
-/// That a shelf has an entry. kNotFound names each folder that was searched: "preset: found no presets in
-/// ./presets, /usr/share/chicane/presets; set CHICANE_DATA_DIR to the folder that holds the folder presets".
+/// Checks that a shelf has an entry. kNotFound names each folder that was searched: "preset: found no presets
+/// in ./presets, /usr/share/chicane/presets; set CHICANE_DATA_DIR to the folder that holds the folder
+/// presets".
 [[nodiscard]] Result<void> check_shelf(Shelf shelf);
 
-/// For names that come over the network: nothing when `name` is one of the shelf's entries, letter for
+/// Checks a name that comes over the network: nothing if `name` is one of the shelf's entries, letter for
 /// letter; kNotFound, "track: got ../x.csv, expected one of lakeside, ...", for everything else, paths
 /// included. Opens no file that it names.
 [[nodiscard]] Result<void> check_name(Shelf shelf, std::string_view name);
@@ -46,12 +47,12 @@ struct Entry {
 /// cannot be read.
 [[nodiscard]] Result<std::string> read_file(const std::string& path);
 
-/// What a user asks for: a scenario file (empty: none) and settings by schema key, in the order given.
+/// Request of a user: a scenario file (empty: none) and settings by schema key, in the order given.
 struct Request {
   std::string scenario_file;
   std::vector<std::pair<std::string, std::string>> settings;
   std::string speed_mps{};            ///< reference of whichever controller drives; empty: its own
-  std::vector<std::string> faults{};  ///< NAME@S+S*X (schema_json.hpp), beside those of the scenario file
+  std::vector<std::string> faults{};  ///< NAME@S+S*X (schema_json.hpp), added to the scenario file's
   std::string speed_mph{};  ///< speed_mps as a user typed it in mph, for messages; empty: it was in m/s
 };
 
@@ -76,7 +77,7 @@ class RememberedFiles {
   std::map<std::pair<Shelf, std::string>, Document> documents_;
 };
 
-/// Does the same as compose(request); reads `files` first, then the disk.
+/// Same as compose(request), but takes files from `files` first, then from disk.
 [[nodiscard]] Result<scenario::Scenario> compose(const Request& request, RememberedFiles& files);
 
 }  // namespace chicane::protocol

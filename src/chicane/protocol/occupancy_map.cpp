@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Occupancy maps of ROS: YAML and image, their cells, and the road in them.
 #include "chicane/protocol/occupancy_map.hpp"
 
 #include <fmt/format.h>
@@ -19,8 +20,8 @@
 namespace chicane::protocol {
 namespace {
 
-/// Maps count from where the robot stood when it began, looking along +x: where that is on the road, it is
-/// the start, and its direction that of the road.
+/// Puts the start at the map's origin, if that is on the road: maps count from the robot's first pose,
+/// looking along +x. The road takes its direction.
 void begin_at_origin(TrackFile& content, const TrackReadOptions& options, double width) {
   const Vec2 origin{};
   double nearest = 1e9;

@@ -18,10 +18,10 @@ namespace {
 constexpr std::string_view kLogRemark = "[log] ";
 constexpr std::string_view kTo = " to ";
 constexpr std::size_t kMostRemarks = 12;
-constexpr std::size_t kLongestRemark = 300;
+constexpr std::size_t kLongestRemark = 300;  // [byte]
 constexpr std::size_t kMostParameters = 200;
 
-/// "  mass_kg: 3.4  # [log] 3.2 to 3.6".
+/// Value in a line of a car file: "  mass_kg: 3.4  # [log] 3.2 to 3.6".
 std::optional<IdentifiedValue> identified_line(std::string_view line) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const std::size_t colon = line.find(": ");
@@ -54,7 +54,7 @@ std::string readable(std::string_view text) {
   return out;
 }
 
-/// What a reader of the road assumed, without the file's name and line.
+/// Assumptions of the road's reader, without the file's name and line.
 std::vector<std::string> notes_of(const std::string& file, const std::vector<std::string>& notices) {
   std::vector<std::string> notes;
   for (const std::string& notice : notices) {

@@ -7,28 +7,28 @@
 
 #include "chicane/scenario/scenario.hpp"
 
-/// Where the car and the road of a run come from, as their files say it: for viewers and recordings.
+/// Origin of a run's car and road, as their files state it: for viewers and recordings.
 namespace chicane::protocol {
 
 /// A parameter of a car file that `chicane identify` wrote, in the unit of its key.
 struct IdentifiedValue {
   std::string key;  ///< "mass_kg"
   double value = 0.0;
-  double low = 0.0;   ///< 95 % interval; not-a-number where the log did not excite it
-  double high = 0.0;  ///< and the value was assumed
+  double low = 0.0;   ///< lower end of the 95 % interval; not-a-number: not excited by the log
+  double high = 0.0;  ///< upper end; not-a-number: the value was assumed
 
   friend bool operator==(const IdentifiedValue&, const IdentifiedValue&) = default;
 };
 
 struct Origin {
   std::vector<std::string> car_notes;       ///< remarks at the head of the car's file, a line each
-  std::vector<IdentifiedValue> identified;  ///< in the file's order; empty where no log was used
+  std::vector<IdentifiedValue> identified;  ///< values in the file's order; empty without a log
   std::string road_kind;                    ///< "occupancy map", "table of points"; empty: not known
   std::vector<std::string> road_notes;      ///< remarks at the head of the road's file, and what its
                                             ///< reader assumed
 };
 
-/// Of the files that `scenario` names. What cannot be read stays empty: the run says what is wrong with it.
+/// Origin by the files that `scenario` names. Unreadable files stay empty: the run itself reports them.
 [[nodiscard]] Origin origin_of(const scenario::Scenario& scenario);
 
 /// The remark behind a parameter of a car file: "[log] 1.02 to 1.18".

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Messages of types of our own, from rows of fields, and the scene with road and car for viewers.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -175,7 +176,7 @@ constexpr auto kRun = [](auto& row, const Frame& /*frame*/, const Run& run) {
   row("track_fit_max_m", "", run.track_fit.most);
 };
 
-/// Of a lap or a sector; not-a-number where there is no limit.
+/// Gap of a lap or a sector to its limit [%]; not-a-number without a limit.
 double gap_percent(double time, double limit) {
   return limit > 0.0 ? 100.0 * lap_time::gap(time, limit) : kNaN;
 }
@@ -254,7 +255,7 @@ void change_rows(auto& row, double time, std::uint64_t cycle, std::string_view n
 
 using StopColumns = std::array<Numbers, 5>;
 
-/// Of the places of `point`, in the order of the columns.
+/// Places in `point`, in the order of the columns.
 auto places_of(auto& point) {
   return std::array{&point.time, &point.distance, &point.speed, &point.command.steer,
                     &point.command.throttle};
@@ -392,7 +393,7 @@ constexpr double kLineWidth = 0.25;    // [m]
 constexpr double kPaintHeight = 0.02;  // above the road [m]
 
 struct Cube {
-  double x, y, z;                // of its middle
+  double x, y, z;                // position of the middle
   double length, width, height;  // [m]
   Colour colour;
 };
@@ -404,10 +405,11 @@ void put_points(CdrWriter& writer, const std::vector<Vec2>& points, double heigh
   for (const Vec2& point : points) writer.put(point.x(), point.y(), height);
 }
 
-/// Until the arrays of primitives: arrows, cubes, spheres, cylinders, lines, triangles, texts, models.
+/// Begins a scene entity, up to its arrays of primitives: arrows, cubes, spheres, cylinders, lines,
+/// triangles, texts, models.
 void begin_entity(CdrWriter& writer, std::string_view frame_id, std::string_view id, bool is_locked) {
   writer.stamp(0.0).text(frame_id).text(id);
-  writer.put(std::int32_t{0}, std::uint32_t{0}, is_locked).count(0);  // for ever, no metadata
+  writer.put(std::int32_t{0}, std::uint32_t{0}, is_locked).count(0);  // lifetime for ever, no metadata
 }
 
 void put_empty(CdrWriter& writer, int arrays) {

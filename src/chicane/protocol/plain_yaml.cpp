@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Reader of a subset of YAML without a library, for the page in the browser.
 #include "chicane/protocol/yaml_tree.hpp"
 
 #include <fmt/format.h>
@@ -100,7 +101,7 @@ class PlainReader {
   int line_ = 0;
   YamlTree tree_;
   std::vector<Open> open_;
-  YamlNode* waiting_ = nullptr;  ///< the value of the last key, where nothing stands behind it
+  YamlNode* waiting_ = nullptr;  ///< value of the last key, if its line has none
 };
 
 }  // namespace

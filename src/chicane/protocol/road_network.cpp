@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Roads in XML, as OpenDRIVE: the reader of elements, and the laying out of reference line and lanes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -86,14 +87,14 @@ namespace {
 using pugi::xml_node;
 
 constexpr double kMostLength = 100e3;  // [m]
-constexpr double kLeastWidth = 0.5;    // of a cross-section [m]
-constexpr double kStep = 0.5;          // between places of a reference line [m]
-constexpr double kSpacing = 2.0;       // between points of the road [m]
-constexpr double kReach = 4.0;         // of the moving average [m]
-constexpr double kMostJump = 0.1;      // between the pieces of a reference line [m]
+constexpr double kLeastWidth = 0.5;    // least width of a cross-section [m]
+constexpr double kStep = 0.5;          // step along a reference line [m]
+constexpr double kSpacing = 2.0;       // spacing of the road's points [m]
+constexpr double kReach = 4.0;         // reach of the moving average [m]
+constexpr double kMostJump = 0.1;      // limit of a jump between pieces of a reference line [m]
 constexpr double kMostKink = 0.05;     // [rad]
 
-// OpenDRIVE: a reference line of lines, arcs, spirals and polynomials, with lanes beside it.
+// OpenDRIVE: a reference line of lines, arcs, spirals and polynomials, with lanes on both sides.
 
 /// a + b s + c s² + d s³ from a place on.
 struct Cubic {
@@ -177,7 +178,7 @@ class Geometry {
         continue;
       }
       samples.emplace_back(at, heading_at(s));
-      constexpr int kParts = 4;  // of a step: Simpson's rule
+      constexpr int kParts = 4;  // parts of a step: Simpson's rule
       for (int part = 0; part < kParts; ++part) {
         const double h = step / kParts, u = s + part * h;
         const double a = heading_at(u), b = heading_at(u + 0.5 * h), c = heading_at(u + h);
@@ -201,7 +202,7 @@ class Geometry {
 
   Vec2 place_{};
   double heading_ = 0.0, length_ = 0.0, begin_ = 0.0, end_ = 0.0;
-  std::optional<Cubic> across_, along_;  ///< of a polynomial; along it s itself where there is only one
+  std::optional<Cubic> across_, along_;  ///< polynomials; without along_ it is s itself
   bool is_normalised_ = false;
 };
 
@@ -226,7 +227,8 @@ std::vector<LaneSection> sections_of(xml_node lanes) {
   return sections;
 }
 
-/// From the outer edge of the rightmost lane that is driven to that of the leftmost one, left positive [m].
+/// Range across the road from the outer edge of the rightmost driven lane to the leftmost one's, left
+/// positive [m].
 std::optional<std::pair<double, double>> driven_at(const std::vector<LaneSection>& sections,
                                                    const std::vector<Cubic>& offsets, double s) {
   const LaneSection* const section = last_at(sections, s);
@@ -311,8 +313,9 @@ void lay_out(const XmlDocument& xml, xml_node road, bool is_forward, RoadRows& r
   }
 }
 
-/// Every kSpacing the mean place within kReach, weighted by a triangle: where an arc meets a straight the
-/// curvature rises along twice the reach, and an arc of radius R moves inwards by kReach² / 12 R. Edges stay.
+/// Smooths a line: every kSpacing the mean place within kReach, weighted by a triangle. Where an arc meets a
+/// straight the curvature rises along twice the reach, and an arc of radius R moves inwards by kReach² / 12
+/// R. Edges stay.
 std::vector<road::TrackPoint> eased(const std::vector<road::TrackPoint>& points, bool closed) {
   const auto n = static_cast<std::ptrdiff_t>(points.size());
   const auto at = [&](std::ptrdiff_t i) -> const Vec2& {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Topics of a run in ROS 2's standard types, their definitions, and the list of all topics.
 #include "chicane/protocol/ros_messages.hpp"
 
 #include <fmt/format.h>
@@ -251,7 +252,7 @@ std::string encode_racing_line(const Frame&, const Run& run) {
   return encode_line(0.0, run, line);
 }
 
-/// "nav_msgs/msg/Odometry" → "nav_msgs/Odometry"
+/// Name without "msg": "nav_msgs/msg/Odometry" → "nav_msgs/Odometry".
 std::string short_name(std::string_view type) {
   std::string name{type};
   if (const auto at = name.find("/msg/"); at != std::string::npos) name.erase(at, 4);
@@ -264,7 +265,7 @@ const OwnMessage* find_own(std::string_view name) {
   return nullptr;
 }
 
-/// Empty text: there is none of that name.
+/// Definition of a type; empty text if there is none of that name.
 RosDefinition definition_of(std::string_view name) {
   if (const OwnMessage* own = find_own(name)) return {own->name, own->definition};
   for (const RosDefinition& each : kRosDefinitions)
@@ -287,7 +288,7 @@ void collect(const RosDefinition& definition, std::vector<RosDefinition>& found)
   }
 }
 
-/// Without `encode` one of our own messages.
+/// Topic; without `encode` one of our own messages.
 RosTopic topic(std::string_view name, std::string_view type, Cadence cadence,
                std::string (*encode)(const Frame&, const Run&) = nullptr) {
   const OwnMessage* own = find_own(short_name(type));
@@ -297,7 +298,7 @@ RosTopic topic(std::string_view name, std::string_view type, Cadence cadence,
 }  // namespace
 
 RoadLines road_lines(const road::Track& track, double spacing) {
-  constexpr double kMaxPoints = 20'000.0;
+  constexpr double kMaxPoints = 20'000.0;  // limit of points in a line
   const road::Path& centre = track.centre();
   const double step = std::max(spacing, centre.length() / kMaxPoints);
   const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(centre.length() / step)));
@@ -379,7 +380,7 @@ std::string encode_service_response(bool success, std::string_view message) {
 }
 
 std::uint64_t to_nanoseconds(double seconds) noexcept {
-  constexpr double kLast = 2147483647.0;
+  constexpr double kLast = 2147483647.0;  // largest time in ROS's int32 [s]
   return static_cast<std::uint64_t>(std::llround(1e9 * std::clamp(or_zero(seconds), 0.0, kLast)));
 }
 
@@ -415,7 +416,7 @@ Type type_of(const Setting& parameter) {
 
 }  // namespace
 
-/// rcl_interfaces/msg/ParameterValue: all kinds of value, of which the first number says the one that holds.
+/// rcl_interfaces/msg/ParameterValue: a field for each kind of value; the first number selects the valid one.
 void value_fields(WritingArchive& archive, const Setting& parameter) {
   const Type type = type_of(parameter);
   const auto* number = std::get_if<double>(&parameter.value);

@@ -37,7 +37,7 @@ struct FrameNames {
   std::string base = "base_link";  ///< middle of the rear axle
 };
 
-/// What is running: everything viewers and logs need that stays the same from frame to frame.
+/// Description of a run: everything viewers and logs need that stays the same from frame to frame.
 struct Run {
   std::string track;
   double track_length = 0.0;  ///< [m], 0 = unknown
@@ -55,30 +55,30 @@ struct Run {
   double kerb_width = 0.0;            ///< [m]
   RoadLines road;
   lap_time::LimitAnswer limit{};
-  telemetry::LapSetup lap_setup{};  ///< of the lap that is reported next
+  telemetry::LapSetup lap_setup{};  ///< setup of the lap that is reported next
   std::string building{};    ///< another run that is being built, in words: "track = oval"; empty: none
-  std::string end{};         ///< "finished", "stopped" or "failed"; empty: it goes on
-  std::string end_reason{};  ///< why it is over, in one sentence; empty when it finished
-  GuardFacts guard{};        ///< what watches over the controller
+  std::string end{};         ///< "finished", "stopped" or "failed"; empty: it is running
+  std::string end_reason{};  ///< reason of the end, one sentence; empty if it finished
+  GuardFacts guard{};        ///< guard over the controller
   FrameNames frames{};
-  std::vector<std::string> notices{};  ///< of the scenario, a sentence each
-  Origin origin{};                     ///< of car and road
-  double track_scale = 1.0;            ///< the road's size over that of its file
-  std::size_t track_points = 0;        ///< in the road's file
-  road::PointFit track_fit{};          ///< of these points
+  std::vector<std::string> notices{};  ///< notices of the scenario, a sentence each
+  Origin origin{};                     ///< origin of car and road
+  double track_scale = 1.0;            ///< size of the road over the size in its file
+  std::size_t track_points = 0;        ///< points in the road's file
+  road::PointFit track_fit{};          ///< fit of the line to these points
 };
 
-/// What a controller says about itself, copied into a run.
+/// Copies a controller's description of itself into a run.
 void describe(const controller::Controller& controller, Run& run);
 
-/// When the content of a topic changes.
+/// Time at which the content of a topic changes.
 enum class Cadence {
-  kFrame,  ///< with each control cycle
-  kRun,    ///< with Run, road excepted
-  kRoad,   ///< with Run::road
-  kLimit,  ///< with Run::limit
-  kLap,    ///< when a lap completes: Frame::completed_lap has another number
-  kEvent,  ///< when something happens that is in no frame; encode is null, see encode_change()
+  kFrame,  ///< each control cycle
+  kRun,    ///< changes of Run, road excepted
+  kRoad,   ///< changes of Run::road
+  kLimit,  ///< changes of Run::limit
+  kLap,    ///< completion of a lap: Frame::completed_lap has another number
+  kEvent,  ///< an event that no frame has; encode is null, see encode_change()
 };
 
 /// One stream of messages of a ROS 2 type, encoded as CDR (XCDR1, little endian, with its four-byte header):
@@ -116,7 +116,7 @@ struct RosTopic {
 [[nodiscard]] std::optional<std::string> decode_ask(std::string_view request);
 [[nodiscard]] std::string encode_service_response(bool success, std::string_view message);
 
-/// Seconds of the run as nanoseconds, clamped to what a ROS 2 time can hold; not-a-number gives 0.
+/// Seconds of the run as nanoseconds, clamped to the range of a ROS 2 time; not-a-number gives 0.
 [[nodiscard]] std::uint64_t to_nanoseconds(double seconds) noexcept;
 
 }  // namespace chicane::protocol

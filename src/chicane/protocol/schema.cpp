@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Table of all settings, their look-up with suggestions, and their reading and writing as text.
 #include "chicane/protocol/schema.hpp"
 
 #include <fmt/format.h>
@@ -120,8 +121,8 @@ bool is_live(const Parameter& parameter) {
                                                       "controller",   "seed",          "control_period_ms",
                                                       "friction_low", "waypoints_sent"};
   return parameter.option.kind != Kind::kText &&  // preset, track, car: names
-         parameter.group != "guard" &&            // what watches over a run is fixed when it starts
-         parameter.group != "plant_params" &&     // and so is the car
+         parameter.group != "guard" &&            // fixed when a run starts
+         parameter.group != "plant_params" &&     // fixed when a run starts, as is the car
          std::find(kWhatRuns.begin(), kWhatRuns.end(), parameter.key) == kWhatRuns.end();
 }
 
@@ -239,7 +240,7 @@ std::string get_text(const Scenario& scenario, const Parameter& parameter) {
   const Option& option = parameter.option;
   if (option.kind != Kind::kNumber) return text_of(value);
   const double number = std::get<double>(value);
-  // What people wrote has few digits: prefer them when they give the same bits inside.
+  // Prefer few digits, as people write them, if they give the same bits.
   const std::string rounded = fmt::format("{:.15g}", number);
   const double read = number_in(rounded).value_or(0.0);
   const Value inside = option.read(owner_of(scenario, parameter));

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// The schema as JSON for the dashboard, the controls of a run, and faults as files and command lines write
+// them.
 #include "chicane/protocol/schema_json.hpp"
 
 #include <fmt/format.h>
@@ -60,7 +62,7 @@ Json entry(std::string_view key, const Option& option, const Value& initial) {
           {"meaning", option.meaning}};
 }
 
-/// Where a fault sits, by what it changes.
+/// Place of a fault in the loop.
 std::string_view place_of(const sim::FaultKind& kind) {
   if (kind.deadline_questions != nullptr) return "computer";
   if (kind.grip != nullptr || kind.side_acceleration != nullptr) return "road";
@@ -78,7 +80,7 @@ Json described(const sim::FaultKind& kind) {
   return json;
 }
 
-/// What ships, and what is chosen now.
+/// Shipped names on a shelf, and the chosen one.
 Json names_on(Shelf shelf, const std::string& chosen) {
   Json names = Json::array();
   for (const Entry& each : entries(shelf)) names.push_back(each.name);

@@ -16,13 +16,13 @@
 
 namespace chicane::protocol {
 
-/// Something to set that exists only while a run goes on, beside the tunables of the schema: pace, a person's
-/// hands, a fault.
+/// Control that exists only during a run, in addition to the schema's settings: pace, manual driving, a
+/// fault.
 struct Control {
   std::string_view key;  ///< "manual.steer"
-  Option option;         ///< its kind, range and meaning; has no field
+  Option option;         ///< kind, range and meaning; has no field
   Value initial = false;
-  const sim::FaultKind* fault = nullptr;  ///< of a switch for a fault; else null
+  const sim::FaultKind* fault = nullptr;  ///< fault that this switches; else null
 };
 
 /// Options of controls: on or off, and a number without a unit.
@@ -36,8 +36,8 @@ struct Control {
 /// The shelf of a setting whose text may name a file: "preset", "car", "track".
 [[nodiscard]] std::optional<Shelf> shelf_of(std::string_view key);
 
-/// What a page needs to draw sliders, as JSON: an array of {"key", "group", "kind": "number" | "integer" |
-/// "bool" | "choice" | "text", "unit", "minimum", "maximum", "may_be_infinite", "choices", "default",
+/// Settings as JSON, for a page that draws sliders: an array of {"key", "group", "kind": "number" | "integer"
+/// | "bool" | "choice" | "text", "unit", "minimum", "maximum", "may_be_infinite", "choices", "default",
 /// "start", "meaning", "is_live", "is_fixed"}, for faults "fault": {"group", "duration_s", "strength",
 /// "weakest", "strongest", "strength_meaning"}, the schema's rows that `is_offered` lets in, then the
 /// controls. `defaults` says what "default" is, `start` with what the run started; controls have no "start".
@@ -46,20 +46,20 @@ struct Control {
                                       const std::function<bool(const Parameter&)>& is_offered,
                                       std::span<const Control> controls);
 
-/// "half_grip@12+5*0.5": half_grip at 12 s, for 5 s, of strength 0.5. Duration and strength may be left out.
-/// kInvalidArgument with what was expected.
+/// Event from "half_grip@12+5*0.5": half_grip at 12 s, for 5 s, of strength 0.5. Duration and strength may be
+/// left out. kInvalidArgument with the expectation.
 [[nodiscard]] Result<sim::FaultEvent> parse_fault(std::string_view text);
 
 /// The value of the switch "fault.half_grip" as an event at 0 s: "true", or "+5*0.5" for a duration of 5 s
-/// and a strength of 0.5, each of which may be left out. kInvalidArgument with what was expected.
+/// and a strength of 0.5, each of which may be left out. kInvalidArgument with the expectation.
 [[nodiscard]] Result<sim::FaultEvent> read_switch(std::string_view name, std::string_view value);
 
-/// What a scenario file says of one fault, as it is written: {name: half_grip, at_s: 12, for_s: 5, strength:
-/// 0.5}. Empty: left out.
+/// One fault of a scenario file, as text: {name: half_grip, at_s: 12, for_s: 5, strength: 0.5}. Empty: left
+/// out.
 struct FaultText {
   std::string name, at, duration, strength;
 };
-/// kInvalidArgument "faults.for_s: got -1, expected a number in [0.001, 1000000]".
+/// Event from its texts. kInvalidArgument "faults.for_s: got -1, expected a number in [0.001, 1000000]".
 [[nodiscard]] Result<sim::FaultEvent> read_fault(const FaultText& text);
 
 /// `{name: half_grip, at_s: 12, for_s: 5, strength: 0.5}`, which reads back into the same bits.
@@ -71,7 +71,8 @@ struct FaultText {
 /// A switch "fault.half_grip" for each, for viewers.
 [[nodiscard]] std::vector<Control> fault_controls();
 
-/// For messages: "one of `chicane list faults`", and the nearest name when a typing mistake explains it.
+/// Expected word for messages: "one of `chicane list faults`", with the nearest name if a typing mistake
+/// explains the word.
 [[nodiscard]] std::string expected_fault(std::string_view word);
 
 }  // namespace chicane::protocol

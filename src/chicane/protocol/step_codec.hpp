@@ -17,15 +17,15 @@ namespace chicane::protocol {
 struct Step {
   std::uint64_t cycle = 0;
   model::Measurement measurement;
-  model::Command command;  ///< as it left the gate
+  model::Command command;  ///< command after the gate
   controller::Rung rung = controller::Rung::kController;
   bool gated = false;
-  double step_time = 0.0;  ///< of the control step [s], wall clock
+  double step_time = 0.0;  ///< duration of the control step [s], wall clock
 
   bool begins = false;                     ///< a run begins: controller and gate have forgotten everything
   bool has_measurement = true;             ///< false: what came was unusable, the controller was not asked
   std::optional<model::Command> manual{};  ///< a person's command, sent in the controller's place
-  double gate_interval = 0.0;              ///< since the command before, by the gate's clock [s]
+  double gate_interval = 0.0;              ///< time since the previous command, by the gate's clock [s]
   std::uint32_t deadline_spent_at = 0;     ///< DeadlineLog::spent_at
 };
 
@@ -36,12 +36,12 @@ inline constexpr std::string_view kStepType = "chicane_msgs/msg/Step";
 
 /// CDR as in ros_messages.hpp. Every double keeps its bits, not-a-number included.
 [[nodiscard]] std::string encode_step(const telemetry::Frame& frame);
-/// None when the bytes are not such a message.
+/// Step from its bytes; none if they are no such message.
 [[nodiscard]] std::optional<Step> decode_step(std::string_view bytes);
 
 /// The channel of the settings that changed during a run (ros_messages.hpp, encode_change()).
 inline constexpr std::string_view kChangeTopic = "/chicane/change";
-/// None when the bytes are not such a message, or hold more than fits.
+/// Change from its bytes; none if they are no such message, or hold more than fits.
 [[nodiscard]] std::optional<telemetry::Change> decode_change(std::string_view bytes);
 
 }  // namespace chicane::protocol

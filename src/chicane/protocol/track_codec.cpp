@@ -24,7 +24,7 @@ constexpr auto kExtensions = [] {
   return extensions;
 }();
 
-/// "points[57]: …" of Track::create with the line of that point in the file.
+/// Message of Track::create, "points[57]: …", with the line of that point in the file.
 std::string with_line(const std::string& message, const TrackFile& content) {
   constexpr std::string_view kPrefix = "points[";
   std::size_t index = 0;

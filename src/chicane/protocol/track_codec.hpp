@@ -16,39 +16,38 @@
 namespace chicane::protocol {
 
 struct TrackReadOptions {
-  double default_left = 4.5;   ///< where a file has no widths [m]; (0, kMaxTrackWidth]
+  double default_left = 4.5;   ///< width in files without widths [m]; (0, kMaxTrackWidth]
   double default_right = 4.5;  ///< [m]; the same
   std::optional<bool> is_closed =
       std::nullopt;  ///< forces it; else the file says it, or the gap from last to first point does
-  /// Size of what is assumed (widths, noise and spacing of the points) over that for a full-size road; the
-  /// file's own lengths stay; (0, 1000].
+  /// Scale of assumed sizes (widths, noise and spacing of the points) over a full-size road's; the file's own
+  /// lengths stay; (0, 1000].
   double scale = 1.0;
 
-  // What `chicane import` asks for.
+  // Direction of driving, as `chicane import` offers it.
   enum class Direction { kOfTheFile, kReversed, kLeft, kRight };
-  Direction direction = Direction::kOfTheFile;  ///< kLeft: a loop to the left, counter-clockwise
-  std::optional<Vec2> start = std::nullopt;     ///< the point nearest to this place comes first [m]
-  std::optional<double> smoothing_sigma =
-      std::nullopt;          ///< in place of what the file says or a reader assumes [m]
-  double least_width = 0.4;  ///< of a map: narrower passages are no road [m]; > 0
-  std::string columns = {};  ///< "x_m,y_m,skip": names for a table that has none
+  Direction direction = Direction::kOfTheFile;           ///< kLeft: a loop to the left, counter-clockwise
+  std::optional<Vec2> start = std::nullopt;              ///< the point nearest to this place comes first [m]
+  std::optional<double> smoothing_sigma = std::nullopt;  ///< replaces the file's or the reader's value [m]
+  double least_width = 0.4;                              ///< least width of a map's road [m]; > 0
+  std::string columns = {};                              ///< "x_m,y_m,skip": names for a table that has none
 };
 
-/// What a file holds, before it becomes a road.
+/// Content of a road's file before it becomes a road.
 struct TrackFile {
-  std::string file;                      ///< for messages
+  std::string file;                      ///< name for messages
   std::vector<road::TrackPoint> points;  ///< a closing copy of the first point is taken away
-  std::vector<int> lines;                ///< of each point in the file, from 1
+  std::vector<int> lines;                ///< line of each point in the file, from 1
   bool is_closed = true;
-  road::TrackOptions options;         ///< what the file says of them, else the defaults
-  double scale = 1.0;                 ///< as TrackReadOptions has it
+  road::TrackOptions options;         ///< options in the file, else the defaults
+  double scale = 1.0;                 ///< scale of TrackReadOptions
   std::vector<std::string> warnings;  ///< "file:line: column: what was assumed or ignored"
 };
 
-inline constexpr double kMaxTrackWidth = 1000.0;  ///< to one side [m]
+inline constexpr double kMaxTrackWidth = 1000.0;  ///< limit to one side [m]
 inline constexpr double kMaxTrackScale = 1000.0;
 inline constexpr std::size_t kMaxTrackPoints = 1'000'000;
-inline constexpr std::size_t kMaxTrackBytes = std::size_t{64} << 20U;
+inline constexpr std::size_t kMaxTrackBytes = std::size_t{64} << 20U;  // [byte]
 
 /// A kind of file that roads are read from, by the end of its name.
 struct TrackFormat {
@@ -57,7 +56,7 @@ struct TrackFormat {
   /// message "tracks/x.csv:14: w_tr_left_m: got -4, expected a width > 0 and <= 1000 m".
   Result<TrackFile> (*parse)(std::string_view text, const std::string& file,
                              const TrackReadOptions& options) = nullptr;
-  /// Whether a file is of this format by its content; nullptr where only its name tells.
+  /// Recognises a file of this format by its content; nullptr if only the name shows it.
   bool (*recognises)(std::string_view text) noexcept = nullptr;
 };
 
@@ -71,8 +70,8 @@ struct TrackFormat {
 /// Whether a format of other programs recognises the text.
 [[nodiscard]] bool is_foreign_track(std::string_view text) noexcept;
 
-/// What the file's format makes of the text: the format that recognises its content, else that of its name,
-/// else the first one.
+/// Road by the file's format: the first format that recognises the content, else the one of its name, else
+/// the first in the list.
 [[nodiscard]] Result<TrackFile> parse_track(std::string_view text, const std::string& file,
                                             const TrackReadOptions& options = {});
 
@@ -87,9 +86,9 @@ struct TrackFormat {
 // TUM race lines `s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2` with or without widths. Columns are
 // found by name.
 
-/// What TrackFormat::parse describes. Numbers have a decimal point in every locale; `;`, `,`, tab or blanks
-/// separate them; CRLF, a byte-order mark, blank lines and comments behind `#` or `%` are fine. Nothing is
-/// guessed but that two columns without names are x and y.
+/// Parser of a table of points, as TrackFormat::parse. Numbers have a decimal point in every locale; `;`,
+/// `,`, tab or blanks separate them; CRLF, a byte-order mark, blank lines and comments behind `#` or `%` are
+/// fine. Nothing is guessed but that two columns without names are x and y.
 [[nodiscard]] Result<TrackFile> parse_csv_track(std::string_view text, const std::string& file,
                                                 const TrackReadOptions& options);
 
@@ -99,16 +98,16 @@ struct TrackFormat {
 
 inline constexpr TrackFormat kCsvTrack{".csv", &parse_csv_track};
 
-// Roads as other programs keep them (docs/tracks.md), each recognised by its content. What a file cannot
-// tell is assumed, and said in TrackFile::warnings with the option of `chicane import` that sets it.
+// Roads as other programs keep them (docs/tracks.md), each recognised by its content. Values that a file
+// lacks are assumed, and named in TrackFile::warnings with the option of `chicane import` that sets them.
 
 /// All of them; the first that recognises a text reads it.
 [[nodiscard]] std::span<const TrackFormat> foreign_tracks() noexcept;
 
-/// What a file of a road is, by its content: "occupancy map", "GPX", "cones", "table of points".
+/// Kind of a road's file, by its content: "occupancy map", "GPX", "cones", "table of points".
 [[nodiscard]] std::string_view road_kind(std::string_view text) noexcept;
 
-/// ROS's map_server: free space of a map with walls. The image is read from beside the file.
+/// ROS's map_server: free space of a map with walls. The image is read from the file's folder.
 [[nodiscard]] Result<TrackFile> parse_map_track(std::string_view text, const std::string& file,
                                                 const TrackReadOptions& options);
 /// Cones in CSV: rows of x, y and a colour.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// The Udacity simulator's messages: parses telemetry and commands with a fault for each bad field, and writes
+// them as the original does.
 #include "chicane/protocol/udacity_codec.hpp"
 
 #include <algorithm>
@@ -21,10 +23,9 @@ namespace {
 constexpr double kSteerUnit =
     degrees_to_radians(25.0);                 // wheel angle at ±1 (CarController.cs, m_MaximumSteerAngle)
 constexpr double kMilesPerHour = 2.23693629;  // CarController.cs, CurrentSpeed
-constexpr std::size_t kMaxWords = 80;         // of received text in our messages [byte]
+constexpr std::size_t kMaxWords = 80;         // limit of received text in our messages [byte]
 
-/// What is allowed for a number of the telemetry, on the wire. Wide enough for any world, narrow enough for
-/// arithmetic.
+/// Allowed range of a number in telemetry: wide enough for any world, narrow enough for arithmetic.
 struct Range {
   double low;
   double high;
@@ -35,7 +36,7 @@ constexpr Range kSpeed{0.0, 1e3};      // [mph]
 constexpr Range kSteer{-1.6, 1.6};     // [rad]
 constexpr Range kThrottle{-1.0, 1.0};
 
-/// And for the numbers of a point of a stop plan: after_s, distance_m, speed_mps, steering_angle, throttle.
+/// Allowed ranges of a stop plan's point: after_s, distance_m, speed_mps, steering_angle, throttle.
 constexpr std::array<Range, 5> kStopPoint{
     Range{0.0, 60.0}, {0.0, 1e4}, {0.0, 450.0}, {-1.0, 1.0}, {-1.0, 1.0}};
 constexpr Range kStopBegins{0.0, 5.0};  // [s] later is no stop
@@ -69,14 +70,14 @@ bool has_decimal_comma(std::string_view text) {
   return false;
 }
 
-/// Where a text that is no JSON has a word in a number's place: "speed: got NaN", "ptsx[1]: got Infinity".
-/// Empty where it has none.
+/// Word that a malformed JSON text has in place of a number: "speed: got NaN", "ptsx[1]: got Infinity". Empty
+/// if it has none.
 std::string bare_word(std::string_view text) {
   static constexpr std::array<std::string_view, 9> kWords{"NaN", "nan",       "Infinity", "infinity", "Inf",
                                                           "inf", "undefined", "None",     "Nan"};
   std::string key;
   std::string last_text;
-  int index = -1;  // in an array of numbers
+  int index = -1;  // index in an array of numbers
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (c == '"') {
@@ -219,7 +220,7 @@ class FieldReader {
   std::vector<Vec2> line(const char* x_key, const char* y_key, const Range& range) {
     std::vector<Vec2> points;
     const Json* xs = find(x_key);
-    if (xs == nullptr || !xs->is_structured() || xs->empty()) return points;  // then *_y is not looked at
+    if (xs == nullptr || !xs->is_structured() || xs->empty()) return points;  // *_y is not read then
     const Json* ys = find(y_key);
     if (ys == nullptr) return points;
     const std::size_t size = ys->is_structured() ? ys->size() : 0;
@@ -375,7 +376,7 @@ std::string encode_stop(const safety::StopPlan& stop, double sampled) {
     const safety::StopPoint& point = stop.points[static_cast<std::size_t>(i)];
     const std::array numbers{point.time - sampled, point.distance, point.speed,
                              -point.command.steer / kSteerUnit, point.command.throttle};
-    constexpr std::array kUnits{1e-3, 1e-3, 1e-3, 1e-4, 1e-4};
+    constexpr std::array kUnits{1e-3, 1e-3, 1e-3, 1e-4, 1e-4};  // resolution of each column
     text += k == 0 ? "[" : ",[";
     for (std::size_t n = 0; n < numbers.size(); ++n) {
       if (!std::isfinite(numbers[n])) return {};
@@ -387,13 +388,13 @@ std::string encode_stop(const safety::StopPlan& stop, double sampled) {
   return text.empty() ? text : fmt::format(R"("stop_plan":[{}],)", text);
 }
 
-/// In [0, 2π), as the original sends angles.
+/// Angle in [0, 2π), as the original sends angles.
 double full_turn(double angle) {
   const double wrapped = wrap_angle(angle);
   return wrapped < 0.0 ? wrapped + kTwoPi : wrapped;
 }
 
-/// As C# prints a float: at most 7 significant digits.
+/// Number as C# prints a float: at most 7 significant digits.
 std::string as_float(double value) { return fmt::format("{:.7G}", static_cast<float>(value + 0.0)); }
 
 }  // namespace

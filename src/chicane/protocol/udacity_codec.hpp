@@ -22,7 +22,7 @@ inline constexpr std::size_t kMaxUdacityMessage = 65536;  ///< longer texts are 
 inline constexpr int kMaxUdacityLine = 25;  ///< points drawn for one line: each costs the original frame time
 inline constexpr int kMaxUdacityStop = 64;  ///< points of a stop plan
 
-/// In the query of its request a simulator says with this that it plays stop plans.
+/// Query item of a simulator that plays stop plans.
 inline constexpr std::string_view kStopPlanItem = "stop_plan=1";
 
 /// `null` instead of data: a person drives by keyboard.
@@ -51,7 +51,7 @@ struct UdacityBroken {
   bool is_event = true;  ///< false: not even an event (`42…`), so no answer is expected
 };
 
-/// From the simulator. The measurement lacks `delay`, which the receiver knows, and `time`, unless
+/// Message from the simulator. The measurement lacks `delay`, which the receiver knows, and `time`, unless
 /// `time_field` names the field that carries the simulator's time [s]. Waypoints may be 0 to 32.
 using UdacityTelemetry =
     std::variant<model::Measurement, UdacityManual, UdacityPacket, UdacityForeign, UdacityBroken>;
@@ -68,20 +68,20 @@ using UdacityTelemetry =
                                        double sampled = 0.0);
 [[nodiscard]] std::string encode_manual();
 
-/// From the controller: what the simulator makes of it.
+/// Command from the controller, as the simulator reads it.
 struct UdacitySteer {
   model::Command command;         ///< clamped as the simulator does: |steer| <= 25°, throttle in [-1, 1]
   std::vector<Vec2> plan{};       ///< mpc_*, in B at receipt [m]
   std::vector<Vec2> reference{};  ///< next_*, in B at receipt [m]
-  safety::StopPlan stop{};  ///< its times [s] count from when the telemetry was sampled; size 0: none came
-  /// What was clamped, in words: "steering_angle: got 12.5, expected a number in [-1, 1]"; empty: nothing.
+  safety::StopPlan stop{};        ///< times [s] count from the sampling of the telemetry; size 0: none came
+  /// Clamped field in words: "steering_angle: got 12.5, expected a number in [-1, 1]"; empty: none.
   std::string clamped{};
 };
 using UdacityReply = std::variant<UdacitySteer, UdacityManual, UdacityPacket, UdacityBroken>;
 [[nodiscard]] UdacityReply parse_reply(std::string_view text);
 
-/// What the simulator sends: numbers as its C# prints floats (7 significant digits), keys in its order, no
-/// blanks.
+/// Telemetry as the simulator sends it: numbers as its C# prints floats (7 significant digits), keys in its
+/// order, no blanks.
 [[nodiscard]] std::string encode_telemetry(const model::Measurement& measurement);
 [[nodiscard]] std::string encode_manual_telemetry();
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// YAML settings: reads a file into a Document with all its faults, applies layers of documents to a scenario,
+// and writes scenarios and presets back.
 #include "chicane/protocol/yaml_codec.hpp"
 
 #include <fmt/format.h>
@@ -13,10 +15,10 @@
 namespace chicane::protocol {
 namespace {
 
-constexpr int kMostNodes = 10000;  // counted with aliases followed
+constexpr int kMostNodes = 10000;  // limit of settings in a file, aliases followed
 constexpr int kMostDepth = static_cast<int>(YamlTree::kMostDepth);
 
-/// "name, about or keep".
+/// Words as a list: "name, about or keep".
 std::string alternatives(const std::vector<std::string_view>& words) {
   std::string text(words.front());
   for (std::size_t i = 1; i < words.size(); ++i)
@@ -127,7 +129,7 @@ class Reader : private YamlReader {
   }
 
   Document document_;
-  std::map<std::string, int> lines_;  // where each key was first seen
+  std::map<std::string, int> lines_;  // line on which each key was first seen
   int nodes_ = 0;
 };
 
@@ -143,7 +145,7 @@ std::string yaml_text(const Parameter& parameter, const scenario::Scenario& scen
   return fmt::format("\"{}\"", escaped);
 }
 
-/// The settings that `wants` lets in, group by group, under a comment.
+/// Writes the settings that `wants` accepts, group by group, below a comment.
 template <class Wants>
 std::string write(const scenario::Scenario& scenario, std::string_view description, Wants wants) {
   std::string text = fmt::format("# {}\n", description);
@@ -167,7 +169,8 @@ std::string write_faults(const scenario::Scenario& scenario) {
   return text;
 }
 
-/// Of a plant with parameters the model follows from them; what is set of it replaces that.
+/// Derives the vehicle model from the plant's parameters, if the plant has any. Settings of the vehicle are
+/// applied afterwards and replace derived values.
 void derive_model(std::span<const Document> layers, scenario::Scenario& scenario) {
   scenario::Scenario plant = scenario;
   for (const Document& layer : layers) {
@@ -182,7 +185,7 @@ void derive_model(std::span<const Document> layers, scenario::Scenario& scenario
     scenario.vehicle = sim::model_of(plant.plant_params, scenario.vehicle);
 }
 
-/// The settings that need no words: the defaults, and the model that follows from the plant.
+/// Scenario of the settings that a file need not name: defaults, and the model derived from the plant.
 scenario::Scenario silent(const scenario::Scenario& of) {
   scenario::Scenario silent;
   if (of.plant == sim::DoubleTrack::kName) silent.vehicle = sim::model_of(of.plant_params, silent.vehicle);
@@ -308,6 +311,7 @@ Result<void> apply_layers(std::span<const Document> layers, scenario::Scenario& 
     }
     if (layer.faults) changed.faults = *layer.faults;
   }
+  // Contradictions are reported where their key was set.
   for (const Contradiction& contradiction : contradictions(changed)) {
     std::string where = places[contradiction.key];
     if (where.empty()) where = layers.empty() ? "" : place(layers.back().file, 0);

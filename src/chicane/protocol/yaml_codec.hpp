@@ -16,14 +16,14 @@
 
 namespace chicane::protocol {
 
-/// "presets/x.yaml:7: ", "presets/x.yaml: " without a line, nothing without a file.
+/// Place for messages: "presets/x.yaml:7: ", "presets/x.yaml: " without a line, nothing without a file.
 [[nodiscard]] std::string place(const std::string& file, int line);
 
-/// For messages: "a map", "a list", "nothing", or the text, which stands in quotes where the file has it so.
+/// Node for messages: "a map", "a list", "nothing", or its text, quoted as in the file.
 [[nodiscard]] std::string shown(const YamlNode& node);
 
-/// Reads the nodes of one file by tables of keys. What does not fit is a fault, "FILE:LINE: KEY: got X,
-/// expected Y"; reading goes on, and all faults, at most kMostFaults, make one error.
+/// Reads the nodes of one file by tables of keys. A mismatch is a fault, "FILE:LINE: KEY: got X, expected Y";
+/// reading continues, and all faults, at most kMostFaults, make one error.
 class YamlReader {
  public:
   static constexpr std::size_t kMostFaults = 50;
@@ -43,7 +43,7 @@ class YamlReader {
   void fault(int line, std::string_view key, std::string_view what);
   /// `error` has the key in its message.
   void fault(int line, const Error& error);
-  /// "got NODE, expected EXPECTED" on the node's line.
+  /// Adds the fault "got NODE, expected EXPECTED" on the node's line.
   void refuse(const YamlNode& node, std::string_view key, std::string_view expected);
   /// The same of an entry's value, on the line of its key.
   void refuse(const YamlEntry& entry, std::string_view expected);
@@ -52,8 +52,8 @@ class YamlReader {
   /// All faults, a line each; kParse.
   [[nodiscard]] Error error() const;
 
-  /// Each key of a map by its row, at most once. Faults: no map ("expected EXPECTED"), a key that comes
-  /// twice, a key without a row unless those are ignored. `name`: of the map, for messages. False after a
+  /// Reads each key of a map by its row, at most once. Faults: no map ("expected EXPECTED"), a repeated key,
+  /// a key without a row unless such keys are ignored. `name`: name of the map for messages. False after a
   /// fault.
   bool read_map(const YamlNode& node, std::string_view name, std::string_view expected,
                 const std::vector<Key>& keys, Others others = Others::kRefused);
@@ -78,15 +78,15 @@ class YamlReader {
 struct Assignment {
   const Parameter* parameter = nullptr;
   Value value;
-  int line = 0;  ///< from 1; 0 = not from a file
+  int line = 0;  ///< line from 1; 0 = not from a file
 };
 
 /// The settings of one preset, scenario or car file: every value checked by itself, nothing applied yet.
 struct Document {
-  std::string file;  ///< for messages; empty for settings from the command line
+  std::string file;  ///< name for messages; empty for settings from the command line
   std::optional<std::vector<sim::FaultEvent>> faults;  ///< the file's `faults:`, which replace earlier ones
   std::optional<std::string> preset;  ///< the file's `preset:`, whose settings come before its own
-  int preset_line = 0;                ///< where it stands, as Assignment::line
+  int preset_line = 0;                ///< line of the preset, as Assignment::line
   std::vector<Assignment> assignments;
 };
 
@@ -112,8 +112,8 @@ struct Document {
 [[nodiscard]] std::string write_document(const scenario::Scenario& scenario, std::string_view description,
                                          bool is_whole = false);
 
-/// The same for a preset that builds on `scenario.preset`: the settings in which `scenario` differs from
-/// `base`, which is what that preset gives with the scenario's car; beside them the car and the track.
+/// Writes a preset that builds on `scenario.preset`: the settings in which `scenario` differs from `base`,
+/// the result of that preset with the scenario's car; then the car and the track.
 [[nodiscard]] std::string write_preset(const scenario::Scenario& scenario, const scenario::Scenario& base,
                                        std::string_view description);
 

@@ -17,9 +17,9 @@ namespace {
 
 using Kind = YamlNode::Kind;
 
-constexpr std::size_t kMostBytes = 256U << 10U;
+constexpr std::size_t kMostBytes = 256U << 10U;  // [byte]
 
-/// What must hold for the bytes before a YAML parser sees them.
+/// Checks on the bytes before a YAML parser gets them.
 Result<void> check_bytes(std::string_view text, const std::string& file) {
   if (text.size() > kMostBytes) {
     return fail(ErrorCode::kParse,
@@ -46,7 +46,7 @@ Result<void> check_bytes(std::string_view text, const std::string& file) {
   return {};
 }
 
-/// Thrown to end the parser from within an event, and caught by parse_yaml().
+/// Exception that ends the parser from within an event; parse_yaml() catches it.
 struct Refusal {
   int line;
   std::string what;
@@ -131,7 +131,7 @@ class TreeBuilder final : public YAML::EventHandler {
     note(open_.back().anchor, open_.back().node);
     open_.pop_back();
   }
-  /// Complete from now on: an alias inside would make a circle.
+  /// Registers a complete node: an alias inside it would make a circle.
   void note(YAML::anchor_t anchor, const YamlNode* node) {
     if (anchor != 0) anchors_[anchor] = node;
   }

@@ -19,15 +19,15 @@ struct YamlNode {
   enum class Kind : std::uint8_t { kNothing, kScalar, kList, kMap };
 
   Kind kind = Kind::kNothing;
-  int line = 1;      ///< where it begins, from 1
-  std::string text;  ///< of a scalar
+  int line = 1;      ///< line on which it begins, from 1
+  std::string text;  ///< text of a scalar
   std::string tag;   ///< "?" for a plain scalar, "!" for one in quotes, else the tag that was written
-  std::vector<const YamlNode*> children;  ///< of a list; of a map: key, value, key, value, …
+  std::vector<const YamlNode*> children;  ///< items of a list; of a map: key, value, key, value, …
 
   [[nodiscard]] bool is_scalar() const { return kind == Kind::kScalar; }
   [[nodiscard]] bool is_list() const { return kind == Kind::kList; }
   [[nodiscard]] bool is_map() const { return kind == Kind::kMap; }
-  /// Of a map, as written: keys may come twice.
+  /// Entries of a map in written order: keys may repeat.
   [[nodiscard]] std::vector<YamlEntry> entries() const;
 };
 
@@ -44,10 +44,9 @@ inline std::vector<YamlEntry> YamlNode::entries() const {
   return all;
 }
 
-/// The nodes of one document. An alias is the node it stands for: those who walk over a tree count their
-/// steps.
+/// The nodes of one document. An alias is the node it refers to, so that walkers must count their steps.
 struct YamlTree {
-  /// In one document, aliases included, before they are followed.
+  /// Limit of nodes in one document, aliases not followed.
   static constexpr std::size_t kMostNodes = 50000;
   static constexpr std::size_t kMostDepth = 8;
 
@@ -58,10 +57,10 @@ struct YamlTree {
 /// Parses one document of at most 256 KiB event by event: memory and time are proportional to the text and
 /// end at the limits above (docs/decisions/0016-yaml-by-events.md). kParse, "FILE:LINE: …", for text that is
 /// not YAML or not UTF-8, indented by tabs, several documents, deeper nesting, more nodes, an alias of
-/// nothing or of what it is part of.
+/// nothing or of its own parent.
 [[nodiscard]] Result<YamlTree> parse_yaml(std::string_view text, const std::string& file);
 
-/// Parses what the shipped presets and cars are written in: maps of plain scalars, nested by spaces, with
+/// Parses the subset of YAML in shipped presets and cars: maps of plain scalars, nested by spaces, with
 /// comments. Gives the tree that parse_yaml() gives. For builds without yaml-cpp (apps/page): its files are
 /// our own, so that this is a check and no defence. kParse, "FILE:LINE: ...", for everything else that YAML
 /// has: lists, quotes, braces, tags, anchors, several documents, tabs.

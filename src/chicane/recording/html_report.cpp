@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Report page: recordings thinned to what a screen shows, as one JSON document inside the bundle of the web
+// viewer.
 #include "chicane/recording/html_report.hpp"
 
 #include <fmt/format.h>
@@ -24,12 +26,13 @@ using protocol::Json;
 using namespace std::string_view_literals;
 
 constexpr std::array kRates{20.0, 10.0, 5.0, 2.0, 1.0};  // [Hz]
-// Significant digits: of whole messages, whose lap times are rounded again to be read, and of what is drawn.
+// Significant digits: of whole messages, whose lap times are rounded again for display, and of drawn values.
 constexpr int kExact = 9, kDrawn = 6;
 
 // Messages that are in the page as they are.
 constexpr std::array kWhole{"/chicane/run"sv, "/chicane/lap"sv, "/chicane/change"sv, "/chicane/limit"sv};
-// Of control steps: what is drawn along a lap, and what ends a stretch that may be thinned.
+// Columns of control steps: values drawn along a lap, and values whose change ends a stretch that may be
+// thinned.
 constexpr std::array<const char*, 22> kColumns{"time_s",
                                                "lap",
                                                "lap_time_s",
@@ -220,7 +223,7 @@ Result<Json> json_of(const ReportedLog& log, double rate) {
   return Json{{"name", log.name}, {"settings", settings}, {"runs", runs.take()}};
 }
 
-/// What the page reads; empty where it is too large.
+/// JSON document of the page; empty if it is too large.
 Result<std::string> document_of(const ReportOptions& options, double rate) {
   Json logs = Json::array();
   for (const ReportedLog& log : options.logs) {

@@ -12,7 +12,7 @@ namespace chicane::recording {
 
 /// A recording in a report.
 struct ReportedLog {
-  std::string name;  ///< for people
+  std::string name;  ///< name for people
   std::string file;
 };
 
@@ -24,14 +24,14 @@ struct ReportBundle {
 
 /// Everything of a report that is not a log.
 struct ReportOptions {
-  std::string output;  ///< written anew; an older file of that name is replaced when all is done
+  std::string output;  ///< name of the page; an existing file is replaced at the end
   std::vector<ReportedLog> logs;
   ReportBundle bundle;                              ///< live::document_bundle()
-  std::size_t most_bytes = std::size_t{16} << 20U;  ///< of all recordings in the page
+  std::size_t most_bytes = std::size_t{16} << 20U;  ///< limit of all recordings in the page
 };
 
 struct ReportSummary {
-  std::size_t bytes = 0;  ///< of the file
+  std::size_t bytes = 0;  ///< size of the file
   double rate = 0.0;  ///< control steps per second that were kept, beside those where something changes [Hz]
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Pictures of a drive: the road, the car and its ghost on a canvas, with a text of speed, times and gaps.
 #include "chicane/recording/lap_picture.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +18,7 @@ namespace chicane::recording {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kMostMoments = 4'000'000;
+constexpr std::size_t kMostMoments = 4'000'000;  // limit of control steps read
 
 std::vector<Vec2> points_of(const RosContent& message, std::string_view x, std::string_view y) {
   const std::vector<double>& xs = message.list(x);
@@ -53,7 +54,7 @@ class RunReader {
   void add_frame(const RosContent& frame) {
     DrivenMoment moment;
     moment.time = frame.number("time_s");
-    // Another run of the same recording begins: only the last one is kept.
+    // A time that falls begins another run of the same recording: keep only the last one.
     if (!run_.moments.empty() && moment.time < run_.moments.back().time) {
       run_.moments.clear();
       run_.last_lap = 0;
@@ -139,13 +140,13 @@ Colour between(const Colour& a, const Colour& b, double share) {
   return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue)};
 }
 
-/// Red where the plan is slow, green where it is fast.
+/// Colour of a speed: red where the plan is slow, green where it is fast.
 Colour of_speed(double share) {
   constexpr Colour kSlow{240, 80, 90}, kMiddle{250, 210, 80}, kFast{70, 220, 170};
   return share < 0.5 ? between(kSlow, kMiddle, 2.0 * share) : between(kMiddle, kFast, 2.0 * share - 1.0);
 }
 
-/// Between two moments; what is no number is that of the first.
+/// Moment between two others, interpolated; a value that is no number in both is taken from the first.
 DrivenMoment moment_at(const std::vector<DrivenMoment>& moments, double time) {
   const double begin = moments.front().time;
   const auto next = std::upper_bound(moments.begin(), moments.end(), begin + time,
@@ -163,7 +164,7 @@ DrivenMoment moment_at(const std::vector<DrivenMoment>& moments, double time) {
   return moment;
 }
 
-/// When a run was at `s` first, after its beginning; none when it was not.
+/// First time after the start at which a run was at `s`; none if it never was.
 std::optional<double> time_at_place(const std::vector<DrivenMoment>& moments, double s, int lap) {
   for (std::size_t i = 0; i + 1 < moments.size(); ++i) {
     const DrivenMoment &a = moments[i], &b = moments[i + 1];
@@ -243,7 +244,7 @@ void LapPicture::draw_road(const Camera& camera, double edge) {
 }
 
 void LapPicture::draw_car(const Camera& camera, const DrivenMoment& moment, const Colour& colour) {
-  const double smallest = 9.0;  // of a car on a picture of the whole road [px]
+  const double smallest = 9.0;  // least size of a car on a picture of the whole road [px]
   const double grown = std::max(1.0, smallest / (camera.scale * (run_.front + run_.rear)));
   const Vec2 ahead{cos(moment.heading), sin(moment.heading)};
   const Vec2 across{-ahead.y(), ahead.x()};

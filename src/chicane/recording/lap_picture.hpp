@@ -13,16 +13,16 @@ namespace chicane::recording {
 
 /// One control step of a recording, as a picture needs it.
 struct DrivenMoment {
-  double time = 0.0;           ///< of the run [s]
-  Vec2 position{};             ///< of the centre of mass in W [m]
+  double time = 0.0;           ///< time of the run [s]
+  Vec2 position{};             ///< position of the centre of mass in W [m]
   double heading = 0.0;        ///< [rad]
   double speed = 0.0;          ///< [m/s]
-  double steer = 0.0;          ///< of the road wheels, sent [rad], left positive
+  double steer = 0.0;          ///< sent road-wheel angle [rad], left positive
   double throttle = 0.0;       ///< sent, [-1, 1]
   int lap = 0;                 ///< laps completed
-  double lap_time = 0.0;       ///< of the running lap [s]
+  double lap_time = 0.0;       ///< time since the running lap began [s]
   double s = 0.0;              ///< along the track's line [m]; not-a-number where no track is known
-  double edge_distance = 0.0;  ///< of the outermost tyre [m]; not-a-number where no track is known
+  double edge_distance = 0.0;  ///< gap of the outermost tyre [m]; not-a-number without a track
   bool is_off_track = false;
   std::vector<Vec2> plan{};          ///< predicted positions in W [m]
   std::vector<double> plan_speed{};  ///< [m/s]
@@ -33,7 +33,7 @@ struct DrivenRun {
   std::string track{}, controller{}, preset{};
   double track_length = 0.0;  ///< [m], 0: unknown
   bool is_closed = true;
-  double front = 2.0, rear = 2.0, width = 1.9;  ///< of the body from the centre of mass, and across [m]
+  double front = 2.0, rear = 2.0, width = 1.9;  ///< body ahead, behind and across [m]
   double steer_limit = 0.4;                     ///< [rad]
   std::vector<Vec2> left{}, right{};            ///< edges of the road in W [m]
   std::vector<DrivenMoment> moments{};
@@ -43,8 +43,8 @@ struct DrivenRun {
   [[nodiscard]] std::vector<DrivenMoment> of_lap(int lap) const;
 };
 
-/// Reads the last run of a recording of `drive`, `simulate` or `serve`. kParse for what is no recording of
-/// ours, or has no control step; otherwise fails as telemetry::read_mcap() does.
+/// Reads the last run of a recording of `drive`, `simulate` or `serve`. kParse for a file that is no
+/// recording of ours or has no control step; otherwise fails as telemetry::read_mcap() does.
 [[nodiscard]] Result<DrivenRun> read_run(const std::string& recording);
 
 struct PictureOptions {
@@ -59,24 +59,24 @@ struct PictureOptions {
 /// how far the lap is. A small map shows the whole road.
 class LapPicture {
  public:
-  /// `shown`: what will be drawn, in order of time; `ghost`: the same of the other run, empty without one.
-  /// Both begin at the same moment: the ghost is where it was so long after its own beginning.
+  /// `shown`: moments to draw, in order of time; `ghost`: moments of the other run, empty without one. Both
+  /// are drawn from the same moment: the ghost is shown at the same time since its own start.
   LapPicture(const DrivenRun& run, std::vector<DrivenMoment> shown, std::vector<DrivenMoment> ghost,
              const PictureOptions& options);
 
-  /// How long it takes [s].
+  /// Duration of the pictures [s].
   [[nodiscard]] double duration() const;
   /// The picture `time` [s] after the beginning; held at both ends.
   [[nodiscard]] const Canvas& at(double time);
-  /// How much later the car is at the ghost's places, `time` after the beginning [s]; none where one of the
-  /// two has not been there.
+  /// Delay of the car behind the ghost at the same place, `time` after the start [s]; none where one of them
+  /// has not been.
   [[nodiscard]] std::optional<double> lost_to_ghost(double time) const;
 
  private:
   struct Camera {
     Vec2 middle{};
     double scale = 1.0;  ///< [px/m]
-    Vec2 corner{};       ///< of the picture, where the middle is drawn [px]
+    Vec2 corner{};       ///< corner of the picture, drawn at the middle [px]
     [[nodiscard]] Vec2 operator()(const Vec2& point) const;
   };
   [[nodiscard]] Camera whole(double x, double y, double width, double height) const;

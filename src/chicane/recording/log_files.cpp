@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Files around a recording: the bag's metadata, an indexed copy, temporary files.
 #include "chicane/recording/log_files.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What metadata.yaml says of the messages in a recording.
+/// Facts of a recording's messages for metadata.yaml.
 struct Contents {
   std::map<std::string, std::pair<std::string, std::uint64_t>>
       topics{};  ///< type and number of messages by name
@@ -96,7 +97,7 @@ Result<void> write_bag_metadata(const std::string& recording) {
 Result<telemetry::McapReport> indexed_copy(const std::string& from, const std::string& to) {
   const auto writer = telemetry::McapWriter::create(to, "chicane");
   if (!writer) return fail(writer.error());
-  std::map<std::uint16_t, std::uint16_t> channels;  // of the copy, by those of the recording
+  std::map<std::uint16_t, std::uint16_t> channels;  // channels of the copy by channels of the recording
   Result<void> state;
   const auto keep = [&](Result<void> done) {
     if (state && !done) state = std::move(done);
@@ -128,7 +129,7 @@ TemporaryFile::TemporaryFile(std::string_view extension) {
   std::filesystem::path folder = std::filesystem::temp_directory_path(error);
   if (error) folder = ".";
   path_ = (folder / fmt::format("chicane-{}-{}{}", ::getpid(), number++, extension)).string();
-  std::filesystem::remove(path_, error);  // of a process of that number that was killed
+  std::filesystem::remove(path_, error);  // left by a killed process with the same number
 }
 
 TemporaryFile::~TemporaryFile() {

@@ -26,7 +26,7 @@ namespace chicane::recording {
 /// McapWriter do.
 [[nodiscard]] Result<telemetry::McapReport> indexed_copy(const std::string& from, const std::string& to);
 
-/// A path in the folder for temporary files where nothing is; what is made there is removed at the end.
+/// Unused path in the folder for temporary files; whatever is made there is removed at the end.
 class TemporaryFile {
  public:
   explicit TemporaryFile(std::string_view extension);

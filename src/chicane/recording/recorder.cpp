@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Recorder of a run: takes frames from the control thread through a buffer and writes them in a thread of its
+// own.
 #include "chicane/recording/recorder.hpp"
 
 #include <fmt/format.h>
@@ -102,7 +104,7 @@ void Recorder::work() {
   }
 }
 
-/// What waits, and the description of the run that goes on where that is still missing.
+/// Writes all that waits, and the current run's description if it is still missing.
 Result<void> Recorder::flush() {
   Result<void> done = writer_->flush();
   if (!done || !is_undescribed_) return done;
@@ -111,7 +113,7 @@ Result<void> Recorder::flush() {
   return done ? writer_->flush() : done;
 }
 
-/// Says at once that the disk does not take what it is given, and when it does again.
+/// Reports at once that the disk refuses writes, and when it accepts them again.
 void Recorder::note(const Result<void>& flushed) {
   if (is_failing_ == !flushed) return;
   is_failing_ = !flushed;
@@ -121,7 +123,8 @@ void Recorder::note(const Result<void>& flushed) {
                    : fmt::format("{}: can be written again; {} steps are missing", options_.path, missing_));
 }
 
-/// Before anything else is done: a run that is killed in its first moments still has its scenario.
+/// Begins the file before anything else is done: a run that is killed in its first moments still has its
+/// scenario.
 void Recorder::begin() {
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
     const std::uint16_t channel = writer_->add_channel(topic.name, topic.type, topic.schema);
@@ -132,7 +135,7 @@ void Recorder::begin() {
   if (state_) state_ = writer_->flush();
 }
 
-/// What stays the same during a run.
+/// Writes the description of a run, which stays the same from step to step.
 Result<void> Recorder::describe() {
   const scenario::Scenario& scenario = options_.scenario;
   const InstructionSet set = chosen_instruction_set();
@@ -168,7 +171,7 @@ void Recorder::put(std::uint16_t channel, std::uint64_t log_time, std::uint64_t 
   if (const Result<void> done = writer_->write(channel, log_time, time, bytes); !done) note(done);
 }
 
-/// All topics of a cadence; `frame` holds the lap for those of laps.
+/// Writes all topics of a cadence; lap topics take the lap in `frame`.
 void Recorder::write(protocol::Cadence cadence, const telemetry::Frame& frame, std::uint64_t time) {
   std::uint16_t channel = 0;
   for (const protocol::RosTopic& topic : protocol::ros_topics()) {
@@ -189,7 +192,7 @@ void Recorder::write(std::unique_ptr<const RecordedRun>& run) {
   run.reset();
   ledger_.begin();
   is_undescribed_ = true;
-  note(flush());  // so that all is in the file in its order
+  note(flush());  // keeps the order of the file
 }
 
 void Recorder::write(const telemetry::Change& change) {
@@ -215,7 +218,7 @@ void Recorder::write(const telemetry::Frame& frame) {
   const std::uint64_t time = protocol::to_nanoseconds(frame.time);
   if (frame.time < last_time_) ledger_.restart();
   last_time_ = frame.time;
-  if (time + earlier_runs_ < last_log_time_) {  // the run was started anew
+  if (time + earlier_runs_ < last_log_time_) {  // the run restarted
     earlier_runs_ = last_log_time_ + protocol::to_nanoseconds(options_.scenario.control_period) - time;
   }
   last_log_time_ = time + earlier_runs_;

@@ -21,12 +21,12 @@
 
 namespace chicane::recording {
 
-/// The names in a recording beside its channels (docs/viewer.md#recordings).
+/// Names of a recording's attachments (docs/viewer.md#recordings).
 inline constexpr const char* kRecordedScenario = "scenario.yaml";  ///< attachment
 inline constexpr const char* kRecordedRun = "run";                 ///< metadata
 inline constexpr const char* kSimulateMode = "simulate";  ///< Run::mode: the controller was another's
 
-/// What stays the same from step to step.
+/// Description of a run, the same from step to step.
 struct RecordedRun {
   protocol::Run run;
   scenario::Scenario scenario;
@@ -36,16 +36,17 @@ struct RecorderOptions {
   std::string path;
   protocol::Run run;
   scenario::Scenario scenario;
-  bool is_compressed = false;  ///< by Zstandard: kInvalidArgument where the program was built without it
+  bool is_compressed = false;  ///< Zstandard: kInvalidArgument if the program lacks it
   double step_budget = 0.0;    ///< deadline of each control step [s]; 0 = none
-  /// In virtual time a full buffer holds the run up; otherwise the newest frames are left out and counted.
+  /// Whether a full buffer stops the run, as in virtual time; otherwise the newest frames are left out and
+  /// counted.
   bool may_wait = false;
   /// Hears at once, on the writing thread, that the file cannot be written, and when it can again.
   std::function<void(std::string_view)> say{};
 };
 
 struct RecorderReport {
-  std::uint64_t frames = 0;    ///< in the file
+  std::uint64_t frames = 0;    ///< frames in the file
   std::uint64_t left_out = 0;  ///< the disk was too slow
   std::uint64_t missing = 0;   ///< the disk was full, or failed otherwise
   std::uint64_t bytes = 0;
@@ -74,8 +75,8 @@ class Recorder {
   void record(const telemetry::Change& change) noexcept;
   /// The same thread: a lap was completed, the last one of a run included.
   void record(const telemetry::CompletedLap& lap) noexcept;
-  /// The same thread: the next frame is the first of another run, with other settings; it begins at its cycle
-  /// 0. A run that only starts anew needs no word.
+  /// Tells the recorder on the same thread that the next frame is the first of another run, with other
+  /// settings and cycle 0. A restart of the same run needs no call.
   void record(std::unique_ptr<const RecordedRun> run) noexcept;
   /// The same thread: there are news of the run's limit.
   void record(std::shared_ptr<const lap_time::LimitAnswer> limit) noexcept;
@@ -84,7 +85,7 @@ class Recorder {
   [[nodiscard]] Result<RecorderReport> finish();
 
  private:
-  static constexpr std::uint64_t kReserve = 64;  ///< for what is too important to be left out: no frames
+  static constexpr std::uint64_t kReserve = 64;  ///< room for important records: no frames
   using Entry =
       std::variant<telemetry::Frame, telemetry::Change, telemetry::CompletedLap,
                    std::unique_ptr<const RecordedRun>, std::shared_ptr<const lap_time::LimitAnswer>>;
@@ -115,11 +116,11 @@ class Recorder {
   std::uint16_t step_channel_ = 0, change_channel_ = 0;
   std::uint64_t frames_ = 0;
   std::uint64_t last_log_time_ = 0;  ///< [ns]
-  double last_time_ = 0.0;           ///< of the run, of the last frame [s]
+  double last_time_ = 0.0;           ///< run time of the last frame [s]
   telemetry::LapLedger ledger_;
-  std::uint64_t earlier_runs_ = 0;  ///< what log times are ahead of the run's own time [ns]
+  std::uint64_t earlier_runs_ = 0;  ///< log time minus the run's own time [ns]
   std::uint64_t missing_ = 0;       ///< frames
-  bool is_failing_ = false;         ///< the disk did not take what it was given last
+  bool is_failing_ = false;         ///< the disk refused the last write
   bool is_undescribed_ = false;     ///< the run's description waits for room
   Result<void> state_;
   std::thread thread_;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Computes recordings again: reads their events in order, drives the control cycle with each measurement, and
+// compares the commands.
 #include "chicane/recording/replay.hpp"
 
 #include <array>
@@ -23,7 +25,7 @@
 namespace chicane::recording {
 namespace {
 
-/// From now on controllers round as they did in the recording.
+/// Sets the arithmetic of the recording for all later controllers.
 Result<void> choose_arithmetic(const std::string& wanted, const std::string& path) {
   if (wanted.empty() || arithmetic(chosen_instruction_set()) == wanted) return {};
   using enum InstructionSet;
@@ -187,7 +189,7 @@ class Recomputation {
     cycle_.use_line(std::move(lap));
   }
 
-  /// What concerns neither controller nor vehicle changes nothing here.
+  /// Applies a change; without effect if it concerns neither controller nor vehicle.
   void add(const telemetry::Change& change) {
     const Result<run::Setting> setting = run::read_setting(change);
     if (!setting) return;
@@ -232,7 +234,7 @@ class Recomputation {
   }
 
   scenario::Scenario scenario_;
-  std::optional<road::Track> track_;  ///< what guard and racing controller knew
+  std::optional<road::Track> track_;  ///< track known to guard and racing controller
   run::ControlCycle cycle_;
   telemetry::Frame frame_;
 };

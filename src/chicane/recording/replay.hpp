@@ -18,7 +18,7 @@
 
 namespace chicane::recording {
 
-/// Of the messages that are shown, one for each control step.
+/// Topic of the shown messages, one for each control step.
 inline constexpr std::string_view kFrameTopic = "/chicane/frame";
 
 /// A control step and where it lies on the recording's time line.
@@ -27,10 +27,10 @@ struct RecordedStep {
   double log_time = 0.0;  ///< [s]
 };
 
-/// What is needed to compute a recording again, in its order: a scenario begins a run.
+/// Event needed to compute a recording again, in recorded order: a scenario begins a run.
 using RecordedEvent = std::variant<scenario::Scenario, telemetry::Change, RecordedStep>;
 
-/// Who recorded a run, of what.
+/// Program and scenario behind a recording.
 struct RecordingHead {
   std::map<std::string, std::string, std::less<>> entries{};  ///< metadata "run", docs/viewer.md#recordings
   [[nodiscard]] std::string operator[](const std::string& key) const {
@@ -43,8 +43,8 @@ struct RecordingHead {
 /// the arithmetic that the recording was made with (base/instruction_set.hpp). Damaged messages count as
 /// damaged.
 ///
-/// kParse for what is no recording of ours; kInvalidArgument for one of `simulate`, whose commands came from
-/// another program, and for one whose arithmetic this processor has not.
+/// kParse for a file that is no recording of ours. kInvalidArgument for a recording of `simulate`, whose
+/// commands came from another program, and for an arithmetic that this processor lacks.
 [[nodiscard]] Result<telemetry::McapReport> read_recording(
     const std::string& path, RecordingHead& head,
     const std::function<Result<void>(const RecordedEvent&)>& visit);
@@ -62,17 +62,17 @@ struct RecordingHead {
 /// whole.
 [[nodiscard]] Result<telemetry::McapReport> check_recording(const std::string& path);
 
-/// What came of computing a recording's commands again.
+/// Result of computing a recording's commands again.
 struct ReplayReport {
   std::string recorded_by;  ///< program and version
   std::string controller;
   std::string track;
-  std::uint64_t steps = 0;      ///< in the file
-  std::uint64_t identical = 0;  ///< whose command, rung and gate came out the same, bit for bit
+  std::uint64_t steps = 0;      ///< steps in the file
+  std::uint64_t identical = 0;  ///< steps with the same command, rung and gate, bit for bit
   std::uint64_t different = 0;
-  std::uint64_t unknown = 0;                      ///< behind missing steps: their history is not known
-  std::optional<std::uint64_t> first_difference;  ///< its cycle
-  std::uint64_t late = 0;                         ///< whose deadline was spent; they come out the same, too
+  std::uint64_t unknown = 0;                      ///< steps after missing ones: their history is unknown
+  std::optional<std::uint64_t> first_difference;  ///< cycle of the first difference
+  std::uint64_t late = 0;                         ///< steps with a spent deadline; they are repeated, too
   std::uint64_t damaged = 0;                      ///< chunks that were left out
   bool is_complete = false;                       ///< the file was closed as it should be
 
@@ -80,7 +80,7 @@ struct ReplayReport {
 };
 
 /// Builds the controller that a recording describes, or that `make` makes, runs the control cycle with every
-/// recorded measurement, and compares what is sent with what was recorded.
+/// recorded measurement, and compares the commands with the recorded ones.
 ///
 /// All come out the same, those in real time too: a step whose deadline was spent has recorded which question
 /// to the clock said so (base/deadline.hpp), and gets the same answer again. Fails when the file cannot be

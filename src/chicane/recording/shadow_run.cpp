@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// A shadow run repeats a recorded or live run up to a moment; from there two futures are driven, one with
+// other settings, and compared.
 #include "chicane/recording/shadow_run.hpp"
 
 #include <fmt/format.h>
@@ -102,7 +104,7 @@ void ShadowRun::drive(const std::function<bool()>& is_enough) {
 
 namespace {
 
-/// What a future comes to, from its frames.
+/// Summary of a future, collected from its frames.
 class FutureMeter {
  public:
   /// Distance from the start line of the lap in which the first frame is [m].
@@ -127,7 +129,7 @@ class FutureMeter {
   }
   void add(const telemetry::CompletedLap& lap) { future_.lap_times.push_back(lap.lap_time); }
   [[nodiscard]] const Future& future() const { return future_; }
-  /// How often the line was crossed, as far as a frame behind it was seen.
+  /// Crossings of the line, as far as the last frame shows.
   [[nodiscard]] int crossings() const {
     return static_cast<int>(
         std::count_if(future_.passages.begin(), future_.passages.end(),
@@ -167,7 +169,7 @@ class FutureMeter {
   int passed_ = 0;            ///< thirds of laps, from the start line on
 };
 
-/// A setting or a fault that may change while a run goes on.
+/// Reads a setting or a fault that may change during a run.
 Result<run::Setting> read_live(const telemetry::Change& change) {
   const std::string_view key = change.name.view();
   const protocol::Parameter* row = protocol::find(key);
@@ -184,8 +186,8 @@ Result<run::Setting> read_live(const telemetry::Change& change) {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
-/// The recorded run computed again up to the branch, and two futures from there on: the run itself, which is
-/// the recorded one for as long as there is one, and a copy of it with the settings.
+/// The recorded run computed again up to the branch, and two futures from there on: the run itself, as
+/// recorded until the recording ends, and a copy with the settings.
 class Branching {
  public:
   Branching(const BranchOptions& options, const BranchHooks& hooks)
@@ -207,7 +209,7 @@ class Branching {
                               options_.at, last_log_time_));
     }
     report_.known_until = last_log_time_;
-    was_.car.finish_cycle();  // a recording ends with the last control step, a run may have gone on to a line
+    was_.car.finish_cycle();  // a recording ends at a control step, a run may have continued to a line
     if (options_.drives_both && !is_over_) drive_on(was_);
     drive_on(is_);
     if (has_given_up_) return fail(ErrorCode::kInvalidArgument, "given up");
@@ -258,7 +260,7 @@ class Branching {
       if (Result<void> branched = branch(recorded); !branched) return branched;
     }
     const bool is_seen = has_branched_ && is_within(recorded.log_time);
-    // Of two futures that are compared, what follows is not needed, nor another run.
+    // A comparison needs nothing after the first future's end, and no other run.
     if (is_left_behind(has_branched_ && !is_start && (!is_seen || recorded.step.begins))) return {};
     if (Result<void> followed = was_.car.follow(event); !followed) return followed;
     if (is_seen) add(was_);
@@ -268,7 +270,7 @@ class Branching {
     return {};
   }
 
-  /// From now on: what comes next is not known yet.
+  /// Branches at the end: the next events are not known yet.
   Result<void> branch_at_end() {
     if (!was_.car.has_begun() || was_.car.next_cycle() == 0)
       return fail(ErrorCode::kInvalidArgument, "the run has not begun: there is nothing to go on from");
@@ -311,7 +313,7 @@ class Branching {
     return {};
   }
 
-  /// By itself, from where it has come to.
+  /// Drives a side on by itself, from its current state.
   void drive_on(Side& side) {
     const run::ClosedLoop& loop = side.car.loop();
     const double rest = last_log_time_ - report_.at;
@@ -351,13 +353,13 @@ class Branching {
     if (hooks_.on_change) hooks_.on_change(change);
   }
 
-  /// Nothing more of what was recorded is computed: of two futures that are driven, the first `ends`.
+  /// Stops computing the record: the first of two driven futures `ends`.
   bool is_left_behind(bool ends) { return is_over_ = is_over_ || (ends && options_.drives_both); }
   [[nodiscard]] bool may_go_on(double time) const { return !hooks_.go_on || hooks_.go_on(time); }
   [[nodiscard]] bool has_all_laps(const Side& side) const {
     return options_.more_laps > 0 && side.meter.crossings() >= options_.more_laps;
   }
-  /// Of what was recorded: as long as the second future is asked to be.
+  /// Whether a recorded time is within the duration asked for the second future.
   [[nodiscard]] bool is_within(double log_time) const {
     if (has_all_laps(was_)) return false;
     return log_time - report_.at <= (options_.duration > 0.0 ? options_.duration : kForever) + 1e-9;
@@ -370,9 +372,9 @@ class Branching {
   BranchReport report_;
   Side was_, is_;
   bool has_branched_ = false;
-  bool is_over_ = false;  ///< the first future: what was recorded ends it
+  bool is_over_ = false;  ///< the first future ended with the record
   bool has_given_up_ = false;
-  double start_ = 0.0;          ///< of the run, at the branch [s]
+  double start_ = 0.0;          ///< start of the run at the branch [s]
   double last_log_time_ = 0.0;  ///< [s]
 };
 

@@ -26,7 +26,7 @@ using RunEvents = std::function<Result<void>(const std::function<Result<void>(co
 /// One thread.
 class ShadowRun {
  public:
-  /// `hooks`: on_frame and on_change hear of drive(), on_lap of all laps.
+  /// `hooks`: on_frame and on_change are called during drive(), on_lap for all laps.
   explicit ShadowRun(run::RunHooks hooks = {}) : hooks_{std::move(hooks)} {}
 
   /// Begins from a scenario, without an end after its laps. Fails as ClosedLoop::create() does.
@@ -42,7 +42,7 @@ class ShadowRun {
   [[nodiscard]] Result<void> follow(const RecordedEvent& event);
   /// Log time of the last control step that was followed [s].
   [[nodiscard]] double time() const noexcept { return time_; }
-  /// Number of the control step behind it.
+  /// Number of the next control step.
   [[nodiscard]] std::uint64_t next_cycle() const noexcept { return next_cycle_; }
   /// Cycle of the first control step whose measurement or command differed from the followed one in any bit:
   /// a difference anywhere in plant or controller shows there.
@@ -73,31 +73,31 @@ class ShadowRun {
   std::optional<std::uint64_t> first_difference_;
 };
 
-/// A recorded run that goes on otherwise from a moment on.
+/// Options for a branch: a recorded run that continues with other settings from a moment on.
 struct BranchOptions {
   std::string log{};
-  double at = 0.0;                                              ///< on the recording's time line [s]
+  double at = 0.0;                                              ///< moment on the recording's time line [s]
   std::vector<std::pair<std::string, std::string>> settings{};  ///< as --set takes them; empty: no change
-  double duration = 0.0;  ///< from `at` on [s]; 0: to the end of the recording, or `laps`
-  int laps = 0;           ///< until so many laps of the run are completed; 0: no matter
-  int more_laps = 0;      ///< until the line was crossed so often from `at` on; 0: no matter
-  /// The first future is driven on, too, where what is known of it ends before the second one does.
+  double duration = 0.0;  ///< time from `at` on [s]; 0: to the end of the recording, or `laps`
+  int laps = 0;           ///< ends after so many completed laps of the run; 0: no limit
+  int more_laps = 0;      ///< ends after so many crossings of the line since `at`; 0: no limit
+  /// Drives the first future on, too, if its recording ends before the second future does.
   bool drives_both = false;
-  /// Begins here instead of at the start, with the events behind it; before `at`. Null: at the start.
+  /// Starting point, with the events behind it, before `at`. Null: the start of the run.
   std::shared_ptr<const ShadowRun> from{};
 };
 
 /// The end of a third of a lap that was passed.
 struct Passage {
-  int lap = 0;        ///< from 1
-  int sector = 0;     ///< from 1
-  double time = 0.0;  ///< since the branch [s], interpolated
+  int lap = 0;        ///< lap from 1
+  int sector = 0;     ///< sector from 1
+  double time = 0.0;  ///< time since the branch [s], interpolated
 };
 
 /// One future, from the moment of the branch on.
 struct Future {
   double duration = 0.0;            ///< [s]
-  std::vector<double> lap_times{};  ///< of laps completed in it [s]
+  std::vector<double> lap_times{};  ///< times of completed laps [s]
   double max_lateral_error = 0.0;   ///< [m]
   double min_edge_distance = 0.0;   ///< signed, of the outermost tyre [m]; NaN without a control step
   double mean_speed = 0.0;          ///< [m/s]
@@ -117,38 +117,38 @@ struct FutureStep {
 /// The plant used in place of a car that others simulate.
 struct StandIn {
   std::string plant;
-  double compared = 0.0;  ///< so long before the moment both drove from the same place [s]; 0: not compared
-  double apart = 0.0;     ///< and came so far from each other [m]
+  double compared = 0.0;  ///< time before the branch that both drove from the same place [s]; 0: not compared
+  double apart = 0.0;     ///< distance between them at its end [m]
 };
 
 struct BranchReport {
-  double at = 0.0;                 ///< where it begins: the first control step from there on [s]
-  std::uint64_t cycle = 0;         ///< that control step, in its run
+  double at = 0.0;                 ///< first control step from the branch on [s]
+  std::uint64_t cycle = 0;         ///< cycle of that control step in its run
   std::uint64_t steps_before = 0;  ///< computed again on the way to it
   double known_until = 0.0;        ///< the last control step of the recording [s]
-  /// The first of all recorded steps that did not come out bit for bit as recorded: from there on the first
-  /// future is what this program computes, not what was.
+  /// First recorded step that was not reproduced bit for bit: from there on the first future is this
+  /// program's result, not the record.
   std::optional<std::uint64_t> first_difference{};
   Future recorded{};
   Future branched{};
-  std::string end_reason{};  ///< why the branch ended before its time; empty when it did not
+  std::string end_reason{};  ///< reason of an early end of the branch; else empty
   std::optional<StandIn> stand_in{};
 };
 
-/// What listens to the second future, whole: the recorded run up to the branch, and what comes then.
+/// Callbacks for the second future and for the recorded run up to the branch.
 struct BranchHooks {
-  std::function<Result<void>(const run::ClosedLoop&)> on_begin{};  ///< of each run in the recording
+  std::function<Result<void>(const run::ClosedLoop&)> on_begin{};  ///< called for each run in the recording
   std::function<void(const telemetry::Change&)> on_change{};
   std::function<void(const telemetry::Frame&)> on_frame{};
   std::function<void(const telemetry::CompletedLap&)> on_lap{};
-  std::function<void(const FutureStep&)> on_future{};  ///< of both, from the branch on, one after the other
+  std::function<void(const FutureStep&)> on_future{};  ///< called for both futures, one after the other
   /// Asked at each control step that is computed, with the time [s] it has come to; false gives up.
   std::function<bool(double time)> go_on{};
 };
 
-/// Computes a recorded run of `drive` again from its start, controller and plant, and drives a copy of it on
+/// Computes a recorded run of `drive` again from its start, controller and plant, and continues a copy of it
 /// from `options.at` with other settings, in virtual time. Fails with kInvalidArgument when the moment is not
-/// in the recording, a setting is unknown, out of range or cannot change in a run that goes on, when
+/// in the recording, a setting is unknown, out of range or cannot change during a run, when
 /// BranchHooks::go_on gives up, when the recording is not of our simulator, or when controller or plant
 /// cannot be copied.
 [[nodiscard]] Result<BranchReport> branch_recording(const BranchOptions& options, const BranchHooks& hooks);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Films by an external encoder, which gets the pictures over a socket.
 #include "chicane/recording/video_encoder.hpp"
 
 #include <fcntl.h>
@@ -23,7 +24,7 @@ std::string ending_of(const std::string& output) {
   return std::filesystem::path(output).extension().string();
 }
 
-/// Beside the output, with its ending, which says how to encode.
+/// Path of the unfinished film, beside the output; its ending names the format.
 std::string unfinished_of(const std::string& output) {
   std::filesystem::path path(output);
   path.replace_extension(fmt::format("{}.part{}", ::getpid(), ending_of(output)));
@@ -77,7 +78,7 @@ std::vector<std::string> encoder_command(const VideoFormat& format) {
 
 Result<VideoEncoder> VideoEncoder::start(const VideoFormat& format) {
   if (const Result<void> named = check_video_name(format.output); !named) return fail(named.error());
-  // A pair of sockets in the place of a pipe: writing to an encoder that has ended is an error, not a signal.
+  // Sockets rather than a pipe: writing to an encoder that has ended is then an error, not a signal.
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
     return fail(ErrorCode::kIo, fmt::format("ffmpeg: {}", std::strerror(errno)));
@@ -113,7 +114,7 @@ VideoEncoder::~VideoEncoder() {
   if (pipe_ >= 0) ::close(pipe_);
   if (process_ < 0) return;
   ::waitpid(process_, nullptr, 0);
-  std::error_code error;  // it may not be there yet
+  std::error_code error;  // ignored: it may not exist yet
   std::filesystem::remove(unfinished_, error);
 }
 

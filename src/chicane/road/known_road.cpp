@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The guard's road: line and edges, from a track or from the waypoints seen so far.
 #include "chicane/road/known_road.hpp"
 
 #include <algorithm>
@@ -35,8 +36,8 @@ KnownRoad::KnownRoad(const road::RoadData& data, const model::VehicleParams& veh
   if (data.is_closed) smooth(data, vehicle);
 }
 
-/// In the place of the track's own line the smooth one that a controller plans from its waypoints: as wide in
-/// the bends as that one is.
+/// Replaces the track's own line by the smooth one that a controller plans from its waypoints: as wide in the
+/// bends.
 void KnownRoad::smooth(const road::RoadData& data, const model::VehicleParams& vehicle) {
   std::vector<Vec2> waypoints;
   double next = 0.0;

@@ -71,13 +71,13 @@ class KnownRoad {
   void smooth(const road::RoadData& data, const model::VehicleParams& vehicle);
 
   ReferenceLine line_;
-  std::vector<Edges> edges_;  ///< at the samples of line_
+  std::vector<Edges> edges_;  ///< edges at the samples of line_
   std::optional<Road> seen_;
   double half_width_ = 0.0;
   double next_waypoint_ = 0.0;  ///< assumed distance from the last waypoint to the next [m]
   unsigned lines_ = 0;          ///< number of lines so far
   bool is_raced_ = false;
-  bool slides_ = false;  ///< of the last racing line
+  bool slides_ = false;  ///< whether the last racing line slides
 };
 
 }  // namespace chicane::road

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Plan of a line in instalments: smoothing within the road's width, samples, and speeds by the tyres' limits.
 #include "chicane/road/line_planner.hpp"
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 namespace chicane::road {
 namespace {
 
-constexpr int kPasses = 10;            // over the weights
+constexpr int kPasses = 10;            // passes over the weights
 constexpr double kLeastWeight = 1e-3;  // √w where there is room [1/m²]
 constexpr double kFirstWeight = 2e-3;  // √w of the first pass
 constexpr double kEndWeight = 5e-2;    // √w added at the ends of the line
@@ -132,7 +133,7 @@ void LineSmoother::substitute(int k) noexcept {
 }
 
 void LineSmoother::raise_weight(int k) noexcept {
-  // By place, not by knot: both ends of a closed line pay what the same places in the middle pay.
+  // Divide by place, not by knot: the ends of a closed line share their places with its middle.
   const int extra = (knots_ - period_) / 2;
   int twin = k;
   if (period_ > 0 && k < extra) twin = k + period_;
@@ -146,7 +147,7 @@ namespace {
 
 constexpr double kSlopeReach = 3.0;   // [m] each way: shorter changes of curvature than a car are not felt
 constexpr double kLowestSpeed = 2.0;  // [m/s] the plan never asks to stop
-constexpr double kTraction = 0.85;    // of the grip: brakes are not all where the load is
+constexpr double kTraction = 0.85;    // share of the grip: brakes are not all where the load is
 
 /// Largest v with v² demand <= share · friction · load(v).
 double speed_for(double demand, const model::VehicleParams& p, double share) {
@@ -170,7 +171,7 @@ double use_of(double v, double demand, const model::VehicleParams& p, double gri
   return v * v * demand / (grip * p.cornering_friction() * p.load(v));
 }
 
-/// Share of the longitudinal force that the friction ellipse leaves beside it (1 for uncoupled tyres).
+/// Share of the longitudinal force within the friction ellipse (1 for uncoupled tyres).
 double longitudinal_share(double use, const model::VehicleParams& p) {
   if (p.friction_coupling == 0.0) return 1.0;
   return std::sqrt(std::max(0.0, 1.0 - p.friction_coupling * std::min(1.0, use * use)));
@@ -246,8 +247,8 @@ void SpeedPlan::finish_limits(ReferenceLine& line) noexcept {
   limit_to(std::max(end, kLowestSpeed), SpeedLimiter::kSight, line.samples().back());
 }
 
-/// Once round a closed line from its slowest place, whose speed nothing lowers any more; an open one from its
-/// beginning.
+/// Limits the acceleration once round a closed line from its slowest place, whose speed is final; on an open
+/// line from its beginning.
 void SpeedPlan::accelerate(ReferenceLine& line, int turn) noexcept {
   const int laps = static_cast<int>(line.samples().size()) - 1;
   const int at = (slowest_ + turn) % laps;
@@ -290,7 +291,7 @@ constexpr int kFewestIntervals = 5;  // the smoother needs six knots
 
 enum Phase { kTake, kSmooth, kMove, kShape, kSample, kSpeed, kDone };
 
-/// Eq. 9: what the curvature's slope costs relative to curvature is the yaw inertia against the tyres' share.
+/// Weight of the curvature's slope relative to curvature (eq. 9): the yaw inertia against the tyres' share.
 double slope_length(const model::VehicleParams& vehicle) noexcept {
   const double length = vehicle.yaw_inertia / (vehicle.mass * vehicle.rear_axle);
   return std::clamp(length / std::max(0.05, 1.0 - vehicle.steer_helper), 1.0, 10.0);
@@ -376,8 +377,8 @@ double LinePlanner::offset(int k) const noexcept {
   k = (k + intervals_) % intervals_;
   const double n = smoother_.offset(k + extra_);
   if (k >= extra_) return n;
-  // Behind the seam the line has been smoothed twice, once as the continuation of its own end: fade from one
-  // to the other.
+  // Beyond the seam the line was smoothed twice, once as the continuation of its own end: fade from one to
+  // the other.
   const double share = static_cast<double>(k) / extra_;
   return share * n + (1.0 - share) * smoother_.offset(k + extra_ + intervals_);
 }
@@ -387,7 +388,7 @@ void LinePlanner::move(int k) noexcept {
   const auto i = static_cast<std::size_t>(k);
   const CurvePoint& raw = knots_[i];
   const double n = offset(k);
-  // The ends of a stretch bend as the knots beside them do.
+  // At the ends of a stretch, take the bend of the neighbouring knots.
   const int inner = is_lap_ ? k : std::clamp(k, 1, intervals_ - 1);
   const double before = offset(inner - 1);
   const double after = offset(inner + 1);

@@ -12,8 +12,8 @@
 
 namespace chicane::road {
 
-/// Work that is spread over control cycles: loops that stop when a cycle's share is used up and go on where
-/// they stopped. What is done in a cycle depends on the counted work alone, never on a clock.
+/// Work spread over control cycles: loops that stop when a cycle's share is used up and continue in the next
+/// one. A cycle's part depends on the counted work alone, never on a clock.
 class Instalments {
  public:
   /// Back to the first turn of the first loop.
@@ -46,8 +46,8 @@ class Instalments {
 ///
 /// The strip |n| <= width is kept by raising the weight w where n is too large and lowering it elsewhere, a
 /// few passes over. ℓ is the length over which the car's yaw inertia makes a change of curvature as dear as
-/// curvature itself. Each pass is one positive definite system with three entries beside the diagonal: a
-/// sweep forwards, a sweep back.
+/// curvature itself. Each pass is one positive definite system with three off-diagonals: a sweep forwards, a
+/// sweep back.
 ///
 /// All memory is reserved at construction. The work comes in instalments of about 10 ns; a whole smoothing is
 /// work_for() of them.
@@ -58,8 +58,8 @@ class LineSmoother {
   void configure(double width, double slope_length) noexcept;
 
   /// A new line: `knots` of them [6, capacity], `spacing` [m] apart. The caller fills curvature() before
-  /// advance(). With `period` > 0 the line closes after so many knots and goes on round: places `period`
-  /// apart are the same and have the same weight.
+  /// advance(). With `period` > 0 the line closes after so many knots and repeats: places `period` apart are
+  /// the same and have the same weight.
   void begin(int knots, double spacing, int period) noexcept;
   [[nodiscard]] std::span<double> curvature() noexcept { return curvature_; }  ///< [1/m]
   /// Does up to `work` and takes it off; true when the offsets are there.
@@ -72,7 +72,7 @@ class LineSmoother {
     std::array<double, 4> band{};  ///< A(k, k), A(k, k−1), A(k, k−2), A(k, k−3) without the weight
     double right = 0.0;
     std::array<double, 4> factor{};  ///< 1/D, L(k, k−1), L(k, k−2), L(k, k−3)
-    double forward = 0.0;            ///< of L y = right, over D
+    double forward = 0.0;            ///< forward solution of L y = right, over D
     double root_weight = 0.0;        ///< √w [1/m²]
   };
   void assemble(int k) noexcept;
@@ -96,12 +96,12 @@ class LineSmoother {
   std::vector<Row> rows_;
 };
 
-/// Which share of the modelled tyre and brake force the speed plan uses.
+/// Shares of the modelled tyre and brake force for the speed plan.
 struct SpeedPlanOptions {
   double speed_limit = 60.0;    ///< [m/s]
-  double grip_share = 0.9;      ///< of the tyres' lateral force; (0, 1]
-  double brake_share = 0.8;     ///< of the braking; (0, 1]
-  double drive_share = 1.0;     ///< of the drive; (0, 1]
+  double grip_share = 0.9;      ///< share of the tyres' lateral force; (0, 1]
+  double brake_share = 0.8;     ///< share of the braking; (0, 1]
+  double drive_share = 1.0;     ///< share of the drive; (0, 1]
   double end_curvature = 0.05;  ///< assumed behind the end of an open line [1/m]: sight limits the speed
 
   friend bool operator==(const SpeedPlanOptions&, const SpeedPlanOptions&) = default;
@@ -147,9 +147,9 @@ struct LinePlannerOptions {
   friend bool operator==(const LinePlannerOptions&, const LinePlannerOptions&) = default;
 };
 
-/// From a stretch of the waypoint line, or a lap of it, to the line to drive by: knots are taken, smoothed,
-/// moved sideways, sampled at equal spacing, and given their speeds. In instalments, so that a whole lap may
-/// be planned beside the driving: a unit of work is about 10 ns, a metre of line takes about 20.
+/// Plans the line to drive by from a stretch of the waypoint line, or a lap of it: takes knots, smooths them,
+/// moves them sideways, samples at equal spacing, and sets speeds. Works in instalments, so that a whole lap
+/// is planned during the drive: a unit of work is about 10 ns, a metre of line takes about 20.
 ///
 /// Memory is reserved at construction; nothing here allocates.
 class LinePlanner {
@@ -157,7 +157,7 @@ class LinePlanner {
   static constexpr double kSampleSpacing = 1.5;  ///< [m] at most
   static constexpr int kOverlap = 84;            ///< knots a lap is smoothed on beyond both ends
 
-  /// For stretches of up to `knots` knots.
+  /// Planner for stretches of up to `knots` knots.
   explicit LinePlanner(int knots);
   void configure(const LinePlannerOptions& options, const model::VehicleParams& vehicle) noexcept;
 
@@ -168,7 +168,7 @@ class LinePlanner {
   /// change there.
   [[nodiscard]] bool advance(int work, const WaypointLine& source, ReferenceLine& line) noexcept;
 
-  /// Samples of a line planned from so many knots.
+  /// Number of samples of a line planned from `knots` knots.
   [[nodiscard]] static constexpr int samples_for(int knots) noexcept { return 5 * knots / 2 + 2; }
 
  private:

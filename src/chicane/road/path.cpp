@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Cubic spline through given points: its linear system, look-up by arc length, and projection of points.
 #include "chicane/road/path.hpp"
 
 #include <algorithm>
@@ -106,8 +107,8 @@ void Path::solve_natural(std::span<const Vec2> points) noexcept {
 }
 
 void Path::solve_periodic(std::span<const Vec2> points) noexcept {
-  // As above with neighbours modulo n. The last unknown m* is set aside: m = u + w m*, where `corner` carries
-  // w; the last row then gives m*.
+  // Periodic version of the system above, with neighbours modulo n. The last unknown m* is set aside: m = u +
+  // w m*, where `corner` carries w; the last row then gives m*.
   const std::size_t n = points.size();
   const std::size_t last = n - 1;
   const double closing = segments_[last].h;
@@ -255,15 +256,15 @@ PathPoint Path::at(double s) const noexcept {
 
 namespace {
 
-constexpr double kBetterFit = 0.1;  // by which another pass has to fit better than the nearest [rad]
+constexpr double kBetterFit = 0.1;  // least gain in heading fit of another pass over the nearest [rad]
 constexpr int kSamples = 4;         // intervals scanned for the start of the refinement
-constexpr int kIterations = 30;     // of Newton's method with bisection as safeguard; 3 or 4 are typical
+constexpr int kIterations = 30;     // limit of Newton's method, safeguarded by bisection; 3 or 4 are typical
 
 struct Foot {
   double distance_squared = std::numeric_limits<double>::infinity();
   double s = 0.0;
   Vec2 gap{};      // point minus foot
-  Vec2 tangent{};  // not normalised
+  Vec2 tangent{};  // tangent, not normalised
 };
 
 template <class Segment>
@@ -332,8 +333,8 @@ void Path::for_each_segment(double s_low, double s_high, Visit&& visit) const no
 }
 
 Projection Path::search(const Vec2& point, double s_low, double s_high) const noexcept {
-  // A segment stays within `bulge` of its chord: after the one with the nearest chord, only segments that can
-  // still hold a nearer point are looked at closely.
+  // A segment with the distance of its chord. A segment stays within `bulge` of its chord: after the one with
+  // the nearest chord, only segments that can hold a nearer point are searched.
   struct Part {
     const Segment* segment = nullptr;
     double low = 0.0;

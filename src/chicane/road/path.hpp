@@ -9,10 +9,10 @@
 
 namespace chicane::road {
 
-/// Where a curve is at one arc length.
+/// Point of a curve at one arc length.
 struct PathPoint {
-  Vec2 position{};               ///< in W [m]
-  double heading = 0.0;          ///< of the tangent [rad], continuous along the path (not wrapped)
+  Vec2 position{};               ///< position in W [m]
+  double heading = 0.0;          ///< heading of the tangent [rad], continuous along the path (not wrapped)
   double curvature = 0.0;        ///< [1/m], left positive
   double curvature_slope = 0.0;  ///< dκ/ds [1/m²], jumps at the given points
 };
@@ -58,15 +58,15 @@ class Path {
   [[nodiscard]] bool is_closed() const noexcept { return closed_; }
   [[nodiscard]] double length() const noexcept { return length_; }
   [[nodiscard]] bool is_empty() const noexcept { return length_ <= 0.0; }
-  /// Where point `i` of those the curve was made of lies [m]. Pre: 0 <= i < their number.
+  /// Arc length at point `i` of the given ones [m]. Pre: 0 <= i < their number.
   [[nodiscard]] double arc_length(int i) const noexcept {
     return i < count_ ? segments_[static_cast<std::size_t>(i)].s0 : length_;
   }
   /// Change of heading over a closed lap [rad]: 2π for a simple counter-clockwise loop, −2π for a clockwise
   /// one.
   [[nodiscard]] double turning() const noexcept { return turning_; }
-  /// Any s: wrapped when closed, extended by a straight line beyond the ends when open. The heading goes on
-  /// continuously beyond the first lap: at(s + length()).heading = at(s).heading + turning(). Zero for an
+  /// Point at any s: wrapped when closed, extended by a straight line beyond the ends when open. The heading
+  /// is continuous beyond the first lap: at(s + length()).heading = at(s).heading + turning(). Zero for an
   /// empty path, NaN for NaN.
   [[nodiscard]] PathPoint at(double s) const noexcept;
   /// s in [0, length) for a closed path; clamped to [0, length] for an open one.
@@ -76,19 +76,19 @@ class Path {
 
   /// Nearest point of the whole curve. O(n).
   [[nodiscard]] Projection project(const Vec2& point) const noexcept;
-  /// For a point of something that goes with `heading` [rad]: where the curve passes the point more than
+  /// Projects a point of something that moves along `heading` [rad]. If the curve passes the point more than
   /// once, each time by less than `reach` [m] farther than the nearest time, the pass whose direction fits
-  /// best. Of a road that crosses itself, the one that is driven. O(n).
+  /// best: on a road that crosses itself, the driven one. O(n).
   [[nodiscard]] Projection project_along(const Vec2& point, double heading, double reach) const noexcept;
   /// Nearest point within `window` [m] of arc length before and after s_guess. O(window).
   [[nodiscard]] Projection project(const Vec2& point, double s_guess, double window) const noexcept;
 
  private:
-  /// From one given point to the next: r(t) = a + b t + c t² + e t³ for t in [0, h], s = s0 + t.
+  /// Piece between two given points: r(t) = a + b t + c t² + e t³ for t in [0, h], s = s0 + t.
   struct Segment {
     double s0 = 0.0;
     double h = 0.0;
-    double heading = 0.0;  ///< at t = 0, unwrapped
+    double heading = 0.0;  ///< heading at t = 0, unwrapped
     double bulge = 0.0;    ///< the curve stays within this of its chord [m]
     Vec2 a{};
     Vec2 b{};

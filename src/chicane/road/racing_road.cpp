@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Racing roads: a planned lap resampled by its own arc length, with the room to both edges across its line.
 #include "chicane/road/racing_road.hpp"
 
 #include <algorithm>
@@ -40,7 +41,7 @@ RoadData road_data(const Track& track, double spacing) {
   RoadData road;
   road.is_closed = centre.is_closed();
   road.length = centre.length();
-  // Less a little: a length that is a multiple of the spacing but for rounding takes no interval more.
+  // The small reduction absorbs rounding: a length that is a multiple of the spacing takes no extra interval.
   const auto intervals = static_cast<std::size_t>(std::max(1.0, std::ceil(road.length / spacing - 1e-9)));
   road.points.reserve(intervals + 1);
   for (std::size_t k = 0; k <= intervals; ++k) {
@@ -76,7 +77,7 @@ std::vector<LinePoint> line_points(const Track& track, const RacingLine& line) {
   }
   const std::size_t last = points.size() - 1;
   const bool is_closed = centre.is_closed();
-  // The end of a lap has the heading of its beginning, and what the road has turned.
+  // At the end of a lap the heading is the start's plus the road's turning.
   if (is_closed)
     points[last].heading =
         points[0].heading + kTwoPi * std::round((points[last].heading - points[0].heading) / kTwoPi);
@@ -121,15 +122,16 @@ std::vector<double> arc_lengths(std::span<const road::LinePoint> lap) {
 }
 
 constexpr std::size_t kLeastPoints = 8;
-// A car stops kBehindTheEnd behind a point: kBeforeTheEnd before the end of an open road, or its finish where
-// less room is behind that, so that it is passed [m].
+// A car stops kBehindTheEnd behind a point: kBeforeTheEnd before the end of an open road, or before its
+// finish if less room is behind that, so that the finish is passed [m].
 constexpr double kBeforeTheEnd = 14.0;
 constexpr double kBehindTheEnd = 2.0;
-constexpr double kFootReach = 12.0;  // [m] along the road, from the foot of a sample to that of the next
+constexpr double kFootReach = 12.0;  // reach along the road, from the foot of a sample to the next foot [m]
 constexpr double kNear = 4.0;        // [m] a nearer edge is found across the line: it may be driven along
-constexpr int kSteps = 4;            // in which it is
+constexpr int kSteps = 4;            // iterations that find a near edge
 
-/// From `here`, whose foot on the road's line is near s, to the edge on the left (side 1) or right (-1).
+/// Distance from `here`, whose foot on the road's line is near s, to the edge on the left (side 1) or right
+/// (-1).
 double room_beside(const Track& track, const CurvePoint& here, double s, double side) noexcept {
   const Vec2 across = side * Vec2{-here.tangent.y(), here.tangent.x()};
   const auto left_over = [&](double way) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Reference lines: look-up and projection along samples with speeds, and the table of reasons that limit the
+// speed.
 #include "chicane/road/reference_line.hpp"
 
 #include <algorithm>
@@ -10,7 +12,7 @@
 namespace chicane::road {
 namespace {
 
-constexpr double kBetterPass = 0.1;  // by which another pass has to fit better than the nearest [rad]
+constexpr double kBetterPass = 0.1;  // least gain in heading fit of another pass over the nearest [rad]
 
 }  // namespace
 
@@ -156,7 +158,7 @@ ReferenceLine::Projection ReferenceLine::find(const Vec2& point, double heading,
 }
 
 ReferenceLine::Projection ReferenceLine::refine(const Vec2& point, std::size_t nearest) const noexcept {
-  constexpr int kTurns = 4;  // of Newton's method; from at most half a sample away three reach 1e-9 m
+  constexpr int kTurns = 4;  // steps of Newton's method; from at most half a sample away three reach 1e-9 m
   double s = static_cast<double>(nearest) * spacing_;
   CurvePoint foot = at(s);
   Vec2 gap = point - foot.position;

@@ -28,7 +28,7 @@
 namespace chicane::road {
 
 #define CHICANE_ENUMERATOR(enumerator, name, sentence) enumerator,
-/// What keeps the car from being faster where it is.
+/// Reason that keeps the car from being faster.
 enum class SpeedLimiter : std::uint8_t { CHICANE_SPEED_LIMITERS(CHICANE_ENUMERATOR) };
 #undef CHICANE_ENUMERATOR
 
@@ -37,20 +37,20 @@ enum class SpeedLimiter : std::uint8_t { CHICANE_SPEED_LIMITERS(CHICANE_ENUMERAT
 inline constexpr std::array kSpeedLimiterWords{CHICANE_SPEED_LIMITERS(CHICANE_WORD)};
 #undef CHICANE_WORD
 
-/// What a lap is planned for, shares of what car and options have.
+/// Terms that a lap is planned with: shares of the car's limits.
 struct LapTerms {
-  double grip = 1.0;    ///< over the grip of the vehicle's parameters
-  bool slides = false;  ///< beyond the peak of the tyres, where that is stable
-  double slip = 1.0;    ///< most slip of an axle, over what the options allow
+  double grip = 1.0;    ///< grip over the grip of the vehicle's parameters
+  bool slides = false;  ///< slip beyond the tyres' peak, where that is stable
+  double slip = 1.0;    ///< largest slip of an axle, over the options' limit
 
   friend bool operator==(const LapTerms&, const LapTerms&) = default;
 };
 
 /// A place of a plane curve.
 struct CurvePoint {
-  Vec2 position{};                ///< in W [m]
-  Vec2 tangent = Vec2{1.0, 0.0};  ///< of length 1
-  double heading = 0.0;           ///< of the tangent [rad], continuous along the curve
+  Vec2 position{};                ///< position in W [m]
+  Vec2 tangent = Vec2{1.0, 0.0};  ///< tangent of length 1
+  double heading = 0.0;           ///< heading of the tangent [rad], continuous along the curve
   double curvature = 0.0;         ///< [1/m], left positive
 };
 
@@ -68,11 +68,11 @@ class ReferenceLine {
  public:
   struct Sample {
     CurvePoint curve;
-    double offset = 0.0;  ///< of the line from the waypoint line, to the left [m]
+    double offset = 0.0;  ///< offset of the line from the waypoint line, left positive [m]
     double speed = 0.0;   ///< planned [m/s]
     SpeedLimiter limiter = SpeedLimiter::kNone;
   };
-  /// What the line asks at a place. Beyond an open end: straight on, everything else as at the end.
+  /// Demand of the line at a place. Beyond an open end: straight on, everything else as at the end.
   struct Demand {
     double curvature = 0.0;        ///< [1/m]
     double curvature_slope = 0.0;  ///< [1/m²]
@@ -91,8 +91,8 @@ class ReferenceLine {
   explicit ReferenceLine(int capacity) { samples_.resize(static_cast<std::size_t>(capacity)); }
 
   void clear() noexcept { count_ = 0; }
-  /// Makes room for samples 0..intervals at s = i · length / intervals. A closed line has its first sample
-  /// once more as its last, a lap later. False, and cleared, beyond the capacity.
+  /// Makes room for samples 0..intervals at s = i · length / intervals. A closed line repeats its first
+  /// sample as its last, a lap later. False, and cleared, beyond the capacity.
   [[nodiscard]] bool shape(double length, int intervals, bool is_closed) noexcept;
   [[nodiscard]] std::span<Sample> samples() noexcept { return {samples_.data(), count_}; }
   [[nodiscard]] std::span<const Sample> samples() const noexcept { return {samples_.data(), count_}; }
@@ -102,27 +102,27 @@ class ReferenceLine {
   [[nodiscard]] double length() const noexcept { return length_; }
   [[nodiscard]] double spacing() const noexcept { return spacing_; }
 
-  /// Any s: wrapped when closed, straight on beyond open ends. The heading goes on beyond the first lap. Pre:
-  /// not empty.
+  /// Point at any s: wrapped when closed, straight beyond open ends. The heading is continuous beyond the
+  /// first lap. Pre: not empty.
   [[nodiscard]] CurvePoint at(double s) const noexcept;
   [[nodiscard]] Demand demand(double s) const noexcept;
-  /// Among all samples, O(n); pre: not empty, finite.
+  /// Projects among all samples, O(n); pre: not empty, finite.
   [[nodiscard]] Projection project(const Vec2& point) const noexcept;
-  /// For a car that goes with `heading` [rad]: where the line passes the point more than once, each time by
-  /// less than `reach` [m] farther than the nearest time, the pass whose direction fits best. O(n).
+  /// Projects a car that moves along `heading` [rad]. If the line passes the point more than once, each time
+  /// by less than `reach` [m] farther than the nearest time, the pass whose direction fits best. O(n).
   [[nodiscard]] Projection project_along(const Vec2& point, double heading, double reach) const noexcept;
-  /// Where a car is: within kWindow of its `last` place when there is one and the line still passes nearer
-  /// than `far` [m] there; else anywhere (project_along()).
+  /// Projects a car: within kWindow of its `last` place if there is one and the line still passes nearer than
+  /// `far` [m] there; else anywhere (project_along()).
   [[nodiscard]] Projection find(const Vec2& point, double heading, double reach, const double* last,
                                 double far) const noexcept;
   static constexpr double kWindow = 30.0;  ///< [m]
-  /// Within `window` [m] before and after `guess`.
+  /// Projects within `window` [m] before and after `guess`.
   [[nodiscard]] Projection project(const Vec2& point, double guess, double window) const noexcept;
 
  private:
   struct Place {
-    std::size_t index = 0;  ///< of the sample before
-    double share = 0.0;     ///< of the way to the next
+    std::size_t index = 0;  ///< index of the previous sample
+    double share = 0.0;     ///< weight of the next sample
     double beyond = 0.0;    ///< open end [m], or whole laps [m]
   };
   [[nodiscard]] Place place(double s) const noexcept;

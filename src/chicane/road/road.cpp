@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Road that a controller learns: map of waypoints, stretch and lap, planned in instalments.
 #include "chicane/road/road.hpp"
 
 #include <algorithm>
@@ -90,7 +91,7 @@ int Road::newest_needed(const model::Measurement& now) const noexcept {
   return std::max(count + kSeam + WaypointLine::kSettled, first + now.waypoint_count - 1);
 }
 
-/// Draws a closed map's line on round the seam, a few waypoints in each share, then the stretch anew.
+/// Extends a closed map's line past the seam, a few waypoints in each share, then plans the stretch again.
 void Road::go_round(int newest, int shares) noexcept {
   constexpr int kAtOnce = 3;
   for (int share = 0; share < shares && waypoints_.newest() < newest; ++share) {
@@ -104,7 +105,7 @@ void Road::plan_stretch() noexcept {
   int first = map_.first_seen();
   if (first + count <= waypoints_.newest()) first += count;
   const double from = std::max(0.0, waypoints_.along(first) - kBehind);
-  // From one of the waypoint line's own knots: what is settled stays as it was.
+  // Begin at one of the waypoint line's own knots, so that the settled part stays the same.
   const double knot = std::floor(from / WaypointLine::kSpacing) * WaypointLine::kSpacing;
   const double most = (map_.is_closed() ? kRoundTheSeam : kStretchKnots - 2) * WaypointLine::kSpacing;
   const double to = std::min(waypoints_.along(waypoints_.newest()), knot + most);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Smoothing of noisy points: penalised least squares on even knots; the smoothing length is chosen by the
+// noise of the points.
 #include "chicane/road/smooth_line.hpp"
 
 #include <algorithm>
@@ -17,17 +19,17 @@ constexpr double kMinSmoothingLength =
 constexpr int kParameterPasses = 3;  // chord length, then twice the arc length of the line found
 constexpr int kOverlapPoints = 16;  // a closed line is unrolled by at least this many points at both ends ...
 constexpr double kOverlapLengths =
-    30.0;  // ... and this many smoothing lengths: what is beyond has no influence
-constexpr std::size_t kMaxKnots = 200'000;
-constexpr double kMinLength = 1.0;    // of a line [m]
-constexpr double kLeastShare = 0.01;  // of the length of the chords, in that of the line
+    30.0;  // ... and limit in smoothing lengths: points beyond have no influence
+constexpr std::size_t kMaxKnots = 200'000;  // limit of a line's knots
+constexpr double kMinLength = 1.0;          // least length of a line [m]
+constexpr double kLeastShare = 0.01;        // least length of the line over the length of its chords
 constexpr double kMostShare = 2.0;
 constexpr double kMostUnrolled = 4e6;       // points
-constexpr double kMaxShareOfLength = 0.02;  // of ℓ in the length of a short line
-constexpr double kMostUneven = 4.0;         // of even points: a gap over the median of those around it
+constexpr double kMaxShareOfLength = 0.02;  // limit of ℓ over the length of a short line
+constexpr double kMostUneven = 4.0;         // limit for even points: a gap over the median of its neighbours
 constexpr std::ptrdiff_t kNearGaps = 3;     // around a gap, on each side
 constexpr double kMostNoise = 1.0;          // standard deviation that cross-validation begins with [m]
-constexpr double kLeastShareOfGap = 0.1;    // of ℓ in the median gap: a shorter one interpolates
+constexpr double kLeastShareOfGap = 0.1;    // least ℓ over the median gap: a shorter one interpolates
 constexpr std::size_t kMostLeftOut = 200;   // points that cross-validation leaves out, one at a time
 
 /// Distances between neighbours [m].
@@ -42,7 +44,7 @@ struct Penalty {
   int order = 3;
   std::array<double, 4> differences{-1.0, 3.0, -3.0, 1.0};
   double noise_factor = 0.0556;
-  double step = 0.5;       // from one ℓ to the next smaller one
+  double step = 0.5;       // ratio of one ℓ to the next larger one
   double usual_gap = 0.0;  // [m]
 
   explicit Penalty(const Gaps& gaps) noexcept : usual_gap{gaps.median} {
@@ -163,7 +165,7 @@ Unrolled unroll(const std::vector<double>& parameter, double length, bool closed
 struct Fit {
   std::vector<Vec2> coefficients;
   Band band;                    // factorised matrix of the coefficients
-  std::vector<double> weights;  // of the points
+  std::vector<double> weights;  // weights of the points
   std::size_t lead = 0;
   double spacing = 0.0;
   double length = 0.0;
@@ -300,7 +302,8 @@ SmoothLine finish(Fit&& fit, std::span<const Vec2> points, bool closed) {
   return line;
 }
 
-/// Where knots are many to each point rounding can win: the line then has any length, and memory with it.
+/// Whether a fit has a plausible length: with many knots to each point rounding can give any, and memory
+/// grows with it.
 bool is_solvable(const Fit& fit, const Fit& raw, std::size_t points, double smoothing) noexcept {
   const bool has_a_length = fit.length >= kLeastShare * raw.length && fit.length <= kMostShare * raw.length;
   return has_a_length &&
@@ -342,7 +345,7 @@ Result<Fit> fitted(const Fit& raw, std::span<const Vec2> points, bool closed, do
 struct Validation {
   double error = 0.0;      // mean square [m²]
   double tolerance = 0.0;  // standard error of it [m²]
-  double variance = 0.0;   // of the noise across the line [m²]
+  double variance = 0.0;   // variance of the noise across the line [m²]
 };
 
 Validation validate(const Fit& fit, std::span<const Vec2> points) {

@@ -12,11 +12,11 @@ namespace chicane::road {
 /// Noisy, unevenly spaced points as evenly spaced points of a smooth line.
 struct SmoothLine {
   std::vector<Vec2> knots;        ///< spaced by `spacing` [m]; a closed line's last knot precedes its first
-  std::vector<double> parameter;  ///< of each given point: arc length along the smooth line [m]
+  std::vector<double> parameter;  ///< arc length of each given point along the smooth line [m]
   double length = 0.0;            ///< [m]
-  double spacing = 0.0;           ///< of the knots [m]
+  double spacing = 0.0;           ///< spacing of the knots [m]
   double smoothing_length = 0.0;  ///< ℓ, equation (1) of docs/tracks.md [m]
-  double rms_deviation = 0.0;     ///< of the points from the line, across it [m]
+  double rms_deviation = 0.0;     ///< deviation of the points from the line, across it [m]
   double max_deviation = 0.0;     ///< [m]
 };
 
@@ -27,8 +27,8 @@ struct SmoothLine {
 /// line would leave the points by more than their noise explains: rms > σ or any > 4 σ, with m = 2 any > 2 σ
 /// (plus millimetres, for σ = 0).
 ///
-/// Pre: finite points, at least two different. Fails with kInvalidArgument when the line needs more than
-/// 200,000 knots, and where there are so many to each point that rounding wins. Memory: 400,000 knots.
+/// Pre: finite points, at least two different. Fails with kInvalidArgument if the line needs more than
+/// 200,000 knots, or so many to each point that rounding dominates. Memory: 400,000 knots.
 [[nodiscard]] Result<SmoothLine> smooth_line(std::span<const Vec2> points, bool closed, double spacing,
                                              double sigma);
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Tracks: checks raw points, smooths their line, finds crossings and corners, and samples the widths.
 #include "chicane/road/track.hpp"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ namespace {
 struct Crossing {
   std::size_t first = 0;
   std::size_t second = 0;
-  bool is_tangle = false;  ///< not looked at closely: there are too many pieces in one place
+  bool is_tangle = false;  ///< skipped: too many pieces in one place
 };
 
 constexpr std::size_t kMostCrossings = 10'000;
@@ -109,9 +110,9 @@ std::vector<Crossing> find_crossings(std::span<const Vec2> points, bool closed) 
 }
 
 constexpr double kMaxWidth = 1000.0;        // [m]
-constexpr double kMaxGap = 10'000.0;        // from point to point [m]
-constexpr double kLeastCrossingSine = 0.5;  // of the angle between roads that cross
-constexpr double kLeastLoop = 4.0;          // from crossing to crossing, in widths of the road
+constexpr double kMaxGap = 10'000.0;        // largest gap from point to point [m]
+constexpr double kLeastCrossingSine = 0.5;  // least sine of the angle between roads that cross
+constexpr double kLeastLoop = 4.0;          // least loop from crossing to crossing, in widths of the road
 
 Error invalid(const std::string& where, const std::string& got, const std::string& expected) {
   return {ErrorCode::kInvalidArgument, where + ": got " + got + ", expected " + expected};
@@ -173,7 +174,8 @@ bool is_crossing_of_roads(const SmoothLine& line, const Crossing& crossing, bool
   return std::fabs(sine) >= kLeastCrossingSine && shorter >= kLeastLoop * road_width;
 }
 
-/// How often the smooth line crosses itself; a place where it must not, in terms of the raw points.
+/// Counts crossings of the smooth line with itself. Fails at a place where it must not cross, in terms of the
+/// raw points.
 Result<int> count_crossings(const SmoothLine& line, const std::vector<TrackPoint>& points, bool closed) {
   const auto raw_index = [&](std::size_t knot) {
     const double s = line.spacing * static_cast<double>(knot);
@@ -328,16 +330,16 @@ double Track::edge_distance(const Projection& foot) const noexcept {
 
 namespace {
 
-constexpr double kSpacing = 2.0;                 // between samples [m]
+constexpr double kSpacing = 2.0;                 // spacing of samples [m]
 constexpr int kHalfWindow = 3;                   // samples on each side that the curvature is averaged with
 constexpr double kLeastCurvature = 1.0 / 220.0;  // a larger radius is straight at racing speed [1/m]
 constexpr double kSameCorner = 20.0;             // straight between bends of one corner, at most [m]
 constexpr double kLeastTurn = 0.3;               // [rad]
 constexpr double kNarrowest = 6.0;               // road in full size [m]
 
-/// Over a road in full size.
+/// Size of a road over full size.
 double size_of(const Track& track) {
-  constexpr int kPlaces = 64;
+  constexpr int kPlaces = 64;  // samples along the track
   double width = 0.0;
   for (int i = 0; i < kPlaces; ++i) {
     const double s = track.length() * i / kPlaces;

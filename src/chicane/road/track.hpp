@@ -20,15 +20,15 @@ struct TrackPoint {
   double right = 0.0;  ///< distance to the right edge [m], > 0
 };
 
-/// How raw points become a road.
+/// Options for turning raw points into a road.
 struct TrackOptions {
-  double spacing = 2.0;  ///< of the resampled knots [m]; [0.05, 10]; made smaller where the points demand it
+  double spacing = 2.0;  ///< spacing of the knots [m]; [0.05, 10]; made smaller where the points demand it
   double smoothing_sigma =
       0.1;  ///< expected noise of the points [m]; the smoothed line stays within about this; [0, 1]
   double kerb_width = 0.0;  ///< drivable kerb outside each edge [m]; touching it is not off-track; [0, 3]
-  double start_s = 0.0;     ///< where a car waits for the start, along the line [m]; wrapped when closed
-  double start_d = 0.0;     ///< and beside it, left positive [m]; within the road
-  double finish_s = 0.0;    ///< where an open road is timed to, along the line [m]; 0: to its end
+  double start_s = 0.0;     ///< start of a car along the line [m]; wrapped when closed
+  double start_d = 0.0;     ///< start of a car across the line, left positive [m]; within the road
+  double finish_s = 0.0;    ///< end of timing on an open road, along the line [m]; 0: its end
 };
 
 /// A road: a reference line with the distances to its edges, open or closed. Immutable after create(), so
@@ -57,19 +57,19 @@ class Track {
   [[nodiscard]] double left_width(double s) const noexcept { return width_at(left_, s); }
   [[nodiscard]] double right_width(double s) const noexcept { return width_at(right_, s); }
   [[nodiscard]] double kerb_width() const noexcept { return kerb_width_; }
-  /// How often the road crosses itself, at grade: a figure of eight does once.
+  /// Number of crossings of the road with itself, at grade: 1 for a figure of eight.
   [[nodiscard]] int crossings() const noexcept { return crossings_; }
   /// Distance to the nearer edge of the road at the projection's s [m]: positive on the road, negative beyond
   /// the edge.
   [[nodiscard]] double edge_distance(const Projection& foot) const noexcept;
   /// The waypoints as given (before smoothing), which telemetry sends six of.
   [[nodiscard]] const std::vector<TrackPoint>& raw_points() const noexcept { return raw_points_; }
-  /// And where along the line each of them lies [m].
+  /// Place of each raw point along the line [m].
   [[nodiscard]] const std::vector<double>& raw_places() const noexcept { return raw_places_; }
-  /// Where a car waits for the start, heading along the line.
+  /// Start of a car along the line, which it is aligned with.
   [[nodiscard]] double start_s() const noexcept { return start_s_; }
   [[nodiscard]] double start_d() const noexcept { return start_d_; }
-  /// Where a lap ends: at the start line again, or at the finish of an open road, behind which it may go on.
+  /// Length of a lap: to the start line again, or to the finish of an open road, which may continue beyond.
   [[nodiscard]] double lap_length() const noexcept { return lap_length_; }
 
  private:
@@ -87,7 +87,7 @@ class Track {
   double start_d_ = 0.0;
   double lap_length_ = 0.0;
   double width_spacing_ = 1.0;
-  std::vector<double> left_;  // at s = k · width_spacing_, k = 0 … the last at s = length
+  std::vector<double> left_;  // widths at s = k · width_spacing_, k = 0 … the last at s = length
   std::vector<double> right_;
   std::vector<TrackPoint> raw_points_;
   std::vector<double> raw_places_;

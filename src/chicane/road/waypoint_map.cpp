@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Map of waypoints: matches new ones to known ones, closes the loop, and keeps the curve through them as
+// settled knots.
 #include "chicane/road/waypoint_map.hpp"
 
 #include <algorithm>
@@ -42,9 +44,8 @@ int WaypointMap::find(const Vec2& point) const noexcept {
   return -1;
 }
 
-/// Whether waypoint `i` of a measurement is the map's first one come round again. On a road that crosses
-/// itself another passage may have a waypoint in the same place: the one that follows decides, where it is
-/// seen.
+/// Whether waypoint `i` of a measurement is the map's first one again. On a road that crosses itself another
+/// passage may have a waypoint in the same place: the next waypoint decides, if it is visible.
 WaypointMap::Loop WaypointMap::closes(std::span<const Vec2> seen, std::size_t i) const noexcept {
   if (points_.size() < kFewestForLoop || !is_same(points_.front(), seen[i])) return Loop::kOpen;
   if (i + 1 < seen.size()) return is_same(points_[1], seen[i + 1]) ? Loop::kClosed : Loop::kOpen;
@@ -120,7 +121,7 @@ bool WaypointLine::extend(const WaypointMap& map, int newest) noexcept {
     window[static_cast<std::size_t>(i)] = points[static_cast<std::size_t>(first + i) % points.size()];
   if (!raw_.rebuild({window.data(), static_cast<std::size_t>(count)}, false)) return false;
 
-  // Arc length of the whole line less that of this spline: they agree where the settled part ends.
+  // Shift from this spline's arc length to the whole line's: they agree where the settled part ends.
   const double shift = along(settled_) - raw_.arc_length(settled_ - first);
   const double end = shift + raw_.length();
   const int last_knot = static_cast<int>(std::min(std::ceil((end + kTail) / kSpacing), 1e6));

@@ -33,7 +33,7 @@ class WaypointMap {
   [[nodiscard]] bool is_closed() const noexcept { return is_closed_; }
   /// Index of the first waypoint of the last measurement that showed one known.
   [[nodiscard]] int first_seen() const noexcept { return hint_; }
-  /// Increases when the map is begun anew.
+  /// Count of restarts of the map.
   [[nodiscard]] unsigned generation() const noexcept { return generation_; }
 
  private:
@@ -47,19 +47,19 @@ class WaypointMap {
   int hint_ = 0;  ///< index where the last measurement's first waypoint was found
 };
 
-/// The curve through the waypoints, as it becomes known: a C² spline through the newest ones, kept as knots
-/// of one spacing. A waypoint moves the spline before it less and less (by a quarter from one to the next),
-/// so with kSettled of them ahead a piece is settled: it is stored once and for all, and only what lies
-/// beyond is drawn anew.
+/// Curve through the waypoints as they become known: a C² spline through the newest ones, kept as knots of
+/// one spacing. A waypoint moves the spline before it less and less (by a quarter from one to the next), so
+/// with kSettled of them ahead a piece is settled: it is stored for good, and only the part beyond is
+/// computed again.
 ///
 /// Waypoints are counted on beyond the end of a lap: number n + i of a closed map of n is number i again.
 /// Memory is reserved at construction; extend() allocates nothing and takes a few µs, bounded by kReach.
 class WaypointLine {
  public:
-  static constexpr double kSpacing = 3.0;      ///< of the knots [m]
+  static constexpr double kSpacing = 3.0;      ///< spacing of the knots [m]
   static constexpr int kCapacity = 8192;       ///< knots: a lap of 24 km
   static constexpr int kMostWaypoints = 4608;  ///< a map, and on into its second lap
-  static constexpr int kSettled = 5;           ///< waypoints ahead of what is settled
+  static constexpr int kSettled = 5;           ///< waypoints ahead after which a piece is settled
   static constexpr double kTail = 15.0;        ///< [m]
   static constexpr double kReach = 1500.0;     ///< [m] longest stretch drawn at once
 
@@ -89,7 +89,7 @@ class WaypointLine {
   void sample(double s, double raw_shift) noexcept;
 
   std::vector<CurvePoint> knots_;
-  std::vector<double> along_;  ///< by waypoint [m]
+  std::vector<double> along_;  ///< arc length by waypoint [m]
   road::Path raw_;             ///< through the newest waypoints
   int knot_count_ = 0;
   int settled_knots_ = 0;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Measurements from odometry, and the tree of frames for poses.
 #include "chicane/ros/car_sight.hpp"
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 namespace chicane::ros {
 namespace {
 
-constexpr double kHalfWidth = 4.0;      // of a road that comes as a path, of a car in full size [m]
+constexpr double kHalfWidth = 4.0;      // half width of a road given as a path, for a car in full size [m]
 constexpr double kClosedInSteps = 3.0;  // a lap's last point is so near to its first, in mean steps
 constexpr std::size_t kSmallestLap = 8;
 

@@ -15,15 +15,15 @@
 
 namespace chicane::ros {
 
-/// Makes of odometry what a controller measures: the centre of mass in W, the road ahead as waypoints, and
-/// the command that acts now, which odometry does not tell. One thread.
+/// Turns odometry into a controller's measurement: the centre of mass in W, the road ahead as waypoints, and
+/// the command that acts now, which odometry lacks. One thread.
 class CarSight {
  public:
   /// `track`: the road, or null where it comes as a path. `is_base_at_rear_axle`: NodeOptions'.
   CarSight(const scenario::Scenario& scenario, const road::Track* track, bool is_base_at_rear_axle);
 
-  /// Another road: the points of a nav_msgs/Path in driving order, a lap when the last lies near the first.
-  /// No change for one that is no road. Allocates.
+  /// Takes another road: the points of a nav_msgs/Path in driving order, a lap if the last is near the first.
+  /// No change for points that are no road. Allocates.
   [[nodiscard]] Result<void> use_path(const std::vector<Vec2>& points);
   [[nodiscard]] bool has_road() const { return waypoints_.has_value(); }
 
@@ -43,17 +43,17 @@ class CarSight {
   [[nodiscard]] model::Command acting(double time) const noexcept;
 
   scenario::Scenario scenario_;
-  double base_ahead_;  ///< of the centre of mass before the base [m]
+  double base_ahead_;  ///< distance of the centre of mass ahead of the base [m]
   std::optional<road::Track> waypoints_;
   std::vector<Vec2> path_;
   std::array<Sent, 64> sent_{};
   std::size_t count_ = 0;
 };
 
-/// The pose of what has `inner` in a frame, seen from where that frame has `frame`.
+/// Pose of a body with `inner` in a frame, seen from the parent in which that frame has `frame`.
 [[nodiscard]] model::Pose composed(const model::Pose& frame, const model::Pose& inner) noexcept;
 
-/// Frames and where they lie in the plane, as /tf and /tf_static tell it: the newest of each. One thread.
+/// Frames and their poses in the plane, as /tf and /tf_static give them: the newest of each. One thread.
 class FrameTree {
  public:
   static constexpr std::size_t kCapacity = 1000;  ///< frames; transforms of further ones are left out
@@ -61,17 +61,17 @@ class FrameTree {
 
   /// Leaves out numbers that are not finite.
   void put(const protocol::TransformMessage& transform);
-  /// Where `frame` lies in `in`; none where their chains of parents do not meet.
+  /// Pose of `frame` in `in`; none if their chains of parents do not meet.
   [[nodiscard]] std::optional<model::Pose> find(const std::string& in, const std::string& frame) const;
 
  private:
   struct Link {
     std::string parent{};
-    model::Pose pose{};  ///< in the parent
+    model::Pose pose{};  ///< pose in the parent
   };
   [[nodiscard]] std::map<std::string, model::Pose> seen_from_parents(const std::string& frame) const;
 
-  std::map<std::string, Link> links_;  ///< by the child
+  std::map<std::string, Link> links_;  ///< links by child
 };
 
 }  // namespace chicane::ros

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Topics between a controller and its car: conversion of commands to drive messages, and reports on partners
+// that are missing or do not fit.
 #include "chicane/ros/car_topics.hpp"
 
 #include <fmt/format.h>

@@ -14,8 +14,8 @@
 
 namespace chicane::ros {
 
-/// What is sent for a command that acts at `speed` [m/s]: the acceleration that it means, and the speed that
-/// asks a speed controller for it, never below 0. Stamp and frame are left empty.
+/// Message for a command that acts at `speed` [m/s]: its acceleration, and the speed by which a speed
+/// controller reaches it, never below 0. Stamp and frame are left empty.
 [[nodiscard]] protocol::DriveMessage to_message(const model::VehicleParams& vehicle,
                                                 const model::Command& command, double speed,
                                                 const DriveOptions& options) noexcept;
@@ -31,9 +31,9 @@ struct WantedPartner {
   std::string topic{};
   std::string type{};
   Qos qos{};
-  std::string qos_option{};    ///< that changes qos.is_reliable: "--odom-qos"
-  std::string topic_option{};  ///< that names another topic: "--odom-topic"
-  bool is_awaited = true;      ///< to be missed when nobody is there
+  std::string qos_option{};    ///< option that changes qos.is_reliable: "--odom-qos"
+  std::string topic_option{};  ///< option that renames the topic: "--odom-topic"
+  bool is_awaited = true;      ///< reported as missing without a partner
 };
 
 /// Finds out why nothing arrives: a partner of another type, with qualities of service that do not fit, under
@@ -41,11 +41,11 @@ struct WantedPartner {
 /// clock: both come in.
 class PartnerWatch {
  public:
-  /// `missed_after`: without a partner for so long it is missed [s].
+  /// `missed_after`: time without a partner after which it is reported as missing [s].
   PartnerWatch(std::vector<WantedPartner> wanted, NetworkOptions network, double missed_after = 3.0);
 
-  /// What is to be said at `time` [s], rising. `others`: Participant::others(); `matched`: the partners of
-  /// each wanted topic, in their order.
+  /// Reports due at `time` [s], rising. `others`: Participant::others(); `matched`: the partners of each
+  /// wanted topic, in their order.
   [[nodiscard]] std::vector<std::string> look(double time, const std::vector<Endpoint>& others,
                                               const std::vector<int>& matched);
 

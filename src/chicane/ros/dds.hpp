@@ -13,10 +13,10 @@
 
 namespace chicane::ros {
 
-/// Where partners are looked for.
+/// Options for finding partners.
 struct NetworkOptions {
   int domain = 0;                       ///< ROS_DOMAIN_ID, [0, 232]
-  std::string interface = "lo";         ///< network interface by name; "auto": the one that DDS prefers
+  std::string interface = "lo";         ///< network interface by name; "auto": DDS's choice
   std::vector<std::string> peers = {};  ///< addresses that are asked one by one, where there is no multicast
 };
 
@@ -30,15 +30,15 @@ struct Qos {
 /// One message that arrived, its bytes as in RosTopic: CDR with its four-byte header.
 struct Sample {
   std::string bytes{};
-  std::int64_t sent = 0;     ///< by the writer's system clock [ns since 1970]
-  std::uint64_t writer = 0;  ///< handle of the one that sent it: another number is another writer
+  std::int64_t sent = 0;     ///< time by the writer's system clock [ns since 1970]
+  std::uint64_t writer = 0;  ///< handle of the writer: another number is another writer
 };
 
 /// A reader or writer that another program has.
 struct Endpoint {
   bool is_writer = false;
-  std::string topic{};  ///< as in ROS 2: "/odom"
-  std::string type{};   ///< as in ROS 2: "nav_msgs/msg/Odometry"
+  std::string topic{};  ///< name in ROS 2: "/odom"
+  std::string type{};   ///< name in ROS 2: "nav_msgs/msg/Odometry"
   Qos qos{};
 };
 
@@ -66,7 +66,7 @@ class Reader {
 /// thread, but for Writer. One object for a domain and process at a time.
 class Participant {
  public:
-  /// kIo with the sentence that helps, as where there is no such interface.
+  /// Joins the domain. kIo with the remedy, for example for an unknown interface.
   [[nodiscard]] static Result<std::unique_ptr<Participant>> create(const NetworkOptions& options);
 
   virtual ~Participant() = default;
@@ -77,7 +77,7 @@ class Participant {
                                                                const std::string& type, const Qos& qos) = 0;
   /// Comes back when a reader has messages, or after `patience`.
   virtual void wait(std::chrono::nanoseconds patience) = 0;
-  /// What other programs read and write in this domain. Allocates.
+  /// Endpoints of other programs in this domain. Allocates.
   [[nodiscard]] virtual std::vector<Endpoint> others() = 0;
 };
 
@@ -94,7 +94,7 @@ class Endpoints {
   void send(std::unique_ptr<Writer>& to, const std::string& topic, std::string_view type, Qos qos) {
     if (!topic.empty() && made_) take(to, at_.writer(topic, std::string(type), qos));
   }
-  /// The error of the one that could not be made.
+  /// Error of the object that could not be made.
   [[nodiscard]] const Result<void>& made() const noexcept { return made_; }
 
  private:

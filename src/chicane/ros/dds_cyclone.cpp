@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// DDS by Cyclone: the only file that includes it, besides the type in type_hash.cpp.
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
@@ -238,8 +239,8 @@ class CycloneParticipant final : public Participant {
 }  // namespace
 
 Result<std::unique_ptr<Participant>> Participant::create(const NetworkOptions& options) {
-  // What Cyclone would print: of a refused interface the error says as much, and of a stranger's packets
-  // there may be any number.
+  // Silences Cyclone's own log: the error of a refused interface says as much, and strangers' packets could
+  // fill any log.
   dds_set_log_sink([](void*, const dds_log_data_t*) {}, nullptr);
   const auto domain_id = static_cast<dds_domainid_t>(options.domain);
   Entity domain(dds_create_domain(domain_id, configuration(options).c_str()));

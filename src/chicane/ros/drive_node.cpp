@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// `chicane ros`: the node that drives a car over ROS 2, cycle by cycle from odometry.
 #include "chicane/ros/nodes.hpp"
 
 #include <fmt/format.h>
@@ -27,13 +28,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr double kSoonest = 0.75;  // of a control period, from cycle to cycle
-constexpr double kLatest =
-    2.2;  // of the usual time from cycle to cycle: two did not come, nothing was measured
-constexpr double kAbsence = 10.0;    // without odometry: cycles end [s]
+constexpr double kSoonest = 0.75;    // least time between cycles, in control periods
+constexpr double kLatest = 2.2;      // in usual times between cycles: two did not come, nothing was measured
+constexpr double kAbsence = 10.0;    // time without odometry after which cycles end [s]
 constexpr double kHabit = 0.1;       // weight of the newest in means
-constexpr double kLookPeriod = 0.5;  // between looks at partners [s]
-constexpr double kStanding = 0.1;    // of a car in full size [m/s]
+constexpr double kLookPeriod = 0.5;  // period of looking for partners [s]
+constexpr double kStanding = 0.1;    // speed of a standing car, in full size [m/s]
 constexpr milliseconds kLongestWait{50};
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
@@ -86,7 +86,7 @@ class DriveNode {
   }
 
  private:
-  /// Until the next cycle without odometry is due.
+  /// Time until the next cycle without odometry is due.
   [[nodiscard]] std::chrono::nanoseconds patience(Clock::time_point now) const {
     if (!is_driving_ || time_.is_simulated()) return kLongestWait;  // each tick of /clock ends it
     const double left = kLatest * habit_ - seconds(now - last_cycle_);
@@ -127,7 +127,7 @@ class DriveNode {
     }
   }
 
-  /// Where `frame` lies on the road's map: nowhere else, where no transform says so.
+  /// Pose of `frame` on the road's map; the map's origin without a transform.
   [[nodiscard]] model::Pose place_of(const std::string& frame) const {
     return frames_.find(node_.frames.map, frame).value_or(model::Pose{});
   }
@@ -170,7 +170,7 @@ class DriveNode {
     }
   }
 
-  /// Another sender: another car, or the same after a restart.
+  /// Begins with another sender: another car, or the same after a restart.
   void begin(std::uint64_t writer, const protocol::OdometryMessage& first) {
     writer_ = writer;
     ++summary_.connections;
@@ -190,7 +190,7 @@ class DriveNode {
       if (is_driving_ && !was_blind_)
         habit_ = std::max(period_, habit_ + kHabit * (std::min(since, 1.0) - habit_));
       was_blind_ = false;
-      // Its stamp tells when it was measured; time does not go back after a cycle without odometry.
+      // The stamp is the time of measurement; time must not go back after a cycle without odometry.
       const Clock::time_point moment =
           is_driving_ ? std::max(moment_, last_cycle_ + milliseconds{1}) : moment_;
       const double time = drive_.time(moment);
@@ -387,23 +387,23 @@ class DriveNode {
   CarSight sight_;
   ClockWatch clock_;
   FrameTree frames_;
-  std::optional<bool> has_transform_{};  ///< from the odometry's frame to the map's; said so
+  std::optional<bool> has_transform_{};  ///< whether odometry has a transform to the map, as reported last
   PartnerWatch partners_;
   wire::ServeSummary summary_;
   protocol::StopMessage stop_message_;
 
-  const double period_;       ///< of control [s]
+  const double period_;       ///< control period [s]
   double habit_;              ///< usual time from cycle to cycle [s]
-  double turn_around_ = 0.0;  ///< from odometry to command [s]
-  double last_speed_ = 0.0;   ///< where the last command acts [m/s]
-  std::uint64_t writer_ = 0;  ///< of the odometry
+  double turn_around_ = 0.0;  ///< time from odometry to command [s]
+  double last_speed_ = 0.0;   ///< speed at which the last command acts [m/s]
+  std::uint64_t writer_ = 0;  ///< writer of the odometry
   protocol::OdometryMessage odometry_;
   Clock::time_point arrived_{}, moment_{}, last_cycle_{}, looked_{};
   bool is_fresh_ = false;    ///< odometry waits for a cycle
-  bool is_driving_ = false;  ///< cycles go on, with odometry or without
+  bool is_driving_ = false;  ///< cycles continue, with odometry or without
   bool was_blind_ = false;   ///< the last cycle had no odometry
-  bool is_silent_ = false;   ///< it was said that odometry is missing
-  bool is_stopped_ = false;  ///< by request
+  bool is_silent_ = false;   ///< missing odometry was reported
+  bool is_stopped_ = false;  ///< stopped by request
   std::optional<safety::StopPlayer> player_;
   model::Command stopping_;  ///< the last command before the stop
   int odd_imu_ = 0;

@@ -50,7 +50,7 @@ bool ClockWatch::accept(std::int64_t stamp, std::int64_t received, std::int64_t 
 
 /// Clocks drift apart; stamps of simulated time may go slower than the clock does.
 void ClockWatch::follow(std::int64_t lag, double since) {
-  constexpr double kDrift = 1e-3;  // by which the quickest message is forgotten [s/s]
+  constexpr double kDrift = 1e-3;  // rate at which the quickest message is forgotten [s/s]
   offset_ = std::min(offset_ + static_cast<std::int64_t>(kDrift * since / kNanosecond), lag);
   if (seconds(lag - offset_) > kLatest) offset_ = lag;
 }

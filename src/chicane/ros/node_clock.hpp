@@ -49,8 +49,8 @@ class ClockWatch {
   bool has_said_dropped_ = false;
 };
 
-/// Time of a node: this machine's, or that of /clock, which stands still without its messages. Given as
-/// points of the monotonic clock, from the start of the node on. One thread.
+/// Time of a node: this machine's, or /clock's, which stands still without messages. Returned as points of
+/// the monotonic clock, from the node's start on. One thread.
 class NodeClock {
  public:
   using Clock = std::chrono::steady_clock;

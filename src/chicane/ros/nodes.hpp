@@ -30,7 +30,7 @@ struct TopicNames {
   std::string scan = "/scan";                    ///< sensor_msgs/msg/LaserScan, of the simulator
 };
 
-/// What a drive message means to the car.
+/// Meaning of a drive message to the car.
 struct DriveOptions {
   bool is_by_speed = true;  ///< the car holds `speed`; false: it takes `acceleration`
   /// The car's own speed controller closes a gap of speed in about this time [s], (0, 5]: the speed that is
@@ -44,14 +44,14 @@ struct NodeOptions {
   TopicNames topics{};
   protocol::FrameNames frames{.map = "map", .odom = "map", .base = "ego_racecar/base_link"};
   DriveOptions drive{};
-  /// Of the odometry's child frame: the middle of the rear axle; false: the centre of mass.
+  /// Origin of the odometry's child frame: the middle of the rear axle; false: the centre of mass.
   bool is_base_at_rear_axle = true;
-  bool is_time_simulated = false;  ///< the controller's time is that of /clock
+  bool is_time_simulated = false;  ///< the controller's time is /clock's
   /// Seconds of the simulator in a second of the clock, > 0; it then sends /clock. 0: as many, without.
   double pace = 0.0;
-  std::string map_file{};  ///< of the simulator: /scan sees this occupancy map; empty: the road's edges
-  Qos odom_qos{.is_reliable = false};  ///< of the controller's reader; the simulator sends reliably
-  Qos drive_qos{};                     ///< of the controller's writer; the simulator reads best effort
+  std::string map_file{};              ///< map that the simulated /scan sees; empty: the road's edges
+  Qos odom_qos{.is_reliable = false};  ///< settings of the controller's reader; the simulator sends reliably
+  Qos drive_qos{};                     ///< settings of its writer; the simulator reads best effort
 };
 
 /// The walls of an occupancy map (protocol/occupancy_map.hpp): cells darker than occupied_thresh; unknown
@@ -61,10 +61,9 @@ struct NodeOptions {
 /// `chicane ros`: wire::serve for a car that speaks ROS 2. Reads odometry, answers each with a command, and
 /// publishes the run (run_publisher.hpp). Dashboard, settings and recording are those of `serve`.
 ///
-/// A control cycle begins with odometry, at most one each 0.75 control periods. Where none comes in time the
-/// cycle is one in which nothing was measured, and the guard decides; after kAbsence of that cycles end until
-/// odometry comes again. The car is stopped by the stop at hand when TopicNames::stop says so, and drives on
-/// from rest alone.
+/// A control cycle begins with odometry, at most one each 0.75 control periods. If none comes in time the
+/// cycle has no measurement, and the guard decides; after kAbsence without odometry cycles end until it
+/// returns. TopicNames::stop makes the car execute its stop plan; it continues only from rest.
 ///
 /// Uses of the options: track, lap, scenario, step_budget, forget_after, silent_after, server (dashboard).
 /// kIo when DDS or the port fails.
@@ -75,8 +74,8 @@ struct NodeOptions {
 
 /// `chicane ros --simulate`: our car and track as ROS 2 topics, in real time: odometry, transform, IMU and
 /// laser scan out, drive commands in. The car waits for the first command. Each command acts
-/// `scenario.latency` after it arrived; when they cease the car is stopped as `scenario.guard.receiver` says,
-/// by the stop plan that came with the last one where there was one.
+/// `scenario.latency` after it arrived. When they cease `scenario.guard.receiver` stops the car, by the last
+/// command's stop plan if it had one.
 ///
 /// Uses of the scenario: track, car, plant_options, vehicle, guard.receiver, sensor, seed, laps, time_limit,
 /// latency, control_period (of the odometry). Ends when the laps are driven, the car is lost, time is up, or

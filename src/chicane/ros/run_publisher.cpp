@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Publishes a run as ROS 2 topics, with its parameters as services.
 #include "chicane/ros/run_publisher.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double kDiagnosticsPeriod = 0.2;  // [s]
 constexpr double kRunPeriod = 1.0;          // [s]
-// Sent by the car or its simulator, drawn by Foxglove alone, or long and asked for by viewers.
+// Topics left out: sent by the car or its simulator, drawn by Foxglove alone, or long and only on request.
 constexpr std::array<std::string_view, 7> kNotOurs{
     "/tf", "/drive", "/clock", "/scene", "/chicane/change", "/chicane/limit", "/track/racing_line"};
 
@@ -77,7 +78,7 @@ namespace {
 using protocol::foxglove::Parameter;
 using protocol::foxglove::ParameterStore;
 
-/// Of those that were asked for; what there is none of has no value.
+/// Values of the named parameters; an unknown one has no value.
 std::vector<Parameter> values_of(ParameterStore& store, const std::vector<std::string>& names) {
   std::vector<Parameter> values;
   for (const std::string& name : names) {

@@ -14,18 +14,18 @@
 
 namespace chicane::ros {
 
-/// Sends a run as ROS 2 topics: those that viewers and recordings have, but for the ones that a car or its
-/// simulator sends (odometry, transforms, drive, clock). Only what somebody reads is encoded. One thread.
+/// Sends a run as ROS 2 topics: the topics of viewers and recordings, except those that a car or its
+/// simulator sends (odometry, transforms, drive, clock). Only topics with a reader are encoded. One thread.
 ///
 /// The estimate of the car goes as /chicane/odom. Stamps are those of the system clock. The road's lines are
-/// transient local: who comes late gets them, too.
+/// transient local: late readers get them, too.
 class RunPublisher {
  public:
   /// `run` outlives this. kIo when DDS refuses a topic.
   [[nodiscard]] static Result<std::unique_ptr<RunPublisher>> create(Participant& participant,
                                                                     const protocol::Run& run);
 
-  /// After a control cycle. `offset`: from the run's time to seconds since 1970 [s].
+  /// Publishes a frame after its control cycle. `offset`: from the run's time to seconds since 1970 [s].
   void publish(const telemetry::Frame& frame, double offset);
   void publish(const telemetry::CompletedLap& lap);
 
@@ -33,9 +33,9 @@ class RunPublisher {
   struct Topic {
     const protocol::RosTopic* topic = nullptr;
     std::unique_ptr<Writer> writer{};
-    double period = 0.0;  ///< between messages at least [s]
-    double last = -1e9;   ///< when one was sent [s]
-    int readers = 0;      ///< when it was looked at last
+    double period = 0.0;  ///< least time between messages [s]
+    double last = -1e9;   ///< time of the last message [s]
+    int readers = 0;      ///< readers at the last look
   };
 
   explicit RunPublisher(const protocol::Run& run) : run_{run} {}
@@ -57,7 +57,7 @@ class ParameterServices {
   [[nodiscard]] static Result<std::unique_ptr<ParameterServices>> create(
       Participant& participant, protocol::foxglove::ParameterStore& store, Run run);
 
-  /// Hands what was asked since the last call to the store's thread, which answers.
+  /// Hands requests since the last call to the store's thread, which answers.
   void serve();
 
  private:

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// `chicane ros --simulate`: the node that simulates a car over ROS 2, with odometry, transforms, scan and
+// clock.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -41,10 +43,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kScanPeriod = 0.025;            // of the Hokuyo UST-10LX [s]
-constexpr double kTickPeriod = 0.005;            // of /clock [s]
-constexpr double kScannerAhead = 0.275 / 0.307;  // of the rear axle, in wheelbases: as f1tenth_gym_ros has it
-constexpr double kLookPeriod = 0.5;              // between looks at partners [s]
+constexpr double kScanPeriod = 0.025;            // period of the Hokuyo UST-10LX [s]
+constexpr double kTickPeriod = 0.005;            // period of /clock [s]
+constexpr double kScannerAhead = 0.275 / 0.307;  // ahead of the rear axle, in wheelbases (f1tenth_gym_ros)
+constexpr double kLookPeriod = 0.5;              // period of looking for partners [s]
 constexpr double kRangeMin = 0.02;               // [m]
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
@@ -90,7 +92,7 @@ struct SimTopics {
   }
 };
 
-/// What the laser sees: the walls of the road, or those of a map.
+/// Walls that the laser sees: the road's, or a map's.
 class Walls {
  public:
   static Result<Walls> create(const road::Track& track, double size, const std::string& map_file) {
@@ -112,7 +114,7 @@ class Walls {
     return std::visit(
         [](const auto& scanner) -> const sim::RangeScannerOptions& { return scanner.options(); }, scanner_);
   }
-  /// Of a map; a road is free.
+  /// Whether a cell of the map is wall; a road is free.
   [[nodiscard]] bool is_wall(const Vec2& place) const {
     const auto* map = std::get_if<sim::MapScanner>(&scanner_);
     return map != nullptr && map->is_wall(place);
@@ -170,7 +172,7 @@ class SimNode {
   }
 
  private:
-  /// Time of the simulated clock [s]: that of the world once it moves.
+  /// Simulated time [s]: the world's, once it moves.
   [[nodiscard]] double elapsed(Clock::time_point now) const { return pace_ * seconds(now - began_); }
   [[nodiscard]] std::int64_t stamp(double time) const {
     return epoch_ + static_cast<std::int64_t>(std::llround(1e9 * time));
@@ -181,7 +183,7 @@ class SimNode {
 
   void read_commands() {
     std::vector<Sample> drives = topics_.drive ? topics_.drive->take() : std::vector<Sample>{};
-    if (topics_.stop_plan) {  // after the commands: each was sent behind its stop
+    if (topics_.stop_plan) {  // after the commands: each was sent after its stop
       for (const Sample& sample : topics_.stop_plan->take()) {
         if (auto stop = protocol::decode<protocol::StopMessage>(sample.bytes))
           stops_[stop_count_++ % stops_.size()] = *stop;
@@ -207,14 +209,14 @@ class SimNode {
     writer_ = writer;
     if (report_.connections++ > 0) return log_.say(fmt::format("another sender on {}", node_.topics.drive));
     const double ahead = elapsed(Clock::now());
-    began_ += duration(ahead / pace_);  // the world begins with the first command, and the stamps go on
+    began_ += duration(ahead / pace_);  // the world begins with the first command, and the stamps continue
     epoch_ += static_cast<std::int64_t>(std::llround(1e9 * ahead));
     next_odometry_ = next_scan_ = 0.0;
     if (topics_.clock) next_tick_ = 0.0;
     log_.say(fmt::format("first command on {}", node_.topics.drive));
   }
 
-  /// A command waits for its moment as what was wanted: the pedal follows from the speed then.
+  /// Queues a command with its demand: the pedal is computed at the speed when it acts.
   void accept(const protocol::DriveMessage& message) {
     ++report_.answers;
     const double time = car_.world.time();
@@ -320,7 +322,7 @@ class SimNode {
     if (report_.connections > 0) record(seen);
   }
 
-  /// What the world knows, with the last command as the answer.
+  /// Records the world's state, with the last command as the answer.
   void record(const model::Measurement& seen) {
     car_.write(seen, applied_, frame_);
     frame_.result.command.throttle = applied_.throttle;
@@ -333,7 +335,7 @@ class SimNode {
         {{stamp(0.0), node_.frames.base, scanner_frame(), {.x = scanner_ahead_}}}})));
   }
 
-  /// "ego_racecar/base_link" → "ego_racecar/laser"
+  /// Frame of the laser: "ego_racecar/base_link" → "ego_racecar/laser".
   [[nodiscard]] std::string scanner_frame() const {
     const std::size_t slash = node_.frames.base.rfind('/');
     return (slash == std::string::npos ? "" : node_.frames.base.substr(0, slash + 1)) + "laser";
@@ -377,18 +379,18 @@ class SimNode {
   wire::SimulateReport report_;
   telemetry::Frame frame_;
 
-  const double scanner_ahead_;  ///< of the rear axle [m]
+  const double scanner_ahead_;  ///< distance ahead of the rear axle [m]
   const double pace_;           ///< seconds simulated in a second of the clock
   std::vector<float> ranges_;
   std::array<protocol::StopMessage, 8> stops_{};  ///< the last ones, a ring
   std::size_t stop_count_ = 0;
-  std::uint64_t writer_ = 0;  ///< of the commands
+  std::uint64_t writer_ = 0;  ///< writer of the commands
   Clock::time_point started_{}, began_{}, looked_{};
   std::int64_t epoch_ = std::chrono::duration_cast<std::chrono::nanoseconds>(
                             std::chrono::system_clock::now().time_since_epoch())
-                            .count();                           ///< of the simulated time 0 [ns since 1970]
+                            .count();                           ///< simulated time 0 [ns since 1970]
   double next_odometry_ = 0.0, next_scan_ = 0.0;                ///< [s]
-  double next_tick_ = std::numeric_limits<double>::infinity();  ///< of /clock [s]
+  double next_tick_ = std::numeric_limits<double>::infinity();  ///< time of the next /clock message [s]
   double arrived_ = 0.0;                                        ///< the last command [s]
   model::Command applied_;
 };

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Names and types of ROS 2 in DDS, and a Cyclone type whose samples are bytes.
 #include "chicane/ros/type_hash.hpp"
 
 #include <dds/dds.h>
@@ -38,7 +39,7 @@ constexpr int kNested = 1;
 constexpr int kArray = 48;      // added for a fixed size
 constexpr int kSequence = 144;  // added for any size
 
-/// One definition of a schema: what the hash needs of it.
+/// One definition of a schema: the parts that the hash needs.
 struct Definition {
   std::string fields{};              ///< JSON, one object for each field, joined
   std::vector<std::string> parts{};  ///< types it refers to
@@ -163,7 +164,7 @@ namespace {
 /// A message: Cyclone's part, and the bytes.
 struct Message : ddsi_serdata {
   std::string bytes;     ///< padded to a multiple of four, as Cyclone reads that far
-  std::size_t size = 0;  ///< without padding
+  std::size_t size = 0;  ///< size without padding
 };
 
 const Message& message_of(const ddsi_serdata* data) { return static_cast<const Message&>(*data); }
@@ -181,7 +182,7 @@ bool equal_keys(const ddsi_serdata*, const ddsi_serdata*) { return true; }
 uint32_t size_of(const ddsi_serdata* data) { return static_cast<uint32_t>(message_of(data).size); }
 void free_message(ddsi_serdata* data) { delete static_cast<Message*>(data); }
 
-/// Fragments may overlap: only what is behind the bytes so far is taken.
+/// Take only the part beyond the bytes so far: fragments may overlap.
 ddsi_serdata* from_network(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* part,
                            std::size_t size) {
   Message* message = new_message(type, kind, size);

@@ -6,8 +6,8 @@
 
 namespace chicane::ros {
 
-/// The name of a ROS 2 topic in DDS: "/drive" is "rt/drive". Names without a slash in front, such as those of
-/// services, stay as they are.
+/// Name of a ROS 2 topic in DDS: "/drive" is "rt/drive". Names without a slash in front, such as services',
+/// stay the same.
 [[nodiscard]] std::string dds_topic(std::string_view topic);
 /// The name of a ROS 2 message type in DDS: "nav_msgs/msg/Odometry" is "nav_msgs::msg::dds_::Odometry_".
 [[nodiscard]] std::string dds_type(std::string_view type);
@@ -31,8 +31,8 @@ struct ddsi_sertype;
 
 namespace chicane::ros {
 
-/// A type of Cyclone DDS whose samples are bytes: what is written is sent as it is, what arrives is handed on
-/// as it is. The sample of dds_write() is a std::string_view. Freed by Cyclone.
+/// Type of Cyclone DDS whose samples are bytes, sent and received without change. The sample of dds_write()
+/// is a std::string_view. Freed by Cyclone.
 [[nodiscard]] ddsi_sertype* make_cdr_type(const std::string& name);
 /// The bytes of a message of such a type, as long as it lives.
 [[nodiscard]] std::string_view bytes_of(const ddsi_serdata& message);

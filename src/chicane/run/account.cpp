@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Account of a run: laps, counts and the reasons of its end, from our plant or from sightings of a car that
+// another program simulates.
 #include "chicane/run/account.hpp"
 
 #include <algorithm>
@@ -180,9 +182,9 @@ telemetry::RunSummary Account::summary(std::optional<double> duration) const {
 
 namespace {
 
-constexpr double kShare = 0.9;        // of the first lap that a lap has to be long
-constexpr double kMostTurned = 0.45;  // against the first time [rad]: roads cross at 30° or more
-constexpr double kSlack = 5.0;        // [m] that a car may be farther than its speed tells
+constexpr double kShare = 0.9;        // least length of a lap over the first lap's
+constexpr double kMostTurned = 0.45;  // turn against the first crossing [rad]: roads cross at 30° or more
+constexpr double kSlack = 5.0;        // distance beyond the one that the speed explains [m]
 
 Vec2 direction_of(double heading) noexcept { return {cos(heading), sin(heading)}; }
 
@@ -216,7 +218,7 @@ void LapLearner::see(double time, const model::Pose& car, double speed) noexcept
   // A road that crosses the line's own goes over the line as well, in another direction.
   const double turned = angle_difference(car.psi, atan2(direction_.y(), direction_.x()));
   const double back =
-      std::min(std::fabs(turned), kPi - std::fabs(turned));  // also a car that has turned round
+      std::min(std::fabs(turned), kPi - std::fabs(turned));  // counts a car that has turned round, too
   if ((after > 0.0 ? std::fabs(turned) : back) > kMostTurned) return;
   if (after < 0.0) {
     ++backward_;

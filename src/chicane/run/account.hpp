@@ -17,13 +17,13 @@
 
 namespace chicane::run {
 
-/// What the account of a run has to know beforehand.
+/// Terms of a run that its account needs from the start.
 struct AccountTerms {
   std::string track{}, car{}, controller{}, preset{};  ///< names in the report
-  std::vector<road::Corner> corners{};                 ///< of the track
+  std::vector<road::Corner> corners{};                 ///< corners of the track
   std::vector<std::string> notices{};                  ///< scenario.notices
   std::uint64_t seed = 0;
-  double scale = 1.0;                           ///< of the car: what is far is so many times as far
+  double scale = 1.0;                           ///< scale of distances: size of the car over full size
   std::optional<safety::GuardOptions> guard{};  ///< none where another program drives
   double latency = 0.0;                         ///< [s]
   int laps = 0;                                 ///< wanted; 0: until stopped, whatever happens to the car
@@ -32,7 +32,7 @@ struct AccountTerms {
   std::string_view remedy = telemetry::kKeysRemedy;  ///< SituationTerms::remedy
   double step_deadline = 0.0;  ///< control steps that take longer are counted as misses [s]
 };
-/// Those of a run in which `scenario.controller` drives on a track; null where the road is not known.
+/// Terms of a run in which `scenario.controller` drives on a track; null if the road is not known.
 [[nodiscard]] AccountTerms terms_of(const scenario::Scenario& scenario, const road::Track* track);
 
 /// The account of a run: laps and sectors, metrics, when it is over and why, and the report. The one place
@@ -50,27 +50,26 @@ class Account {
   static constexpr double kLostDistance = 25.0;  ///< [m]
   static constexpr double kLostTime = 30.0;      ///< [s]
   static constexpr double kNearer = 1.0;         ///< [m] that count as coming nearer
-  static constexpr double kStoodTime = 3.0;      ///< [s] of standing that a time limit's sentence tells
+  static constexpr double kStoodTime = 3.0;      ///< [s] of standing that a time limit's sentence mentions
   static constexpr double kTimePerLap = 600.0;   ///< [s] where no time limit was given
   static constexpr int kLapsRemembered = 1000;   ///< one by one, beyond those asked for
 
   explicit Account(AccountTerms terms);
 
-  /// Another run with the same terms: everything is counted anew.
+  /// Restarts with the same terms: everything is counted from zero.
   void restart();
-  /// The same run goes on with another car, or with the same one from another place: what was counted stays,
-  /// the running lap does not count.
+  /// Continues the same run with another car, or with the same one from another place: counts stay, the
+  /// running lap does not count.
   void resume() noexcept;
 
   /// Other laps, time limit and latency are asked for from now on; the names stay. Does not allocate.
   void set_terms(int laps, double time_limit, double latency) noexcept;
 
-  /// After each physics step of our plant. `is_manual`: a person drives.
+  /// Adds a physics step of our plant. `is_manual`: a person drives.
   void add_physics(const sim::World& world, bool is_manual) noexcept;
-  /// After each sighting of a car that others simulate. `corner_times`: Judge::last_corner_times().
+  /// Adds a sighting of a car that another program simulates. `corner_times`: Judge::last_corner_times().
   void add_sighting(const sim::WorldState& car, std::span<const double> corner_times = {}) noexcept;
-  /// Each control cycle: counts it, and writes its situation into the frame, which holds that of the cycle
-  /// before.
+  /// Adds a control cycle: counts it, and replaces the previous cycle's situation in the frame by its own.
   void add(telemetry::Frame& frame) noexcept;
 
   /// The lap that was completed last; lap 0: none yet.
@@ -81,10 +80,10 @@ class Account {
 
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }
   [[nodiscard]] bool is_lost() const noexcept { return lost_for_ > kLostTime; }
-  /// More laps than were asked for, and longer: only a lost car ends the run from now on.
+  /// Removes the limits on laps and time: from now on only a lost car ends the run.
   void drive_on() noexcept;
 
-  /// `duration`: of the run [s]; without one as long as was measured. Allocates.
+  /// `duration`: of the run [s]; without it the measured one. Allocates.
   [[nodiscard]] telemetry::RunSummary summary(std::optional<double> duration = std::nullopt) const;
 
  private:
@@ -96,11 +95,11 @@ class Account {
   telemetry::Metrics metrics_;
   telemetry::CompletedLap completed_lap_;
   bool has_new_lap_ = false;
-  int laps_seen_ = 0;                                         ///< by the judge since restart() or resume()
-  double nearest_ = std::numeric_limits<double>::infinity();  ///< to the line while far from it [m]
-  double lost_for_ = 0.0;                                     ///< far, and not coming nearer [s]
-  double edge_distance_ = 0.0;                                ///< of our plant [m]
-  double stood_for_ = 0.0;                                    ///< until now [s]
+  int laps_seen_ = 0;                                         ///< judge's laps since restart() or resume()
+  double nearest_ = std::numeric_limits<double>::infinity();  ///< least distance while far from the line [m]
+  double lost_for_ = 0.0;                                     ///< time far and not coming nearer [s]
+  double edge_distance_ = 0.0;                                ///< edge distance of our plant [m]
+  double stood_for_ = 0.0;                                    ///< time at standstill so far [s]
   bool is_endless_ = false;
   bool is_over_ = false;
   bool has_finished_ = false;  ///< an open road
@@ -120,8 +119,8 @@ class LapLearner {
 
   /// A new run from wherever the car is seen next.
   void reset() noexcept;
-  /// Time rises from sighting to sighting; `speed` [m/s] tells a car that drives from one that was moved: the
-  /// running lap of the latter begins where it is.
+  /// Time rises from sighting to sighting; `speed` [m/s] distinguishes a car that drives from one that was
+  /// moved: the latter's running lap begins at its place.
   void see(double time, const model::Pose& car, double speed) noexcept;
 
   /// Laps and their times; all else at its default.
@@ -135,12 +134,12 @@ class LapLearner {
   sim::WorldState state_;
   bool has_line_ = false;
   Vec2 line_{0.0, 0.0};
-  Vec2 direction_{1.0, 0.0};  ///< in which the line is crossed
+  Vec2 direction_{1.0, 0.0};  ///< direction in which the line is crossed
   Vec2 last_{0.0, 0.0};
   int backward_ = 0;         ///< crossings that have to be made up for
   double lap_start_ = 0.0;   ///< [s]
-  double driven_ = 0.0;      ///< since the line was crossed [m]
-  double lap_length_ = 0.0;  ///< of the first lap [m]; 0: none yet
+  double driven_ = 0.0;      ///< distance since the line was crossed [m]
+  double lap_length_ = 0.0;  ///< length of the first lap [m]; 0: none yet
 };
 
 /// Keeps the account of a run whose car is simulated by another program, over all its connections: counts,
@@ -153,11 +152,12 @@ class Roadside {
   /// `track` may be null: then laps are timed, and nothing is judged. It outlives this.
   Roadside(const road::Track* track, const scenario::Scenario& scenario);
 
-  /// Another car, or the same one from another place: the running lap does not count, the rest stays.
+  /// Continues with another car, or the same one from another place: the running lap does not count, the rest
+  /// stays.
   void resume() noexcept;
-  /// The car drives on another road than configured: what was judged by it is forgotten.
+  /// Drops the track and all judgements by it: the car drives on another road than configured.
   void forget_track();
-  /// Writes place, edges and laps of what was measured into the frame, and counts it. Allocates nothing.
+  /// Writes place, edges and laps by the measurement into the frame, and counts it. Allocates nothing.
   void judge(telemetry::Frame& frame) noexcept;
   /// The lap that was just completed, once.
   [[nodiscard]] std::optional<telemetry::CompletedLap> take_lap() noexcept { return account_.take_lap(); }
@@ -169,7 +169,7 @@ class Roadside {
 
   scenario::Scenario scenario_;
   std::optional<sim::Judge> judge_;  ///< none where the road is not known
-  LapLearner learner_;               ///< of laps, in its place
+  LapLearner learner_;               ///< laps without a known road
   Account account_;
   int events_before_ = 0;  ///< off the road, before this car
   bool has_seen_ = false;

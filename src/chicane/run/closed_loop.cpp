@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// One run in closed loop: simulated car, sensor and faults, control cycle, and the commands in flight between
+// them.
 #include "chicane/run/closed_loop.hpp"
 
 #include <algorithm>
@@ -106,7 +108,7 @@ void ClosedLoop::follow(double time, const model::State& car, double delay,
   car_.account.add_physics(car_.world, true);
 }
 
-/// One physics step.
+/// Advances the car by one physics step.
 void ClosedLoop::move() noexcept {
   watch_faults();
   car_.advance(acting(), manual_.is_on());
@@ -158,20 +160,21 @@ void ClosedLoop::watch_faults() noexcept {
   car_.plant->disturb({.grip = faults_.grip(), .side_acceleration = faults_.side_acceleration()});
 }
 
-/// What the actuators do now: the command that has arrived; when none has for long, the car brakes by itself.
+/// Command that the actuators execute now: the newest that has arrived; after a command timeout, the
+/// receiver's own braking.
 model::Command ClosedLoop::acting() noexcept {
   const double late = faults_.extra_delay(scenario_.latency);
-  const model::Command& arrived = car_.in_flight.at(time() + 1e-9 - late);
+  const model::Command& arrived = car_.in_flight.at(time() + 1e-9 - late);  // 1e-9 s: rounding
   model::Command command = faults_.done(car_.receiver.guard(arrived, time() - late, car_.speed()));
   if (interceptor_.actuated) interceptor_.actuated(time(), command);
   return command;
 }
 
-/// The controller's measurement now.
+/// Measurement that the controller gets now, faults included.
 model::Measurement ClosedLoop::measure() noexcept {
   model::Measurement now = faults_.seen(car_.sense(scenario_.waypoints_sent));
   if (interceptor_.measured) interceptor_.measured(now);
-  // Commands act in the order they are sent: behind a latency that has just been shortened they still wait.
+  // Commands act in the order they are sent, also after the latency has been shortened.
   now.delay = std::max(scenario_.latency + step_time_, configured_act_time_ - now.time);
   return now;
 }
@@ -182,7 +185,7 @@ const model::Measurement& ClosedLoop::look() noexcept {
   return *seen_;
 }
 
-/// Of the control step that is due: by look(), or taken now.
+/// Measurement for the control step that is due: kept by look(), or taken now.
 model::Measurement ClosedLoop::take_measurement() noexcept {
   if (seen_) return *std::exchange(seen_, std::nullopt);
   faults_.update(time());
@@ -198,6 +201,7 @@ void ClosedLoop::control(double budget, const GivenStep* given, const model::Com
   }
   if (manual_.is_on()) input.manual = manual_.command(frame_.measurement, scenario_.vehicle);
   if (sent != nullptr) input.manual = *sent;
+  // The frame: state of the world, the controller's step, its command.
   observe(car_.world, frame_);
   frame_.pace = pace_;
   frame_.applied = acting();
@@ -206,6 +210,7 @@ void ClosedLoop::control(double budget, const GivenStep* given, const model::Com
     input.deadline = Deadline::after(std::chrono::nanoseconds(static_cast<long long>(budget * 1e9)));
   cycle_.step(input, frame_);
   if (budget > 0.0) step_time_ += 0.1 * (std::min(frame_.step_time, budget) - step_time_);
+  // Send the command, with its random delay.
   if (faults_.is_delivered()) {
     configured_act_time_ = frame_.measurement.time + frame_.measurement.delay;
     const double act_time =
@@ -219,7 +224,7 @@ void ClosedLoop::control(double budget, const GivenStep* given, const model::Com
 
 telemetry::RunSummary ClosedLoop::summary() const {
   telemetry::RunSummary run = car_.account.summary(time());
-  const bool is_full_size = scenario_.vehicle.scale == 1.0;  // else the plan has times of full size
+  const bool is_full_size = scenario_.vehicle.scale == 1.0;  // a plan has times of a full-size car
   if (lap_ && is_full_size) run.planned_corner_times = lap_->corner_times();
   return run;
 }

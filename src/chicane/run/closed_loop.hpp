@@ -24,9 +24,9 @@
 
 namespace chicane::run {
 
-/// What the clock did to a recorded control step: with it, a run in real time is computed again bit for bit.
+/// Clock's effect on a recorded control step: given it, a run in real time is computed again bit for bit.
 struct GivenStep {
-  double delay = 0.0;                   ///< that was measured [s]
+  double delay = 0.0;                   ///< measured delay [s]
   std::uint32_t deadline_spent_at = 0;  ///< DeadlineLog::spent_at
 };
 
@@ -51,7 +51,7 @@ class ClosedLoop {
   /// track, too.
   [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(const scenario::Scenario& scenario,
                                                                   const Factories& make = {});
-  /// The same for one of many runs: what is the same for all on a road is taken from `roads`.
+  /// Creates one of many runs: everything that runs on a road share is taken from `roads`.
   [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> create(const scenario::Scenario& scenario,
                                                                   Roads& roads, const Factories& make = {});
   /// The same on a road that was prepared (Roads::prepare), whatever scenario.track says.
@@ -71,9 +71,9 @@ class ClosedLoop {
   /// The next advance() begins with the control step number cycle().
   [[nodiscard]] bool is_control_due() const noexcept { return time() >= next_control_ - 1e-9; }
   [[nodiscard]] std::uint64_t cycle() const noexcept { return cycle_.next(); }
-  /// A setting changes before the next control step. What was learned and what is under way stay. A field of
+  /// Applies a setting before the next control step. Learned values and commands in flight stay. A field of
   /// the scenario that is not live (protocol::is_live) changes nothing. Allocates nothing; call it between
-  /// two advance(). Only LearnedLap, of a recording, allocates and takes seconds.
+  /// two advance(). Only a LearnedLap from a recording allocates and takes seconds.
   void apply(const Setting& setting) noexcept;
   /// The same for a change that is still text; one that read_setting() refuses changes nothing. Allocates.
   void apply(const telemetry::Change& change);
@@ -91,7 +91,7 @@ class ClosedLoop {
   /// Switches a fault on as `event` says, as if the scenario had had it from the beginning. Pre: it begins in
   /// the next advance().
   void set_fault(const sim::FaultEvent& event) noexcept { faults_.set(event); }
-  /// From the next advance() on. A copy() calls the same functions.
+  /// Installs functions that are called from the next advance() on. A copy() calls the same functions.
   void intercept(Interceptor interceptor) { interceptor_ = std::move(interceptor); }
   /// Stands the car at `pose`, as a simulator's reset does: controller and guard are not informed. Call it
   /// between two advance().
@@ -100,35 +100,35 @@ class ClosedLoop {
   [[nodiscard]] bool is_over() const noexcept { return car_.account.is_over(); }
   /// A lap that the last advance() completed, once.
   [[nodiscard]] std::optional<telemetry::CompletedLap> take_lap() noexcept { return car_.account.take_lap(); }
-  /// More laps than were asked for: is_over() only when the car is lost, which starts it anew. Their laps are
+  /// Continues after the last lap: is_over() only when the car is lost, which restarts it. Further laps are
   /// counted and remembered like the others.
   void drive_on();
-  /// Puts the car at the start; the controller is reset, the account begins anew. Allocates.
+  /// Puts the car at the start, resets the controller and restarts the account. Allocates.
   void restart();
-  /// The same from any pose and motion, on the road or beside it.
+  /// Restarts from any pose and motion, on the road or off it.
   void restart_at(const model::State& start);
 
-  /// A control step of a car that others drove: at `time` [s] it was seen moving like `car`, and was sent
-  /// `sent`, which acts `delay` [s] later. The controller plans beside that and learns, as beside a person's
-  /// commands; from the last one on advance() drives. Times rise. Does not allocate.
+  /// Takes up a control step of a car that another controller drove: at `time` [s] it moved like `car`, and
+  /// was sent `sent`, which acts `delay` [s] later. The controller plans and learns as during manual driving;
+  /// after the last such step advance() drives. Times rise. Does not allocate.
   void follow(double time, const model::State& car, double delay, const model::Command& sent) noexcept;
 
-  /// The same run once more, as far as it has come: both do the same from then on, bit for bit. Null where
-  /// controller or plant cannot be copied (controller/controller.hpp). Allocates some 8 MB.
+  /// Copy of the run in its current state: both continue with the same bits. Null if controller or plant
+  /// cannot be copied (controller/controller.hpp). Allocates some 8 MB.
   [[nodiscard]] std::unique_ptr<ClosedLoop> copy() const;
 
   [[nodiscard]] double time() const noexcept { return car_.world.time(); }
   [[nodiscard]] const telemetry::Frame& frame() const noexcept { return frame_; }
   [[nodiscard]] const road::Track& track() const noexcept { return car_.track; }
   [[nodiscard]] const sim::WorldState& world() const noexcept { return car_.world.state(); }
-  /// The car as it is now, after the last physics step.
+  /// State of the car after the last physics step.
   [[nodiscard]] const model::State& car() const noexcept { return car_.plant->state(); }
   [[nodiscard]] const scenario::Scenario& scenario() const noexcept { return scenario_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return cycle_.controller(); }
   [[nodiscard]] telemetry::RunSummary summary() const;
 
  private:
-  /// Without a look at whether the car gets round the road.
+  /// Builds without checking that the car gets round the road.
   [[nodiscard]] static Result<std::unique_ptr<ClosedLoop>> build(const scenario::Scenario& scenario,
                                                                  const Roads::Prepared& road,
                                                                  const Factories& make);
@@ -155,12 +155,12 @@ class ClosedLoop {
   double pace_ = 1.0;
   sim::FaultLab faults_;
   Interceptor interceptor_;
-  std::shared_ptr<const road::RacingRoad> lap_;  ///< that is raced by; null: none is planned
+  std::shared_ptr<const road::RacingRoad> lap_;  ///< planned lap to race by; null: none
   telemetry::Frame frame_;
-  std::optional<model::Measurement> seen_;  ///< by look(), of the step that is due
+  std::optional<model::Measurement> seen_;  ///< measurement by look() for the step that is due
   double next_control_ = 0.0;
-  double step_time_ = 0.0;  ///< of the control step, smoothed; 0 in virtual time [s]
-  /// When the last command acts by the configured latency [s].
+  double step_time_ = 0.0;  ///< duration of the control step, smoothed; 0 in virtual time [s]
+  /// Time at which the last command acts by the configured latency [s].
   double configured_act_time_ = -std::numeric_limits<double>::infinity();
 };
 
@@ -169,8 +169,8 @@ class ClosedLoop {
 
 /// Called during a run on the thread that runs it; must not block. Empty functions are not called.
 struct RunHooks {
-  std::function<void(const telemetry::Frame&)> on_frame{};       ///< after each control cycle
-  std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< after each lap, the last one too
+  std::function<void(const telemetry::Frame&)> on_frame{};       ///< called after each control cycle
+  std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< called after each lap, the last one too
   std::function<void(const telemetry::Change&)> on_change{};     ///< was applied, before the next cycle
   /// The run is over and is driven on (RealtimeOptions::stay_at_end); again and again.
   std::function<void()> on_over{};

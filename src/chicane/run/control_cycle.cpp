@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Control cycle: scales a model car's measurement to full size, runs guard and controller, and scales command
+// and report back.
 #include "chicane/run/control_cycle.hpp"
 
 #include <chrono>
@@ -52,7 +54,7 @@ void ControlCycle::configure(const scenario::Scenario& scenario) noexcept {
   if (scenario.guard.road == safety::GuardRoad::kWaypoints) guard_.forget_road();
 }
 
-/// From the car in full size to the car as it is.
+/// Scales a result from full size to the actual car.
 void ControlCycle::to_scale(controller::StepResult& result) const noexcept {
   const double length = similarity_.length(), time = similarity_.time(), speed = similarity_.speed();
   controller::Plan& plan = result.plan;

@@ -18,15 +18,15 @@
 
 namespace chicane::run {
 
-/// The road as the scenario's guard knows it at first; `track`: where it may know it, or null. Milliseconds.
+/// Road that the scenario's guard starts with; `track`: the track it may use, or null. Takes milliseconds.
 [[nodiscard]] road::KnownRoad known_road(const scenario::Scenario& scenario, const road::Track* track);
 
-/// What holds in a control cycle beside the measurement. Recorded in the frame: with it and the measurement a
+/// Input of a control cycle besides the measurement. Recorded in the frame: with it and the measurement a
 /// cycle is computed again bit for bit.
 struct CycleInput {
-  Deadline deadline = Deadline::stopwatch();  ///< of the controller's step
+  Deadline deadline = Deadline::stopwatch();  ///< deadline of the controller's step
   std::uint32_t deadline_spent_at = 0;        ///< DeadlineLog::spent_at, where it is given
-  double interval = 0.0;  ///< since the cycle before [s], for the rate limit; not used in the first cycle
+  double interval = 0.0;  ///< time since the last cycle [s], for the rate limit; unused in the first cycle
   std::optional<model::Command> manual{};  ///< a person's command, sent in the controller's place
 };
 
@@ -35,9 +35,8 @@ struct CycleInput {
 ///
 ///     measurement → plausibility → controller → fallback → gate → what is sent → frame
 ///
-/// What is between measurement and gate is safety::Guard's. A model car is seen by it in full size
-/// (model/vehicle.hpp); frames and stops are of the car as it is. No allocation; one thread; objects are
-/// independent.
+/// safety::Guard does all between measurement and gate. It gets a model car in full size (model/vehicle.hpp);
+/// frames and stops have the actual size. No allocation; one thread; objects are independent.
 class ControlCycle {
  public:
   /// Pre: `controller` is not null. The scenario's vehicle gives the model's parameters, its guard watches.
@@ -55,8 +54,8 @@ class ControlCycle {
   /// A new run, or the same car after something unknown: everything learned is forgotten. The next cycle has
   /// the number `cycle`.
   void begin(std::uint64_t cycle = 0) noexcept;
-  /// Settings change before the next cycle; what was learned stays. GuardRoad::kWaypoints in the place of
-  /// kTrack, the one change of the guard that is taken up, allocates: it belongs before the car drives.
+  /// Applies settings before the next cycle; learned values stay. One change of the guard takes effect,
+  /// GuardRoad::kWaypoints in place of kTrack; it allocates, and so belongs before the car drives.
   void configure(const scenario::Scenario& scenario) noexcept;
 
   /// One cycle. Reads from `frame` the measurement, and the truth where there is one; writes everything that
@@ -77,7 +76,7 @@ class ControlCycle {
 
   model::Similarity similarity_;
   safety::Guard guard_;
-  safety::StopPlan stop_;  ///< of a model car
+  safety::StopPlan stop_;  ///< stop plan of a model car
   telemetry::PredictionCheck prediction_check_;
   std::uint64_t next_ = 0;
   bool begins_ = true;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Cache of results in files: names, checksums, and removal of the oldest.
 #include "chicane/run/disk_cache.hpp"
 
 #include <fcntl.h>
@@ -25,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kMagic = "chicane cache 1\n";  // the number: of this layout
 constexpr std::string_view kExtension = ".cache";
-constexpr std::string_view kUnfinished = ".part";  // of base/file.hpp
+constexpr std::string_view kUnfinished = ".part";  // suffix of base/file.hpp
 constexpr std::size_t kHeader = kMagic.size() + 2 * sizeof(std::uint64_t);
 constexpr auto kAbandoned = std::chrono::hours(1);  // a file that a killed process left
 

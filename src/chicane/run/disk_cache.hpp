@@ -9,8 +9,8 @@
 
 namespace chicane::run {
 
-/// Results that take long to compute, in files of one folder, each under a name made of all that it depends
-/// on (docs/decisions/0033-plans-are-cached-on-disk.md). A failure of the disk costs time, never a run.
+/// Cache of expensive results in files of one folder, each under a name made of all its inputs
+/// (docs/decisions/0033-plans-are-cached-on-disk.md). A failure of the disk costs time, never a run.
 ///
 /// Several processes and threads may use one folder: a file is written beside its place and renamed, so that
 /// it is there whole or not at all. A file whose length or checksum is wrong is ignored, with one line.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Control cycles of an external car: time by its clock, silences, changes of road, settings and planned laps.
 #include "chicane/run/external_drive.hpp"
 
 #include <limits>
@@ -10,7 +11,7 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kGapInDelays = 2.0;  // beside ExternalDriveOptions::forget_after
+constexpr double kGapInDelays = 2.0;  // gap in delays, if larger than ExternalDriveOptions::forget_after
 
 double seconds(ExternalDrive::Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
@@ -89,15 +90,15 @@ void ExternalDrive::finish() {
   if (planned && hooks_.on_change) hooks_.on_change(*planned);
 }
 
-/// After a silence, ours too, the car has been stopped meanwhile, or has gone on with the last command: it is
-/// not known which. The first telemetry may have waited as long, so that the second one begins anew, too.
+/// Forgets all after a gap, our own silences included: whether the car was stopped or continued with the last
+/// command is unknown. The first telemetry may have waited as long, so that the second resets as well.
 void ExternalDrive::watch_gap(double gap, double delay) {
   const bool is_long = gap > seconds(options_.forget_after) + kGapInDelays * delay;
   if (is_long || begins_again_) begin_anew();
   begins_again_ = is_long;
 }
 
-/// What was computed by another time does not hold.
+/// Counts time; a change of the clock invalidates the plan.
 void ExternalDrive::count_time(const Sighting& sighting) {
   const model::Measurement* measured = sighting.measured ? &*sighting.measured : nullptr;
   const bool is_another = clock_.advance(sighting.received, measured, std::exchange(acting_, last_sent_));
@@ -106,7 +107,7 @@ void ExternalDrive::count_time(const Sighting& sighting) {
   if (hooks_.on_clock) hooks_.on_clock(clock_.news());
 }
 
-/// A configured track that is not the one whose waypoints are shown is not used any more.
+/// Drops a configured track that does not match the visible waypoints.
 void ExternalDrive::check_road(const Sighting& sighting) {
   if (options_.track == nullptr || is_other_road_ || !sighting.measured) return;
   const auto distance = distance_to_other_road(*options_.track, *sighting.measured);

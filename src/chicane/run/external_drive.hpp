@@ -23,7 +23,7 @@
 
 namespace chicane::run {
 
-/// What an ExternalDrive is made of.
+/// Options of an ExternalDrive.
 struct ExternalDriveOptions {
   scenario::Scenario scenario;
   /// The road, where it is known: the car is judged by the positions that are measured. Outlives the drive;
@@ -31,18 +31,19 @@ struct ExternalDriveOptions {
   const road::Track* track = nullptr;
   std::shared_ptr<const road::RacingRoad> lap{};  ///< planned, of a controller that races (run/racing.hpp)
   std::chrono::nanoseconds step_budget{0};        ///< deadline of a control step; 0 = none
-  /// From cycle to cycle, beside twice the delay: after so long nothing learned is trusted.
+  /// Gap between cycles, in addition to twice the delay, after which learned values are dropped.
   std::chrono::nanoseconds forget_after = std::chrono::milliseconds{500};
-  PlantClockOptions clock{};  ///< what the run's time is counted by
+  PlantClockOptions clock{};  ///< options of the run's clock
 };
 
-/// Empty functions are not called.
+/// Callbacks of an ExternalDrive; empty functions are not called.
 struct ExternalDriveHooks {
-  SettingQueue* settings = nullptr;  ///< that change before the next cycle; outlives the drive
+  SettingQueue* settings = nullptr;  ///< changes to apply before the next cycle; outlives the drive
   std::function<void(const telemetry::Change&)> on_change{};     ///< one was taken up
-  std::function<void(const telemetry::Frame&)> on_frame{};       ///< after each cycle
+  std::function<void(const telemetry::Frame&)> on_frame{};       ///< called after each cycle
   std::function<void(const telemetry::CompletedLap&)> on_lap{};  ///< a lap was completed
-  /// The car drives on another road than ExternalDriveOptions::track, so far from it at most [m]. Once.
+  /// Reports that the car drives on another road than ExternalDriveOptions::track, with the largest distance
+  /// from it [m]. Once.
   std::function<void(double)> on_other_road{};
   std::function<void(std::string_view)> on_clock{};  ///< time is counted otherwise: a sentence for people
 };
@@ -54,28 +55,28 @@ class ExternalDrive {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Measured now, or nothing could be.
+  /// Measurement of the car at a moment, or its absence.
   struct Sighting {
-    Clock::time_point received{};                  ///< when the measurement came
+    Clock::time_point received{};                  ///< arrival of the measurement
     std::optional<model::Measurement> measured{};  ///< none: unusable, or it did not come
     double delay = 0.0;        ///< expected until the command acts, by the wall's clock [s]
-    double usual_delay = 0.0;  ///< the same as it was expected at the cycle before [s]
+    double usual_delay = 0.0;  ///< delay expected one cycle earlier [s]
   };
 
   /// Pre: `controller` is not null. `hooks` outlive this.
   ExternalDrive(ExternalDriveOptions options, std::unique_ptr<controller::Controller> controller,
                 const ExternalDriveHooks& hooks);
 
-  /// Another car, or the same one after it was away: nothing learned is trusted.
+  /// Begins with another car, or the same one after an absence: learned values are dropped.
   void begin();
-  /// Time between the last two cycles, if the one that comes now is `received`; none at the beginning [s].
+  /// Time between the last two cycles, if the current one is `received`; none at the start [s].
   [[nodiscard]] std::optional<double> gap(Clock::time_point received) const;
   /// A person drives, or the car was put elsewhere: the next measurement is the first of a run.
   void begin_anew();
 
   /// One cycle: the command is the frame's.
   const telemetry::Frame& step(const Sighting& sighting);
-  /// After the command was sent: counts the cycle and hands it on.
+  /// Counts the cycle and publishes it; call it after the command was sent.
   void finish();
 
   [[nodiscard]] const telemetry::Frame& frame() const { return frame_; }
@@ -99,11 +100,11 @@ class ExternalDrive {
   Roadside roadside_;
   PlantClock clock_;
   std::optional<Clock::time_point> last_received_;
-  std::optional<double> last_time_;  ///< of the last cycle since the run began [s]
+  std::optional<double> last_time_;  ///< time of the last cycle since the run began [s]
   bool begins_again_ = false;
-  bool is_other_road_ = false;  ///< than the configured one
+  bool is_other_road_ = false;  ///< differs from the configured road
   model::Command last_sent_;
-  model::Command acting_;  ///< between the last two measurements: a command acts from the next one on
+  model::Command acting_;  ///< acts between the last two measurements, until the next command does
   telemetry::Frame frame_;
 };
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Trials of faults in a flying lap: the lap is driven once, and each trial branches off in a process of its
+// own.
 #include "chicane/run/fault_campaign.hpp"
 
 #include <fmt/format.h>
@@ -23,12 +25,12 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kStood = 1.0;         // [s] a car that stands so long has come to rest
+constexpr double kStood = 1.0;         // [s] at standstill after which a car has come to rest
 constexpr double kTimeToGetGoing = 5;  // [s] for a car that the fault has stopped
 constexpr double kRounding = 1e-9;     // [s] sums of step lengths round
 constexpr double kLongestLaps = 1800;  // [s] for the two laps without a fault; longer ones are not waited for
 
-/// When a trial's faults begin, clock of the run, in whole milliseconds: short in `--fault NAME@at`.
+/// Time at which a trial's faults begin, in whole milliseconds of the run: short in `--fault NAME@at`.
 double onset_of(const FlyingLap& lap, const FaultTrial& trial) {
   return std::round(1e3 * (lap.begins + trial.onset)) / 1e3;
 }
@@ -38,7 +40,7 @@ void drive_up_to(RunSteps& steps, double at) {
   while (steps.loop().time() < at - kRounding && !steps.loop().is_over()) steps.advance();
 }
 
-/// From there to the trial's end.
+/// Drives from the faults to the trial's end.
 FaultOutcome drive_on(RunSteps& steps, const FaultTrial& trial, double at) {
   ClosedLoop& loop = steps.loop();
   FaultOutcome outcome{.trial = trial, .at = at};
@@ -85,7 +87,7 @@ class SharedOutcomes {
   void* memory_;
 };
 
-/// Ends this process with the one that forked it: its open files, and their locks, are let go.
+/// Ends this process with its parent: open files and their locks are released.
 void end_with_parent() noexcept {
 #ifdef __linux__
   static_cast<void>(prctl(PR_SET_PDEATHSIG, SIGKILL));

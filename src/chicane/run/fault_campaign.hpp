@@ -19,18 +19,18 @@ inline constexpr double kLasting = 1e6;
 /// One fault, or two at once, at one moment of the flying lap.
 struct FaultTrial {
   sim::Fault fault{};
-  double onset = 0.0;     ///< since the flying lap began [s]
+  double onset = 0.0;     ///< time since the flying lap began [s]
   double duration = 1.0;  ///< [s]; kLasting: until the end of the run
   double strength = 1.0;
-  std::optional<sim::Fault> second{};  ///< for the same time, with its kind's strength
+  std::optional<sim::Fault> second{};  ///< second fault at the same time, with its kind's strength
 };
 
-/// What became of the car.
+/// Outcome of a trial.
 struct FaultOutcome {
   FaultTrial trial;
-  double at = 0.0;     ///< when the fault began, clock of the run [s]: `--fault NAME@at` repeats it
+  double at = 0.0;     ///< start of the fault, clock of the run [s]: `--fault NAME@at` repeats it
   double until = 0.0;  ///< end of the trial [s]: `--set time_limit_s=` repeats it
-  double least_edge = std::numeric_limits<double>::infinity();  ///< of a tyre from then on [m]; < 0: off road
+  double least_edge = std::numeric_limits<double>::infinity();  ///< least tyre gap since [m]; < 0: off road
   double end_speed = 0.0;                                       ///< [m/s]
   int not_controller = 0;  ///< control steps that were not the controller's own answer
   [[nodiscard]] bool has_left_road() const noexcept { return least_edge < 0.0; }
@@ -38,8 +38,8 @@ struct FaultOutcome {
   static constexpr double kStanding = 0.1;  ///< [m/s]
 };
 
-/// How long a trial goes on: so long after a fault that ends, or until the car has stood for a second, at
-/// most kLongestWait.
+/// Time until a trial ends: kSettling after a fault that ends, otherwise until the car has stood for a
+/// second, at most kLongestWait.
 inline constexpr double kSettling = 10.0;     ///< [s]
 inline constexpr double kLongestWait = 30.0;  ///< [s]
 [[nodiscard]] constexpr double longest_trial(double duration) noexcept {
@@ -50,12 +50,12 @@ inline constexpr double kLongestWait = 30.0;  ///< [s]
 struct Excursion {
   double from = 0.0, to = 0.0;
 };
-/// When the flying lap of a scenario, the second one, begins, and how long it takes, without a fault. On an
-/// open road: the way from standstill to its end.
+/// Start and duration of a scenario's flying lap, the second one, without a fault. On an open road: from
+/// standstill to its end.
 struct FlyingLap {
   double begins = 0.0;           ///< clock of the run [s]
   double time = 0.0;             ///< [s]
-  std::vector<Excursion> off{};  ///< where the car leaves the road without any fault
+  std::vector<Excursion> off{};  ///< places where the car leaves the road without any fault
   [[nodiscard]] bool is_off_within(double from, double to) const noexcept;
 };
 /// Drives the scenario without a fault, for `wait` [s] longer than the flying lap. kInvalidArgument when two
@@ -63,11 +63,11 @@ struct FlyingLap {
 [[nodiscard]] Result<FlyingLap> drive_undisturbed(const scenario::Scenario& scenario,
                                                   double wait = kLongestWait, const Factories& make = {});
 /// Drives trials of `scenario` without its own faults, each from the start of a run. Deterministic; no trial
-/// depends on others. What comes before a fault is driven once for all: from its onset on a trial is a copy
-/// of the process (fork), at most `jobs` of them at a time, and a trial that crashes is an error that names
-/// it. The outcomes are in the order of the trials, whatever the number of processes. `on_done` gets, in
-/// this process, how many are done; false ends early, with the outcomes so far (a trial that was not driven
-/// has an infinite least_edge). Pre: no other thread of this process holds a lock.
+/// depends on others. The time before a fault is driven once for all: from its onset on a trial is a copy of
+/// the process (fork), at most `jobs` of them at a time, and a trial that crashes is an error that names it.
+/// The outcomes are in the order of the trials, whatever the number of processes. `on_done` gets, in this
+/// process, how many are done; false ends early, with the outcomes so far (a trial that was not driven has an
+/// infinite least_edge). Pre: no other thread of this process holds a lock.
 [[nodiscard]] Result<std::vector<FaultOutcome>> drive_trials(
     const scenario::Scenario& scenario, const FlyingLap& lap, const std::vector<FaultTrial>& trials, int jobs,
     const std::function<bool(std::size_t)>& on_done = {}, const Factories& make = {});

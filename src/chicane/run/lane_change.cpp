@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Double lane change of ISO 3888-2: the course, the line through it, and the search for the fastest entry.
 #include "chicane/run/lane_change.hpp"
 
 #include <algorithm>
@@ -22,13 +23,13 @@ constexpr double kGap = 1.0;         // [m] between entry and side lane
 constexpr double kIntoEntry = 3.0;   // [m] of the entry lane in which the line begins to turn
 constexpr double kIntoSide = 5.0;    // [m] of the side lane, at either end
 constexpr double kIntoExit = 4.0;    // [m]
-constexpr double kBeside = 6.0;      // [m] of space beside the line where there are no cones
+constexpr double kBeside = 6.0;      // [m] of space at the sides of the line where there are no cones
 constexpr double kReach = 1.0;       // [m] of the edges beyond the cones: what reaches beyond the axles
 constexpr double kFarPoints = 20.0;  // [m] between points before and behind the course
 constexpr double kEdgePoints = 0.5;  // [m] between points in it
 constexpr double kOutline = 0.25;    // [m] between points of the body's sides
 
-/// From 0 to 1 with no slope and no curvature at its ends.
+/// Smooth step from 0 to 1 with no slope and no curvature at its ends.
 double blend(double t) {
   t = std::clamp(t, 0.0, 1.0);
   return t * t * t * (10.0 + t * (6.0 * t - 15.0));
@@ -36,12 +37,12 @@ double blend(double t) {
 
 constexpr double kReleased = 2.0;       // [m] behind the entry
 constexpr double kWayStep = 5.0 / 3.6;  // [m/s] between speeds that a way is planned for
-constexpr double kUsedRoom = 0.2;  // of the space beside the body in the entry lane, by the way that is shown
-constexpr double kPlanStep = 0.04;      // [s] between nodes of a plan, about
-constexpr double kStopping = 10.0;      // [m/s²] at the end of the road, which no car reaches
-constexpr double kShown = 6.0;          // [m] of road beside the waypoints that are shown
-constexpr double kWaypoints = 3.0;      // [m] between waypoints in the course
-constexpr double kFarWaypoints = 20.0;  // [m] and before and behind it
+constexpr double kUsedRoom = 0.2;   // share of the space beside the body in the entry lane that the line uses
+constexpr double kPlanStep = 0.04;  // [s] between nodes of a plan, about
+constexpr double kStopping = 10.0;  // [m/s²] at the end of the road, which no car reaches
+constexpr double kShown = 6.0;      // [m] of road at the sides of the shown waypoints
+constexpr double kWaypoints = 3.0;  // [m] between waypoints in the course
+constexpr double kFarWaypoints = 20.0;  // [m] between waypoints before and behind it
 constexpr double kSpeedGain = 2.0;      // [1/s]
 constexpr double kNoPedal = 0.01;       // [m/s²] that drive and brakes give, known to the controller
 constexpr double kMostTime = 60.0;      // [s]
@@ -75,7 +76,7 @@ class ReleasesThrottle final : public controller::Controller {
   controller::StepResult result_;
 };
 
-/// That the tyres keep from the cones when the body keeps all but kUsedRoom [m].
+/// Gap of the tyres to the cones when the body uses kUsedRoom of its space [m].
 double margin_of(const model::VehicleParams& car) {
   const LaneChangeCourse::Lane entry = LaneChangeCourse(car.width).lanes()[0];
   const double beside_tyres = 0.5 * (entry.left - entry.right - car.track_width - car.tire_width);
@@ -83,7 +84,7 @@ double margin_of(const model::VehicleParams& car) {
   return beside_tyres - kUsedRoom * beside_body;
 }
 
-/// The scenario as it is driven there: without an end, faults and guard.
+/// Scenario for the course: without an end, faults and guard.
 scenario::Scenario on_course(const scenario::Scenario& driven) {
   scenario::Scenario scenario = endless(driven);
   scenario.guard.mode = safety::GuardMode::kOff;
@@ -92,7 +93,7 @@ scenario::Scenario on_course(const scenario::Scenario& driven) {
   return scenario;
 }
 
-/// Each point of the way that telemetry shows.
+/// Waypoints of the line as telemetry shows them.
 Result<road::Track> waypoints_on(const road::ReferenceLine& way) {
   std::vector<road::TrackPoint> points;
   for (double s = 0.0; s < way.length();) {
@@ -185,7 +186,7 @@ Result<road::RacingLine> LaneChange::plan(double grip_share) const {
 
 Result<LaneChange::Way> LaneChange::way_at(double speed) {
   Result<road::RacingLine> line = fail(ErrorCode::kInvalidArgument, "");
-  // Where the grip of a walking pace has no optimum, that of the next speed has.
+  // If a walking pace has no optimum, take the next speed.
   for (int step = static_cast<int>(std::ceil(speed / kWayStep));; ++step) {
     if (const auto known = ways_.find(step); known != ways_.end()) return known->second;
     const double of_way = std::min(step * kWayStep, full_speed_);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Laps without one cause of lost time each: latency, sensor errors, margins, guard.
 #include "chicane/run/laps_without.hpp"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ controller::TrackingMpcOptions* tracking_options(Scenario& scenario) {
   return &std::get<Entry::Options>(scenario.controllers);
 }
 
-// Each takes one thing away, and says whether the scenario had it.
+// Each function removes one cause, and returns whether the scenario had it.
 
 bool drop_latency(Scenario& scenario) {
   const bool has = scenario.latency > 0.0 || scenario.latency_jitter > 0.0;
@@ -37,7 +38,7 @@ bool drop_sensor_errors(Scenario& scenario) {
 bool drop_edge_margin(Scenario& scenario) {
   controller::TrackingMpcOptions* options = tracking_options(scenario);
   if (options == nullptr || !scenario.races()) return false;
-  // The guard keeps a margin of its own: it would stop what is to be measured.
+  // The guard's own margin would stop the car: let it observe only.
   if (scenario.guard.mode == safety::GuardMode::kOn) scenario.guard.mode = safety::GuardMode::kObserve;
   return std::exchange(options->edge_margin, 0.0) > 0.0;
 }

@@ -12,11 +12,11 @@ namespace chicane::run {
 
 /// Drives `scenario` again without each thing that keeps its laps from the limit, one at a time: latency with
 /// its jitter, noise and age of the sensor, margin to the edges, reserve of grip and brakes, guard
-/// (docs/limit.md, "The gap by corner"). What the scenario does not have is left out.
+/// (docs/limit.md, "The gap by corner"). Causes that the scenario does not have are left out.
 ///
-/// On as many threads as there are processors; each run plans its own lap. `go_on` is asked all along, by
-/// these threads; false ends it with what was driven in full. Fails where a run cannot be made.
-/// Deterministic. Allocates.
+/// On as many threads as there are processors; each run plans its own lap. `go_on` is asked repeatedly, by
+/// these threads; false ends it with the complete runs. Fails where a run cannot be made. Deterministic.
+/// Allocates.
 [[nodiscard]] Result<std::vector<lap_time::LapWithout>> laps_without(const scenario::Scenario& scenario,
                                                                      const std::function<bool()>& go_on = {});
 

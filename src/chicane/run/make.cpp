@@ -15,7 +15,7 @@ namespace chicane::run {
 namespace {
 
 constexpr double kWaypointSpacing = 12.0;  // [m] the median of the original's waypoints
-constexpr double kFewestWaypoints = 8.0;   // of a road, however short it is
+constexpr double kFewestWaypoints = 8.0;   // least number of waypoints of a road, however short
 
 }  // namespace
 
@@ -58,7 +58,7 @@ Result<road::Track> make_waypoints(const road::Track& track, double scale) {
     sparse.push_back(raw[i]);
     last = along;
   }
-  // In full size: how smooth a road is depends on how large it is.
+  // Smooth in full size: the smoothing depends on the size of a road.
   for (road::TrackPoint& point : sparse)
     point = {(1.0 / scale) * point.position, point.left / scale, point.right / scale};
   Result<road::Track> waypoints = road::Track::create(track.name(), sparse, is_closed);

@@ -32,8 +32,7 @@ using TrackFactory = std::function<Result<road::Track>(const scenario::Scenario&
 
 /// Makes the parts of a run: as the scenario names them, or a program's own. A factory of the program's own
 /// is called instead of the named part and must do the same in every call with the same scenario. Functions
-/// must not be empty. The scenario keeps its names: what it says of `plant` or `track` stands in recordings,
-/// too.
+/// must not be empty. The scenario keeps its names: recordings have its `plant` and `track`, too.
 struct Factories {
   Factories() = default;
   /// A controller of the program's own, in the scenario's car, on its road.

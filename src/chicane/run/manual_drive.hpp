@@ -6,7 +6,7 @@
 
 namespace chicane::run {
 
-/// What a person does.
+/// Input of a person at the wheel.
 struct ManualSetting {
   enum class What { kIsOn, kSteer, kThrottle } what = What::kIsOn;
   double value = 0.0;  ///< kIsOn: 0 is off; else in [-1, 1]
@@ -16,24 +16,24 @@ struct ManualSetting {
 /// with the same changes at the same cycles is the same run. No allocation; one thread.
 class ManualDrive {
  public:
-  /// When nothing is set for so long, the car brakes gently [s].
+  /// Silence of all settings after which the car brakes gently [s].
   static constexpr double kSilenceLimit = 1.0;
 
   void set(const ManualSetting& setting) noexcept;
   [[nodiscard]] bool is_on() const noexcept { return is_on_; }
-  /// The person's command to a car that is measured so. The steering is a share of the lock. Full braking is
-  /// all that is useful; near standstill a negative throttle is passed on as it is, which reverses cars that
+  /// The person's command for a measured car. The steering is a share of the lock. Full braking is the
+  /// largest useful one; near standstill a negative throttle is passed on unchanged, which reverses cars that
   /// can.
   [[nodiscard]] model::Command command(const model::Measurement& now,
                                        const model::VehicleParams& vehicle) noexcept;
-  /// A new run: time begins anew. The person keeps the wheel.
+  /// Restarts time for a new run. The person keeps the wheel.
   void restart() noexcept;
 
  private:
   bool is_on_ = false;
   double steer_ = 0.0;     ///< left positive; [-1, 1]
   double throttle_ = 0.0;  ///< [-1, 1]
-  bool has_news_ = false;  ///< since the last command
+  bool has_news_ = false;  ///< something was set since the last command
   double last_set_ = 0.0;  ///< [s]
 };
 

@@ -6,7 +6,7 @@
 
 namespace chicane::run {
 
-/// Writes what a judge says of the car into a frame: place, laps. The rest stays.
+/// Writes a judge's findings into a frame: place, laps. The rest stays.
 inline void observe(const sim::WorldState& state, telemetry::Frame& frame) noexcept {
   frame.is_judged = true;
   frame.s = state.s;
@@ -20,7 +20,7 @@ inline void observe(const sim::WorldState& state, telemetry::Frame& frame) noexc
   frame.off_track_events = state.off_track_events;
 }
 
-/// Writes what the world knows of the car into a frame: truth, accelerations, place, laps. The rest stays.
+/// Writes the world's state into a frame: truth, accelerations, place, laps. The rest stays.
 inline void observe(const sim::World& world, telemetry::Frame& frame) noexcept {
   frame.truth = world.plant().state();
   frame.has_truth = true;

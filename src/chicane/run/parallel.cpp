@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Runs on many threads, and their share in a cluster's array of jobs.
 #include "chicane/run/parallel.hpp"
 
 #include <fmt/format.h>

@@ -23,25 +23,24 @@ void for_each_run(std::uint64_t count, int jobs, const std::function<bool(std::u
 struct Shard {
   std::uint64_t index = 0;
   std::uint64_t count = 1;
-  std::string from{};  ///< where it was read, for people: "--shard"; empty: everything is ours
+  std::string from{};  ///< source for messages: "--shard"; empty: everything is ours
 
   [[nodiscard]] bool has(std::uint64_t run) const noexcept { return run % count == index; }
-  /// How many of `runs` are ours.
+  /// Number of this shard's runs out of `runs`.
   [[nodiscard]] std::uint64_t size(std::uint64_t runs) const noexcept {
     return runs / count + (runs % count > index ? 1 : 0);
   }
-  /// "results.3-of-7.jsonl" for "results.jsonl"; the name itself where everything is ours.
+  /// File of this shard: "results.3-of-7.jsonl" for "results.jsonl"; the name itself if everything is ours.
   [[nodiscard]] std::string file_of(const std::string& file) const;
 };
 
-/// "3/7", counted from 1. kInvalidArgument otherwise.
+/// Shard from "3/7", counted from 1. kInvalidArgument otherwise.
 [[nodiscard]] Result<Shard> parse_shard(std::string_view text);
 
-/// What the launcher of this process says in its environment: the place in a Slurm array
-/// (SLURM_ARRAY_TASK_ID), among the tasks of a Slurm step (SLURM_PROCID) or the ranks of MPI
-/// (OMPI_COMM_WORLD_RANK, PMI_RANK), an array of such steps included. Everything is ours where it says
-/// nothing. `variable` gives a variable's value, or null. kInvalidArgument for numbers that make no sense,
-/// and for arrays with holes.
+/// Shard by the environment of this process's launcher: the place in a Slurm array (SLURM_ARRAY_TASK_ID),
+/// among the tasks of a Slurm step (SLURM_PROCID) or the ranks of MPI (OMPI_COMM_WORLD_RANK, PMI_RANK), an
+/// array of such steps included. Everything without such variables. `variable` gives a variable's value, or
+/// null. kInvalidArgument for numbers that make no sense, and for arrays with holes.
 [[nodiscard]] Result<Shard> environment_shard(const std::function<const char*(const char*)>& variable);
 
 }  // namespace chicane::run

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Cache of plans and limits: their names by hash, their bytes, and the searches that fill it.
 #include "chicane/run/plan_cache.hpp"
 
 #include <array>
@@ -55,7 +56,7 @@ class Name {
   void add(std::span<const Option> options, const void* owner) {
     for (const Option& option : options) add(option.read(owner));
   }
-  /// All that a search can ask of a road: its smoothed line and widths come of these points alone.
+  /// Adds a road: its smoothed line and widths, on which a search depends, follow from these points alone.
   void add(const road::Track& track) {
     constexpr double kSpacing = 1.0;  // [m]
     add(std::string_view(track.name()));
@@ -129,7 +130,7 @@ class Reader {
     get(number);
     value = number != 0.0;
   }
-  /// Of things with at least `size` bytes each; 0 where there are not so many.
+  /// Reads a count of things with at least `size` bytes each; 0 if so many cannot follow.
   [[nodiscard]] std::size_t count(std::size_t size) {
     double number = 0.0;
     get(number);

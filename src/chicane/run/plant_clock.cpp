@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Clock of an external car: decides from displacement and speed whether its time is the wall's, a multiple of
+// it, or one step for each answer.
 #include "chicane/run/plant_clock.hpp"
 
 #include <algorithm>
@@ -11,25 +13,25 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kFullSize = 4.5;       // [m] length of a car
-constexpr double kLegWay = 0.5;         // [m] of one leg, for a car in full size
-constexpr double kLeastSpeed = 0.5;     // [m/s] that tells a time, for a car in full size
-constexpr double kLongestCycle = 1.0;   // [s] between answers; longer ones are silences
-constexpr double kLongestStep = 5.0;    // [s] between measurements that say anything of each other
-constexpr std::size_t kLeastLegs = 5;   // that tell a clock
-constexpr double kLeastWallTime = 0.6;  // [s] of the wall's time that do
-constexpr double kClockAcross = 0.3;    // share of the way that a car may move across its heading
-constexpr double kJump = 0.3;           // [m] and beside it
-constexpr double kSpeedJump = 2.0;      // [m/s] and
-constexpr double kMostBraking = 20.0;   // [m/s²] by which a speed changes
-constexpr double kDrives = 0.1;         // pedal that drives
-constexpr double kPedalMemory = 3.0;    // [s]
-constexpr double kLeastAsked = 1.0;     // [m/s] after which a pedal tells a clock from a speed
-constexpr double kSteadier = 0.5;       // share of the other's deviation with which one explanation is better
-constexpr double kLeastDeviation = 0.02;
-constexpr double kFollowed = 0.1;    // share of a difference that is made up for with each leg
-constexpr double kBurst = 0.5;       // share by which a step in lock step differs that had to wait
-constexpr double kOfStep = 0.15;     // share by which its time differs from the others'
+constexpr double kFullSize = 4.5;         // [m] length of a car
+constexpr double kLegWay = 0.5;           // [m] of one leg, for a car in full size
+constexpr double kLeastSpeed = 0.5;       // [m/s] needed to judge a time, for a car in full size
+constexpr double kLongestCycle = 1.0;     // [s] between answers; longer ones are silences
+constexpr double kLongestStep = 5.0;      // [s] between measurements that say anything of each other
+constexpr std::size_t kLeastLegs = 5;     // legs needed to judge a clock
+constexpr double kLeastWallTime = 0.6;    // least wall time of these legs [s]
+constexpr double kClockAcross = 0.3;      // share of the way that a car may move across its heading
+constexpr double kJump = 0.3;             // [m] allowed in addition
+constexpr double kSpeedJump = 2.0;        // [m/s] allowed in addition
+constexpr double kMostBraking = 20.0;     // [m/s²] by which a speed changes
+constexpr double kDrives = 0.1;           // pedal that drives
+constexpr double kPedalMemory = 3.0;      // [s]
+constexpr double kLeastAsked = 1.0;       // [m/s] change by the pedal that distinguishes a clock from a speed
+constexpr double kSteadier = 0.5;         // deviation over the other's below which one explanation is better
+constexpr double kLeastDeviation = 0.02;  // deviation below which both clocks fit
+constexpr double kFollowed = 0.1;         // share of a difference that is made up for with each leg
+constexpr double kBurst = 0.5;            // share by which a step in lock step differs that had to wait
+constexpr double kOfStep = 0.15;          // share by which its time differs from the others
 constexpr double kSampling = 0.02;   // [s] by which a state may be younger or older: a usual physics step
 constexpr double kOtherClock = 0.5;  // logarithm of a leg's ratio to the median, from another clock
 constexpr double kSame = 0.03;       // logarithm of a ratio that counts as 1
@@ -59,7 +61,7 @@ void PlantClock::begin() {
   forget();
 }
 
-/// What was measured says nothing of what will be: the speed sensor changed.
+/// Drops the legs: after a change of the speed sensor they predict nothing.
 void PlantClock::forget() {
   is_speed_known_ = false;
   count_ = 0;
@@ -87,7 +89,7 @@ bool PlantClock::advance(Clock::time_point received, const model::Measurement* m
   return step.steps > 0 && add(step) && take_up();
 }
 
-/// By the simulator's own time: the amount of each answer is measured. True: it jumped.
+/// Measures each answer by the simulator's own time. True: the time jumped.
 bool PlantClock::follow(const model::Measurement* measured) {
   if (measured == nullptr) {
     time_ += step_;
@@ -106,8 +108,8 @@ bool PlantClock::follow(const model::Measurement* measured) {
   return is_jump;
 }
 
-/// Where one message of a simulator in lock step had to wait, its displacement tells the time. It also tells
-/// at which of its own steps a simulator was sampled.
+/// Time of a step in lock step in which one message had to wait: its displacement gives the time. The
+/// displacement also shows at which of its own steps a simulator was sampled.
 double PlantClock::time_of(double wall, const Leg& step) {
   if (step_ > 0.0) return step_;
   const double expected = ratio_ * wall;
@@ -148,7 +150,7 @@ PlantClock::Leg PlantClock::step_of(double wall, const model::Measurement& now,
   return {.wall = wall, .plant = plant, .way = way, .steps = 1};
 }
 
-/// True: another leg is complete.
+/// Adds a step to the running leg. True: a leg is complete.
 bool PlantClock::add(const Leg& step) {
   leg_ = {leg_.wall + step.wall, leg_.plant + step.plant, leg_.way + step.way, leg_.steps + 1};
   if (leg_.way < kLegWay * size_) return false;
@@ -204,8 +206,8 @@ bool PlantClock::take_up() {
   const bool was_in_step = step_ > 0.0;
   const double worse = std::max(by_clock.deviation, by_step.deviation);
   const bool is_distinct = worse > kLeastDeviation;
-  // In real time, with steps that are alike, a busy machine makes the wall's clock look the worse one; but a
-  // step that waited is longer by it.
+  // In real time with equal steps a busy machine makes the wall's clock look worse; but a step that waited is
+  // longer by the wait.
   const bool is_real_time = !was_in_step && ratio_ == 1.0 && !differs(ratio_);
   const bool is_in_step =
       was_in_step ? !(is_distinct && by_clock.deviation < kSteadier * by_step.deviation)
@@ -220,7 +222,7 @@ bool PlantClock::take_up() {
                                     (was_in_step || differs(ratio_)));
   if (!is_another) {
     if (count_ >= kLegs) is_speed_known_ = true;
-    // What is counted otherwise anyway is followed closely.
+    // Follow closely if the count is not the wall's anyway.
     if (was_in_step || ratio_ != 1.0) (was_in_step ? step_ : ratio_) *= exp(kFollowed * off);
     return false;
   }

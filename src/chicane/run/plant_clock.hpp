@@ -11,19 +11,19 @@
 
 namespace chicane::run {
 
-/// What the time of a car is counted by that another program simulates.
+/// Options of an external car's clock.
 struct PlantClockOptions {
   bool is_estimated = false;  ///< false: by arrival; true: by the ratio that the measurements show
   bool is_measured = false;   ///< true: by Measurement::time, the simulator's own
   double lock_step = 0.0;     ///< time that the simulator advances with each answer [s]; 0: by its own clock
 };
 
-/// Time of the run of a car that another program simulates (docs/protocol.md, "Time"). A
-/// displacement over its speed is the time that the simulator has advanced by. Over the last measurements of
-/// a car that drives it tells whether the simulator runs at a ratio of the wall's time, or in lock step: by
-/// the same time with each answer. Noise and delays of a busy machine change neither.
+/// Time of the run of a car that another program simulates (docs/protocol.md, "Time"). A displacement over
+/// its speed is the time that the simulator has advanced by. Over the last measurements of a driving car it
+/// shows whether the simulator runs at a ratio of the wall's time, or in lock step: by the same time with
+/// each answer. Noise and delays of a busy machine change neither.
 ///
-/// A simulator that tells its own time needs none of that.
+/// A simulator that sends its own time needs none of that.
 ///
 /// A speed in another unit looks like another clock, but for the acceleration that a pedal gives: no ratio is
 /// taken up that contradicts it. No allocation but in news(); one thread.
@@ -36,19 +36,19 @@ class PlantClock {
 
   PlantClock(const PlantClockOptions& options, const model::VehicleParams& vehicle, Clock::time_point start);
 
-  /// Another car: nothing is known of its clock. The time goes on.
+  /// Resets for another car, with an unknown clock. The run's time continues.
   void begin();
-  /// A message came at `received`, with `measured` (null: nothing usable), while `acting` acted on the car.
-  /// True: time is counted otherwise from now on, what was computed by the time before does not hold.
+  /// Takes a message that came at `received`, with `measured` (null: nothing usable), while `acting` acted on
+  /// the car. True: the clock has changed, and results by the earlier time are void.
   bool advance(Clock::time_point received, const model::Measurement* measured, const model::Command& acting);
 
   /// Time of the run [s] at a moment of the wall's clock.
   [[nodiscard]] double at(Clock::time_point wall) const;
   /// Run time in which a command acts that the wall's clock expects after `delay` [s].
   [[nodiscard]] double delay(double delay) const { return step_ > 0.0 ? step_ : ratio_ * delay; }
-  [[nodiscard]] double ratio() const { return ratio_; }     ///< of run time to the wall's time
+  [[nodiscard]] double ratio() const { return ratio_; }     ///< run time over wall time
   [[nodiscard]] double lock_step() const { return step_; }  ///< [s]; 0: by its own clock
-  /// How time is counted, as a sentence for people.
+  /// Sentence for people on how time is counted.
   [[nodiscard]] std::string news() const;
 
  private:
@@ -78,9 +78,9 @@ class PlantClock {
 
   PlantClockOptions options_;
   model::VehicleParams vehicle_;
-  double size_;  ///< of the car over one in full size
+  double size_;  ///< size of the car over full size
   Clock::time_point wall_;
-  double time_ = 0.0;  ///< of the run, at wall_ [s]
+  double time_ = 0.0;  ///< run time at wall_ [s]
   double ratio_ = 1.0;
   double step_;
   bool has_last_ = false;
@@ -91,7 +91,7 @@ class PlantClock {
   std::size_t count_ = 0;
   double sampled_ = 0.0;               ///< time that is counted beyond the ratio's [s]
   int unusable_ = 0;                   ///< messages since the last measurement
-  double ahead_ = 0.0;                 ///< of the simulator's own time, the run's is [s]
+  double ahead_ = 0.0;                 ///< run time minus the simulator's own time [s]
   double asked_ = 0.0, gained_ = 0.0;  ///< speed that the pedal should have given lately, and has [m/s]
 };
 

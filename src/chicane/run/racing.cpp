@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Laps to race by: the plan that a controller wants for a scenario's road, from the cache or a search, and
+// the thread that plans during a run.
 #include "chicane/run/racing.hpp"
 
 #include <sys/resource.h>
@@ -24,13 +26,13 @@ namespace chicane::run {
 namespace {
 
 constexpr double kModelRoad = 2.5;      // [m] a narrower road may be a model's
-constexpr double kShareAtTheEnd = 0.9;  // of the braking of the plan, where an open road ends
+constexpr double kShareAtTheEnd = 0.9;  // share of the plan's braking at the end of an open road
 
 const controller::TrackingMpcOptions& options_of(const scenario::Scenario& scenario) {
   return std::get<controller::TrackingMpcEntry::Options>(scenario.controllers);
 }
 
-/// From a measurement until the next command acts, for the car in full size [s]; no less than assumed.
+/// Time from a measurement until the next command acts, for the car in full size [s]; no less than assumed.
 double delay_of(const scenario::Scenario& scenario) {
   return std::max((scenario.latency + scenario.control_period) * model::Similarity(scenario.vehicle).time(),
                   model::SlidingBound::kAssumedDelay);
@@ -82,7 +84,7 @@ std::string size_remedy(const scenario::Scenario& scenario, const road::Track& t
   return may_be_model ? "; a road of model size needs a model car: --car f1tenth" : "";
 }
 
-/// As the controller of a model car sees the road.
+/// Track in the size in which the controller of a model car sees it.
 road::Track in_full_size(const road::Track& track, const scenario::Scenario& scenario) {
   const model::Similarity similarity(scenario.vehicle);
   return similarity.is_identity() ? track : track.scaled(similarity.length());
@@ -163,7 +165,7 @@ std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Con
     return {};
   }
   if (!wanted_since_ || time < *wanted_since_) {
-    if (thread_.joinable()) return {};  // one that nobody waits for any more
+    if (thread_.joinable()) return {};  // its result is no longer awaited
     wanted_since_ = time;
     ready_since_.reset();
     has_answered_ = false;
@@ -209,9 +211,9 @@ std::optional<telemetry::Change> LapPlanner::advance(ControlCycle& cycle, const 
 void LapPlanner::search(const scenario::Scenario& scenario, const road::Track* track,
                         const controller::LapRequest& request) {
   if (clock_ == Clock::kReal) {
-    // Behind everything else, yet not starved: on cores that others keep busy, a tenth of one thread's share.
+    // Nice value behind everything else, yet not starved: on busy cores a tenth of one thread's share.
     constexpr int kLowPriority = 10;
-    static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // of this thread, on Linux
+    static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // sets this thread only, on Linux
   }
   auto lap = plan_wanted_lap(scenario, track, request, [this] { return is_wanted_.load(); });
   if (lap) lap_ = std::move(*lap);

@@ -31,20 +31,20 @@ namespace chicane::run {
 /// the width.
 [[nodiscard]] Result<void> check_room(const scenario::Scenario& scenario, const road::Track& track);
 
-/// What a caller of plan_lap() hears.
+/// Callbacks of plan_lap().
 struct PlanHooks {
-  std::function<void(const lap_time::PlanProgress&)> on_progress{};  ///< after each iteration; may be empty
+  std::function<void(const lap_time::PlanProgress&)> on_progress{};  ///< each iteration; may be empty
   std::function<void(std::string_view)> say{};  ///< a line where it is not the optimum; may be empty
 };
 
 /// The lap that a scenario's controller races by: the minimum-time line of the car it assumes on `track`,
-/// with the shares of grip and brakes and the margin to the edges that its settings leave. Null where the
-/// settings do not ask for one, or let it know waypoints only (GuardRoad::kWaypoints), and where the search
-/// finds none: the controller then follows its reference. Takes 1 to 30 s (lap_time::plan_racing_line), or
-/// milliseconds from the cache (plan_cache.hpp). Where TrackingMpcOptions::plan_budget ends the search, the
-/// best plan so far. The same scenario and track give the same bits.
+/// with the shares of grip and brakes and the margin to the edges in its settings. Null if the settings do
+/// not ask for one, or allow waypoints only (GuardRoad::kWaypoints), or the search finds none: the controller
+/// then follows its reference. Takes 1 to 30 s (lap_time::plan_racing_line), or milliseconds from the cache
+/// (plan_cache.hpp). If TrackingMpcOptions::plan_budget ends the search, the best plan so far. The same
+/// scenario and track give the same bits.
 ///
-/// kInvalidArgument names why there is no such lap: a road that is too narrow or too tight, or
+/// kInvalidArgument names the reason for no lap: a road that is too narrow or too tight, or
 /// must_stop_planning().
 [[nodiscard]] Result<std::shared_ptr<const road::RacingRoad>> plan_lap(const scenario::Scenario& scenario,
                                                                        const road::Track* track,
@@ -61,16 +61,16 @@ struct PlanHooks {
 class ClosedLoop;
 class ControlCycle;
 
-/// Plans the lap to race by that a controller wants from what it has learned (Controller::wants_lap): beside
-/// a run in real time, on a thread of its own with low priority; in virtual time at once, taken up as late as
-/// kPlanningTime. What is planned depends on scenario, road and grip alone; with which grip, and when it
-/// takes effect, is in recordings, as the change lap_change().
+/// Plans the lap to race by that a controller asks for with its learned terms (Controller::wants_lap). In
+/// real time a thread of low priority plans during the run; in virtual time the plan is made at once and
+/// takes effect after kPlanningTime. The plan depends on scenario, road and grip alone; grip and time of
+/// effect are in recordings, as the change lap_change().
 ///
 /// One thread, that of the run.
 class LapPlanner {
  public:
   enum class Clock { kReal, kVirtual };
-  static constexpr double kPlanningTime = 5.0;  ///< that a plan takes in virtual time [s]
+  static constexpr double kPlanningTime = 5.0;  ///< time of a plan in virtual time [s]
 
   explicit LapPlanner(Clock clock) noexcept : clock_{clock} {}
   /// Cancels a search, and waits for its thread: for one iteration.
@@ -83,10 +83,9 @@ class LapPlanner {
   static constexpr double kJoining = 0.4;
   static constexpr double kJoiningGrows = 0.1;
 
-  /// After each control cycle, at the run's time [s]: the lap that is to be used from the next one on, once.
-  /// Null otherwise, and where the road has none. Allocates when a search begins; waits for none in real
-  /// time.
-  /// `track`: the road, where it is known, or null; outlives this.
+  /// Lap to use from the next control cycle on, once; call it after each cycle, at the run's time [s]. Null
+  /// otherwise, and on a road without a lap. Allocates when a search begins; waits for none in real time.
+  /// `track`: the road, or null if unknown; outlives this.
   [[nodiscard]] std::shared_ptr<const road::RacingRoad> follow(const controller::Controller& controller,
                                                                const scenario::Scenario& scenario,
                                                                const road::Track* track, double time);
@@ -98,8 +97,8 @@ class LapPlanner {
   std::optional<telemetry::Change> advance(ControlCycle& cycle, const scenario::Scenario& scenario,
                                            const road::Track* track, double time);
 
-  /// What recordings and viewers get where `lap` is used from control cycle `cycle` on: the grip that it
-  /// is planned with, kSlip and its share where it keeps slip back, and kSlides where it slides. Allocates.
+  /// Change for recordings and viewers when `lap` is used from control cycle `cycle` on: the grip of its
+  /// plan, kSlip with its share if it keeps slip in reserve, and kSlides if it slides. Allocates.
   [[nodiscard]] static telemetry::Change lap_change(const road::RacingRoad& lap, std::uint64_t cycle,
                                                     double time);
   static constexpr std::string_view kChange = "run.racing_line";
@@ -113,7 +112,7 @@ class LapPlanner {
   Clock clock_;
   std::optional<double> wanted_since_;  ///< [s]
   std::optional<double> ready_since_;   ///< lap_ [s]
-  bool has_answered_ = false;           ///< to what is wanted now
+  bool has_answered_ = false;           ///< the current request has been answered
   std::atomic<bool> is_wanted_{false};
   std::atomic<bool> has_ended_{false};           ///< the thread: lap_ may be read
   std::shared_ptr<const road::RacingRoad> lap_;  ///< null: there is none

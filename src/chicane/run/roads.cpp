@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Roads shared by many runs: finds a remembered one that fits a scenario, or makes it.
 #include "chicane/run/roads.hpp"
 
 #include <algorithm>
@@ -37,7 +38,7 @@ bool plan_same_lap(const scenario::Scenario& a, const scenario::Scenario& b) {
                   &std::get<Entry::Options>(b.controllers));
 }
 
-/// Whether the same road comes of both.
+/// Whether both scenarios have the same road.
 bool is_same_road(const scenario::Scenario& a, const scenario::Scenario& b) {
   return a.track == b.track && a.size_of_track() == b.size_of_track() && a.vehicle.scale == b.vehicle.scale &&
          a.friction_low == b.friction_low && are_same(safety::guard_options(), &a.guard, &b.guard) &&
@@ -65,7 +66,7 @@ Result<const Roads::Prepared*> Roads::of(const scenario::Scenario& scenario, con
   if (!track) return fail(track.error());
   Result<road::Track> waypoints = make_waypoints(*track, scenario.vehicle.scale);
   if (!waypoints) return fail(waypoints.error());
-  // Of a road that the car does not fit nothing is planned.
+  // Plan nothing for a road that the car does not fit.
   std::optional<scenario::Scenario> has_room;
   if (races(scenario)) {
     if (const Result<void> fits = run::check_room(scenario, *track); !fits) return fail(fits.error());

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Loops over a run: in virtual time, paced by the clock, or step by step on request, with changes of settings
+// and planned laps in between.
 #include "chicane/run/run_steps.hpp"
 
 #include <chrono>
@@ -102,7 +104,7 @@ class Pacer {
   double last_run_ = 0.0;
 };
 
-/// What one call of run_realtime() drives, and how.
+/// One call of run_realtime(): its run, its pace and its requests.
 class Session {
  public:
   Session(ClosedLoop& loop, const RealtimeOptions& options, RunControls& controls, const RunHooks& hooks)
@@ -134,7 +136,7 @@ class Session {
   }
 
  private:
-  /// While paused: waits for a request to go on, to stop or to step. True when one control cycle is to be
+  /// Waits while paused for a request to continue, to stop or to step. True if one control cycle is to be
   /// done.
   bool wait_while_paused() {
     steps_.take_up_changes();

@@ -15,7 +15,7 @@ namespace chicane::run {
 /// controller wants (LapPlanner). One thread.
 class RunSteps {
  public:
-  /// `clock`: whether laps are planned beside the run. `loop` and `hooks` outlive this.
+  /// `clock`: whether laps are planned during the run. `loop` and `hooks` outlive this.
   RunSteps(ClosedLoop& loop, const RunHooks& hooks, LapPlanner::Clock clock = LapPlanner::Clock::kVirtual)
       : loop_{loop}, hooks_{hooks}, planner_{clock} {}
 
@@ -35,19 +35,18 @@ class RunSteps {
   LapPlanner planner_;
 };
 
-/// What other threads may ask of a run that is going on. Any thread; each request is taken up at the next
-/// control step.
+/// Requests of other threads to a running run. Any thread; each takes effect at the next control step.
 struct RunControls {
   std::atomic<bool> is_paused{false};
   std::atomic<int> steps{0};  ///< control cycles to do while paused
   std::atomic<bool> wants_restart{false};
   std::atomic<bool> wants_stop{false};
-  SettingQueue settings{};  ///< that change, from one thread
+  SettingQueue settings{};  ///< changes of settings, from one thread
 };
 
-/// Steps of a run that is watched and changed while it goes on, without a clock: whoever owns it says when
-/// (run_realtime() by the computer's clock, live/worker_run.hpp by a browser's). Changes are taken up
-/// between two control cycles. One thread.
+/// Steps of a run that is watched and changed meanwhile, without a clock: the owner paces them
+/// (run_realtime() by the computer's clock, live/worker_run.hpp by a browser's). Changes take effect between
+/// two control cycles. One thread.
 class LiveSteps {
  public:
   /// `budget` [s] bounds each control step; 0: no bound. `clock`: as of RunSteps. All outlive this.
@@ -55,9 +54,9 @@ class LiveSteps {
             LapPlanner::Clock clock = LapPlanner::Clock::kReal)
       : loop_{loop}, budget_{budget}, controls_{controls}, hooks_{hooks}, steps_{loop, hooks, clock} {}
 
-  /// The next change that waits starts the run anew: nothing is done any more.
+  /// Whether the next waiting change restarts the run: then nothing more is done.
   [[nodiscard]] bool is_to_start_anew() const noexcept { return is_to_start_anew_; }
-  /// There was no frame since the run began.
+  /// Whether the run has had no frame yet.
   [[nodiscard]] bool is_unseen() const noexcept { return is_unseen_; }
 
   /// One physics step, preceded by a control step when one is due: true when there was one.
@@ -66,7 +65,7 @@ class LiveSteps {
   void one_cycle();
   /// Physics up to the next control step.
   void finish_cycle() { steps_.finish_cycle(); }
-  /// Applies what waits, up to a change that starts the run anew.
+  /// Applies waiting changes, up to one that restarts the run.
   void take_up_changes();
   /// Puts the car back at the start if that is asked for; true when it was.
   bool restart_if_wanted();
@@ -84,14 +83,13 @@ class LiveSteps {
 };
 
 struct RealtimeOptions {
-  double budget_share = 0.8;  ///< of the control period that a control step may take; (0, 1]
+  double budget_share = 0.8;  ///< largest share of the control period for a control step; (0, 1]
   std::optional<double> step_budget = std::nullopt;  ///< instead of the share [s]; 0 = no bound
   bool stay_at_end = false;                          ///< drive on after the last lap until asked to stop
 };
 
 /// Runs an experiment at ClosedLoop::pace() by the clock. A loop that falls behind more than 100 ms does not
-/// catch up: it goes on from where it is (missed time is skipped, as a plant that is not simulated would have
-/// skipped it for the controller).
+/// catch up: it skips the missed time, as a controller of a real car would miss it.
 ///
 /// Changes that wait are applied between two cycles, also while paused. Returns, except at the end, when
 /// the next one `starts_anew`; it is left in the queue.

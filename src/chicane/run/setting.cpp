@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Settings of a run from their text, and fields of a scenario from settings.
 #include "chicane/run/setting.hpp"
 
 #include <string>

@@ -20,8 +20,8 @@ inline constexpr double kFastestPace = 20.0;
 
 /// A field of the scenario gets another value.
 struct FieldValue {
-  const protocol::Parameter* row = nullptr;  ///< of the schema; its field is no text
-  std::variant<double, bool> value;          ///< as the field has it: SI, an enum as its number
+  const protocol::Parameter* row = nullptr;  ///< row of the schema; its field is no text
+  std::variant<double, bool> value;          ///< value as the field has it: SI, an enum as its number
 };
 /// The run goes at another pace.
 struct Pace {
@@ -30,19 +30,18 @@ struct Pace {
 /// A fault is switched.
 struct FaultSwitch {
   enum class To { kOff, kOn, kAsGiven } to = To::kOff;  ///< kOn: with the kind's own duration and strength
-  sim::FaultEvent event{};  ///< which fault; kAsGiven: its duration and strength, from now on
+  sim::FaultEvent event{};  ///< fault; kAsGiven: with this duration and strength, from now on
 };
 /// The lap to race by that is planned for road and grip as the controller has learned them (LapPlanner).
 using LearnedLap = road::LapTerms;
 
-/// What a change of a setting does to a run that goes on. std::monostate: nothing that can be done to it,
-/// because the run begins anew.
+/// Effect of a setting on a running run. std::monostate: none, because the run restarts with it.
 using Action = std::variant<std::monostate, FieldValue, Pace, ManualSetting, FaultSwitch, LearnedLap>;
 
 /// One change of a setting, made and checked once: data that is handed from thread to thread and applied.
 /// Plain; no allocation.
 struct Setting {
-  telemetry::Change change;  ///< for recordings and viewers
+  telemetry::Change change;  ///< change for recordings and viewers
   Action action;
 };
 using SettingQueue = ThreadQueue<Setting>;
@@ -53,8 +52,8 @@ using ChangeQueue = ThreadQueue<telemetry::Change>;
 [[nodiscard]] Result<Setting> set_field(scenario::Scenario& scenario, const protocol::Parameter& row,
                                         const protocol::Value& value);
 /// Reads a change that is text: a key of the schema whose value is no text, "run.pace", "manual.…" or
-/// "fault.…"; of a recording "run.racing_line", too. Fails as --set does, with the key, what was got and what
-/// was expected. Allocates.
+/// "fault.…"; of a recording "run.racing_line", too. Fails as --set does, with the key, the value and the
+/// expectation. Allocates.
 [[nodiscard]] Result<Setting> read_setting(const telemetry::Change& change);
 
 /// Sets the field. No allocation.

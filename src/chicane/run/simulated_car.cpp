@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Simulated car: plant, world, sensor, latency and receiver, advanced step by step.
 #include "chicane/run/simulated_car.hpp"
 
 #include <algorithm>
@@ -50,7 +51,7 @@ Result<std::unique_ptr<SimulatedCar>> SimulatedCar::create(const scenario::Scena
   terms.guard.reset();
   terms.latency = latency;
   terms.remedy = telemetry::kControllerRemedy;
-  terms.step_deadline = std::numeric_limits<double>::infinity();  // there is none
+  terms.step_deadline = std::numeric_limits<double>::infinity();  // no deadline
   return std::make_unique<SimulatedCar>(scenario, std::move(*track), std::move(*waypoints), std::move(*plant),
                                         std::move(terms));
 }
@@ -91,8 +92,8 @@ void SimulatedCar::write(const model::Measurement& seen, const model::Command& a
 
 void SimulatedCar::count(telemetry::Frame& frame) noexcept {
   ++frame.cycle;
-  frame.asked = frame.result.command;                                // its own gate is unknown
-  frame.result.report.solve.status = solver::SolveStatus::kOptimal;  // and so is its solver
+  frame.asked = frame.result.command;                                // the other program's gate is unknown
+  frame.result.report.solve.status = solver::SolveStatus::kOptimal;  // so is its solver
   account.add(frame);
 }
 

@@ -28,7 +28,7 @@ struct SimulatedCar {
 
   SimulatedCar(const scenario::Scenario& scenario, road::Track road, road::Track shown,
                std::unique_ptr<sim::Plant> car, AccountTerms terms);
-  /// With copies of plant and road. Without a plant where that cannot be copied (sim/plant.hpp).
+  /// Copies plant and road. Without a plant if that cannot be copied (sim/plant.hpp).
   SimulatedCar(const SimulatedCar& other);
   SimulatedCar& operator=(const SimulatedCar&) = delete;
   ~SimulatedCar() = default;
@@ -37,7 +37,7 @@ struct SimulatedCar {
   [[nodiscard]] static Result<std::unique_ptr<SimulatedCar>> create(const scenario::Scenario& scenario,
                                                                     double latency);
 
-  /// Another run from the start of the road.
+  /// Starts another run from the start of the road.
   void restart(const scenario::Scenario& scenario);
   /// One physics step with the command that acts.
   void advance(const model::Command& command, bool is_manual = false) noexcept;
@@ -46,8 +46,8 @@ struct SimulatedCar {
   [[nodiscard]] double catch_up(double time, const std::function<model::Command()>& act);
   /// Telemetry now, with as many waypoints at most.
   [[nodiscard]] model::Measurement sense(int waypoint_count) noexcept;
-  /// Writes a measurement, the command that acted then, and what the world knows into the frame of a
-  /// controller that is another program.
+  /// Writes a measurement, the command that acted then, and the world's state into the frame of a controller
+  /// in another program.
   void write(const model::Measurement& seen, const model::Command& applied,
              telemetry::Frame& frame) const noexcept;
   /// Counts a cycle of a controller that is another program, whose answer is `frame.result.command`.
@@ -70,17 +70,17 @@ class StopNews {
   using Say = std::function<void(std::string_view)>;
   StopNews(const scenario::Scenario& scenario, Say say);
 
-  /// After physics before which the car had `speed` [m/s]. `is_timed_out`: the receiver stops the car. `why`
-  /// gives the reason, a clause. True when a stop began.
+  /// Reports stops; call it after physics that began at `speed` [m/s]. `is_timed_out`: the receiver stops the
+  /// car. `why` gives the reason, a clause. True when a stop began.
   bool look(const SimulatedCar& car, bool is_timed_out, double speed,
             const std::function<std::string()>& why);
 
  private:
   const double standing_;  ///< [m/s]
   Say say_;
-  bool is_timed_out_ = false;  ///< at the last look
-  bool is_said_ = false;       ///< the stop that goes on
-  bool is_moving_ = false;     ///< in it
+  bool is_timed_out_ = false;  ///< timed out at the last look
+  bool is_said_ = false;       ///< the current stop was reported
+  bool is_moving_ = false;     ///< the car moves during that stop
 };
 
 }  // namespace chicane::run

@@ -16,9 +16,9 @@
 
 namespace chicane::run {
 
-/// How a car begins that has to find back to its road.
+/// Starting state of a car that must find back to its road.
 enum class StartKind : std::uint8_t {
-  kStanding = 0,   ///< in any direction
+  kStanding = 0,   ///< at rest, in any direction
   kRolling = 1,    ///< forward, in any direction, 2 to 25 m/s
   kSliding = 2,    ///< 5 to 25 m/s, up to 60° beside where it points, turning with up to 1 rad/s
   kBackwards = 3,  ///< rolling backwards, 1 to 8 m/s
@@ -33,18 +33,18 @@ struct StartPose {
 };
 
 /// `count` poses along a track, the kinds in turn, the centre of mass on the road or up to kFarthest beside
-/// it. The same for the same seed.
-inline constexpr double kFarthest = 30.0;  ///< from the nearest edge [m]
+/// it. Equal seeds give equal poses.
+inline constexpr double kFarthest = 30.0;  ///< distance from the nearest edge [m]
 [[nodiscard]] std::vector<StartPose> start_poses(const road::Track& track, int count, std::uint64_t seed);
 
-/// What became of the car. It is back once it has been on the road for kBack, or has stood on it, with less
-/// than kAlong between its course and the road's; it laps when it is faster than walking pace then.
+/// Outcome of a start. The car is back once it has been on the road for kBack, or has stood on it, with its
+/// course less than kAlong off the road's; it laps once it is also faster than walking pace.
 struct WayBackOutcome {
   StartPose start;
-  double back = kNever;        ///< when it was back [s]
-  double lapping = kNever;     ///< when it lapped [s]
-  double farthest = 0.0;       ///< beyond the edge, up to then [m]
-  double least_edge = kNever;  ///< of a tyre since it was back [m]; < 0: it left the road again
+  double back = kNever;        ///< time at which it was back [s]
+  double lapping = kNever;     ///< time at which it lapped [s]
+  double farthest = 0.0;       ///< largest distance beyond the edge until then [m]
+  double least_edge = kNever;  ///< least gap of a tyre after it was back [m]; < 0: left the road again
   static constexpr double kNever = std::numeric_limits<double>::infinity();
   [[nodiscard]] bool has_come_back() const noexcept { return lapping < kInTime && !(least_edge < 0.0); }
   static constexpr double kInTime = 60.0;  ///< [s]

@@ -21,40 +21,40 @@ namespace chicane::scenario {
 /// protocol/schema.hpp lists.
 struct Scenario {
   std::string preset = "default";
-  std::string track = "lakeside";  ///< name of a shipped track, or a file
-  double track_scale = 0.0;        ///< of a shipped track: its size over the file's; 0: the car's scale
-  std::string car = "udacity";     ///< name of a shipped car, or a file
-  std::string plant = "udacity";   ///< one of sim::plants(); set by the car
+  std::string track = "lakeside";           ///< name of a shipped track, or a file
+  double track_scale = 0.0;                 ///< size of a shipped track over its file's; 0: the car's scale
+  std::string car = "udacity";              ///< name of a shipped car, or a file
+  std::string plant = "udacity";            ///< one of sim::plants(); set by the car
   std::string controller = "tracking-mpc";  ///< one of controller::Registry
 
   int laps = 3;  ///< the first is from standstill; 0 = until stopped
   std::uint64_t seed = 1;
   double latency = 0.1;          ///< actuation delay of the plant [s]
   double latency_jitter = 0.0;   ///< random delay on top, unknown to the controller, at most [s]
-  double control_period = 0.04;  ///< between measurements [s]
+  double control_period = 0.04;  ///< time between measurements [s]
   double time_limit = 0.0;       ///< ends the run [s]; 0 = 10 min per lap
-  double turn_around = 0.02;     ///< of the simulator as a client, between reply and next telemetry [s]
+  double turn_around = 0.02;     ///< time between reply and next telemetry of a simulator as client [s]
   int waypoints_sent = 6;        ///< telemetry shows this many waypoints
 
   model::VehicleParams vehicle = model::udacity_params();  ///< the controller's model of it
   double friction_low =
-      std::numeric_limits<double>::infinity();  ///< least friction that the car is known to have: what a race
-                                                ///< is planned with; 0: not known; infinite: vehicle.friction
-  safety::GuardOptions guard;                   ///< what watches over the controller
-  sim::DoubleTrackParams plant_params;  ///< of the plant `double-track`, whose model follows from them
+      std::numeric_limits<double>::infinity();  ///< least known friction of the car, for the plan of a race;
+                                                ///< 0: not known; infinite: vehicle.friction
+  safety::GuardOptions guard;                   ///< guard over the controller
+  sim::DoubleTrackParams plant_params;  ///< for the plant `double-track`, whose model follows from them
   sim::PlantDeviation plant_options;
   sim::SensorOptions sensor;
-  std::vector<sim::FaultEvent> faults;  ///< that happen during the run; at most sim::FaultLab::kCapacity
+  std::vector<sim::FaultEvent> faults;  ///< faults during the run; at most sim::FaultLab::kCapacity
 
-  /// What was assumed when it was composed, and which settings have no effect: a sentence each, for the
-  /// terminal, JSON and the dashboard alike. No setting.
+  /// Assumptions made by compose(), and settings without effect: a sentence each, for the terminal, JSON and
+  /// the dashboard alike. No setting.
   std::vector<std::string> notices;
 
   [[nodiscard]] double size_of_track() const noexcept {
     return track_scale > 0.0 ? track_scale : vehicle.scale;
   }
-  /// Of what is assumed of a track's file: one that is driven in its own size has the noise of the car's
-  /// size, any other one is in full size.
+  /// Scale of assumed sizes in a track's file: a road driven in its own size has the noise of the car's size,
+  /// any other one is in full size.
   [[nodiscard]] double scale_of_file() const noexcept { return track_scale == 1.0 ? vehicle.scale : 1.0; }
 
   /// Whether a planned lap at the car's limit is driven by.
@@ -69,7 +69,7 @@ struct Scenario {
     return assumed;
   }
 
-  /// Of every controller, whichever drives: std::get<controller::PidOptions>(controllers).
+  /// Options of all controllers, whichever drives: std::get<controller::PidOptions>(controllers).
   controller::Registry::Options controllers;
 };
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// The four-wheel plant: tyre slips with relaxation, load transfer, drive, brakes and rolling, integrated in
+// parts of a step.
 #include "chicane/sim/double_track.hpp"
 
 #include <algorithm>
@@ -30,7 +32,7 @@ int parts_of(const DoubleTrackParams& p) noexcept {
       0.5 * p.mass * DoubleTrackParams::kGravity * std::max(p.front_axle, p.rear_axle) / p.wheelbase();
   const double stiffness = load * p.friction * p.shape * std::max(p.stiffness_front, p.stiffness_rear);
   const double squared = p.wheel_radius * p.wheel_radius * stiffness / (p.wheel_inertia * p.relaxation_along);
-  constexpr double kMostParts = 50.0;
+  constexpr double kMostParts = 50.0;  // limit of parts in a step
   return static_cast<int>(
       std::clamp(std::ceil(DoubleTrack::kStepLength * std::sqrt(squared) / kMostTurn), 1.0, kMostParts));
 }
@@ -122,7 +124,7 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
   m.load_quadratic = (1.0 - p.load_sensitivity) * (p.downforce_front + p.downforce_rear) / p.mass;
   m.steer_helper = 0.0;
   m.helper_gap = 0.0;
-  // What speeds the car up turns its wheels up, too.
+  // Inertia of the car and its wheels: a force along speeds up both.
   const double inertia = p.mass + 4.0 * p.wheel_inertia / (p.wheel_radius * p.wheel_radius);
   m.drive_acceleration = p.drive_force / inertia;
   m.drive_power_per_mass = p.drive_power / inertia;
@@ -131,7 +133,7 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
   m.drag_linear = 0.0;
   m.drag_quadratic = (p.drag + p.rolling_resistance * (p.downforce_front + p.downforce_rear)) / inertia;
   m.brake_acceleration = p.brake_force / inertia;
-  // Anti-lock takes what the tyres cannot give.
+  // Anti-lock limits braking to the tyres' friction.
   m.brake_throttle_limit = std::min(1.0, p.friction * DoubleTrackParams::kGravity / m.brake_acceleration);
   m.reverse_speed = 0.0;
   m.brake_latch_speed = 0.0;

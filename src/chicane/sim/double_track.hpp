@@ -23,30 +23,30 @@ struct DoubleTrackParams : model::CarBody {
   double load_lag = 0.06;  ///< time constant of the load transfer: the body rolls and pitches [s]
 
   double wheel_radius = 0.31;         ///< [m]
-  double wheel_inertia = 1.2;         ///< of each of four, with what turns along with it [kg m²]
+  double wheel_inertia = 1.2;         ///< inertia of each of four, with the rotating drive [kg m²]
   double rolling_resistance = 0.013;  ///< torque over load · radius
   double drag = 0.39;                 ///< ½ ρ c_d A [kg/m]
   double downforce_front = 0.0;       ///< ½ ρ c_l A that presses the front axle down [kg/m]
-  double downforce_rear = 0.0;        ///< and the rear one [kg/m]
+  double downforce_rear = 0.0;        ///< ½ ρ c_l A that presses the rear axle down [kg/m]
 
   double stiffness_front = 9.0;  ///< magic formula B of slip; front less for compliance of the steering
   double stiffness_rear = 10.0;
   double shape = 1.5;               ///< magic formula C
   double relaxation_along = 0.15;   ///< relaxation length of forward slip [m]
-  double relaxation_across = 0.30;  ///< of lateral slip [m]
+  double relaxation_across = 0.30;  ///< relaxation length of lateral slip [m]
   double creep_speed = 3.0;         ///< slip damping fades out up to this speed [m/s]
   double creep_damping = 0.12;      ///< slip per m/s of slip speed, at standstill [s/m]
 
-  double drive_force = 7300.0;   ///< at full throttle [N]
+  double drive_force = 7300.0;   ///< force at full throttle [N]
   double drive_power = 200.0e3;  ///< [W]
-  double drive_friction = 0.0;   ///< of motor and gears, on the driven wheels [N]
-  double brake_force = 12350.0;  ///< at throttle −1 [N]
+  double drive_friction = 0.0;   ///< friction of motor and gears, on the driven wheels [N]
+  double brake_force = 12350.0;  ///< force at throttle −1 [N]
   double abs_slip_start = 0.10;  ///< anti-lock: brake torque falls from here ...
   double abs_slip_end = 0.18;    ///< ... to nothing here
   double abs_speed = 1.5;        ///< no anti-lock below [m/s]
   double traction_slip_start = std::numeric_limits<double>::infinity();  ///< traction control: drive torque
                                                                          ///< falls from here; infinite: none
-  double traction_slip_end = std::numeric_limits<double>::infinity();    ///< to nothing here
+  double traction_slip_end = std::numeric_limits<double>::infinity();    ///< zero torque from here
 
   static constexpr double kGravity = 9.81;  ///< [m/s²]
   [[nodiscard]] bool has_traction_control() const noexcept {
@@ -59,7 +59,8 @@ struct DoubleTrackParams : model::CarBody {
   [[nodiscard]] double static_load(bool is_front) const noexcept {
     return 0.5 * mass * kGravity * (is_front ? rear_axle : front_axle) / wheelbase();
   }
-  /// What moves load between the wheels: forces along and across [N], and half the square of the speed.
+  /// Causes of load transfer between the wheels: forces along and across [N], and half the square of the
+  /// speed.
   template <class T>
   struct LoadShift {
     T along, across, pressure;
@@ -96,8 +97,8 @@ struct DoubleTrackParams : model::CarBody {
 /// The fields with their units and ranges, for files and messages.
 [[nodiscard]] std::span<const Option> double_track_options() noexcept;
 
-/// A controller's model of that car: what it is built of, and what follows from it, as the inertia of its
-/// wheels and the friction that its tyres lose under downforce (docs/model.md, eq. 23–27). `name`,
+/// A controller's model of that car: its parameters, and values derived from them, such as the inertia with
+/// its wheels and the friction that its tyres lose under downforce (docs/model.md, eq. 23–27). `name`,
 /// `length` and `width` are not the plant's: they stay as in `body`.
 [[nodiscard]] model::VehicleParams model_of(const DoubleTrackParams& plant, model::VehicleParams body = {});
 
@@ -144,7 +145,7 @@ class DoubleTrack final : public Plant {
     model::MagicFormula tire;
     double peak_slip = 0.0;  ///< combined slip of the largest force
     double friction = 0.0;   ///< torque of the drive train [N m]
-    double use = 0.0;        ///< of the grip, as PlantOutput::tire_use
+    double use = 0.0;        ///< used share of the grip, as PlantOutput::tire_use
   };
 
   void load_wheels() noexcept;
@@ -153,16 +154,16 @@ class DoubleTrack final : public Plant {
   void move() noexcept;
 
   DoubleTrackParams nominal_;
-  DoubleTrackParams params_;  ///< those of this car, which may deviate
+  DoubleTrackParams params_;  ///< parameters of this car, which may deviate
   model::Actuator steer_, pedal_way_;
-  int parts_ = 1;            ///< of a step
-  double dt_ = kStepLength;  ///< of a part [s]
+  int parts_ = 1;            ///< parts of a step
+  double dt_ = kStepLength;  ///< length of a part [s]
   Disturbance disturbance_;
   std::array<model::Axle, 2> axles_;
   std::array<Wheel, 4> wheels_{};
-  Vec2 velocity_{};     ///< in W [m/s]
+  Vec2 velocity_{};     ///< velocity in W [m/s]
   Vec2 transfer_{};     ///< lagged acceleration that shifts load, in B [m/s²]
-  double pedal_ = 0.0;  ///< after its lag
+  double pedal_ = 0.0;  ///< pedal after its lag
   model::State state_;
   PlantOutput output_;
 };

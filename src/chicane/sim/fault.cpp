@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Faults of a run: switches and schedules them, and applies them to the signals between car and controller.
 #include "chicane/sim/fault.hpp"
 
 #include <algorithm>

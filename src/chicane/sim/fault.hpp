@@ -18,18 +18,18 @@ namespace chicane::sim {
 /// Index of a fault in the list, and the number of its bit in FaultLab::bits(). Recordings keep these bits:
 /// the index of a fault never changes.
 enum class Fault : std::uint8_t {};
-inline constexpr std::size_t kMostFaults = 32;  ///< in the list: one bit each
+inline constexpr std::size_t kMostFaults = 32;  ///< limit of the list: one bit each
 
 /// State of a fault that is on.
 struct FaultMemory {
-  double strength = 1.0;  ///< in the kind's range
+  double strength = 1.0;  ///< strength in the kind's range
   Random random{0};       ///< a stream of its own, not restarted when the fault begins
-  std::optional<model::Measurement> measurement{};  ///< for the effects to use; empty when it begins
+  std::optional<model::Measurement> measurement{};  ///< measurement of the effects; empty when it begins
   std::optional<double> value{};                    ///< the same
 };
 
-/// Which part of a signal's path a fault changes. Faults are applied in this order; those of the same place
-/// in the order of the list.
+/// Place in a signal's path that a fault changes. Faults are applied in this order, those of one place in the
+/// order of the list.
 enum class FaultPlace : std::uint8_t {
   kSource,  ///< the sensor or actuator itself: frozen, noisy, stuck
   kValue,   ///< the value: offset, scaled, wrong
@@ -45,16 +45,16 @@ struct FaultKind {
   double strength = 1.0;     ///< unless said otherwise
   double weakest = 1.0;      ///< range of the strength
   double strongest = 1.0;
-  std::string_view strength_meaning{};  ///< with its unit; empty when the fault has no strength
+  std::string_view strength_meaning{};  ///< meaning with its unit; empty for a fault without a strength
   std::string_view stream{};            ///< seed of its random numbers: at most eight letters
   FaultPlace place = FaultPlace::kValue;
 
-  /// Changes what the controller gets as `measured`; `now` is the true measurement.
+  /// Changes the controller's measurement, `measured`; `now` is the true one.
   void (*measure)(FaultMemory&, const model::Measurement& now,
                   model::Measurement& measured) noexcept = nullptr;
   /// Whether a command gets lost on its way.
   bool (*loses_command)(FaultMemory&) noexcept = nullptr;
-  /// Changes what the actuators do; `asked` is the command that arrived.
+  /// Changes the command that actuators execute, `done`; `asked` is the command that arrived.
   void (*actuate)(FaultMemory&, const model::Command& asked, model::Command& done) noexcept = nullptr;
   /// Time that commands arrive later than the controller assumes, when it assumes `latency` [s].
   double (*extra_delay)(double strength, double latency) noexcept = nullptr;
@@ -72,22 +72,22 @@ struct FaultKind {
 [[nodiscard]] inline const FaultKind& kind_of(Fault fault) noexcept {
   return fault_kinds()[static_cast<std::size_t>(fault)];
 }
-/// None for a name that is not in the list.
+/// Fault of this name; none if it is not in the list.
 [[nodiscard]] std::optional<Fault> fault_named(std::string_view name) noexcept;
 
-/// A fault with its time: what a scenario holds.
+/// A fault with its time, as scenarios have it.
 struct FaultEvent {
   Fault fault{};
-  double at = 0.0;        ///< when it begins [s]; >= 0
+  double at = 0.0;        ///< start [s]; >= 0
   double duration = 1.0;  ///< [s]; > 0
-  double strength = 1.0;  ///< in the kind's range
+  double strength = 1.0;  ///< strength in the kind's range
 };
-/// With the kind's own duration and strength.
+/// Event with the kind's own duration and strength.
 [[nodiscard]] FaultEvent default_event(Fault fault, double at) noexcept;
 
-/// What goes wrong in a run: scheduled events and switches, applied to what passes between car and
-/// controller. Seeded and deterministic: chance is drawn only by faults that are on, each from a stream of
-/// its own. No allocation after construction; one thread.
+/// Faults of a run: scheduled events and switches, applied to the signals between car and controller. Seeded
+/// and deterministic: chance is drawn only by faults that are on, each from a stream of its own. No
+/// allocation after construction; one thread.
 class FaultLab {
  public:
   static constexpr std::size_t kCapacity = 64;  ///< scheduled events; later ones are left out
@@ -96,23 +96,23 @@ class FaultLab {
   /// A new run: nothing is on, all is scheduled again.
   void reset() noexcept;
 
-  /// Begins and ends what is due at `time` [s]; times do not decrease. Call it before the rest.
+  /// Begins and ends faults that are due at `time` [s]; times do not decrease. Call it before the rest.
   void update(double time) noexcept;
-  /// Switches on from `time` for the kind's own duration and with its own strength, or off; what is already
-  /// as asked stays.
+  /// Switches a fault on from `time` for the kind's own duration and with its own strength, or off; no effect
+  /// if it is so already.
   void set(Fault fault, bool on, double time) noexcept;
-  /// Switches on for a duration and with a strength of its own, also what is on already; the strength is kept
-  /// in the kind's range.
+  /// Switches a fault on for a duration and with a strength of its own, also if it is on already; the
+  /// strength is clamped to the kind's range.
   void set(const FaultEvent& event) noexcept;
 
   [[nodiscard]] bool is_on(Fault fault) const noexcept { return (bits_ & bit(fault)) != 0U; }
   [[nodiscard]] std::uint32_t bits() const noexcept { return bits_; }
 
-  /// What the controller gets instead of `now`. With a lost link only the time is known.
+  /// Measurement that the controller gets instead of `now`. With a lost link it has only the time.
   [[nodiscard]] model::Measurement seen(const model::Measurement& now) noexcept;
-  /// False when a command gets lost on its way.
+  /// Whether a command arrives; false if it gets lost.
   [[nodiscard]] bool is_delivered() noexcept;
-  /// What the actuators do instead of `command`.
+  /// Command that the actuators execute instead of `command`.
   [[nodiscard]] model::Command done(const model::Command& command) noexcept;
   /// Time that commands arrive later than the controller assumes, when it assumes `latency` [s].
   [[nodiscard]] double extra_delay(double latency) const noexcept;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Table of faults: name, place, range and effect of each.
 #include <array>
 #include <limits>
 

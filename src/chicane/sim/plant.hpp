@@ -22,7 +22,7 @@ struct PlantOutput {
   std::array<double, 2> tire_use{};
 };
 
-/// How a plant differs from its nominal self, unknown to a controller.
+/// Deviation of a plant from its nominal parameters, unknown to a controller.
 struct PlantDeviation {
   double friction_scale = 1.0;  ///< all tyre forces times this
   double mass_scale = 1.0;      ///< mass and yaw inertia of the body times this

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// List of plants by name.
 #include "chicane/sim/plant_registry.hpp"
 
 #include <array>

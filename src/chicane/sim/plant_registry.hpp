@@ -15,7 +15,7 @@ namespace chicane::sim {
 /// A simulated car that can be chosen by name.
 struct PlantKind {
   std::string_view name;     ///< "road-car": small letters and dashes
-  std::string_view meaning;  ///< for `chicane list plants`
+  std::string_view meaning;  ///< meaning for `chicane list plants`
   std::unique_ptr<Plant> (*make)(const DoubleTrackParams&) = nullptr;
 };
 

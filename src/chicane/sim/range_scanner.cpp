@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Laser scanners: beams against the walls of a road as polylines, or through the cells of an occupancy map.
 #include "chicane/sim/range_scanner.hpp"
 
 #include <algorithm>
@@ -13,7 +14,7 @@ namespace {
 constexpr std::size_t kPiece = 32;  // points of a wall in one circle
 constexpr double kInside = 0.02;    // share of the road's width: a wall so far inside crosses the road
 constexpr double kTwoPi = 2.0 * 3.14159265358979323846;
-constexpr double kMaxWallPoints = 400'000.0;
+constexpr double kMaxWallPoints = 400'000.0;  // limit of points of both walls
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -86,7 +87,8 @@ void RangeScanner::scan(const model::Pose& sensor, std::span<float> ranges) cons
   }
 }
 
-/// Each chord of the wall covers the beams between the directions of its ends; the nearest wall is seen.
+/// Draws one wall: each chord covers the beams between the directions of its ends, and the nearest hit is
+/// kept.
 void RangeScanner::draw(std::span<const Vec2> points, const model::Pose& sensor,
                         std::span<float> ranges) const noexcept {
   const double c = chicane::cos(sensor.psi), s = chicane::sin(sensor.psi);
@@ -106,7 +108,7 @@ void RangeScanner::draw(std::span<const Vec2> points, const model::Pose& sensor,
     const Vec2 chord = to - from;
     const double numerator = cross(from, chord);
     const double begin = turn >= 0.0 ? from_angle : from_angle + turn;
-    // Behind the sensor the angles go on past a half turn: the beams there are met one turn on, too.
+    // Try each beam also one turn on and back: behind the sensor angles continue past a half turn.
     for (const double lap : {0.0, kTwoPi, -kTwoPi}) {
       const double first = std::max(0.0, std::ceil(beam_of(begin + lap)));
       const double end = std::min(last, std::floor(beam_of(begin + lap + std::fabs(turn))));
@@ -133,10 +135,10 @@ std::vector<std::vector<Vec2>> RangeScanner::walls() const {
 
 namespace {
 
-constexpr int kMostRoom = 255;
+constexpr int kMostRoom = 255;  // limit of a stored distance [cells]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Where x0 + t u leaves [0, size], and enters it, as far as this axis is concerned.
+/// Range of t in which x0 + t u lies in [0, size], for one axis.
 struct Interval {
   double begin = -kInfinity, end = kInfinity;
 };
@@ -250,7 +252,7 @@ double MapScanner::cast(const Vec2& from, const Vec2& direction) const noexcept 
 void MapScanner::scan(const model::Pose& sensor, std::span<float> ranges) const noexcept {
   const Vec2 here = in_cells({sensor.x, sensor.y});
   const double c = chicane::cos(sensor.psi), s = chicane::sin(sensor.psi);
-  const Vec2 ahead{axis_.x() * c + axis_.y() * s, axis_.x() * s - axis_.y() * c};  // in the map's axes
+  const Vec2 ahead{axis_.x() * c + axis_.y() * s, axis_.x() * s - axis_.y() * c};  // now in the map's axes
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const Vec2& beam = directions_[i];
     const Vec2 direction{ahead.x() * beam.x() - ahead.y() * beam.y(),

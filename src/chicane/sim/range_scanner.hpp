@@ -16,17 +16,17 @@ namespace chicane::sim {
 /// A planar laser scanner. Defaults: the Hokuyo of the F1TENTH car.
 struct RangeScannerOptions {
   int beams = 1080;                   ///< [2, 100000]
-  double field_of_view = 4.71238898;  ///< from the first beam to the last [rad], (0, 2π]
+  double field_of_view = 4.71238898;  ///< angle from the first beam to the last [rad], (0, 2π]
   double range_max = 30.0;            ///< beams that hit nothing nearer report infinity [m], > 0
-  double spacing = 0.05;              ///< between the points of the walls of a road [m], > 0
+  double spacing = 0.05;              ///< spacing of the points of a road's walls [m], > 0
 
-  /// From the sensor's x axis to the first beam, on the right [rad].
+  /// Angle from the sensor's x axis to the first beam, on the right [rad].
   [[nodiscard]] double first_angle() const noexcept { return -0.5 * field_of_view; }
-  /// Between two beams [rad].
+  /// Angle between two beams [rad].
   [[nodiscard]] double increment() const noexcept { return field_of_view / (beams - 1); }
 };
 
-/// kInvalidArgument for options out of range.
+/// Checks the options. kInvalidArgument if one is out of range.
 [[nodiscard]] Result<void> check(const RangeScannerOptions& options);
 
 /// Distances from a point to the walls of a road, which stand along its edges, outside the kerbs. Where a
@@ -36,7 +36,7 @@ struct RangeScannerOptions {
 /// seen: no other car, no height.
 class RangeScanner {
  public:
-  /// kInvalidArgument for options out of range.
+  /// Creates a scanner of a road. kInvalidArgument for options out of range.
   [[nodiscard]] static Result<RangeScanner> create(const road::Track& track,
                                                    const RangeScannerOptions& options = {});
 
@@ -45,9 +45,9 @@ class RangeScanner {
   void scan(const model::Pose& sensor, std::span<float> ranges) const noexcept;
 
   [[nodiscard]] const RangeScannerOptions& options() const noexcept { return options_; }
-  /// From the sensor's x axis to the first beam [rad].
+  /// Angle from the sensor's x axis to the first beam [rad].
   [[nodiscard]] double first_angle() const noexcept { return options_.first_angle(); }
-  /// Between two beams [rad].
+  /// Angle between two beams [rad].
   [[nodiscard]] double increment() const noexcept { return options_.increment(); }
   /// The walls as polylines in W [m], for drawing and tests.
   [[nodiscard]] std::vector<std::vector<Vec2>> walls() const;
@@ -55,7 +55,7 @@ class RangeScanner {
  private:
   /// Some consecutive points of a wall, in a circle.
   struct Piece {
-    std::size_t begin = 0, end = 0;  ///< of points_; a point belongs to the pieces on both of its sides
+    std::size_t begin = 0, end = 0;  ///< range in points_; a point belongs to the pieces on both of its sides
     Vec2 centre{};
     double radius = 0.0;
   };
@@ -67,7 +67,7 @@ class RangeScanner {
   RangeScannerOptions options_;
   std::vector<Vec2> points_;
   std::vector<Piece> pieces_;
-  std::vector<Vec2> directions_;  ///< of the beams, in the sensor's frame
+  std::vector<Vec2> directions_;  ///< directions of the beams in the sensor's frame
 };
 
 /// A map of square cells that are wall or free, seen from above.
@@ -76,7 +76,7 @@ struct OccupancyGrid {
 
   int width = 0, height = 0;       ///< [cells], > 0, at most kMostCells in all
   double resolution = 0.05;        ///< side of a cell [m], > 0
-  model::Pose origin{};            ///< of the lower left corner of the first cell; rows go along its x axis
+  model::Pose origin{};            ///< pose of the first cell's lower left corner; rows go along its x axis
   std::vector<bool> is_wall = {};  ///< row by row, the lowest row first
 };
 
@@ -86,11 +86,12 @@ struct OccupancyGrid {
 /// A byte for each cell: how many cells around it are free, so that a beam takes free room in large steps.
 class MapScanner {
  public:
-  /// kInvalidArgument for options out of range, or a grid whose numbers do not fit each other.
+  /// Creates a scanner of a map. kInvalidArgument for options out of range, or a grid with inconsistent
+  /// numbers.
   [[nodiscard]] static Result<MapScanner> create(const OccupancyGrid& grid,
                                                  const RangeScannerOptions& options = {});
 
-  /// As RangeScanner::scan(). Zero within a wall. Allocates nothing.
+  /// Scans like RangeScanner::scan(). Zero within a wall. Allocates nothing.
   void scan(const model::Pose& sensor, std::span<float> ranges) const noexcept;
   /// Whether a place in W is in a cell that is wall.
   [[nodiscard]] bool is_wall(const Vec2& place) const noexcept;
@@ -114,9 +115,9 @@ class MapScanner {
   int width_ = 0, height_ = 0;
   double resolution_ = 0.0;
   model::Pose origin_{};
-  Vec2 axis_{1.0, 0.0};             ///< of the rows, in W
+  Vec2 axis_{1.0, 0.0};             ///< direction of the rows in W
   std::vector<std::uint8_t> room_;  ///< 0: wall; n: all cells less than n away, diagonals too, are free
-  std::vector<Vec2> directions_;    ///< of the beams, in the sensor's frame
+  std::vector<Vec2> directions_;    ///< directions of the beams in the sensor's frame
 };
 
 }  // namespace chicane::sim

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Sensor: samples the plant with latency and noise, and keeps the commands in flight.
 #include "chicane/sim/sensor.hpp"
 
 #include <algorithm>
@@ -37,7 +38,7 @@ constexpr std::array kOptions{
 std::span<const Option> sensor_options() noexcept { return kOptions; }
 
 model::Measurement Sensor::sample(double time, const Plant& plant) noexcept {
-  // Every sample draws four numbers, whatever the options: one noise does not shift the stream of another.
+  // Draw four numbers for every sample, whatever the options: one noise must not shift the stream of another.
   const double noise_x = random_.normal() * options_.position_noise;
   const double noise_y = random_.normal() * options_.position_noise;
   const double noise_psi = random_.normal() * options_.heading_noise;
@@ -101,7 +102,7 @@ double ActuationDelay::last_time() const noexcept {
 
 const model::Command& ActuationDelay::at(double time) noexcept {
   // A command due within a nanosecond is due: sums of step lengths round.
-  constexpr double kRounding = 1e-9;
+  constexpr double kRounding = 1e-9;  // rounding of times [s]
   while (count_ > 0 && waiting_[static_cast<std::size_t>(first_)].time <= time + kRounding) {
     acting_ = waiting_[static_cast<std::size_t>(first_)].command;
     first_ = (first_ + 1) % kCapacity;

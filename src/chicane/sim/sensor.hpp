@@ -30,18 +30,18 @@ struct SensorOptions {
 
 /// Samples the plant as telemetry does; seeded and deterministic. Fills everything but waypoints and delay.
 ///
-/// With a latency the content is that old, between the moments sampled interpolated along straight lines (at
-/// 30 m/s in a bend of 50 m and 40 ms apart 4 mm beside it), the oldest one where there is none so old; its
-/// time is that of the call, as in telemetry without time stamps.
+/// With a latency the content is older by it, interpolated linearly between sampled moments (error 4 mm at 30
+/// m/s in a bend of 50 m with samples 40 ms apart), or the oldest sample if none is old enough. The time is
+/// always the call's, as in telemetry without time stamps.
 class Sensor {
  public:
   Sensor(const SensorOptions& options, std::uint64_t seed) noexcept : options_{options}, random_{seed} {}
-  /// Other options from now on; the stream of random numbers goes on.
+  /// Applies other options from now on; the stream of random numbers continues.
   void configure(const SensorOptions& options) noexcept { options_ = options; }
   [[nodiscard]] model::Measurement sample(double time, const Plant& plant) noexcept;
 
  private:
-  /// What was there to be seen.
+  /// Observable state at a moment.
   struct Sight {
     double time = 0.0, x = 0.0, y = 0.0, psi = 0.0, speed = 0.0, steer = 0.0, throttle = 0.0;
   };
@@ -62,7 +62,7 @@ class ActuationDelay {
   void reset(const model::Command& acting) noexcept;
   /// `command` acts from `time` [s] on. Times must not decrease; a decreasing one is raised to the last.
   void push(double time, const model::Command& command) noexcept;
-  /// When the last command that waits will act [s]; minus infinity when none does.
+  /// Time at which the last waiting command will act [s]; minus infinity if none waits.
   [[nodiscard]] double last_time() const noexcept;
   /// The command acting at `time` [s]. Times must not decrease from call to call.
   [[nodiscard]] const model::Command& at(double time) noexcept;
@@ -72,15 +72,15 @@ class ActuationDelay {
     double time = 0.0;
     model::Command command;
   };
-  static constexpr int kCapacity = 128;
+  static constexpr int kCapacity = 128;  ///< commands in flight
   std::array<Entry, kCapacity> waiting_{};
   int first_ = 0;
   int count_ = 0;
   model::Command acting_;
 };
 
-/// Delay that chance adds to a command sent at `time` [s]: evenly distributed in [0, most) [s]. The same for
-/// the same seed and time, whatever was drawn before: a run that is continued from within goes on as it did.
+/// Random delay of a command sent at `time` [s]: evenly distributed in [0, most) [s]. A function of seed and
+/// time alone, so that a branched run continues unchanged.
 [[nodiscard]] double random_delay(std::uint64_t seed, double time, double most) noexcept;
 
 }  // namespace chicane::sim

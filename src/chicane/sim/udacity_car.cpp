@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// The original simulator's car: PhysX wheels with its friction curves, steer helper, traction control and
+// drive torque, step by step as its scripts do it.
 #include "chicane/sim/udacity_car.hpp"
 
 #include <algorithm>
@@ -204,7 +206,7 @@ void UdacityCar::publish(const Vec2& velocity_before, double pedal) noexcept {
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     output_.slip_angle[i] = wheels_[i].slip_angle;
     output_.slip_ratio[i] = wheels_[i].slip_ratio;
-    // Both directions have a curve of their own and share nothing. The wheels of an axle carry the same load.
+    // Each direction has a curve of its own and shares nothing. The wheels of an axle carry the same load.
     output_.tire_use[i / 2] += 0.5 * std::max(use_of(params_.sideways, wheels_[i].slip_angle),
                                               use_of(params_.forward, wheels_[i].slip_ratio));
   }

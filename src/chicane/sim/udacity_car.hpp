@@ -37,11 +37,11 @@ struct UdacityCarParams {
   double lateral_speed_offset = 1.0;  ///< slip angle = atan(v_lat / (|v_long| + this)) [m/s]
   double driven_speed_offset =
       0.1;  ///< forward slip of a driven or braked wheel: denominator plus this [m/s]
-  double rolling_speed_floor = 4.0;  ///< of a free one: denominator at least this [m/s]
+  double rolling_speed_floor = 4.0;  ///< forward slip of a free wheel: denominator at least this [m/s]
 
   double steer_limit = 0.4363323129985824;  ///< 25° [rad]
   double steer_helper = 0.774;
-  double drive_torque = 2000.0;             ///< over all wheels [N m]
+  double drive_torque = 2000.0;             ///< torque over all wheels [N m]
   double reverse_torque = 150.0;            ///< each wheel [N m]
   double brake_torque = 20000.0;            ///< each wheel at throttle −1 [N m]
   double slip_limit = 0.4;                  ///< forward slip that traction control takes torque away for
@@ -71,7 +71,8 @@ class UdacityCar final : public Plant {
   explicit UdacityCar(const UdacityCarParams& params = {}) noexcept;
 
   [[nodiscard]] double step_length() const noexcept override { return kStepLength; }
-  /// From standstill the drive torque starts at 0, as when the scene starts; at speed > 0 it starts in full.
+  /// Resets the car. From standstill the drive torque starts at 0, as when the scene starts; at speed > 0 it
+  /// starts in full.
   void reset(const model::Pose& pose, double speed) noexcept override;
   void set_motion(const Vec2& velocity, double yaw_rate) noexcept override;
   void deviate(const PlantDeviation& deviation) noexcept override;
@@ -84,7 +85,7 @@ class UdacityCar final : public Plant {
 
  private:
   struct Wheel {
-    Vec2 position{};  ///< in B [m]
+    Vec2 position{};  ///< position in B [m]
     double radius = 0.0;
     double inertia = 0.0;
     double load = 0.0;  ///< filtered, in this step [N]
@@ -105,10 +106,10 @@ class UdacityCar final : public Plant {
   void publish(const Vec2& velocity_before, double pedal) noexcept;
 
   UdacityCarParams nominal_;
-  UdacityCarParams params_;  ///< those of this car, which may deviate
+  UdacityCarParams params_;  ///< parameters of this car, which may deviate
   Disturbance disturbance_;
   std::array<Wheel, 4> wheels_{};
-  Vec2 velocity_{};            ///< in W [m/s]
+  Vec2 velocity_{};            ///< velocity in W [m/s]
   double drive_torque_ = 0.0;  ///< allowed by traction control, over all wheels [N m]
   double psi_before_ = 0.0;    ///< yaw when the helper last looked [rad]
   model::State state_;

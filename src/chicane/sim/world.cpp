@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Judge and world: edge distances, off-track events, laps, sectors and corners of a car on its track.
 #include "chicane/sim/world.hpp"
 
 #include <algorithm>
@@ -13,12 +14,12 @@ namespace {
 constexpr double kSearch = 6.0;           // reach of a local projection [m]
 constexpr double kLost = 8.0;             // farther off the road than this: look for the line everywhere [m]
 constexpr int kLostPatience = 10;         // sightings between such looks
-constexpr double kCoveredShare = 0.95;    // of the line that a lap has to cover
+constexpr double kCoveredShare = 0.95;    // share of the line that a lap must cover
 constexpr double kBackOnTrack = 0.05;     // distance that ends an off-track event [m] ...
 constexpr double kBackOnTrackTime = 0.2;  // ... once held so long [s]
-constexpr double kFullSize = 1.5;         // between the axles [m]; all lengths are less for shorter cars
+constexpr double kFullSize = 1.5;         // wheelbase [m]; all lengths are less for shorter cars
 
-/// Over a car in full size.
+/// Size of a car over full size, at most 1.
 double size_of(const Sighting& car) noexcept {
   const double wheelbase = car.contact_points[0].x() - car.contact_points[2].x();
   return wheelbase > 0.0 ? std::min(wheelbase / kFullSize, 1.0) : 1.0;
@@ -88,7 +89,7 @@ void Judge::locate(double elapsed, const Sighting& car) noexcept {
   const road::PathPoint foot = line.at(nearest.s);
   double advanced = line.difference(nearest.s, state_.s);
   if (!line.is_closed()) {
-    // Beyond its ends an open line goes on straight.
+    // Beyond its ends an open line continues straight.
     const Vec2 tangent{cos(foot.heading), sin(foot.heading)};
     const double beyond = (position - foot.position).dot(tangent);
     const bool is_end = nearest.s <= 0.0 || nearest.s >= line.length();

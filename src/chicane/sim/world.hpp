@@ -12,36 +12,35 @@
 
 namespace chicane::sim {
 
-/// Where a car is on its track, and what laps it has driven; lap and sector times are interpolated to the
-/// crossing.
+/// Place of a car on its track, and its laps. Lap and sector times are interpolated to the crossing.
 struct WorldState {
   static constexpr int kSectors = 3;
 
-  double time = 0.0;  ///< of the last sighting [s]
+  double time = 0.0;  ///< time of the last sighting [s]
 
   double s = 0.0;              ///< arc length of the nearest point of the track's line [m]
-  double lateral_error = 0.0;  ///< of the centre of mass from the line [m], left positive
+  double lateral_error = 0.0;  ///< offset of the centre of mass from the line [m], left positive
   double heading_error = 0.0;  ///< yaw minus the line's heading [rad], in (−π, π]
   double progress = 0.0;       ///< along the line since the start line, not wrapped [m]; negative before it
 
-  double edge_distance = 0.0;  ///< of the outermost contact patch to the edge [m], negative = off the road
+  double edge_distance = 0.0;      ///< gap from outermost contact patch to edge [m], negative = off the road
   double min_edge_distance = 0.0;  ///< smallest so far [m]
-  bool is_off_track = false;       ///< from edge_distance < 0 on, until it was >= 0.05 m for 0.2 s
+  bool is_off_track = false;       ///< true from edge_distance < 0 on, until it was >= 0.05 m for 0.2 s
   int off_track_events = 0;        ///< times is_off_track became true
-  double off_track_time = 0.0;     ///< with edge_distance < 0 [s]
+  double off_track_time = 0.0;     ///< total time with edge_distance < 0 [s]
 
   int lap = 0;                      ///< laps completed; an open track has one
   bool is_timed = false;            ///< the start line has been crossed (or the run began on it)
   bool is_finished = false;         ///< the finish of an open track has been reached
-  double lap_time = 0.0;            ///< of the running lap [s]
+  double lap_time = 0.0;            ///< time since the running lap began [s]
   double last_lap_time = 0.0;       ///< 0 before the first completed lap [s]
   double best_lap_time = 0.0;       ///< shortest of the completed laps, 0 before the first [s]
   bool last_lap_was_clean = false;  ///< no off-track moment during the last completed lap
   int void_laps = 0;                ///< rounds that left out more than 5 % of the line: not counted
 
   int sector = 0;                                    ///< [0, kSectors): thirds of the lap
-  std::array<double, kSectors> sector_times{};       ///< of the running lap, 0 = not finished yet [s]
-  std::array<double, kSectors> last_sector_times{};  ///< of the last completed lap [s]
+  std::array<double, kSectors> sector_times{};       ///< in the running lap, 0 = not finished yet [s]
+  std::array<double, kSectors> last_sector_times{};  ///< sectors of the last completed lap [s]
 };
 
 /// A car as an observer beside the road sees it.
@@ -51,36 +50,35 @@ struct Sighting {
   std::array<Vec2, 4> contact_points{};  ///< Plant::contact_points()
 };
 
-/// Where a car is that nobody has followed: of roads that cross under it on the one it goes along.
+/// Projects a car without a previous position; at a crossing, picks the road closest to the heading.
 [[nodiscard]] road::Projection project_anywhere(const road::Track& track, const model::Pose& car) noexcept;
 
-/// Judges a car by what is seen of it, one sighting after the other: where it is on the track, whether all of
-/// it is on the road, its laps. Knows no plant: the car may be simulated here (World) or elsewhere.
+/// Judges a car from a sequence of sightings: its place on the track, whether all of it is on the road, its
+/// laps. Knows no plant: the car may be simulated here (World) or elsewhere.
 ///
 /// The drivable surface reaches to the edge plus the kerb: a patch is off when its outer edge is beyond. The
-/// start line lies across the road at Track::start_s(). A lap counts when it is crossed forward for the first
-/// time after driving at least 95 % of the line: crossing back and forth counts once, a short cut makes the
-/// round void. Between two sightings the car is taken to go evenly. Allocates in the constructor only, cannot
+/// start line lies across the road at Track::start_s(). A lap counts when the car crosses it forward for the
+/// first time after at least 95 % of the line: crossing back and forth counts once, a short cut makes the lap
+/// void. Motion between two sightings is interpolated linearly. Allocates in the constructor only, cannot
 /// fail. One thread.
 class Judge {
  public:
   /// `track` must outlive the judge. Call reset() before anything else.
   explicit Judge(const road::Track& track);
 
-  /// A new run from any pose, at `time` [s]. Within 1 m of the start line the first lap is timed from now on,
-  /// otherwise from the first crossing. For cars shorter than 1.5 m between the axles all lengths are smaller
-  /// in proportion.
+  /// Starts a new run from any pose, at `time` [s]. Within 1 m of the start line the first lap is timed from
+  /// now on, otherwise from the first crossing. For wheelbases below 1.5 m all lengths shrink in proportion.
   void reset(double time, const Sighting& car) noexcept;
-  /// Time rises from sighting to sighting.
+  /// Adds a sighting; times must rise.
   void see(double time, const Sighting& car) noexcept;
 
-  /// The same judgement on a copy of the track, which must outlive the judge.
+  /// Continues the judgement on a copy of the track, which must outlive the judge.
   void stand_on(const road::Track& track) noexcept { track_ = &track; }
 
   [[nodiscard]] const WorldState& state() const noexcept { return state_; }
   [[nodiscard]] const road::Track& track() const noexcept { return *track_; }
   [[nodiscard]] const std::vector<road::Corner>& corners() const noexcept { return corners_; }
-  /// Of the last completed lap, for each corner with half of the straights beside it [s]; zeros before it.
+  /// Corner times of the last completed lap, each with half of the straights beside it [s]; zeros before it.
   [[nodiscard]] std::span<const double> last_corner_times() const noexcept { return last_corner_times_; }
 
  private:
@@ -92,58 +90,57 @@ class Judge {
   void end_corner(double crossing_time) noexcept;
 
   const road::Track* track_;
-  double size_ = 1.0;          ///< of the car, over one in full size: what is far for it
-  double covered_ = 0.0;       ///< of the line since the lap began, without jumps [m]
+  double size_ = 1.0;          ///< scale of distances: size of the car over full size, at most 1
+  double covered_ = 0.0;       ///< line covered since the lap began, without jumps [m]
   double lap_length_ = 0.0;    ///< Track::lap_length()
   double next_line_ = 0.0;     ///< progress at the next crossing of the line [m]
-  double lap_start_ = 0.0;     ///< [s]
-  double sector_start_ = 0.0;  ///< [s]
+  double lap_start_ = 0.0;     ///< time at which the lap began [s]
+  double sector_start_ = 0.0;  ///< time at which the sector began [s]
   std::vector<road::Corner> corners_;
   std::vector<double> corner_ends_;                       ///< road::corner_sectors()
   std::vector<double> corner_times_, last_corner_times_;  ///< [s]
-  std::size_t corner_ = 0;                                ///< of the running lap
-  double corner_start_ = 0.0;                             ///< [s]
+  std::size_t corner_ = 0;                                ///< index of the current corner
+  double corner_start_ = 0.0;                             ///< time at which the corner began [s]
   double off_track_at_lap_start_ = 0.0;
-  double back_on_track_ = 0.0;  ///< how long already [s]
-  int lost_for_ = 0;            ///< sightings far from the line
+  double back_on_track_ = 0.0;  ///< time since the car came back on track [s]
+  int lost_for_ = 0;            ///< count of sightings far from the line
   WorldState state_;
 };
 
-/// A car on a track: advances the plant, and has a judge look at it every 5 ms or every physics step,
-/// whichever is longer, by the plant's own contact patches. Allocates in the constructor only, cannot fail.
-/// One thread at a time; what it returns by reference changes with the next advance(), place() or reset().
+/// A car on a track: advances the plant, and shows the judge its contact patches every 5 ms or every physics
+/// step, whichever is longer. Allocates in the constructor only, cannot fail. One thread at a time; returned
+/// references change with the next advance(), place() or reset().
 class World {
  public:
-  /// Both must outlive the world. The car stands at the track's start.
+  /// `plant` and `track` must outlive the world. The car stands at the track's start.
   World(Plant& plant, const road::Track& track);
 
-  /// A new run: the car at arc length s, `offset` to the left of the line [m], heading along it, rolling at
-  /// `speed` [m/s].
+  /// Starts a new run: the car at arc length s, `offset` to the left of the line [m], heading along it,
+  /// rolling at `speed` [m/s].
   void place(double s, double offset, double speed = 0.0) noexcept;
-  /// A new run from any pose.
+  /// Starts a new run from any pose.
   void reset(const model::Pose& pose, double speed) noexcept;
-  /// A new run from any pose and motion; the wheel stands straight.
+  /// Starts a new run from any pose and motion; the wheel stands straight.
   void reset(const model::State& start) noexcept;
 
-  /// The car is there at `time` [s] of the run that goes on, moving like this: it was driven elsewhere, and
-  /// only seen. Times rise.
+  /// Continues the run with a car that was driven elsewhere and only observed: its motion at `time` [s].
+  /// Times rise.
   void see(double time, const model::State& car) noexcept;
 
-  /// The car stands at `pose` from now on, in the run that goes on: a simulator has reset it. Laps begin
-  /// anew.
+  /// Continues the run with the car standing at `pose`: a simulator has reset it. Lap timing restarts.
   void put(const model::Pose& pose) noexcept;
 
-  /// A copy of a world goes on with copies of its plant and its track, which must outlive it.
+  /// Moves a copied world to copies of its plant and its track, which must outlive it.
   void stand_on(Plant& plant, const road::Track& track) noexcept;
 
-  /// One physics step of the plant with the command that acts.
+  /// Advances the plant by one physics step with the command that acts.
   void advance(const model::Command& command) noexcept;
 
   [[nodiscard]] const WorldState& state() const noexcept { return judge_.state(); }
   [[nodiscard]] const Judge& judge() const noexcept { return judge_; }
   [[nodiscard]] const Plant& plant() const noexcept { return *plant_; }
   [[nodiscard]] const road::Track& track() const noexcept { return judge_.track(); }
-  /// Since reset() [s].
+  /// Time since reset() [s].
   [[nodiscard]] double time() const noexcept {
     return begin_ + static_cast<double>(step_count_) * plant_->step_length();
   }
@@ -153,17 +150,17 @@ class World {
 
   Plant* plant_;
   Judge judge_;
-  double begin_ = 0.0;        ///< steps count from there [s]: 0, or where the car was last seen
-  long long step_count_ = 0;  ///< since then
+  double begin_ = 0.0;        ///< time at which the steps start to count [s]: 0, or the last see()
+  long long step_count_ = 0;  ///< steps since begin_
   int steps_per_judgement_ = 1;
 };
 
-/// Fills measurement.waypoints with the points telemetry shows for a car at (x, y, psi), by the rule of the
-/// original (udacity/self-driving-car-sim v1.45, WaypointTracker): the nearest waypoint, or its successor
-/// when that lies more than 90° off the car's direction, is next; shown are the one before it and those
-/// after, `count` in all, around the lap when the track is closed, fewer at the end of an open one. Where a
-/// road crosses itself, which the original has nowhere, they are those of the passage along the car. Returns
-/// how many. count is clamped to [0, kMaxWaypoints]. O(points), no allocation.
+/// Fills measurement.waypoints with the points that telemetry shows for a car at (x, y, psi), by the rule of
+/// the original (udacity/self-driving-car-sim v1.45, WaypointTracker): the nearest waypoint, or its successor
+/// when that lies more than 90° off the car's direction, is next. Shown are the one before it and the ones
+/// after, `count` in all, around the lap if the track is closed, fewer at the end of an open one. Where a
+/// road crosses itself (nowhere in the original), the passage along the car's heading is taken. Returns their
+/// number. `count` is clamped to [0, kMaxWaypoints]. O(points), no allocation.
 int select_waypoints(const road::Track& track, const model::Pose& pose, int count,
                      model::Measurement& measurement) noexcept;
 

@@ -8,10 +8,9 @@
 #include "chicane/solver.h"
 #include "chicane/solver/solution.hpp"
 
-// What is behind the handles of chicane/solver.h, and its functions, which every source with a problem for C
-// brings along.
+// Implementation behind the handles of chicane/solver.h. Every source with a problem for C includes it.
 
-/// A problem: its sizes, and what a solver of it does.
+/// A problem: its sizes, and the functions of its solver.
 struct chicane_problem {
   chicane_sizes sizes;
   const char* name;
@@ -56,7 +55,7 @@ chicane_error check_to_set(const chicane_solver* solver, chicane_array array, co
   if (const chicane_error error = check(solver, array, from, count); error != CHICANE_DONE) return error;
   if (array > CHICANE_INPUTS) return CHICANE_READ_ONLY;
   const bool is_guess =
-      array == CHICANE_STATES || array == CHICANE_INPUTS;  // of which what is no number is replaced
+      array == CHICANE_STATES || array == CHICANE_INPUTS;  // arrays in which not-a-number is replaced
   return is_guess || are_finite(from, count, array != CHICANE_PARAMETERS) ? CHICANE_DONE : CHICANE_NOT_FINITE;
 }
 template <class T>

@@ -12,7 +12,7 @@
 namespace chicane::solver {
 
 namespace detail {
-/// "0.12 m at stage 14"
+/// Amount with its place: "0.12 m at stage 14".
 [[nodiscard]] inline std::string amount(double value, std::string_view unit, int stage) {
   char number[32];
   std::snprintf(number, sizeof(number), "%.3g", value);

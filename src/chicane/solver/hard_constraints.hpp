@@ -26,7 +26,7 @@ namespace chicane::solver {
 /// units in which a miss of `tolerance` is one that you do not mind. The soft penalty of a hard constraint is
 /// the penalty that it starts with.
 
-/// How many of each a problem has.
+/// Numbers of each kind of rows that a problem has.
 template <class P>
 [[nodiscard]] constexpr int equality_count() noexcept {
   if constexpr (requires { P::kNh; }) return P::kNh;
@@ -65,10 +65,10 @@ struct HardMultipliers {
   std::array<double, kEnd> terminal{};  ///< equalities, then constraints
   std::array<double, kNh> equality_weight{};
   std::array<double, kEnd> terminal_weight{};
-  std::array<double, P::kNc> penalty_factor{};  ///< of hard constraints' first penalties
+  std::array<double, P::kNc> penalty_factor{};  ///< factors over hard constraints' first penalties
   bool is_known = false;                        ///< false: a solve begins without
 
-  /// Of a horizon that begins `steps` stages later; the last ones are repeated.
+  /// Shifts to a horizon that begins `steps` stages later; the last ones are repeated.
   void shift(int steps, int horizon) noexcept {
     for (auto& row : equality) {
       for (int k = 0; k < horizon; ++k)
@@ -77,14 +77,14 @@ struct HardMultipliers {
   }
 };
 
-/// What a report says of what must hold.
+/// Report on rows that must hold.
 struct HardReport : SolveReport {
   enum class Kind : std::uint8_t { kNone, kEquality, kTerminalEquality, kTerminalConstraint, kConstraint };
   double miss = 0.0;        ///< the largest miss, in its own unit
-  Kind kind = Kind::kNone;  ///< of what; none where all hold exactly
+  Kind kind = Kind::kNone;  ///< kind of the largest violation; none if all hold exactly
   int miss_stage = -1;
-  int miss_row = -1;  ///< which of its kind
-  int rounds = 0;     ///< updates of multipliers, one solve before each; iterations are those of all
+  int miss_row = -1;  ///< index within its kind
+  int rounds = 0;     ///< updates of multipliers, one solve before each; iterations are summed
 };
 
 }  // namespace chicane::solver

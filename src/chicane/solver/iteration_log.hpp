@@ -12,15 +12,14 @@ namespace chicane::solver {
 
 /// One iteration of a solve: the iterate it began at, and the step from there.
 struct Iteration {
-  /// How the step was found (docs/solver.md): by the working set, by a line search over simulations, by the
-  /// filter method.
+  /// Origin of the step (docs/solver.md): working set, line search over simulations, filter method.
   enum class Kind : std::uint8_t { kFullStep, kDescent, kFilter };
-  int round = 0;  ///< of the augmented Lagrangian, from 1; 0 for problems without what must hold
+  int round = 0;  ///< round of the augmented Lagrangian, from 1; 0 for problems without rows that must hold
   Kind kind = Kind::kFullStep;
-  double cost = 0.0;  ///< of the iterate; of the problem of the present round
-  double stationarity = 0.0, defect = 0.0, complementarity = 0.0;  ///< as of SolveReport
+  double cost = 0.0;  ///< cost of the iterate, for the problem of the present round
+  double stationarity = 0.0, defect = 0.0, complementarity = 0.0;  ///< as in SolveReport
   double step = 0.0;     ///< longest move of an input; 0 where no step was taken
-  double barrier = 0.0;  ///< of soft constraints, or of the filter method
+  double barrier = 0.0;  ///< barrier of soft constraints, or of the filter method
 };
 
 /// Iterations of a solve, in memory of the caller. What does not fit is counted, not kept.
@@ -40,13 +39,13 @@ class IterationLog {
           0.0,    barrier};
     ++count_;
   }
-  /// Of the iteration that was added last.
+  /// Sets the step length of the newest iteration.
   void set_step(double step) noexcept {
     if (count_ > 0 && count_ <= iterations_.size()) iterations_[count_ - 1].step = step;
   }
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  /// Those that are kept, in their order.
+  /// Kept iterations in their order.
   [[nodiscard]] std::span<const Iteration> iterations() const noexcept {
     return iterations_.first(count_ < iterations_.size() ? count_ : iterations_.size());
   }

@@ -50,8 +50,8 @@ class OcpSolver {
 
   explicit OcpSolver(const SolverOptions& options = {}) noexcept : options_{options} {}
 
-  // From the next solve on: all options, or SolverOptions::max_iterations, tolerance, start_from_states
-  // alone.
+  // Sets options from the next solve on: all of them, or SolverOptions::max_iterations, tolerance,
+  // start_from_states alone.
   void set_options(const SolverOptions& options) noexcept { options_ = options; }
   void allow_iterations(int most) noexcept { options_.max_iterations = most; }
   void ask_for(double tolerance) noexcept { options_.tolerance = tolerance; }
@@ -60,8 +60,8 @@ class OcpSolver {
   /// Solves from x0. In: trajectory.horizon in [1, Capacity] and the inputs of the warm start (any values;
   /// states are recomputed, but for SolverOptions::start_from_states). Out: the solution, or the best
   /// iterate; its inputs are finite and inside their bounds whatever the status. Data that are not finite, or
-  /// bounds that cross, end with kNotFinite. The deadline is asked in every iteration and before every
-  /// correction of the working set; what is under way when it comes is finished.
+  /// bounds that cross, end with kNotFinite. The deadline is checked in every iteration and before every
+  /// correction of the working set; a step under way is finished.
   SolveReport solve(const P& problem, const State& x0, Trajectory& trajectory,
                     Deadline deadline = Deadline::never()) noexcept {
     CHICANE_ASSERT(trajectory.horizon >= 1 && trajectory.horizon <= Capacity);
@@ -83,32 +83,32 @@ class OcpSolver {
 
   // ---- preparation and feedback apart
 
-  /// After a usable solve, or after a solve that ended at its limit with a finite answer: linearises and
-  /// factorises there, so that feedback() takes a few sweeps. False where that is not finite.
+  /// Linearises and factorises at the answer, so that feedback() takes a few sweeps. Call it after a usable
+  /// solve, or after one that ended at its limit with a finite answer. False if the result is not finite.
   bool prepare(const P& problem) noexcept;
   /// The answer from x0 by what prepare() has left: the solution of that quadratic program with the step of
   /// the first state given, its inputs inside their bounds. Soft constraints and what must hold answer as at
   /// the prepared point; input bounds become active and inactive. May be called again and again.
   FeedbackReport feedback(const State& x0, Trajectory& trajectory) noexcept;
 
-  /// From the next solve on, iterations are added to `log`, which must live as long; null: none.
+  /// Adds iterations to `log` from the next solve on; the log must live as long. Null: none.
   void record_iterations(IterationLog* log) noexcept { log_ = log; }
 
   // ---- the filter method alone, for HardSolver
 
   /// Follows the barrier from a guess, low where it `is_near`, in at most `most` iterations, counted in
-  /// `report`. True where it gets there: solve_again() goes on with full steps. Rows that must hold are
+  /// `report`. True if it gets there: solve_again() continues with full steps. Rows that must hold are
   /// equations then (detail/hard_rows.hpp), and `problem` gets their multipliers.
   bool follow_barrier(P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline, int most,
                       bool is_near, SolveReport& report) noexcept;
   /// Slacks of hard constraints to penalties that have changed.
   void update_penalties(const P& problem) noexcept { barrier_.update_penalties(problem, t_.horizon); }
 
-  /// After a solve: the multiplier of state i of x_{k+1}, i.e. d(cost)/dx of what follows; k < horizon.
+  /// Multiplier of state i of x_{k+1} after a solve, i.e. d(cost)/dx of the stages after it; k < horizon.
   [[nodiscard]] double adjoint(int k, int i) const noexcept { return now_.adjoint[i][k]; }
   /// The multiplier of the bounds of input m of stage k: d(cost)/d(bound), 0 between them.
   [[nodiscard]] double bound_multiplier(int k, int m) const noexcept { return now_.slope[m][k]; }
-  /// The multiplier of soft constraint c of stage k: what a unit more room would save.
+  /// Multiplier of soft constraint c of stage k: cost saved by a unit of room.
   [[nodiscard]] double constraint_multiplier(int k, int c) const noexcept {
     return barrier_.multiplier(static_cast<std::size_t>(c), static_cast<std::size_t>(k));
   }
@@ -117,13 +117,13 @@ class OcpSolver {
   static constexpr std::size_t kNx = P::kNx;
   static constexpr std::size_t kNu = P::kNu;
   static constexpr std::size_t kSize = Capacity;
-  static constexpr std::size_t kFirstHorizon = 5;  ///< of the growing horizons
+  static constexpr std::size_t kFirstHorizon = 5;  ///< first of the growing horizons
   static constexpr std::size_t kMaxGrowth = 16;
-  static constexpr double kGoodEnoughToGrow = 1e-1;
+  static constexpr double kGoodEnoughToGrow = 1e-1;  ///< residual at which the horizon grows
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static constexpr double kDefectShare = 1e-7;   ///< of the tolerance: Hessians amplify defects
-  static constexpr double kDefectFloor = 2e-15;  ///< what rounding leaves
-  static constexpr double kRounding = 2.2e-16;
+  static constexpr double kDefectShare = 1e-7;    ///< share of the tolerance: Hessians amplify defects
+  static constexpr double kDefectFloor = 2e-15;   ///< limit by rounding
+  static constexpr double kRounding = 2.2e-16;    ///< rounding of doubles
   static constexpr double kFloorResidual = 1e-6;  ///< most that kAtFloor may have
   static constexpr bool kCanFilter = has_filter_method<P>();
   /// Steps this short: exact curvature from here on. Dense problems pay for it.
@@ -200,8 +200,8 @@ class OcpSolver {
     barrier_.start(problem, final_barrier(problem), Evaluate::violation(problem, t_));
     return is_good;
   }
-  /// Where the barrier of soft constraints ends; of problems with rows that must hold so low that all of it
-  /// together costs no more than the tolerance.
+  /// Final barrier of soft constraints. With rows that must hold it is so low that all of it together costs
+  /// no more than the tolerance.
   [[nodiscard]] double final_barrier([[maybe_unused]] const P& problem) const noexcept {
     if constexpr (kHasHardRows<P>) {
       constexpr double kLeast = 1e-11;  // below it slopes are all rounding
@@ -315,7 +315,7 @@ class OcpSolver {
   /// Structured problems have second derivatives almost for free. Dense ones cost as much as several
   /// iterations: only where Gauss–Newton needs more than that.
   [[nodiscard]] bool curvature_pays() const noexcept {
-    constexpr double kIterations = 6.0;
+    constexpr double kIterations = 6.0;  // iterations to the tolerance that cost less
     return has_cheap_curvature<P>() || progress_.is_slow(0.1 * options_.tolerance, kIterations);
   }
   /// Gauss–Newton would need tens of iterations, or the filter method has brought a point near the solution:
@@ -328,7 +328,7 @@ class OcpSolver {
 
   // ---- the filter method (detail/ocp_fallback.hpp)
 
-  /// What to do where full steps have lost their way. False when nothing helps.
+  /// Recovery when full steps fail. False if nothing helps.
   bool recover(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept {
     if constexpr (kCanFilter) {
       if (options_.may_start_short) return begin_filter(problem, trajectory, report);
@@ -344,8 +344,8 @@ class OcpSolver {
 
   // ---- globalisation
 
-  /// True when this is the best iterate so far: by its residuals while steps are full, the latest one while
-  /// the cost descends.
+  /// Whether this is the best iterate so far: by its residuals while steps are full, the latest one while the
+  /// cost descends. Keeps it then.
   bool keep_best(const SolveReport& report) noexcept {
     if (!is_finite(report)) return false;
     if (full_steps_ && has_best_ && !progress_.is_good() && residual(report) >= residual(best_report_))
@@ -384,7 +384,7 @@ class OcpSolver {
   [[nodiscard]] bool may_grow() const noexcept {
     return options_.may_start_short && !has_grown_ && t_.horizon > kFirstHorizon;
   }
-  /// What an iteration costs beside one of the whole horizon.
+  /// Cost of an iteration over one of the whole horizon.
   [[nodiscard]] double share_of_horizon() const noexcept {
     return static_cast<double>(t_.horizon) / static_cast<double>(target_);
   }
@@ -397,10 +397,11 @@ class OcpSolver {
 
   // ---- endings
 
-  /// Within the loose tolerance; the barrier, too, which is what complementarity lacks to zero.
+  /// Whether the report is within the loose tolerance, the barrier included, which complementarity lacks to
+  /// zero.
   [[nodiscard]] bool is_close(const SolveReport& report) const noexcept {
     const double gap = kCanFilter && barrier_.count() > 0 ? barrier_.mu() : 0.0;
-    const double digits = kCanFilter ? kRounding * std::fabs(report.cost) : 0.0;  // that a cost has
+    const double digits = kCanFilter ? kRounding * std::fabs(report.cost) : 0.0;  // rounding of a cost
     return std::max({residual(report), gap, digits}) <= options_.loose_tolerance;
   }
   void look_at_best(const P& problem, SolveReport& report) noexcept;
@@ -409,9 +410,9 @@ class OcpSolver {
   SolveReport give_up(const P& problem, const State& x0, Trajectory& trajectory, SolveReport report) noexcept;
 
   SolverOptions options_;
-  Linearisation<P, kSize, Arch> now_;  ///< of the present iterate
-  Lq lq_;                              ///< its quadratic program
-  WorkingSetQp<Lq> qp_;                ///< what solves it
+  Linearisation<P, kSize, Arch> now_;  ///< linearisation at the present iterate
+  Lq lq_;                              ///< quadratic program there
+  WorkingSetQp<Lq> qp_;                ///< solver of that program
   using Slacks = Barrier<P, kSize, Arch>;
   Slacks barrier_;
   Descent<P, kSize, Arch> descent_;
@@ -420,7 +421,7 @@ class OcpSolver {
   using Filter = FilterMethod<P, kSize, Arch>;
   std::conditional_t<kCanFilter, Filter, NoFilter> filter_;
   Iterate<kNx, kNu, kSize> t_;     ///< the present iterate
-  Iterate<kNx, kNu, kSize> step_;  ///< from it to the next
+  Iterate<kNx, kNu, kSize> step_;  ///< step to the next iterate
   Iterate<kNx, kNu, kSize> best_;
   SolveReport best_report_{};
   IterationLog* log_ = nullptr;
@@ -430,12 +431,12 @@ class OcpSolver {
   bool is_exact_ = false;  ///< Hessians of the next linearisation
   bool has_grown_ = false;
   bool is_filtering_ = false;  ///< steps are the filter method's
-  bool has_filtered_ = false;  ///< it has been used in this solve
+  bool has_filtered_ = false;  ///< filter method was used in this solve
   bool stands_still_ = false;  ///< the start could not be simulated
   bool is_again_ = false;      ///< the start is near the solution
-  bool is_fresh_ = true;       ///< slacks and working set are to be guessed anew
+  bool is_fresh_ = true;       ///< slacks and working set must be guessed
   std::size_t target_ = 0;     ///< horizon asked for
-  double work_ = 0.0;          ///< iterations so far, those of a shorter horizon by their share
+  double work_ = 0.0;          ///< iterations so far, weighted by share of horizon
   std::conditional_t<kCanFilter, typename Slacks::Memory, NoFilter> best_slacks_;  ///< of the best iterate
 };
 

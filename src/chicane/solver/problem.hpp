@@ -120,8 +120,7 @@ using Seeds = decltype(make_seeds<V, Order, Begin>(std::make_integer_sequence<in
 
 }  // namespace detail
 
-/// The states and inputs of a stage as jets, each of its own type: what the functions of a structured problem
-/// are called with.
+/// States and inputs of a stage as jets, each of its own type: arguments of a structured problem's functions.
 template <class P, class V, int Order>
 using StateJets = detail::Seeds<V, Order, 0, P::kNx>;
 template <class P, class V, int Order>
@@ -136,7 +135,7 @@ template <class T, class Row>
 /// A number that knows the functions of models, as jets do.
 using Plain = Jet<double, 1, 0>;
 
-/// Checked by detail/problem_check.hpp, whose messages say what to write.
+/// Concept of a problem; detail/problem_check.hpp checks it with messages that name the remedy.
 template <class P>
 concept OcpProblem = detail::is_problem<P>();
 
@@ -144,7 +143,7 @@ concept OcpProblem = detail::is_problem<P>();
 template <class P>
 concept StructuredProblem = OcpProblem<P> && detail::TakesSymbols<P>;
 
-/// How many of its kNc soft constraints a problem has: all, unless it says so when the program runs.
+/// Number of a problem's kNc soft constraints in use: all, unless it returns a number at run time.
 template <class P>
 [[nodiscard]] constexpr std::size_t constraint_count(const P& problem) noexcept {
   if constexpr (requires { problem.constraint_count(); }) return problem.constraint_count();
@@ -155,7 +154,7 @@ template <class P>
 template <class T, OcpProblem P>
 [[nodiscard]] std::array<T, P::kNx> next_state(const P& problem, int k, const std::array<T, P::kNx>& x,
                                                const std::array<T, P::kNu>& u) {
-  if constexpr (std::is_same_v<T, double>) {  // as what brings the functions of models along
+  if constexpr (std::is_same_v<T, double>) {  // scalar of models' own functions
     using One = std::conditional_t<StructuredProblem<P>, Pack<arch::Baseline, 2>, Plain>;
     const auto next = to_array<One>(problem.dynamics(k, to_array<One>(x), to_array<One>(u)));
     return std::apply([](const auto&... value) { return std::array<double, P::kNx>{value_of(value)...}; },
@@ -183,16 +182,16 @@ struct Trajectory {
   std::array<Input, Capacity> u{};      ///< u[0..N-1]
 };
 
-/// How the solver behaves. Defaults suit control at 10–100 Hz.
+/// Options of the solver. Defaults suit control at 10–100 Hz.
 struct SolverOptions {
   double tolerance = 1e-6;        ///< stationarity accepted as optimal; (0, 1e-2]. What must hold holds
                                   ///< within it in every usable answer
   double loose_tolerance = 1e-2;  ///< stationarity accepted when the budget is spent; [tolerance, 1e3]
-  int max_iterations = 1000;  ///< SQP iterations, those of a shorter horizon by their share; worst-case time
-                              ///< is proportional to it; [1, 10000]. Controllers ask for fewer
-  bool may_start_short = true;     ///< when full steps fail, the filter method, or for kRealTime a growing
-                                   ///< horizon: reaches optima from poor guesses, at the cost of tens of
-                                   ///< iterations; off where the budget is a few iterations
+  int max_iterations = 1000;    ///< limit of SQP iterations, with the share of a shorter horizon; worst-case
+                                ///< time is proportional to it; [1, 10000]. Controllers set less
+  bool may_start_short = true;  ///< permits the filter method after failing full steps, or for kRealTime a
+                                ///< growing horizon: reaches optima from poor guesses, at the cost of tens of
+                                ///< iterations; off where the budget is a few iterations
   bool start_from_states = false;  ///< a warm start's states count, too, where they are finite: the first
                                    ///< steps close their gaps. For systems that are unstable, whose simulated
                                    ///< guess would run away

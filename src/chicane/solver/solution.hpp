@@ -29,7 +29,7 @@ namespace chicane::solver {
 // clang-format on
 
 #define CHICANE_ENUMERATOR(enumerator, number, name, severity, sentence) enumerator = (number),
-/// How a solve ended. Zero and above: the solution may be used. Below zero: it must not be.
+/// Outcome of a solve. Zero and above: the solution may be used. Below zero: it must not be.
 enum class SolveStatus : std::int8_t { CHICANE_SOLVE_STATUSES(CHICANE_ENUMERATOR) };
 #undef CHICANE_ENUMERATOR
 
@@ -44,7 +44,7 @@ inline constexpr std::array kSolveStatusWords{CHICANE_SOLVE_STATUSES(CHICANE_WOR
   return word != nullptr ? word->name : "unknown";
 }
 
-/// What one solve did.
+/// Report of one solve.
 struct SolveReport {
   SolveStatus status = SolveStatus::kNotFinite;
   int iterations = 0;            ///< iterations of the outer (SQP) loop
@@ -55,20 +55,20 @@ struct SolveReport {
   double complementarity = 0.0;  ///< largest residual of the soft constraints' KKT block
   double violation = 0.0;  ///< largest soft-constraint violation, in the constraint's own unit; of those
                            ///< above their caps, where one is
-  int worst_stage = -1;    ///< where it is; -1 when nothing is violated
+  int worst_stage = -1;    ///< stage of the worst violation; -1 if nothing is violated
   int worst_constraint = -1;
   double gap = 0.0;  ///< complementarity gap Σ (t z + s n) of the soft constraints: what the barrier costs,
                      ///< at most in a convex problem
 };
 
-/// What OcpSolver::feedback did.
+/// Report of OcpSolver::feedback.
 struct FeedbackReport {
   bool is_solved = false;  ///< the quadratic program is; else inputs were cut to their bounds
   int sweeps = 0;          ///< Riccati sweeps backwards that a change of active bounds took
 };
 
-/// Finds the violation that a report tells: the largest, but one above its cap before all others, which may
-/// be in other units.
+/// Finds the violation for a report: the largest, but one above its cap before all others, which may have
+/// other units.
 class WorstViolation {
  public:
   CHICANE_INLINE void consider(double value, double cap, std::size_t stage, std::size_t constraint) noexcept {

@@ -22,7 +22,7 @@ struct SparseSeed {
   V v;
 };
 
-/// Where a derivative is kept: of variable i, or of the pair i <= j, in (x, u).
+/// Place of a derivative: by variable i, or by the pair i <= j, in (x, u).
 struct SparseEntry {
   std::uint16_t i = 0;
   std::uint16_t j = 0;
@@ -37,13 +37,13 @@ struct SparseRow {
   static constexpr bool kIsSparse = true;
 
   V v{0.0};
-  V scale{1.0};              ///< of all derivatives
+  V scale{1.0};              ///< factor of all derivatives
   const V* slots = nullptr;  ///< null: the row is not there, and counts for nothing
   const SparseEntry* slopes = nullptr;
   const SparseEntry* curvatures = nullptr;
   std::uint32_t slope_count = 0;
   std::uint32_t curvature_count = 0;
-  std::uint32_t stride = 1;  ///< from slot to slot
+  std::uint32_t stride = 1;  ///< distance between slots
 
   [[nodiscard]] CHICANE_INLINE bool is_absent() const noexcept { return slots == nullptr; }
   /// Calls visit(i, first derivative).

@@ -41,8 +41,8 @@ bool roll_out(const P& problem, const std::array<double, P::kNx>& x0,
   return finite;
 }
 
-/// The same motion on another grid: `horizon` intervals, each `ratio` times as long as those it had. Between
-/// the old points it interpolates, behind them the last ones are repeated. Pre: horizon in [1, Capacity],
+/// Resamples a motion to another grid: `horizon` intervals, each `ratio` times as long as before.
+/// Interpolates between the old points, and repeats the last ones behind them. Pre: horizon in [1, Capacity],
 /// ratio > 0.
 template <int Nx, int Nu, int Capacity>
 void resample(Trajectory<Nx, Nu, Capacity>& trajectory, int horizon, double ratio) noexcept {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Finds the road in a map: joins cells, measures distances to walls, picks the loop round an infield, and
+// moves its line to the middle.
 #include "chicane/survey/free_space.hpp"
 
 #include <fmt/format.h>
@@ -18,15 +20,15 @@ namespace {
 
 constexpr std::size_t kMostFine = 16'000'000;   // cells of the distance field
 constexpr std::size_t kMostCoarse = 1'000'000;  // cells in which the way round is searched
-constexpr double kLeastInfield = 1.0;           // diagonal of what can be driven round [m]
+constexpr double kLeastInfield = 1.0;           // least diagonal of an infield [m]
 constexpr double kMostReach = 1.6;  // a side is at most this many clearances wide: pockets are no road
-constexpr int kRounds = 40;         // of moving the line to the middle
+constexpr int kRounds = 40;         // rounds of moving the line to the middle
 
 /// A road that may be gone round: cells of the coarse grid, and the obstacle inside.
 struct Ring {
   Mask road;
   std::size_t centre = 0;    ///< the rightmost cell of the obstacle
-  double infield = 0.0;      ///< its diagonal [cells]
+  double infield = 0.0;      ///< diagonal of the infield [cells]
   bool is_at_border = true;  ///< the road reaches the edge of the map
 };
 
@@ -58,8 +60,8 @@ class LoopFinder {
   }
 
  private:
-  /// Joins cells: a cell is blocked where one of those it is made of is; and the distances to what is
-  /// blocked.
+  /// Joins cells: a joined cell is blocked if any of its parts is. Then measures the distances to blocked
+  /// cells.
   void block() {
     blocked_.assign(fine_.size(), 0);
     for (int y = 0; y < fine_.height * join_ && y < space_.height; ++y)
@@ -106,7 +108,7 @@ class LoopFinder {
     std::sort(order.begin(), order.end(), [&](int a, int b) {
       return roads[static_cast<std::size_t>(a)].count > roads[static_cast<std::size_t>(b)].count;
     });
-    constexpr std::size_t kMostRoads = 6;  // that are looked at, the largest first
+    constexpr std::size_t kMostRoads = 6;  // limit of examined roads, the largest first
     if (order.size() > kMostRoads) order.resize(kMostRoads);
     if (options_.start) {
       const int wanted = labels[coarse_of(space_.to_cells(*options_.start) / join_)];
@@ -281,7 +283,7 @@ class LoopFinder {
     return length > 0.0 ? Vec2{-along.y() / length, along.x() / length} : Vec2{0.0, 1.0};
   }
 
-  /// Each point climbs across the line to where there is most room, and the line is kept even and smooth.
+  /// Moves each point across the line to the place with most room, and keeps the line even and smooth.
   [[nodiscard]] std::vector<Vec2> moved_to_the_middle(std::vector<Vec2> line) const {
     std::vector<double> room;
     for (const Vec2& point : line) room.push_back(room_at(point));
@@ -314,7 +316,7 @@ class LoopFinder {
     return line;
   }
 
-  /// Distance to what is blocked in a direction [cells].
+  /// Distance to the first blocked cell in a direction [cells].
   [[nodiscard]] double cast(const Vec2& from, const Vec2& direction, double most) const {
     double away = 0.0;
     while (away < most) {
@@ -366,7 +368,7 @@ class LoopFinder {
     return fmt::format("({:.2f}, {:.2f})", world.x(), world.y());
   }
 
-  /// Where the road ends, or is too narrow, or was not seen.
+  /// Reason for no loop: an open end, a narrow place, or unknown cells.
   std::string why_none() {
     if (options_.start && clearance_at(coarse_of(space_.to_cells(*options_.start) / join_)) <= 0.0)
       return fmt::format("start: got ({}, {}), expected a place in free space", options_.start->x(),
@@ -391,7 +393,7 @@ class LoopFinder {
         shown(one), shown(other), (one - other).norm() * cell_, is_unseen ? ", where cells are unknown" : "");
   }
 
-  /// Whether the room at an end of a road stops at cells that nobody has seen.
+  /// Whether the room at an end of a road stops at unknown cells.
   [[nodiscard]] bool ends_unseen(const Vec2& end) const {
     const double reach = std::min(room_at(end) + 2.0, 200.0);
     const int most = static_cast<int>(reach);
@@ -445,7 +447,7 @@ class LoopFinder {
   Mask blocked_;
   std::vector<float> field_;
   int spots_ = 0;
-  std::pair<std::vector<int>, int> largest_{};  ///< labels of the coarse grid and that of its largest road
+  std::pair<std::vector<int>, int> largest_{};  ///< labels of the coarse grid, and its largest road's label
 };
 
 }  // namespace

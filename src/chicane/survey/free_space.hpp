@@ -17,7 +17,7 @@ enum class Cell : std::uint8_t { kFree, kWall, kUnknown };
 struct FreeSpace {
   int width = 0, height = 0;     ///< [cells], > 0
   double resolution = 0.05;      ///< side of a cell [m], > 0
-  Vec2 origin{};                 ///< of the lower left corner of the first cell in W [m]
+  Vec2 origin{};                 ///< position of the first cell's lower left corner in W [m]
   double yaw = 0.0;              ///< direction of the rows in W [rad]
   std::vector<Cell> cells = {};  ///< row by row, the lowest row first
 
@@ -35,16 +35,16 @@ struct LoopOptions {
 
 /// A loop round the largest obstacle of free space, counter-clockwise.
 struct FreeLoop {
-  std::vector<road::TrackPoint> points = {};  ///< in W, evenly spaced
+  std::vector<road::TrackPoint> points = {};  ///< points in W, evenly spaced
   double median_width = 0.0;                  ///< [m]
-  int spots = 0;                              ///< that were taken for noise
+  int spots = 0;                              ///< spots treated as noise
 };
 
-/// The middle of the free room between walls, and its width to each side: of all ways round the infield the
-/// one that is short and far from walls. Unknown cells are no road. More than 16 million cells are taken
-/// together first: memory stays below 20 bytes for each cell.
+/// Middle line of the free room between walls, and its width to each side: among all ways round the infield a
+/// short one far from walls. Unknown cells are no road. More than 16 million cells are joined first: memory
+/// stays below 20 bytes for each cell.
 ///
-/// kParse where there is no loop: "... open between (3.2, -1.0) and ...", with what is known of the places.
+/// kParse if there is no loop: "... open between (3.2, -1.0) and ...", with details of the places.
 [[nodiscard]] Result<FreeLoop> find_loop(const FreeSpace& space, const LoopOptions& options);
 
 }  // namespace chicane::survey

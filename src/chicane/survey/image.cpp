@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Grey images: PGM and PNG readers, distance field, and connected regions.
 #include "chicane/survey/image.hpp"
 
 #include <fmt/format.h>

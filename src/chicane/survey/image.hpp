@@ -14,7 +14,7 @@ namespace chicane::survey {
 
 /// Grey values, 0 black to 255 white, row by row, the top row first.
 struct GreyImage {
-  static constexpr std::size_t kMostCells = 64'000'000;  ///< of read_image()
+  static constexpr std::size_t kMostCells = 64'000'000;  ///< limit of read_image()
 
   int width = 0, height = 0;
   std::string values = {};
@@ -24,9 +24,9 @@ struct GreyImage {
 /// kMostCells. What is transparent is white. Memory: two bytes for each cell.
 [[nodiscard]] Result<GreyImage> read_image(std::string_view bytes, const std::string& file);
 
-/// Distance from the centre of each cell to that of the nearest one that is not zero [cells], exact
-/// (Felzenszwalb and Huttenlocher 2012). A large number where all are zero. Time and memory are proportional
-/// to the cells: four bytes each, and two rows.
+/// Distance from the centre of each cell to the centre of the nearest non-zero one [cells], exact
+/// (Felzenszwalb and Huttenlocher 2012). A large number if all are zero. Time and memory are proportional to
+/// the cells: four bytes each, and two rows.
 [[nodiscard]] std::vector<float> distance_field(const std::vector<std::uint8_t>& is_set, int width,
                                                 int height);
 

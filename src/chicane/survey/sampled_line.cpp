@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Sampled lines: polylines, the plane of geographic coordinates, outlines of cells, and the middle between
+// cones.
 #include "chicane/survey/sampled_line.hpp"
 
 #include <fmt/format.h>
@@ -65,8 +67,8 @@ double median(std::vector<double> values) {
 
 namespace {
 
-constexpr double kRadius = 6378137.0;  // of the equator, WGS 84 [m]
-constexpr double kSquaredEccentricity = 6.69437999014e-3;
+constexpr double kRadius = 6378137.0;                      // radius of the equator, WGS 84 [m]
+constexpr double kSquaredEccentricity = 6.69437999014e-3;  // WGS 84
 
 /// [deg] in (-180, 180], also across the date line.
 double difference(double a, double b) noexcept { return std::remainder(a - b, 360.0); }
@@ -172,7 +174,7 @@ class ZeroLines {
   }
 
  private:
-  /// Between a corner and the one right of it (false) or above it (true).
+  /// Edge of a cell: from a corner to the next one on the right (false) or above (true).
   using Edge = std::pair<std::size_t, bool>;
 
   [[nodiscard]] double value(int x, int y) const {
@@ -208,7 +210,7 @@ class ZeroLines {
            raster_.cell * Vec2{x + 0.5 + (edge.second ? 0.0 : share), y + 0.5 + (edge.second ? share : 0.0)};
   }
 
-  /// By value: the first edge is taken out of next_ with the others.
+  /// Follows an outline. `begin` is a copy, because the edge is taken out of next_.
   std::pair<std::vector<Vec2>, bool> follow(Edge begin) {
     std::vector<Vec2> line{place(begin)};
     Edge at = begin;
@@ -238,7 +240,7 @@ std::optional<std::pair<std::vector<Vec2>, bool>> line_of(const Raster& raster,
     if (line.size() < 8) continue;
     std::vector<double> room;
     for (const Vec2& point : line) room.push_back(static_cast<double>(to_left[raster.of(point)]));
-    // A bisector runs off to infinity beyond the last cones: what is near to cones says how wide the road is.
+    // Width by the cones nearby: a bisector runs off to infinity beyond the last ones.
     std::vector<double> sorted = room;
     std::sort(sorted.begin(), sorted.end());
     const double near = kFarAway * sorted[sorted.size() / 4];

@@ -40,7 +40,7 @@ struct Geographic {
 
 /// Cones as Formula Student has them: blue ones left of the road, yellow ones right.
 struct Cones {
-  std::vector<Vec2> left = {}, right = {};  ///< in any order [m]
+  std::vector<Vec2> left = {}, right = {};  ///< points in any order [m]
   std::vector<Vec2> either = {};            ///< orange ones: count for the nearer side
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Campaigns of faults: groups of trials as runs of a plan, each trial in a process of its own.
 #include "chicane/sweep/campaign.hpp"
 
 #include <fmt/format.h>
@@ -89,7 +90,7 @@ bool is_same_place(const CampaignGroup& a, const CampaignGroup& b) {
   return a.track == b.track && a.car == b.car && a.preset == b.preset;
 }
 
-/// Where the trials of one car and preset on one track are driven.
+/// Place where the trials of one car and preset on one track are driven.
 struct Place {
   scenario::Scenario scenario;
   run::FlyingLap lap;
@@ -150,7 +151,7 @@ class Driver {
   /// Drives this group and as many after it as make kBatch trials.
   Result<void> drive_from(std::uint64_t first) {
     std::vector<run::FaultTrial> trials;
-    std::vector<std::size_t> ends;  // of the trials of a group
+    std::vector<std::size_t> ends;  // ends of a group's trials
     for (std::uint64_t run = first; run < plan_.size() && trials.size() < kBatch; ++run) {
       const CampaignGroup group = group_at(plan_, run);
       if (!is_same_place(group, at_)) break;
@@ -169,7 +170,7 @@ class Driver {
     return {};
   }
 
-  /// None for a name that is no fault.
+  /// Adds a group's trials; none for an unknown fault.
   void add_trials(const CampaignGroup& group, std::vector<run::FaultTrial>& trials) const {
     const auto parts = parts_of(group.fault);
     if (!parts) return;
@@ -199,7 +200,7 @@ class Driver {
   int jobs_;
   const std::atomic<bool>& stop_;
   CampaignGroup at_;                            ///< any group of the place
-  std::optional<Result<Place>> place_;          ///< of the last group
+  std::optional<Result<Place>> place_;          ///< place of the last group
   std::map<std::uint64_t, std::string> ready_;  ///< driven before they were asked for
 };
 

@@ -18,27 +18,27 @@ namespace chicane::sweep {
 struct Campaign {
   std::vector<std::string> tracks{}, cars{}, presets{};
   std::vector<std::string> faults{};  ///< names
-  bool has_pairs = false;             ///< also each two of the faults at once
+  bool has_pairs = false;             ///< also each pair of faults at once
   std::vector<double> durations{};    ///< [s], run::kLasting: to the end; empty: each fault's own
   int onsets = 0;                     ///< moments by chance for each group; 0: one each `step`
   std::uint64_t seed = 1;             ///< seed of the random moments
-  double step = 0.5;                  ///< between moments [s]
-  Settings settings{};                ///< of all runs
+  double step = 0.5;                  ///< time between moments [s]
+  Settings settings{};                ///< settings of all runs
 };
 
 /// Names of the faults of measurement, link and computer: those that leave car and road as they are.
 [[nodiscard]] std::vector<std::string> signal_faults();
 
-/// As a plan: axes track, car, preset, fault ("link_lost+gps_noise") and for_s ("2", "inf", "own").
+/// Plan of a campaign: axes track, car, preset, fault ("link_lost+gps_noise") and for_s ("2", "inf", "own").
 [[nodiscard]] Plan plan_of(const Campaign& campaign);
 
 struct CampaignTrial {
-  double at = 0.0;             ///< when the faults began, clock of the run [s]
+  double at = 0.0;             ///< start of the faults, clock of the run [s]
   double until = 0.0;          ///< end of the trial [s]
   double duration = 0.0;       ///< duration of the faults [s]; run::kLasting: to the end
-  double least_edge = 0.0;     ///< of a tyre from then on [m]; < 0: off the road
+  double least_edge = 0.0;     ///< least gap of a tyre afterwards [m]; < 0: off the road
   bool is_off_anyway = false;  ///< the run without faults is off the road in that time, too
-  bool stands = false;         ///< at the end
+  bool stands = false;         ///< stands at the end
   std::int64_t replaced = 0;   ///< control steps that were not the controller's own answer
 
   /// Tells `row` the name in JSON and the place of each value. `Self`: CampaignTrial, const or not.
@@ -57,18 +57,18 @@ struct CampaignTrial {
 /// One line of the results.
 struct CampaignGroup {
   std::string track{}, car{}, preset{}, fault{};
-  std::string lasts{};  ///< as in the plan's axis for_s
+  std::string lasts{};  ///< duration as in the plan's axis for_s
   std::vector<CampaignTrial> trials{};
-  std::string error{};  ///< why nothing could be tried; empty: something was
+  std::string error{};  ///< reason why nothing was tried; empty: something was
 };
 
-/// The run that drives a trial once more (trial.hpp).
+/// Settings of the run that repeats a trial (trial.hpp).
 [[nodiscard]] Settings settings_of(const Settings& fixed, const CampaignGroup& group,
                                    const CampaignTrial& trial);
 
-/// What drives a group of trials as a run of the campaign's plan, for drive_plan() with one thread: trials
-/// are processes, at most `jobs` at a time (run::drive_trials()). What comes before the faults is driven once
-/// for the trials of several groups. A line depends on the campaign and its number alone.
+/// Rule that drives a group of trials as a run of the campaign's plan, for drive_plan() with one thread:
+/// trials are processes, at most `jobs` at a time (run::drive_trials()). What comes before the faults is
+/// driven once for the trials of several groups. A line depends on the campaign and its number alone.
 [[nodiscard]] RunRule rule_of(const Campaign& campaign, int jobs, const std::atomic<bool>& stop);
 
 /// The group of a line of the results; kParse for another line.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Claims: reads the statements of a write-up with cases and conditions, and evaluates them on results.
 #include "chicane/sweep/claim.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ namespace {
 using protocol::YamlEntry;
 using protocol::YamlNode;
 
-/// "lap_times_s[-1]" into name and place.
+/// Place of a column: "lap_times_s[-1]" as name and index.
 struct ColumnPlace {
   std::string name;
   std::optional<int> place;
@@ -169,7 +170,7 @@ class ClaimReader : private detail::SettingsReader {
   }
 
   const std::string& file_;
-  std::string quotations_;  // without its comments
+  std::string quotations_;  // text of quotations, without its comments
   std::vector<Claim> claims_;
   std::set<std::string> ids_;
 };

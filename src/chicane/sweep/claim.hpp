@@ -13,20 +13,20 @@
 /// A statement of a write-up, and how it is tried.
 namespace chicane::sweep {
 
-/// One run of the trial, beside what the claim says of all.
+/// One run of the trial, with its additions to the claim's settings.
 struct Case {
   std::string name{};
   Settings settings{};
 };
 
 /// `N40.top_speed_mps > N25.top_speed_mps * 1.02`: one number of a case, a comparison, and a number or one of
-/// another case, times a factor or plus a term. The other case `each` stands for every other one that is
-/// clean: an optimum among what keeps to the road.
+/// another case, times a factor or plus a term. The other case `each` means every other clean one: an optimum
+/// among runs on the road.
 struct Condition {
   struct Value {
-    std::string name{};  ///< of the case; empty: the number is `constant`
-    std::string
-        column{};  ///< of trial.hpp, "lap_times_s[-1]", or "clean": all laps driven, no tyre off the road
+    std::string name{};    ///< name of the case; empty: the number is `constant`
+    std::string column{};  ///< column of trial.hpp, "lap_times_s[-1]", or "clean": all laps driven, no tyre
+                           ///< off the road
     double constant = 0.0;
   };
   std::string text{};
@@ -39,14 +39,13 @@ struct Claim {
   std::string id{};      ///< "B7"
   std::string says{};    ///< paraphrased
   std::string quotes{};  ///< the write-up's own words, at most kMostQuotedWords; empty: they were not found
-  std::string ours{};    ///< what the preset has of ours, for the verdict: "with our weights"
-  Settings settings{};   ///< of all cases, the preset among them
+  std::string ours{};    ///< our additions to the preset, for the verdict: "with our weights"
+  Settings settings{};   ///< settings of all cases, the preset among them
   std::vector<Case> cases{};
-  std::size_t grid_size = 0;  ///< the last so many cases are points of a grid, with names made of its values
+  std::size_t grid_size = 0;  ///< number of last cases that are points of a grid, named by their values
   std::vector<Condition> conditions{};  ///< true when all hold
   std::vector<std::string> shows{};     ///< columns
-  /// Of a statement about what there is, which no run can try: "works", "partly" or "not so", and where to
-  /// see.
+  /// Verdict on a statement that no run can try: "works", "partly" or "not so", and where to see it.
   std::string found{}, see{};
 
   [[nodiscard]] bool is_tried() const noexcept { return !cases.empty(); }
@@ -70,7 +69,7 @@ using CaseResults = std::map<std::string, protocol::Json>;
 /// comments with #. kParse with all faults and their lines.
 [[nodiscard]] Result<std::vector<Claim>> parse_claims(std::string_view text, const std::string& file,
                                                       std::string_view quotations = "");
-/// "claims/quotations/NAME.txt" of "claims/NAME.yaml".
+/// File of quotations: "claims/quotations/NAME.txt" for "claims/NAME.yaml".
 [[nodiscard]] std::string quotations_file(const std::string& file);
 
 }  // namespace chicane::sweep

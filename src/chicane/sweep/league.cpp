@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Leagues: reads the plan, makes the sweep of our controllers, and keeps the results of other programs beside
+// it.
 #include "chicane/sweep/league.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +25,7 @@ namespace {
 using protocol::YamlEntry;
 using protocol::YamlNode;
 
-/// What a page shows.
+/// Columns on the page.
 constexpr std::array kKept{"completed",
                            "end_reason",
                            "laps_completed",
@@ -96,7 +98,7 @@ class LeagueReader : private detail::SettingsReader {
                list("names", [&](const YamlNode& name) { external.disturbances.push_back(name.text); })}});
   }
 
-  /// What it does not say is everything.
+  /// Fills in what the entry leaves out: everything.
   void complete(ExternalEntry& entry) {
     if (entry.tracks.empty()) entry.tracks = league_.tracks;
     if (entry.cars.empty()) entry.cars = league_.cars;
@@ -227,7 +229,7 @@ std::string trial_key(const ExternalTrial& trial) {
                                   {kDisturbanceKey, trial.disturbance}});
 }
 
-/// Of the plan alone: each trial says of which command it is.
+/// First line of the file, by the plan alone: each trial names its command.
 Json first_line(const League& league) {
   return {{"league", league.name}, {"plan", fmt::format("{:016x}", league.plan.hash())}};
 }

@@ -96,8 +96,8 @@ struct LeagueCell {
   std::string entry{}, track{}, car{}, disturbance{};
   bool is_external = false;
   bool is_clean = false;
-  std::map<std::string, double, std::less<>> numbers{};  ///< by column; only those that were measured
-  std::string why{};                                     ///< why it is not clean, in a few words
+  std::map<std::string, double, std::less<>> numbers{};  ///< values by column; only measured ones
+  std::string why{};                                     ///< reason why it is not clean, in a few words
   std::string command{};                                 ///< command line that repeats the run
 
   /// The number of a column; NaN if it was not measured.
@@ -105,8 +105,8 @@ struct LeagueCell {
 };
 
 struct LeagueResults {
-  std::vector<LeagueCell> cells{};                                 ///< in the order of the league
-  std::map<std::pair<std::string, std::string>, double> bounds{};  ///< by track and car [s]
+  std::vector<LeagueCell> cells{};                                 ///< cells in the order of the league
+  std::map<std::pair<std::string, std::string>, double> bounds{};  ///< lap times by track and car [s]
   std::uint64_t missing = 0;                                       ///< number of runs not driven yet
 };
 
@@ -114,13 +114,13 @@ struct LeagueResults {
 /// its program's command.
 class BesideFile {
  public:
-  /// As LineFile::open(). kInvalidArgument for the file of another league or plan.
+  /// Opens as LineFile::open() does. kInvalidArgument for the file of another league or plan.
   [[nodiscard]] static Result<BesideFile> open(const std::string& path, const League& league);
 
   [[nodiscard]] bool has_bound(const std::string& track, const std::string& car) const;
   [[nodiscard]] bool has_trial(const ExternalTrial& trial) const;
 
-  /// Any thread; kIo.
+  /// Adds the limit of a car on a track. kIo. Any thread.
   [[nodiscard]] Result<void> add_bound(const std::string& track, const std::string& car,
                                        const Result<double>& bound);
   [[nodiscard]] Result<void> add_times(std::uint64_t run, const telemetry::RunSummary& summary);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Page of a league: tables of controllers by track and car, as HTML document and Markdown.
 #include "chicane/sweep/league.hpp"
 
 #include <fmt/format.h>
@@ -46,7 +47,7 @@ class LeagueTables {
   [[nodiscard]] static Json lap_of(const LeagueCell& cell) {
     return cell.is_clean ? Json(cell.number("lap_time_s")) : Json();
   }
-  /// How much longer than the limit [%].
+  /// Excess over the limit [%].
   [[nodiscard]] double gap(const LeagueCell& cell) const {
     const auto bound = results_.bounds.find({cell.track, cell.car});
     if (bound == results_.bounds.end() || !cell.is_clean) return std::nan("");

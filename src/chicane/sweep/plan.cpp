@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Plans of sweeps: axes and their values, the settings of each run, and the hashes that identify a plan and
+// its files.
 #include "chicane/sweep/plan.hpp"
 
 #include <fmt/format.h>
@@ -125,7 +127,7 @@ double latin_hypercube(std::uint32_t index, std::uint32_t count, int dimension, 
 
 namespace {
 
-constexpr int kDigits = 12;  // of a computed value: 0.3, not 0.30000000000000004
+constexpr int kDigits = 12;  // digits of a computed value: 0.3, not 0.30000000000000004
 
 using detail::add_text;
 

@@ -9,23 +9,23 @@
 #include <utility>
 #include <vector>
 
-/// What a sweep drives: settings that all runs share, and axes, of which each run has one combination.
+/// Plan of a sweep: settings that all runs share, and axes, of which each run has one combination.
 
 namespace chicane::sweep {
 
-/// Key and text of settings, as `--set` takes them; beside the keys of the schema those of trial.hpp.
+/// Key and text of settings, as `--set` takes them: keys of the schema, and those of trial.hpp.
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
-/// What the names along an axis stand for, by the axis's key and by name.
+/// Settings behind the names along an axis, by the axis's key and by name.
 using Cases = std::map<std::string, std::map<std::string, Settings>>;
 
 /// The values of one key along an axis: a list, a range, or cases.
 struct Dimension {
   std::string key{};
-  std::vector<std::string> list{};  ///< where it has values, there is no range
-  std::vector<Settings> cases{};    ///< what the names of the list stand for; empty: they are values of `key`
+  std::vector<std::string> list{};  ///< values; if there are any, there is no range
+  std::vector<Settings> cases{};    ///< settings behind the listed names; empty: names are values of `key`
   double from = 0.0, to = 0.0;      ///< a range, both ends included
-  bool is_logarithmic = false;      ///< even factors in the place of even distances; from, to > 0
+  bool is_logarithmic = false;      ///< even factors instead of even distances; from, to > 0
   bool is_integer = false;          ///< rounded to integers
 
   /// The value at a share of the range or list, [0, 1].
@@ -37,7 +37,7 @@ struct Axis {
   enum class Kind { kTogether, kSobol, kLatinHypercube };
   Kind kind = Kind::kTogether;
   std::uint64_t size = 0;  ///< runs along it; kTogether: also the length of each list
-  std::uint64_t seed = 0;  ///< of a sample
+  std::uint64_t seed = 0;  ///< seed of a sample
   std::vector<Dimension> dimensions{};
 
   /// The value of dimension `d` in place `i`.
@@ -47,9 +47,10 @@ struct Axis {
 /// An axis with a value of one key in each place.
 [[nodiscard]] Axis list_axis(std::string_view key, std::vector<std::string> list);
 
-/// Each run looks for the largest value of a key with which it is clean: all laps driven, no tyre off the
-/// road. From `to` downwards by `factor` until one is, then between that and the one before, in equal
-/// proportions, until they are `within` of each other. What holds below the value found is not looked at.
+/// Search of each run for the largest value of a key with which it is clean: all laps driven, no tyre off the
+/// road. Goes down from `to` by `factor` until a value is clean, then bisects between that and the one
+/// before, in equal proportions, until they are `within` of each other. Values below the result are not
+/// tried.
 struct Search {
   std::string key{};
   double from = 0.0, to = 0.0;  ///< 0 < from <= to
@@ -59,7 +60,7 @@ struct Search {
   [[nodiscard]] std::vector<double> ladder() const;
 };
 
-/// `settings` with what its cases stand for in the place of their names.
+/// Replaces the names of cases in `settings` by their settings.
 [[nodiscard]] Settings expanded(const Settings& settings, const Cases& cases);
 
 struct Plan {
@@ -75,19 +76,19 @@ struct Plan {
 
   /// Number of runs; 1 without axes.
   [[nodiscard]] std::uint64_t size() const;
-  /// What makes run `index` different from the others. Pure: depends on nothing else.
+  /// Settings in which run `index` differs from the others. Pure: depends on nothing else.
   [[nodiscard]] Settings at(std::uint64_t index) const;
   /// Everything about it: what all runs share, and at(index) with its cases expanded. The later ones win.
   [[nodiscard]] Settings settings_of(std::uint64_t index) const;
-  /// What the names in at() stand for.
+  /// Settings behind the names in at().
   [[nodiscard]] Cases cases() const;
   /// The keys of at().
   [[nodiscard]] std::vector<std::string> keys() const;
-  /// Of everything that a run depends on: equal numbers mean equal plans, wherever and however written.
+  /// Hash of everything that a run depends on: equal numbers mean equal plans, wherever and however written.
   [[nodiscard]] std::uint64_t hash() const;
-  /// Of what the presets, cars, scenarios and tracks say that runs are driven with, the defaults among them:
-  /// equal texts mean that a run depends on the plan and its number alone. Files that are not there count by
-  /// their error.
+  /// Digest of the presets, cars, scenarios and tracks that runs are driven with, the defaults included:
+  /// equal texts mean that a run depends on the plan and its number alone. Missing files count by their
+  /// error.
   [[nodiscard]] std::string digest_of_files() const;
 };
 

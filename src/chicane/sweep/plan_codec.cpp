@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Reader of plans: the grammar of docs/sweep.md, with a fault for each line that breaks it.
 #include "chicane/sweep/plan_codec.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@
 namespace chicane::sweep::detail {
 namespace {
 
-constexpr double kMostCount = 4294967295.0;
+constexpr double kMostCount = 4294967295.0;  // largest 32-bit number
 constexpr double kLeastFactor = 1.01;
 constexpr double kLeastWithin = 1e-4;
 
@@ -121,8 +122,8 @@ using protocol::YamlEntry;
 using protocol::YamlNode;
 
 constexpr std::size_t kMostAxes = 20;
-constexpr std::string_view kFolder = "/*.csv";  ///< after a folder: all tracks in it
-constexpr double kMostSamples = 4294967295.0;
+constexpr std::string_view kFolder = "/*.csv";  ///< suffix of a folder: all tracks in it
+constexpr double kMostSamples = 4294967295.0;   // largest 32-bit number
 
 class PlanReader : private detail::SettingsReader {
  public:

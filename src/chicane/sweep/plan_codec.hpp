@@ -43,18 +43,18 @@ namespace chicane::sweep {
 
 namespace chicane::sweep::detail {
 
-/// A text with its length, so that what follows is not taken for a part of it.
+/// Adds a text with its length, so that the next one cannot merge with it.
 inline void add_text(Fnv& hash, std::string_view text) {
   hash.add(static_cast<std::uint64_t>(text.size()));
   for (const char c : text) hash.add(static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
 }
 
-/// What plans, leagues and claims have in common: settings, and the search.
+/// Parts that plans, leagues and claims share: settings, and the search.
 class SettingsReader : public protocol::YamlReader {
  public:
   using YamlReader::YamlReader;
 
-  /// Adds the settings of a map; those of a map within it have its key before theirs.
+  /// Adds the settings of a map; in a nested map its key becomes the prefix.
   void read_settings(const protocol::YamlNode& map, Settings& settings, const std::string& prefix = "");
   /// Whether this may be a value of that key; says why not.
   bool takes(const std::string& key, const protocol::YamlNode& node);

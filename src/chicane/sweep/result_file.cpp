@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// File of a sweep's results: lines of JSON, checked against the plan, completed after an interruption, and
+// merged.
 #include "chicane/sweep/result_file.hpp"
 
 #include <fcntl.h>
@@ -253,10 +255,10 @@ Result<ResultFile> ResultFile::open(const std::string& path, const Plan& plan, c
 
 namespace {
 
-constexpr std::size_t kMostNamed = 10000;  // missing runs that are looked at for a message
+constexpr std::size_t kMostNamed = 10000;  // limit of missing runs in a message's search
 constexpr std::size_t kMostRanges = 10;
 
-/// Where each run stands: 16 bytes for each, whatever is known of it.
+/// Line of each run: 16 bytes a run, found or not.
 struct Found {
   std::uint32_t file = 0;
   std::uint32_t size = 0;  ///< 0: not found

@@ -17,49 +17,50 @@
 /// one run, `{"run":17,…}`, in the order in which they ended.
 namespace chicane::sweep {
 
-/// "chicane 0.3.0 (1f0c5e8a9b27)": the version, and a digest of the sources that runs can depend on.
+/// Name of this program, "chicane 0.3.0 (1f0c5e8a9b27)": the version, and a digest of the sources that runs
+/// can depend on.
 [[nodiscard]] std::string program_name();
 
 /// Settings as an object of texts, and back. Throws Json::exception for another value.
 [[nodiscard]] protocol::Json json_of(const Settings& settings);
 [[nodiscard]] Settings settings_in(const protocol::Json& json);
-/// A text as it is, all else as JSON.
+/// Text unchanged, all else as JSON.
 [[nodiscard]] std::string plain_text(const protocol::Json& value);
 
-/// The first line, without its line break: what has to agree for results to belong together.
+/// First line, without its line break: results with the same line belong together.
 [[nodiscard]] std::string header_of(const Plan& plan);
 
-/// What the first line says.
+/// Content of the first line.
 struct Header {
   std::string name{}, plan{}, program{}, arithmetic{};
   std::string files{};  ///< Plan::digest_of_files()
   std::uint64_t runs = 0;
   Settings fixed{};
   std::vector<std::string> keys{}, columns{};
-  Cases cases{};  ///< what names among the values of the keys stand for
+  Cases cases{};  ///< settings behind names among the values of the keys
   std::vector<Settings> marks{};
-  std::string search_key{};  ///< whose largest clean value each run has looked for; empty: none
+  std::string search_key{};  ///< key whose largest clean value each run has searched; empty: none
 };
 [[nodiscard]] Result<Header> parse_header(std::string_view line, const std::string& file);
 
 /// Why results of two different first lines do not belong together: "the plan 12, expected 17".
 [[nodiscard]] std::string difference_text(const Header& got, const Header& expected);
 
-/// Where a line stands in its file.
+/// Place of a line in its file.
 struct LinePlace {
   std::uint64_t run = 0;
   std::uint64_t offset = 0;  ///< [byte]
-  std::uint64_t size = 0;    ///< without the line break [byte]
+  std::uint64_t size = 0;    ///< size without the line break [byte]
 };
-/// What reading a file has found.
+/// Contents found by reading a file.
 struct FileContents {
   std::string header;
   std::uint64_t whole = 0;  ///< bytes up to the last line break
 };
 /// Reads a file line by line; memory does not grow with it. `on_first` gets the first line, `on_line` each
-/// further one. A last line without its line break, which a killed process has left, is skipped. The error of
-/// `on_line` gets "FILE:LINE: " in front, that of `on_first` nothing. kParse for a line of more than 1 MiB;
-/// kIo.
+/// further one. A last line without its line break, which a killed process has left, is skipped. An error of
+/// `on_line` gets "FILE:LINE: " in front, an error of `on_first` nothing. kParse for a line of more than 1
+/// MiB; kIo.
 [[nodiscard]] Result<FileContents> read_text_lines(
     const std::string& file, const std::function<Result<void>(const std::string&)>& on_first,
     const std::function<Result<void>(const LinePlace&, const std::string&)>& on_line);
@@ -68,14 +69,14 @@ struct FileContents {
     const std::string& file,
     const std::function<Result<void>(const LinePlace&, const std::string&)>& on_line);
 
-/// Reads the lines about runs as JSON objects, behind the header. kParse for what is none; otherwise as
-/// read_lines().
+/// Reads the lines about runs as JSON objects, after the header. kParse for a line that is no object;
+/// otherwise fails as read_lines() does.
 [[nodiscard]] Result<void> read_runs(
     const std::string& file, const std::function<Result<void>(const Header&)>& on_header,
     const std::function<Result<void>(std::uint64_t run, const protocol::Json&)>& on_run);
 
-/// A file that grows by lines, of which the first says what the others belong to. One process writes it. Each
-/// line is written by one call, whole or not at all.
+/// File that grows by lines; the first line identifies the rest. One process writes it. Each line is written
+/// by one call, whole or not at all.
 class LineFile {
  public:
   /// No file: append() does nothing.
@@ -91,7 +92,7 @@ class LineFile {
   LineFile& operator=(LineFile&& other) noexcept;
   ~LineFile();
 
-  /// Any thread. kIo, and the file is as before, when the disk is full or gone.
+  /// Appends a line. kIo, and the file is unchanged, if the disk is full or gone. Any thread.
   [[nodiscard]] Result<void> append(std::string_view line);
 
  private:
@@ -104,15 +105,15 @@ class LineFile {
 /// The results of a sweep that are written.
 class ResultFile {
  public:
-  /// As LineFile::open(), and finds out which runs of the shard are done. kInvalidArgument when it belongs to
-  /// another plan or program.
+  /// Opens as LineFile::open() does, and finds out which runs of the shard are done. kInvalidArgument if it
+  /// belongs to another plan or program.
   [[nodiscard]] static Result<ResultFile> open(const std::string& path, const Plan& plan,
                                                const run::Shard& shard);
 
   [[nodiscard]] bool has(std::uint64_t run) const { return done_[run / shard_.count]; }
   /// Runs that were there when it was opened.
   [[nodiscard]] std::uint64_t done() const noexcept { return done_count_; }
-  /// As LineFile::append().
+  /// Appends as LineFile::append() does.
   [[nodiscard]] Result<void> append(std::string_view line) { return file_.append(line); }
 
  private:
@@ -120,13 +121,13 @@ class ResultFile {
 
   LineFile file_{};
   run::Shard shard_;
-  std::vector<bool> done_;  ///< by the place in the shard
+  std::vector<bool> done_;  ///< done runs by their place in the shard
   std::uint64_t done_count_ = 0;
 };
 
 struct MergeSummary {
   std::uint64_t runs = 0;
-  std::uint64_t repeated = 0;  ///< that came twice, with the same results
+  std::uint64_t repeated = 0;  ///< runs that came twice, with the same results
 };
 
 /// Joins the files of a sweep's shards, in whatever order and however many, into `output`: the first line,
@@ -137,7 +138,7 @@ struct MergeSummary {
 /// run with two different results; kParse for lines that are none; kIo.
 [[nodiscard]] Result<MergeSummary> merge(const std::vector<std::string>& files, const std::string& output);
 
-/// "17-20, 33 and 5 more", of numbers that rise.
+/// Rising numbers as ranges: "17-20, 33 and 5 more".
 [[nodiscard]] std::string ranges_text(const std::vector<std::uint64_t>& numbers, std::uint64_t more = 0);
 
 }  // namespace chicane::sweep

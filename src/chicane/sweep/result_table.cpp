@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Results as tables: rows by axis values, comparisons of runs that differ in one setting, and maps of two
+// axes.
 #include "chicane/sweep/result_table.hpp"
 
 #include <fmt/format.h>
@@ -20,13 +22,13 @@ namespace {
 
 using protocol::Json;
 
-/// Figures of one run that are compared.
+/// Compared figures of one run.
 struct ComparedRun {
   std::vector<double> laps{};  ///< times [s]
   std::int64_t off = 0;        ///< times off the road
   bool is_completed = false;
   std::string reasons{};  ///< reasons of the guard with their steps
-  std::string error{};    ///< it could not be driven
+  std::string error{};    ///< reason why it could not be driven
 
   [[nodiscard]] bool is_clean() const { return error.empty() && is_completed && off == 0; }
   [[nodiscard]] double mean(std::size_t count) const {
@@ -56,7 +58,7 @@ ComparedRun compared_run(const Json& json) {
   return run;
 }
 
-/// Why `run` is worse than `other`; empty: it is not.
+/// Reason why `run` is worse than `other`; empty: it is not.
 std::string worse_text(const ComparedRun& run, const ComparedRun& other) {
   if (!other.is_clean()) return "";
   if (!run.error.empty()) return "cannot be driven";
@@ -68,9 +70,9 @@ std::string worse_text(const ComparedRun& run, const ComparedRun& other) {
   return slower > kSlower ? fmt::format("{:.1f} % slower", 100.0 * slower) : "";
 }
 
-/// Runs by what they have in common, in the order of the plan, and by the value that is compared.
+/// Runs by their common settings, in the order of the plan, and by the compared value.
 struct ComparedRuns {
-  std::vector<std::string> keys{};  ///< of what they have in common
+  std::vector<std::string> keys{};  ///< keys that they share
   std::map<std::uint64_t, std::map<std::string, ComparedRun>> by_first_run{};
   std::map<std::vector<std::string>, std::uint64_t> first_run{};
 };
@@ -110,7 +112,7 @@ std::string csv_cell(const std::string& text) {
   return quoted + "\"";
 }
 
-/// A text as it is, all else as JSON; nothing for null.
+/// Text unchanged, all else as JSON; empty for null.
 std::string cell_of(const Json& value) { return value.is_null() ? "" : csv_cell(plain_text(value)); }
 
 ResultTable empty_table(const ComparedRuns& found, const std::string& key, const std::string& value) {
@@ -384,7 +386,7 @@ class MapMaker {
   std::vector<Values> values_;
 };
 
-/// How many letters a text takes: continuing bytes of UTF-8 take none.
+/// Number of letters in a text: continuing bytes of UTF-8 are none.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));

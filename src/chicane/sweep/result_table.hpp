@@ -49,7 +49,7 @@ class ResultTable {
 };
 
 /// Writes a file of results as comma separated values (RFC 4180): `run`, the keys of the axes, the columns.
-/// Lists stand in quotes, as JSON; what was not measured is empty. Memory does not grow with the file.
+/// Lists are quoted JSON; values that were not measured are empty. Memory does not grow with the file.
 /// kParse, kIo.
 [[nodiscard]] Result<void> write_csv(const std::string& results, const std::string& csv);
 
@@ -58,16 +58,16 @@ inline constexpr double kSlower = 0.01;
 
 struct Comparison {
   ResultTable table;          ///< a row for each pair
-  std::uint64_t pairs = 0;    ///< of which both runs are there
-  std::uint64_t worse = 0;    ///< of them
+  std::uint64_t pairs = 0;    ///< pairs of which both runs exist
+  std::uint64_t worse = 0;    ///< pairs in which this one is worse
   std::uint64_t missing = 0;  ///< runs without the other one
 };
 
-/// Compares each run with the one that has `value` for `key` and is otherwise the same: laps, times off the
-/// road, and the guard's reasons. A run is worse where it leaves the road or does not complete its laps and
-/// the other one does neither, or where its laps take kSlower longer in the mean. Needs the columns
-/// completed, off_track_events and lap_times_s; guard_reasons is shown where it is kept. kInvalidArgument for
-/// a key that is no axis; otherwise fails as read_lines() does.
+/// Compares each run with its twin that has `value` for `key`: laps, times off the road, and the guard's
+/// reasons. A run is worse where it leaves the road or does not complete its laps and the other one does
+/// neither, or where its laps take kSlower longer in the mean. Needs the columns completed, off_track_events
+/// and lap_times_s; guard_reasons is shown where it is kept. kInvalidArgument for a key that is no axis;
+/// otherwise fails as read_lines() does.
 [[nodiscard]] Result<Comparison> compare(const std::vector<std::string>& results, const std::string& key,
                                          const std::string& value);
 
@@ -77,7 +77,7 @@ struct SummaryDocument {
   std::string text{};
 };
 
-/// Sums up the results of a sweep, one file or the files of its parts: what was driven, one table for each
+/// Sums up the results of a sweep, one file or the files of its parts: the driven runs, one table for each
 /// axis, heat maps of pairs of axes, distributions, and the runs with the command that drives each (the first
 /// kMostListed). Runs that are missing are left out, and counted. Fails as read_lines() does.
 inline constexpr std::size_t kMostListed = 2000;
@@ -93,14 +93,14 @@ inline constexpr std::size_t kMostListed = 2000;
 
 namespace chicane::sweep::detail {
 
-/// Orders numbers as numbers, and texts behind them.
+/// Orders numbers as numbers, and texts after them.
 struct ByNumber {
   [[nodiscard]] bool operator()(const std::string& a, const std::string& b) const;
 };
 
 /// A run as a map sees it.
 struct MapRun {
-  std::vector<std::string> values{};  ///< of the axes, in intervals where they are many
+  std::vector<std::string> values{};  ///< values of the axes, in intervals if they are many
   bool is_clean = false;
 };
 
@@ -114,7 +114,7 @@ struct HeatMap {
   std::string title{};  ///< the values of axes that are texts: "weighted, udacity"; empty: all runs
   std::string row_key{}, column_key{};
   std::vector<std::string> rows{}, columns{};
-  std::vector<std::vector<Cell>> cells{};  ///< by row and column; no runs: nothing was driven there
+  std::vector<std::vector<Cell>> cells{};  ///< cells by row and column; no runs: nothing was driven there
 };
 
 /// One map for each pair of axes of numbers and each combination of values of the others, which are texts;
@@ -125,7 +125,7 @@ struct HeatMap {
                                              const std::vector<MapRun>& runs,
                                              const std::vector<Settings>& marks, std::size_t most);
 
-/// In letters of equal width: `·` where no run is clean, `[ ]` around what is marked.
+/// Map in letters of equal width: `·` if no run is clean, `[ ]` around marked cells.
 [[nodiscard]] std::string map_text(const HeatMap& map);
 
 }  // namespace chicane::sweep::detail

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Summary of a sweep: groups of runs, tables and maps, as HTML document and Markdown.
 
 #include <fmt/format.h>
 
@@ -24,9 +25,9 @@ using detail::ByNumber;
 using protocol::ReportDocument;
 using json = protocol::Json;
 
-constexpr std::size_t kMostValues = 60;  // of an axis in a table or a map; more are put into intervals
+constexpr std::size_t kMostValues = 60;  // limit of values on an axis in tables; more become intervals
 constexpr int kMostBins = 12;
-constexpr std::size_t kMostMaps = 60;
+constexpr std::size_t kMostMaps = 60;  // limit of maps on a page
 
 /// Columns that are summed up, where a sweep has kept them.
 struct Shown {
@@ -44,13 +45,13 @@ constexpr std::array kShown{Shown{"search_value", "largest clean value", false},
 
 struct Run {
   std::uint64_t number = 0;
-  std::vector<std::string> values;  ///< of the axes
+  std::vector<std::string> values;  ///< values of the axes
   std::array<double, kShown.size()> numbers{};
   bool is_clean = false;  ///< no tyre off the road, and all laps where a number was asked for
   std::string error;
 };
 
-/// What a group of runs has in common.
+/// Common values of a group of runs.
 struct Group {
   std::uint64_t runs = 0, clean = 0;
   std::array<double, kShown.size()> sums{}, least{}, most{};
@@ -108,7 +109,7 @@ class Page {
   [[nodiscard]] std::uint64_t runs() const { return runs_.size(); }
   [[nodiscard]] const std::string& name() const { return header_.name; }
 
-  /// For a page of docs/: what was driven, and the maps in letters.
+  /// Text for a page of docs/: driven runs, and the maps in letters.
   [[nodiscard]] std::string markdown() {
     bin_values();
     std::string page = fmt::format("{} runs", runs_.size());
@@ -175,12 +176,12 @@ class Page {
     return laps != "0";
   }
 
-  /// So many that a cell of a map has some ten runs.
+  /// Number of intervals that leaves some ten runs to a cell of a map.
   static int bins_for(std::size_t runs) {
     return std::clamp(static_cast<int>(std::sqrt(static_cast<double>(runs) / 10.0)), 4, kMostBins);
   }
 
-  /// Axes with more values than a table can have, such as those of a sample, are cut into intervals.
+  /// Cuts axes with too many values for a table, such as a sample's, into intervals.
   void bin_values() {
     binned_.assign(runs_.size(), {});
     const int bins = bins_for(runs_.size());
@@ -296,7 +297,7 @@ class Page {
     document.add_series("cells", "soft", "", bars);
   }
 
-  /// What drives a run.
+  /// Settings that drive a run.
   [[nodiscard]] Settings settings_of(const Run& run) const {
     Settings varied;
     for (std::size_t axis = 0; axis < header_.keys.size(); ++axis)

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Drives the runs of a plan in parallel: once each, or searched for the largest clean value, into a file of
+// results.
 #include "chicane/sweep/sweep.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +23,7 @@
 namespace chicane::sweep {
 namespace {
 
-constexpr int kSearchDigits = 4;  // of a value tried: 12.35
+constexpr int kSearchDigits = 4;  // digits of a tried value: 12.35
 
 std::string quoted(const std::string& text) { return protocol::json_text(protocol::Json(text)); }
 
@@ -146,7 +148,7 @@ class Searcher {
   Error refusal_{ErrorCode::kInvalidArgument, ""};
 };
 
-/// Of a run of a plan, driven once or searched.
+/// Outcome of a run of a plan, driven once or searched.
 Result<std::optional<RunOutcome>> outcome_of(const Plan& plan, std::uint64_t run, run::Roads& roads,
                                              const std::atomic<bool>& stop) {
   const Settings settings = plan.settings_of(run);
@@ -210,7 +212,7 @@ Result<Progress> drive_plan(const Plan& plan, const run::Shard& shard, const Swe
 
 Result<Progress> drive_plan(const Plan& plan, const run::Shard& shard, const SweepOptions& options,
                             const std::atomic<bool>& stop) {
-  std::mutex mutex;  // of options.on_run
+  std::mutex mutex;  // guards options.on_run
   const RunRule rule = [&](std::uint64_t run, run::Roads& roads) -> Result<std::optional<std::string>> {
     const auto driven = outcome_of(plan, run, roads, stop);
     if (!driven) return fail(driven.error());

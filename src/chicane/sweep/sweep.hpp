@@ -23,10 +23,10 @@ enum class Until { kItsEnd, kOffRoad };
                                                                  const std::atomic<bool>& stop,
                                                                  Until until = Until::kItsEnd);
 
-/// What a run of a plan has come to.
+/// Outcome of a run of a plan.
 struct RunOutcome {
-  telemetry::RunSummary run;                      ///< of a search: the clean one, or else the slowest
-  double search_value = telemetry::kNotMeasured;  ///< of Search::key; not-a-number: none was clean
+  telemetry::RunSummary run;                      ///< result; of a search: the clean one, or else the slowest
+  double search_value = telemetry::kNotMeasured;  ///< value of Search::key; not-a-number: none was clean
   std::uint64_t search_trials = 0;                ///< 0: nothing was searched
 };
 
@@ -42,31 +42,31 @@ struct RunOutcome {
                                   const Result<RunOutcome>& result);
 
 struct Progress {
-  std::uint64_t runs = 0;    ///< of the shard
+  std::uint64_t runs = 0;    ///< runs of the shard
   std::uint64_t found = 0;   ///< done when the sweep began
-  std::uint64_t driven = 0;  ///< since
-  std::uint64_t failed = 0;  ///< of them such as cannot be driven
+  std::uint64_t driven = 0;  ///< runs driven since
+  std::uint64_t failed = 0;  ///< driven runs that failed
   std::string why{};         ///< the reason of one of those
   [[nodiscard]] bool is_complete() const noexcept { return found + driven == runs; }
 };
 
 struct SweepOptions {
   int jobs = 1;        ///< threads
-  std::string file{};  ///< of the results, of this shard; an older one is completed
-  std::function<void(const Progress&)> on_progress{};  ///< after each run, any thread
-  /// With each run that could be driven, one thread at a time: the times that a clock measured are in it, and
-  /// not in the file.
+  std::string file{};  ///< results of this shard; an existing file is completed
+  std::function<void(const Progress&)> on_progress{};  ///< called after each run, on any thread
+  /// Called for each run that could be driven, one thread at a time; includes the times of clocks, which the
+  /// file leaves out.
   std::function<void(std::uint64_t run, const telemetry::RunSummary&)> on_run{};
 };
 
-/// What drives one run of a plan: gives the rest of its line behind number and settings, a JSON object such
-/// as `{"back_s":12.5,"is_back":true}`; none when it was stopped. An error: the run cannot be driven. Called
-/// by several threads, each with `roads` of its own.
+/// Rule that drives one run of a plan: returns the rest of its line after number and settings, a JSON object
+/// such as `{"back_s":12.5,"is_back":true}`; none when it was stopped. An error: the run cannot be driven.
+/// Called by several threads, each with `roads` of its own.
 using RunRule = std::function<Result<std::optional<std::string>>(std::uint64_t run, run::Roads& roads)>;
 
 /// Drives the runs of a shard that are not in the file yet, each by `rule`. Each run depends on the plan and
-/// its number alone: not on threads, shards, order or what was driven before. Ends early with what there is
-/// when `stop` is set; kIo when the file cannot be written, with all runs so far in it.
+/// its number alone: not on threads, shards, order or earlier runs. Ends early with partial results when
+/// `stop` is set; kIo when the file cannot be written, with all runs so far in it.
 [[nodiscard]] Result<Progress> drive_plan(const Plan& plan, const run::Shard& shard,
                                           const SweepOptions& options, const RunRule& rule,
                                           const std::atomic<bool>& stop);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Columns of a run's result, commands that repeat a run, and their links to the page.
 #include "chicane/sweep/trial.hpp"
 
 #include <fmt/format.h>
@@ -32,7 +33,7 @@ constexpr Column number(std::string_view name, std::string_view meaning) {
           [](const RunSummary& run) { return json_number(static_cast<double>(std::invoke(Get, run))); }};
 }
 
-/// And a list with a number for each lap.
+/// Formats a list with a number for each lap.
 template <auto Member>
 constexpr Column laps(std::string_view name, std::string_view meaning) {
   return {name, meaning, [](const RunSummary& run) {
@@ -165,7 +166,7 @@ Result<void> check_fault_part(std::string_view key, const std::string& text) {
   return event ? Result<void>{} : fail(event.error());
 }
 
-/// As a browser's URLSearchParams reads it.
+/// Text encoded as a browser's URLSearchParams reads it.
 std::string url_encoded(std::string_view text) {
   std::string encoded;
   for (const char c : text) {
@@ -176,7 +177,7 @@ std::string url_encoded(std::string_view text) {
   return encoded;
 }
 
-/// Each key once, with the value that wins, at the place of its last setting.
+/// Settings with each key once, its last value, in the place of that setting.
 Settings winning(const Settings& settings) {
   Settings last;
   for (const auto& setting : settings) {
@@ -302,7 +303,7 @@ std::string link_of(const Settings& settings) {
   }
   std::string query;
   for (const auto& [key, text] : winning(held)) {
-    if (key == "laps" || key == "time_limit_s") continue;  // how long it lasts is not what it is
+    if (key == "laps" || key == "time_limit_s") continue;  // the length of a run does not identify it
     query += fmt::format("{}{}={}", query.empty() ? "" : "&", url_encoded(key), url_encoded(text));
   }
   return "http://localhost:4567/#run?" + query;

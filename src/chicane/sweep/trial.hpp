@@ -10,22 +10,22 @@
 #include "chicane/sweep/plan.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
-/// What a sweep keeps of a run: nothing that a clock measured.
+/// Columns that a sweep keeps of a run: none that a clock measured.
 
 namespace chicane::sweep {
 
 /// One column of the results.
 struct Column {
-  std::string_view name;     ///< with its unit: "rms_lateral_error_m"
+  std::string_view name;     ///< name with its unit: "rms_lateral_error_m"
   std::string_view meaning;  ///< one sentence
-  /// As JSON: a number, true, false, null where nothing was measured, a text, a list of numbers or an object
-  /// of counts.
+  /// JSON of the value: a number, true, false, null if nothing was measured, a text, a list of numbers or an
+  /// object of counts.
   std::string (*text)(const telemetry::RunSummary&) = nullptr;
 };
 
 /// Columns of a run that has searched (plan.hpp), before all others: the value found, null where there is
-/// none, and how many runs it took. The other columns are those of the run with that value, or of the one
-/// with the smallest value.
+/// none, and how many runs it took. The other columns are for the run with that value, or with the smallest
+/// value tried.
 inline constexpr std::string_view kSearchValue = "search_value";
 inline constexpr std::string_view kSearchTrials = "search_trials";
 
@@ -43,7 +43,7 @@ inline constexpr std::string_view kSearchTrials = "search_trials";
 //   fault.for_s, fault.strength
 
 /// Whether `text` may be the value of `key` in some run. kNotFound for an unknown key, with a suggestion;
-/// kInvalidArgument with what was expected.
+/// kInvalidArgument with the expectation.
 [[nodiscard]] Result<void> check_setting(std::string_view key, const std::string& text);
 
 /// The experiment that `settings` ask for; later ones win.
@@ -52,14 +52,14 @@ inline constexpr std::string_view kSearchTrials = "search_trials";
 /// The scenario of request_of(). Fails as protocol::compose() does.
 [[nodiscard]] Result<scenario::Scenario> scenario_of(const Settings& settings);
 
-/// One word of a shell: in quotes where it would not be taken as it is.
+/// One word of a shell, quoted if it has special characters.
 [[nodiscard]] std::string shell_word(const std::string& text);
 
 /// The command that drives it again: `chicane drive --fast --preset weighted --set laps=2 …`.
 [[nodiscard]] std::string command_of(const Settings& settings);
 
 /// The address at which the dashboard of `chicane drive` offers to drive it (docs/viewer.md):
-/// `http://localhost:4567/#run?preset=weighted&latency_ms=130`. Empty for what a link cannot hold: files,
+/// `http://localhost:4567/#run?preset=weighted&latency_ms=130`. Empty if a link cannot hold it: files,
 /// scenarios, faults, and settings that no run could take.
 [[nodiscard]] std::string link_of(const Settings& settings);
 

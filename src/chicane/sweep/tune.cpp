@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Tuning: an optimiser over keys of the schema, each evaluation a set of trials, with a log so that none is
+// driven twice.
 #include "chicane/sweep/tune.hpp"
 
 #include <fmt/format.h>
@@ -35,17 +37,17 @@
 
 namespace chicane::sweep::detail {
 
-/// What was found out about each tuning, so that none is driven twice: in memory, and in a file where there
-/// is one, a JSON object in each line. The first line says what the evaluations depend on.
+/// Log of all evaluations, so that none is driven twice: in memory, and optionally in a file with a JSON
+/// object in each line. The first line identifies the task.
 class TuneLog {
  public:
   /// Reads a file that is there; an empty path: no file. kInvalidArgument when it belongs to another `head`;
   /// kParse "FILE:LINE: …"; kIo.
   [[nodiscard]] static Result<TuneLog> open(const std::string& path, const std::string& head);
 
-  /// Null: not driven yet.
+  /// Verdict on a tuning; null: not driven yet.
   [[nodiscard]] const Verdict* find(const Settings& values) const;
-  /// kIo when the line cannot be written.
+  /// Adds a verdict. kIo if its line cannot be written.
   [[nodiscard]] Result<void> add(const Settings& values, const Verdict& verdict);
 
  private:
@@ -109,8 +111,8 @@ Result<void> TuneLog::add(const Settings& values, const Verdict& verdict) {
   return file_.append(line_of(values, verdict));
 }
 
-/// Of a task: its settings and the scenario that they mean, keys and objective, the program and its
-/// arithmetic. Not the optimiser, which changes no evaluation.
+/// First line for a task: its settings and the scenario that they mean, keys and objective, the program and
+/// its arithmetic. Not the optimiser, which changes no evaluation.
 std::string tune_head(const TuneTask& task, const scenario::Scenario& scenario,
                       const std::vector<std::string>& keys) {
   const Json json{{"tune", json_of(task.settings)},
@@ -127,9 +129,9 @@ std::string tune_head(const TuneTask& task, const scenario::Scenario& scenario,
 namespace chicane::sweep {
 namespace {
 
-constexpr int kTuningDigits = 6;
+constexpr int kTuningDigits = 6;            // digits of a tuned value
 constexpr double kTimeLimitByHand = 600.0;  // [s]
-constexpr double kPatience = 1.5;           // of what the tuning by hand takes
+constexpr double kPatience = 1.5;           // limit over the time of the tuning by hand
 
 /// A number to change, on a logarithmic scale.
 struct Knob {
@@ -171,7 +173,7 @@ class Tuner {
         stop_{stop},
         on_better_{on_better} {}
 
-  /// First of all.
+  /// Drives the tuning by hand, before all others.
   void judge_by_hand() {
     is_by_hand_ = true;
     for (std::size_t i = 0; i < trials_.size(); ++i) add(tuning_.by_hand, i, run(i, {}, kTimeLimitByHand));
@@ -180,10 +182,10 @@ class Tuner {
     tuning_.found = tuning_.by_hand;
   }
 
-  /// As many different tunings are tried as were asked for, or it was stopped.
+  /// Whether enough different tunings were tried, or the search was stopped.
   [[nodiscard]] bool is_over() const { return stop_ || failure_ || tuning_.evaluations >= task_.evaluations; }
   [[nodiscard]] int evaluations() const { return tuning_.evaluations; }
-  /// The best point so far; that of the tuning by hand when there is none.
+  /// Best point so far; the tuning by hand if there is none.
   [[nodiscard]] std::vector<double> best_point() const {
     std::vector<double> point = best_point_;
     if (point.empty())
@@ -222,19 +224,19 @@ class Tuner {
   }
 
  private:
-  static constexpr double kWorst = 1e6;
+  static constexpr double kWorst = 1e6;  ///< objective of a tuning that was not driven
   using Run = Result<std::optional<telemetry::RunSummary>>;
-  /// What the trial of the tuning by hand has come to.
+  /// Result of a trial with the tuning by hand.
   struct ByHand {
     double distance = 0.0;    ///< [m]
-    double time_limit = 0.0;  ///< of others [s]
+    double time_limit = 0.0;  ///< limit for other tunings [s]
   };
 
   [[nodiscard]] bool has_passed(const Verdict& verdict) const {
     return verdict.passed == static_cast<int>(trials_.size());
   }
 
-  /// What more trials can only make worse: the lap and the steering are those of the first one.
+  /// Objective, which further trials can only worsen: lap and steering are the first trial's.
   [[nodiscard]] double objective(const Verdict& verdict) const {
     const double lap = std::isfinite(verdict.lap_time) ? verdict.lap_time : 1000.0;
     switch (task_.objective) {
@@ -248,7 +250,8 @@ class Tuner {
     return -10.0 * verdict.margin + 0.1 * lap;
   }
 
-  /// Only the order counts: trials passed, then how the next one was failed, then how nearly.
+  /// Score of a verdict; only its order counts: trials passed, then the failure of the next one, then its
+  /// margin.
   [[nodiscard]] double score_of(const Verdict& verdict) const {
     const int missing = static_cast<int>(trials_.size()) - verdict.passed;
     if (missing == 0) return objective(verdict);
@@ -281,7 +284,7 @@ class Tuner {
       return goes_on;
     };
     if (!passes(0, run(0, values, by_hand_[0].time_limit))) return verdict;
-    // On several threads trials are driven ahead; what counts does not depend on it.
+    // Drive trials ahead on several threads; the result does not depend on their number.
     std::vector<Run> ahead(trials_.size());
     if (task_.jobs > 1) {
       run::for_each_run(trials_.size() - 1, task_.jobs, [&](std::uint64_t i, run::Roads&) {
@@ -328,7 +331,7 @@ class Tuner {
   const TuneTask& task_;
   std::vector<Knob> knobs_;
   std::vector<TuneTrial> trials_;
-  std::vector<ByHand> by_hand_;    ///< of each trial
+  std::vector<ByHand> by_hand_;    ///< result of each trial by hand
   std::vector<run::Roads> roads_;  ///< one for each trial: no two of them share one
   detail::TuneLog& log_;
   const std::atomic<bool>& stop_;

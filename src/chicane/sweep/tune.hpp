@@ -20,7 +20,7 @@ enum class Optimizer { kCrs, kDirect, kSbplx };
 inline constexpr std::array<std::string_view, 3> kObjectiveNames{"lap", "comfort", "robust"};
 inline constexpr std::array<std::string_view, 3> kOptimizerNames{"crs", "direct", "sbplx"};
 
-/// What is tuned, and how it is judged.
+/// Task of a tuning, and its objective.
 struct TuneTask {
   Settings settings{};              ///< preset, car, track and what else stays
   std::vector<std::string> over{};  ///< keys of numbers to change; empty: default_keys()
@@ -29,29 +29,28 @@ struct TuneTask {
   int evaluations = 500;  ///< different tunings to try, but for a search that finds no new ones
   std::uint64_t seed = 1;
   int jobs = 1;
-  std::string log{};  ///< file with a line for each evaluation; one that is there goes on. Empty: none
+  std::string log{};  ///< file with a line for each evaluation; continued if it exists. Empty: none
 };
 
-/// A trial: settings beside those of the task and of a tuning.
+/// A trial: settings in addition to the task's and the tuning's.
 struct TuneTrial {
   std::string_view name;
   Settings settings{};
 };
-/// The trials of a tuning, two laps from standstill each: as it is, with 30 ms more and less latency than
+/// The trials of a tuning, two laps from standstill each: unchanged, with 30 ms more and less latency than
 /// `latency` [s], with 10 % less grip, and twice with 5 cm of noise on the measured position.
 [[nodiscard]] std::vector<TuneTrial> tune_trials(double latency);
 
-/// What a tuning does in its trials. The one by hand is driven in all of them. Another one is tried no
-/// further after the first trial that shows that it cannot win: a tyre leaves the road (the run ends there),
-/// it takes half as long again as by hand, its margin is below that by hand, or its objective is already
-/// worse.
+/// Result of a tuning's trials. The tuning by hand is driven in all of them. Another one is dropped after the
+/// first trial that shows that it cannot win: a tyre leaves the road (the run ends there), it takes half as
+/// long again as by hand, its margin is below the one by hand, or its objective is already worse.
 struct Verdict {
   double lap_time = 0.0;       ///< flying lap of the first trial [s]; not-a-number: not completed
   double margin = 0.0;         ///< least distance of a tyre to the edge in the trials driven [m]
   double steering_rate = 0.0;  ///< rms of the first trial [rad/s]
-  double progress = 0.0;       ///< of the last trial driven, as a share of the way driven by hand, up to 1
-  int off_track_events = 0;    ///< in the trials driven
-  int unfinished = 0;          ///< of the trials driven
+  double progress = 0.0;       ///< progress of the last trial, over the way driven by hand, up to 1
+  int off_track_events = 0;    ///< count in the trials driven
+  int unfinished = 0;          ///< count of the trials driven
   int driven = 0;              ///< trials
   int passed = 0;              ///< trials
   [[nodiscard]] bool is_clean() const noexcept { return off_track_events == 0 && unfinished == 0; }
@@ -71,23 +70,22 @@ struct Verdict {
 };
 
 struct Tuning {
-  Settings values{};  ///< of the keys that were changed
+  Settings values{};  ///< values of the changed keys
   Verdict by_hand{}, found{};
-  bool is_better = false;  ///< than by hand: clean, and by its objective with no less margin
+  bool is_better = false;  ///< better than by hand: clean, with a better objective and no less margin
   int evaluations = 0;
-  std::int64_t runs = 0;  ///< of all evaluations, those that the log knew included
+  std::int64_t runs = 0;  ///< runs of all evaluations, those from the log included
 };
 
 /// The weights, horizon and speed of the scenario's controller, as far as they are numbers above zero.
 [[nodiscard]] std::vector<std::string> default_keys(const scenario::Scenario& scenario);
 
 /// Searches each key from a tenth to ten times its value, speeds and horizons from half to twice, inside its
-/// range. All that passes every trial is better than what does not, and what fails later is better than what
-/// fails sooner; the optimisers ask for this order alone, so what a losing tuning would do in the trials that
-/// are not driven does not matter. Deterministic for a seed, also when a log is gone on with. Ends early with
-/// the best so far when `stop` is set. `on_better` hears each improvement. kInvalidArgument for keys that are
-/// no numbers and for a log of another task or program; kIo where this was built without NLopt or the log
-/// cannot be written.
+/// range. A tuning that passes every trial is better than one that fails, and a later failure is better than
+/// an earlier one. The optimisers need this order alone, so that a losing tuning's remaining trials are not
+/// driven. Deterministic for a seed, also when a log is continued. Ends early with the best so far when
+/// `stop` is set. `on_better` gets each improvement. kInvalidArgument for keys that are no numbers and for a
+/// log of another task or program; kIo where this was built without NLopt or the log cannot be written.
 [[nodiscard]] Result<Tuning> tune(const TuneTask& task, const std::atomic<bool>& stop,
                                   const std::function<void(int, const Verdict&)>& on_better = {});
 

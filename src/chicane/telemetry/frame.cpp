@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Situation of a run: its kind from one frame, and the sentences for people, as one table.
 #include "chicane/telemetry/frame.hpp"
 
 #include <algorithm>
@@ -42,15 +43,15 @@ constexpr std::array<Word<Kind>, 19> kKinds{{
 
 constexpr const Word<Kind>& row_of(Kind kind) noexcept { return kKinds[static_cast<std::size_t>(kind)]; }
 
-// Of the applied pedal.
+// Thresholds of the applied pedal.
 constexpr double kNoPedal = 0.005;  // smaller pedals are shown as 0 %
 constexpr double kPedal = 0.05;     // smaller pedals roll
 constexpr double kFullThrottle = 0.98;
-// Of the grip.
+// Thresholds of the grip.
 constexpr double kNearLimit = 75.0;  // [%] from which it is what limits the car
 constexpr double kStillNear = 70.0;  // [%]
 constexpr double kApproach = 100.0;  // [m] before a corner from which it is named
-// Of the speed; between the two a car goes on standing or moving.
+// Thresholds of the speed; between the two a car keeps its kind.
 constexpr double kStanding = 0.1;  // [m/s]
 constexpr double kMoving = 0.3;    // [m/s]
 
@@ -80,7 +81,7 @@ Driver driver_of(const Frame& frame) noexcept {
   }
 }
 
-/// What the applied command does, by weight: grip, brakes, full throttle, rolls, part throttle.
+/// Motion under the applied command, by weight: grip, brakes, full throttle, rolls, part throttle.
 Kind motion_of(double grip, double pedal) noexcept {
   if (grip >= kNearLimit) return Kind::kGrip;
   if (pedal <= -kPedal) return Kind::kBrakes;
@@ -106,11 +107,11 @@ bool is_true(Kind kind, double grip, double pedal) noexcept {
   }
 }
 
-/// What the guard does or reports while the controller's command is sent; kStands: nothing.
+/// Warning of the guard while the controller's command is sent; kStands: none.
 Kind warning_of(GuardReason reason) noexcept {
   switch (reason) {
     case GuardReason::kNone:
-    case GuardReason::kStuck:  // by the pedal; a car that stands is seen in its motion
+    case GuardReason::kStuck:  // by the pedal; a standing car shows in its motion
       return Kind::kStands;
     case GuardReason::kOtherSteering:
       return Kind::kOtherSteering;
@@ -186,7 +187,7 @@ std::string_view before_corner(const Situation& now) noexcept {
   }
 }
 
-/// What ends a condition by itself, after "It ends ".
+/// End of a condition by itself, after "It ends ".
 std::string_view end_of(GuardReason reason) noexcept {
   const safety::Condition* row = safety::condition_of(reason);
   switch (row == nullptr ? safety::ConditionEnd::kByMotion : row->ends) {

@@ -42,9 +42,9 @@ enum class SituationKind : std::uint8_t {
   kStuck
 };
 
-/// State of a run in a control cycle, for people: who drives, what limits the car or stops it, and what ends
-/// a stop. Computed from one frame by situation_of(); terminal, dashboard, recordings and bindings show it.
-/// Plain data.
+/// Situation of a run in a control cycle, for people: the driver, the reason that limits or stops the car,
+/// and the end of a stop. Computed from one frame by situation_of(); terminal, dashboard, recordings and
+/// bindings show it. Plain data.
 struct Situation {
   enum class Driver : std::uint8_t { kController, kGuard, kPerson };
 
@@ -52,9 +52,9 @@ struct Situation {
   Driver driver = Driver::kController;
   controller::Rung rung = controller::Rung::kController;
   controller::GuardReason reason = controller::GuardReason::kNone;
-  /// Of the sentence: used share of the grip [%], or distance beyond the edge [m]; NaN: none.
+  /// Number of the sentence: used share of the grip [%], or distance beyond the edge [m]; NaN: none.
   double number = std::numeric_limits<double>::quiet_NaN();
-  int corner = 0;           ///< from 1, in the order of a lap; 0: unknown
+  int corner = 0;           ///< number from 1, in the order of a lap; 0: unknown
   bool is_ahead = false;    ///< the corner lies ahead of the car
   double pedal = 0.0;       ///< applied, as share of full throttle or of full braking, [-1, 1]
   double kind_since = 0.0;  ///< time of the run at which `kind` began [s]
@@ -62,26 +62,26 @@ struct Situation {
       -1.0;  ///< time of the run at which the newest event with an alarm began [s]; < 0: none yet
   double stands_since = -1.0;  ///< time of the run at which the car came to rest [s]; < 0: it moves
   double alarmed_at = -1.0;    ///< time of the run of the last cycle with an alarm [s]; < 0: none yet
-  std::uint32_t alarms = 0;    ///< events so far that a person has to know of
+  std::uint32_t alarms = 0;    ///< count of events that a person must know
   std::string_view remedy{};   ///< SituationTerms::remedy
 };
 
-/// What a person can do about a car that is stopped: by the keys of the dashboard, where another program
-/// simulates the car, and where another program drives it.
+/// Remedies for a stopped car: by the keys of the dashboard, if another program simulates the car, and if
+/// another program drives it.
 inline constexpr std::string_view kKeysRemedy = "On the dashboard, M takes the wheel and R starts again";
 inline constexpr std::string_view kSimulatorRemedy = "Reset the simulator, or drive there by hand";
 inline constexpr std::string_view kControllerRemedy = "Restart the controller, or end the run with Ctrl-C";
 
-/// What the cycles of a run have in common.
+/// Terms that the cycles of a run share.
 struct SituationTerms {
   double full_brake = 1.0;                  ///< VehicleParams::brake_throttle_limit
-  std::span<const road::Corner> corners{};  ///< of the track; empty: unknown
-  std::string_view remedy = kKeysRemedy;    ///< in static storage
+  std::span<const road::Corner> corners{};  ///< corners of the track; empty: unknown
+  std::string_view remedy = kKeysRemedy;    ///< text in static storage
 };
 
-/// A sentence that is still true is kept so long [s].
+/// Time for which a sentence that is still true is kept [s].
 inline constexpr double kSentenceHeld = 0.7;
-/// Standing for longer, a car that nobody drives by hand is stuck [s].
+/// Time at standstill after which a car without a person at the wheel is stuck [s].
 inline constexpr double kStuckAfter = 3.0;
 /// Alarms with a shorter pause between them are one event [s].
 inline constexpr double kAlarmPause = 1.0;
@@ -95,43 +95,42 @@ inline constexpr double kAlarmPause = 1.0;
 [[nodiscard]] std::string_view name_of(Situation::Driver driver) noexcept;  ///< "controller"
 [[nodiscard]] std::string_view name_of(Severity severity) noexcept;         ///< "normal", "notice", "alarm"
 [[nodiscard]] Severity severity_of(const Situation& situation) noexcept;    ///< kError: an alarm
-/// At most six words: "Grip: 97 % in T4".
+/// Sentence of at most six words: "Grip: 97 % in T4".
 [[nodiscard]] std::string sentence_of(const Situation& situation);
 /// Why, in a clause: "the controller has no answer"; empty where the sentence says it.
 [[nodiscard]] std::string_view reason_of(const Situation& situation) noexcept;
-/// What ends an alarm, with the key or command by which a person does; empty without an alarm.
+/// End of an alarm, with the key or command for it; empty without an alarm.
 [[nodiscard]] std::string what_ends(const Situation& situation);
 
 /// A completed lap, for viewers and logs. lap = 0: none yet.
 struct CompletedLap {
-  int lap = 0;                           ///< its number, from 1
+  int lap = 0;                           ///< number of the lap, from 1
   double lap_time = 0.0;                 ///< [s]
   std::array<double, 3> sector_times{};  ///< thirds of the lap [s]
   bool is_clean = false;                 ///< no tyre left the road
-  double mean_speed = 0.0;               ///< over time [m/s]
+  double mean_speed = 0.0;               ///< mean over time [m/s]
   double top_speed = 0.0;                ///< [m/s]
-  double min_edge_distance = 0.0;        ///< of the outermost tyre [m], negative = off the road
-  double rms_lateral_error = 0.0;        ///< over time [m]
+  double min_edge_distance = 0.0;        ///< least gap of the outermost tyre [m], negative = off the road
+  double rms_lateral_error = 0.0;        ///< mean square over time [m]
 };
 
 /// One control cycle with all it saw, decided and sent: what viewers draw, logs keep and metrics count. Plain
 /// data, about 15 kB, copied without allocation.
 struct Frame {
   std::uint64_t cycle = 0;
-  double time = 0.0;   ///< of the measurement [s]
-  model::State truth;  ///< of the plant; NaN where an external simulator does not tell
+  double time = 0.0;   ///< time of the measurement [s]
+  model::State truth;  ///< state of the plant; NaN if an external simulator does not send it
   bool has_truth = false;
   model::Measurement measurement;
-  controller::StepResult result;  ///< its command is the one sent: after the gate
-  safety::GuardReport guard;      ///< of the cycle; as it is at first where another program drives
-  model::Command asked;           ///< the controller's own command, before the gate
-  model::Command applied;         ///< what acts on the plant at `time`, after the delay
-  bool is_manual = false;         ///< a person drives; the controller's command is `asked`
-  double step_time = 0.0;         ///< of the whole control step [s], wall clock
-  double solve_time =
-      0.0;  ///< of the optimisation in it [s], wall clock; 0 for controllers that solve nothing
-  double lateral_acceleration = 0.0;       ///< of the plant [m/s²], left positive
-  double longitudinal_acceleration = 0.0;  ///< of the plant [m/s²]
+  controller::StepResult result;      ///< its command is the sent one, after the gate
+  safety::GuardReport guard;          ///< report of the cycle; default where another program drives
+  model::Command asked;               ///< the controller's own command, before the gate
+  model::Command applied;             ///< command acting on the plant at `time`, after the delay
+  bool is_manual = false;             ///< a person drives; the controller's command is `asked`
+  double step_time = 0.0;             ///< duration of the whole control step [s], wall clock
+  double solve_time = 0.0;            ///< duration of its optimisation [s], wall clock; 0 without a solver
+  double lateral_acceleration = 0.0;  ///< acceleration of the plant [m/s²], left positive
+  double longitudinal_acceleration = 0.0;  ///< acceleration of the plant [m/s²]
   /// Share of its grip that each axle of the plant uses, front and rear (sim::PlantOutput); NaN unknown.
   std::array<double, 2> tire_use{std::numeric_limits<double>::quiet_NaN(),
                                  std::numeric_limits<double>::quiet_NaN()};
@@ -140,25 +139,25 @@ struct Frame {
   double pace = 1.0;                ///< run seconds per second of the clock
   std::uint32_t active_faults = 0;  ///< bits in the order of the fault registry (sim/fault.hpp)
 
-  // Where the car is on the track: a judge's word, not the controller's.
-  bool is_judged = false;      ///< else of these only the errors mean something: from the controller's line
+  // Place of the car on the track, by a judge rather than the controller.
+  bool is_judged = false;      ///< if false only the errors below are valid: from the controller's line
   double s = 0.0;              ///< along the track's line [m]
-  double lateral_error = 0.0;  ///< from the track's line [m], left positive
+  double lateral_error = 0.0;  ///< offset from the track's line [m], left positive
   double heading_error = 0.0;  ///< [rad]
-  double edge_distance = 0.0;  ///< of the outermost contact patch to the edge [m], negative = off the road
+  double edge_distance = 0.0;  ///< gap of outermost contact patch to edge [m], negative = off the road
   bool is_off_track = false;
   int lap = 0;                 ///< laps completed
-  double lap_time = 0.0;       ///< of the running lap [s]
+  double lap_time = 0.0;       ///< time since the running lap began [s]
   double last_lap_time = 0.0;  ///< 0 before the first completed lap [s]
   int off_track_events = 0;
   CompletedLap completed_lap;  ///< the last one
-  Situation situation;         ///< of the cycle, for people
+  Situation situation;         ///< situation of the cycle, for people
 
-  // What else decided the command: with the settings and the measurement, enough to compute it again.
+  // Further inputs of the command: with the settings and the measurement, enough to compute it again.
   bool begins = false;                  ///< controller and gate had forgotten everything
   bool has_measurement = true;          ///< false: what came was unusable, the controller was not asked
   model::Command manual;                ///< a person's command, while is_manual
-  double gate_interval = 0.0;           ///< since the command before, by the gate's clock [s]
+  double gate_interval = 0.0;           ///< time since the previous command, by the gate's clock [s]
   std::uint32_t deadline_spent_at = 0;  ///< DeadlineLog::spent_at of the control step
 };
 

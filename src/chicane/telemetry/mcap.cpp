@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// MCAP files: writer with compressed chunks and an index, and a reader that survives damage.
 #include "chicane/telemetry/mcap.hpp"
 
 #include <fcntl.h>
@@ -54,7 +55,7 @@ using mcap::Fields;
 using mcap::Opcode;
 
 constexpr std::size_t kChunkBytes = 1U << 20U;
-constexpr std::size_t kMostUnwritten = 4U << 20U;  // of a chunk that cannot be written
+constexpr std::size_t kMostUnwritten = 4U << 20U;  // limit of a chunk that cannot be written [byte]
 
 std::string record(Opcode opcode, std::string_view content) {
   std::string bytes;
@@ -277,9 +278,9 @@ namespace {
 using mcap::FieldReader;
 using mcap::Opcode;
 
-constexpr std::uint64_t kMostRecord = 256U << 20U;  // of one record
-constexpr std::size_t kMostKept = 64U << 20U;  // of schemas and channels, as long as a file is read [byte]
-constexpr std::size_t kMostEntries = 10000;    // of one metadata record
+constexpr std::uint64_t kMostRecord = 256U << 20U;  // limit of one record [byte]
+constexpr std::size_t kMostKept = 64U << 20U;       // limit of schemas and channels of one file [byte]
+constexpr std::size_t kMostEntries = 10000;         // limit of one metadata record
 
 class Reader {
  public:
@@ -334,7 +335,7 @@ class Reader {
 
   Result<void> chunk(std::string_view content) {
     FieldReader fields(content);
-    static_cast<void>(fields.take(16));  // its time span
+    static_cast<void>(fields.take(16));  // time span
     const auto size = fields.number<std::uint64_t>();
     const auto crc = fields.number<std::uint32_t>();
     const std::string_view compression = fields.text();
@@ -448,7 +449,7 @@ class Reader {
   const McapVisitor& visitor_;
   McapReport report_;
   bool is_summary_ = false;
-  std::size_t kept_ = 0;  ///< of schemas and channels [byte]
+  std::size_t kept_ = 0;  ///< bytes of schemas and channels
   std::map<std::uint16_t, std::pair<std::string, std::string>> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;
 };

@@ -14,8 +14,9 @@
 
 #include "chicane/base/result.hpp"
 
-/// What writer and reader of MCAP files share (https://mcap.dev/spec, version 1): numbers are little endian,
-/// strings are preceded by their 32-bit length, records by one byte for their kind and their 64-bit length.
+/// Format that writer and reader of MCAP files share (https://mcap.dev/spec, version 1): numbers are little
+/// endian, strings are preceded by their 32-bit length, records by one byte for their kind and their 64-bit
+/// length.
 
 namespace chicane::telemetry::mcap {
 
@@ -111,8 +112,8 @@ namespace chicane::telemetry {
 /// same words.
 class McapWriter {
  public:
-  /// kIo when the file exists already or cannot be made: a recording is never written over. `is_compressed`:
-  /// chunks by Zstandard; kInvalidArgument when this program was built without it.
+  /// Creates a file. kIo if it exists already or cannot be made: a recording is never overwritten.
+  /// `is_compressed`: chunks by Zstandard; kInvalidArgument if this program was built without it.
   [[nodiscard]] static Result<std::unique_ptr<McapWriter>> create(const std::string& path,
                                                                   std::string_view library,
                                                                   bool is_compressed = false);
@@ -123,7 +124,7 @@ class McapWriter {
 
   /// A stream of CDR messages of a ROS 2 type; its number, from 0. `schema` is in the form of "ros2msg".
   std::uint16_t add_channel(std::string_view topic, std::string_view type, std::string_view schema);
-  /// Keys and texts that say what the file is about; at once in the file.
+  /// Writes keys and texts about the file's content; at once in the file.
   Result<void> add_metadata(std::string_view name, const std::map<std::string, std::string>& entries);
   /// A file in the file, with a CRC of its own; at once in the file.
   Result<void> add_attachment(std::string_view name, std::string_view media_type, std::string_view bytes);
@@ -140,10 +141,10 @@ class McapWriter {
 
  private:
   struct Channel {
-    std::string record;  ///< for the summary
+    std::string record;  ///< record for the summary
     std::string schema_record;
     std::uint64_t messages = 0;
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  ///< of this chunk: log time, offset
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  ///< index of this chunk: log time, offset
   };
 
   McapWriter(std::string path, int file, bool is_compressed)
@@ -190,7 +191,7 @@ struct McapVisitor {
   std::function<void(std::string_view name, const std::map<std::string, std::string>&)> on_metadata{};
 };
 
-/// How much of a file there was.
+/// Extent of a file that was read.
 struct McapReport {
   std::uint64_t messages = 0;
   std::uint64_t chunks = 0;   ///< intact ones
@@ -214,9 +215,9 @@ struct McapReport {
 namespace chicane::telemetry::zstd {
 
 [[nodiscard]] bool is_available() noexcept;
-/// At the fastest level. Pre: is_available().
+/// Compresses at the fastest level. Pre: is_available().
 [[nodiscard]] std::string compress(std::string_view bytes);
-/// None when it is damaged, or is not of `size` bytes. Pre: is_available().
+/// Decompresses. None if the bytes are damaged, or do not yield `size` bytes. Pre: is_available().
 [[nodiscard]] std::optional<std::string> decompress(std::string_view bytes, std::uint64_t size);
 
 }  // namespace chicane::telemetry::zstd

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Metrics of a run, collected step by step: extremes, laps, times, and the settings and faults of each lap.
 #include "chicane/telemetry/metrics.hpp"
 
 #include <algorithm>
@@ -30,7 +31,7 @@ void add_to(Fnv& hash, const model::State& state) noexcept {
 constexpr std::string_view kManual = "manual.is_on";
 constexpr std::string_view kFault = "fault.";
 
-/// What says nothing of how a lap was driven: the pace, and where a person's hands are.
+/// Whether a setting does not affect a lap: the pace, and a person's controls.
 bool is_left_out(std::string_view name) {
   return name.starts_with("run.") || (name.starts_with("manual.") && name != kManual);
 }
@@ -182,7 +183,7 @@ void LapLedger::add(const Change& change) {
   log_.push_back({change.time, std::string(change.name.view()), std::string(change.value.view())});
 }
 
-/// Of the oldest `count` only what they came to is kept.
+/// Summarises the oldest `count` changes and drops them.
 void LapLedger::fold(std::size_t count) {
   std::map<std::string, std::string> outcome;
   const auto end = log_.begin() + static_cast<std::ptrdiff_t>(count);
@@ -197,8 +198,8 @@ LapSetup LapLedger::setup(double end, double lap_time) const {
   const double start = end - lap_time;
   LapSetup setup;
   std::map<std::string, std::string> settings;
-  std::map<std::string, bool> faults;  // that acted in the lap, or act still
-  double by_hand_since = end;          // later than this nobody's hands count
+  std::map<std::string, bool> faults;  // faults that acted in the lap, or still act
+  double by_hand_since = end;          // manual driving after this time is ignored
   double by_hand = 0.0;
   for (const Noted& each : log_) {
     if (each.time > end) break;

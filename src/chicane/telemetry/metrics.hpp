@@ -46,20 +46,20 @@ class ShortText {
 /// One setting that changed while a run went on (live/live_settings.hpp).
 struct Change {
   std::uint64_t cycle = 0;   ///< the first control cycle that follows it
-  double time = 0.0;         ///< of the run [s]
+  double time = 0.0;         ///< time of the run [s]
   ShortText<64> name;        ///< schema key, "run.pace", "manual.…" or "fault.…"
-  ShortText<256> value;      ///< as --set takes it: reads back into the same bits
-  bool starts_anew = false;  ///< the run began anew with it: everything else is forgotten
+  ShortText<256> value;      ///< text as --set takes it: reads back into the same bits
+  bool starts_anew = false;  ///< the run restarted with it: all earlier changes are void
 };
 
-/// What the world says after one physics step: exact extremes need every step, not every control cycle.
+/// State of the world after one physics step: exact extremes need every step, not every control cycle.
 struct PhysicsSample {
   double step = 0.0;                  ///< length of the step [s]
-  model::State state;                 ///< at its end
+  model::State state;                 ///< state at its end
   double lateral_acceleration = 0.0;  ///< [m/s²], left positive
-  double lateral_error = 0.0;         ///< from the track's line [m], left positive
-  double edge_distance = 0.0;  ///< of the outermost contact patch to the edge [m], negative = off the road
-  bool is_off_track = false;   ///< any contact patch beyond the drivable surface
+  double lateral_error = 0.0;         ///< offset from the track's line [m], left positive
+  double edge_distance = 0.0;         ///< gap of outermost contact patch to edge [m], negative = off the road
+  bool is_off_track = false;          ///< any contact patch beyond the drivable surface
 };
 
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
@@ -67,9 +67,9 @@ inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 /// One lap, or any stretch of a run, in numbers. NaN where nothing was measured.
 struct LapSummary {
   double lap_time = 0.0;                                                ///< [s]
-  double mean_speed = 0.0;                                              ///< over time [m/s]
+  double mean_speed = 0.0;                                              ///< mean over time [m/s]
   double top_speed = 0.0;                                               ///< [m/s]
-  double rms_lateral_error = 0.0;                                       ///< over time [m]
+  double rms_lateral_error = 0.0;                                       ///< mean square over time [m]
   double max_abs_lateral_error = 0.0;                                   ///< [m]
   double min_edge_distance = std::numeric_limits<double>::quiet_NaN();  ///< signed, outermost tyre [m]
   double max_lateral_acceleration = 0.0;                                ///< magnitude [m/s²]
@@ -77,8 +77,8 @@ struct LapSummary {
   std::array<double, 3> sector_times = {kNotMeasured, kNotMeasured, kNotMeasured};  ///< thirds of a lap [s]
   std::optional<double>
       gap_to_limit{};  ///< lap time over the physical limit's, minus one; none when not computed
-  std::array<double, 3> sector_gaps = {kNotMeasured, kNotMeasured, kNotMeasured};  ///< the same of the thirds
-  /// For each of RunSummary::corners, with half of the straights beside it [s]; empty where not measured.
+  std::array<double, 3> sector_gaps = {kNotMeasured, kNotMeasured, kNotMeasured};  ///< gaps of the thirds
+  /// Times of RunSummary::corners, each with half of the straights beside it [s]; empty if not measured.
   std::vector<double> corner_times{};
 };
 
@@ -90,52 +90,52 @@ struct TimeSummary {
   double max = 0.0;
 };
 
-/// Everything one run is judged by. The run time fills in what was asked (track to laps_wanted, completed);
+/// Summary by which one run is judged. The run time fills in the request (track to laps_wanted, completed);
 /// Metrics the rest.
 struct RunSummary {
   std::string track, car, controller, preset;
   std::optional<safety::GuardOptions> guard;  ///< none where another program drives
-  std::vector<std::string> notices;           ///< of the scenario, a sentence each
+  std::vector<std::string> notices;           ///< notices of the scenario, a sentence each
   std::uint64_t seed = 0;
   double latency = 0.0;    ///< actuation delay of the plant [s]
   int laps_wanted = 0;     ///< 0 = until stopped
   bool completed = false;  ///< all wanted laps were driven
-  std::string end_reason;  ///< why it ended otherwise, one sentence; empty when completed
+  std::string end_reason;  ///< reason of another end, one sentence; empty if completed
 
   int laps_completed = 0;
   int off_track_events = 0;                  ///< times a contact patch left the drivable surface
   double out_of_track_time = 0.0;            ///< [s]
-  double duration = 0.0;                     ///< of the run, in its own time [s]
-  double wall_time = 0.0;                    ///< of the run, on the wall [s]; filled by the run time
+  double duration = 0.0;                     ///< duration in the run's own time [s]
+  double wall_time = 0.0;                    ///< duration on the wall's clock [s]; filled by the run time
   std::vector<LapSummary> laps;              ///< completed laps
-  std::vector<road::Corner> corners;         ///< of the track, in the order of a lap
+  std::vector<road::Corner> corners;         ///< corners of the track, in the order of a lap
   std::optional<lap_time::LapTimes> limit;   ///< the fastest lap the car can drive; none when not computed
-  std::vector<double> planned_corner_times;  ///< of the plan that was raced by last [s]; empty: none
-  std::string why_no_limit;  ///< in one sentence; empty when there is one, or none was asked for
-  std::vector<lap_time::LapWithout> without;  ///< what explains the gap to it; empty: not driven
+  std::vector<double> planned_corner_times;  ///< times of the plan raced by last [s]; empty: none
+  std::string why_no_limit;  ///< reason in one sentence; empty with a limit, or if none was asked for
+  std::vector<lap_time::LapWithout> without;  ///< laps that explain the gap to it; empty: not driven
   LapSummary total;          ///< the whole run, unfinished lap included; lap_time is its duration
-  TimeSummary step_time;     ///< of whole control steps, wall clock
-  TimeSummary solve_time;    ///< of the optimisation in them, wall clock
+  TimeSummary step_time;     ///< whole control steps, wall clock
+  TimeSummary solve_time;    ///< optimisation in them, wall clock
   std::uint64_t cycles = 0;  ///< control steps
   double mean_iterations = 0.0;
   std::uint64_t not_usable = 0;  ///< solves whose answer must not be used
   std::uint64_t fallbacks = 0;   ///< steps whose command came from a rung below the controller
   /// Steps in which the guard found something, by controller::GuardReason; [0]: nothing.
   std::array<std::uint64_t, controller::kGuardReasonCount> guard_reasons{};
-  controller::LearnedCar learned;  ///< as the last step reported it
+  controller::LearnedCar learned;  ///< learned values of the last step
   std::uint64_t gate_interventions = 0;
   std::uint64_t deadline_misses = 0;  ///< steps that took longer than the control period
   std::uint64_t state_hash =
-      0;  ///< of every plant state and command: same scenario and seed, same number, everywhere
+      0;  ///< hash of every plant state and command: same scenario and seed, same number, everywhere
 };
 
-/// True when every wanted lap is completed and no tyre left the road. A run until stopped wants
-/// no number of laps.
+/// Whether every wanted lap is completed and no tyre left the road. A run until stopped wants no number of
+/// laps.
 [[nodiscard]] inline bool completed_on_road(const RunSummary& run) noexcept {
   return (run.completed || run.laps_wanted == 0) && run.off_track_events == 0;
 }
 
-/// Sets a run beside the limit: its times, and the gap of each lap (docs/limit.md, eq. 10) from number
+/// Compares a run with the limit: its times, and the gap of each lap (docs/limit.md, eq. 10) from number
 /// `first_lap`, counted from 1, on.
 void compare_with_limit(RunSummary& run, const lap_time::LapTimes& limit, int first_lap = 1);
 
@@ -146,8 +146,8 @@ void compare_with_limit(RunSummary& run, const lap_time::LapTimes& limit, int fi
 /// distance to the edge, from the controller's measurements.
 class Metrics {
  public:
-  /// Remembers up to `lap_capacity` laps one by one (more are only counted), with the times of so many
-  /// `corners`. `deadline` [s]: longer steps are misses.
+  /// Keeps up to `lap_capacity` laps (more are only counted), with the times of `corners` corners each.
+  /// `deadline` [s]: longer steps are misses.
   Metrics(int lap_capacity, double deadline, std::size_t corners = 0);
 
   void add_physics(const PhysicsSample& sample) noexcept;
@@ -165,7 +165,8 @@ class Metrics {
   [[nodiscard]] const LapSummary& last_lap() const noexcept { return last_lap_; }
   [[nodiscard]] int off_track_events() const noexcept { return off_track_events_; }
   [[nodiscard]] std::uint64_t state_hash() const noexcept { return hash_.value(); }
-  /// The run so far; what the run time knows (names, seed, completed) is left at its defaults. Allocates.
+  /// Summary of the run so far; fields of the run time (names, seed, completed) keep their defaults.
+  /// Allocates.
   [[nodiscard]] RunSummary summary() const;
 
  private:
@@ -187,9 +188,9 @@ class Metrics {
     [[nodiscard]] LapSummary summary(double lap_time) const noexcept;
   };
 
-  std::vector<LapSummary> laps_;  ///< without corner times
+  std::vector<LapSummary> laps_;  ///< laps without corner times
   std::size_t corners_;
-  std::vector<double> corner_times_{};  ///< of all laps, one after the other [s]
+  std::vector<double> corner_times_{};  ///< times of all laps, one after the other [s]
   LapSummary last_lap_;
   double deadline_;
   Stretch lap_, total_;
@@ -207,14 +208,14 @@ class Metrics {
   double last_steer_ = 0.0;
 };
 
-/// With what a lap was driven.
+/// Settings and faults of a lap.
 struct LapSetup {
   /// Settings that were changed since the run began, as they were at the end of the lap, by name; also those
   /// that were changed back. `values` as --set takes them, of the same length.
   std::vector<std::string> names{}, values{};
   bool is_mixed = false;              ///< one of them changed while the lap was driven
-  double by_hand_share = 0.0;         ///< of its time, driven by a person, in [0, 1]
-  std::vector<std::string> faults{};  ///< that acted in it, without "fault.", by name
+  double by_hand_share = 0.0;         ///< share of its time driven by a person, in [0, 1]
+  std::vector<std::string> faults{};  ///< faults that acted in it, without "fault.", by name
 };
 
 /// Keeps the changes of a run, so that each lap can be reported with its settings. For threads that write
@@ -224,14 +225,14 @@ class LapLedger {
  public:
   static constexpr std::size_t kMostKept = 1024;  ///< changes, one by one
 
-  /// Another run with other choices: nothing was changed yet.
+  /// Begins another run with other choices: all changes are dropped.
   void begin() { log_.clear(); }
-  /// The same run from its start: settings and who drives stay, faults have ended.
+  /// Restarts the same run: settings and driver stay, faults end.
   void restart();
-  /// In the order of time. One that `starts_anew` begins another run.
+  /// Adds a change, in the order of time. One that `starts_anew` begins another run.
   void add(const Change& change);
 
-  /// Of a lap that ended at `end` [s] of the run and took `lap_time` [s].
+  /// Setup of a lap that ended at `end` [s] of the run and took `lap_time` [s].
   [[nodiscard]] LapSetup setup(double end, double lap_time) const;
 
  private:

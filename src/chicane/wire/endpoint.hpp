@@ -28,8 +28,8 @@ class SparseLog {
     if (sink_) sink_(line);
   }
 
-  /// At most once a second the same line; the next one tells how many were held back. A line unlike the last
-  /// few ones comes at once: kNewLines of them, and then one a second.
+  /// Logs a line at most once a second; the next one counts the suppressed ones. A line unlike the last few
+  /// comes at once: kNewLines of them, and then one a second.
   void complain(std::string_view line) {
     const Clock::time_point now = Clock::now();
     const auto known =
@@ -83,8 +83,7 @@ class SparseLog {
   double budget_ = kNewLines;
 };
 
-/// What the program answers to GET beside the dashboard's files, by path ("/mode.json"). Called on the
-/// network thread.
+/// Answers to GET in addition to the dashboard's files, by path ("/mode.json"). Called on the network thread.
 using Pages = std::map<std::string, std::function<net::Content()>, std::less<>>;
 
 /// Median of the last nine values. No allocation.
@@ -123,8 +122,8 @@ class RecentMedian {
 class Endpoint {
  public:
   virtual ~Endpoint() = default;
-  /// Before the first connection. `server` outlives every later call; its member functions may be used from
-  /// any thread.
+  /// Called before the first connection. `server` outlives every later call; its member functions may be used
+  /// from any thread.
   virtual void on_start(net::Server& server) = 0;
   /// Accept or refuse in words. `UpgradeAnswer::endpoint` is the router's; leave it.
   [[nodiscard]] virtual net::UpgradeAnswer on_upgrade(const net::UpgradeRequest& request) = 0;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Memory of a run for late viewers: frames, laps and changes in bounded memory.
 #include "chicane/wire/run_memory.hpp"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 namespace chicane::wire {
 namespace {
 
-constexpr double kRounding = 1e-6;  // of times that are sums of periods [s]
+constexpr double kRounding = 1e-6;  // rounding of times that are sums of periods [s]
 
 /// Messages with a lower number. By bisection: numbers rise.
 template <class Messages>

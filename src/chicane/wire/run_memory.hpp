@@ -16,24 +16,23 @@ namespace chicane::wire {
 /// A message that is kept for viewers that come later.
 struct KeptMessage {
   std::uint64_t number = 0;  ///< rises from message to message, also beyond forget()
-  double time = 0.0;         ///< of the run [s]
+  double time = 0.0;         ///< time of the run [s]
   std::string payload{};     ///< encoded
 };
 
-/// What a run has been so far, as encoded messages in bounded memory, so that a viewer that comes late knows
-/// what the others know: laps, changes of settings, and frames; the newest frames all, older ones at a
-/// distance. A reader keeps the number of the next message that it wants, and asks for the first from there
-/// on, or, of frames, for the last one before.
+/// History of a run as encoded messages in bounded memory, for viewers that connect late: laps, changes of
+/// settings, and frames, the newest frames all, older ones thinned. A reader keeps the number of the next
+/// message that it wants, and asks for the first from there on, or, for frames, the last one before.
 class RunMemory {
  public:
   static constexpr double kDense = 60.0;   ///< all frames of the last ... [s]
-  static constexpr double kSpacing = 0.2;  ///< between older ones, at least [s]
+  static constexpr double kSpacing = 0.2;  ///< least spacing of older frames [s]
   static constexpr std::size_t kMostDense = 3600;
   static constexpr std::size_t kMostSparse = 3000;  ///< ten minutes
   static constexpr std::size_t kMostLaps = 1000;    ///< the newest and the best
   static constexpr std::size_t kMostChanges = 500;
 
-  /// The run begins anew.
+  /// Drops everything: the run restarts.
   void forget();
   /// `time` rises from frame to frame.
   void add_frame(double time, std::string payload);
@@ -62,18 +61,18 @@ class RunMemory {
   std::uint64_t next_ = 1;
 };
 
-/// How much may be on its way to a reader that acknowledges what it reads, so that what is sent next arrives
-/// soon: congestion control by delay, after LEDBAT (RFC 6817). The window grows while acknowledgements come
-/// soon after the message, and shrinks to what the link carries in that time where they come later. It covers
+/// Limit of bytes in flight to a reader that acknowledges them, so that the next message arrives soon:
+/// congestion control by delay, after LEDBAT (RFC 6817). The window grows while acknowledgements come soon
+/// after the message, and shrinks to the link's capacity in that time if they come later. It covers
 /// everything between the two programs: sockets, proxies, and a reader that is busy for long. One thread.
 class LinkPace {
  public:
-  static constexpr double kDelayAimed = 0.15;  ///< in queues on the way, beside the shortest round trip [s]
+  static constexpr double kDelayAimed = 0.15;  ///< in queues on the way, beyond the shortest round trip [s]
   static constexpr std::size_t kLeast = std::size_t{12} << 10U;  ///< window [byte]
   static constexpr std::size_t kFirst = std::size_t{24} << 10U;  ///< window at the beginning [byte]
   static constexpr std::size_t kMost = std::size_t{1} << 20U;    ///< window [byte]
 
-  /// A message of so many bytes was sent at `now` [s].
+  /// Counts a message of `bytes` bytes sent at `now` [s].
   void sent(std::size_t bytes, double now) {
     sent_ += bytes;
     on_way_.push_back({sent_, in_flight(), now});
@@ -115,7 +114,7 @@ class LinkPace {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   struct Sent {
     std::uint64_t total = 0;    ///< bytes sent up to its end
-    std::size_t in_flight = 0;  ///< with it [byte]
+    std::size_t in_flight = 0;  ///< bytes in flight including it [byte]
     double at = 0.0;            ///< [s]
   };
   std::deque<Sent> on_way_;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// `chicane serve`: the session with one simulator on the network thread, and the control thread that answers
+// its telemetry.
 #include "chicane/wire/serve.hpp"
 
 #include <algorithm>
@@ -23,7 +25,7 @@ using std::chrono::milliseconds;
 
 constexpr int kMaxUnanswered = 16;           // a client in lock-step has one
 constexpr std::size_t kMaxAccepted = 16;     // upgrades that have not completed
-constexpr double kTypicalTurnAround = 0.02;  // of the original simulator [s]
+constexpr double kTypicalTurnAround = 0.02;  // turn-around of the original simulator [s]
 constexpr milliseconds kWatchPeriod{250};
 constexpr std::chrono::seconds kPingInterval{25};  // Engine.IO's default
 constexpr const char* kOpenPacket =
@@ -41,7 +43,7 @@ struct Request {
   bool wants_stop_plan = false;
 };
 
-/// Without a time in telemetry the simulator's clock shows in how far the car has moved.
+/// Options for telemetry without a time: the simulator's clock shows in the distance that the car moves.
 run::ExternalDriveOptions by_simulator_clock(const ServeOptions& options) {
   run::ExternalDriveOptions counted = options;
   counted.clock.is_measured = !options.time_field.empty();
@@ -78,7 +80,7 @@ class UdacityEndpoint::Control {
     thread_.join();
     run_ = drive_.summary();
   }
-  /// Empty before stop().
+  /// Summary of the run; empty before stop().
   [[nodiscard]] const telemetry::RunSummary& run() const { return run_; }
 
   void push(const Request& request) {
@@ -116,7 +118,7 @@ class UdacityEndpoint::Control {
     }
   }
 
-  /// Another simulator, or the same one again: nothing learned is trusted.
+  /// Begins with another simulator, or the same one again: learned values are dropped.
   void begin(net::ConnectionId from) {
     driven_ = from;
     drive_.begin();
@@ -143,11 +145,11 @@ class UdacityEndpoint::Control {
     drive_.finish();
   }
 
-  /// From telemetry to telemetry, when a command takes effect [s]: the control step, artificial latency, both
-  /// ways through the sockets and the simulator's turn-around.
+  /// Expected time from telemetry to the telemetry that shows the command's effect [s]: the control step,
+  /// artificial latency, both ways through the sockets and the simulator's turn-around.
   [[nodiscard]] double delay() const { return delay_.value(expected_delay_); }
 
-  /// Where the car will be when the answer arrives: where the plan begins.
+  /// Expected pose of the car at the arrival of the answer: start of the plan.
   [[nodiscard]] static model::Pose pose_at_receipt(const telemetry::Frame& frame) {
     const controller::Plan& plan = frame.result.plan;
     if (plan.size > 0) return {.x = plan.points[0].x, .y = plan.points[0].y, .psi = plan.points[0].psi};
@@ -279,7 +281,7 @@ void UdacityEndpoint::hear_telemetry(std::string_view bytes) {
   control_->push(request);
 }
 
-/// Says what is wrong with a message; true when its sender waits for an answer.
+/// Reports a faulty message; true if its sender waits for an answer.
 bool UdacityEndpoint::complain_about(const protocol::UdacityTelemetry& message) {
   if (const auto* foreign = std::get_if<protocol::UdacityForeign>(&message)) {
     log_.complain(fmt::format("this is {}{}", foreign->what, foreign->is_telemetry ? "; braking" : ""));

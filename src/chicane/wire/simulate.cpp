@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// `chicane simulate`: the client that simulates a car for a controller program over its protocol.
 #include "chicane/wire/simulate.hpp"
 
 #include <fmt/format.h>
@@ -27,14 +28,14 @@
 namespace chicane::wire {
 namespace {
 
-constexpr double kPatienceInCycles = 3.0;
+constexpr double kPatienceInCycles = 3.0;  // patience over the usual cycle
 
 }  // namespace
 
 bool CommandReceiver::sampled(double time) noexcept {
   const double asked = std::exchange(sampled_, time);
   if (!waiting_) return true;
-  // A controller's habit tells when it has fallen silent.
+  // The usual cycle of the controller defines its silence.
   cycles_.add(time - asked);
   patience_ = std::max(kPatienceInCycles * cycles_.value(0.0), safety::StopPlayer::kPatience);
   player_.set_patience(patience_);
@@ -171,7 +172,7 @@ class Simulation {
       why_ = fmt::format("no usable answer within {:g} s", seconds(options_.hopeless_after));
   }
 
-  /// Attempts run beside the physics, politely spaced.
+  /// Connects while the physics runs, with pauses between attempts.
   void connect(Clock::time_point now) {
     if (attempt_.valid()) {
       if (attempt_.wait_for(kNap) != std::future_status::ready) return;
@@ -192,7 +193,7 @@ class Simulation {
   void begin(std::unique_ptr<net::Client> client) {
     client_ = std::move(client);
     last_failure_.clear();
-    if (report_.connections++ == 0) began_ = last_answer_ = Clock::now();  // with the first controller
+    if (report_.connections++ == 0) began_ = last_answer_ = Clock::now();  // at the first controller
     log_.say(fmt::format("connected to {}", options_.url));
     asked_.reset();
     due_ = Clock::now();
@@ -211,7 +212,7 @@ class Simulation {
     if (auto sent = client_->send_text(text); !sent) lose(sent.error().message);
   }
 
-  /// Sends what is due, then listens until the next physics step.
+  /// Sends due messages, then listens until the next physics step.
   void turn(Clock::time_point now) {
     if (due_ && now >= *due_) {
       ask(now);
@@ -320,7 +321,7 @@ class Simulation {
   std::unique_ptr<net::Client> client_;
 
   Clock::time_point began_{};               ///< wall time of physics time 0
-  std::optional<Clock::time_point> due_;    ///< of the next telemetry
+  std::optional<Clock::time_point> due_;    ///< time of the next telemetry
   std::optional<Clock::time_point> asked_;  ///< telemetry is out since then
   bool is_reported_silent_ = false;
   bool is_manual_ = false;
@@ -340,7 +341,7 @@ Result<SimulateReport> simulate(const SimulateOptions& options, const scenario::
 namespace {
 
 constexpr std::chrono::seconds kRestartAfter{1};
-constexpr unsigned kPatience = 1;  // of the guard, with a group that was asked to end [s]
+constexpr unsigned kPatience = 1;  // patience of the guard with a group that was asked to end [s]
 
 [[noreturn]] void run_shell(const char* command, const sigset_t& no_signals) {
   ::sigprocmask(SIG_SETMASK, &no_signals, nullptr);
@@ -372,7 +373,7 @@ constexpr unsigned kPatience = 1;  // of the guard, with a group that was asked 
   ::sigprocmask(SIG_SETMASK, &awaited, nullptr);
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);     // whom the shell leaves behind is ours to wait for
-  if (::getppid() != parent) ::_exit(0);  // it died before we listened
+  if (::getppid() != parent) ::_exit(0);  // parent died before we listened
   const pid_t shell = ::fork();
   if (shell == 0) run_shell(command, no_signals);
   for (bool is_ending = false;;) {

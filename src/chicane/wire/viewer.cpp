@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Endpoint of viewers: sends each its frames, laps and changes at the pace of its link.
 #include "chicane/wire/viewer.hpp"
 
 #include <fmt/format.h>
@@ -33,12 +34,11 @@ constexpr std::size_t kMostWaiting = 100;  // viewers between the upgrade and it
 // net::ServerOptions::max_queue.
 constexpr std::size_t kPage = 192;
 
-// While frames of the past are sent to a viewer, a slow line is not filled by those of the present: between
-// two of them, and between two plans, which are ten times as large [s].
+// Least time between newest frames, and between plans, which are ten times as large, while past frames are
+// sent on a slow line [s].
 constexpr double kNewestBesidePast = 0.1;
 constexpr double kPlanBesidePast = 0.5;
-// What may be on its way to a viewer beyond its window, so that the newest frame does not wait for the past
-// [byte].
+// Bytes in flight to a viewer beyond its window, so that the newest frame does not wait for the past [byte].
 constexpr std::size_t kReserve = 4096;
 
 constexpr std::uint16_t kGoingAway = 1001;  // RFC 6455 §7.4.1
@@ -137,7 +137,7 @@ void ViewerEndpoint::dismiss(const Patience& patience) {
   using Steady = std::chrono::steady_clock;
   const auto begin = Steady::now();
   auto heard = begin;
-  std::map<net::ConnectionId, std::pair<std::size_t, std::uint64_t>> reading;  // what waits, what was read
+  std::map<net::ConnectionId, std::pair<std::size_t, std::uint64_t>> reading;  // bytes waiting, bytes read
   std::promise<void> gone;
   std::set<net::ConnectionId> informed;
   bool has_ticked = false;
@@ -161,7 +161,7 @@ void ViewerEndpoint::dismiss(const Patience& patience) {
   gone.get_future().wait();
 }
 
-/// Nothing of the run is left that it has asked for.
+/// Whether a viewer has everything of the run that it asked for.
 bool ViewerEndpoint::has_all(net::ConnectionId id, const Client& client) const {
   const auto is_sent = [&](std::uint32_t channel, const KeptMessage* next) {
     return next == nullptr || !client.subscriptions.contains(channel);
@@ -219,7 +219,7 @@ void ViewerEndpoint::tick() {
   for (auto& [id, client] : clients_) serve(id, client);
 }
 
-/// The present first, then what is missing of laps and changes, then the past.
+/// Sends the present first, then missing laps and changes, then the past.
 void ViewerEndpoint::serve(net::ConnectionId id, Client& client) {
   send_newest(id, client);
   send_owed(id, client);
@@ -238,7 +238,7 @@ void ViewerEndpoint::send_owed(net::ConnectionId id, Client& client) {
   }
 }
 
-/// What was before a run began anew is not of this one.
+/// Drops messages from before the run's restart.
 void ViewerEndpoint::forget() {
   memory_.forget();
   ledger_.restart();
@@ -251,9 +251,9 @@ void ViewerEndpoint::note_frame() {
   memory_.add_frame(frame_.time, protocol::ros_topics()[frame_channel()].encode(frame_, options_.run));
 }
 
-/// Changes that the run has taken up go out in order; parameters that have another value, to those who
-/// follow them. `begins`: the newest frame is of a run that began since the last look; of the changes since
-/// then, only those that are not before it are of that run.
+/// Sends changes that the run has applied, in order, and changed parameters to the viewers that follow them.
+/// `begins`: the newest frame belongs to a run that began since the last call; changes before it belong to
+/// the earlier run.
 void ViewerEndpoint::tell_changes(bool begins) {
   if (options_.parameters == nullptr) return;
   for (const telemetry::Change& change : options_.parameters->applied()) {
@@ -295,7 +295,7 @@ void ViewerEndpoint::send_parameters(const std::vector<foxglove::Parameter>& val
 void ViewerEndpoint::note_lap(bool begins) {
   TimedLap completed;
   if (!latest_lap_.take(completed)) return;
-  if (begins && completed.time > frame_.time) return;  // of the run before
+  if (begins && completed.time > frame_.time) return;  // belongs to the run before
   telemetry::Frame frame;
   frame.completed_lap = completed.lap;
   options_.run.lap_setup = ledger_.setup(completed.time, completed.lap.lap_time);
@@ -326,8 +326,8 @@ void ViewerEndpoint::send_newest(net::ConnectionId id, Client& client) {
   }
 }
 
-/// A page of what it has not been sent; the next one when it has read this. All at once would be more than
-/// may wait for a connection.
+/// Sends a page of unsent messages; the next page when this one has been read. All at once would exceed a
+/// connection's queue.
 void ViewerEndpoint::send_kept(net::ConnectionId id, Client& client) {
   const auto send_page = [&](std::uint32_t channel, std::uint64_t& next, auto from) {
     const auto wanted = client.subscriptions.find(channel);

@@ -23,15 +23,16 @@
 
 namespace chicane::wire {
 
-/// What viewers may ask of the run. Called on the network thread: hand the request over and return. An empty
+/// Requests of viewers to the run. Called on the network thread: hand the request over and return. An empty
 /// function is not offered. A failure's sentence is shown to the operator.
 struct ViewerServices {
   std::function<Result<void>(bool paused)> pause;  ///< "/pause", std_srvs/srv/SetBool
   std::function<Result<void>()> step;   ///< "/step", std_srvs/srv/Trigger: one control cycle while paused
-  std::function<Result<void>()> reset;  ///< "/reset", std_srvs/srv/Trigger: the run starts anew
-  /// "/what_if", chicane_msgs/srv/Ask: begins to compute another future; its number as a text.
+  std::function<Result<void>()> reset;  ///< "/reset", std_srvs/srv/Trigger: restarts the run
+  /// Service "/what_if", chicane_msgs/srv/Ask: begins to compute another future; its number as a text.
   std::function<Result<std::string>(std::string_view question)> what_if{};
-  /// "/rival", chicane_msgs/srv/Ask: begins or ends a race against a second car; its number as a text.
+  /// Service "/rival", chicane_msgs/srv/Ask: begins or ends a race against a second car; its number as a
+  /// text.
   std::function<Result<std::string>(std::string_view question)> rival{};
 };
 
@@ -48,9 +49,10 @@ struct ViewerOptions {
 /// WebSocket protocol (docs/viewer.md). The newest frame wins on its way from the control thread, and again
 /// on its way to each viewer: slow ones see fewer frames and hold nothing up.
 ///
-/// Who may watch only (net::UpgradeRequest::may_control) gets everything but services and set parameters.
+/// Viewers that may only watch (net::UpgradeRequest::may_control) get everything but services and set
+/// parameters.
 ///
-/// Laps and changes of the run are sent from its beginning to whoever subscribes. The query of a viewer's
+/// Laps and changes of the run are sent from its beginning to every subscriber. The query of a viewer's
 /// address may ask for more: "past" offers the topic "/chicane/past", the frames of the last minutes before
 /// it came (run_memory.hpp), the newest first, behind the present; "paced" sends no more than the viewer
 /// acknowledges in time (run_memory.hpp, foxglove::Received), the newest frame before everything else.
@@ -64,27 +66,27 @@ class ViewerEndpoint final : public Endpoint {
   void publish(const telemetry::Frame& frame) noexcept { latest_.put(frame); }
   /// The same thread: a lap was completed at `time` [s], before the next frame.
   void publish(const telemetry::CompletedLap& lap, double time) noexcept { latest_lap_.put({lap, time}); }
-  /// Another track, car or controller from now on; Run::building and is_paused stay as they are. Any thread,
-  /// but not while on_start runs.
+  /// Sets another track, car or controller; Run::building and is_paused stay unchanged. Any thread, but not
+  /// while on_start runs.
   void set_run(protocol::Run run);
-  /// There are news of the run's limit. Any thread.
+  /// Publishes news of the run's limit. Any thread.
   void set_limit(lap_time::LimitAnswer answer);
   /// Part of it changes, the road excepted. Any thread.
   void change_run(std::function<void(protocol::Run&)> change);
-  /// For runs that are paused by others than viewers. Any thread.
+  /// Reports a pause that no viewer asked for. Any thread.
   void set_paused(bool paused) {
     change_run([paused](protocol::Run& run) { run.is_paused = paused; });
   }
-  /// The run is over: why in a word ("finished", "stopped", "failed") and in a sentence. A run that begins
-  /// anew is not over any more. Any thread.
+  /// Reports the end of the run: a word ("finished", "stopped", "failed") and a sentence. A restart revokes
+  /// it. Any thread.
   void set_end(std::string kind, std::string reason);
-  /// How long the end of a run waits for viewers.
+  /// Wait of a run's end for viewers.
   struct Patience {
-    std::chrono::milliseconds silent{2000};  ///< without any of them reading
+    std::chrono::milliseconds silent{2000};  ///< time without any of them reading
     std::chrono::milliseconds whole{10'000};
   };
-  /// Sends what is not sent yet and closes the connections; comes back when viewers have gone, or when
-  /// `patience` is over. The thread that runs the experiment, at its end.
+  /// Sends all that waits and closes the connections; returns when viewers have gone, or when `patience` is
+  /// over. Call it on the thread that runs the experiment, at its end.
   void dismiss(const Patience& patience);
   void dismiss() { dismiss(Patience{}); }
 
@@ -98,15 +100,15 @@ class ViewerEndpoint final : public Endpoint {
   struct Client {
     bool may_control = false;
     bool wants_past = false;
-    std::optional<LinkPace> pace{};  ///< none: it gets everything as soon as it is there
+    std::optional<LinkPace> pace{};  ///< none: all messages are sent at once
     std::uint64_t past_before = 0;   ///< frames of memory_ with lower numbers are still to be sent
     bool is_behind = false;          ///< paced, and the newest frame is not sent yet
-    double whole_sent_at = 0.0;      ///< with plan and all else [s]
+    double whole_sent_at = 0.0;      ///< time of the last message with plan and all else [s]
     std::set<std::uint32_t> owed{};  ///< channels of descriptions, paced, sent behind the newest
     double newest_sent_at = 0.0;     ///< [s]
-    std::optional<protocol::foxglove::Received> heard{};  ///< to be answered
+    std::optional<protocol::foxglove::Received> heard{};  ///< reading report to be answered
     double heard_at = 0.0;                                ///< [s]
-    std::uint64_t next_lap = 0;                           ///< of memory_, to be sent to it
+    std::uint64_t next_lap = 0;                           ///< next message of memory_ for it
     std::uint64_t next_change = 0;
     std::map<std::uint32_t, std::uint32_t> subscriptions;  ///< channel → subscription
     bool wants_all_parameters = false;
@@ -164,12 +166,12 @@ class ViewerEndpoint final : public Endpoint {
   bool has_frame_ = false;
   RunMemory memory_;
   telemetry::LapLedger ledger_;
-  std::uint64_t cycle_ = 0;     ///< of the last frame
+  std::uint64_t cycle_ = 0;     ///< cycle of the last frame
   bool has_forgotten_ = false;  ///< the next run begins, and its first frame has not come yet
-  std::mutex starting_;         ///< over server_ until it is set
+  std::mutex starting_;         ///< guards server_ until it is set
   net::Server* server_ = nullptr;
   std::map<net::ConnectionId, Client> clients_;
-  std::map<net::ConnectionId, Client> upgrades_;  ///< between on_upgrade and on_open
+  std::map<net::ConnectionId, Client> upgrades_;  ///< upgrades between on_upgrade and on_open
 };
 
 }  // namespace chicane::wire

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What viewers ask of a ViewerEndpoint.
+// Requests of viewers to a ViewerEndpoint: subscriptions, parameters and services.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,8 +43,8 @@ void ViewerEndpoint::handle(net::ConnectionId id, const foxglove::Subscribe& mes
                            is_past ? detail::kPastTopic : topics[channel].name));
       continue;
     }
-    // What is known now, because the next change may be far away. Frames of a paced viewer, and those of
-    // before, from the next tick on: what describes the run comes first.
+    // Send the current state, because the next change may be far away. Frames of a paced viewer, and past
+    // frames, follow from the next tick on: the description of the run comes first.
     if (is_past) {
       client.past_before = memory_.end();
       continue;

@@ -191,7 +191,7 @@ template <class V>
   const auto is_tiny = x < V(kLeastNormal);
   const auto bits = bits_of(select(is_tiny, x * kTwo54, x));
   const V exponent = Number<V>::from((bits >> 52) | Bits(kTwo52Bits)) - kTwo52;
-  const V fraction = Number<V>::from((bits & Bits(kMantissa)) | Bits(kHalfBits));  // in [1/2, 1)
+  const V fraction = Number<V>::from((bits & Bits(kMantissa)) | Bits(kHalfBits));  // value in [1/2, 1)
   const auto is_low = fraction < V(0.70710678118654752440);                        // √½
   const V m = select(is_low, 2.0 * fraction, fraction);
   const V k = exponent - select(is_tiny, V(1022.0 + 54.0), V(1022.0)) - select(is_low, V(1.0), V(0.0));
@@ -206,7 +206,7 @@ template <class V>
   return select((x > V(0.0)) & (x < V(kInfinity)), result, special);
 }
 
-/// By exp; two terms of the series for small x, and ±1 where the difference is below half an ulp.
+/// tanh by exp; two terms of the series for small x, and ±1 where the difference is below half an ulp.
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V tanh(const V& x) noexcept {
   // Below 1e-4 the next term, 2/15 x⁵, is less than 2e-17 x; above 22 1 − tanh x is less than 2^-62.
@@ -241,7 +241,7 @@ template <class V>
 /// power() for whole exponents up to ±64, else exp(exponent · log x).
 template <class V>
 [[nodiscard]] CHICANE_INLINE inline V pow(const V& x, double exponent) noexcept {
-  constexpr double kMostFactors = 64.0;  // as math.hpp promises
+  constexpr double kMostFactors = 64.0;  // limit that math.hpp promises
   const bool is_whole = exponent >= -kMostFactors && exponent <= kMostFactors &&
                         exponent == static_cast<double>(static_cast<int>(exponent));
   if (is_whole) return elementary::power(x, static_cast<int>(exponent));

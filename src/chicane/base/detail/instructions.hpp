@@ -50,7 +50,7 @@ struct Lanes {
   using Unaligned [[gnu::vector_size(W * 8), gnu::may_alias, gnu::aligned(8)]] = double;
 };
 
-/// By vector extensions alone.
+/// Operations by the compiler's vector extensions alone.
 template <std::size_t W>
 struct Portable {
   using Real = typename Lanes<W>::Real;

@@ -24,7 +24,7 @@ inline constexpr int kMaxVariables = 24;
 [[nodiscard]] constexpr Variables first_variables(int count) noexcept { return variable(count) - 1; }
 [[nodiscard]] constexpr bool contains(Variables set, int index) noexcept { return (set >> index & 1U) != 0; }
 [[nodiscard]] constexpr int size_of(Variables set) noexcept { return std::popcount(set); }
-/// How many members of the set come before `index`: where its entry is stored.
+/// Number of members of the set before `index`: where its entry is stored.
 [[nodiscard]] constexpr std::size_t rank_of(Variables set, int index) noexcept {
   return static_cast<std::size_t>(std::popcount(set & (variable(index) - 1)));
 }
@@ -75,7 +75,7 @@ struct Pairs {
   }
   friend constexpr Pairs operator|(Pairs a, const Pairs& b) noexcept { return a |= b; }
   friend constexpr bool operator==(const Pairs&, const Pairs&) = default;
-  /// Every pair of this set is in the other one.
+  /// Whether every pair of this set is in the other one.
   [[nodiscard]] constexpr bool is_within(const Pairs& o) const noexcept { return (*this | o) == o; }
 };
 
@@ -97,9 +97,9 @@ template <Pairs Set>
   return result;
 }
 
-/// A value with its derivatives, of which only those are stored that are not zero by construction: which ones
-/// is part of the type. Sums and products have the types that follow from the rules of calculus, so the
-/// sparsity pattern of a problem is read off the return types of its functions, and zeros are never computed.
+/// A value with its derivatives. Only derivatives that are not zero by construction are stored; the type says
+/// which. Sums and products have the types that follow from the rules of calculus, so the sparsity pattern of
+/// a problem is read off the return types of its functions, and zeros are never computed.
 ///
 /// V is double, or a pack of doubles with one stage in each lane. `First`: variables with a first derivative;
 /// `Unit`: those of them where it is exactly 1 (not stored). With Order 2 also second derivatives, for the
@@ -114,13 +114,13 @@ struct Jet {
   static constexpr Pairs kSecond = Second;
   static constexpr std::size_t kSlopes = static_cast<std::size_t>(size_of(First & ~Unit));
   static constexpr std::size_t kCurvatures = static_cast<std::size_t>(Second.size());
-  /// Every derivative with respect to variables 0 … n is stored: loops do.
+  /// Whether every derivative by variables 0 … n is stored, so that loops apply.
   static constexpr bool kIsDense = Unit == 0 && First != 0 && (First & (First + 1)) == 0 &&
                                    (Order < 2 || Second == Pairs::of(First, First));
 
   V v;                                    ///< value
-  std::array<V, kSlopes> slopes;          ///< by variable
-  std::array<V, kCurvatures> curvatures;  ///< by pair, in the order of members<Second>()
+  std::array<V, kSlopes> slopes;          ///< first derivatives by variable
+  std::array<V, kCurvatures> curvatures;  ///< second derivatives by pair, in the order of members<Second>()
 
   constexpr Jet() noexcept {}  // NOLINT: not initialised, like a plain double
   /// A constant, where all derivatives can be stored as zero.

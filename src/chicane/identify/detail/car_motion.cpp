@@ -99,7 +99,7 @@ void FourWheels::advance(Motion& motion, double steer, double steer_middle, doub
     const double damping = kCreepDamping * std::max(1.0 - rolling / kCreepSpeed, 0.0);
     const double slip = motion.slip[i] - damping * w.y;
 
-    const double side = i % 2 == 0 ? -1.0 : 1.0;  // in a bend to the left the right wheels get more
+    const double side = i % 2 == 0 ? -1.0 : 1.0;  // right wheels carry more in a left bend
     const double part = std::max(
         kLeastLoad, 1.0 + rest * (tire.per_along * motion.along + side * tire.per_across * motion.across));
     const double load = axle.rest * pressed * part * (1.0 + vehicle_.load_sensitivity * (1.0 - part));
@@ -304,7 +304,7 @@ struct Place {
   double x, y, psi;
 };
 
-/// What a sensor would measure `ahead` [s] after the car is `at`.
+/// Measurement that a sensor would give `ahead` [s] after `at`.
 Expected seen_at(const Car& car, const Place& at, double ahead, double vx, double vy, double r,
                  double acceleration, double steer) {
   const double course = at.psi + 0.5 * ahead * r;
@@ -348,7 +348,7 @@ void drive_single_track(const Car& car, const DriveLog& log, const Actuators& ac
     const double until = log.samples[sample].time;
     while (until - t >= kStep && i + 1 < actuators.size()) {
       const double steer = 0.5 * (actuators.steer(i) + actuators.steer(i + 1)) + car.steer_offset;
-      // Without a pedal the speed is what was measured.
+      // Without a pedal in the log the car keeps the measured speed.
       const double wanted = has_throttle
                                 ? model::longitudinal_acceleration(car.vehicle, actuators.throttle(i), now.vx)
                                 : actuators.acceleration(i);

@@ -11,22 +11,22 @@
 
 namespace chicane::identify {
 
-/// A car on four wheels as it is fitted (docs/identification.md, eq. 3, 4): the forces of the
-/// controllers' model, with what that model leaves out and a log near the limit shows. Tyres build up force
-/// over a way, load moves with a lag, angles are not small. Plain arithmetic, no allocation.
+/// Four-wheel car for the fit (docs/identification.md, eq. 3, 4): the forces of the controllers' model, and
+/// effects that a log near the limit shows beyond it. Tyres build up force over a distance, load moves with a
+/// lag, angles are not small. Plain arithmetic, no allocation.
 ///
 /// Pre: a tyre of the magic formula, no steering helper (has_four_wheels()).
 class FourWheels {
  public:
-  /// At a moment. Slips and transfer are half a step older.
+  /// Motion of the car at a moment. Slips and transfer are half a step older.
   struct Motion {
-    double vx = 0.0, vy = 0.0;           ///< of the centre of mass, in axes of the car [m/s]
-    double r = 0.0;                      ///< [rad/s]
-    std::array<double, 4> slip{};        ///< across: front left, front right, rear left, rear right
-    std::array<double, 4> slip_along{};  ///< forward; of the last step
-    std::array<double, 4> rolling{};     ///< speeds of the wheels' centres a step ago [m/s]
-    double along = 0.0, across = 0.0;    ///< lagged accelerations that shift load [m/s²]
-    double resistance = 0.0;  ///< what turned front wheels took along the car in the last step [m/s²]
+    double vx = 0.0, vy = 0.0;             ///< velocity of the centre of mass in the car's axes [m/s]
+    double r = 0.0;                        ///< [rad/s]
+    std::array<double, 4> slip{};          ///< across: front left, front right, rear left, rear right
+    std::array<double, 4> slip_along{};    ///< forward; of the last step
+    std::array<double, 4> rolling{};       ///< speeds of the wheels' centres a step ago [m/s]
+    double along = 0.0, across = 0.0;      ///< lagged accelerations that shift load [m/s²]
+    double resistance = 0.0;               ///< deceleration by turned front wheels in the last step [m/s²]
     double forward = 0.0, sideways = 0.0;  ///< acceleration by all forces in the last step [m/s²]
   };
 
@@ -35,39 +35,39 @@ class FourWheels {
   /// The motion of a car that has driven like that for a while, with `acceleration` along it.
   [[nodiscard]] Motion steady(double vx, double vy, double r, double steer,
                               double acceleration) const noexcept;
-  /// One step of dt. `steer` is the road-wheel angle at its begin, `steer_middle` in its middle; `force` what
-  /// drive and brakes ask of all wheels over mass, `drag` what holds the car back beside them [m/s²].
+  /// One step of dt. `steer` is the road-wheel angle at its start, `steer_middle` in its middle; `force` the
+  /// demand of drive and brakes on all wheels over mass, `drag` the other resistances [m/s²].
   void advance(Motion& motion, double steer, double steer_middle, double force, double drag) const noexcept;
 
  private:
   struct Tire {
-    double cornering;   ///< over friction
-    double per_along;   ///< of a wheel's load at rest, for each m/s² along
-    double per_across;  ///< and across
+    double cornering;   ///< stiffness over friction
+    double per_along;   ///< share of a wheel's rest load for each m/s² along
+    double per_across;  ///< share of a wheel's rest load for each m/s² across
   };
 
   model::VehicleParams vehicle_;
   double dt_;
   double per_relaxation_;  ///< [1/m]
-  double load_share_;      ///< by which load follows in one step
+  double load_share_;      ///< share of the lag of load that one step covers
   Wheels wheels_;
   double rotating_;
-  double inertia_;  ///< of a wheel, over the square of its radius and the car's mass
+  double inertia_;  ///< wheel inertia over (squared radius · mass of the car)
   double turn_;     ///< mass over yaw inertia [1/m²]
   std::array<model::Axle, 2> axles_;
-  std::array<Tire, 2> tires_{};  ///< of the axles
+  std::array<Tire, 2> tires_{};  ///< tyres of front and rear axle
 };
 
-/// Whether FourWheels can stand for that car.
+/// Whether FourWheels can represent a car.
 [[nodiscard]] inline bool has_four_wheels(const model::VehicleParams& vehicle) noexcept {
   return vehicle.steer_helper == 0.0 && vehicle.tire_shape > 1.0 && vehicle.friction_coupling > 0.0;
 }
 
-/// A car as it is fitted: the controllers' model, and what lies between a command and the car.
+/// Car of the fit: the controllers' model, and the delays and lags between a command and the car.
 struct Car {
   model::VehicleParams vehicle;
-  double delay = 0.1;         ///< from command to effect [s]
-  double steer_offset = 0.0;  ///< of the road-wheel angle beyond what was commanded [rad]
+  double delay = 0.1;         ///< time from command to effect [s]
+  double steer_offset = 0.0;  ///< road-wheel angle beyond the commanded one [rad]
   double reference = 0.0;     ///< the log's reference point ahead of the centre of mass [m]
   Wheels wheels{};            ///< used where has_four_wheels()
 };
@@ -75,27 +75,27 @@ struct Car {
 /// Steering and drive of a log, on a grid: they need the commands and measured speeds alone.
 class Actuators {
  public:
-  static constexpr double kStep = 0.01;  ///< of the grid [s]
+  static constexpr double kStep = 0.01;  ///< step of the grid [s]
 
   Actuators(const DriveLog& log, const Car& car);
   [[nodiscard]] double start() const noexcept { return start_; }
   [[nodiscard]] std::size_t size() const noexcept { return steer_.size(); }
-  /// At grid point `i`, and means of what is asked over the step from there.
+  /// Inputs at grid point `i`, and means of the demand over the step from there.
   [[nodiscard]] double steer(std::size_t i) const noexcept { return steer_[i]; }
   [[nodiscard]] double steer_mean(std::size_t i) const noexcept { return steer_mean_[i]; }
   [[nodiscard]] double acceleration(std::size_t i) const noexcept { return acceleration_[i]; }
   [[nodiscard]] double throttle(std::size_t i) const noexcept { return throttle_[i]; }
-  [[nodiscard]] double pedal(std::size_t i) const noexcept { return pedal_[i]; }  ///< after its lag
-  [[nodiscard]] double speed(std::size_t i) const noexcept { return speed_[i]; }  ///< as measured
+  [[nodiscard]] double pedal(std::size_t i) const noexcept { return pedal_[i]; }  ///< pedal after its lag
+  [[nodiscard]] double speed(std::size_t i) const noexcept { return speed_[i]; }  ///< measured speed
 
  private:
   double start_;
   std::vector<double> steer_, steer_mean_, acceleration_, throttle_, pedal_, speed_;
 };
 
-/// Where a window begins: x, y [m], psi [rad], vx, vy [m/s], r [rad/s].
+/// State at the start of a window: x, y [m], psi [rad], vx, vy [m/s], r [rad/s].
 using Start = std::array<double, 6>;
-/// What a log would have measured: x, y of the reference point, psi, speed, r; then what it would not: vx, vy
+/// Predicted sample of a log: x, y of the reference point, psi, speed, r; then three that a log lacks: vx, vy
 /// and the road-wheel angle.
 using Expected = std::array<double, 8>;
 

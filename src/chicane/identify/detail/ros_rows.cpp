@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Samples and commands from bags of ROS 2, in MCAP files or SQLite.
 #include "chicane/identify/detail/ros_rows.hpp"
 
 #include <fmt/format.h>
@@ -90,10 +91,10 @@ Result<LogRows> read_mcap_rows(const std::string& file, const LogOptions& option
 
 namespace {
 
-constexpr int kMostBytes = 16 << 20;  // of one message
+constexpr int kMostBytes = 16 << 20;  // limit of one message
 constexpr int kMostTopics = 10'000;
-constexpr long long kMostSteps = 2'000'000'000;  // of SQLite's machine: some minutes
-constexpr int kStepsBetween = 100'000;
+constexpr long long kMostSteps = 2'000'000'000;  // limit of SQLite's machine: some minutes
+constexpr int kStepsBetween = 100'000;           // SQLite's steps between two checks of the limit
 
 using Database = std::unique_ptr<sqlite3, decltype(&sqlite3_close)>;
 using Statement = std::unique_ptr<sqlite3_stmt, decltype(&sqlite3_finalize)>;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Least-squares fit of all windows of a log at once: the start of each window is eliminated from the common
+// numbers. Deviations by the jackknife (docs/identification.md).
 #include "chicane/identify/detail/window_fit.hpp"
 
 #include <Eigen/Dense>
@@ -8,10 +10,10 @@
 namespace chicane::identify {
 namespace {
 
-constexpr int kStartSize = 6;
+constexpr int kStartSize = 6;           // numbers of a Start
 constexpr double kHuber = 2.5;          ///< deviations from which on a residual counts linearly
-constexpr double kSideslipSpeed = 1.0;  ///< what v_y may be at a start, as a standard deviation [m/s]
-constexpr Start kStartStep{1e-4, 1e-4, 1e-5, 1e-4, 1e-4, 1e-5};
+constexpr double kSideslipSpeed = 1.0;  ///< standard deviation of v_y at a start [m/s]
+constexpr Start kStartStep{1e-4, 1e-4, 1e-5, 1e-4, 1e-4, 1e-5};  // steps of derivatives, units of Start
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -50,7 +52,7 @@ VectorXd roots_of_weights(const VectorXd& r) {
 
 /// A window's derivatives, its start eliminated (eq. 9).
 struct Eliminated {
-  MatrixXd by_theta;  ///< of what the start cannot explain
+  MatrixXd by_theta;  ///< slopes of the part that the start cannot explain
   VectorXd rest;
   MatrixXd start_matrix;  ///< triangular
   MatrixXd start_theta;
@@ -165,11 +167,11 @@ double loss_of_prior(const Expectation& prior, const VectorXd& theta) {
   return 0.5 * (theta - prior.mean).cwiseQuotient(prior.deviation).squaredNorm();
 }
 
-/// All windows at one theta: what they say of it, and how their starts follow.
+/// All windows linearised at one theta: information on theta, and the slopes of their starts.
 struct Linearised {
   MatrixXd information;
   VectorXd slope;
-  std::vector<MatrixXd> informations;  ///< of each window
+  std::vector<MatrixXd> informations;  ///< information matrix of each window
   std::vector<VectorXd> slopes;
   std::vector<Eliminated> windows;
 };
@@ -189,7 +191,7 @@ Linearised linearise(const std::vector<DriveLog>& logs, const std::vector<Window
     const Car car = prior.car(other);
     return Side{car, actuators_of(logs, car)};
   };
-  std::vector<Side> sides;  // beside, for each number
+  std::vector<Side> sides;  // one-sided points for each number
   const VectorXd steps = 1e-4 * prior.deviation;
   const Side here = side(-1, 0.0);
   for (Eigen::Index i = 0; i < p; ++i) sides.push_back(side(i, steps[i]));
@@ -221,7 +223,7 @@ Linearised linearise(const std::vector<DriveLog>& logs, const std::vector<Window
   return now;
 }
 
-/// How much the numbers vary where one window of the log is left out (eq. 11).
+/// Covariance of the numbers when one window of the log is left out at a time (eq. 11).
 MatrixXd jackknife(const Linearised& at) {
   const Eigen::Index p = at.slope.size();
   std::vector<VectorXd> moved;
@@ -234,13 +236,13 @@ MatrixXd jackknife(const Linearised& at) {
   mean /= windows;
   MatrixXd covariance = MatrixXd::Zero(p, p);
   for (const VectorXd& each : moved) covariance += (each - mean) * (each - mean).transpose();
-  // Few windows tell their own variance badly: Student's quantile in the place of 2.
+  // Student's quantile in place of 2: few windows estimate their own variance badly.
   const double quantile = 1.96 + 2.37 / std::max(1.0, windows - 1.0);
   return 0.25 * quantile * quantile * (windows - 1.0) / windows * covariance;
 }
 
-/// By how much correlated residuals tell less than as many that are not: 1 + 2 Σ (1 − l/(L + 1)) ρ_l up to a
-/// second apart (eq. 10), at least 1; the largest of place, yaw and speed.
+/// Loss of information by correlation of the residuals: 1 + 2 Σ (1 − l/(L + 1)) ρ_l up to a second apart (eq.
+/// 10), at least 1; the largest over place, yaw and speed.
 class Correlation {
  public:
   void add(const DriveLog& log, const Window& window, const VectorXd& r) {
@@ -269,8 +271,8 @@ class Correlation {
   }
 
  private:
-  static constexpr Eigen::Index kMost = 100;  ///< samples in a second that are looked at
-  static constexpr Eigen::Index kKinds = 4;   ///< of residuals: yaw rate follows from yaw
+  static constexpr Eigen::Index kMost = 100;  ///< limit of samples in a second
+  static constexpr Eigen::Index kKinds = 4;   ///< kinds of residuals: yaw rate follows from yaw
   MatrixXd sums_ = MatrixXd::Zero(kMost + 1, kKinds);
   Eigen::Index reach_ = 0;
 };
@@ -280,7 +282,7 @@ class Correlation {
 WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,
                       const Prior& of_numbers, const std::vector<double>& from, const Noise& noise,
                       double accuracy, const std::function<bool()>& go_on) {
-  constexpr int kMostIterations = 40;
+  constexpr int kMostIterations = 40;  // limit of Gauss-Newton steps
   const Expectation prior(of_numbers);
   VectorXd theta = mapped(from);
   WindowFit fit;
@@ -330,7 +332,7 @@ WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& wi
   const VectorXd root = inverse.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const MatrixXd correlation = root.asDiagonal() * inverse * root.asDiagonal();
   for (const auto& row : correlation.rowwise()) fit.correlations.emplace_back(row.begin(), row.end());
-  // What is left, by kind.
+  // Residuals of the fit by kind.
   const Car car = prior.car(theta);
   const std::vector<Actuators> actuators = actuators_of(logs, car);
   std::array<std::vector<double>, 5> sizes;
@@ -349,7 +351,7 @@ WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& wi
     if (sizes[kind].empty()) continue;
     const auto middle = sizes[kind].begin() + static_cast<std::ptrdiff_t>(sizes[kind].size() / 2);
     std::nth_element(sizes[kind].begin(), middle, sizes[kind].end());
-    fit.residual[kind] = 1.4826 * *middle;  // of a normal distribution with this median
+    fit.residual[kind] = 1.4826 * *middle;  // standard deviation from the median, if normally distributed
   }
   // The prior is as certain as it was; samples count as fewer independent ones.
   fit.correlation = correlated.factor();

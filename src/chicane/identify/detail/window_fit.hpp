@@ -16,7 +16,7 @@ struct Window {
   Start start{};
 };
 
-/// Standard deviations of what was measured: x and y [m], psi [rad], speed [m/s], r [rad/s].
+/// Standard deviations of the measurements: x and y [m], psi [rad], speed [m/s], r [rad/s].
 using Noise = std::array<double, 5>;
 
 /// Prior of the estimated numbers: they have no bounds, each has a mean and a deviation before the log is
@@ -28,13 +28,13 @@ struct Prior {
 
 struct WindowFit {
   std::vector<double> theta;
-  /// Standard deviations: the larger of what size and correlation of the residuals say, and of what the
-  /// windows' disagreement does. No larger than the prior's.
+  /// Standard deviations: the larger of two, by size and correlation of the residuals, and by the windows'
+  /// disagreement. No larger than the prior's.
   std::vector<double> deviation;
   double correlation = 1.0;                       ///< samples for each one that is independent
-  std::vector<std::vector<double>> correlations;  ///< of theta
-  Noise residual{};                               ///< standard deviations of what is left, by its median
-  double loss = 0.0;                              ///< of samples and prior
+  std::vector<std::vector<double>> correlations;  ///< correlations between entries of theta
+  Noise residual{};                               ///< standard deviations of the residuals, by their median
+  double loss = 0.0;                              ///< weighted squares of samples and prior
   int iterations = 0;
 };
 

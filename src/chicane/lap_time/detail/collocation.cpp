@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Interior-point search for the fastest lap: barrier steps, line search with a filter, and one cyclic linear
+// system for each iteration.
 #include "chicane/lap_time/detail/collocation.hpp"
 
 #include <algorithm>
@@ -13,17 +15,17 @@ namespace {
 
 using std::size_t;
 
-constexpr double kLeastSlack = 1e-2;     // of the first iterate
-constexpr double kToBoundary = 0.99;     // share of the way to a slack of zero, at least
-constexpr double kEquationShift = 1e-9;  // keeps dependent equations solvable
-constexpr double kFirstShift = 1e-4;     // of the Hessian when its curvature is wrong
-constexpr double kMostShift = 1e10;
-constexpr double kBarrierFall = 0.2;
+constexpr double kLeastSlack = 1e-2;       // smallest slack at the start
+constexpr double kToBoundary = 0.99;       // share of the way to a slack of zero, at least
+constexpr double kEquationShift = 1e-9;    // keeps dependent equations solvable
+constexpr double kFirstShift = 1e-4;       // first shift of the Hessian, if its curvature is wrong
+constexpr double kMostShift = 1e10;        // the search fails beyond this shift
+constexpr double kBarrierFall = 0.2;       // next barrier over this one, at most
 constexpr double kBarrierError = 10.0;     // a barrier problem is solved well enough below this times μ
 constexpr double kMultiplierRange = 1e10;  // keeps ν near μ / s
-constexpr double kBarrierShare = 1e-2;     // of the tolerance: a smaller barrier may end the search
-constexpr int kHalvings = 12;
-constexpr double kKick = 0.1;
+constexpr double kBarrierShare = 1e-2;     // share of the tolerance: a smaller barrier may end the search
+constexpr int kHalvings = 12;              // trial steps of a line search
+constexpr double kKick = 0.1;              // share of the step without descent, to leave a stuck point
 
 }  // namespace
 
@@ -114,7 +116,7 @@ class Collocation::Search {
   [[nodiscard]] double inequality(const std::vector<double>& out, size_t k, size_t j) const {
     return out[k * nm_ + nx_ + na_ + 1 + j];
   }
-  /// Weight of node k's cost: half of both intervals beside it.
+  /// Weight of node k's cost: half of the intervals before and after it.
   [[nodiscard]] double share(size_t k) const {
     return 0.5 * (steps_[k] + steps_[before(k)]) * options_.cost_scale;
   }
@@ -213,7 +215,7 @@ class Collocation::Search {
     for (const double l : now_.eta) multipliers += std::fabs(l);
     const double inequalities = static_cast<double>(n_ * ng_);
     const double all = inequalities + static_cast<double>(n_ * (nx_ + na_));
-    constexpr double kLarge = 100.0;
+    constexpr double kLarge = 100.0;  // mean multiplier above which errors are scaled
     stationarity_ = slope_of / (std::max(kLarge, (multipliers + of_inequalities) / all) / kLarge);
     complementarity_ /= std::max(kLarge, of_inequalities / inequalities) / kLarge;
   }
@@ -334,15 +336,15 @@ class Collocation::Search {
         return true;
       }
     }
-    // Nothing along here is better by the filter: it is forgotten, and a short step leaves the place.
+    // The filter accepts no point along this direction: clear it, and leave the place by a short step.
     filter_.clear();
     take(kKick * primal, dual, mu);
     return true;
   }
 
   [[nodiscard]] bool accepts(const Point& here, const Point& there, double descent) {
-    constexpr double kShare = 1e-5;
-    constexpr double kArmijo = 1e-4;
+    constexpr double kShare = 1e-5;   // margin of the filter, over the violation
+    constexpr double kArmijo = 1e-4;  // least share of the predicted descent
     if (!std::isfinite(there.cost + there.violation)) return false;
     for (const Point& p : filter_)
       if (there.violation >= (1.0 - kShare) * p.violation && there.cost >= p.cost - kShare * p.violation)

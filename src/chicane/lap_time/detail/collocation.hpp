@@ -6,8 +6,8 @@
 
 namespace chicane::lap_time {
 
-/// Functions of the variables z of one node: rates of its states by arc length, equations that vanish, the
-/// cost by arc length, and what must not be negative; in this order. The first `states` of z are the states.
+/// Functions of the variables z of one node, in this order: rates of its states by arc length, equations (=
+/// 0), cost by arc length, inequalities (>= 0). The first `states` of z are the states.
 class NodeFunctions {
  public:
   int variables = 0;
@@ -22,7 +22,7 @@ class NodeFunctions {
   virtual ~NodeFunctions() = default;
   [[nodiscard]] int functions() const noexcept { return states + equations + 1 + inequalities; }
   virtual void values(int node, const double* z, double* out) const = 0;
-  /// Also the Jacobian by rows and the Hessian (lower triangle by rows) of the sum weighted by `weights`.
+  /// Values, the Jacobian by rows, and the Hessian of the sum weighted by `weights` (lower triangle by rows).
   virtual void derivatives(int node, const double* z, const double* weights, double* out, double* jacobian,
                            double* hessian) const = 0;
 };
@@ -33,15 +33,15 @@ class NodeFunctions {
 class Collocation {
  public:
   struct Options {
-    double tolerance = 1e-6;
-    double first_barrier = 0.1;
-    double last_barrier = 1e-8;
-    double cost_scale = 20.0;  ///< so that the cost of a node is about one
+    double tolerance = 1e-6;     ///< limit of stationarity, violation and complementarity, scaled
+    double first_barrier = 0.1;  ///< μ at the start
+    double last_barrier = 1e-8;  ///< μ at the end
+    double cost_scale = 20.0;    ///< scale at which the cost of a node is about 1
     int most_iterations = 600;
-    /// Called with iteration, cost and the largest violated equation; false ends the search. May be empty.
+    /// Progress callback: iteration, cost and largest violated equation; false ends the search. May be empty.
     std::function<bool(int, double, double)> go_on{};
-    /// Called with the variables and the largest violation before each iteration; true ends the search as
-    /// solved, where less than an optimum is enough. May be empty.
+    /// Early end: gets the variables and the largest violation before each iteration; true ends the search as
+    /// solved before it reaches an optimum. May be empty.
     std::function<bool(const std::vector<double>&, double)> is_enough{};
   };
   struct Report {
@@ -54,12 +54,12 @@ class Collocation {
     double barrier = 0.0;
   };
 
-  /// `steps`: length of the interval from node k to the next; `changes`: by how much each state's change over
-  /// it is more than the integral of its rate (nodes × states), as a ring's turning. `functions` must outlive
-  /// this.
+  /// `steps`: length of the interval from node k to the next. `changes`: part of each state's change over the
+  /// interval that is not the integral of its rate (nodes × states), such as the road's turning. `functions`
+  /// must outlive this.
   Collocation(const NodeFunctions& functions, std::vector<double> steps, std::vector<double> changes);
 
-  /// From the nodes' variables `z` one after the other to those of the optimum.
+  /// Solves from the nodes' variables `z`, one node after the other, and replaces them by the optimum's.
   Report solve(std::vector<double>& z, const Options& options);
 
  private:

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Linear system of a ring of nodes: factors each node's block in turn, then solves with refinement.
 #include "chicane/lap_time/detail/cyclic_system.hpp"
 
 #include <algorithm>
@@ -156,7 +157,7 @@ bool CyclicSystem::factor() {
   std::vector<double> now(area());
   std::vector<double> border(states_by_variables());  // nz × nx
   std::vector<double> next_border(states_by_variables());
-  std::vector<double> change(index(nx_) * index(nx_), 0.0);  // of the block of λ_k
+  std::vector<double> change(index(nx_) * index(nx_), 0.0);  // change of the block of λ_k
   for (int i = 0; i < nz_; ++i)
     for (int j = 0; j < nx_; ++j) border[index(i * nx_ + j)] = coupling(0)[j * nz_ + i];
   int negative = 0;

@@ -6,10 +6,10 @@
 namespace chicane::lap_time {
 
 /// P A Pᵀ = L D Lᵀ of a dense symmetric matrix that need not be definite, with pivots of one or two rows
-/// (Bunch, Kaufman 1977). Its pivots tell how many eigenvalues are negative (Sylvester).
+/// (Bunch, Kaufman 1977). Its pivots give the number of negative eigenvalues (Sylvester).
 class SymmetricBlock {
  public:
-  /// Both triangles of A by rows, n × n. False for a singular one.
+  /// Factors A, given with both triangles by rows, n × n. False if it is singular.
   [[nodiscard]] bool factor(const double* matrix, int n);
   [[nodiscard]] int negative() const noexcept { return negative_; }
   /// Solves A X = B in place; B has n rows of `columns` numbers.
@@ -27,28 +27,28 @@ class SymmetricBlock {
   int n_ = 0;
   int negative_ = 0;
   std::vector<double> a_;    ///< L below the diagonal, D on it
-  std::vector<double> off_;  ///< of D: entry (k + 1, k) of a pivot of two rows, else 0
-  std::vector<int> order_;   ///< row of A that stands in row i
+  std::vector<double> off_;  ///< lower entries of D: (k + 1, k) in a pivot of two rows, else 0
+  std::vector<int> order_;   ///< row of A in row i
   mutable std::vector<double> work_;
 };
 
-/// Symmetric linear system of a ring of nodes (docs/limit.md, section 3). Node k has unknowns
-/// b_k = (z_k, λ_k, η_k): its variables, the multipliers of the interval that ends at it, and those of its
-/// own equations. Matrix: dense blocks on the diagonal, and B_k = ∂(interval from k to k + 1)/∂z_k between
-/// λ_{k+1} and z_k, cyclic. Nodes 1 … N−1 are eliminated in turn; what they leave falls on node 0.
+/// Symmetric linear system of a ring of nodes (docs/limit.md, section 3). Node k has unknowns b_k = (z_k,
+/// λ_k, η_k): its variables, the multipliers of the interval that ends at it, and those of its own equations.
+/// Matrix: dense blocks on the diagonal, and B_k = ∂(interval from k to k + 1)/∂z_k between λ_{k+1} and z_k,
+/// cyclic. Nodes 1 … N−1 are eliminated in turn, and their remainders are added to node 0.
 class CyclicSystem {
  public:
   CyclicSystem(int nodes, int variables, int states, int equations);
 
   [[nodiscard]] int block_size() const noexcept { return nb_; }
-  /// To be filled before factor(): both triangles of node k's block, by rows; and B_k, states × variables.
+  /// Block of node k, to be filled before factor(): both triangles, by rows; and B_k, states × variables.
   [[nodiscard]] double* diagonal(int k) noexcept { return diagonal_.data() + index(k) * area(); }
   [[nodiscard]] double* coupling(int k) noexcept {
     return coupling_.data() + index(k) * states_by_variables();
   }
 
-  /// False when singular or when the number of negative eigenvalues is not that of the multipliers: the
-  /// Hessian is not positive definite where the equations hold.
+  /// Factors the matrix. False if singular, or if the number of negative eigenvalues differs from the number
+  /// of multipliers: the Hessian is then not positive definite on the equations.
   [[nodiscard]] bool factor();
   /// Solves in place, with refinement; b holds the blocks one after the other.
   void solve(std::vector<double>& b) const;
@@ -61,7 +61,7 @@ class CyclicSystem {
   void subtract_product(const std::vector<double>& x, std::vector<double>& rest) const;
 
   int n_, nz_, nx_, na_, nb_;
-  int width_;  ///< columns of what eliminating a node spreads: λ of the next one and z of node 0
+  int width_;  ///< columns of an eliminated node's fill-in: λ of the next node, z of node 0
   std::vector<double> diagonal_, coupling_;
   std::vector<double> spread_;  ///< D_k⁻¹ times both couplings, n × nb × width
   std::vector<SymmetricBlock> blocks_;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Models for the limit of each plant: the equations of a node, reserves, first guesses, and the commands that
+// drive a plan.
 #include "chicane/lap_time/detail/limit_model.hpp"
 
 #include <algorithm>
@@ -11,7 +13,7 @@ namespace chicane::lap_time {
 namespace {
 
 constexpr double kGravity = 9.81;    // [m/s²]
-constexpr double kNearLimit = 0.96;  // of the drive
+constexpr double kNearLimit = 0.96;  // share of the drive
 
 template <class Model>
 class WithModel : public PlanModelOf<LimitModel, Model> {
@@ -100,7 +102,7 @@ class UdacityLimit final : public WithModel<UdacityModel> {
     const double lock = model_.rear_share() / (1.0 - model_.front_pull()) * model_.load(state.vx);
     const double pull = std::max(inputs[1], -kNearLock * lock);
     const auto m = model_.motion(state.vx, state.vy, state.r, z[kSteer], pull);
-    // More slip than that of the peak would give less force, not more.
+    // More slip than at the peak would give less force: limit the demand.
     const auto course = [&](double vx, double vy, double r) {
       return chicane::atan((vy + model_.car.front_axle * r) / (vx + model_.car.lateral_speed_offset));
     };
@@ -115,9 +117,9 @@ class UdacityLimit final : public WithModel<UdacityModel> {
   }
 
  private:
-  static constexpr double kSeen = 0.625;     ///< mean over the parts of a step of what is left of the turn
-  static constexpr double kMostSlip = 0.19;  ///< [rad]
-  static constexpr double kNearLock = 0.985;
+  static constexpr double kSeen = 0.625;      ///< mean over the parts of a step of the remaining turn
+  static constexpr double kMostSlip = 0.19;   ///< [rad]
+  static constexpr double kNearLock = 0.985;  ///< share of the force at which wheels lock
   double friction_ = 1.0;
 };
 
@@ -225,7 +227,7 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
   [[nodiscard]] model::Command command(const model::State& state, const double* z,
                                        const double* inputs) const override {
     const sim::DoubleTrackParams& car = model_.car;
-    // More slip than that of the peak would give less force, not more.
+    // More slip than at the peak would give less force: limit the demand.
     const auto course = [&](double vx, double vy, double r) { return (vy + car.front_axle * r) / vx; };
     const double planned = z[kSteer] - course(z[kVx], z[kVy], z[kYawRate]);
     const double most = std::max(kMostSlip * car.tire(true).peak_slip(), std::fabs(planned));
@@ -236,7 +238,7 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
   }
 
  private:
-  static constexpr double kMostSlip = 0.9;  ///< of the peak's
+  static constexpr double kMostSlip = 0.9;  ///< share of the slip at the peak
   double pedal_ = 0.0, shift_x_ = 0.0, shift_y_ = 0.0;
 };
 

@@ -25,7 +25,7 @@ struct Tuning {
 /// A plant, whose plans are also driven.
 class LimitModel : public PlanModel {
  public:
-  /// What plans to be driven keep in reserve: the first that can be driven is taken.
+  /// Reserves for plans to be driven, in order: the first plan that can be driven is taken.
   [[nodiscard]] virtual std::span<const Reserve> reserves() const = 0;
 
   /// Feedback along a plan: the first `driven` states, and two inputs from variable `input` on. Weights of
@@ -33,17 +33,17 @@ class LimitModel : public PlanModel {
   [[nodiscard]] virtual int driven() const = 0;
   [[nodiscard]] virtual int input() const = 0;
   [[nodiscard]] virtual std::vector<double> error_weights() const = 0;
-  /// Several are tried: plans at the limit differ in how well they are followed.
+  /// Weights of the feedback to try in turn: plans at the limit differ in how well they are followed.
   [[nodiscard]] virtual std::span<const Tuning> tunings() const = 0;
   /// The drive has no more to give at a plan's variables.
   [[nodiscard]] virtual bool is_spent(const double* z) const = 0;
 
-  /// What happens inside the plant and no State shows, from what was asked of it and measured.
+  /// State inside the plant that no State shows, tracked from commands and measurements.
   virtual void start() = 0;
   virtual void see(const model::Command& asked, const sim::PlantOutput& output, double elapsed) = 0;
   /// The driven states beyond offset and heading.
   virtual void motion(const model::State& state, double* states) const = 0;
-  /// What to ask for: `z` is the plan's place a moment ahead, `inputs` its two inputs with feedback.
+  /// Command to send: `z` is the plan's node a moment ahead, `inputs` its two inputs with feedback.
   [[nodiscard]] virtual model::Command command(const model::State& state, const double* z,
                                                const double* inputs) const = 0;
 };

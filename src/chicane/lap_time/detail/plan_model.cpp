@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Road at the nodes of a plan, first guess of speeds, and the check that a car's lock fits the road.
 #include "chicane/lap_time/detail/plan_model.hpp"
 
 #include <algorithm>
@@ -16,10 +17,10 @@
 namespace chicane::lap_time {
 namespace {
 
-constexpr double kSample = 1.0;      // of the speeds that decide the spacing [m]
+constexpr double kSample = 1.0;      // spacing of the speeds that choose the nodes [m]
 constexpr double kLeastStep = 0.35;  // [m]
 constexpr double kMostStep = 4.0;
-constexpr double kWindow = 6.0;  // over which the line's curvature is averaged [m]
+constexpr double kWindow = 6.0;  // length over which the line's curvature is averaged [m]
 constexpr double kMostReach = 0.9;
 
 /// Width [m] on the side to which the line bends with `bend` [1/m], if positive: at most kMostReach of the
@@ -139,9 +140,9 @@ struct BendModel {
   static constexpr double kSmooth = 1e-3;
 };
 
-constexpr double kPace = 4.0;       // of the nodes [m/s]
+constexpr double kPace = 4.0;       // speed at the nodes [m/s]
 constexpr double kFollowed = 1e-3;  // violation of a line within the road: millimetres
-constexpr int kNarrowings = 3;      // of the room, each to a half
+constexpr int kNarrowings = 3;      // times that the room is halved
 
 /// Whether the car's lock suffices for the straightest line with its centre of mass at most `beside` from the
 /// middle.
@@ -181,7 +182,7 @@ Result<void> bends_fit(RoadNodes road, const CarSize& car, const Fit& fit, doubl
   };
   const Collocation::Report report = problem.solve(z, options);
   has_answer = !report.is_stopped && report.violation <= 1e-2;
-  if (!has_answer) return {};  // the search itself will tell
+  if (!has_answer) return {};  // left to the search itself
   if (can_be_followed()) return {};
   return fail(
       ErrorCode::kInvalidArgument,
@@ -194,7 +195,7 @@ Result<void> bends_fit(RoadNodes road, const CarSize& car, const Fit& fit, doubl
 }  // namespace
 
 double CarSize::most_curvature() const noexcept {
-  const double rear = chicane::tan(steer_limit) / (front_axle + rear_axle);  // of the rear axle's middle
+  const double rear = chicane::tan(steer_limit) / (front_axle + rear_axle);  // at the rear axle's middle
   return rear / std::sqrt(1.0 + rear_axle * rear_axle * rear * rear);
 }
 
@@ -235,8 +236,9 @@ Result<void> fits_road(const road::Track& track, const CarSize& car, const Fit& 
         message("limit: the loop is %.1f m long, expected more than the car's circle at full lock, %.1f m",
                 fit.scale * track.length(), fit.scale * circle));
 
-  // On a road that is wider than its bends are round, the search for the straightest line can end in a fold
-  // of the coordinates. A line that a narrower road leaves is one of the wider road, too.
+  // Start on a narrower road: where the road is wider than its bends are round, the search for the
+  // straightest line can end in a fold of the coordinates. A line inside the narrower road is valid on the
+  // wider one.
   bool has_answer = false;
   Result<void> fits = bends_fit(road, car, fit, fit.beside, has_answer);
   double beside = std::min(fit.beside, widest);

@@ -20,11 +20,11 @@ namespace chicane::lap_time {
 /// The road at the nodes of a plan (docs/limit.md, section 2).
 struct RoadNodes {
   std::vector<double> s;                      ///< along the centre line [m]
-  std::vector<double> heading;                ///< of the centre line in W, in (−π, π] [rad]
-  std::vector<double> step;                   ///< to the next node [m]
-  std::vector<double> turn;                   ///< of the centre line until the next node [rad]
+  std::vector<double> heading;                ///< heading of the centre line in W, in (−π, π] [rad]
+  std::vector<double> step;                   ///< distance to the next node [m]
+  std::vector<double> turn;                   ///< turn of the centre line up to the next node [rad]
   std::vector<double> curvature;              ///< mean around the node [1/m]
-  std::vector<double> front_bend, rear_bend;  ///< that moves the line away at the axles [1/m]
+  std::vector<double> front_bend, rear_bend;  ///< curvature that moves the line away at the axles [1/m]
   std::vector<double> front_left, front_right, rear_left, rear_right;  ///< edges at the axles [m]
 };
 
@@ -72,7 +72,7 @@ class ModelFunctions final : public NodeFunctions {
 /// A body in the road's axes (docs/limit.md, eq. 7–8).
 template <class T>
 struct OnRoad {
-  T c, s;      ///< of the heading against the line
+  T c, s;      ///< cosine and sine of the heading against the line
   T slowness;  ///< time by arc length of the centre line [s/m]
 
   OnRoad(double curvature, const T& offset, const T& heading, const T& vx, const T& vy)
@@ -97,7 +97,7 @@ struct OnRoad {
   }
 };
 
-/// What a first guess of a lap knows of a car.
+/// Car of a first guess of a lap.
 struct GuessCar {
   double grip = 8.0;    ///< sideways [m/s²]
   double drive = 3.0;   ///< [m/s²]
@@ -113,10 +113,10 @@ struct GuessCar {
 /// Nodes about `time_step` [s] apart at the speed of the guess, from s = 0 on; at least `least` [m].
 [[nodiscard]] RoadNodes lay_nodes(const road::Track& track, const GuessCar& car, double time_step);
 
-/// What has to fit a road.
+/// Size of a car that must fit a road.
 struct CarSize {
-  double front_axle = 0.0, rear_axle = 0.0;  ///< from the centre of mass [m]
-  double half_width = 0.0;                   ///< to the outer edge of a contact patch [m]
+  double front_axle = 0.0, rear_axle = 0.0;  ///< distances from the centre of mass [m]
+  double half_width = 0.0;                   ///< distance to the outer edge of a contact patch [m]
   double steer_limit = 0.0;                  ///< [rad]
 
   /// Curvature that the centre of mass drives at full lock and walking pace [1/m].
@@ -128,23 +128,23 @@ struct CarSize {
 /// and of the full lock.
 [[nodiscard]] Result<void> fits_road(const road::Track& track, const CarSize& car);
 
-/// How tight is too tight.
+/// Limits of a bend that a car can pass.
 struct Fit {
-  double reserve = 1.0 / 1.02;  ///< of the radius that a bend leaves room for, over that of the full lock
-  double surely = 4.0;  ///< a middle of the road with so many times the radius at full lock needs no look
-  double beside = std::numeric_limits<double>::infinity();  ///< that the car may be from the middle [m]
-  double scale = 1.0;                                       ///< of the lengths in messages
+  double reserve = 1.0 / 1.02;  ///< smallest radius allowed over the radius at full lock
+  double surely = 4.0;          ///< radius over the full lock's above which a bend is not checked
+  double beside = std::numeric_limits<double>::infinity();  ///< largest offset of the car from the middle [m]
+  double scale = 1.0;                                       ///< scale of the lengths in messages
   std::function<bool()> go_on{};  ///< asked before each iteration; false: no answer, as if it fitted
 };
 [[nodiscard]] Result<void> fits_road(const road::Track& track, const CarSize& car, const Fit& fit);
 
-/// What a plan keeps in reserve.
+/// Reserve of a plan.
 struct Reserve {
-  double margin = 0.0;         ///< of each contact patch from its edge [m]
-  double grip_share = 1.0;     ///< of the tyres' force that it uses
-  double slip_share = 10.0;    ///< most slip over that of the peak force, so that steering keeps its effect
-  double brake_share = 1.0;    ///< of the largest braking force
-  double steer_weight = 1e-3;  ///< of the steering's rate squared, in time [s/rad²·s]
+  double margin = 0.0;         ///< gap of each contact patch to its edge [m]
+  double grip_share = 1.0;     ///< share of the tyres' force
+  double slip_share = 10.0;    ///< largest slip over the slip of peak force: steering keeps its effect
+  double brake_share = 1.0;    ///< share of the largest braking force
+  double steer_weight = 1e-3;  ///< weight of the steering's rate squared, in time [s/rad²·s]
 };
 
 /// A car as the search for its fastest lap sees it.
@@ -162,7 +162,7 @@ class PlanModel {
   [[nodiscard]] virtual road::RacingLinePoint point(const double* z) const = 0;
 };
 
-/// A `Base`, PlanModel or an interface derived from it, whose functions are those of `Model`.
+/// Implements `Base`, which is PlanModel or derived from it, with the functions of `Model`.
 template <class Base, class Model>
 class PlanModelOf : public Base {
  public:

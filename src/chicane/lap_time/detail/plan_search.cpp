@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The search for a fastest lap: optima on coarse nodes from several guesses, the best one refined. Then the
+// Search for a fastest lap: optima on coarse nodes from several guesses, the best one refined. Then the
 // feedback that drives such a plan, and a drive by both as the witness of its time.
 #include "chicane/lap_time/detail/plan_search.hpp"
 
@@ -14,13 +14,13 @@
 namespace chicane::lap_time {
 namespace {
 
-constexpr double kCoarse = 2.5;  // spacing of the coarse nodes over that of the fine ones
+constexpr double kCoarse = 2.5;  // coarse spacing over fine spacing of the nodes
 constexpr int kCoarseIterations = 260,
-              kFineIterations = 300;       // limits: searches that go well need fewer
-constexpr double kCoarseTolerance = 1e-3;  // the fine nodes start from these solutions
-constexpr double kWarmBarrier = 1e-4;      // first barrier close to a known solution
-constexpr double kUsable = 1e-2;           // largest violation of a plan that can be driven: some centimetres
-// Iterations of a search that goes well, for the progress that is shown: on coarse and on fine nodes.
+              kFineIterations = 300;       // limits: typical searches need fewer
+constexpr double kCoarseTolerance = 1e-3;  // tolerance of the starts for fine nodes
+constexpr double kWarmBarrier = 1e-4;      // first barrier near a known solution
+constexpr double kUsable = 1e-2;           // largest scaled violation of a plan that can be driven: some cm
+// Typical iterations of a search, for the displayed progress: on coarse and on fine nodes.
 constexpr double kIterationsOfStart = 55.0, kIterationsOfFine = 35.0;
 constexpr const char* kStopped = "limit: stopped";
 constexpr const char* kNoBudget = "limit: its budget ended before there was a plan";
@@ -139,6 +139,7 @@ Result<NodePlan> PlanSearch::find() {
   expected_ = work_ + (kEnough * kIterationsOfStart * static_cast<double>(coarse.s.size()) +
                        kIterationsOfFine * static_cast<double>(nodes.s.size())) /
                           PlanProgress::kNodesPerSecond;
+  // Coarse nodes: the best of kEnough optima.
   NodePlan best;
   int found = 0;
   for (const Start& start : kStarts) {
@@ -160,7 +161,8 @@ Result<NodePlan> PlanSearch::find() {
                 is_out_of_budget_ ? kNoBudget : "limit: no optimum from any first guess");
   if (is_out_of_budget_) return best_so_far(std::move(best));
   const auto variables = static_cast<std::size_t>(model_.functions().variables);
-  for (const double barrier : {kWarmBarrier, 1e-2, 1e-3}) {
+  // Fine nodes: from the best coarse plan.
+  for (const double barrier : {kWarmBarrier, 1e-2, 1e-3}) {  // after the warm start two colder ones
     NodePlan fine;
     fine.road = nodes;
     fine.z = moved(best, fine.road, variables);
@@ -183,7 +185,7 @@ Result<NodePlan> PlanSearch::near(const NodePlan& plan, const Reserve& reserve) 
 
 namespace {
 
-using Matrix = std::vector<double>;  // by rows
+using Matrix = std::vector<double>;  // row by row
 
 /// X = A⁻¹ B with A n × n and B n × m, by elimination with row pivots.
 Matrix solved(Matrix a, Matrix b, std::size_t n, std::size_t m) {
@@ -206,7 +208,7 @@ Matrix solved(Matrix a, Matrix b, std::size_t n, std::size_t m) {
   return b;
 }
 
-/// Derivatives of the driven states' rates by these states and the two inputs: n rows of n + 2, the
+/// Derivatives of the driven states' rates by these states and the two inputs: n rows of n + 2, with the
 /// equations' own variables eliminated.
 Matrix reduced_slopes(const LimitModel& model, std::size_t node, const double* z) {
   const NodeFunctions& f = model.functions();
@@ -281,6 +283,7 @@ RingFeedback::RingFeedback(const LimitModel& model, const RoadNodes& road, const
         right[i * m + j] = 0.5 * h * (slopes[k][i * m + j] + slopes[next][i * m + j]);
     }
     const Matrix f = solved(std::move(left), std::move(right), n, m);
+    // Q = Fᵀ P F plus the weights of the step.
     Matrix pf(n * m, 0.0);
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t l = 0; l < n; ++l)
@@ -292,6 +295,7 @@ RingFeedback::RingFeedback(const LimitModel& model, const RoadNodes& road, const
     const double dt = h * std::max(1e-3, 1.0 / z[k * variables + kVx]);
     for (std::size_t i = 0; i < n; ++i) q[i * m + i] += dt * error[i];
     for (std::size_t i = 0; i < 2; ++i) q[(n + i) * m + n + i] += dt * weight[i];
+    // Gains: the inverse of the inputs' 2 × 2 block times their rows.
     const double a = q[n * m + n];
     const double b = q[n * m + n + 1];
     const double c = q[(n + 1) * m + n + 1];
@@ -301,10 +305,11 @@ RingFeedback::RingFeedback(const LimitModel& model, const RoadNodes& road, const
       gain[j] = (c * q[n * m + j] - b * q[(n + 1) * m + j]) / det;
       gain[n + j] = (a * q[(n + 1) * m + j] - b * q[n * m + j]) / det;
     }
+    // P of this node: the Riccati step.
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j)
         p[i * n + j] = q[i * m + j] - q[n * m + i] * gain[j] - q[(n + 1) * m + i] * gain[n + j];
-    // Symmetric again: differences by rounding would grow from node to node.
+    // Restores symmetry: rounding differences would grow from node to node.
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < i; ++j) p[i * n + j] = p[j * n + i] = 0.5 * (p[i * n + j] + p[j * n + i]);
   }
@@ -341,7 +346,7 @@ class PlanTable {
   double length_;
 };
 
-/// Where the car moves most nearly as a plant that is put down: straight on.
+/// Node with the least sideways and turning motion: closest to the state of a plant after reset().
 std::size_t straightest(const NodePlan& plan, std::size_t variables) {
   std::size_t best = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -373,6 +378,7 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
   const PlanTable table(plan, feedback, variables, driven, track.length());
   const road::Path& line = track.centre();
 
+  // Start on the plan, at its straightest node.
   const std::size_t first = straightest(plan, variables);
   const double* z0 = plan.z.data() + first * variables;
   const road::PathPoint foot = line.at(plan.road.s[first]);
@@ -389,11 +395,11 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
   std::vector<double> gains(2 * driven);
   std::vector<double> x(driven);
   const double dt = plant.step_length();
-  const double most_time = (laps + 2.0) * 1.5 * plan.lap_time;
+  const double most_time = (laps + 2.0) * 1.5 * plan.lap_time;  // half as long again as planned
   for (double time = 0.0; time < most_time && judge.state().lap < laps;) {
     const sim::WorldState& seen = judge.state();
     table.at(seen.s, z.data(), gains.data());
-    // What is asked for now acts for a step: the plan's inputs in its middle.
+    // A command acts for one step: take the plan's inputs in its middle.
     const OnRoad<double> on(line.at(seen.s).curvature, z[kOffset], z[kHeading], z[kVx], z[kVy]);
     table.at(seen.s + 0.5 * dt / on.slowness, ahead.data(), nullptr);
     model.motion(plant.state(), x.data());
@@ -404,6 +410,7 @@ DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePla
       const double error = i == kHeading ? wrap_angle(x[i] - z[i]) : x[i] - z[i];
       for (std::size_t j = 0; j < 2; ++j) inputs[j] -= gains[j * driven + i] * error;
     }
+    // One step of the plant, and its judgement.
     const model::Command asked = model.command(plant.state(), ahead.data(), inputs);
     plant.advance(asked);
     model.see(asked, plant.output(), dt);

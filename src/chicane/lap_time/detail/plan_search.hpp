@@ -17,7 +17,7 @@
 
 namespace chicane::lap_time {
 
-/// A lap of a plant's model: its nodes and their variables, one after the other.
+/// Lap of a plant's model: nodes of the road, and the variables of each node in turn.
 struct NodePlan {
   RoadNodes road;
   std::vector<double> z;
@@ -25,37 +25,37 @@ struct NodePlan {
   bool is_best_so_far = false;  ///< no optimum: the budget ended the search
 };
 
-/// Time round the ring by the trapezoidal rule [s].
+/// Lap time by the trapezoidal rule [s].
 [[nodiscard]] double lap_time_of(const RoadNodes& road, const std::vector<double>& z, int variables);
 
-/// A plan of `car` as a line, which keeps `margin` [m] to edge and kerb.
+/// Racing line of a plan for `car`; `margin`: distance kept to edge and kerb [m].
 [[nodiscard]] road::RacingLine line_of(const road::Track& track, std::string_view car, const PlanModel& model,
                                        const NodePlan& plan, double margin);
 
-/// The fastest laps of one model on one road: from a first guess on coarse nodes to fine ones; then others
-/// with more in reserve from there.
+/// Fastest laps of one model on one road: first from a guess on coarse nodes to fine ones, then from a known
+/// plan to plans with more in reserve.
 class PlanSearch {
  public:
   struct Options {
-    double time_step = 0.05;  ///< between nodes [s]
-    double tolerance = 1e-6;  ///< stationarity of an optimum (Collocation::Options)
-    double budget = std::numeric_limits<double>::infinity();  ///< of find() (seconds_of_work) [s]
-    /// Called with the progress in words, and the lap time; false ends the search. May be empty.
+    double time_step = 0.05;  ///< time between nodes [s]
+    double tolerance = 1e-6;  ///< stationarity at an optimum (Collocation::Options)
+    double budget = std::numeric_limits<double>::infinity();  ///< limit of find()'s work [s]
+    /// Progress callback: count of iterations and lap time [s]; false ends the search. May be empty.
     std::function<bool(int iteration, double lap_time)> go_on{};
-    std::function<void(const PlanProgress&)> on_progress{};  ///< after each iteration; may be empty
+    std::function<void(const PlanProgress&)> on_progress{};  ///< called after each iteration; may be empty
   };
   PlanSearch(const road::Track& track, PlanModel& model, const Options& options)
       : track_{track}, model_{model}, options_{options} {}
 
-  /// The best so far where the budget ends the search. kNotFound when there is none: no optimum from any
-  /// first guess, or no budget left for one.
+  /// Best plan so far if the budget ends the search. kNotFound if there is none: no optimum from any first
+  /// guess, or no budget left to reach one.
   [[nodiscard]] Result<NodePlan> find();
-  /// The plan with that in reserve, from a neighbouring one.
+  /// Plan with `reserve`, searched from a neighbouring plan.
   [[nodiscard]] Result<NodePlan> near(const NodePlan& plan, const Reserve& reserve);
 
   [[nodiscard]] bool is_stopped() const noexcept { return is_stopped_; }
   [[nodiscard]] bool is_out_of_budget() const noexcept { return is_out_of_budget_; }
-  /// Work of all searches until now [s].
+  /// Work of all searches so far [s].
   [[nodiscard]] double work() const noexcept { return work_; }
   [[nodiscard]] int iterations() const noexcept { return iterations_; }
   [[nodiscard]] double stationarity() const noexcept { return stationarity_; }
@@ -72,7 +72,7 @@ class PlanSearch {
   int iterations_ = 0;
   double stationarity_ = 0.0, violation_ = 0.0;
   double work_ = 0.0;
-  double expected_ = 0.0;  ///< work of a search that goes well [s]
+  double expected_ = 0.0;  ///< work of a search without retries [s]
   bool is_stopped_ = false;
   bool is_out_of_budget_ = false;
 };
@@ -85,7 +85,7 @@ class RingFeedback {
   RingFeedback(const LimitModel& model, const RoadNodes& road, const std::vector<double>& z,
                const Tuning& tuning);
 
-  /// Gains at node k: two rows of `driven` numbers; inputs = the plan's − gains · error.
+  /// Gains at node k: two rows of `driven` numbers; inputs = plan's inputs − gains · error.
   [[nodiscard]] const double* gains(std::size_t k) const noexcept {
     return gains_.data() + k * 2 * static_cast<std::size_t>(driven_);
   }
@@ -95,17 +95,17 @@ class RingFeedback {
   std::vector<double> gains_;
 };
 
-/// What came of driving a plan.
+/// Result of driving a plan.
 struct DrivenLaps {
-  bool is_clean = false;  ///< all laps, without a boundary event since the start
+  bool is_clean = false;  ///< all laps driven without a boundary event
   int laps = 0;
   double best = 0.0;  ///< lap time [s]
   double worst = 0.0;
-  double least_edge = 0.0;  ///< of a contact patch to the edge [m]
-  double event_s = 0.0;     ///< where the first boundary event was [m]
+  double least_edge = 0.0;  ///< smallest distance of a contact patch to the edge [m]
+  double event_s = 0.0;     ///< arc length at the first boundary event [m]
 };
 
-/// Drives a plan in the plant with full state and without latency: what the plan asks for, and feedback.
+/// Drives a plan in the plant with full state and without latency: the plan's inputs plus feedback.
 [[nodiscard]] DrivenLaps drive_plan(const road::Track& track, LimitModel& model, const NodePlan& plan,
                                     sim::Plant& plant, const Tuning& tuning, int laps);
 

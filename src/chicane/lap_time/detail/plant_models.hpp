@@ -22,7 +22,7 @@ struct UdacityModel {
   static constexpr int kStates = 7;
   static constexpr int kEquations = 0;
   static constexpr int kInequalities = 12;
-  /// Of the feedback along a plan: so many of the states, then two inputs from this variable on.
+  /// Feedback along a plan: number of its states, then the variable of its first input.
   static constexpr int kDriven = 5, kInput = 5;
   static constexpr std::array<double, kVariables> scale() {
     return {2.0, 0.2, 20.0, 2.0, 1.0, 0.1, 5.0, 1.0, 50.0};
@@ -30,13 +30,13 @@ struct UdacityModel {
 
   sim::UdacityCarParams car{};
   const RoadNodes* road = nullptr;
-  double margin = 0.0;         ///< kept from the edges [m]
-  double slip_share = kNoCap;  ///< most slip of the front tyres over that of their peak
-  static constexpr double kNoCap = 10.0;
-  double brake_share = 1.0;  ///< of the force at which the rear wheels lock
+  double margin = 0.0;                    ///< kept from the edges [m]
+  double slip_share = kNoCap;             ///< cap on slip of the front tyres over that of peak force
+  static constexpr double kNoCap = 10.0;  ///< caps nothing
+  double brake_share = 1.0;               ///< share of the force at which the rear wheels lock
   double steer_weight = 1e-5, pedal_weight = 1e-5;
 
-  /// By how much the helper is late on average as the tyres see it, over the parts of a step [s].
+  /// Mean delay of the helper at the tyres, over the parts of a step [s].
   static constexpr double kHelperLag = 0.375 * sim::UdacityCar::kStepLength;
 
   template <class T>
@@ -45,7 +45,7 @@ struct UdacityModel {
   };
 
   template <class T>
-  [[nodiscard]] T load(const T& speed) const {  ///< of all tyres over mass [m/s²]
+  [[nodiscard]] T load(const T& speed) const {  ///< load of all tyres over mass [m/s²]
     const double rest = (car.mass + 4.0 * car.wheel_mass) * car.gravity;
     const double slope = (3.0 - car.load_filter_offset) / 3.0;
     const double per_mass = car.friction_scale / car.mass;
@@ -85,7 +85,7 @@ struct UdacityModel {
       fy += z + rear_side;
       moment += car.front_axle * z - car.rear_axle * rear_side - y * (x + rear_pull_each);
     }
-    // The plant's parts of a step add half the square of what a force changes in them to the energy.
+    // The plant's parts of a step add energy: half the square of a force's change in them.
     const T gain = (0.5 * sim::UdacityCar::kStepLength / sim::UdacityCar::kParts) * (fx * fx + fy * fy) /
                    (vx * vx + vy * vy);
     const T stay = 1.0 - car.steer_helper * (1.0 - left_out);
@@ -144,15 +144,15 @@ struct UdacityModel {
     *out++ = 0.1 * (car.speed_cap - z[kVx]);
   }
 
-  /// Acceleration of the wheels' torques at full pedal, less what slip takes [m/s²]; what damping takes of it
-  /// by speed [1/s]; mass of the turning wheels over that of the body (docs/limit.md, eq. 3).
+  /// Acceleration of the wheels' torques at full pedal, less the part lost to slip [m/s²]; part lost to
+  /// damping by speed [1/s]; mass of the turning wheels over mass of the body (docs/limit.md, eq. 3).
   [[nodiscard]] double drive() const {
     constexpr double kSlipLoss = 0.0055;  // measured: 5.43 m/s² at rest, by mean speeds
     const double per_radius = 1.0 / car.front_radius + 1.0 / car.rear_radius;
     return (1.0 - kSlipLoss) * 0.5 * car.drive_torque * per_radius / car.mass;
   }
   [[nodiscard]] double damping() const {
-    constexpr double kRimsFaster = 1.05;
+    constexpr double kRimsFaster = 1.05;  // rim speed over road speed
     return kRimsFaster * 2.0 * car.wheel_damping *
            (1.0 / (car.front_radius * car.front_radius) + 1.0 / (car.rear_radius * car.rear_radius)) /
            car.mass;
@@ -175,7 +175,7 @@ struct DoubleTrackModel {
   static constexpr int kEquations = 4;
   static constexpr int kInequalities = 17;
   static constexpr int kShiftX = 7, kShiftY = 8, kSteerRate = 9, kPedalRate = 10, kSlip = 11;
-  /// Of the feedback along a plan: so many of the states, then two inputs from this variable on.
+  /// Feedback along a plan: number of its states, then the variable of its first input.
   static constexpr int kDriven = 9, kInput = 9;
   static constexpr std::array<double, kVariables> scale() {
     return {2.0, 0.2, 20.0, 2.0, 1.0, 0.1, 1.0, 10.0, 10.0, 1.0, 10.0, 0.1, 0.1, 0.1, 0.1};
@@ -185,13 +185,13 @@ struct DoubleTrackModel {
   const RoadNodes* road = nullptr;
   double margin = 0.0;  ///< kept from the edges [m]
   double grip_share = 1.0;
-  double slip_share = kNoCap;  ///< most combined slip over that of the peak force
+  double slip_share = kNoCap;  ///< cap on combined slip over that of peak force
   double steer_weight = 1e-5, pedal_weight = 1e-5;
 
   template <class T>
   struct Motion {
     T ax, ay, yaw;             ///< acceleration in the body's axes, and of the yaw
-    std::array<T, 4> balance;  ///< of the wheels' torques over rest load and radius
+    std::array<T, 4> balance;  ///< torques of the wheels over rest load and radius
     std::array<T, 4> slip;     ///< combined, squared
   };
 
@@ -203,7 +203,7 @@ struct DoubleTrackModel {
     const T cosine = cos(z[kSteer]);
     const T sine = sin(z[kSteer]);
     const T square = vx * vx + vy * vy;
-    // Without downforce: plans that count on it leave the road when they are driven.
+    // Without downforce: plans that rely on it leave the road when they are driven.
     const auto shift = car.load_shift(z[kShiftX], z[kShiftY], T(0.0));
     const T drive = (0.5 * car.drive_force) * Corners::positive(z[kPedal], kPedalCorner);
     const T brake = (0.5 * car.brake_force) * Corners::positive(T(-z[kPedal]), kPedalCorner);
@@ -235,7 +235,7 @@ struct DoubleTrackModel {
     return m;
   }
 
-  /// What traction control leaves of the drive.
+  /// Share of the drive that traction control passes.
   template <class T>
   [[nodiscard]] T driven(const T& drive, const T& slip) const {
     if (!car.has_traction_control()) return drive;
@@ -286,13 +286,13 @@ struct DoubleTrackModel {
     }
   }
 
-  static constexpr double kNoCap = 10.0;
+  static constexpr double kNoCap = 10.0;  ///< caps nothing
 
  private:
   using Corners = model::Rounded;
-  static constexpr double kPedalCorner = 0.01;
-  static constexpr double kLoadCorner = 50.0;  ///< [N]
-  static constexpr double kLeastSlip = 1e-3;
+  static constexpr double kPedalCorner = 0.01;  ///< rounding of the pedal's corner at 0
+  static constexpr double kLoadCorner = 50.0;   ///< [N]
+  static constexpr double kLeastSlip = 1e-3;    ///< rounding of the slip's size at 0
 };
 
 /// The car as a controller models it (model/prediction.hpp) in continuous time (docs/racing.md,
@@ -308,17 +308,17 @@ struct VehicleModel {
   }
 
   model::PredictionModel model{model::VehicleParams{}};
-  model::BrakingStability stability{model::VehicleParams{}};  ///< with all of the grip
-  bool is_steered_slowly = false;                             ///< then the plan keeps to it
+  model::BrakingStability stability{model::VehicleParams{}};  ///< braking bound with all of the grip
+  bool is_steered_slowly = false;                             ///< slow steering: the plan respects its rate
   model::SlidingBound sliding{model::VehicleParams{}};
   bool slides = false;  ///< the rear tyres slip as far as `sliding` permits
   const RoadNodes* road = nullptr;
   double margin = 0.0;         ///< kept from the edges [m]
-  double slip_share = 1.0;     ///< most slip of an axle over that of its peak
-  double brake_share = 1.0;    ///< of the largest useful deceleration
+  double slip_share = 1.0;     ///< cap on slip of an axle over that of its peak
+  double brake_share = 1.0;    ///< share of the largest useful deceleration
   double speed_limit = 100.0;  ///< [m/s]
-  double steer_weight = 1e-3;  ///< of the steering's rate squared, in time [s/rad²·s]
-  double jerk_weight = 1e-6;   ///< of the change of acceleration squared
+  double steer_weight = 1e-3;  ///< weight of the steering's rate squared, in time [s/rad²·s]
+  double jerk_weight = 1e-6;   ///< weight of the change of acceleration squared
 
   template <class T>
   [[nodiscard]] T drag(const T& v) const {
@@ -381,7 +381,7 @@ struct VehicleModel {
     *out++ = 0.1 * (speed_limit - vx);
   }
 
-  /// Not negative where the steering can still catch a car that brakes with this force over mass.
+  /// Margin of steering against braking with this force over mass; negative: the car cannot be caught.
   template <class T>
   [[nodiscard]] T stable_braking(const T& force, const T& vx, const T& yaw_rate) const {
     if (!is_steered_slowly) return T(1.0);
@@ -391,12 +391,12 @@ struct VehicleModel {
   }
 
   static constexpr double kLeastLateral = 0.1;    ///< [m/s²]
-  static constexpr double kMostSteerRate = 10.0;  ///< [rad/s]; stands for at once
-  static constexpr double kMostPower = 1e4;       ///< [W/kg]; stands for none
-  static constexpr double kMostAlong = 0.95;      ///< of a tyre's force: the rest keeps the car on its course
+  static constexpr double kMostSteerRate = 10.0;  ///< [rad/s]; represents an instant change
+  static constexpr double kMostPower = 1e4;       ///< [W/kg]; represents no limit
+  static constexpr double kMostAlong = 0.95;      ///< share of a tyre's force: the rest holds the course
   static constexpr double kLeastSpeed = 2.5;      ///< [m/s]
-  /// Of slip_share [s/m]: the faster a car, the less its yaw motion is damped, and the further it goes before
-  /// a command acts. Three quarters are left at 50 m/s.
+  /// Decrease of slip_share with speed [s/m]: at speed yaw is damped less, and the car covers more road
+  /// before a command acts. Three quarters are left at 50 m/s.
   static constexpr double kSlipPerSpeed = 0.005;
   /// Share for cars with slow steering: with 0.005 `vw-vanagon` and `tum-1200` spin in bends of 35 to 45 m/s.
   static constexpr double kSlipPerSpeedSlow = 0.01;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Access rules for requests, and the owner of a port that is taken.
 #include "chicane/net/detail/connections.hpp"
 
 #include <arpa/inet.h>
@@ -25,7 +26,7 @@ bool equal(std::string_view a, std::string_view b) {
                     [](char x, char y) { return lower(x) == lower(y); });
 }
 
-/// "name:port" or "[::1]:port" without the port and the brackets; empty when the port is not a number.
+/// Host of "name:port" or "[::1]:port", without port and brackets; empty if the port is no number.
 std::string_view without_port(std::string_view host) {
   std::string_view name = host;
   std::string_view port;
@@ -69,7 +70,7 @@ std::optional<std::string_view> value_of(std::string_view parts, char separator,
   return std::nullopt;
 }
 
-/// Where a link with a token leads; never to another server, as "//host" would.
+/// Target of a link with a token; never another server, as "//host" would be.
 std::string page_of(std::string_view path) {
   return path.starts_with('/') && !path.starts_with("//") && path.find('\\') == std::string_view::npos
              ? std::string(path)
@@ -147,7 +148,7 @@ bool Doorkeeper::is_own(std::string_view origin, std::string_view host) const {
   return origin_is_allowed(origin, host, {});
 }
 
-// Browsers keep cookies by host, not by port: the name tells programs on one machine apart.
+// Name with the port: browsers keep cookies by host, so that programs on one machine need different names.
 std::string Doorkeeper::cookie_name() const { return fmt::format("chicane-{}", port); }
 
 std::string Doorkeeper::cookie() const {

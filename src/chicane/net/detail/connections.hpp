@@ -22,8 +22,8 @@ namespace chicane::net {
 [[nodiscard]] bool host_is_allowed(std::string_view host, std::string_view address,
                                    const std::vector<std::string>& allowed);
 
-/// Does an Origin header name the same host and port as the Host header, by HTTP without TLS as this server
-/// speaks it, or stand in `allowed` word for word?
+/// Whether an Origin header names the same host and port as the Host header, by HTTP without TLS as this
+/// server speaks it, or is in `allowed` word for word.
 [[nodiscard]] bool origin_is_allowed(std::string_view origin, std::string_view host,
                                      const std::vector<std::string>& allowed);
 
@@ -32,7 +32,7 @@ namespace chicane::net {
 /// Does a Host header (with or without port) name this machine: `localhost` or a loopback address?
 [[nodiscard]] bool host_is_loopback(std::string_view host);
 
-/// What a request says of its sender. Empty where a header is absent.
+/// Sender of a request, by its headers. Empty where a header is absent.
 struct Visitor {
   std::string_view target{};  ///< path and query
   std::string_view host{};
@@ -42,21 +42,21 @@ struct Visitor {
   bool is_upgrade = false;
 };
 
-/// What may be done with it.
+/// Decision about a request.
 struct Admission {
-  unsigned status =
-      200;  ///< of an answer in words, unless 200; 303: go to `location` with the token kept as a cookie
-  std::string words{};       ///< of the answer
-  std::string location{};    ///< same server, without the token
-  bool may_watch = false;    ///< read what the run shows
+  unsigned status = 200;   ///< status of an answer in words, unless 200; 303: go to `location` with the token
+                           ///< kept as a cookie
+  std::string words{};     ///< text of the answer
+  std::string location{};  ///< same server, without the token
+  bool may_watch = false;  ///< reads the run
   bool may_control = false;  ///< change the state of the run
 };
 
-/// Who may do what with one server, by a request's head (docs/reference/security.md has the table).
+/// Access rules of one server, applied to a request's head (docs/reference/security.md has the table).
 struct Doorkeeper {
-  std::string address;                       ///< that is listened on
-  std::vector<std::string> allowed_hosts;    ///< beside ours
-  std::vector<std::string> allowed_origins;  ///< beside our own pages
+  std::string address;                       ///< listening address
+  std::vector<std::string> allowed_hosts;    ///< hosts allowed in addition to ours
+  std::vector<std::string> allowed_origins;  ///< origins allowed in addition to our own pages
   std::string token;                         ///< empty: none is asked for
   std::uint16_t port = 0;
 
@@ -69,9 +69,8 @@ struct Doorkeeper {
   [[nodiscard]] bool is_own(std::string_view origin, std::string_view host) const;
 };
 
-/// Who listens on a TCP port of this machine, as /proc tells: "mpc (pid 1234)". "a connection that is
-/// just ending" when nobody does, "another program" when the process belongs to somebody else and cannot be
-/// seen.
+/// Owner of a TCP port of this machine, from /proc: "mpc (pid 1234)". "a connection that is just ending"
+/// without an owner, "another program" if the process belongs to another user.
 [[nodiscard]] std::string port_holder(std::uint16_t port);
 
 /// Why nothing can be listened on at `address` and `port`: `is_in_use`, or in the system's `words`.
@@ -104,7 +103,7 @@ class WaitingBytes {
   std::size_t total_ = 0;
 };
 
-/// What waits for one connection, the front one being written while `is_writing`.
+/// Messages that wait for one connection; the front one is written while `is_writing`.
 class SendQueue {
  public:
   explicit SendQueue(WaitingBytes& all) : all_{all} {}
@@ -112,7 +111,7 @@ class SendQueue {
   SendQueue& operator=(const SendQueue&) = delete;
   ~SendQueue() { drop_waiting(false); }
 
-  /// False when `most` wait already.
+  /// Adds a message. False if `most` wait already.
   [[nodiscard]] bool add(Outgoing message, bool is_writing, std::size_t most) {
     if (message.delivery == Delivery::kNewest) {
       const auto waiting =
@@ -159,7 +158,7 @@ class SendQueue {
 
   std::deque<Outgoing> waiting_;
   WaitingBytes& all_;
-  std::size_t bytes_ = 0;  ///< of this connection's own
+  std::size_t bytes_ = 0;  ///< bytes in this connection's queue
 };
 
 }  // namespace chicane::net

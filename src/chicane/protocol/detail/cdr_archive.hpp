@@ -31,7 +31,7 @@ class CdrSource {
     swaps_ = ok_ && bytes[1] == '\0';
   }
 
-  /// Everything so far was there.
+  /// Whether every read so far succeeded.
   [[nodiscard]] bool ok() const { return ok_; }
 
   template <class T>
@@ -59,8 +59,7 @@ class CdrSource {
     return value.substr(0, value.size() - 1);
   }
 
-  /// The number of elements of a sequence that have at least `smallest` bytes each; 0 where so many cannot
-  /// follow.
+  /// Number of elements of a sequence with at least `smallest` bytes each; 0 if so many cannot follow.
   std::uint32_t count(std::size_t smallest) {
     const auto value = get<std::uint32_t>();
     if (ok_ && value <= (bytes_.size() - at_) / smallest) return value;
@@ -181,7 +180,7 @@ class WritingArchive {
   }
   /// builtin_interfaces/Time.
   void time(std::int64_t nanoseconds) { to_.stamp_ns(nanoseconds); }
-  /// Values that nobody here reads.
+  /// Values that our readers skip.
   void constant(auto... values) { to_.put(values...); }
   /// Values at the end of a message that are left unread.
   void trailing(auto... values) { to_.put(values...); }
@@ -231,7 +230,7 @@ class ReadingArchive {
   void zeros(int number) {
     for (int i = 0; i < number; ++i) from_.number();
   }
-  /// A sequence that nobody here reads.
+  /// Sequence that our readers skip.
   template <class Number>
   void skip_list() {
     for (std::uint32_t i = from_.count(sizeof(Number)); i > 0; --i) from_.get<Number>();
@@ -280,7 +279,7 @@ template <class Message>
   return archive.bytes();
 }
 
-/// Nothing where the bytes are no such message, or it is not sound.
+/// Message from its bytes; none if they are no such message, or an unsound one.
 template <class Message>
 [[nodiscard]] std::optional<Message> decode(std::string_view bytes) {
   ReadingArchive archive{bytes};

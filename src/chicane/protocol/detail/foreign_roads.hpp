@@ -16,7 +16,7 @@ namespace chicane::protocol {
 /// An XML document whose elements have no namespace prefix. This header is for our own sources and not
 /// installed.
 struct XmlDocument {
-  static constexpr std::size_t kMostBytes = std::size_t{32} << 20U;
+  static constexpr std::size_t kMostBytes = std::size_t{32} << 20U;  ///< [byte]
   static constexpr std::ptrdiff_t kMostTags = 2'000'000;
   static constexpr int kMostDepth = 64;
 
@@ -25,7 +25,7 @@ struct XmlDocument {
   std::vector<std::ptrdiff_t> line_ends = {};
 
   [[nodiscard]] pugi::xml_node root() const { return tree.document_element(); }
-  /// Where a node begins, from 1.
+  /// Line on which a node begins, from 1.
   [[nodiscard]] int line_of(pugi::xml_node node) const;
   /// All elements of a name, in the order of the document.
   [[nodiscard]] std::vector<pugi::xml_node> find_all(std::string_view name) const;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Rows of a road's file: checks each point, arranges direction and start, and builds the road.
 #include "chicane/protocol/detail/road_rows.hpp"
 
 #include <fmt/format.h>

@@ -16,7 +16,7 @@ namespace chicane::protocol {
 
 inline constexpr double kClosingCopy = 1e-3;  ///< a point this near to another one repeats it [m]
 
-/// "f.csv:3: x_m: got abc, expected a finite number"; line 0: of the whole file.
+/// Error of a cell: "f.csv:3: x_m: got abc, expected a finite number"; line 0: of the whole file.
 [[nodiscard]] Error fault_of(std::string_view file, int line, std::string_view key, std::string_view got,
                              std::string_view expected);
 /// Adds "f.csv:3: what" to the warnings; line 0: of the whole file.
@@ -45,7 +45,7 @@ inline constexpr std::array kTrackSettings{
     TrackSetting{"kerb_width_m", &road::TrackOptions::kerb_width},
 };
 
-/// What a column of a road's file holds.
+/// Quantity in a column of a road's file.
 enum class Column : std::uint8_t {
   kX,
   kY,
@@ -60,11 +60,11 @@ enum class Column : std::uint8_t {
   kUnknown
 };
 
-/// Rows of points as a reader finds them in a file, checked cell by cell. The first fault stays: a reader
-/// goes on or stops, build() fails with it.
+/// Rows of points as a reader finds them in a file, checked cell by cell. The first fault is kept: a reader
+/// may continue or stop, build() fails with it.
 struct RoadRows {
   struct Named {
-    std::string name;  ///< for messages
+    std::string name;  ///< name of the file, for messages
     Column column = Column::kUnknown;
   };
 
@@ -88,10 +88,10 @@ struct RoadRows {
   TrackReadOptions options;
   std::vector<Named> columns;
   TrackFile content;  ///< x and y of a point are longitude and latitude where those are the columns
-  std::vector<double> headings;  ///< of a column [rad]
+  std::vector<double> headings;  ///< headings of a column [rad]
   std::vector<std::string> tags;
   std::string list = {};  ///< "wpnts", where rows have a number in a list in place of a line
-  /// As the options or the file say, else as the gap from the last point to the first does: a loop's is at
+  /// Closed or open as options or file say; else by the gap from the last point to the first: a loop's is at
   /// most 1.5 times the longest other one, or `meets` [m].
   std::optional<bool> closed = options.is_closed;
   double meets = 0.0;

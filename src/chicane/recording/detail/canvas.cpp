@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Canvas for pictures: fills, strokes and a stroke font.
 #include "chicane/recording/detail/canvas.hpp"
 
 #include <algorithm>
@@ -67,7 +68,7 @@ constexpr std::array kGlyphs{
     Glyph{')', "10 21 25 16"},
 };
 
-constexpr double kAcross = 0.15, kUp = 1.0 / 6.0;  // of the grid, in sizes
+constexpr double kAcross = 0.15, kUp = 1.0 / 6.0;  // steps of the grid, in letter sizes
 
 }  // namespace
 
@@ -87,9 +88,9 @@ void for_each_stroke(char letter, const std::function<void(double, double, doubl
 
 namespace {
 
-constexpr double kAdvance = 0.82;  // from letter to letter, in sizes
+constexpr double kAdvance = 0.82;  // step from letter to letter, in letter sizes
 constexpr double kStroke = 0.13;   // thickness of letters, in sizes
-constexpr int kDiscCorners = 24;
+constexpr int kDiscCorners = 24;   // corners of the polygon for a disc
 
 std::uint8_t mixed(std::uint8_t below, std::uint8_t above, double share) {
   return static_cast<std::uint8_t>(std::lround(below + share * (above - below)));

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Reader of ROS 2 messages by the definition in their recording: parses the definition to fields by type,
+// then walks the CDR bytes field by field.
 #include "chicane/recording/detail/ros_message.hpp"
 
 #include <fmt/format.h>
@@ -11,8 +13,8 @@
 namespace chicane::recording {
 namespace {
 
-constexpr int kMostDepth = 8;
-constexpr std::size_t kMostElements = 1U << 20U;
+constexpr int kMostDepth = 8;                     // limit of nested messages
+constexpr std::size_t kMostElements = 1U << 20U;  // limit of a list's elements and a text's bytes
 
 }  // namespace
 
@@ -32,7 +34,7 @@ const std::vector<double>& RosContent::list(std::string_view name) const {
   return found == numbers.end() ? kNone : found->second;
 }
 
-/// A place in the bytes of a message; what lies behind their end is missing for good.
+/// Read position in the bytes of a message. A read beyond their end fails, and so do all later ones.
 class RosReader::Cursor {
  public:
   explicit Cursor(std::string_view bytes) : bytes_{bytes} {}
@@ -59,7 +61,7 @@ class RosReader::Cursor {
   }
 
  private:
-  static constexpr std::size_t kHeader = 4;
+  static constexpr std::size_t kHeader = 4;  ///< encapsulation header [byte]
 
   bool take(void* to, std::size_t size) {
     at_ = kHeader + (at_ - kHeader + size - 1) / size * size;
@@ -93,6 +95,7 @@ Result<RosReader> RosReader::create(std::string_view definition) {
     std::string rest;
     words >> rest;
     if (field.name.find('=') != std::string::npos || rest.starts_with("=")) continue;  // a constant
+    // An array: "[]" is counted in the message, "[3]" is fixed.
     if (const std::size_t open = field.type.find('['); open != std::string::npos) {
       const std::string inside = field.type.substr(open + 1, field.type.find(']') - open - 1);
       field.many = inside.empty() ? Field::Many::kCounted : Field::Many::kFixed;
@@ -104,6 +107,7 @@ Result<RosReader> RosReader::create(std::string_view definition) {
     }
     reader.types_[type].push_back(std::move(field));
   }
+  // Every type that a field has must be defined.
   for (const auto& [name, fields] : reader.types_) {
     for (const Field& field : fields) {
       const bool is_message =
@@ -144,6 +148,7 @@ bool RosReader::read_type(const std::string& type, const std::string& name, Curs
   if (type == "int32") return keep(cursor.get<std::int32_t>(value));
   if (type == "uint64") return keep(cursor.get<std::uint64_t>(value));
   if (type == "int64") return keep(cursor.get<std::int64_t>(value));
+  // A message: its fields in turn.
   const auto fields = types_.find(type);
   if (fields == types_.end() || depth > kMostDepth) return false;
   for (const Field& field : fields->second) {

@@ -18,22 +18,22 @@ struct RosContent {
   std::map<std::string, std::vector<double>, std::less<>> numbers{};
   std::map<std::string, std::vector<std::string>, std::less<>> texts{};
 
-  /// The first element; `missing` where there is none.
+  /// First element of a field; `missing` if it has none.
   [[nodiscard]] double number(std::string_view name, double missing = 0.0) const;
   [[nodiscard]] std::string text(std::string_view name) const;
-  /// All of them; empty where there are none.
+  /// All elements of a field; may be empty.
   [[nodiscard]] const std::vector<double>& list(std::string_view name) const;
 };
 
-/// Reads CDR messages (XCDR1, little endian) by the definition that their recording holds, so that older and
-/// newer recordings are read alike.
+/// Reads CDR messages (XCDR1, little endian) by the definition that their recording holds: one reader for all
+/// versions of a message.
 class RosReader {
  public:
-  /// `definition` as MCAP's "ros2msg" has it: the message, then those it refers to, each behind a line of `=`
-  /// and "MSG: NAME". kParse for a type that is not defined in it.
+  /// Reader for a `definition` in MCAP's "ros2msg" form: the message, then each type it refers to behind a
+  /// line of `=` and "MSG: NAME". kParse for a type that is not defined in it.
   [[nodiscard]] static Result<RosReader> create(std::string_view definition);
 
-  /// kParse for bytes that end too early.
+  /// Content of a message. kParse for bytes that end too early.
   [[nodiscard]] Result<RosContent> read(std::string_view bytes) const;
 
  private:
@@ -47,7 +47,7 @@ class RosReader {
   [[nodiscard]] bool read_type(const std::string& type, const std::string& name, Cursor& cursor, int depth,
                                RosContent& content) const;
 
-  std::map<std::string, std::vector<Field>, std::less<>> types_{};  ///< "" is the message itself
+  std::map<std::string, std::vector<Field>, std::less<>> types_{};  ///< by type; "" is the message
 };
 
 /// Readers of the channels of one recording, each made at the first message of its channel.
@@ -57,7 +57,7 @@ class RosReaders {
   [[nodiscard]] Result<RosContent> read(const telemetry::McapMessage& message);
 
  private:
-  std::map<std::uint16_t, RosReader> readers_{};  ///< by the number of the channel
+  std::map<std::uint16_t, RosReader> readers_{};  ///< readers by channel number
 };
 
 }  // namespace chicane::recording

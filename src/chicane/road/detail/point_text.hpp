@@ -17,7 +17,7 @@ inline std::string number_text(double value) {
   return {text.data(), end.ptr};
 }
 
-/// "(1.5, -2)"
+/// Point as text: "(1.5, -2)".
 inline std::string point_text(const Vec2& point) {
   std::string text{"("};
   return text.append(number_text(point.x())).append(", ").append(number_text(point.y())).append(")");

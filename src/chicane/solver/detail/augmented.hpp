@@ -37,7 +37,7 @@ CHICANE_INLINE inline std::array<T, N> map_row(const std::array<T, N>& row, cons
   for (std::size_t n = 0; n < N; ++n) result[n] = map(n, row[n]);
   return result;
 }
-/// Both rows, one behind the other.
+/// Concatenates two rows.
 template <class A, class B>
 CHICANE_INLINE inline auto join(const A& a, const B& b) {
   return std::tuple_cat(a, b);
@@ -53,8 +53,8 @@ CHICANE_INLINE inline std::array<T, N + M> join(const std::array<T, N>& a, const
 }  // namespace detail
 
 /// A problem whose equalities and terminal constraints are residuals √ρ (h + y/ρ) beside its own: its
-/// augmented Lagrangian, up to a constant (docs/solver.md, eq. 56). Everything else is as the problem
-/// has it.
+/// augmented Lagrangian, up to a constant (docs/solver.md, eq. 56). All other functions are the problem's
+/// own.
 template <HardProblem P, int Capacity>
 class Augmented {
  public:
@@ -82,14 +82,14 @@ class Augmented {
   const P* problem = nullptr;
   double cost_root = 1.0;  ///< root of the weight of the problem's own cost
   std::array<Weight, kEqualities> equality_weight{};
-  std::array<StageData<Capacity>, kEqualities> equality_root{};  ///< the same of each stage
+  std::array<StageData<Capacity>, kEqualities> equality_root{};  ///< root of the weight of each stage
   std::array<StageData<Capacity>, kEqualities> equality_shift{};
   std::array<Weight, kEndEqualities + kEndConstraints> terminal_weight{};
   std::array<double, kEndEqualities + kEndConstraints> terminal_shift{};
-  std::array<double, kNc> penalty_factor{};  ///< of soft constraints, hard ones among them
-  double violation_penalty = 0.0;            ///< of whatever must hold, if any: of its violation alone
-  double hard_penalty = 0.0;    ///< of hard ones in their place, if any: so high that none is violated
-  bool is_primal_dual = false;  ///< rows are those of the primal-dual method (detail/hard_rows.hpp)
+  std::array<double, kNc> penalty_factor{};  ///< factors of soft constraints, hard ones among them
+  double violation_penalty = 0.0;            ///< penalty on the violation of rows that must hold, if any
+  double hard_penalty = 0.0;    ///< replaces the hard ones' penalties, if any: so high that none is violated
+  bool is_primal_dual = false;  ///< rows in the form of the primal-dual method (detail/hard_rows.hpp)
 
   void set_weight(std::size_t n, double weight) noexcept {
     equality_weight[n].set(weight);
@@ -172,7 +172,7 @@ class Augmented {
       return nothing(x);
     }
   }
-  /// What counts of an inequality: all of it in the primal-dual method, else what is above zero.
+  /// Counted part of an inequality: all of it in the primal-dual method, else the part above zero.
   template <class T>
   CHICANE_INLINE auto active_part(const T& value) const {
     if constexpr (AnySparseRow<T>) {

@@ -47,7 +47,7 @@ class Barrier {
   [[nodiscard]] double mu() const noexcept { return mu_; }
   void set_mu(double mu) noexcept { mu_ = mu; }
   [[nodiscard]] bool is_final() const noexcept { return count() == 0 || mu_ <= final_; }
-  /// Of constraints; the first ones of kNc.
+  /// Number of active constraints: the first ones of kNc.
   [[nodiscard]] std::size_t count() const noexcept {
     if constexpr (kHasSparseRows<P>) return count_;
     return kNc;
@@ -124,8 +124,8 @@ class Barrier {
     return sum;
   }
 
-  /// Calls add(k, j, what the slope of the stage's model by variable j has more of since the barrier was
-  /// `from`) (eq. 20).
+  /// Calls add(k, j, change), with the change of the slope of the stage's model by variable j since the
+  /// barrier was `from` (eq. 20).
   template <class Add>
   void each_pull(const P& problem, double from, std::size_t horizon, const Add& add) const noexcept {
     for (std::size_t k = 0; k < horizon && count() > 0; k += 8) {
@@ -149,7 +149,7 @@ class Barrier {
   [[nodiscard]] double value(std::size_t c, std::size_t k) const noexcept { return value_[c][k]; }
   [[nodiscard]] double violation_slack(std::size_t c, std::size_t k) const noexcept { return s_[c][k]; }
   [[nodiscard]] double distance_slack(std::size_t c, std::size_t k) const noexcept { return t_[c][k]; }
-  /// Its multiplier: what a unit more room would save.
+  /// Multiplier of a constraint: cost saved by a unit of room.
   [[nodiscard]] double multiplier(std::size_t c, std::size_t k) const noexcept { return z_[c][k]; }
 
   /// Sum of the products of slacks and multipliers.
@@ -178,7 +178,7 @@ class Barrier {
   double step(const P& problem, const Step& step) noexcept {
     if constexpr (kNc == 0) return 1.0;
     const double fraction = std::max(0.995, 1.0 - mu_);
-    V primal(0.0);  // how often the longest change goes into its value
+    V primal(0.0);  // longest change, in multiples of its value
     V dual(0.0);
     each(problem, step,
          [&](const SoftConstraint<V>& soft, const SoftConstraint<V>& d, auto live, std::size_t, std::size_t) {
@@ -201,7 +201,7 @@ class Barrier {
   /// Lowers the barrier after a full step, the faster the longer the slacks let it be, and the shorter the
   /// longest move of an input was.
   void lower(double length, double longest) noexcept {
-    constexpr double kNear = 0.1;
+    constexpr double kNear = 0.1;  // change that counts as small
     const double least = longest <= kNear ? 0.01 : 0.1;
     const double share = length > 0.9 ? std::min(least, std::sqrt(mu_)) : (length > 0.5 ? 0.2 : 0.6);
     mu_ = std::max(final_, share * mu_);
@@ -251,7 +251,7 @@ class Barrier {
   alignas(64) double t_[kNc > 0 ? kNc : 1][kStride]{};
   alignas(64) double n_[kNc > 0 ? kNc : 1][kStride]{};
   alignas(64) double z_[kNc > 0 ? kNc : 1][kStride]{};
-  alignas(64) double row_[kNc > 0 ? kNc : 1][kNz][kStride]{};  ///< Jacobian; what is zero by type stays zero
+  alignas(64) double row_[kNc > 0 ? kNc : 1][kNz][kStride]{};  ///< Jacobian; zeros by type stay zero
 };
 
 }  // namespace chicane::solver

@@ -35,7 +35,7 @@ class Descent {
     shift_ = 0.0;
     forget();
   }
-  /// A new horizon: what was learned about full steps no longer counts.
+  /// Resets for a new horizon: experience with full steps is void.
   void forget() noexcept { needed_ = 2; }
   /// Descents begin here.
   void begin() noexcept { smooth_ = taken_ = 0; }
@@ -46,7 +46,8 @@ class Descent {
   [[nodiscard]] double moved() const noexcept { return moved_; }
   /// Near enough to the solution for exact curvature.
   [[nodiscard]] bool is_under_way() const noexcept { return taken_ > 3; }
-  /// Whole unshifted steps were taken: full steps may be tried again. Each yes makes the next one harder.
+  /// Whether whole unshifted steps were taken, so that full steps may be tried again. Each yes makes the next
+  /// one harder.
   bool is_smooth() noexcept {
     if (smooth_ < needed_) return false;
     smooth_ = 0;
@@ -63,12 +64,12 @@ class Descent {
     return true;
   }
 
-  /// One step from t, at which `now` is the linearisation. False when no step length and no shift lowers it
-  /// any more, or the deadline came first.
+  /// Takes one step from t, at which `now` is the linearisation. False if no step length and no shift lowers
+  /// the cost, or the deadline came first.
   bool step(const P& problem, const Linearised& now, Lq& lq, Slacks& slacks, Point& t,
             const Deadline& deadline, int& sweeps) noexcept {
-    constexpr int kAttempts = 12;
-    constexpr int kHalvings = 6;
+    constexpr int kAttempts = 12;  // trials with a larger shift each
+    constexpr int kHalvings = 6;   // trials of a shorter step each
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       ++sweeps;
       lq.backward(t.horizon, shift_, true);
@@ -151,7 +152,7 @@ class Descent {
   double moved_ = 0.0;
   int taken_ = 0;   ///< steps since the descent began
   int smooth_ = 0;  ///< whole unshifted ones in a row
-  int needed_ = 2;  ///< of these before full steps are tried again
+  int needed_ = 2;  ///< count of them before full steps are tried again
 };
 
 }  // namespace chicane::solver

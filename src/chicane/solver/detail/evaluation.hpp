@@ -40,7 +40,7 @@ class Evaluation {
   /// One stage as a value: a pack of equal lanes, so that its code carries the tag of the instruction set;
   /// for functions that may branch a number that knows the functions of models.
   using One = std::conditional_t<kIsStructured, Pack<Arch, 2>, Plain>;
-  /// What the values and derivatives of terminal residuals are made of.
+  /// Scalar for values and derivatives of terminal residuals.
   using EndValue = std::conditional_t<kIsStructured, Pack<Arch, 2>, double>;
 
   template <class Next, class Residual, class Constraint>
@@ -78,7 +78,7 @@ class Evaluation {
   }
 
   static constexpr std::size_t kHardRows = static_cast<std::size_t>(P::kNr) - own_residuals<P>();
-  /// One stage, or one in each lane, without derivatives: what a line search needs.
+  /// One stage, or one in each lane, without derivatives, for a line search.
   template <class T>
   struct ValuesOf {
     T cost;                         ///< ½‖r‖² of the problem's own residuals
@@ -244,7 +244,7 @@ class Evaluation {
       });
     }
   }
-  /// What a function returned over the variables from `begin` on.
+  /// Places a function's result among the variables from `begin` on.
   template <class T, std::size_t Count>
   static void put(const std::array<BlockJet<T>, Count>& from, int begin,
                   std::array<WideRow<T, kVariables>, Count>& rows) noexcept {
@@ -295,7 +295,7 @@ class Evaluation {
     jet::repeat<Count>([&](auto n) CHICANE_INLINE { std::get<n>(result).v = V::load(values[n] + k0); });
     return result;
   }
-  /// Variables of a problem whose rows say themselves what they depend on.
+  /// Variables of a problem whose rows name their own dependencies.
   template <class T, int Order, int Count, class Values>
   CHICANE_INLINE static auto sparse(const Values& values, std::size_t k0) noexcept {
     std::array<SparseSeed<T, Order>, static_cast<std::size_t>(Count)> result;

@@ -7,8 +7,7 @@
 
 namespace chicane::solver {
 
-/// How good a point of the barrier problem is: by how much its equations are missed, and its cost with
-/// barriers.
+/// Quality of a point of the barrier problem: violation of its equations, and cost with barriers.
 struct Merit {
   double miss = 0.0;
   double cost = 0.0;  ///< `logs` times the barrier less than without
@@ -16,14 +15,14 @@ struct Merit {
   [[nodiscard]] bool is_finite() const noexcept { return std::isfinite(miss + cost); }
 };
 
-/// Remembers pairs of miss and cost that no later point may be worse than in both (Fletcher, Leyffer 2002;
-/// Wächter, Biegler 2006). A fixed number of them: the ones that exclude least are forgotten.
+/// Set of pairs of miss and cost; no later point may be worse in both (Fletcher, Leyffer 2002; Wächter,
+/// Biegler 2006). Its size is fixed: the pairs that exclude least are dropped.
 class Filter {
  public:
-  static constexpr double kMissMargin = 1e-5;
-  static constexpr double kCostMargin = 1e-8;
+  static constexpr double kMissMargin = 1e-5;  ///< margin of the miss, relative
+  static constexpr double kCostMargin = 1e-8;  ///< margin of the cost, over the miss
 
-  /// Empty but for an upper limit of the miss.
+  /// Empties the filter, except for an upper limit of the miss.
   void reset(double most_miss) noexcept {
     count_ = 0;
     most_miss_ = most_miss;
@@ -53,7 +52,7 @@ class Filter {
   }
 
  private:
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMost = 64;  ///< limit of entries
   std::array<Merit, kMost> entry_{};
   std::size_t count_ = 0;
   double most_miss_ = 0.0;

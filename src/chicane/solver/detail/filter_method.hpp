@@ -94,11 +94,12 @@ class FilterMethod {
     short_steps_ = leaps_ = 0;
     floor_ = {};
   }
-  /// Before start(): rows that must hold are unknowns' equations, with slacks and multipliers of their own,
-  /// and `rows`, the problem itself, keeps them. Null: they are residuals like others.
+  /// Hands rows that must hold to the method; call it before start(). They become equations of unknowns with
+  /// slacks and multipliers of their own, kept by the problem itself, `rows`. Null: they are residuals like
+  /// others.
   void take_rows(P* rows) noexcept { rows_ = rows; }
   [[nodiscard]] double mu() const noexcept { return mu_; }
-  /// The working set of the present point; what is needed to go on should that not be enough.
+  /// Hands over the working set of the present point, and keeps the data to go on if that is not enough.
   void hand_over(const Linearised& now, Lq& lq) noexcept {
     bounds_.choose_working_set(lq);
     for (std::size_t i = 0; i < kNx; ++i)
@@ -106,7 +107,7 @@ class FilterMethod {
   }
   /// Goes on with a lower barrier from where it left off. False when there is none.
   bool resume(Linearised& now, Slacks& slacks, Point& t) noexcept {
-    constexpr double kLeast = 1e-13;
+    constexpr double kLeast = 1e-13;  // least barrier, in units of costs
     if (final_mu_ <= kLeast * unit_) return false;
     final_mu_ = std::max(kLeast * unit_, 1e-2 * final_mu_);
     floor_ = {};
@@ -118,7 +119,7 @@ class FilterMethod {
     is_here_known_ = false;
     return true;
   }
-  /// Of the last iterations this many in succession have taken a small share of their step.
+  /// Number of successive iterations, up to the last one, with a short step length.
   [[nodiscard]] int short_steps() const noexcept { return short_steps_; }
   /// The longest move of an input in the last step that was taken.
   [[nodiscard]] double moved() const noexcept { return moved_; }
@@ -163,11 +164,11 @@ class FilterMethod {
   }
 
  private:
-  static constexpr double kNearBarrier = 1e-3;
-  static constexpr double kFirstBarrier = 0.1;  ///< where gradients are at most kSteep
-  static constexpr double kSteep = 100.0;
+  static constexpr double kNearBarrier = 1e-3;  ///< first barrier near a solution
+  static constexpr double kFirstBarrier = 0.1;  ///< first barrier where gradients are at most kSteep
+  static constexpr double kSteep = 100.0;       ///< slope of costs that needs no scaling
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static constexpr double kShort = 0.1;
+  static constexpr double kShort = 0.1;  ///< length of a short step
   static constexpr int kShortInSuccession = 3, kMostLeaps = 4;
   static constexpr double kRowWeight = 1e6;  ///< ρ of rows that must hold, and the penalty of hard limits, in
   static constexpr double kHardPenalty = 1e6;  ///< the unit of costs
@@ -191,7 +192,7 @@ class FilterMethod {
   }
   /// Rows that must hold begin on their central path.
   void centre_rows(const P& problem, Linearised& now, const Point& t) noexcept;
-  /// With exact Hessians once there are multipliers for them.
+  /// Linearises, with exact Hessians once there are multipliers for them.
   void linearise(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, const Point& t,
                  SolveReport& report) noexcept {
     if constexpr (has_hessians<P>()) {
@@ -200,7 +201,7 @@ class FilterMethod {
     linearise<1>(problem, now, lq, slacks, t, report);
   }
 
-  /// How far from solving the barrier problem (eq. 34).
+  /// Distance from solving the barrier problem (eq. 34).
   double residual(const Linearised& now, const Lq& lq, const Point& t,
                   const SolveReport& report) const noexcept {
     if (!has_multipliers_) return std::numeric_limits<double>::infinity();
@@ -301,7 +302,7 @@ class FilterMethod {
   /// share of the defects.
   Outcome search(const P& problem, Linearised& now, const Lq& lq, Slacks& slacks, Point& t, const Merit& here,
                  const Deadline& deadline) noexcept {
-    constexpr int kPatience = 4;
+    constexpr int kPatience = 4;  // trials before a simulation is tried
     const double fraction = std::max(0.99, 1.0 - mu_ / unit_);
     const StepLengths own = bounds_.find(lq, step_, mu_, fraction);
     const StepLengths soft = soft_.find(problem, slacks, step_, fraction);
@@ -357,8 +358,8 @@ class FilterMethod {
     last_shift_ = shift_;
     return recover(problem, lq, t);
   }
-  /// Of Wächter and Biegler: enough descent where the equations hold and the step promises it, else less of
-  /// miss or cost.
+  /// Acceptance by Wächter and Biegler: enough descent if the equations hold and the step promises it, else
+  /// less violation or less cost.
   bool is_acceptable(const Merit& here, const Merit& there, double slope, double length) noexcept {
     if (!filter_.accepts(there)) return false;
     const double rounding = 1e-13 * std::fabs(here.cost);
@@ -414,9 +415,10 @@ class FilterMethod {
 
   // ---- when no step is good
 
-  /// First a larger shift, then new multipliers and slacks, then a simulation, which has no defects.
+  /// Recovers: first by a larger shift, then by new multipliers and slacks, then by a simulation, which has
+  /// no defects.
   Outcome recover(const P& problem, const Lq& lq, Point& t) noexcept {
-    constexpr int kMostSimulations = 8;
+    constexpr int kMostSimulations = 8;  // limit in one solve
     candidate_ = t;
     ++failures_;
     if (failures_ == 1) {
@@ -449,34 +451,34 @@ class FilterMethod {
   SoftSteps<P, Capacity, Arch> soft_;
   Filter filter_;
   Point step_;
-  Point candidate_;  ///< of the line search; between iterations the present point
-  alignas(64) double residual_[kNx][kStageStride<Capacity>]{};  ///< of optimality in the states
-  double multipliers_[kNx][Capacity]{};                         ///< of the dynamics, at the last hand-over
-  double gradient_[Capacity][kNz]{};                            ///< of the stages' costs
+  Point candidate_;  ///< point of the line search; between iterations the present one
+  alignas(64) double residual_[kNx][kStageStride<Capacity>]{};  ///< optimality in the states
+  double multipliers_[kNx][Capacity]{};                         ///< multipliers at the last hand-over
+  double gradient_[Capacity][kNz]{};                            ///< gradients of the stage costs
   double mu_ = kFirstBarrier;
   double final_mu_ = 1e-6;
-  double unit_ = 1.0;        ///< of costs
+  double unit_ = 1.0;        ///< unit of costs
   double small_miss_ = 0.0;  ///< below it the cost has to fall
-  double shift_ = 0.0;       ///< of this iteration's Hessians
+  double shift_ = 0.0;       ///< shift of this iteration's Hessians
   double last_shift_ = 0.0;
   double forced_shift_ = 0.0;     ///< least shift of the next iteration
   bool is_exact_ = true;          ///< Hessians
-  bool has_multipliers_ = false;  ///< of the dynamics
+  bool has_multipliers_ = false;  ///< multipliers of the dynamics are known
   bool is_fresh_ = true;          ///< the slacks of soft constraints go to their central path
   bool is_new_barrier_ = true;    ///< the filter is of another problem
   bool are_sides_new_ = true;     ///< the slacks of bounds do not belong to the present point
-  int short_steps_ = 0;           ///< in succession
+  int short_steps_ = 0;           ///< count in succession
   int leaps_ = 0;                 ///< whole steps that the filter had refused
   FloorWatch floor_;
   P* rows_ = nullptr;  ///< the problem, where its rows that must hold are unknowns' equations
   double moved_ = 0.0;
-  Merit here_{};                ///< of the present point
-  bool is_here_known_ = false;  ///< from the line search that found it
+  Merit here_{};                ///< merit of the present point
+  bool is_here_known_ = false;  ///< here_ was set by the line search that found the point
   int failures_ = 0;
   int simulations_ = 0;
 };
 
-/// In its place for problems that leave it out.
+/// Placeholder for problems without the filter method.
 struct NoFilter {};
 
 }  // namespace chicane::solver

@@ -15,7 +15,7 @@
 
 namespace chicane::solver {
 
-/// How far a step may go so that slacks, and multipliers, stay positive.
+/// Longest step that keeps slacks and multipliers positive.
 struct StepLengths {
   double primal = 1.0;
   double dual = 1.0;
@@ -57,7 +57,7 @@ class BoundBarrier {
       }
     }
   }
-  /// Where an input between `low` and `high` may start.
+  /// Starting value of an input between `low` and `high`.
   static double inside(double u, double low, double high) noexcept {
     if (!(high > low)) return u;
     const double push = kPush * std::min(high - low, kWide);
@@ -80,7 +80,7 @@ class BoundBarrier {
     });
     return {largest(product), sum(multipliers), count_};
   }
-  /// What the multipliers of the bounds of input m of stage k pull at it.
+  /// Force of the bound multipliers on input m of stage k.
   [[nodiscard]] double pull(std::size_t k, std::size_t m) const noexcept {
     double sum = 0.0;
     for (std::size_t n = 0; n < kKinds; ++n) sum += sign(static_cast<Kind>(n)) * side_[m][n].z[k];
@@ -165,9 +165,9 @@ class BoundBarrier {
     merit.miss += sum(misses);
     merit.logs += sum(logs);
   }
-  /// To where the last measure() was; multipliers by `dual_length` of their direction.
+  /// Moves to the point of the last measure(); multipliers by `dual_length` of their direction.
   void move(double dual_length, double mu) noexcept {
-    constexpr double kFar = 1e10;
+    constexpr double kFar = 1e10;  // range of z around μ / t, as a factor
     each([&](std::size_t, Kind, Side& side, std::size_t k, const auto& exists) {
       const V t = V::load(side.at + k);
       const V z = V::load(side.z + k) + dual_length * V::load(side.dz + k);
@@ -178,7 +178,7 @@ class BoundBarrier {
 
   /// Bounds at a thousandth of their width or less become the working set of `qp`.
   void choose_working_set(Solver& qp) const noexcept {
-    constexpr double kActive = 1e-3;
+    constexpr double kActive = 1e-3;  // share of the width that counts as at the bound
     for (std::size_t k = 0; k < horizon_; ++k) {
       for (std::size_t m = 0; m < kNu; ++m) {
         if (!has_width(qp, k, m)) continue;
@@ -195,7 +195,7 @@ class BoundBarrier {
 
  private:
   static constexpr std::size_t kStride = padded_stages(Capacity);
-  static constexpr double kPush = 1e-2;  ///< of the width
+  static constexpr double kPush = 1e-2;  ///< share of the width
   static constexpr double kWide = 1e2;
   enum Kind : std::size_t { kLow, kHigh, kKinds };
   /// One bound of one input, stage after stage.
@@ -207,7 +207,7 @@ class BoundBarrier {
     double exists[kStride]{};  ///< 1, else 0
   };
   static constexpr double sign(Kind kind) noexcept { return kind == kHigh ? 1.0 : -1.0; }
-  /// How far the bound is in its direction, of the stages from k on.
+  /// Bounds of input m in direction `kind`, of the stages from k on.
   static const double* bound_at(const Solver& qp, std::size_t k, std::size_t m, Kind kind) noexcept {
     return (kind == kLow ? qp.lq.low[m] : qp.lq.high[m]) + k;
   }
@@ -258,7 +258,7 @@ class SoftSteps {
   using V = typename Slacks::V;
   using Step = typename Slacks::Step;
 
-  /// Those that belong to a step of states and inputs; how far they may be followed.
+  /// Directions of slacks and multipliers for a step of states and inputs; returns the longest step lengths.
   StepLengths find(const P& problem, const Slacks& slacks, const Step& step, double fraction) noexcept {
     V primal(0.0);
     V dual(0.0);
@@ -275,7 +275,7 @@ class SoftSteps {
         const SoftConstraint<V> d = soft.step(penalty, mu, change);
         primal = max(select(live, max(-d.s / soft.s, -d.t / soft.t), V(0.0)), primal);
         dual = max(select(live, max(-d.z / soft.z, -d.n / soft.n), V(0.0)), dual);
-        const V pulled = soft.model(penalty, mu).slope * change;  // what the stage's gradient has of it
+        const V pulled = soft.model(penalty, mu).slope * change;  // part that the stage's gradient contains
         const V own = (penalty.linear + penalty.quadratic * soft.s - mu / soft.s) * d.s - mu / soft.t * d.t;
         slope += select(live, own - pulled, V(0.0));
         d.s.store(s_[c] + k);
@@ -288,7 +288,7 @@ class SoftSteps {
     return {std::min(1.0, fraction / std::max(largest(primal), 1e-30)),
             std::min(1.0, fraction / std::max(largest(dual), 1e-30))};
   }
-  /// Slope along the direction of what the slacks cost, less what the stages' gradients have of it.
+  /// Slope of the slacks' cost along the direction, less the part that the stages' gradients contain.
   [[nodiscard]] double slope() const noexcept { return slope_; }
 
   /// Adds miss, cost without barriers and logarithms of constraint c of the stages from k on, which has
@@ -310,9 +310,9 @@ class SoftSteps {
     cost += select(live, s * (penalty.linear + 0.5 * penalty.quadratic * s), V(0.0));
     logs += select(live, log(s) + log(t), V(0.0));
   }
-  /// To where the last measure() was; multipliers by `dual_length` of their direction.
+  /// Moves to the point of the last measure(); multipliers by `dual_length` of their direction.
   void move(Slacks& slacks, std::size_t horizon, double dual_length) noexcept {
-    constexpr double kFar = 1e10;
+    constexpr double kFar = 1e10;  // range of multipliers around the central path
     const double mu = slacks.mu();
     for (std::size_t k = 0; k < horizon; k += 8) {
       for (std::size_t c = 0; c < slacks.count(); ++c) {

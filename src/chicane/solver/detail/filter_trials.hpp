@@ -8,7 +8,7 @@
 
 namespace chicane::solver {
 
-// Trial points of the filter method: what they miss and cost, and those that come from simulations.
+// Trial points of the filter method: their violation and cost, and points by simulation.
 
 template <OcpProblem P, std::size_t Capacity, class Arch>
 Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]] Linearised& now,
@@ -76,7 +76,7 @@ template <OcpProblem P, std::size_t Capacity, class Arch>
 bool FilterMethod<P, Capacity, Arch>::simulate(const P& problem, const Lq& lq, const Point& t,
                                                double feedback, double length, double kept) noexcept {
   using One = typename Evaluate::One;
-  constexpr double kShare = 0.99;
+  constexpr double kShare = 0.99;  // share of the way to a bound
   candidate_.horizon = t.horizon;
   for (std::size_t i = 0; i < kNx; ++i) candidate_.x[i][0] = t.x[i][0];
   for (std::size_t k = 0; k < t.horizon; ++k) {

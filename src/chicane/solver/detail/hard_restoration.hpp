@@ -12,10 +12,10 @@
 
 namespace chicane::solver {
 
-// How the solver of HardProblems begins, and what it does where the primal-dual method gets nowhere.
+// Start of the solver of HardProblems, and its restoration when the primal-dual method fails.
 
-/// The primal-dual method; where that gets nowhere, restoration, and the same from there. What is proven to
-/// have no solution nearby is the answer unless rounds from the guess find one.
+/// First round: the primal-dual method; if it fails, restoration and the method again from there. A proof
+/// that no solution is nearby is the answer unless rounds from the guess find a solution.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& trajectory,
                                                 const Deadline& deadline, int& left,
@@ -32,13 +32,13 @@ bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& tra
   }
   return round(x0, trajectory, deadline, left, report);
 }
-/// The primal-dual method (eq. 50–54). True when it has got to the end of its barrier: multipliers and
-/// penalties are those of its point, and full steps may go on from there.
+/// The primal-dual method (eq. 50–54). True if it reached the end of its barrier: multipliers and penalties
+/// are then those of its point, and full steps may continue from there.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajectory, const Deadline& deadline,
                                            int& left, HardReport& report) noexcept {
   constexpr int kMostIterations = 60;
-  constexpr double kDearer = 4.0;  // than the highest multiplier: the constraint is kept
+  constexpr double kDearer = 4.0;  // factor over the highest multiplier: the constraint is kept
   SolveReport seen;
   const int most = std::max(1, std::min({left, kMostIterations, options_.max_iterations / 4}));
   const bool is_solved = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, false, seen);
@@ -57,15 +57,15 @@ bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajecto
   keep_multipliers(trajectory.horizon);
   return can_go_on_ = true;
 }
-/// Restoration: the primal-dual method with elastic rows and next to nothing of the cost (docs/solver.md, eq.
-/// 55), again as long as a small share of the misses is left. True where a minimum above zero is proven:
-/// `trajectory` is there. Else weights and multipliers are those of the point that was found.
+/// Restoration: the primal-dual method with elastic rows and almost no cost (docs/solver.md, eq. 55),
+/// repeated as long as a small share of the violation is left. True if a minimum above zero is proven:
+/// `trajectory` is there. Else weights and multipliers are those of the point found.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                                                   const Deadline& deadline, int& left,
                                                   HardReport& report) noexcept {
   constexpr double kShare = 1e-8, kTolerance = 1e-8, kFirstUnit = 0.1;
-  constexpr double kMuch = 0.1, kLeastShare = 1e-3;  // of a unit that is left: the next is as small, at least
+  constexpr double kMuch = 0.1, kLeastShare = 1e-3;  // over the unit: repeat below it, least next unit
   if (left <= 0) return false;
   has_restored_ = true;
   const auto factors = problem_.penalty_factor;
@@ -99,7 +99,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   keep_multipliers(trajectory.horizon);
   least_multipliers_ = multipliers_;
   if (is_certified_) return true;
-  report.status = SolveStatus::kStalled;  // it converged, but not with the whole cost
+  report.status = SolveStatus::kStalled;  // converged, but not with the whole cost
   can_go_on_ = false;
   problem_.cost_root = 1.0;
   problem_.penalty_factor = factors;
@@ -129,7 +129,7 @@ template <HardProblem P, int Capacity, class Arch>
 HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, const State& x0,
                                                           Trajectory& trajectory,
                                                           HardReport report) noexcept {
-  constexpr double kLight = 1e-9;  // beside their multipliers rows themselves count for nothing
+  constexpr double kLight = 1e-9;  // weight of rows, negligible beside their multipliers
   multipliers_ = least_multipliers_;
   multipliers_.equality_weight.fill(kLight);
   multipliers_.terminal_weight.fill(kLight);
@@ -140,7 +140,7 @@ HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, cons
   copy_ = least_;
   assess(x0, copy_, true, seen);
   multipliers_ = least_multipliers_;
-  multipliers_.is_known = false;  // of the violation alone: no start for another solve
+  multipliers_.is_known = false;  // multipliers of the violation alone cannot start another solve
   const Misses now = measure(problem, trajectory, &report);
   problem_.violation_penalty = 0.0;
   return finish(SolveStatus::kInfeasible, now, report);

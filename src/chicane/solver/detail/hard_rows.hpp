@@ -17,8 +17,7 @@
 
 namespace chicane::solver {
 
-/// Whether some residuals of a problem stand for rows that must hold (detail/augmented.hpp): those behind its
-/// own.
+/// Whether residuals after a problem's own represent rows that must hold (detail/augmented.hpp).
 template <class P>
 inline constexpr bool kHasHardRows = requires {
   P::kOwnResiduals;
@@ -87,7 +86,7 @@ class HardRows {
     is_ready_ = false;
   }
   [[nodiscard]] bool is_ready() const noexcept { return is_ready_; }
-  /// From now on with weights of at most `rho`; rows give way at `penalty`, where that is above zero.
+  /// Sets weights of at most `rho` from now on; rows give way at `penalty`, if that is above zero.
   void weigh(double rho, double penalty) noexcept {
     rho_ = rho;
     is_ready_ = true;
@@ -114,7 +113,8 @@ class HardRows {
     for (std::size_t n = 0; n < kEndRows; ++n)
       end_[n] = centred(limits(n), h[n], n < kEqualities ? end_[n].y : 0.0, mu);
   }
-  /// After a change of rows or μ: weights and shifts whose residuals pull as much as the eliminated p and n.
+  /// Updates weights and shifts after a change of rows or μ: their residuals have the force of the eliminated
+  /// p and n.
   void set_rows(P& problem, double mu, std::size_t horizon) noexcept {
     for (std::size_t n = 0; n < kStageRows; ++n) {
       for (std::size_t k = 0; k < horizon; k += 8) {
@@ -129,8 +129,8 @@ class HardRows {
       problem.terminal_shift[n] = shift;
     }
   }
-  /// The same after a change of μ alone; `slope`, the gradient of the end, follows, and `pull(k, j, amount)`
-  /// those of the stages.
+  /// Updates weights and shifts after a change of μ alone. `slope`, the gradient of the end, follows, and
+  /// through `pull(k, j, amount)` the stages' gradients.
   template <class Pull>
   void set_rows(P& problem, double mu, std::size_t horizon, double* slope, const Pull& pull) noexcept {
     const auto old_end = problem.terminal_shift;
@@ -192,7 +192,7 @@ class HardRows {
     }
     return {fraction / std::max(most_primal, 1e-30), fraction / std::max(most_dual, 1e-30)};
   }
-  /// Slope along the direction of what the rows cost, less what the stages' gradients have of them.
+  /// Slope of the rows' cost along the direction, less the part that the stages' gradients contain.
   [[nodiscard]] double slope() const noexcept { return slope_; }
 
   /// The value of row n of eight stages from k on, whose residual is `value`.
@@ -253,7 +253,7 @@ class HardRows {
     }
     return worst;
   }
-  /// What the end's residuals pull at state i beyond their multipliers.
+  /// Force of the end's residuals on state i beyond their multipliers.
   [[nodiscard]] double excess(const P& problem, std::size_t i) const noexcept {
     double sum = 0.0;
     for (std::size_t n = 0; n < kEndRows; ++n)
@@ -268,10 +268,10 @@ class HardRows {
     return V::load(stage_[n].y + k) / problem.equality_root[n].at(StageLanes<V>{static_cast<int>(k)});
   }
 
-  /// To where the last measure() was; multipliers of equalities that must hold by `length` of their
+  /// Moves to the point of the last measure(); multipliers of equalities that must hold by `length` of their
   /// direction, others by `dual_length`.
   void move(P& problem, double length, double dual_length, double mu, std::size_t horizon) noexcept {
-    constexpr double kFar = 1e10;
+    constexpr double kFar = 1e10;  // range of y around μ / n, as a factor
     const double by = is_elastic() ? dual_length : length;
     for (std::size_t n = 0; n < kStageRows; ++n) {
       for (std::size_t k = 0; k < horizon; k += 8) {
@@ -304,8 +304,8 @@ class HardRows {
 
  private:
   static constexpr std::size_t kStride = kStageStride<Capacity>;
-  static constexpr double kPush = 1e-2;
-  static constexpr double kNearlyNone = 1e-12;
+  static constexpr double kPush = 1e-2;         ///< least start of n, relative to h
+  static constexpr double kNearlyNone = 1e-12;  ///< weight of a row without effect
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   template <class T, std::size_t N>
   using Of = std::array<T, (N > 0 ? N : 1)>;
@@ -314,7 +314,7 @@ class HardRows {
     operator double*() noexcept { return values; }
     operator const double*() const noexcept { return values; }
   };
-  /// Between which a multiplier is; `soft`: what a multiplier leaves of its row.
+  /// Range of a multiplier; `soft`: share of its row that a multiplier leaves.
   struct Limits {
     double low = 0.0, high = 0.0, soft = 0.0;
     [[nodiscard]] bool has_p() const noexcept { return high < kInfinity; }
@@ -431,7 +431,7 @@ class HardRows {
   bool is_ready_ = false;  ///< weigh() has been called
 };
 
-/// In its place for problems without.
+/// Placeholder for problems without hard rows.
 struct NoHardRows {};
 
 template <class P, std::size_t Capacity, class Arch>

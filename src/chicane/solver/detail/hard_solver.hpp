@@ -34,17 +34,18 @@ class HardSolver {
     options_ = options;
     inner_.set_options(options);
   }
-  /// From the next solve on: SolverOptions::max_iterations, of all rounds together.
+  /// Sets SolverOptions::max_iterations for all rounds together, from the next solve on.
   void allow_iterations(int most) noexcept { options_.max_iterations = most; }
 
-  /// As OcpSolver::solve of problems without. A usable answer misses nothing by more than `tolerance`, also
-  /// with kBudgetSpent; kInfeasible: the misses have a local minimum above zero here.
+  /// Solves as OcpSolver::solve does. A usable answer violates nothing by more than `tolerance`, also with
+  /// kBudgetSpent; kInfeasible: the violation has a local minimum above zero here.
   HardReport solve(const P& problem, const State& x0, Trajectory& trajectory,
                    Deadline deadline = Deadline::never()) noexcept {
     multipliers_.is_known = false;
     return run(problem, x0, trajectory, deadline);
   }
-  /// The same from multipliers and weights of an earlier solve, if they are known; then those of this one.
+  /// Solves from multipliers and weights of an earlier solve, if they are known, and replaces them by this
+  /// solve's.
   HardReport solve(const P& problem, const State& x0, Trajectory& trajectory, Multipliers& multipliers,
                    Deadline deadline = Deadline::never()) noexcept {
     multipliers_ = multipliers;
@@ -53,7 +54,7 @@ class HardSolver {
     return report;
   }
 
-  /// As of problems without; what must hold answers with the multipliers and weights of the last solve.
+  /// Prepares feedback as OcpSolver does; hard rows enter with multipliers and weights of the last solve.
   bool prepare() noexcept { return inner_.prepare(problem_); }
   FeedbackReport feedback(const State& x0, Trajectory& trajectory) noexcept {
     return inner_.feedback(x0, trajectory);
@@ -63,7 +64,7 @@ class HardSolver {
     inner_.record_iterations(log);
   }
 
-  /// After a solve: multipliers, d(cost)/d(right-hand side).
+  /// Multipliers after a solve, d(cost)/d(right-hand side).
   [[nodiscard]] double equality_multiplier(int k, int n) const noexcept {
     return multipliers_.equality[static_cast<std::size_t>(n)].at(k);
   }
@@ -73,7 +74,7 @@ class HardSolver {
   [[nodiscard]] double terminal_constraint_multiplier(int n) const noexcept {
     return multipliers_.terminal[static_cast<std::size_t>(kNeh + n)];
   }
-  /// As of problems without.
+  /// Adjoint, as in OcpSolver.
   [[nodiscard]] double adjoint(int k, int i) const noexcept { return inner_.adjoint(k, i); }
   [[nodiscard]] double bound_multiplier(int k, int m) const noexcept { return inner_.bound_multiplier(k, m); }
   [[nodiscard]] double constraint_multiplier(int k, int c) const noexcept {
@@ -88,19 +89,19 @@ class HardSolver {
   static constexpr std::size_t kNh = Problem::kEqualities, kNc = P::kNc;
   static constexpr std::size_t kNeh = Problem::kEndEqualities;
   static constexpr std::size_t kEnd = kNeh + Problem::kEndConstraints;
-  static constexpr int kMostRounds = 40;
+  static constexpr int kMostRounds = 40;  ///< limit of rounds
   static constexpr int kTrialSpent = -1;
-  static constexpr double kFirstShare = 10.0;  ///< of the guess's cost in its misses
+  static constexpr double kFirstShare = 10.0;  ///< weighted violation of the guess over its cost
   static constexpr double kLeastWeight = 1e-2, kMostFirstWeight = 10.0, kMostWeight = 1e9;
-  static constexpr std::array kHeavier{10.0, 1e3};  ///< times these, where the first ones lead nowhere
+  static constexpr std::array kHeavier{10.0, 1e3};  ///< factors of the first weights, if those fail
 
-  /// What a trajectory misses, by rows: the largest of each.
+  /// Violations of a trajectory by row: the largest of each.
   struct Misses {
     std::array<double, kNh> equality{};
     std::array<double, kEnd> terminal{};
     std::array<double, kNc> constraint{};
     double cost = 0.0;   ///< the problem's own, with its first penalties
-    double total = 0.0;  ///< of all rows of all stages
+    double total = 0.0;  ///< sum over all rows of all stages
 
     [[nodiscard]] double worst() const noexcept {
       double worst = 0.0;
@@ -159,8 +160,7 @@ class HardSolver {
     return finish(SolveStatus::kStalled, now, report);
   }
 
-  /// Iterations of a way that others follow: a fifth of all, and no more than a hundred, so that who allows
-  /// more iterations gets to the other ways, too.
+  /// Iteration limit of one start: min(100, max_iterations / 5), so that other starts get their turn.
   [[nodiscard]] int most_of_a_trial() const noexcept {
     return std::max(1, std::min(100, options_.max_iterations / 5));
   }
@@ -168,12 +168,12 @@ class HardSolver {
                    HardReport& report) noexcept;
   bool follow(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
               HardReport& report) noexcept;
-  /// From the guess, with the first weights times `factor`.
+  /// Restarts from the guess, with the first weights times `factor`.
   void begin_again(Trajectory& trajectory, double factor) noexcept {
     trajectory = guess_;
     start_with_weights(trajectory.horizon, factor);
   }
-  /// The guess, simulated, if its inputs miss less than those of `trajectory` and cost less, too: true then.
+  /// Takes the simulated guess if its inputs violate less than `trajectory`'s and cost less; true then.
   bool take_guess(const P& problem, const State& x0, Trajectory& trajectory, HardReport& report) noexcept {
     if (!roll_out(problem, x0, guess_)) return false;
     const Misses guess = measure(problem, guess_, nullptr);
@@ -226,7 +226,7 @@ class HardSolver {
     const int c = report.worst_constraint;
     return c >= 0 && report.violation > penalty_of(problem_, static_cast<std::size_t>(c)).cap;
   }
-  /// Of rounds: multipliers are as good as the round that they come from, so that loose ones lead astray.
+  /// Tolerance of rounds: multipliers are as good as the round that yields them, so that loose ones mislead.
   [[nodiscard]] double round_tolerance() const noexcept { return std::min(options_.tolerance, 1e-6); }
 
   // ---- weights and multipliers
@@ -341,7 +341,7 @@ class HardSolver {
     if constexpr (detail::SaysWhatIsHard<P>) return problem.is_hard(static_cast<int>(c));
     return false;
   }
-  /// Cost and misses of a trajectory; keeps the values of rows, and tells the worst.
+  /// Computes cost and misses of a trajectory; keeps the values of rows, and reports the worst.
   Misses measure(const P& problem, const Trajectory& t, HardReport* report) noexcept {
     Misses misses;
     double worst = 0.0;
@@ -419,14 +419,14 @@ class HardSolver {
   OcpSolver<Problem, Capacity, Arch> inner_;
   Problem problem_;
   Multipliers multipliers_;
-  double unit_ = 1.0;  ///< of costs
-  Misses first_;       ///< of the guess
+  double unit_ = 1.0;  ///< unit of costs
+  Misses first_;       ///< violations of the guess
   IterationLog* log_ = nullptr;
   Trajectory guess_;
-  Trajectory copy_;                ///< for reports, which may change it
-  Trajectory least_;               ///< where misses have a local minimum above zero, with is_certified_
-  int last_iterations_ = 0;        ///< of the last round
-  Multipliers least_multipliers_;  ///< there, of the violation alone
+  Trajectory copy_;                ///< copy for reports, which may change it
+  Trajectory least_;               ///< local minimum of the violation above zero, if is_certified_
+  int last_iterations_ = 0;        ///< iterations of the last round
+  Multipliers least_multipliers_;  ///< multipliers of the violation alone at least_
   double least_unit_ = 1.0;        ///< unit of the misses there
   bool is_certified_ = false;
   bool has_restored_ = false;  ///< restoration has been tried

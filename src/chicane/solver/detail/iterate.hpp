@@ -90,7 +90,7 @@ double collect_step(const Lq& lq, std::size_t horizon, Step& step) noexcept {
   return longest;
 }
 
-/// to = from + length · step. `to` may be `from`.
+/// Sets to = from + length · step. `to` may be `from`.
 template <class Arch, class Point>
 void add_step(const Point& from, double length, const Point& step, Point& to) noexcept {
   using V = Stages<Arch>;

@@ -46,8 +46,8 @@ class Linearisation {
   Hard hard;                   ///< rows that must hold, for the primal-dual method
   double merit = 0.0;          ///< cost with the barrier's smoothed penalties; when slacks were centred
   double defect_excess = 0.0;  ///< largest defect beyond its tolerance; <= 0: all are small enough
-  /// Not null: multipliers of the dynamics are unknowns, too. Linearisations leave `adjoint` as it is and put
-  /// here what is missing to optimality in the states: [i][k] of x_k, k = 1 … horizon.
+  /// Residual of optimality in the states, [i][k] of x_k, k = 1 … horizon. If not null, multipliers of the
+  /// dynamics are unknowns, too: linearisations leave `adjoint` as it is and write the residual here.
   double (*state_residual)[kStageStride<Capacity>] = nullptr;
 
   /// Linearises at `t`. With Order 2 the stages get exact Hessians of the Lagrangian, else Gauss–Newton's.
@@ -90,7 +90,7 @@ class Linearisation {
     IsExact<Order> is_exact;
   };
 
-  /// What is added up over the horizon, eight stages side by side.
+  /// Sums over the horizon, eight stages side by side.
   struct Sums {
     double end_cost = 0.0;
     V cost{0.0}, smoothing{0.0};
@@ -102,7 +102,7 @@ class Linearisation {
       report.cost = end_cost + sum(cost);
       now.merit = report.cost + sum(smoothing);
       now.defect_excess = largest(defect_excess);
-      // A maximum may lose what is not a number, a sum does not.
+      // A maximum may lose a not-a-number, a sum does not.
       report.defect = is_number(sum(defects)) ? largest(defect) : kNotANumber;
       report.stationarity = is_number(sum(slopes)) ? largest(stationarity) : kNotANumber;
       const bool has_values = is_number(sum(values));
@@ -121,7 +121,7 @@ class Linearisation {
     double cost = 0.0;
     each_row<typename Evaluate::EndValue, Order>(rows, [&](auto n, const auto& r) CHICANE_INLINE {
       const double value = Evaluate::number(r.v);
-      double weight = value;  // of the curvature
+      double weight = value;  // weight of the curvature
       if constexpr (kHasHardRows<P>) {
         if (n >= std::size_t{P::kOwnEnd})
           weight = keep_end_row(problem, n - std::size_t{P::kOwnEnd}, r, value);
@@ -167,7 +167,7 @@ class Linearisation {
         Entries::template add_gradient<void>(n, r, curvature_weight(problem, n, k0, r.v) - r.v, gradient);
     });
   }
-  /// What the curvature of residual n counts by: its value, or a multiplier.
+  /// Weight of residual n's curvature: its value, or a multiplier.
   V curvature_weight([[maybe_unused]] const P& problem, [[maybe_unused]] std::size_t n,
                      [[maybe_unused]] std::size_t k0, const V& value) const noexcept {
     if constexpr (kHasHardRows<P>) {
@@ -236,7 +236,7 @@ class Linearisation {
     const auto live = stage_number(StageLanes<V>{static_cast<int>(k0)}) < V(static_cast<double>(t.horizon));
     Jacobians f;
     Costs l;
-    Gradient gradient;  // of the stage cost, with the constraints' multipliers as they are
+    Gradient gradient;  // gradient of the stage cost with the current multipliers of the constraints
 
     collect_dynamics<Order>(rows.next, t, k0, live, how.defect_share, f, sums);
     add_residuals<Order>(rows.residual, live, gradient, l, sums);
@@ -327,7 +327,7 @@ class Linearisation {
   /// λ_k = g_x + Aᵀ λ_{k+1} through the stages of the group, last first. The only sequential part.
   CHICANE_INLINE void run_adjoint(std::size_t horizon, std::size_t k0, const Jacobians& f,
                                   const Gradient& gradient, double (&lambda)[kNx]) noexcept {
-    double now[kNx];  // in registers
+    double now[kNx];  // kept in registers
     unroll<kNx>([&](auto i) CHICANE_INLINE { now[i] = lambda[i]; });
     for (std::size_t lane = std::min<std::size_t>(8, horizon - k0); lane-- > 0;) {
       double before[kNx];
@@ -414,7 +414,7 @@ class Linearisation {
     });
   }
 
-  /// What Gauss–Newton leaves out: Σ r ∇²r + λ ∇²f + z ∇²c (eq. 22).
+  /// Second-order terms that Gauss–Newton leaves out: Σ r ∇²r + λ ∇²f + z ∇²c (eq. 22).
   template <class StageRows>
   CHICANE_INLINE void add_curvature(const P& problem, const StageRows& rows, std::size_t k0,
                                     const Slacks& slacks, Costs& l) const noexcept {

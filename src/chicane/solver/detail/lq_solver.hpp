@@ -14,14 +14,14 @@
 
 namespace chicane::solver {
 
-/// What a backward sweep leaves of a stage. A free input follows δu = row · δx + constant; of a held one
+/// Result of a backward sweep for a stage. A free input follows δu = row · δx + constant; for a held one
 /// these are the slope d(cost to go)/dδu instead.
 template <std::size_t Nu, std::size_t Lanes>
 struct alignas(64) Feedback {
   double row[Nu][Lanes]{};
   double constant[Nu]{};
   double H[Nu][Nu]{};  ///< curvature of the cost to go in the inputs, as factorised
-  double g[Nu]{};      ///< its slope at δu = 0
+  double g[Nu]{};      ///< slope at δu = 0
 };
 
 /// Solves min Σ ½ zᵀLz + terminal cost s.t. δx₀ given, δx⁺ = F z and bounds on δu, for one
@@ -44,9 +44,8 @@ class LqSolver {
   Hold hold[Lq::kStages][kNu]{};  ///< working set
   using Feedback = solver::Feedback<kNu, kLanes>;
   Feedback feedback[Lq::kStages]{};
-  alignas(
-      64) double dx[Capacity + 1][kLanes]{};  ///< step of the states; of the first one as it is set, else 0
-  double du[Capacity][kNu]{};                 ///< step of the inputs
+  alignas(64) double dx[Capacity + 1][kLanes]{};  ///< step of the states; of the first one as set, else 0
+  double du[Capacity][kNu]{};                     ///< step of the inputs
 
   /// Factorises all stages with `shift` added to the input blocks. `choose`: take the working set of each
   /// stage from its own small box problem (that is control-limited differential dynamic programming; the step
@@ -57,7 +56,7 @@ class LqSolver {
     return choose ? sweep(horizon, shift, std::true_type{}, std::false_type{})
                   : sweep(horizon, shift, std::false_type{}, std::false_type{});
   }
-  /// The same with `shift` added to the curvature of all states as well, those of the horizon's end included;
+  /// Backward sweep with `shift` added to the curvature of all states as well, the horizon's end included;
   /// ends at the first input block that is indefinite.
   double backward_shifted(std::size_t horizon, double shift) noexcept {
     std::copy(&lq.terminal[0][0], &lq.terminal[0][0] + (kNx + 1) * kLanes, &value_[horizon][0][0]);
@@ -72,7 +71,7 @@ class LqSolver {
     return sweep(last_change_ + 1, shift, std::false_type{}, std::false_type{});
   }
 
-  /// What the forward sweep does with inputs that contradict the working set.
+  /// Treatment of inputs that contradict the working set in the forward sweep.
   enum class Repair { kAll, kLast, kClip, kNone };
 
   /// Computes dx and du, and corrects the working set: all contradicting inputs at once, only the last one,
@@ -120,7 +119,7 @@ class LqSolver {
     for (std::size_t i = 0; i < kNx; ++i) sum += feedback[k].row[m][i] * dx[k][i];
     return sum;
   }
-  /// How far du follows its input's own feedback: the gain that belongs to state i, 0 where it is held.
+  /// Gain of an input's own feedback on state i; 0 where the input is held.
   [[nodiscard]] double gain(std::size_t k, std::size_t m, std::size_t i) const noexcept {
     return hold[k][m] == Hold::kFree ? feedback[k].row[m][i] : 0.0;
   }
@@ -147,7 +146,7 @@ class LqSolver {
     double largest = 0.0;
     for (std::size_t k = from; k-- > 0;) {
       eliminate(k, P, shift, choose, largest);
-      if (shift_states && largest > 0.0) return largest;  // not convex: to be shifted more
+      if (shift_states && largest > 0.0) return largest;  // not convex: needs a larger shift
       if constexpr (!Layout::is_large()) {
         if (k % kSymmetryPeriod == 0) {
           if constexpr (kIsCompact) Algebra::make_symmetric_apart(P);
@@ -177,7 +176,7 @@ class LqSolver {
     }
   }
 
-  /// One stage backwards: the value function P of stage k + 1 becomes that of stage k (eq. 9–11).
+  /// Backward step over one stage: the value function P of stage k + 1 becomes stage k's (eq. 9–11).
   template <class Choose>  // NOLINTNEXTLINE(readability-function-size): one stage, in registers
   CHICANE_INLINE void eliminate(std::size_t k, Value& P, double shift, Choose choose,
                                 double& largest) noexcept {
@@ -213,7 +212,7 @@ class LqSolver {
 
     bool is_held[kNu];
     const bool any_held = settle_inputs(k, block, choose, is_held, largest);
-    double b[kNu] = {};  // where inputs are held
+    double b[kNu] = {};  // values of held inputs
     double g[kNu];       // slopes with them there
     unroll<kNu>([&](auto m) CHICANE_INLINE { g[m] = block.g[m]; });
     if (any_held) substitute_held(k, block, is_held, R, b, g, q);
@@ -282,7 +281,7 @@ class LqSolver {
     return extra;
   }
 
-  /// Where held inputs are, and the slopes of the cost with them there.
+  /// Inserts held inputs, and computes the slopes of the cost at them.
   CHICANE_INLINE void substitute_held(std::size_t k, const Block& block, const bool (&is_held)[kNu],
                                       const Vector (&R)[kNu], double (&b)[kNu], double (&g)[kNu],
                                       Vector& q) const noexcept {
@@ -315,12 +314,12 @@ class LqSolver {
 
   // ---- working set
 
-  /// What contradicted the working set in a forward sweep: how many, and the last one.
+  /// Contradictions to the working set in a forward sweep: their number, and the last one.
   struct Contradictions {
     int count = 0;
     std::size_t stage = 0;
     std::size_t input = 0;
-    Hold next = Hold::kFree;  ///< what to do about it
+    Hold next = Hold::kFree;  ///< new state of that input
     void add(std::size_t k, std::size_t m, Hold wanted) noexcept {
       ++count;
       stage = k;

@@ -10,7 +10,7 @@
 
 namespace chicane::solver {
 
-// How OcpSolver ends: the parts of it that make an answer of an iterate.
+// Endings of OcpSolver: an answer from an iterate.
 
 /// Admissible inputs and finite states, for when the data are not finite.
 template <OcpProblem P, int Capacity>
@@ -21,7 +21,7 @@ CHICANE_INLINE inline void leave_admissible(const P& problem, const std::array<d
   trajectory.horizon = horizon;
   trajectory.x[0] = x0;
   clamp_inputs(problem, trajectory);
-  for (auto& u : trajectory.u) {  // of bounds that no number keeps
+  for (auto& u : trajectory.u) {  // for bounds that no number satisfies
     for (double& value : u) value = std::isfinite(value) ? value : 0.0;
   }
   for (auto& x : trajectory.x) {
@@ -106,7 +106,7 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
 /// by more than rounding does.
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::bring_inside() noexcept {
-  constexpr double kMoved = 1e-12;
+  constexpr double kMoved = 1e-12;  // change that is more than rounding, relative
   bool has_moved = false;
   for (std::size_t m = 0; m < kNu; ++m) {
     for (std::size_t k = 0; k < t_.horizon; ++k) {
@@ -118,11 +118,9 @@ bool OcpSolver<P, Capacity, Arch>::bring_inside() noexcept {
   return has_moved;
 }
 
-// What OcpSolver does where full steps have lost their way: the parts of it that have to do with the filter
-// method.
+// OcpSolver's recovery when full steps fail: its use of the filter method.
 
-/// From where the solve started, or once more from where the filter method left off. False when that is of no
-/// use.
+/// Starts the filter method from the solve's start, or where it left off. False if that is of no use.
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::begin_filter(const P& problem, const Trajectory& trajectory,
                                                 SolveReport& report) noexcept {
@@ -173,7 +171,7 @@ bool OcpSolver<P, Capacity, Arch>::filter_iteration(const P& problem, const Dead
   filter_.hand_over(now_, lq_);
   best_ = t_;
   best_report_ = report;
-  best_report_.stationarity = kInfinity;  // by other multipliers than the first linearisation's
+  best_report_.stationarity = kInfinity;  // its multipliers differ from the first linearisation's
   barrier_.save(best_slacks_, t_.horizon);
   has_best_ = full_steps_ = true;
   is_exact_ = options_.second_order;
@@ -278,7 +276,7 @@ void OcpSolver<P, Capacity, Arch>::record_filter_iteration(const SolveReport& re
 /// known, is as good as any.
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::is_at_floor(const SolveReport& report) noexcept {
-  constexpr double kFloor = 1e-8;  // of the inputs
+  constexpr double kFloor = 1e-8;  // least change of the inputs
   if (!kCanFilter || !is_finite(report) || !has_best_ || !full_steps_ || is_growing() || !barrier_.is_final())
     return false;
   double largest = 1.0;
@@ -292,8 +290,8 @@ bool OcpSolver<P, Capacity, Arch>::is_at_floor(const SolveReport& report) noexce
   return shows_best_ = true;
 }
 
-/// Not solved: where the filter method stands if that is close; else, of its inputs, the best iterate's and
-/// the guess's, those whose simulation costs least: no more than the guess.
+/// Answer without a solution: the filter method's point if that is close; else the cheapest simulation of its
+/// inputs, the best iterate's and the guess's: no more than the guess.
 template <OcpProblem P, int Capacity, class Arch>
 void OcpSolver<P, Capacity, Arch>::take_cheapest(const P& problem, const Trajectory& trajectory,
                                                  SolveReport& report) noexcept {

@@ -11,7 +11,7 @@
 
 namespace chicane::solver {
 
-/// What is known of one entry of a Jacobian before the program runs.
+/// Compile-time knowledge of one entry of a Jacobian.
 enum class Entry : std::uint8_t { kZero, kOne, kValue };
 
 /// A pattern is a type that says which entries of the stages of a linear-quadratic problem can be other than
@@ -35,15 +35,15 @@ struct FullPattern {
   }();
 };
 
-/// Whether what is made of a pattern is to be built quickly, `kIsCompact = true`: one sweep for all uses,
-/// loops where every entry counts. Some percent slower.
+/// Whether code for a pattern is to compile quickly, `kIsCompact = true`: one sweep for all uses, loops where
+/// every entry counts. Some percent slower.
 template <class Pattern>
 [[nodiscard]] constexpr bool is_compact() noexcept {
   if constexpr (requires { Pattern::kIsCompact; }) return Pattern::kIsCompact;
   return false;
 }
 
-/// More variables than this in a stage: what is made of them works in blocks and loops.
+/// Limit of variables in a stage for unrolled code; beyond it blocks and loops are used.
 inline constexpr std::size_t kMostUnrolled = 24;
 
 /// Numbers the entries of a pattern that are stored.
@@ -259,7 +259,7 @@ struct LqProblem {
   }
 
  private:
-  /// Where a line of eight numbers comes from: entries of F, of L, or constants.
+  /// Sources of a line of eight numbers: entries of F, of L, or constants.
   struct Sources {
     std::array<std::size_t, 8> f{};
     std::array<std::size_t, 8> l{};
@@ -271,7 +271,7 @@ struct LqProblem {
     sources.l.fill(Layout::kNone);
     return sources;
   }
-  /// Of all lines of numbers, in one pass: line by line it takes the compiler 20 s for 60 variables.
+  /// Sources of all lines, in one pass: line by line it takes the compiler 20 s for 60 variables.
   static constexpr auto kSourcesOfNumbers = [] {
     std::array<Sources, Layout::kNumbers / 8> lines{};
     lines.fill(nothing());
@@ -306,8 +306,8 @@ struct LqProblem {
     std::array<std::uint16_t, 8> entry{};
     std::array<std::uint8_t, 8> from{};
     bool is_wide = false;
-    std::uint16_t row = 0;    ///< of the wide ones
-    std::uint16_t begin = 0;  ///< its first number
+    std::uint16_t row = 0;    ///< row of a wide line
+    std::uint16_t begin = 0;  ///< first number of a wide line
   };
   static constexpr Line line_of(const Sources& of, bool is_wide, std::size_t row,
                                 std::size_t begin) noexcept {

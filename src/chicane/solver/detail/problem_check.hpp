@@ -62,7 +62,7 @@ using Rows = RowsOf<P, TakesSymbols<P>>;
 inline constexpr int kNotCallable = -1;
 inline constexpr int kNoRows = -2;
 
-/// How many rows one of the functions returns. `Function::call` calls it.
+/// Number of rows that one of the functions returns. `Function::call` calls it.
 template <class Function, class P>
 consteval int rows_of() {
   if constexpr (requires(const P& p, const typename Rows<P>::X& x, const typename Rows<P>::U& u) {
@@ -199,7 +199,7 @@ consteval bool check_bounds() {
   return kHasBounds && !kHasRate;
 }
 
-/// By whatever level: without constraints that can be called a problem is of neither.
+/// Whether constraints can be called on either level; else the problem is of neither.
 template <class P>
 consteval bool has_constraints() {
   if constexpr (P::kNc > 0) {

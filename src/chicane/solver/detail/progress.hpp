@@ -31,7 +31,7 @@ class Progress {
   [[nodiscard]] bool is_good() const noexcept { return idle_ == 0; }
   /// Steps have not become shorter for a while.
   [[nodiscard]] bool is_lost() const noexcept { return idle_ >= kPatience; }
-  /// The shortest step so far.
+  /// Shortest step up to now.
   [[nodiscard]] double shortest() const noexcept { return shortest_; }
   /// Whether more than `iterations` further steps would be needed to get as short as `length`, at the present
   /// linear rate.
@@ -40,7 +40,7 @@ class Progress {
   }
 
  private:
-  static constexpr double kImprovement = 0.9;
+  static constexpr double kImprovement = 0.9;  ///< step that counts as shorter, relative
   static constexpr int kPatience = 2;
   double shortest_ = std::numeric_limits<double>::infinity();
   double last_ = std::numeric_limits<double>::infinity();
@@ -61,15 +61,15 @@ class FloorWatch {
   void note_step(bool is_tiny) noexcept { tiny_ = is_tiny ? tiny_ + 1 : 0; }
 
  private:
-  static constexpr double kFalls = 0.9;
+  static constexpr double kFalls = 0.9;  ///< residual that counts as less, relative
   static constexpr int kMostIdle = 6, kMostTiny = 2;
   double least_ = std::numeric_limits<double>::infinity();
   int idle_ = 0;  ///< residuals since it fell
   int tiny_ = 0;  ///< steps in succession
 };
 
-/// Watches cost and defects of full steps: those that make both worse lead to a local optimum that nobody
-/// wants, or to none.
+/// Watches cost and defects of full steps: steps that make both worse lead to a poor local optimum, or to
+/// none.
 class Course {
  public:
   /// Takes note of an iterate. Whether it costs five times as much as the cheapest before it, with more
@@ -83,12 +83,12 @@ class Course {
   }
 
  private:
-  static constexpr double kDearer = 5.0;
+  static constexpr double kDearer = 5.0;  ///< cost that counts as lost, relative
   double least_cost_ = std::numeric_limits<double>::infinity();
   double its_defect_ = 0.0;
 };
 
-/// Watches what is missed from round to round of an augmented Lagrangian.
+/// Watches the violation from round to round of an augmented Lagrangian.
 class RoundProgress {
  public:
   /// No round yet: there is nothing that misses could have come down from.
@@ -103,16 +103,16 @@ class RoundProgress {
   }
   /// The last rounds have come closer than the first one.
   [[nodiscard]] bool is_good() const noexcept { return idle_ == 0 && best_ < first_; }
-  /// Three rounds in turn were not enough; short ones with a `miss` that is small beside that of the `guess`
-  /// may be eight.
+  /// Whether three rounds in turn were not enough; eight are allowed to short rounds whose `miss` is small
+  /// beside the `guess`'s.
   [[nodiscard]] bool is_lost(double miss, double guess, int iterations) const noexcept {
     return idle_ >= (miss <= kSmall * guess && iterations <= kShort ? 8 : 3);
   }
 
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  static constexpr double kSmall = 1e-2;
-  static constexpr int kShort = 10;  ///< iterations
+  static constexpr double kSmall = 1e-2;  ///< miss that counts as small, relative to the guess
+  static constexpr int kShort = 10;       ///< iterations
   double first_ = kInfinity;
   double best_ = kInfinity;
   int idle_ = 0;

@@ -13,11 +13,11 @@
 
 namespace chicane::solver {
 
-/// In which order the states of a whole horizon can be simulated, one after the other instead of stage after
-/// stage. That is possible where no state needs itself but as a sum, x_i⁺ = x_i + g_i(other states, u), and
-/// no two need each other: then the first ones follow from the inputs alone, at all stages, the next ones
-/// from those, and so on. A car's speed is the sum of its accelerations, its heading that of its turns, its
-/// position that of where it was headed.
+/// Order in which the states of a whole horizon can be simulated, state after state instead of stage after
+/// stage. An order exists if each state depends on itself only as a sum, x_i⁺ = x_i + g_i(other states, u),
+/// and no two depend on each other: the first states then follow from the inputs alone, at all stages, the
+/// next ones from the first, and so on. A car's speed sums its accelerations, its heading sums its turns, and
+/// its position sums its motion.
 template <class Pattern>
 struct StageOrder {
   static constexpr std::size_t kNx = Pattern::kNx;
@@ -83,8 +83,8 @@ class RollOut {
 
  private:
   using Evaluate = Evaluation<P, Arch>;
-  /// Eight stages as ever, under a name that makes each level's call a function of its own: called once, it
-  /// is inlined, and what is not used of its results goes away.
+  /// Eight stages under a name that makes each level's call a function of its own: called once, it is
+  /// inlined, and unused results are removed.
   template <std::size_t>
   struct LanesOfLevel : StageLanes<V> {};
 
@@ -102,7 +102,7 @@ class RollOut {
   /// other states is not used, and so never computed.
   template <std::size_t Level, class Point>
   static void simulate_level(const P& problem, Point& t) noexcept {
-    double now[kNx];  // where each sum has got to
+    double now[kNx];  // running value of each sum
     for (std::size_t i = 0; i < kNx; ++i) now[i] = t.x[i][0];
     for (std::size_t k = 0; k < t.horizon; k += 8) {
       const auto next = changes<Level>(problem, t, k);
@@ -116,7 +116,7 @@ class RollOut {
       });
     }
   }
-  /// x⁺ of the eight stages from k on, of sums without what they are added to.
+  /// Computes x⁺ of the eight stages from k on, for sums without their start.
   template <std::size_t Level, class Point>
   CHICANE_INLINE static auto changes(const P& problem, const Point& t, std::size_t k) noexcept {
     std::array<V, kNx> x;
@@ -126,8 +126,8 @@ class RollOut {
     unroll<kNu>([&](auto m) CHICANE_INLINE { u[m] = V::load(t.u[m] + k); });
     return to_array<V>(problem.dynamics(LanesOfLevel<Level>{{static_cast<int>(k)}}, x, u));
   }
-  /// start, start + c_0, start + c_0 + c_1, … to `to`; returns the sum of all. Added one by one, so that the
-  /// rounding is that of a simulation.
+  /// Writes start, start + c_0, start + c_0 + c_1, … to `to` and returns the sum of all. Adds one by one, so
+  /// that the rounding equals a simulation's.
   CHICANE_INLINE static double running_sum(double start, const V& change, double* to) noexcept {
     alignas(64) double by_stage[8];
     change.store(by_stage);

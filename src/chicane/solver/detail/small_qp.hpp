@@ -12,7 +12,7 @@
 
 namespace chicane::solver {
 
-/// Where an input stands in the working set: free, or at one of its bounds.
+/// State of an input in the working set: free, or at one of its bounds.
 enum class Hold : std::int8_t { kLow = -1, kFree = 0, kHigh = 1 };
 
 /// The working-set rule of the primal-dual active set method: an input beyond a bound is held there, a held
@@ -20,7 +20,7 @@ enum class Hold : std::int8_t { kLow = -1, kFree = 0, kHigh = 1 };
 /// interval without width is always held.
 [[nodiscard]] CHICANE_INLINE inline Hold next_hold(Hold hold, double u, double slope, double low, double high,
                                                    double curvature) noexcept {
-  constexpr double kTolerance = 1e-10;
+  constexpr double kTolerance = 1e-10;  // [unit of the input]
   if (!(high > low)) return Hold::kLow;
   if (hold == Hold::kFree) {
     if (u > high + kTolerance) return Hold::kHigh;
@@ -31,8 +31,8 @@ enum class Hold : std::int8_t { kLow = -1, kFree = 0, kHigh = 1 };
   return inward > kTolerance * (1.0 + std::fabs(curvature)) ? Hold::kFree : hold;
 }
 
-/// min ½ uᵀ H u + gᵀ u s.t. low <= u <= high for a handful of inputs: the box problem of one stage.
-/// `Arch` only tells apart what different files are compiled for.
+/// min ½ uᵀ H u + gᵀ u s.t. low <= u <= high for a handful of inputs: the box problem of one stage. `Arch`
+/// only separates the code of files that are compiled for different instruction sets.
 template <std::size_t N, class Arch = arch::Native>
 struct SmallQp {
   double H[N][N]{};
@@ -182,7 +182,7 @@ struct InputBlock {
   }
 
  private:
-  /// A pivot this small beside its own entry is noise.
+  /// Limit below which a pivot is noise, relative to its own entry.
   CHICANE_INLINE static double noise(double entry) noexcept { return 1e-10 * std::fabs(entry) + 1e-12; }
   /// a d − b c
   CHICANE_INLINE static double cross(double a, double d, double b, double c) noexcept {

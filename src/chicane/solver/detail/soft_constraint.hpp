@@ -25,7 +25,7 @@ struct SoftConstraint {
   V n{1.0};
   V z{1.0};  ///< multiplier of the constraint: d(cost)/dc
 
-  /// What the eliminated slacks add to the quadratic program: multiplier `slope` + `curvature` · δc.
+  /// Contribution of the eliminated slacks to the quadratic program: multiplier `slope` + `curvature` · δc.
   struct Model {
     V slope;
     V curvature;
@@ -35,7 +35,7 @@ struct SoftConstraint {
   /// no memory. Newton's method for linear + quadratic · s = μ/s + μ/t on the smaller slack, from the
   /// solution for quadratic = 0.
   CHICANE_INLINE void centre(const SoftPenalty& penalty, const auto& mu) noexcept {
-    if (penalty.cap == kMustHold) {  // no room for a violation: what is missed stays a residual
+    if (penalty.cap == kMustHold) {  // no room for a violation: it stays a residual
       s = V(1.0) * (mu / penalty.linear);
       t = max(-value, 1e-2 * max(abs(value), V(1.0)));
       n = mu / s;

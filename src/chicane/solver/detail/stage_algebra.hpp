@@ -264,7 +264,7 @@ class StageAlgebra {
     return inputs;
   }
 
-  /// P of the states: Aᵀ P A + L, less what the inputs save.
+  /// P of the states: Aᵀ P A + L, less the saving by the inputs.
   CHICANE_INLINE static void eliminate_states(const Stage& s, const Vector (&T)[kNu], double scale,
                                               const double (&r)[kNu][kLanes], Value& P) noexcept {
     Vector Wx[kNx];

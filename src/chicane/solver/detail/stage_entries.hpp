@@ -46,7 +46,7 @@ template <class... J>
 struct JetSets {
   static constexpr std::array<Variables, sizeof...(J)> kFirst{J::kFirst...};
   static constexpr std::array<Variables, sizeof...(J)> kUnit{J::kUnit...};
-  static constexpr Pairs squares() noexcept {  // of residuals: JᵀJ
+  static constexpr Pairs squares() noexcept {  // pairs in squares of residuals: JᵀJ
     Pairs set;
     ((set |= Pairs::of(J::kFirst, J::kFirst)), ...);
     return set;
@@ -83,7 +83,7 @@ template <class P>
   return true;
 }
 
-/// Whether second derivatives cost little beside the first: those of structured problems and of sparse rows.
+/// Whether second derivatives cost little more than the first, as in structured problems and sparse rows.
 template <class P>
 [[nodiscard]] constexpr bool has_cheap_curvature() noexcept {
   return StructuredProblem<P> || kHasSparseRows<P>;
@@ -97,8 +97,8 @@ template <class P>
   return true;
 }
 
-/// Which entries of the stages of its quadratic programs a structured problem can make other than zero, read
-/// off the types that its functions return.
+/// Entries of a structured problem's quadratic programs that can differ from zero, read off the types that
+/// its functions return.
 template <StructuredProblem P>
 struct StructuredPattern {
   static constexpr std::size_t kNx = P::kNx;
@@ -149,7 +149,7 @@ struct StructuredPattern {
   }();
 };
 
-/// Every entry counts.
+/// Pattern in which every entry counts.
 template <OcpProblem P>
 struct DensePattern : FullPattern<P::kNx, P::kNu> {
   static constexpr bool kIsCompact =
@@ -204,7 +204,7 @@ struct StageEntries {
   using Layout = solver::Layout<ProblemPattern<P>>;
   using Jacobians = std::array<V, Layout::kFCount>;
   using Costs = std::array<V, Layout::kLCount>;
-  using Gradient = std::array<V, kVariables>;  ///< of the stage cost, constraints' multipliers as they are
+  using Gradient = std::array<V, kVariables>;  ///< gradient of the stage cost with the current multipliers
 
   static constexpr std::size_t z(std::size_t i) noexcept { return i < P::kNx ? i : i + 1; }
   static_assert(Layout::kFCount == Layout::kNx * Layout::kNz, "every entry is stored, row after row");
@@ -295,8 +295,8 @@ struct StageEntries {
   }
 };
 
-/// The same for structured problems: what is zero by type is not there, and the first row that has an entry
-/// sets it.
+/// Adds rows of structured problems: entries that are zero by type are absent, and the first row with an
+/// entry sets it.
 template <StructuredProblem P, class V>
 struct StageEntries<P, V> {
   static constexpr int kVariables = P::kNx + P::kNu;

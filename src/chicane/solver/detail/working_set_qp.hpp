@@ -22,7 +22,7 @@ class WorkingSetQp {
 
   enum class Outcome {
     kSolved,
-    kCircles,  ///< there is no step: the working set cycles
+    kCircles,  ///< no step: the working set cycles
     kSpent     ///< nor here: the deadline came first
   };
 
@@ -44,8 +44,8 @@ class WorkingSetQp {
   /// Sweeps that may correct the whole working set in vain.
   static constexpr int kChances = 5;
 
-  /// All corrections at once as long as that lowers their number, then one by one if there are few. The first
-  /// set of all is the one of the stages' own box problems.
+  /// Corrects all at once as long as that lowers the number of corrections, then one by one if there are few.
+  /// The very first set solves the stages' own box problems.
   template <class TakeGaussNewton>
   Outcome correct(Lq& lq, std::size_t horizon, const bool& is_exact, const TakeGaussNewton& take_gauss_newton,
                   const Deadline& deadline, int& sweeps) noexcept {
