@@ -2,6 +2,7 @@ import { lengthsOf, lineOf } from '../draw/line';
 import type { Point } from '../lib/math';
 import type { RoadLines } from '../state/road';
 import { type Colour, colourOf } from './mesh';
+import type { Palette } from './palette';
 
 /** A flat mesh on the ground: corners in W at z = 0, three for each triangle, all facing up. */
 export interface FlatMesh {
@@ -10,15 +11,7 @@ export interface FlatMesh {
 }
 
 /** Colours of the road in one theme. */
-export interface RoadPaint {
-  readonly road: Colour;
-  readonly edge: Colour;
-  readonly centreLine: Colour;
-  readonly verge: Colour;
-  readonly concrete: Colour;
-  readonly kerbRed: Colour;
-  readonly kerbWhite: Colour;
-}
+export type RoadPaint = Palette['road'];
 
 const BLACK = colourOf('#15181d');
 
