@@ -8,7 +8,7 @@ import { lapCourse, limitCourse, recordedCourse } from '../state/courses';
 import { faultInWords } from '../state/event_log';
 import { LapSamples, momentOf } from '../state/lap_samples';
 import { shortly } from '../state/lap_setup';
-import { bestsOf } from '../state/lap_table';
+import { bestOf } from '../state/lap_table';
 import { isSameRoad } from '../state/other_laps';
 
 // What the program writes of recordings into a report: src/chicane/recording/html_report.cpp.
@@ -150,7 +150,7 @@ export function coursesOf([first, ...others]: readonly ReportedRun[]): Course[] 
 
 /** A and B at first: the best lap against the best of another run, the limit, or the next best lap. */
 export function firstPair(runs: readonly ReportedRun[], courses: readonly Course[]): [Course, Course] | null {
-  const idOfBest = (laps: readonly Lap[]): string => `lap ${bestsOf(laps).lap}`;
+  const idOfBest = (laps: readonly Lap[]): string => `lap ${bestOf(laps)?.lap}`;
   const own = runs[0]?.laps ?? [];
   const find = (id: string): Course | undefined => courses.find((each) => each.id === id);
   const a = find(idOfBest(own));
@@ -191,12 +191,12 @@ const capital = (text: string): string => `${text[0]?.toUpperCase() ?? ''}${text
 
 /** "Four clean laps of lakeside. The best took 0:26.279, 3.45 s more than the limit.", in parts. */
 export function verdictOf({ laps, run, limit }: ReportedRun): { text: string; time: string; behind: string } {
-  const bests = bestsOf(laps);
-  if (laps.length === 0) return { text: `No lap of ${run.track} was completed.`, time: '', behind: '' };
+  const best = bestOf(laps);
+  if (!best) return { text: `No lap of ${run.track} was completed.`, time: '', behind: '' };
   const isClean = laps.every(({ is_clean }) => is_clean);
   const text = `${capital(counted(laps.length, isClean ? 'clean lap' : 'lap'))} of ${run.track}. The best took `;
-  const behind = limit && bests.lap >= limit.first_lap ? bests.time - limit.lap_time_s : NaN;
-  return { text, time: lapTime(bests.time, 3), behind: Number.isFinite(behind) ? `${fixed(behind, 2)} s` : '' };
+  const behind = limit && best.lap >= limit.first_lap ? best.lap_time_s - limit.lap_time_s : NaN;
+  return { text, time: lapTime(best.lap_time_s, 3), behind: Number.isFinite(behind) ? `${fixed(behind, 2)} s` : '' };
 }
 
 /** Who drove what, how near the edge came, and what was unusual. */

@@ -6,7 +6,7 @@ import { LapPlots } from '../parts/lap_plots';
 import { LapTable } from '../parts/lap_table';
 import { LossMap } from '../parts/loss_map';
 import { byCost, causesOf } from '../state/comparison';
-import { bestsOf } from '../state/lap_table';
+import { bestOf } from '../state/lap_table';
 import { compareIn, coursesOf, firstPair, leadOf, type ReportedRun, verdictOf } from './runs';
 
 function Verdict({ of, level }: { of: ReportedRun; level: 1 | 2 }) {
@@ -31,7 +31,7 @@ function Verdict({ of, level }: { of: ReportedRun; level: 1 | 2 }) {
 
 /** What the gap to the limit was spent on, where the run was driven again without each. */
 function Spent({ of: { limit, laps } }: { of: ReportedRun }) {
-  const causes = limit ? causesOf(limit, bestsOf(laps).time) : [];
+  const causes = limit ? causesOf(limit, bestOf(laps)?.lap_time_s ?? NaN) : [];
   if (causes.length === 0) return null;
   return (
     <>

@@ -38,7 +38,6 @@ export function Headline({ comparison, courses, choose, level = 1 }: Options) {
   const Heading = `h${level}` as const;
   const { a, b } = comparison;
   const { verb, amount, tone, to, rest } = headlineOf(comparison);
-  const isFromStandstill = a.isStanding && !b.isStanding;
   return (
     <Heading class="verdict" data-testid="headline">
       <Word
@@ -48,7 +47,6 @@ export function Headline({ comparison, courses, choose, level = 1 }: Options) {
         courses={courses.filter(({ id }) => id !== b.id && id !== 'limit')}
         choose={(id) => choose(0, id)}
       />
-      {isFromStandstill && ', from standstill,'}
       {verb}
       {amount !== '' && <b class={tone}>{amount}</b>}
       {to}

@@ -123,7 +123,6 @@ const [TOP, BOTTOM, HEAD, BETWEEN] = [24, 24, 22, 10]; // [px]
 const NARROW_PX = 520;
 
 interface Frame {
-  readonly width: number;
   readonly height: number;
   readonly left: number;
   readonly right: number; // of the plotted area
@@ -141,7 +140,7 @@ function frameOf(rows: readonly Row[], width: number, height: number, hasCursor:
     from += size;
     return place;
   });
-  return { width, height, left: isNarrow ? 36 : 44, right: width - margin, perRow };
+  return { height, left: isNarrow ? 36 : 44, right: width - margin, perRow };
 }
 
 const px = (value: number): string => value.toFixed(1);

@@ -4,7 +4,7 @@ import type { Setting } from '../protocol/source';
 import type { Lap, Limit } from '../protocol/topics';
 import { signed, toneOf } from '../state/comparison';
 import { setupInWords } from '../state/lap_setup';
-import { bestsOf } from '../state/lap_table';
+import { bestOf } from '../state/lap_table';
 
 interface Options {
   /** Name of the run, where a page has several. */
@@ -22,7 +22,7 @@ const SECTORS = [0, 1, 2] as const;
 
 /** All laps, below the limit: times, what each is behind it, sectors, top speed, distance to the edge. */
 export function LapTable({ of = '', laps, limit, start = NO_START, pick }: Options) {
-  const bests = bestsOf(laps);
+  const best = bestOf(laps)?.lap;
   const setups = laps.map((lap) => setupInWords(lap, start).join(', '));
   const hasSetups = setups.some((words) => words !== '');
   const heads = [
@@ -63,9 +63,9 @@ export function LapTable({ of = '', laps, limit, start = NO_START, pick }: Optio
           )}
           {laps.map((lap, i) => {
             const behind = limit && lap.lap >= limit.first_lap ? lap.lap_time_s - limit.lap_time_s : NaN;
-            const remarks = [lap.lap === bests.lap ? 'best' : '', lap.is_clean ? '' : 'off the road'].filter(Boolean);
+            const remarks = [lap.lap === best ? 'best' : '', lap.is_clean ? '' : 'off the road'].filter(Boolean);
             return (
-              <tr key={lap.lap} class={lap.lap === bests.lap ? 'best' : ''}>
+              <tr key={lap.lap} class={lap.lap === best ? 'best' : ''}>
                 <th scope="row">
                   {pick ? (
                     <button type="button" onClick={() => pick(lap.lap)} title={`Compare lap ${lap.lap}`}>

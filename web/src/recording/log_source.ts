@@ -77,14 +77,6 @@ export class LogSource implements Source {
     return source;
   }
 
-  get position(): number {
-    return this.#position;
-  }
-
-  get isPlaying(): boolean {
-    return this.#isPlaying;
-  }
-
   /** Where the runs of this recording begin [s], ascending, the first at 0. */
   get starts(): readonly number[] {
     return this.#starts;

@@ -73,17 +73,6 @@ export class McapLog {
     }
   }
 
-  /** The scenario that was recorded, as YAML; empty where there is none. */
-  async settings(): Promise<string> {
-    try {
-      for await (const { mediaType, data } of this.#reader.readAttachments())
-        if (mediaType === 'application/yaml') return new TextDecoder().decode(data);
-    } catch {
-      // A report without it is a report.
-    }
-    return '';
-  }
-
   async read(topics: readonly TopicName[], from: number, to: number): Promise<LoggedMessage[]> {
     const all: LoggedMessage[] = [];
     for await (const message of this.messages(topics, from, to)) all.push(message);

@@ -21,7 +21,6 @@ export interface Course {
 /** A corner with the road before and behind it, up to the middles of its straights; distances from the line [m]. */
 export interface CornerCost {
   readonly name: string; // "T4"
-  readonly number: number;
   readonly from: number;
   readonly entry: number;
   readonly apex: number;
@@ -157,7 +156,6 @@ function cornerCosts(along: Along, corners: readonly Corner[], line: number): Co
       speed.subarray(pointAt(along, entry), pointAt(along, exit) + 1).reduce((x, y) => Math.min(x, y), Infinity);
     return {
       name: `T${i + 1}`,
-      number: i + 1,
       from,
       entry,
       apex: corner.apex,
@@ -202,7 +200,7 @@ export function whyOf({ lost, slower, earlier }: CornerCost, unit: SpeedUnit = s
 
 /** "Lap 3 lost 3.45 s to the limit; T4 cost most, 1.08 s.", in parts: A and B are between them. */
 export interface Headline {
-  readonly verb: string; // " lost "
+  readonly verb: string; // " lost ", ", from standstill, lost "
   readonly amount: string; // "3.45 s"
   readonly tone: 'lost' | 'won' | '';
   readonly to: string; // " to "
@@ -210,11 +208,12 @@ export interface Headline {
 }
 
 export function headlineOf(comparison: Comparison): Headline {
-  const { total } = comparison;
+  const { a, b, total } = comparison;
   const tone = toneOf(total);
+  const from = a.isStanding && !b.isStanding ? ', from standstill,' : '';
   if (!Number.isFinite(total))
-    return { verb: ' beside ', amount: '', tone: '', to: '', rest: ': one of them is not known to its end.' };
-  if (tone === '') return { verb: ' took as long as ', amount: '', tone, to: '', rest: '.' };
+    return { verb: `${from} beside `, amount: '', tone: '', to: '', rest: ': one of them is not known to its end.' };
+  if (tone === '') return { verb: `${from} took as long as `, amount: '', tone, to: '', rest: '.' };
   const most = byCost(comparison)[0];
   const rest =
     most && toneOf(most.lost) === tone
@@ -222,20 +221,12 @@ export function headlineOf(comparison: Comparison): Headline {
       : '.';
   const amount = `${fixed(Math.abs(total), 2)} s`;
   return tone === 'lost'
-    ? { verb: ' lost ', amount, tone, to: ' to ', rest }
-    : { verb: ' won ', amount, tone, to: ' from ', rest };
+    ? { verb: `${from} lost `, amount, tone, to: ' to ', rest }
+    : { verb: `${from} won `, amount, tone, to: ' from ', rest };
 }
 
 /** The name of a course at the beginning of a sentence. */
 export const atStart = (name: string): string => `${name[0]?.toUpperCase() ?? ''}${name.slice(1)}`;
-
-/** The headline as one text, for screen readers, titles and tests. */
-export function headlineText(comparison: Comparison): string {
-  const { verb, amount, to, rest } = headlineOf(comparison);
-  const { a, b } = comparison;
-  const standing = a.isStanding !== b.isStanding && a.isStanding ? ', from standstill,' : '';
-  return `${atStart(a.name)}${standing}${verb}${amount}${to}${b.name}${rest}`;
-}
 
 /** A cause of the gap to the limit, and how much faster a lap is without it [s]. Causes do not add up. */
 export interface GapCause {

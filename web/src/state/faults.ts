@@ -1,4 +1,5 @@
 import { begunBits, hasBit } from '../lib/bits';
+import type { Point } from '../lib/math';
 import { store } from '../lib/store';
 import type { Change, Frame } from '../protocol/topics';
 import { faultInWords } from './event_log';
@@ -8,15 +9,8 @@ import { entryOf } from './settings';
 
 const MARKS_KEPT = 60;
 
-/** Where and when a fault began. */
-export interface FaultMark {
-  readonly name: string;
-  readonly time: number; // of the run [s]
-  readonly x: number; // in W [m]
-  readonly y: number;
-}
-
-export const faultMarks = store.signal<readonly FaultMark[]>('moment', []);
+/** Where faults began, in W [m]. */
+export const faultMarks = store.signal<readonly Point[]>('moment', []);
 /** When each fault that was switched on will end [s], by its key. */
 const untils = new Map<string, number>();
 
@@ -36,13 +30,8 @@ export function noteFaultChange({ stamp, name, value }: Change): void {
   else untils.set(name, stamp.sec + stamp.nsec / 1e9 + (told === undefined ? own : Number(told)));
 }
 
-export function noteFaultMarks(frame: Frame, before: Frame | null, names: readonly string[]): void {
-  const marks = begunBits(frame.active_faults, before?.active_faults).map((bit) => ({
-    name: names[bit] ?? `#${bit + 1}`,
-    time: frame.time_s,
-    x: frame.x_m,
-    y: frame.y_m,
-  }));
+export function noteFaultMarks({ active_faults, x_m: x, y_m: y }: Frame, before: Frame | null): void {
+  const marks = begunBits(active_faults, before?.active_faults).map(() => ({ x, y }));
   if (marks.length > 0) faultMarks.value = [...faultMarks.value, ...marks].slice(-MARKS_KEPT);
 }
 

@@ -22,22 +22,10 @@ const COLUMNS: Partial<Record<LapChannel, 'time_s' | 'speed_mps' | 'n_m' | 'x_m'
   y_m: 'y_m',
 };
 
-const gap = (time: number, limit: number | undefined): number => 100 * (time / (limit ?? NaN) - 1);
-
-/**
- * How much slower a lap and its sectors were than the limit [%]: as sent with the lap, or computed where the limit was
- * found later.
- */
-export function gapsToLimit(lap: Lap, limit: Limit | null): { lap: number; sectors: readonly number[] } {
-  const of = limit && lap.lap >= limit.first_lap ? limit : null;
-  const known = (told: number | undefined, computed: number): number =>
-    Number.isFinite(told) ? (told ?? NaN) : computed;
-  return {
-    lap: known(lap.gap_to_limit_percent, gap(lap.lap_time_s, of?.lap_time_s)),
-    sectors: [0, 1, 2].map((i) =>
-      known(lap.sector_gaps_to_limit_percent[i], gap(lap.sector_times_s[i] ?? NaN, of?.sector_times_s[i])),
-    ),
-  };
+/** How much slower a lap was than the limit [%]: as sent with it, or computed where the limit was found later. */
+export function gapToLimit(lap: Lap, limit: Limit | null): number {
+  if (Number.isFinite(lap.gap_to_limit_percent)) return lap.gap_to_limit_percent;
+  return limit && lap.lap >= limit.first_lap ? 100 * (lap.lap_time_s / limit.lap_time_s - 1) : NaN;
 }
 
 /** Distance from `from` on to `to` along a closed road of this length [m], in [0, length). */

@@ -115,7 +115,6 @@ describe('the schema', () => {
       {
         key: 'a.b',
         group: 'a',
-        controller: '',
         kind: 'bool',
         unit: '',
         minimum: null,

@@ -28,13 +28,7 @@ export interface Passage {
 }
 
 export interface Future {
-  readonly duration: number; // [s]
-  readonly lapTimes: readonly number[]; // [s]
-  readonly largestError: number; // [m]
   readonly leastEdge: number; // [m]
-  readonly meanSpeed: number; // [m/s]
-  readonly topSpeed: number; // [m/s]
-  readonly offTrack: number; // times
   readonly interventions: number; // control steps
   readonly passages: readonly Passage[];
   readonly trace: Trace;
@@ -50,11 +44,8 @@ export interface StandIn {
 }
 
 export interface WhatIfAnswer {
-  readonly id: number;
   /** The moment of the branch, on the run's time line [s]. */
   readonly at: number;
-  /** Up to here the first future is what was driven; beyond, what would be without the change [s]. */
-  readonly knownUntil: number;
   /** Whether the run came out the same, bit for bit, when it was computed again. */
   readonly isExact: boolean;
   /** Why the second future ended early; empty when it did not. */
@@ -74,13 +65,7 @@ export type WhatIfState =
 function readFuture(value: unknown): Future {
   const all = fields(value);
   return {
-    duration: number(all.duration_s),
-    lapTimes: list(all.lap_times_s).map((each) => number(each)),
-    largestError: number(all.max_abs_lateral_error_m),
     leastEdge: number(all.min_edge_distance_m),
-    meanSpeed: number(all.mean_speed_mps),
-    topSpeed: number(all.top_speed_mps),
-    offTrack: number(all.off_track_events),
     interventions: number(all.interventions),
     passages: list(all.passages)
       .map(fields)
@@ -102,9 +87,7 @@ export function readWhatIf(json: unknown): WhatIfState | null {
   if (all.state === 'failed') return { kind: 'failed', id, why: String(all.why) };
   if (all.state !== 'done') return null;
   const answer = {
-    id,
     at: number(all.at_s),
-    knownUntil: number(all.known_until_s),
     isExact: all.is_exact === true,
     standIn: readStandIn(all.stand_in),
     endReason: text(all.end_reason),

@@ -3,9 +3,9 @@ import { fixed, lapTime, plural, side, UNKNOWN } from '../lib/format';
 import { clamp, degrees } from '../lib/math';
 import { inSpeedUnit, speedUnit } from '../lib/units';
 import { signed, toneOf } from '../state/comparison';
-import { bestsOf } from '../state/lap_table';
+import { bestOf } from '../state/lap_table';
 import { lapSamples, laps } from '../state/laps';
-import { gapsToLimit, limit, limitTimeAt } from '../state/limit';
+import { gapToLimit, limit, limitTimeAt } from '../state/limit';
 import { attempt, link } from '../state/link';
 import { call, can, canSet } from '../state/operate';
 import { canReplay, REPLAY_S, replayLeft, startReplay } from '../state/replay';
@@ -204,9 +204,8 @@ function Ended() {
   const end = runEnd.value;
   if (!end) return null;
   const all = laps.value;
-  const bests = bestsOf(all);
-  const best = all.find(({ lap }) => lap === bests.lap);
-  const gap = best ? gapsToLimit(best, limit.value).lap : NaN;
+  const best = bestOf(all);
+  const gap = best ? gapToLimit(best, limit.value) : NaN;
   const unclean = all.filter(({ is_clean }) => !is_clean).length;
   const isOver = oneButton.value?.label !== 'Drive again' && run.value?.mode === 'drive';
   return (
@@ -230,8 +229,8 @@ function Ended() {
         <Cell id="end-laps" label="Laps">
           {String(all.length)}
         </Cell>
-        <Cell id="end-best" label={bests.lap === 1 ? 'Best, from standstill' : `Best, lap ${bests.lap || UNKNOWN}`}>
-          {lapTime(bests.time, 3)}
+        <Cell id="end-best" label={best?.lap === 1 ? 'Best, from standstill' : `Best, lap ${best?.lap ?? UNKNOWN}`}>
+          {lapTime(best?.lap_time_s ?? NaN, 3)}
         </Cell>
         {Number.isFinite(gap) && <Cell id="end-gap" label="Above the limit">{`${fixed(gap, 1)} %`}</Cell>}
         {unclean > 0 && (
