@@ -1,5 +1,6 @@
 import { begunBits } from '../lib/bits';
 import { fixed, lapTime, plural } from '../lib/format';
+import { capital } from '../lib/words';
 import { UNKNOWN_CHANGE, UNKNOWN_FRAME, UNKNOWN_LAP, UNKNOWN_LIMIT, UNKNOWN_RUN } from '../protocol/messages';
 import type { Change, Frame, Lap, Limit, Run } from '../protocol/topics';
 import { type Comparison, type Course, compare } from '../state/comparison';
@@ -170,24 +171,9 @@ export function compareIn({ samples, corners }: ReportedRun, a: Course, b: Cours
   return compare(a, b, { samples, corners, line: Number.isFinite(line) ? line : 0 });
 }
 
-const COUNTS = [
-  'no',
-  'one',
-  'two',
-  'three',
-  'four',
-  'five',
-  'six',
-  'seven',
-  'eight',
-  'nine',
-  'ten',
-  'eleven',
-  'twelve',
-];
+const COUNTS = 'no one two three four five six seven eight nine ten eleven twelve'.split(' ');
 const counted = (count: number, noun: string): string =>
   `${COUNTS[count] ?? count} ${plural(count, noun).replace(/^\d+ /, '')}`;
-const capital = (text: string): string => `${text[0]?.toUpperCase() ?? ''}${text.slice(1)}`;
 
 /** "Four clean laps of lakeside. The best took 0:26.279, 3.45 s more than the limit.", in parts. */
 export function verdictOf({ laps, run, limit }: ReportedRun): { text: string; time: string; behind: string } {

@@ -1,5 +1,6 @@
 import { lapTime } from '../lib/format';
-import { atStart, type Comparison, type Course, headlineOf } from '../state/comparison';
+import { capital } from '../lib/words';
+import { type Comparison, type Course, headlineOf } from '../state/comparison';
 
 interface WordOptions {
   readonly label: string;
@@ -17,7 +18,7 @@ function Word({ label, name, course, courses, choose }: WordOptions) {
       <select aria-label={label} value={course.id} onChange={({ currentTarget }) => choose(currentTarget.value)}>
         {courses.map(({ id, name: each, total }) => (
           <option key={id} value={id}>
-            {Number.isFinite(total) ? `${atStart(each)}, ${lapTime(total, 3)}` : atStart(each)}
+            {Number.isFinite(total) ? `${capital(each)}, ${lapTime(total, 3)}` : capital(each)}
           </option>
         ))}
       </select>
@@ -42,7 +43,7 @@ export function Headline({ comparison, courses, choose, level = 1 }: Options) {
     <Heading class="verdict" data-testid="headline">
       <Word
         label="A"
-        name={atStart(a.name)}
+        name={capital(a.name)}
         course={a}
         courses={courses.filter(({ id }) => id !== b.id && id !== 'limit')}
         choose={(id) => choose(0, id)}

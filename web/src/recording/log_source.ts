@@ -1,5 +1,5 @@
 import { begunBits } from '../lib/bits';
-import { nameInWords } from '../lib/words';
+import { nameInWords, reasonOf } from '../lib/words';
 import type { ServiceName, SetAnswer, Setting, Source, SourceEvents } from '../protocol/source';
 import type { Frame, Lap, Run, TopicName } from '../protocol/topics';
 import type { LoggedMessage, McapLog } from './mcap_log';
@@ -203,9 +203,7 @@ export class LogSource implements Source {
       this.#readTo = to;
     } catch (error) {
       this.#isPlaying = false;
-      this.#events.notice(
-        `the recording cannot be read further: ${error instanceof Error ? error.message : String(error)}`,
-      );
+      this.#events.notice(`the recording cannot be read further: ${reasonOf(error)}`);
     } finally {
       this.#isReading = false;
     }

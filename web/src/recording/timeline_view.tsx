@@ -1,11 +1,12 @@
 import { lapTime } from '../lib/format';
+import { reasonOf } from '../lib/words';
 import { notice } from '../state/link';
 import { attach } from '../state/operate';
 import type { Landmark } from './log_source';
 import { beside, duration, landmarks, logs, play, played, player, position, searched, showBeside } from './player';
 
 const seek = (time: number): void =>
-  void player.value?.seek(time).catch((error: unknown) => (notice.value = String(error)));
+  void player.value?.seek(time).catch((error: unknown) => (notice.value = reasonOf(error)));
 
 /** The next landmark in a direction, from a time [s]. */
 export function neighbour(all: readonly Landmark[], time: number, direction: 1 | -1): Landmark | null {
@@ -24,7 +25,7 @@ export async function choose(which: number): Promise<void> {
   try {
     attach(await play({ logs: logs.value, start: position.value }, which, position.value));
   } catch (error) {
-    notice.value = error instanceof Error ? error.message : String(error);
+    notice.value = reasonOf(error);
   }
 }
 

@@ -1,5 +1,5 @@
 import { lengthsOf, lineOf } from '../draw/line';
-import type { Point } from '../lib/math';
+import { mod, type Point } from '../lib/math';
 import type { RoadLines } from '../state/road';
 import { type Colour, colourOf } from './mesh';
 import type { Palette } from './palette';
@@ -84,8 +84,7 @@ export function curvatures(centre: readonly Point[], isClosed: boolean): Float64
   const result = new Float64Array(count);
   const reach = 3; // points: suppresses the noise of single points
   const distinct = isClosed ? count - 1 : count;
-  const at = (i: number): Point =>
-    centre[isClosed ? ((i % distinct) + distinct) % distinct : Math.min(Math.max(i, 0), count - 1)] as Point;
+  const at = (i: number): Point => centre[isClosed ? mod(i, distinct) : Math.min(Math.max(i, 0), count - 1)] as Point;
   for (let i = 0; i < count; ++i) {
     const [a, b, c] = [at(i - reach), at(i), at(i + reach)];
     const cross = (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);

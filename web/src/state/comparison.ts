@@ -1,5 +1,7 @@
 import { fixed } from '../lib/format';
+import { mod } from '../lib/math';
 import { type SpeedUnit, speedUnit } from '../lib/units';
+import { capital } from '../lib/words';
 import type { Limit } from '../protocol/topics';
 import type { Corner } from './corners';
 import type { LapChannel } from './lap_samples';
@@ -134,8 +136,7 @@ function slowsAt(along: Along, speed: Float64Array, from: number, apex: number):
 
 /** The corners by their distance from the start line, at `line` along the road's centre line [m]. */
 export function numbered(corners: readonly Corner[], line: number, length: number): (Corner & { at: number })[] {
-  const from = (place: number): number => place - line - length * Math.floor((place - line) / length);
-  return corners.map((corner) => ({ ...corner, at: from(corner.apex) })).sort((a, b) => a.at - b.at);
+  return corners.map((corner) => ({ ...corner, at: mod(corner.apex - line, length) })).sort((a, b) => a.at - b.at);
 }
 
 /** What A loses in each corner, with the straights halved between their corners. */
@@ -144,8 +145,11 @@ function cornerCosts(along: Along, corners: readonly Corner[], line: number): Co
   const none = new Float64Array();
   const [speedA, speedB] = [a.channel('speed_mps') ?? none, b.channel('speed_mps') ?? none];
   const all = numbered(corners, line, length).map(({ from, to, apex, at }) => {
-    const back = (x: number, y: number): number => x - y - length * Math.floor((x - y) / length);
-    return { apex: at, entry: Math.max(0, at - back(apex, from)), exit: Math.min(length, at + back(to, apex)) };
+    return {
+      apex: at,
+      entry: Math.max(0, at - mod(apex - from, length)),
+      exit: Math.min(length, at + mod(to - apex, length)),
+    };
   });
   const middle = (i: number): number =>
     i < 0 ? 0 : i + 1 >= all.length ? length : ((all[i]?.exit ?? 0) + (all[i + 1]?.entry ?? 0)) / 2;
@@ -225,9 +229,6 @@ export function headlineOf(comparison: Comparison): Headline {
     : { verb: `${from} won `, amount, tone, to: ' from ', rest };
 }
 
-/** The name of a course at the beginning of a sentence. */
-export const atStart = (name: string): string => `${name[0]?.toUpperCase() ?? ''}${name.slice(1)}`;
-
 /** A cause of the gap to the limit, and how much faster a lap is without it [s]. Causes do not add up. */
 export interface GapCause {
   readonly name: string;
@@ -264,7 +265,7 @@ export function causesText(causes: readonly GapCause[]): string {
   const names = free.map(({ name }) => name).join(' and ');
   return [
     parts.length > 0 ? `${parts.join(', ')}.` : '',
-    names === '' ? '' : `${atStart(names)} ${free.length > 1 ? 'cost' : 'costs'} nothing.`,
+    names === '' ? '' : `${capital(names)} ${free.length > 1 ? 'cost' : 'costs'} nothing.`,
   ]
     .filter((each) => each !== '')
     .join(' ');

@@ -1,6 +1,6 @@
 import { hasBit } from '../lib/bits';
 import { firstSince } from '../lib/math';
-import type { Plan } from '../protocol/topics';
+import { type Plan, timeOf } from '../protocol/topics';
 import { Column } from './columns';
 import type { History } from './history';
 
@@ -34,8 +34,6 @@ export function bitSharesOf(history: History, column: number, bits: number, seco
   }
   return shares;
 }
-
-const timeOf = ({ stamp }: Plan): number => stamp.sec + stamp.nsec / 1e9;
 
 /**
  * The newest plan that is at least `age` seconds old at `now`; the oldest when all are newer; null without plans.

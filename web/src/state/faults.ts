@@ -1,7 +1,7 @@
 import { begunBits, hasBit } from '../lib/bits';
 import type { Point } from '../lib/math';
 import { store } from '../lib/store';
-import type { Change, Frame } from '../protocol/topics';
+import { type Change, type Frame, timeOf } from '../protocol/topics';
 import { faultInWords } from './event_log';
 import { entryOf } from './settings';
 
@@ -22,12 +22,13 @@ export function forgetFaultMarks(): void {
 }
 
 /** Takes from a change of a switch how long its fault will last: "true", or "+5*0.5". */
-export function noteFaultChange({ stamp, name, value }: Change): void {
+export function noteFaultChange(change: Change): void {
+  const { name, value } = change;
   if (!name.startsWith('fault.')) return;
   const own = entryOf(name)?.fault?.duration_s ?? NaN;
   const told = /^\+([\d.e-]+)/.exec(value)?.[1];
   if (value === 'false') untils.delete(name);
-  else untils.set(name, stamp.sec + stamp.nsec / 1e9 + (told === undefined ? own : Number(told)));
+  else untils.set(name, timeOf(change) + (told === undefined ? own : Number(told)));
 }
 
 export function noteFaultMarks({ active_faults, x_m: x, y_m: y }: Frame, before: Frame | null): void {

@@ -98,7 +98,6 @@ describe('the schema', () => {
     const good = {
       key: 'a.b',
       group: 'a',
-      controller: 'some-one',
       kind: 'number',
       unit: 'm',
       minimum: 0,

@@ -1,4 +1,4 @@
-import { tidy } from '../lib/scale';
+import { valueInWords } from '../lib/scale';
 import { canRace, endRace, keepWinner, race, raced, raceProblem, startRace } from '../state/rival';
 import { standingOf } from '../state/rival_answer';
 import { wishes } from '../state/what_if';
@@ -7,7 +7,7 @@ function Standing() {
   const now = race.value;
   if (!now) return null;
   const { winner, text } = standingOf(now);
-  const settings = raced.value.map(({ key, value }) => `${key} ${typeof value === 'number' ? tidy(value) : value}`);
+  const settings = raced.value.map(({ key, value }) => `${key} ${valueInWords(value)}`);
   return (
     <section class="race stack" aria-label="The race" data-testid="race">
       <p class="soft">

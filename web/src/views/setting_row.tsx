@@ -1,4 +1,4 @@
-import { type Range, scaleOf, shareOf, tidy, valueAt } from '../lib/scale';
+import { type Range, scaleOf, shareOf, tidy, valueAt, valueInWords } from '../lib/scale';
 import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
 import { canChange, change, firstValueOf, target, valueShown } from '../state/chosen_settings';
@@ -25,7 +25,7 @@ export function typed(text: string): Setting | null {
 }
 
 const asText = (value: Setting | undefined): string =>
-  typeof value === 'number' ? tidy(value).replace('−', '-') : value === undefined ? '' : String(value);
+  value === undefined ? '' : valueInWords(value).replace('−', '-');
 
 /** A box for a number or a text, sent once it is complete. */
 function ValueBox({ entry, label }: { entry: SchemaEntry; label: string }) {
@@ -133,17 +133,15 @@ function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
   );
 }
 
-const inWords = (value: Setting): string => (typeof value === 'number' ? tidy(value) : String(value));
-
 /** A setting with its value before and after. */
 export function ChangeOf({ of: { key, from, to } }: { of: { key: string; from: Setting; to: Setting } }) {
   return (
     <>
-      <code>{key}</code> <span class="was">{inWords(from)}</span>{' '}
+      <code>{key}</code> <span class="was">{valueInWords(from)}</span>{' '}
       <span role="img" aria-label="to">
         →
       </span>{' '}
-      <b>{inWords(to)}</b>
+      <b>{valueInWords(to)}</b>
     </>
   );
 }

@@ -1,5 +1,5 @@
 import { plural } from '../lib/format';
-import { tidy } from '../lib/scale';
+import { valueInWords } from '../lib/scale';
 import { store } from '../lib/store';
 import { notice } from '../state/link';
 import { mode } from '../state/mode';
@@ -56,10 +56,8 @@ function Offer() {
       ) : (
         <>
           <p class="soft">
-            {[...shared.choices]
-              .map(([key, value]) => `${key} ${typeof value === 'number' ? tidy(value) : value}`)
-              .join(', ')}
-            , {changes}. Whoever opens it with <code>chicane drive</code> running is asked once, and drives the same.
+            {[...shared.choices].map(([key, value]) => `${key} ${valueInWords(value)}`).join(', ')}, {changes}. Whoever
+            opens it with <code>chicane drive</code> running is asked once, and drives the same.
           </p>
           {fixedChanges.value.length > 0 && (
             <p class="soft" data-testid="share-fixed">

@@ -3,6 +3,7 @@ import { lapTime } from '../lib/format';
 import { addShortcuts } from '../lib/keys';
 import { persisted } from '../lib/persisted';
 import { store } from '../lib/store';
+import { reasonOf } from '../lib/words';
 import { CornerTable } from '../parts/corner_table';
 import { Headline } from '../parts/headline';
 import { LapPlots } from '../parts/lap_plots';
@@ -39,7 +40,7 @@ async function addRecordings(files: readonly File[]): Promise<void> {
   try {
     await (await import('../recording/add_laps')).addLapsOf(files);
   } catch (error) {
-    problem.value = error instanceof Error ? error.message : String(error);
+    problem.value = reasonOf(error);
   }
 }
 
