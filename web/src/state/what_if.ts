@@ -114,7 +114,7 @@ export async function ask(): Promise<void> {
   problem.value = '';
   progress.value = 0;
   try {
-    const taken = await (askedLog.value?.ask(question()) ?? askRun(question()));
+    const taken = await (askedLog.value?.ask(question()) ?? askRun('/what_if', question()));
     if (!taken.isTaken) throw new Error(taken.message);
     await waitFor(Number(taken.message), mine);
     if (mine === asking.newest) asked.value = sent;

@@ -2,7 +2,7 @@ import { hasBit } from '../lib/bits';
 import { fixed } from '../lib/format';
 import { LIMITERS, nameInWords } from '../lib/words';
 import { Column } from '../state/columns';
-import { bitSharesOf, sharesOf } from '../state/explain';
+import { shareOf } from '../state/explain';
 import { learnedOf } from '../state/learned';
 import { live } from '../state/live';
 import { run } from '../state/run';
@@ -27,8 +27,10 @@ function Share({ share }: { share: number }) {
 
 function Limiters() {
   void shown.value;
-  const shares = sharesOf(live.plots, Column.speed_limiter, LIMITERS.length, WINDOW_S);
-  const rows = LIMITERS.map((short, i) => ({ short, share: shares[i] ?? 0 })).filter(({ share }) => share > 0.005);
+  const rows = LIMITERS.map((short, i) => ({
+    short,
+    share: shareOf(live.plots, Column.speed_limiter, WINDOW_S, (value) => value === i),
+  })).filter(({ share }) => share > 0.005);
   return (
     <section class="stack" aria-label="What limits the speed">
       <h2>What limited the speed, last {WINDOW_S} s</h2>
@@ -52,7 +54,6 @@ function Constraints() {
   const names = run.value?.constraint_names ?? [];
   const frame = shown.value;
   if (names.length === 0) return null;
-  const shares = bitSharesOf(live.plots, Column.active_now, names.length, WINDOW_S);
   return (
     <section class="stack" aria-label="Constraints">
       <h2>Constraints</h2>
@@ -76,7 +77,7 @@ function Constraints() {
                 <td>{isNow ? <span class="active-mark">now</span> : <span class="soft">–</span>}</td>
                 <td>{isAhead ? <span class="active-mark">ahead</span> : <span class="soft">–</span>}</td>
                 <td>
-                  <Share share={shares[i] ?? 0} />
+                  <Share share={shareOf(live.plots, Column.active_now, WINDOW_S, (set) => hasBit(set, i))} />
                 </td>
               </tr>
             );
