@@ -1,6 +1,7 @@
 import { lapTime } from '../lib/format';
 import { capital } from '../lib/words';
 import { type Comparison, type Course, headlineOf } from '../state/comparison';
+import { Select } from './controls';
 
 interface WordOptions {
   readonly label: string;
@@ -15,13 +16,15 @@ function Word({ label, name, course, courses, choose }: WordOptions) {
   return (
     <span class={label === 'B' ? 'chosen other' : 'chosen'}>
       <span aria-hidden="true">{name}</span>
-      <select aria-label={label} value={course.id} onChange={({ currentTarget }) => choose(currentTarget.value)}>
-        {courses.map(({ id, name: each, total }) => (
-          <option key={id} value={id}>
-            {Number.isFinite(total) ? `${capital(each)}, ${lapTime(total, 3)}` : capital(each)}
-          </option>
-        ))}
-      </select>
+      <Select
+        label={label}
+        value={course.id}
+        choose={choose}
+        choices={courses.map(({ id, name: each, total }) => ({
+          value: id,
+          label: Number.isFinite(total) ? `${capital(each)}, ${lapTime(total, 3)}` : capital(each),
+        }))}
+      />
     </span>
   );
 }

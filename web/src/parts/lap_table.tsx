@@ -5,6 +5,7 @@ import type { Lap, Limit } from '../protocol/topics';
 import { signed, toneOf } from '../state/comparison';
 import { setupInWords } from '../state/lap_setup';
 import { bestOf } from '../state/lap_table';
+import { Button, Heads } from './controls';
 
 interface Options {
   /** Name of the run, where a page has several. */
@@ -38,15 +39,7 @@ export function LapTable({ of = '', laps, limit, start = NO_START, pick }: Optio
   return (
     <div class="table-scroll" role="region" aria-label={of === '' ? 'All laps' : `All laps of ${of}`} tabIndex={0}>
       <table class="lap-rows" data-testid="lap-rows">
-        <thead>
-          <tr>
-            {[...heads, ...(hasSetups ? ['Driven with'] : [])].map((head) => (
-              <th key={head} scope="col">
-                {head}
-              </th>
-            ))}
-          </tr>
-        </thead>
+        <Heads of={hasSetups ? [...heads, 'Driven with'] : heads} />
         <tbody>
           {limit && (
             <tr class="limit other" data-testid="limit">
@@ -68,9 +61,9 @@ export function LapTable({ of = '', laps, limit, start = NO_START, pick }: Optio
               <tr key={lap.lap} class={lap.lap === best ? 'best' : ''}>
                 <th scope="row">
                   {pick ? (
-                    <button type="button" onClick={() => pick(lap.lap)} title={`Compare lap ${lap.lap}`}>
+                    <Button act={() => pick(lap.lap)} title={`Compare lap ${lap.lap}`}>
                       {lap.lap}
-                    </button>
+                    </Button>
                   ) : (
                     lap.lap
                   )}

@@ -7,7 +7,7 @@ import type { History } from './history';
 export function shareOf(history: History, column: number, seconds: number, is: (value: number) => boolean): number {
   const times = history.column(Column.time_s);
   const values = history.column(column).subarray(firstSince(times, (times.at(-1) ?? 0) - seconds));
-  return values.reduce((count, value) => count + Number(is(value)), 0) / values.length;
+  return values.reduce((count, value) => count + Number(is(value)), 0) / Math.max(1, values.length);
 }
 
 /**

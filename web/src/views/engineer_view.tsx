@@ -1,6 +1,7 @@
 import { hasBit } from '../lib/bits';
 import { fixed } from '../lib/format';
 import { LIMITERS, nameInWords } from '../lib/words';
+import { Heads } from '../parts/controls';
 import { Column } from '../state/columns';
 import { shareOf } from '../state/explain';
 import { learnedOf } from '../state/learned';
@@ -58,16 +59,7 @@ function Constraints() {
     <section class="stack" aria-label="Constraints">
       <h2>Constraints</h2>
       <table class="constraints">
-        <thead>
-          <tr>
-            <th scope="col">at the limit</th>
-            <th scope="col">now</th>
-            <th scope="col">ahead</th>
-            <th scope="col" class="wide">
-              of the last {WINDOW_S} s
-            </th>
-          </tr>
-        </thead>
+        <Heads of={['at the limit', 'now', 'ahead', `of the last ${WINDOW_S} s`]} />
         <tbody>
           {names.map((name, i) => {
             const [isNow, isAhead] = [hasBit(frame?.active_now ?? 0, i), hasBit(frame?.active_ahead ?? 0, i)];

@@ -4,6 +4,7 @@ import { fixed } from '../lib/format';
 import { clamp } from '../lib/math';
 import { tidy } from '../lib/scale';
 import { store } from '../lib/store';
+import { Button } from '../parts/controls';
 import type { FaultEntry } from '../protocol/schema';
 import { faultInWords } from '../state/event_log';
 import { secondsLeft } from '../state/faults';
@@ -132,18 +133,17 @@ function FaultButton({ fault }: { fault: Fault }) {
   const { key, name, meaning, isActive } = fault;
   const left = isActive ? secondsLeft(key, shown.value?.time_s ?? NaN) : NaN;
   return (
-    <button
-      type="button"
+    <Button
       class="fault"
       data-key={key}
       title={meaning}
       aria-pressed={isActive}
       disabled={!canSet(key)}
-      onClick={() => toggleFault(fault)}
+      act={() => toggleFault(fault)}
     >
       {name}
       {isActive && <span class="left">{Number.isFinite(left) ? `${fixed(left, 1)} s left` : 'active'}</span>}
-    </button>
+    </Button>
   );
 }
 
@@ -194,13 +194,13 @@ export function FaultsView() {
         </div>
       )}
       <div class="row">
-        <button type="button" class="plain" onClick={() => (showsAll.value = !showsAll.value)}>
+        <Button class="plain" act={() => (showsAll.value = !showsAll.value)}>
           {showsAll.value ? 'Fewer' : `All ${all.length}, how long and how strong`}
-        </button>
+        </Button>
         {active.length > 0 && (
-          <button type="button" class="plain" onClick={() => active.forEach(({ key }) => set(key, false))}>
+          <Button class="plain" act={() => active.forEach(({ key }) => set(key, false))}>
             Clear all
-          </button>
+          </Button>
         )}
       </div>
       {active.length > 0 && answer && (

@@ -1,6 +1,7 @@
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import { allShortcuts, GROUPS } from '../lib/keys';
 import { store } from '../lib/store';
+import { Button } from '../parts/controls';
 
 const isHelpOpen = store.signal('page', false);
 export const openHelp = (): void => {
@@ -83,9 +84,9 @@ export function HelpView() {
         </p>
       )}
       <div class="row end">
-        <button type="button" class="primary" onClick={close}>
+        <Button class="primary" act={close}>
           Close
-        </button>
+        </Button>
       </div>
     </Dialog>
   );

@@ -3,6 +3,7 @@ import { useRef } from 'preact/hooks';
 import { scheme, toggleScheme } from '../lib/appearance';
 import { download } from '../lib/download';
 import { nextSpeedUnit, speedUnit } from '../lib/units';
+import { Button } from '../parts/controls';
 import { services } from '../state/link';
 import { mode } from '../state/mode';
 import { call, can, canSet, set } from '../state/operate';
@@ -41,17 +42,16 @@ export function MenuView() {
   const box = useRef<HTMLDivElement>(null);
   const pace = settings.value.get('run.pace');
   const Item = (props: { act: () => void; name?: string; off?: boolean; children: ComponentChildren }) => (
-    <button
-      type="button"
+    <Button
       disabled={props.off}
       aria-keyshortcuts={props.name}
-      onClick={() => {
+      act={() => {
         box.current?.hidePopover();
         props.act();
       }}
     >
       <span>{props.children}</span> {props.name && <kbd>{props.name}</kbd>}
-    </button>
+    </Button>
   );
   return (
     <>
@@ -82,15 +82,14 @@ export function MenuView() {
             <span id="pace-label">Pace</span>
             <div class="segments" role="group" aria-labelledby="pace-label">
               {PACES.map((each) => (
-                <button
+                <Button
                   key={each}
-                  type="button"
                   aria-pressed={pace === each}
                   disabled={!canSet('run.pace')}
-                  onClick={() => set('run.pace', each)}
+                  act={() => set('run.pace', each)}
                 >
                   {each}×
-                </button>
+                </Button>
               ))}
             </div>
           </div>

@@ -3,6 +3,7 @@ import { rangeAboutZero, rangeFromZero, rangeInSteps } from '../draw/axis';
 import { fixed } from '../lib/format';
 import { type SpeedUnit, speedUnit } from '../lib/units';
 import { nameInWords } from '../lib/words';
+import { Button } from '../parts/controls';
 import { COST_TERMS, Column, costColumn } from '../state/columns';
 import {
   cursorTime,
@@ -127,37 +128,29 @@ function costSpec(names: readonly string[]): PlotSpec {
 function Toolbar() {
   return (
     <div class="row" role="group" aria-label="Plots">
-      <button
-        type="button"
+      <Button
         aria-pressed={isFrozen.value}
         aria-keyshortcuts="P"
         title="Hold the plots while the run goes on (P)"
-        onClick={toggleFrozen}
+        act={toggleFrozen}
       >
         {isFrozen.value ? 'Follow' : 'Hold plots'}
-      </button>
+      </Button>
       <div class="segments" role="group" aria-label="Time shown">
         {WINDOWS_S.map((seconds) => (
-          <button
+          <Button
             key={seconds}
-            type="button"
             aria-pressed={windowSeconds.value === seconds && !zoomed.value}
-            onClick={() => {
+            act={() => {
               zoomed.value = null;
               windowSeconds.value = seconds;
             }}
           >
             {seconds} s
-          </button>
+          </Button>
         ))}
       </div>
-      {zoomed.value ? (
-        <button type="button" onClick={thaw}>
-          Reset zoom
-        </button>
-      ) : (
-        <span class="soft wide-only">Drag to zoom</span>
-      )}
+      {zoomed.value ? <Button act={thaw}>Reset zoom</Button> : <span class="soft wide-only">Drag to zoom</span>}
     </div>
   );
 }
@@ -167,9 +160,9 @@ function Mark() {
   if (markTime.value === null) return null;
   return (
     <div class="plot-mark">
-      <button type="button" aria-keyshortcuts="X" onClick={toggleMark}>
+      <Button aria-keyshortcuts="X" act={toggleMark}>
         Remove the mark{cursorTime.value === null ? '' : `, Δt ${fixed(cursorTime.value - markTime.value, 2)} s`}
-      </button>
+      </Button>
     </div>
   );
 }

@@ -1,3 +1,4 @@
+import { Button } from '../parts/controls';
 import { confirm, pendingConfirmation } from '../state/operate';
 import { Dialog } from './help_view';
 
@@ -12,12 +13,10 @@ export function RestartView() {
       </p>
       <p class="soft">You will not be asked again.</p>
       <div class="row end">
-        <button type="button" onClick={() => confirm(false)}>
-          Keep driving
-        </button>
-        <button type="button" class="primary" onClick={() => confirm(true)}>
+        <Button act={() => confirm(false)}>Keep driving</Button>
+        <Button class="primary" act={() => confirm(true)}>
           Restart
-        </button>
+        </Button>
       </div>
     </Dialog>
   );

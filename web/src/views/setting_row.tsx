@@ -1,4 +1,5 @@
 import { type Range, scaleOf, shareOf, tidy, valueAt, valueInWords } from '../lib/scale';
+import { Button, Refusal, Select } from '../parts/controls';
 import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
 import { canChange, change, firstValueOf, target, valueShown } from '../state/chosen_settings';
@@ -93,13 +94,13 @@ export function ChoiceBox({
   const now = String(value ?? '');
   const choices = entry.choices.includes(now) || now === '' ? entry.choices : [now, ...entry.choices];
   return (
-    <select aria-label={label} value={now} disabled={!isPossible} onChange={(event) => put(event.currentTarget.value)}>
-      {choices.map((choice) => (
-        <option key={choice} value={choice} selected={choice === now}>
-          {choice}
-        </option>
-      ))}
-    </select>
+    <Select
+      label={label}
+      value={now}
+      disabled={!isPossible}
+      choices={choices.map((choice) => ({ value: choice, label: choice }))}
+      choose={put}
+    />
   );
 }
 
@@ -198,21 +199,16 @@ export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string 
         <Mark entry={entry} />
       </span>
       <Control entry={entry} label={label} />
-      <button
-        type="button"
+      <Button
         class="icon small"
         aria-label={`Reset ${label}`}
         title={start === undefined ? '' : `Back to ${asText(start)}`}
         disabled={!isChanged || !canChange(entry.key)}
-        onClick={() => start !== undefined && change(entry.key, start)}
+        act={() => start !== undefined && change(entry.key, start)}
       >
         ↺
-      </button>
-      {refusal !== undefined && (
-        <p class="refusal" role="alert">
-          {refusal}
-        </p>
-      )}
+      </Button>
+      <Refusal text={refusal} />
     </div>
   );
 }

@@ -1,6 +1,7 @@
 import { plural } from '../lib/format';
 import { valueInWords } from '../lib/scale';
 import { store } from '../lib/store';
+import { Button } from '../parts/controls';
 import { notice } from '../state/link';
 import { mode } from '../state/mode';
 import { canSet } from '../state/operate';
@@ -69,9 +70,9 @@ function Offer() {
         </>
       )}
       <div class="row end">
-        <button type="button" class="primary" onClick={close}>
+        <Button class="primary" act={close}>
           Close
-        </button>
+        </Button>
       </div>
     </Dialog>
   );
@@ -115,13 +116,11 @@ function Question() {
             <p class="soft">Left out, since a link cannot set it here: {request.unknown.join(', ')}.</p>
           )}
           <div class="row end">
-            <button type="button" onClick={decline}>
-              {isSame ? 'Close' : 'Keep this run'}
-            </button>
+            <Button act={decline}>{isSame ? 'Close' : 'Keep this run'}</Button>
             {!isSame && (
-              <button type="button" class="primary" disabled={!mayDrive} onClick={() => void accept()}>
+              <Button class="primary" disabled={!mayDrive} act={accept}>
                 Drive it
-              </button>
+              </Button>
             )}
           </div>
         </>

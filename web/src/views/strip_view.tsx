@@ -2,6 +2,7 @@ import type { ComponentChildren } from 'preact';
 import { fixed, lapTime, plural, side, UNKNOWN } from '../lib/format';
 import { clamp, degrees } from '../lib/math';
 import { inSpeedUnit, speedUnit } from '../lib/units';
+import { Button } from '../parts/controls';
 import { signed, toneOf } from '../state/comparison';
 import { bestOf } from '../state/lap_table';
 import { lapSamples, laps } from '../state/laps';
@@ -123,9 +124,9 @@ function Gap() {
 
 function Key({ label, name, isPossible, act }: { label: string; name: string; isPossible: boolean; act: () => void }) {
   return (
-    <button type="button" disabled={!isPossible} aria-keyshortcuts={name} onClick={act}>
+    <Button disabled={!isPossible} aria-keyshortcuts={name} act={act}>
       {label} <kbd>{name}</kbd>
-    </button>
+    </Button>
   );
 }
 
@@ -192,9 +193,9 @@ function Again() {
   return (
     <span class="again">
       <code>{command}</code>{' '}
-      <button type="button" class="plain" onClick={() => void navigator.clipboard?.writeText(command)}>
+      <Button class="plain" act={() => navigator.clipboard?.writeText(command)}>
         Copy
-      </button>
+      </Button>
     </span>
   );
 }
@@ -240,9 +241,9 @@ function Ended() {
         )}
       </div>
       <div class="keys row">
-        <button type="button" disabled={!canReplay()} onClick={startReplay}>
+        <Button disabled={!canReplay()} act={startReplay}>
           Replay the last {REPLAY_S} s
-        </button>
+        </Button>
       </div>
     </section>
   );

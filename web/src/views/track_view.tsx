@@ -21,18 +21,10 @@ import { paintSize } from '../lib/paint_size';
 import type { Pose } from '../lib/poses';
 import { store } from '../lib/store';
 import { inSpeedUnit, speedUnit } from '../lib/units';
+import { Select } from '../parts/controls';
 import { Scene3dView } from '../scene3d/scene3d_view';
 import { session } from '../scene3d/session';
-import {
-  ALL_CAMERAS,
-  type CameraChoice,
-  camera,
-  camera3d,
-  choose,
-  obstacle,
-  shows3d,
-  zoomCamera,
-} from '../scene3d/view_state';
+import { ALL_CAMERAS, camera, camera3d, choose, obstacle, shows3d, zoomCamera } from '../scene3d/view_state';
 import { lossesToLimit, markedCorners, startLine } from '../state/compared';
 import { cursorMark, pointAt, timeNear } from '../state/cursor';
 import { faultMarks } from '../state/faults';
@@ -280,20 +272,15 @@ function Corner() {
   const ghost = ghostLabel.value;
   return (
     <div class="corner row">
-      <select
+      <Select
         class="camera"
-        aria-label="Camera"
-        aria-keyshortcuts="C"
+        label="Camera"
+        keys="C"
         title="Camera (C)"
         value={camera.value}
-        onChange={(event) => choose(event.currentTarget.value as CameraChoice)}
-      >
-        {ALL_CAMERAS.map(({ view, label, title }) => (
-          <option key={view} value={view} title={title}>
-            {label}
-          </option>
-        ))}
-      </select>
+        choices={ALL_CAMERAS}
+        choose={choose}
+      />
       {live.plan !== null && <span class="line-key plan">plan</span>}
       {layers.racingLine.value && limit.value && <span class="line-key">the limit's line</span>}
       {layers.hindsight.value && <span class="line-key past">plan 1 s ago</span>}

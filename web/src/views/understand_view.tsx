@@ -4,6 +4,7 @@ import { addShortcuts } from '../lib/keys';
 import { persisted } from '../lib/persisted';
 import { store } from '../lib/store';
 import { reasonOf } from '../lib/words';
+import { Button, Refusal } from '../parts/controls';
 import { CornerTable } from '../parts/corner_table';
 import { Headline } from '../parts/headline';
 import { LapPlots } from '../parts/lap_plots';
@@ -127,23 +128,21 @@ function AllLaps({ both }: { both: Comparison | null }) {
         />
       )}
       <div class="row">
-        <button
-          type="button"
+        <Button
           disabled={laps.value.length === 0}
-          onClick={() => download(fileName([...parts, 'laps'], 'csv'), lapsCsv(laps.value, limit.value), 'text/csv')}
+          act={() => download(fileName([...parts, 'laps'], 'csv'), lapsCsv(laps.value, limit.value), 'text/csv')}
         >
           Table as CSV
-        </button>
-        <button
-          type="button"
+        </Button>
+        <Button
           disabled={!lapSamples.laps.includes(lap - 1)}
           title="Time, speed, error and commands of A along the track"
-          onClick={() =>
+          act={() =>
             download(fileName([...parts, `lap-${lap}`], 'csv'), lapSamplesCsv(lapSamples, lap - 1), 'text/csv')
           }
         >
           This lap as CSV
-        </button>
+        </Button>
         <label class="button">
           <input
             type="file"
@@ -159,11 +158,7 @@ function AllLaps({ both }: { both: Comparison | null }) {
           Compare with a recording …
         </label>
       </div>
-      {problem.value !== '' && (
-        <p class="lost" role="alert">
-          {problem.value}
-        </p>
-      )}
+      <Refusal text={problem.value} />
     </details>
   );
 }
