@@ -16,10 +16,10 @@ function Verdict({ of, level }: { of: ReportedRun; level: 1 | 2 }) {
     <header>
       <Heading class="verdict" data-testid="verdict">
         {text}
-        {time !== '' && <b>{time}</b>}
+        {time !== '' && <b class="keep">{time}</b>}
         {behind !== '' && (
           <>
-            , <b class="lost">{behind}</b> more than <span class="other">the limit</span>
+            , <b class="lost keep">{behind}</b> more than <span class="other">the limit</span>
           </>
         )}
         {time !== '' && '.'}
@@ -62,7 +62,7 @@ function Where({ runs }: { runs: readonly ReportedRun[] }) {
   if (!both) return null;
   const here = at ?? byCost(both)[0]?.apex ?? 0;
   return (
-    <section aria-label="Where the time is lost">
+    <section class="columns" aria-label="Where the time is lost">
       <Headline
         level={2}
         comparison={both}
@@ -72,7 +72,7 @@ function Where({ runs }: { runs: readonly ReportedRun[] }) {
           if (chosen) choose(which === 0 ? [chosen, both.b] : [both.a, chosen]);
         }}
       />
-      <div class="two">
+      <div class="two columns">
         <LossMap comparison={both} at={here} />
         <div>
           <CornerTable comparison={both} at={here} pick={move} />
@@ -98,10 +98,10 @@ function Engineer({ of: { steps, interventions, gated, duration, settings } }: {
   return (
     <details>
       <summary>Engineer</summary>
-      <dl class="facts-of-run">
+      <dl class="facts-of-run columns">
         {facts.map(([name, value]) => (
           <div key={name}>
-            <dt>{name}</dt>
+            <dt class="label">{name}</dt>
             <dd>{value}</dd>
           </div>
         ))}
@@ -118,7 +118,7 @@ function Engineer({ of: { steps, interventions, gated, duration, settings } }: {
 
 function Run({ of }: { of: ReportedRun }) {
   return (
-    <section aria-label={of.name}>
+    <section class="columns" aria-label={of.name}>
       <h2>All laps</h2>
       {of.laps.length > 0 ? <LapTable of={of.name} laps={of.laps} limit={of.limit} /> : <p>No lap was completed.</p>}
       <Engineer of={of} />

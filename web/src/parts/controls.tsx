@@ -51,7 +51,7 @@ export function Select<T extends string | number>({ label, value, choices, choos
 /** Why something could not be done; nothing without a reason. */
 export const Refusal = ({ text = '' }: { text?: string | undefined }) =>
   text === '' ? null : (
-    <p class="refusal" role="alert">
+    <p class="refusal lost" role="alert">
       {text}
     </p>
   );

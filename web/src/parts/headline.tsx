@@ -52,7 +52,7 @@ export function Headline({ comparison, courses, choose, level = 1 }: Options) {
         choose={(id) => choose(0, id)}
       />
       {verb}
-      {amount !== '' && <b class={tone}>{amount}</b>}
+      {amount !== '' && <b class={`keep ${tone}`}>{amount}</b>}
       {to}
       <Word
         label="B"

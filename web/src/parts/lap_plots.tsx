@@ -168,7 +168,7 @@ function GapCurve({ row, x, y }: { row: Row; x: (i: number) => number; y: (value
               class="fill"
               d={`${pathOf(known, x, y)}L${px(x(part.length - 1))} ${px(y(0))}L${px(x(0))} ${px(y(0))}z`}
             />
-            <path class="line" d={pathOf(line, x, y)} />
+            <path d={pathOf(line, x, y)} />
           </g>
         );
       })}
@@ -187,7 +187,7 @@ function Curves({ comparison, rows, frame }: { comparison: Comparison; rows: rea
     <g>
       {corners.map(({ name, entry, exit }) => (
         <g key={name}>
-          <rect class="band" x={along(entry)} y={TOP} width={along(exit) - along(entry)} height={base - TOP} />
+          <rect x={along(entry)} y={TOP} width={along(exit) - along(entry)} height={base - TOP} />
           <text class="turn" x={(along(entry) + along(exit)) / 2} y="12" text-anchor="middle">
             {name}
           </text>
@@ -320,6 +320,7 @@ export function LapPlots({ comparison, isEngineer = false, at, move }: Options) 
   return (
     <div class={isEngineer ? 'lap-plots engineer' : 'lap-plots'} ref={host} {...(slider || {})}>
       <svg
+        class="chart"
         viewBox={`0 0 ${size.width} ${size.height}`}
         role="img"
         aria-label={`${rows.map(({ title }) => title).join(', ')} along the lap`}

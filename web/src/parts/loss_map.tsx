@@ -46,7 +46,7 @@ export function LossMap({ comparison, at }: { comparison: Comparison; at?: numbe
   const dot = at === undefined ? null : place(pointOf(at));
   return (
     <svg
-      class="loss-map"
+      class="loss-map chart"
       viewBox={`${-margin} ${-margin} ${width * scale + 2 * margin} ${height * scale + 2 * margin}`}
       role="img"
       aria-label={`The way of ${a.name} in the colours of the time lost`}
@@ -59,8 +59,7 @@ export function LossMap({ comparison, at }: { comparison: Comparison; at?: numbe
           <polyline
             key={from}
             points={known.map(([x, y]) => `${x.toFixed(1)},${y.toFixed(1)}`).join(' ')}
-            stroke={colourOf(lost, most)}
-            stroke-width={12 + 9 * share}
+            style={{ stroke: colourOf(lost, most), strokeWidth: 12 + 9 * share }}
           />
         );
       })}

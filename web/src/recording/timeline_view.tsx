@@ -45,7 +45,7 @@ function Marks() {
       {landmarks.value.map(({ time, kind, label }) => (
         <i
           key={`${kind}${time}${label}`}
-          class={`is-${kind}`}
+          class={kind === 'lap' ? 'won' : 'lost'}
           style={{ left: `${(100 * time) / length}%` }}
           title={`${lapTime(time)}: ${label}`}
         />
@@ -83,7 +83,7 @@ export function TimelineView() {
       {logs.value.length > 1 ? (
         <Select label="Recording shown" value={played.value} choices={names} choose={(which) => void choose(which)} />
       ) : (
-        <span class="timeline-name">{source.log.name}</span>
+        <span class="timeline-name soft cut">{source.log.name}</span>
       )}
       {logs.value.length > 2 && (
         <Select

@@ -96,7 +96,8 @@ export function Scene3dView({ label }: { label: string }) {
   return (
     <canvas
       ref={canvas}
-      class={isFree ? 'map-3d is-free' : 'map-3d'}
+      class="map-3d"
+      style={{ touchAction: isFree ? 'none' : 'pan-y' }}
       role={isFree ? 'application' : 'img'}
       aria-label={isFree ? `${label}. Arrow keys turn the camera.` : label}
       {...(isFree ? { tabIndex: 0 } : {})}

@@ -110,7 +110,7 @@ export function AnswerView() {
   const fixed = asked.value.map(({ key }) => key).filter((key) => entryOf(key)?.is_fixed === true);
   return (
     <div class="answer stack">
-      <p role="status" data-testid="what-if-verdict">
+      <p class="value" role="status" data-testid="what-if-verdict">
         <span class="other">{changesInWords(asked.value)}</span>: {verdictOf(found, both ? -both.total : NaN)}
       </p>
       <div class="row">

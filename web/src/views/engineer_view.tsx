@@ -18,10 +18,10 @@ const WINDOW_S = 20;
 function Share({ share }: { share: number }) {
   return (
     <div class="share">
-      <span class="share-bar" aria-hidden="true">
-        <span style={{ width: `${share * 100}%` }} />
-      </span>
-      <span class="unit">{fixed(share * 100, 0)} %</span>
+      <i class="gauge other" aria-hidden="true">
+        <u style={{ transform: `scaleX(${share})` }} />
+      </i>
+      <span class="unit keep">{fixed(share * 100, 0)} %</span>
     </div>
   );
 }
@@ -66,8 +66,8 @@ function Constraints() {
             return (
               <tr key={name} class={isNow ? 'now' : isAhead ? 'ahead' : ''}>
                 <th scope="row">{nameInWords(name)}</th>
-                <td>{isNow ? <span class="active-mark">now</span> : <span class="soft">–</span>}</td>
-                <td>{isAhead ? <span class="active-mark">ahead</span> : <span class="soft">–</span>}</td>
+                <td>{isNow ? <span class="active-mark lost">now</span> : <span class="soft">–</span>}</td>
+                <td>{isAhead ? <span class="active-mark lost">ahead</span> : <span class="soft">–</span>}</td>
                 <td>
                   <Share share={shareOf(live.plots, Column.active_now, WINDOW_S, (set) => hasBit(set, i))} />
                 </td>
@@ -105,7 +105,7 @@ export function EngineerView() {
   return (
     <section class="engineer-parts stack" aria-label="Engineer">
       <PlotsView />
-      <div class="blocks">
+      <div class="blocks columns">
         <Limiters />
         <Constraints />
         <ControllerView />

@@ -11,7 +11,7 @@ export function EventsView() {
       ) : (
         <ol class="events" tabIndex={0}>
           {events.value.map(({ id, severity, text, time, duration }) => (
-            <li class="row" key={id}>
+            <li class="row line" key={id}>
               <span class="event-time">{fixed(time, 2)} s</span>
               <span class={`severity ${severity}`} aria-hidden="true" />
               <span>{text}</span>

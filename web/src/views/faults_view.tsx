@@ -4,6 +4,7 @@ import { fixed } from '../lib/format';
 import { clamp } from '../lib/math';
 import { tidy } from '../lib/scale';
 import { store } from '../lib/store';
+import { capital } from '../lib/words';
 import { Button } from '../parts/controls';
 import type { FaultEntry } from '../protocol/schema';
 import { faultInWords } from '../state/event_log';
@@ -107,14 +108,14 @@ function Parameters({ fault: { key, name }, entry }: { fault: Fault; entry: Faul
   );
   const { strength_meaning: meaning, weakest, strongest } = entry;
   return (
-    <div class="row parameter">
-      <span class="row parameter">
+    <div class="row label">
+      <span class="row label">
         <span>for</span>
         {box(`Duration of ${name} [s]`, duration, (text) => ({ duration: numberIn(text, ...DURATIONS_S) }))}
         <span>s</span>
       </span>
       {meaning !== '' && (
-        <span class="row parameter">
+        <span class="row label">
           {box(`Strength of ${name}: ${meaning}`, strength, (text) => ({
             strength: numberIn(text, weakest, strongest),
           }))}
@@ -141,7 +142,7 @@ function FaultButton({ fault }: { fault: Fault }) {
       disabled={!canSet(key)}
       act={() => toggleFault(fault)}
     >
-      {name}
+      {capital(name)}
       {isActive && <span class="left">{Number.isFinite(left) ? `${fixed(left, 1)} s left` : 'active'}</span>}
     </Button>
   );

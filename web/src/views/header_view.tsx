@@ -22,7 +22,7 @@ function RunSummary() {
     guardInWords(now),
   ];
   return (
-    <p class="run" title={all.filter((part) => part !== '').join(' · ')}>
+    <p class="run cut" title={all.filter((part) => part !== '').join(' · ')}>
       {now.car} on {now.track}, {now.preset || now.controller}
     </p>
   );
@@ -88,15 +88,15 @@ export function HeaderView() {
   return (
     <>
       <header class="head">
-        <div class="left">
+        <div class="row line">
           <MenuView />
           <RunSummary />
         </div>
         <Modes />
-        <div class="right">
-          <div class="pills">
+        <div class="row line end">
+          <div class="row line end cut">
             {pills.value.map((text) => (
-              <span key={text.split(',')[0]} class="pill">
+              <span key={text.split(',')[0]} class="pill cut">
                 {text}
               </span>
             ))}

@@ -53,7 +53,7 @@ export function HelpView() {
   };
   return (
     <Dialog isOpen={isHelpOpen.value} title="Keys" onClose={close}>
-      <div class="help-groups">
+      <div class="columns" style={{ '--least': '250px' }}>
         {GROUPS.map((group) => (
           <section key={group} aria-label={group}>
             <h3>{group}</h3>

@@ -43,6 +43,7 @@ export function MenuView() {
   const pace = settings.value.get('run.pace');
   const Item = (props: { act: () => void; name?: string; off?: boolean; children: ComponentChildren }) => (
     <Button
+      class="row apart"
       disabled={props.off}
       aria-keyshortcuts={props.name}
       act={() => {
@@ -78,7 +79,7 @@ export function MenuView() {
           </Item>
         )}
         {pace !== undefined && (
-          <div class="pace">
+          <div class="row apart">
             <span id="pace-label">Pace</span>
             <div class="segments" role="group" aria-labelledby="pace-label">
               {PACES.map((each) => (
@@ -97,7 +98,7 @@ export function MenuView() {
         <hr />
         {settings.value.has('track') && <Item act={openShare}>Share this run …</Item>}
         {settings.value.size > 0 && (
-          <a class="item" href="preset.yaml" download="my-preset.yaml" onClick={savePreset}>
+          <a class="row apart" href="preset.yaml" download="my-preset.yaml" onClick={savePreset}>
             Keep these settings as a preset
           </a>
         )}

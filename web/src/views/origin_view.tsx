@@ -67,7 +67,7 @@ function Found({ values }: { values: readonly Identified[] }) {
                 <Name of={key} />
               </th>
               <td>{tidy(value)}</td>
-              <td>
+              <td class="keep">
                 {tidy(low)} to {tidy(high)}
               </td>
             </tr>

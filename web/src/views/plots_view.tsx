@@ -174,7 +174,7 @@ export function PlotsView() {
   return (
     <div class="plots-view stack">
       <Toolbar />
-      <div class="plots">
+      <div class="plots columns">
         {[speed.value, ...BEFORE_COST, cost.value, ...AFTER_COST].map((spec) => (
           <TimePlot key={spec.title} spec={spec} />
         ))}

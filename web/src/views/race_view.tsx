@@ -15,7 +15,7 @@ function Standing() {
         A is the car of this run, B the ghost{settings.length > 0 ? `: ${settings.join(', ')}` : ''}. Faults, grip,
         latency and noise act on both.
       </p>
-      <p class={`verdict ${winner === 'B' ? 'better' : winner === 'A' ? 'worse' : ''}`} role="status">
+      <p class={`value ${winner === 'B' ? 'won' : winner === 'A' ? 'lost' : ''}`} role="status">
         {now.state === 'building' && 'B is being built; both begin at the line.'}
         {now.state === 'racing' && <span data-testid="race-verdict">{text}</span>}
         {(now.state === 'ended' || now.state === 'failed') && `B drives no more: ${now.why}.`}

@@ -30,7 +30,7 @@ export function SentenceView({ of }: { of: Situation }) {
   if (spoken.current.kind !== of.kind) spoken.current = { kind: of.kind, text: of.text };
   const isAlarm = of.kind === 'alarm';
   return (
-    <div class="true" data-testid="why">
+    <div class="true value" data-testid="why">
       <p role={isAlarm ? 'alert' : undefined}>{of.text}</p>
       {of.why !== '' && <small>{of.why}</small>}
       {!isAlarm && (

@@ -1,4 +1,5 @@
 import { type Range, scaleOf, shareOf, tidy, valueAt, valueInWords } from '../lib/scale';
+import { capital } from '../lib/words';
 import { Button, Refusal, Select } from '../parts/controls';
 import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
@@ -104,6 +105,10 @@ export function ChoiceBox({
   );
 }
 
+const isChoice = ({ kind, choices }: SchemaEntry): boolean => kind === 'choice' || choices.length > 0;
+/** A number has a slider, a box and a unit. */
+const hasUnit = (entry: SchemaEntry): boolean => !isChoice(entry) && entry.kind !== 'bool' && entry.kind !== 'text';
+
 function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
   const value = valueShown(entry.key);
   if (entry.kind === 'bool') {
@@ -119,7 +124,7 @@ function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
       />
     );
   }
-  if (entry.kind === 'choice' || entry.choices.length > 0) {
+  if (isChoice(entry)) {
     const put = (choice: string): void => change(entry.key, choice);
     return <ChoiceBox entry={entry} label={label} value={value} isPossible={canChange(entry.key)} put={put} />;
   }
@@ -154,14 +159,14 @@ export const whyFixed = (key: string): string => `Fixed when the run starts. On 
 function Mark({ entry }: { entry: SchemaEntry }) {
   if (entry.is_fixed) {
     return (
-      <span class="restarts" role="img" title={whyFixed(entry.key)} aria-label="fixed when the run starts">
+      <span class="label" role="img" title={whyFixed(entry.key)} aria-label="fixed when the run starts">
         fixed
       </span>
     );
   }
   if (entry.is_live) return null;
   return (
-    <span class="restarts" role="img" title="A change restarts the run" aria-label="restarts the run">
+    <span class="label" role="img" title="A change restarts the run" aria-label="restarts the run">
       ↻
     </span>
   );
@@ -172,7 +177,7 @@ export function SettingMeaning({ entry, label }: { entry: SchemaEntry; label: st
   const { minimum, maximum, unit, meaning, is_live, is_fixed, key } = entry;
   const hasRange = minimum !== null && maximum !== null && maximum > minimum;
   return (
-    <Meaning of={label}>
+    <Meaning of={capital(label)}>
       {meaning}
       {hasRange && <span>{`${tidy(minimum)} to ${tidy(maximum)} ${unit}`}</span>}
       {is_fixed ? <span>{whyFixed(key)}</span> : !is_live && <span>A change restarts the run.</span>}
@@ -190,13 +195,12 @@ export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string 
   const refusal = target.value === 'run' ? refusals.value.get(entry.key) : undefined;
   return (
     <div
-      class={`setting kind-${entry.kind}${isChanged ? ' changed' : ''}`}
+      class={`setting${hasUnit(entry) ? '' : ' is-short'}${isChanged ? ' changed' : ''}`}
       data-key={entry.key}
       title={entry.is_fixed ? whyFixed(entry.key) : undefined}
     >
       <span class="setting-name">
-        <SettingMeaning entry={entry} label={label} />
-        <Mark entry={entry} />
+        <SettingMeaning entry={entry} label={label} /> <Mark entry={entry} />
       </span>
       <Control entry={entry} label={label} />
       <Button

@@ -103,7 +103,7 @@ function Question() {
           ) : (
             <>
               <p>The run that goes on ends, and this one begins from standstill:</p>
-              <ul class="link-differences stack" data-testid="wanted">
+              <ul class="stack" data-testid="wanted">
                 {request.differences.map((each) => (
                   <li key={each.key}>
                     <ChangeOf of={each} />

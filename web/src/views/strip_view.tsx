@@ -23,9 +23,9 @@ import { SentenceView, situationNow } from './sentence_view';
 
 function Speed() {
   return (
-    <p class="speed">
+    <p class="speed row line">
       <b data-testid="speed">{fixed(inSpeedUnit(shown.value?.speed_mps ?? NaN), 0)}</b>
-      <span class="unit">{speedUnit().name}</span>
+      <span class="label">{speedUnit().name}</span>
     </p>
   );
 }
@@ -35,8 +35,8 @@ function Bar({ label, share, text, id }: { label: string; share: number; text: s
   const at = 50 * clamp(Number.isFinite(share) ? share : 0, -1, 1);
   return (
     <div class="bar">
-      <span>{label}</span>
-      <i aria-hidden="true">
+      <span class="label">{label}</span>
+      <i class="gauge" aria-hidden="true">
         {/* Moved by transforms, which need no layout in each repaint. */}
         <u style={{ transform: `translateX(${50 + Math.min(0, at)}%) scaleX(${Math.abs(at) / 100})` }} />
       </i>
@@ -85,8 +85,8 @@ function Cell({
 }) {
   return (
     <p class="cell">
-      <span>{label}</span>
-      <b class={tone} data-testid={id}>
+      <span class="label">{label}</span>
+      <b class={`value ${tone}`} data-testid={id}>
         {children}
       </b>
     </p>
@@ -145,7 +145,7 @@ function Driving() {
       {now ? (
         <SentenceView of={now} />
       ) : (
-        <p class="true">{run.value ? 'Waiting for the car.' : 'Waiting for a run.'}</p>
+        <p class="true value">{run.value ? 'Waiting for the car.' : 'Waiting for a run.'}</p>
       )}
       {isAlarm && (
         <div class="keys row">
@@ -166,7 +166,7 @@ function Driving() {
 function Lost() {
   return (
     <section class="strip alarm" aria-label="Now" data-testid="banner">
-      <div class="true">
+      <div class="true value">
         <p role="alert">
           <span data-testid="end-title">Connection lost</span>.
         </p>
@@ -192,7 +192,7 @@ function Again() {
   });
   return (
     <span class="again">
-      <code>{command}</code>{' '}
+      <code class="cut">{command}</code>{' '}
       <Button class="plain" act={() => navigator.clipboard?.writeText(command)}>
         Copy
       </Button>
@@ -215,7 +215,7 @@ function Ended() {
       aria-label="End of the run"
       data-testid="end-card"
     >
-      <div class="true">
+      <div class="true value">
         <p role="status">
           <span data-testid="end-title">{end.title}</span>. {end.why}
         </p>
@@ -226,7 +226,7 @@ function Ended() {
         )}
         {__PAGE__ && <HashView />}
       </div>
-      <div class="facts">
+      <div class="facts row line">
         <Cell id="end-laps" label="Laps">
           {String(all.length)}
         </Cell>

@@ -76,14 +76,9 @@ function Tasks({ of }: { of: Step }) {
   return (
     <ol class="tour-tasks row">
       {of.tasks.map((task, i) => (
-        <li key={task} class={done.value[i] ? 'done' : ''}>
-          <span class="tick" aria-hidden="true">
-            {done.value[i] ? '✓' : ''}
-          </span>
-          <span>
-            {task}
-            <span class="sr-only">{done.value[i] ? ': done' : ': to do'}</span>
-          </span>
+        <li key={task} class={done.value[i] ? 'done won' : ''}>
+          <span aria-hidden="true">{done.value[i] ? '✓' : '○'}</span> {task}
+          <span class="sr-only">{done.value[i] ? ': done' : ': to do'}</span>
         </li>
       ))}
     </ol>
@@ -124,7 +119,7 @@ function StepCard({ of }: { of: Step }) {
 
 function ListCard() {
   return (
-    <ul class="tour-list row">
+    <ul class="row">
       {TOURS.map(({ name, title, steps }) => (
         <li key={name}>
           <Button
@@ -133,7 +128,7 @@ function ListCard() {
               showWhere();
             }}
           >
-            {title} <span class="unit">{steps.length} steps</span>
+            {title}, {steps.length} steps
           </Button>
         </li>
       ))}

@@ -2,7 +2,7 @@ import { useEffect, useRef } from 'preact/hooks';
 import { CachedPicture, isSame } from '../draw/cached_picture';
 import { allRound, behind, type Camera, fitting, project, unproject, zoomed } from '../draw/camera';
 import { carShape } from '../draw/car';
-import { aheadOf, type Line } from '../draw/line';
+import { aheadOf, type Line as RoadLine } from '../draw/line';
 import { Paper } from '../draw/paper';
 import {
   drawCursor,
@@ -78,10 +78,10 @@ function carNow(now: number): Scene['car'] {
 }
 
 /** The plan from where the car is now. */
-const planAhead = (car: Scene['car']): Line =>
+const planAhead = (car: Scene['car']): RoadLine =>
   live.plan && car ? aheadOf({ x: live.plan.x_m, y: live.plan.y_m }, car) : { x: [], y: [] };
 
-const pointsOf = ({ x, y }: Line): Point[] => Array.from(x, (each, i) => ({ x: each, y: y[i] ?? NaN }));
+const pointsOf = ({ x, y }: RoadLine): Point[] => Array.from(x, (each, i) => ({ x: each, y: y[i] ?? NaN }));
 
 /** Paints the track from above; keeps state from one picture to the next. */
 class Painter {
@@ -267,6 +267,13 @@ function describePicture(): string {
   return `${what} of the track: the car is ${place} at ${fixed(inSpeedUnit(frame.speed_mps), 0)} ${speedUnit().spoken}`;
 }
 
+/** What a line on the road is. */
+const Line = ({ name, token, kind = '' }: { name: string; token: string; kind?: string }) => (
+  <span class={`key line-key ${kind}`} style={{ '--tone': `var(--${token})` }}>
+    {name}
+  </span>
+);
+
 /** The camera's name, and what the lines on the road are. */
 function Corner() {
   const ghost = ghostLabel.value;
@@ -281,10 +288,10 @@ function Corner() {
         choices={ALL_CAMERAS}
         choose={choose}
       />
-      {live.plan !== null && <span class="line-key plan">plan</span>}
-      {layers.racingLine.value && limit.value && <span class="line-key">the limit's line</span>}
-      {layers.hindsight.value && <span class="line-key past">plan 1 s ago</span>}
-      {ghost !== null && <span class="line-key ghost">{ghost}</span>}
+      {live.plan !== null && <Line name="plan" token="road-plan" />}
+      {layers.racingLine.value && limit.value && <Line name="the limit's line" token="other" />}
+      {layers.hindsight.value && <Line name="plan 1 s ago" token="road-past" kind="past" />}
+      {ghost !== null && <Line name={ghost} token="other" kind="ghost" />}
       {obstacle.value !== null && <span role="status">{obstacle.value}</span>}
     </div>
   );

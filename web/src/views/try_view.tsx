@@ -121,7 +121,7 @@ function Changes() {
   return (
     <section class="changes stack" aria-label="Changes" data-testid="changes">
       <header class="row apart">
-        <h2>{changes.length === 0 ? 'No changes' : plural(changes.length, 'change')}</h2>
+        {changes.length === 0 ? <p class="soft">No changes</p> : <h2>{plural(changes.length, 'change')}</h2>}
         {changes.length > 0 && (
           <Button act={() => changes.forEach(({ key, from }) => set(key, from))}>Reset all</Button>
         )}
@@ -161,7 +161,7 @@ function Settings() {
   const shown = words === '' ? tenSettings.value : found(words);
   return (
     <>
-      <div class="find row">
+      <div class="find row line">
         <input
           id="search"
           ref={takeFocus}

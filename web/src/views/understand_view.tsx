@@ -47,7 +47,7 @@ async function addRecordings(files: readonly File[]): Promise<void> {
 
 function EngineerSwitch() {
   return (
-    <label class="switch row" title="Plan, solver, guard and estimates (E)">
+    <label class="switch row soft" title="Plan, solver, guard and estimates (E)">
       <input
         type="checkbox"
         role="switch"
@@ -99,7 +99,7 @@ function Causes({ both }: { both: Comparison }) {
   const isToLimit = both.b.id === 'limit';
   const text = limit.value && isToLimit ? causesText(causesOf(limit.value, bestLap.value)) : '';
   return (
-    <div class="causes stack">
+    <div class="causes stack label">
       {text !== '' && <p data-testid="causes">{text}</p>}
       {text === '' && isToLimit && (
         <p>
