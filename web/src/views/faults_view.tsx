@@ -160,7 +160,7 @@ function FaultTable({ all }: { all: readonly Fault[] }) {
             <h3>{title}</h3>
             <ul>
               {members.map((fault) => (
-                <li key={fault.key}>
+                <li key={fault.key} class="stack">
                   <FaultButton fault={fault} />
                   <span class="soft">{fault.meaning}</span>
                   {fault.entry && <Parameters fault={fault} entry={fault.entry} />}
