@@ -118,6 +118,7 @@ class Painter {
       racingLine: layers.racingLine.value ? limit.value : null,
       corners: markedCorners(),
       kerb: run.value?.kerb_width_m ?? 0,
+      isWhole,
       start: startLine(),
       losses,
       size: run.value ? paintSize(run.value) : 1,
