@@ -1,5 +1,6 @@
 import { useState } from 'preact/hooks';
 import { fixed } from '../lib/format';
+import { capital } from '../lib/words';
 import { CornerTable } from '../parts/corner_table';
 import { Headline } from '../parts/headline';
 import { LapPlots } from '../parts/lap_plots';
@@ -42,8 +43,8 @@ function Spent({ of: { limit, laps } }: { of: ReportedRun }) {
         <tbody>
           {causes.map(({ name, faster }) => (
             <tr key={name}>
-              <th scope="row">{name}</th>
-              <td>{faster < 0.005 ? 'nothing' : `${fixed(faster, 2)} s`}</td>
+              <th scope="row">{capital(name)}</th>
+              <td class="number">{faster < 0.005 ? 'nothing' : `${fixed(faster, 2)} s`}</td>
             </tr>
           ))}
         </tbody>
@@ -98,11 +99,13 @@ function Engineer({ of: { steps, interventions, gated, duration, settings } }: {
   return (
     <details>
       <summary>Engineer</summary>
-      <dl class="facts-of-run columns">
+      <dl class="columns" style={{ '--least': '160px' }}>
         {facts.map(([name, value]) => (
           <div key={name}>
             <dt class="label">{name}</dt>
-            <dd>{value}</dd>
+            <dd class="value">
+              <b>{value}</b>
+            </dd>
           </div>
         ))}
       </dl>

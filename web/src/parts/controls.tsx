@@ -1,4 +1,5 @@
 import type { ComponentProps } from 'preact';
+import type { Severity } from '../lib/words';
 
 // Controls that are alike everywhere on the page.
 
@@ -67,4 +68,13 @@ export const Heads = ({ of, quiet = false }: { of: readonly string[]; quiet?: bo
       ))}
     </tr>
   </thead>
+);
+
+const SIGNS = { good: ['won', '●'], warning: ['lost', '■'], bad: ['alarming', '■'], unknown: ['soft', '●'] } as const;
+
+/** How bad it is, before its words. */
+export const Sign = ({ of }: { of: Severity }) => (
+  <span class={SIGNS[of][0]} aria-hidden="true">
+    {SIGNS[of][1]}{' '}
+  </span>
 );

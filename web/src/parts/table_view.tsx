@@ -45,7 +45,11 @@ function looks(cell: Cell | undefined, isNumber: boolean) {
     more?.signed !== undefined && 'signed',
   ].filter(Boolean);
   const signed = more?.signed ?? 0;
-  const style = { '--share': more?.share ?? Math.abs(signed), '--tone': `var(--${signed < 0 ? 'won' : 'lost'})` };
+  const mixed = `color-mix(in srgb, var(--won) ${100 * (more?.share ?? 0)}%, var(--lost))`;
+  const style =
+    more?.share === undefined
+      ? { '--share': Math.abs(signed), '--tone': `var(--${signed < 0 ? 'won' : 'lost'})` }
+      : { '--share': 0.7, '--tone': mixed };
   return { class: kinds.join(' '), title: more?.hint, ...(more ? { style } : {}) };
 }
 

@@ -13,7 +13,7 @@ import { listenToPointers } from './pointer';
 import { renderer } from './renderer';
 import { session } from './session';
 import type { Stage, View } from './stage';
-import { camera3d, isReady, obstacle, orbit } from './view_state';
+import { camera3d, isReady, obstacle, orbit, shows3d } from './view_state';
 
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
@@ -97,7 +97,11 @@ export function Scene3dView({ label }: { label: string }) {
     <canvas
       ref={canvas}
       class="map-3d"
-      style={{ touchAction: isFree ? 'none' : 'pan-y' }}
+      style={{
+        touchAction: isFree ? 'none' : 'pan-y',
+        cursor: 'grab',
+        visibility: shows3d.value ? 'visible' : 'hidden',
+      }}
       role={isFree ? 'application' : 'img'}
       aria-label={isFree ? `${label}. Arrow keys turn the camera.` : label}
       {...(isFree ? { tabIndex: 0 } : {})}

@@ -64,10 +64,12 @@ function Constraints() {
           {names.map((name, i) => {
             const [isNow, isAhead] = [hasBit(frame?.active_now ?? 0, i), hasBit(frame?.active_ahead ?? 0, i)];
             return (
-              <tr key={name} class={isNow ? 'now' : isAhead ? 'ahead' : ''}>
-                <th scope="row">{nameInWords(name)}</th>
-                <td>{isNow ? <span class="active-mark lost">now</span> : <span class="soft">–</span>}</td>
-                <td>{isAhead ? <span class="active-mark lost">ahead</span> : <span class="soft">–</span>}</td>
+              <tr key={name}>
+                <th scope="row" class={isNow ? 'lost' : ''}>
+                  {nameInWords(name)}
+                </th>
+                <td>{isNow ? <b class="lost">now</b> : <span class="soft">–</span>}</td>
+                <td>{isAhead ? <b class="lost">ahead</b> : <span class="soft">–</span>}</td>
                 <td>
                   <Share share={shareOf(live.plots, Column.active_now, WINDOW_S, (set) => hasBit(set, i))} />
                 </td>

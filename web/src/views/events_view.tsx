@@ -1,4 +1,5 @@
 import { fixed } from '../lib/format';
+import { Sign } from '../parts/controls';
 import { events } from '../state/event_log';
 
 /** The events of the run, newest first. */
@@ -13,7 +14,7 @@ export function EventsView() {
           {events.value.map(({ id, severity, text, time, duration }) => (
             <li class="row line" key={id}>
               <span class="event-time">{fixed(time, 2)} s</span>
-              <span class={`severity ${severity}`} aria-hidden="true" />
+              <Sign of={severity} />
               <span>{text}</span>
               {duration !== null && (
                 <span class="unit">

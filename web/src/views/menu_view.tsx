@@ -57,8 +57,8 @@ export function MenuView() {
   return (
     <>
       <button type="button" class="name" popovertarget="menu" title="Menu">
-        <svg viewBox="0 0 20 20" aria-hidden="true">
-          <path d="M5 18c0-6 10-5 10-10 0-3-3-4-3-6" />
+        <svg viewBox="0 0 20 20" width="20" aria-hidden="true">
+          <path d="M5 18c0-6 10-5 10-10 0-3-3-4-3-6" fill="none" stroke="currentColor" stroke-width="2.6" />
         </svg>
         chicane<span class="sr-only">: menu</span>
       </button>

@@ -159,11 +159,9 @@ function Toolbar() {
 function Mark() {
   if (markTime.value === null) return null;
   return (
-    <div class="plot-mark">
-      <Button aria-keyshortcuts="X" act={toggleMark}>
-        Remove the mark{cursorTime.value === null ? '' : `, Δt ${fixed(cursorTime.value - markTime.value, 2)} s`}
-      </Button>
-    </div>
+    <Button class="plot-mark" aria-keyshortcuts="X" act={toggleMark}>
+      Remove the mark{cursorTime.value === null ? '' : `, Δt ${fixed(cursorTime.value - markTime.value, 2)} s`}
+    </Button>
   );
 }
 

@@ -143,7 +143,7 @@ function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
 export function ChangeOf({ of: { key, from, to } }: { of: { key: string; from: Setting; to: Setting } }) {
   return (
     <>
-      <code>{key}</code> <span class="was">{valueInWords(from)}</span>{' '}
+      <code>{key}</code> <s class="soft">{valueInWords(from)}</s>{' '}
       <span role="img" aria-label="to">
         →
       </span>{' '}

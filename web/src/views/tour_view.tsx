@@ -66,7 +66,7 @@ function Heading({ text }: { text: string }) {
   const element = useRef<HTMLHeadingElement>(null);
   useLayoutEffect(() => element.current?.focus(), [text]);
   return (
-    <h2 ref={element} tabIndex={-1}>
+    <h2 ref={element} tabIndex={-1} style={{ outline: 'none' }}>
       {text}
     </h2>
   );

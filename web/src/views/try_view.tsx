@@ -179,7 +179,7 @@ function Settings() {
         {shown.map(({ entry, name }) => (
           <SettingRow key={entry.key} entry={entry} {...(name === undefined ? {} : { name })} />
         ))}
-        {shown.length === 0 && words !== '' && <p class="empty">Nothing matches.</p>}
+        {shown.length === 0 && words !== '' && <p class="soft">Nothing matches.</p>}
         <Refusal text={wishRefusal.value} />
       </div>
       {target.value === 'run' && <Changes />}
@@ -192,9 +192,9 @@ function Settings() {
 
 /** Says why there is nothing to set. */
 function NothingToSet() {
-  if (link.value !== 'live') return <p class="empty">Waiting for the connection.</p>;
+  if (link.value !== 'live') return <p class="soft">Waiting for the connection.</p>;
   return (
-    <p class="empty">
+    <p class="soft">
       This run can be viewed but not changed{run.value?.mode === 'replay' ? ': it is a recording' : ''}.
     </p>
   );

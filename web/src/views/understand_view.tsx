@@ -55,7 +55,6 @@ function EngineerSwitch() {
         checked={isEngineer.value}
         onChange={({ currentTarget }) => (isEngineer.value = currentTarget.checked)}
       />
-      <span aria-hidden="true" />
       Engineer
     </label>
   );
