@@ -17,6 +17,7 @@ function Word({ label, name, course, courses, choose }: WordOptions) {
     <span class={label === 'B' ? 'chosen other' : 'chosen'}>
       <span aria-hidden="true">{name}</span>
       <Select
+        class="cover"
         label={label}
         value={course.id}
         choose={choose}

@@ -96,7 +96,7 @@ export function Scene3dView({ label }: { label: string }) {
   return (
     <canvas
       ref={canvas}
-      class="map-3d"
+      class="map-3d cover"
       style={{
         touchAction: isFree ? 'none' : 'pan-y',
         cursor: 'grab',

@@ -31,7 +31,7 @@ export function Copied({ id, label, text }: { id: string; label: string; text: s
         </Button>
       </div>
       <p class="soft" role="status">
-        {said.value?.id === id ? said.value.text : ''}
+        {said.value?.id === id ? said.value.text : '\u00a0'}
       </p>
     </div>
   );

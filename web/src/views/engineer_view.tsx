@@ -19,7 +19,7 @@ function Share({ share }: { share: number }) {
   return (
     <div class="share">
       <i class="gauge other" aria-hidden="true">
-        <u style={{ transform: `scaleX(${share})` }} />
+        <u class="cover" style={{ transform: `scaleX(${share})` }} />
       </i>
       <span class="unit keep">{fixed(share * 100, 0)} %</span>
     </div>

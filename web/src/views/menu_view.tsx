@@ -98,7 +98,13 @@ export function MenuView() {
         <hr />
         {settings.value.has('track') && <Item act={openShare}>Share this run …</Item>}
         {settings.value.size > 0 && (
-          <a class="row apart" href="preset.yaml" download="my-preset.yaml" onClick={savePreset}>
+          <a
+            class="row apart"
+            style={{ color: 'inherit', textDecoration: 'none' }}
+            href="preset.yaml"
+            download="my-preset.yaml"
+            onClick={savePreset}
+          >
             Keep these settings as a preset
           </a>
         )}

@@ -150,7 +150,7 @@ function Toolbar() {
           </Button>
         ))}
       </div>
-      {zoomed.value ? <Button act={thaw}>Reset zoom</Button> : <span class="soft wide-only">Drag to zoom</span>}
+      {zoomed.value ? <Button act={thaw}>Reset zoom</Button> : <span class="soft">Drag to zoom</span>}
     </div>
   );
 }

@@ -38,7 +38,7 @@ function Bar({ label, share, text, id }: { label: string; share: number; text: s
       <span class="label">{label}</span>
       <i class="gauge" aria-hidden="true">
         {/* Moved by transforms, which need no layout in each repaint. */}
-        <u style={{ transform: `translateX(${50 + Math.min(0, at)}%) scaleX(${Math.abs(at) / 100})` }} />
+        <u class="cover" style={{ transform: `translateX(${50 + Math.min(0, at)}%) scaleX(${Math.abs(at) / 100})` }} />
       </i>
       <span class="sr-only" data-testid={id}>
         {text}

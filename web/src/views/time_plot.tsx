@@ -235,7 +235,7 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
         </p>
       </header>
       <div class="plot-area" ref={host}>
-        <canvas />
+        <canvas class="cover" />
         <i class="plot-cursor" hidden />
         {spec.series.map(({ label, colour }) => (
           <i key={label} class="plot-dot" style={{ '--tone': toneOf(colour) }} hidden />

@@ -347,7 +347,7 @@ export function TrackView() {
   return (
     <section class={shows3d.value ? 'map has-3d' : 'map'} aria-label="Picture">
       {camera3d.value !== null && <Scene3dView label={label} />}
-      <canvas ref={canvas} class="map-2d" role="img" aria-label={label} hidden={shows3d.value} />
+      <canvas ref={canvas} class="map-2d cover" role="img" aria-label={label} hidden={shows3d.value} />
       {isInSky && <SmallMap />}
       <Corner />
     </section>

@@ -161,7 +161,7 @@ function Settings() {
   const shown = words === '' ? tenSettings.value : found(words);
   return (
     <>
-      <div class="find row line">
+      <div class="find row">
         <input
           id="search"
           ref={takeFocus}
