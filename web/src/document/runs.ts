@@ -2,9 +2,9 @@ import { begunBits } from '../lib/bits';
 import { fixed, lapTime, plural } from '../lib/format';
 import { capital } from '../lib/words';
 import { UNKNOWN_CHANGE, UNKNOWN_FRAME, UNKNOWN_LAP, UNKNOWN_LIMIT, UNKNOWN_RUN } from '../protocol/messages';
-import type { Change, Frame, Lap, Limit, Run } from '../protocol/topics';
+import type { Change, Frame, Lap } from '../protocol/topics';
 import { type Comparison, type Course, compare } from '../state/comparison';
-import { type Corner, cornersOf } from '../state/corners';
+import { cornersOf } from '../state/corners';
 import { lapCourse, limitCourse, recordedCourse } from '../state/courses';
 import { faultInWords } from '../state/event_log';
 import { LapSamples, momentOf } from '../state/lap_samples';
@@ -51,24 +51,7 @@ function messageOf<T extends object>(unknown: T, lists: Lists): T {
 }
 
 /** One run of a recording. */
-export interface ReportedRun {
-  readonly name: string; // of the recording, with a number where it holds several runs
-  readonly recording: string;
-  readonly run: Run;
-  readonly laps: readonly Lap[];
-  readonly limit: Limit | null;
-  readonly samples: LapSamples;
-  readonly corners: readonly Corner[];
-  readonly duration: number; // [s]
-  readonly offTrack: number; // times
-  readonly interventions: number; // times another than the controller drove
-  readonly gated: number; // times the gate changed a command
-  readonly leastEdge: number; // of all laps [m]
-  readonly faults: readonly string[]; // "blind at 12.5 s"
-  readonly changes: readonly string[]; // "latency_ms = 60 at 3.0 s"
-  readonly steps: ToldRun['steps'];
-  readonly settings: string;
-}
+export type ReportedRun = Readonly<ReturnType<typeof readRun>>;
 
 function framesOf(columns: Lists): Frame[] {
   const names = Object.keys(columns);
@@ -79,7 +62,8 @@ function framesOf(columns: Lists): Frame[] {
   });
 }
 
-function readRun(told: ToldRun, name: string, recording: string, settings: string): ReportedRun {
+/** `name`: of the recording, with a number where it holds several runs. */
+function readRun(told: ToldRun, name: string, recording: string, settings: string) {
   const run = messageOf(UNKNOWN_RUN, told.run ?? {});
   const laps = told.laps.map((each) => messageOf(UNKNOWN_LAP, each));
   const frames = framesOf(told.frames);
@@ -112,13 +96,13 @@ function readRun(told: ToldRun, name: string, recording: string, settings: strin
     limit: told.limit && messageOf(UNKNOWN_LIMIT, told.limit),
     samples,
     corners: cornersOf(xs.map((x, i) => ({ x: Number(x), y: Number(ys[i]) }))),
-    duration: before?.time_s ?? 0,
-    offTrack,
-    interventions,
-    gated,
-    leastEdge: Math.min(...laps.map(({ min_edge_distance_m: edge }) => edge)),
-    faults,
-    changes,
+    duration: before?.time_s ?? 0, // [s]
+    offTrack, // times
+    interventions, // times another than the controller drove
+    gated, // times the gate changed a command
+    leastEdge: Math.min(...laps.map(({ min_edge_distance_m: edge }) => edge)), // of all laps [m]
+    faults, // "blind at 12.5 s"
+    changes, // "latency_ms = 60 at 3.0 s"
     steps: told.steps,
     settings,
   };

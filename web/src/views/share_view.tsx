@@ -1,7 +1,6 @@
 import { plural } from '../lib/format';
 import { valueInWords } from '../lib/scale';
 import { store } from '../lib/store';
-import { Button } from '../parts/controls';
 import { notice } from '../state/link';
 import { mode } from '../state/mode';
 import { canSet } from '../state/operate';
@@ -69,11 +68,6 @@ function Offer() {
           <Copied id="share-command" label="Command" text={commandOf(shared)} />
         </>
       )}
-      <div class="row end">
-        <Button class="primary" act={close}>
-          Close
-        </Button>
-      </div>
     </Dialog>
   );
 }
@@ -92,10 +86,15 @@ function Question() {
     wantedTexts.value = null;
   };
   const request = wanted.value;
-  const mayDrive = canSet('track');
   const isSame = request?.differences.length === 0;
   return (
-    <Dialog isOpen={request !== null} title="Drive the run of this link?" onClose={decline}>
+    <Dialog
+      isOpen={request !== null}
+      title="Drive the run of this link?"
+      close={isSame ? 'Close' : 'Keep this run'}
+      onClose={decline}
+      {...(isSame ? {} : { answer: { label: 'Drive it', act: accept, disabled: !canSet('track') } })}
+    >
       {request && (
         <>
           {isSame ? (
@@ -115,14 +114,6 @@ function Question() {
           {request.unknown.length > 0 && (
             <p class="soft">Left out, since a link cannot set it here: {request.unknown.join(', ')}.</p>
           )}
-          <div class="row end">
-            <Button act={decline}>{isSame ? 'Close' : 'Keep this run'}</Button>
-            {!isSame && (
-              <Button class="primary" disabled={!mayDrive} act={accept}>
-                Drive it
-              </Button>
-            )}
-          </div>
         </>
       )}
     </Dialog>
