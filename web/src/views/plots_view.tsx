@@ -1,5 +1,5 @@
 import { useComputed } from '@preact/signals';
-import { rangeAboutZero, rangeFromZero, rangeInSteps } from '../draw/axis';
+import { aboutZero, fromZero, rangeInSteps } from '../draw/axis';
 import { fixed } from '../lib/format';
 import { type SpeedUnit, speedUnit } from '../lib/units';
 import { nameInWords } from '../lib/words';
@@ -44,10 +44,6 @@ const commands = (sent: number, asked: number, applied: number, factor: number):
   { column: asked, label: 'asked', colour: ASKED, isDashed: true, factor },
   { column: applied, label: 'applied', colour: APPLIED, factor },
 ];
-const aboutZero =
-  (least: number): PlotSpec['range'] =>
-  (columns) =>
-    rangeAboutZero(columns, least);
 
 const BEFORE_COST: readonly PlotSpec[] = [
   {
@@ -86,7 +82,7 @@ const BEFORE_COST: readonly PlotSpec[] = [
       { column: Column.front_tire_use, label: 'front', colour: APPLIED, factor: PERCENT },
       { column: Column.rear_tire_use, label: 'rear', colour: ASKED, factor: PERCENT },
     ],
-    range: (columns) => rangeFromZero(columns, 110),
+    range: fromZero(110),
   },
 ];
 
@@ -96,7 +92,7 @@ const AFTER_COST: readonly PlotSpec[] = [
     unit: 'of each solve',
     decimals: 0,
     series: [{ column: Column.iterations, label: 'iterations', colour: APPLIED }],
-    range: (columns) => rangeFromZero(columns, 5),
+    range: fromZero(5),
     under: drawStatusStrip,
   },
   {
@@ -104,7 +100,7 @@ const AFTER_COST: readonly PlotSpec[] = [
     unit: 'ms',
     decimals: 2,
     series: [{ column: Column.step_time_us, label: 'taken', colour: APPLIED, factor: 1e-3 }],
-    range: (columns) => rangeFromZero(columns, 0.5),
+    range: fromZero(0.5),
   },
 ];
 
@@ -121,7 +117,7 @@ function costSpec(names: readonly string[]): PlotSpec {
     unit: names.length > 0 ? 'of the plan, stacked' : 'of the plan',
     decimals: 1,
     series: names.length > 0 ? layers : [{ column: Column.cost, label: 'all', colour: APPLIED }],
-    range: (columns) => rangeFromZero(columns.slice(-1), 1e-3),
+    range: (columns) => fromZero(1e-3)(columns.slice(-1)),
   };
 }
 
