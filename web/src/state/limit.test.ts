@@ -34,11 +34,6 @@ function samples(): LapSamples {
         s_m: (500 + 10 * (i + 100)) % 1000,
         time_s: since,
         speed_mps: 50,
-        lateral_error_m: 0,
-        steer_rad: 0,
-        throttle: 0,
-        x_m: 0,
-        y_m: 0,
       },
       20,
     );
@@ -153,11 +148,6 @@ describe('a lap against itself as the limit', () => {
             s_m: s[i] ?? NaN,
             time_s: since,
             speed_mps: speed[i] ?? NaN,
-            lateral_error_m: 0,
-            steer_rad: 0,
-            throttle: 0,
-            x_m: 0,
-            y_m: 0,
           },
           lap === 0 ? 0 : lapTime,
         );
