@@ -25,7 +25,7 @@ function Speed() {
   return (
     <p class="speed row line">
       <b data-testid="speed">{fixed(inSpeedUnit(shown.value?.speed_mps ?? NaN), 0)}</b>
-      <span class="label">{speedUnit().name}</span>
+      <span class="unit label">{speedUnit().name}</span>
     </p>
   );
 }
