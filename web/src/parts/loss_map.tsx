@@ -41,7 +41,7 @@ export function LossMap({ comparison, at }: { comparison: Comparison; at?: numbe
     const far = Math.hypot(dx, dy) || 1;
     const [x, y] = place(here);
     // A lap that was seen in part has no place for some corners.
-    return Number.isFinite(x + y + far) ? [{ name, x: x + (62 * dx) / far, y: y + (62 * dy) / far }] : [];
+    return Number.isFinite(x + y + dx + dy) ? [{ name, x: x + (62 * dx) / far, y: y + (62 * dy) / far }] : [];
   });
   const dot = at === undefined ? null : place(pointOf(at));
   return (
