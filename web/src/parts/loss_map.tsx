@@ -1,4 +1,4 @@
-import { boundsOf } from '../lib/math';
+import { boundsOf, type Point } from '../lib/math';
 import { type Comparison, pointAt, scaleOf, stretches } from '../state/comparison';
 
 const PIECE_M = 12;
@@ -14,7 +14,7 @@ function colourOf(lost: number, most: number): string {
 export function LossMap({ comparison, at }: { comparison: Comparison; at?: number }) {
   const { a, corners, length } = comparison;
   const [xs, ys] = [a.channel('x_m'), a.channel('y_m')];
-  const pointOf = (place: number) => {
+  const pointOf = (place: number): Point => {
     const i = pointAt(comparison, place);
     return { x: xs?.[i] ?? NaN, y: -(ys?.[i] ?? NaN) };
   };
@@ -23,18 +23,15 @@ export function LossMap({ comparison, at }: { comparison: Comparison; at?: numbe
   if (!box) return null;
   const [width, height] = [box.maxX - box.minX, box.maxY - box.minY];
   const scale = SIZE / Math.max(width, height, 1);
-  const place = ({ x, y }: { x: number; y: number }): [number, number] => [
-    (x - box.minX) * scale,
-    (y - box.minY) * scale,
-  ];
+  const place = ({ x, y }: Point): [number, number] => [(x - box.minX) * scale, (y - box.minY) * scale];
   const pieces = stretches(comparison, PIECE_M);
   const most = scaleOf(pieces);
   const margin = 90;
   const labels = corners.flatMap(({ name, apex }) => {
     const [before, here, after] = [-0.01, 0, 0.01].map((step) => pointOf(apex + step * length)) as [
-      { x: number; y: number },
-      { x: number; y: number },
-      { x: number; y: number },
+      Point,
+      Point,
+      Point,
     ];
     // Outwards: away from the middle of the chord.
     const [dx, dy] = [here.x - (before.x + after.x) / 2, here.y - (before.y + after.y) / 2];
