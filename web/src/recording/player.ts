@@ -36,18 +36,7 @@ export const duration = computed(() => player.value?.log.duration ?? 0);
 
 /** Schema of the pace, the only setting of a recording. */
 const PACE = readSchema([
-  {
-    key: 'run.pace',
-    group: 'run',
-    kind: 'number',
-    unit: '',
-    minimum: 0.05,
-    maximum: 20,
-    choices: [],
-    default: 1,
-    meaning: 'How fast the recording plays.',
-    is_live: true,
-  },
+  { key: 'run.pace', kind: 'number', minimum: 0.05, maximum: 20, default: 1, meaning: 'How fast the recording plays.' },
 ]);
 
 async function framesOf(log: McapLog): Promise<{ time: number; frame: Frame }[]> {
