@@ -100,6 +100,7 @@ export function Scene3dView({ label }: { label: string }) {
       style={{
         touchAction: isFree ? 'none' : 'pan-y',
         cursor: 'grab',
+        outlineOffset: '-3px', // of the focus: inside the picture
         visibility: shows3d.value ? 'visible' : 'hidden',
       }}
       role={isFree ? 'application' : 'img'}
