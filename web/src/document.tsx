@@ -24,7 +24,7 @@ if (root && text) {
 
 // Paper is light, and nothing can be opened on it.
 const dress = (theme: 'light' | 'dark'): void => {
-  document.documentElement.dataset.theme = theme;
+  document.documentElement.style.colorScheme = theme;
 };
 const opened = new Set<HTMLDetailsElement>();
 addEventListener('beforeprint', () => {

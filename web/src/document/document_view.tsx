@@ -15,7 +15,7 @@ function PartView({ part, label }: { part: Part; label: string }) {
 
 function SectionView({ section, label }: { section: Section; label: string }) {
   return (
-    <section aria-label={label}>
+    <section class="columns" aria-label={label}>
       {section.title !== '' && <h2>{section.title}</h2>}
       {section.parts.map((part, i) => (
         <PartView key={i} part={part} label={label} />

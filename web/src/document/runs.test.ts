@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { headlineText } from '../state/comparison';
+import { headlineOf } from '../state/comparison';
 import { compareIn, coursesOf, firstPair, leadOf, type RunsDocument, readRuns, verdictOf } from './runs';
 
 const LENGTH = 400; // of the ring [m]
@@ -89,7 +89,7 @@ describe('the report of recordings', () => {
     const both = run && pair && compareIn(run, ...pair);
     if (!run || !both) throw new Error('nothing to compare');
     expect(verdictOf(run).behind).toBe('5.00 s');
-    expect(headlineText(both)).toMatch(/^Lap 2 lost 5\.00 s to the limit/);
+    expect([both.a.id, headlineOf(both).amount, both.b.id]).toEqual(['lap 2', '5.00 s', 'limit']);
   });
 
   it('compares the best laps of two recordings of one road', () => {
@@ -97,7 +97,7 @@ describe('the report of recordings', () => {
     const courses = coursesOf(runs);
     const pair = firstPair(runs, courses);
     const both = runs[0] && pair && compareIn(runs[0], ...pair);
-    expect(both && headlineText(both)).toMatch(/^Lap 2 lost 5\.00 s to lap 2 of b\.mcap/);
+    expect(both && [both.a.id, headlineOf(both).amount, both.b.id]).toEqual(['lap 2', '5.00 s', 'lap 2 of b.mcap']);
   });
 
   it('is one of runs that say nothing', () => {

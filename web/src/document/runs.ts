@@ -1,14 +1,15 @@
 import { begunBits } from '../lib/bits';
 import { fixed, lapTime, plural } from '../lib/format';
+import { capital } from '../lib/words';
 import { UNKNOWN_CHANGE, UNKNOWN_FRAME, UNKNOWN_LAP, UNKNOWN_LIMIT, UNKNOWN_RUN } from '../protocol/messages';
-import type { Change, Frame, Lap, Limit, Run } from '../protocol/topics';
+import type { Change, Frame, Lap } from '../protocol/topics';
 import { type Comparison, type Course, compare } from '../state/comparison';
-import { type Corner, cornersOf } from '../state/corners';
+import { cornersOf } from '../state/corners';
 import { lapCourse, limitCourse, recordedCourse } from '../state/courses';
 import { faultInWords } from '../state/event_log';
 import { LapSamples, momentOf } from '../state/lap_samples';
 import { shortly } from '../state/lap_setup';
-import { bestsOf } from '../state/lap_table';
+import { bestOf } from '../state/lap_table';
 import { isSameRoad } from '../state/other_laps';
 
 // What the program writes of recordings into a report: src/chicane/recording/html_report.cpp.
@@ -50,24 +51,7 @@ function messageOf<T extends object>(unknown: T, lists: Lists): T {
 }
 
 /** One run of a recording. */
-export interface ReportedRun {
-  readonly name: string; // of the recording, with a number where it holds several runs
-  readonly recording: string;
-  readonly run: Run;
-  readonly laps: readonly Lap[];
-  readonly limit: Limit | null;
-  readonly samples: LapSamples;
-  readonly corners: readonly Corner[];
-  readonly duration: number; // [s]
-  readonly offTrack: number; // times
-  readonly interventions: number; // times another than the controller drove
-  readonly gated: number; // times the gate changed a command
-  readonly leastEdge: number; // of all laps [m]
-  readonly faults: readonly string[]; // "blind at 12.5 s"
-  readonly changes: readonly string[]; // "latency_ms = 60 at 3.0 s"
-  readonly steps: ToldRun['steps'];
-  readonly settings: string;
-}
+export type ReportedRun = Readonly<ReturnType<typeof readRun>>;
 
 function framesOf(columns: Lists): Frame[] {
   const names = Object.keys(columns);
@@ -78,7 +62,8 @@ function framesOf(columns: Lists): Frame[] {
   });
 }
 
-function readRun(told: ToldRun, name: string, recording: string, settings: string): ReportedRun {
+/** `name`: of the recording, with a number where it holds several runs. */
+function readRun(told: ToldRun, name: string, recording: string, settings: string) {
   const run = messageOf(UNKNOWN_RUN, told.run ?? {});
   const laps = told.laps.map((each) => messageOf(UNKNOWN_LAP, each));
   const frames = framesOf(told.frames);
@@ -111,13 +96,13 @@ function readRun(told: ToldRun, name: string, recording: string, settings: strin
     limit: told.limit && messageOf(UNKNOWN_LIMIT, told.limit),
     samples,
     corners: cornersOf(xs.map((x, i) => ({ x: Number(x), y: Number(ys[i]) }))),
-    duration: before?.time_s ?? 0,
-    offTrack,
-    interventions,
-    gated,
-    leastEdge: Math.min(...laps.map(({ min_edge_distance_m: edge }) => edge)),
-    faults,
-    changes,
+    duration: before?.time_s ?? 0, // [s]
+    offTrack, // times
+    interventions, // times another than the controller drove
+    gated, // times the gate changed a command
+    leastEdge: Math.min(...laps.map(({ min_edge_distance_m: edge }) => edge)), // of all laps [m]
+    faults, // "blind at 12.5 s"
+    changes, // "latency_ms = 60 at 3.0 s"
     steps: told.steps,
     settings,
   };
@@ -150,7 +135,7 @@ export function coursesOf([first, ...others]: readonly ReportedRun[]): Course[] 
 
 /** A and B at first: the best lap against the best of another run, the limit, or the next best lap. */
 export function firstPair(runs: readonly ReportedRun[], courses: readonly Course[]): [Course, Course] | null {
-  const idOfBest = (laps: readonly Lap[]): string => `lap ${bestsOf(laps).lap}`;
+  const idOfBest = (laps: readonly Lap[]): string => `lap ${bestOf(laps)?.lap}`;
   const own = runs[0]?.laps ?? [];
   const find = (id: string): Course | undefined => courses.find((each) => each.id === id);
   const a = find(idOfBest(own));
@@ -170,33 +155,18 @@ export function compareIn({ samples, corners }: ReportedRun, a: Course, b: Cours
   return compare(a, b, { samples, corners, line: Number.isFinite(line) ? line : 0 });
 }
 
-const COUNTS = [
-  'no',
-  'one',
-  'two',
-  'three',
-  'four',
-  'five',
-  'six',
-  'seven',
-  'eight',
-  'nine',
-  'ten',
-  'eleven',
-  'twelve',
-];
+const COUNTS = 'no one two three four five six seven eight nine ten eleven twelve'.split(' ');
 const counted = (count: number, noun: string): string =>
   `${COUNTS[count] ?? count} ${plural(count, noun).replace(/^\d+ /, '')}`;
-const capital = (text: string): string => `${text[0]?.toUpperCase() ?? ''}${text.slice(1)}`;
 
 /** "Four clean laps of lakeside. The best took 0:26.279, 3.45 s more than the limit.", in parts. */
 export function verdictOf({ laps, run, limit }: ReportedRun): { text: string; time: string; behind: string } {
-  const bests = bestsOf(laps);
-  if (laps.length === 0) return { text: `No lap of ${run.track} was completed.`, time: '', behind: '' };
+  const best = bestOf(laps);
+  if (!best) return { text: `No lap of ${run.track} was completed.`, time: '', behind: '' };
   const isClean = laps.every(({ is_clean }) => is_clean);
   const text = `${capital(counted(laps.length, isClean ? 'clean lap' : 'lap'))} of ${run.track}. The best took `;
-  const behind = limit && bests.lap >= limit.first_lap ? bests.time - limit.lap_time_s : NaN;
-  return { text, time: lapTime(bests.time, 3), behind: Number.isFinite(behind) ? `${fixed(behind, 2)} s` : '' };
+  const behind = limit && best.lap >= limit.first_lap ? best.lap_time_s - limit.lap_time_s : NaN;
+  return { text, time: lapTime(best.lap_time_s, 3), behind: Number.isFinite(behind) ? `${fixed(behind, 2)} s` : '' };
 }
 
 /** Who drove what, how near the edge came, and what was unusual. */

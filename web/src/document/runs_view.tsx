@@ -1,12 +1,13 @@
 import { useState } from 'preact/hooks';
 import { fixed } from '../lib/format';
+import { capital } from '../lib/words';
 import { CornerTable } from '../parts/corner_table';
 import { Headline } from '../parts/headline';
 import { LapPlots } from '../parts/lap_plots';
 import { LapTable } from '../parts/lap_table';
 import { LossMap } from '../parts/loss_map';
 import { byCost, causesOf } from '../state/comparison';
-import { bestsOf } from '../state/lap_table';
+import { bestOf } from '../state/lap_table';
 import { compareIn, coursesOf, firstPair, leadOf, type ReportedRun, verdictOf } from './runs';
 
 function Verdict({ of, level }: { of: ReportedRun; level: 1 | 2 }) {
@@ -16,10 +17,10 @@ function Verdict({ of, level }: { of: ReportedRun; level: 1 | 2 }) {
     <header>
       <Heading class="verdict" data-testid="verdict">
         {text}
-        {time !== '' && <b>{time}</b>}
+        {time !== '' && <b class="keep">{time}</b>}
         {behind !== '' && (
           <>
-            , <b class="lost">{behind}</b> more than <span class="other">the limit</span>
+            , <b class="lost keep">{behind}</b> more than <span class="other">the limit</span>
           </>
         )}
         {time !== '' && '.'}
@@ -31,7 +32,7 @@ function Verdict({ of, level }: { of: ReportedRun; level: 1 | 2 }) {
 
 /** What the gap to the limit was spent on, where the run was driven again without each. */
 function Spent({ of: { limit, laps } }: { of: ReportedRun }) {
-  const causes = limit ? causesOf(limit, bestsOf(laps).time) : [];
+  const causes = limit ? causesOf(limit, bestOf(laps)?.lap_time_s ?? NaN) : [];
   if (causes.length === 0) return null;
   return (
     <>
@@ -42,8 +43,8 @@ function Spent({ of: { limit, laps } }: { of: ReportedRun }) {
         <tbody>
           {causes.map(({ name, faster }) => (
             <tr key={name}>
-              <th scope="row">{name}</th>
-              <td>{faster < 0.005 ? 'nothing' : `${fixed(faster, 2)} s`}</td>
+              <th scope="row">{capital(name)}</th>
+              <td class="number">{faster < 0.005 ? 'nothing' : `${fixed(faster, 2)} s`}</td>
             </tr>
           ))}
         </tbody>
@@ -62,7 +63,7 @@ function Where({ runs }: { runs: readonly ReportedRun[] }) {
   if (!both) return null;
   const here = at ?? byCost(both)[0]?.apex ?? 0;
   return (
-    <section aria-label="Where the time is lost">
+    <section class="columns" aria-label="Where the time is lost">
       <Headline
         level={2}
         comparison={both}
@@ -72,7 +73,7 @@ function Where({ runs }: { runs: readonly ReportedRun[] }) {
           if (chosen) choose(which === 0 ? [chosen, both.b] : [both.a, chosen]);
         }}
       />
-      <div class="two">
+      <div class="two columns">
         <LossMap comparison={both} at={here} />
         <div>
           <CornerTable comparison={both} at={here} pick={move} />
@@ -98,11 +99,13 @@ function Engineer({ of: { steps, interventions, gated, duration, settings } }: {
   return (
     <details>
       <summary>Engineer</summary>
-      <dl class="facts-of-run">
+      <dl class="columns" style={{ '--least': '160px' }}>
         {facts.map(([name, value]) => (
           <div key={name}>
-            <dt>{name}</dt>
-            <dd>{value}</dd>
+            <dt class="label">{name}</dt>
+            <dd class="value">
+              <b>{value}</b>
+            </dd>
           </div>
         ))}
       </dl>
@@ -118,7 +121,7 @@ function Engineer({ of: { steps, interventions, gated, duration, settings } }: {
 
 function Run({ of }: { of: ReportedRun }) {
   return (
-    <section aria-label={of.name}>
+    <section class="columns" aria-label={of.name}>
       <h2>All laps</h2>
       {of.laps.length > 0 ? <LapTable of={of.name} laps={of.laps} limit={of.limit} /> : <p>No lap was completed.</p>}
       <Engineer of={of} />

@@ -1,12 +1,12 @@
 import { describe, expect, it } from 'vitest';
 import { firstSince } from '../lib/math';
-import { rangeAboutZero, rangeFromZero, rangeInSteps, ticksOf } from './axis';
+import { aboutZero, fromZero, rangeInSteps, ticksOf } from './axis';
 
 describe('axes', () => {
   it('start at zero and end at a round number', () => {
-    expect(rangeFromZero([[3, 73], [12]], 20)).toEqual([0, 80]);
-    expect(rangeFromZero([[]], 20)).toEqual([0, 20]);
-    expect(rangeFromZero([[NaN, 4]], 1)).toEqual([0, 5]);
+    expect(fromZero(20)([[3, 73], [12]])).toEqual([0, 80]);
+    expect(fromZero(20)([[]])).toEqual([0, 20]);
+    expect(fromZero(1)([[NaN, 4]])).toEqual([0, 5]);
   });
 
   it('look closer where all values are far from zero', () => {
@@ -17,9 +17,9 @@ describe('axes', () => {
   });
 
   it('are symmetric for signed values', () => {
-    expect(rangeAboutZero([[-0.7, 0.1]], 0.5)).toEqual([-0.8, 0.8]);
-    expect(rangeAboutZero([[0.1]], 0.5)).toEqual([-0.5, 0.5]);
-    expect(rangeAboutZero([[], [NaN]], 2)).toEqual([-2, 2]);
+    expect(aboutZero(0.5)([[-0.7, 0.1]])).toEqual([-0.8, 0.8]);
+    expect(aboutZero(0.5)([[0.1]])).toEqual([-0.5, 0.5]);
+    expect(aboutZero(2)([[], [NaN]])).toEqual([-2, 2]);
   });
 
   it('begin with the first visible row', () => {

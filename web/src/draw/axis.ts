@@ -1,30 +1,34 @@
 import { extent, niceCeil } from '../lib/math';
 
+type Columns = readonly ArrayLike<number>[];
+type AxisRange = (columns: Columns) => [number, number];
+
 const HEADROOM = 1.06; // lines do not touch the frame
 
+/** The greatest distance of a value from 0. */
+const reachOf = (columns: Columns): number =>
+  Math.max(0, ...columns.flatMap((column) => extent(column) ?? []).map(Math.abs));
+
 /** From 0 to a round number above all values, at least `least`: the axis seldom changes. */
-export function rangeFromZero(values: readonly ArrayLike<number>[], least: number): [number, number] {
-  const high = Math.max(0, ...values.map((column) => extent(column)?.[1] ?? 0));
-  return [0, niceCeil(Math.max(least, HEADROOM * high))];
-}
+export const fromZero =
+  (least: number, headroom = HEADROOM): AxisRange =>
+  (columns) => [0, niceCeil(Math.max(least, headroom * reachOf(columns)))];
+
+/** Symmetric about 0, to a round number beyond all values, at least `least`. */
+export const aboutZero =
+  (least: number, headroom = HEADROOM): AxisRange =>
+  (columns) => {
+    const [, end] = fromZero(least, headroom)(columns);
+    return [-end, end];
+  };
 
 /** Around all values in whole steps, at least `least` high: for values far from 0. */
-export function rangeInSteps(values: readonly ArrayLike<number>[], step: number, least: number): [number, number] {
+export function rangeInSteps(values: Columns, step: number, least: number): [number, number] {
   const extents = values.flatMap((column) => extent(column) ?? []);
   if (extents.length === 0) return [0, least];
   const low = Math.floor(Math.min(...extents) / step) * step;
   const high = Math.ceil(Math.max(...extents) / step) * step;
   return high - low >= least ? [low, high] : [Math.max(0, high - least), Math.max(high, least)];
-}
-
-/** Symmetric about 0, to a round number beyond all values, at least `least`. */
-export function rangeAboutZero(values: readonly ArrayLike<number>[], least: number): [number, number] {
-  const reach = values.map((column) => {
-    const [low, high] = extent(column) ?? [0, 0];
-    return Math.max(-low, high);
-  });
-  const end = niceCeil(Math.max(least, HEADROOM * Math.max(0, ...reach)));
-  return [-end, end];
 }
 
 /** Round numbers from `low` to `high`, at most `most` of them: 1, 2 or 5 times a power of ten apart. */

@@ -1,4 +1,5 @@
 import type { Box, Point } from '../lib/math';
+import { knownStretches } from './curve';
 
 /** A line as columns, in W [m]. */
 export interface Line {
@@ -11,22 +12,21 @@ export const lineOf = (points: readonly Point[]): Line => ({
   y: Float64Array.from(points, ({ y }) => y),
 });
 
+/** Length of the step that ends at a point of a line [m]. */
+const stepTo = ({ x, y }: Line, i: number): number =>
+  Math.hypot((x[i] ?? NaN) - (x[i - 1] ?? NaN), (y[i] ?? NaN) - (y[i - 1] ?? NaN));
+
 /** Length of a line from its start to each of its points [m]. */
-export function lengthsOf({ x, y }: Line): Float64Array {
-  const lengths = new Float64Array(x.length);
-  for (let i = 1; i < x.length; ++i)
-    lengths[i] =
-      (lengths[i - 1] ?? 0) + Math.hypot((x[i] ?? NaN) - (x[i - 1] ?? NaN), (y[i] ?? NaN) - (y[i - 1] ?? NaN));
+export function lengthsOf(line: Line): Float64Array {
+  const lengths = new Float64Array(line.x.length);
+  for (let i = 1; i < lengths.length; ++i) lengths[i] = (lengths[i - 1] ?? 0) + stepTo(line, i);
   return lengths;
 }
 
-/** The longest step between neighbouring points of a line; steps of more than `most` are jumps and do not count [m]. */
-export function longestStep({ x, y }: Line, most = Infinity): number {
+/** The longest step between neighbouring points of a line [m]. */
+export function longestStep(line: Line): number {
   let longest = 0;
-  for (let i = 1; i < x.length; ++i) {
-    const step = Math.hypot((x[i] ?? NaN) - (x[i - 1] ?? NaN), (y[i] ?? NaN) - (y[i - 1] ?? NaN));
-    if (step > longest && step <= most) longest = step;
-  }
+  for (let i = 1; i < line.x.length; ++i) longest = Math.max(longest, stepTo(line, i) || 0);
   return longest;
 }
 
@@ -36,18 +36,10 @@ export function longestStep({ x, y }: Line, most = Infinity): number {
  */
 export function stretchesInside({ x, y }: Line, box: Box, margin: number): [number, number][] {
   const [left, right, low, high] = [box.minX - margin, box.maxX + margin, box.minY - margin, box.maxY + margin];
-  const stretches: [number, number][] = [];
-  let first = -1;
-  for (let i = 0; i < x.length; ++i) {
+  return knownStretches(x.length, (i) => {
     const [px, py] = [x[i] ?? NaN, y[i] ?? NaN];
-    const isInside = px >= left && px <= right && py >= low && py <= high;
-    if (isInside && first < 0) first = i;
-    if (isInside || first < 0) continue;
-    stretches.push([first, i]);
-    first = -1;
-  }
-  if (first >= 0) stretches.push([first, x.length]);
-  return stretches;
+    return px >= left && px <= right && py >= low && py <= high;
+  });
 }
 
 /** Adds the points [first, end) of a line to a path; a step longer than `most` is a jump and leaves a gap. */

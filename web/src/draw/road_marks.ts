@@ -103,7 +103,7 @@ export function drawCornerNumbers(
     if (!(x > 0 && y > 0 && x < ctx.canvas.width / ratio && y < ctx.canvas.height / ratio)) continue;
     const text = `T${number}`;
     const half = ctx.measureText(text).width / 2 + 5;
-    ctx.fillStyle = colours.sheet;
+    ctx.fillStyle = colours.land;
     ctx.globalAlpha = 0.85;
     ctx.fillRect(x - half, y - 9, 2 * half, 18);
     ctx.globalAlpha = 1;

@@ -17,6 +17,7 @@ export interface Scene {
   readonly racingLine: Limit | null; // of the fastest lap possible
   readonly corners: readonly MarkedCorner[];
   readonly kerb: number; // width [m]
+  readonly isWhole: boolean; // the whole track: without what shows speed, the grid and the kerbs
   readonly start: number; // of laps, along the centre line [m]
   readonly losses: Losses | null; // the line of a lap, coloured by the time lost on it
   readonly reference: readonly Point[];
@@ -252,7 +253,7 @@ function drawGhost(brush: Brush, ghost: Pose, car: Car): void {
 /** The static part of the scene: ground, road, racing line. Covers the whole canvas. */
 export function drawWorld(
   ctx: CanvasRenderingContext2D,
-  scene: Pick<Scene, 'road' | 'racingLine' | 'corners' | 'kerb' | 'start' | 'losses' | 'size'>,
+  scene: Pick<Scene, 'road' | 'racingLine' | 'corners' | 'kerb' | 'isWhole' | 'start' | 'losses' | 'size'>,
   camera: Camera,
   ratio: number,
 ): void {
@@ -260,10 +261,10 @@ export function drawWorld(
   ctx.fillStyle = theme().land;
   ctx.fillRect(0, 0, ctx.canvas.width, ctx.canvas.height);
   const brush = brushOn(ctx, camera, ratio, scene.size);
-  drawGround(brush);
+  if (!scene.isWhole) drawGround(brush);
   if (scene.road) {
     drawRoad(brush, scene.road);
-    drawKerbs(brush, scene.road, scene.corners, scene.kerb);
+    if (!scene.isWhole) drawKerbs(brush, scene.road, scene.corners, scene.kerb);
     drawStartLine(brush, scene.road, scene.start);
   }
   if (scene.losses) drawLosses(brush, scene.losses, Math.max(1 * brush.size, 6 * brush.px));

@@ -2,30 +2,33 @@ import { effect, untracked } from '@preact/signals';
 import { scheme } from '../lib/appearance';
 import { store } from '../lib/store';
 
-/** The colours of tokens.css that canvases need. */
-export interface Theme {
-  readonly land: string;
-  readonly landLine: string;
-  readonly road: string;
-  readonly mark: string; // edges and dashes of the road
-  readonly kerb: string;
-  readonly a: string; // the way driven
-  readonly b: string; // what it is compared with: the limit's line, the ghost
-  readonly plan: string;
-  readonly pastPlan: string;
-  readonly lost: string;
-  readonly won: string;
-  readonly car: string;
-  readonly glass: string;
-  readonly wheel: string;
-  readonly ink: string;
-  readonly quiet: string;
-  readonly rule: string;
-  readonly sheet: string;
-  readonly act: string;
-  readonly planInText: string;
-  readonly lostInText: string;
-  readonly wonInText: string;
+/** The colours of tokens.css that canvases need, with their tokens. */
+const COLOURS = {
+  land: 'land',
+  landLine: 'land-line',
+  road: 'road',
+  mark: 'mark', // edges and dashes of the road
+  kerb: 'kerb',
+  a: 'road-a', // the way driven
+  b: 'road-b', // what it is compared with: the limit's line, the ghost
+  plan: 'road-plan',
+  pastPlan: 'road-past',
+  lost: 'road-lost',
+  won: 'road-won',
+  car: 'car',
+  glass: 'glass',
+  wheel: 'wheel',
+  ink: 'ink',
+  quiet: 'quiet',
+  rule: 'rule',
+  sheet: 'sheet',
+  act: 'act',
+  planInText: 'plan',
+  lostInText: 'lost',
+  wonInText: 'won',
+} as const;
+
+export interface Theme extends Readonly<Record<keyof typeof COLOURS, string>> {
   readonly series: readonly string[]; // of curves
   readonly font: string;
 }
@@ -47,28 +50,10 @@ function tokenColour(name: string): string {
 }
 
 const read = (): Theme => ({
-  land: tokenColour('land'),
-  landLine: tokenColour('land-line'),
-  road: tokenColour('road'),
-  mark: tokenColour('mark'),
-  kerb: tokenColour('kerb'),
-  a: tokenColour('road-a'),
-  b: tokenColour('road-b'),
-  plan: tokenColour('road-plan'),
-  pastPlan: tokenColour('road-past'),
-  lost: tokenColour('road-lost'),
-  won: tokenColour('road-won'),
-  car: tokenColour('car'),
-  glass: tokenColour('glass'),
-  wheel: tokenColour('wheel'),
-  ink: tokenColour('ink'),
-  quiet: tokenColour('quiet'),
-  rule: tokenColour('rule'),
-  sheet: tokenColour('sheet'),
-  act: tokenColour('act'),
-  planInText: tokenColour('plan'),
-  lostInText: tokenColour('lost'),
-  wonInText: tokenColour('won'),
+  ...(Object.fromEntries(Object.entries(COLOURS).map(([name, token]) => [name, tokenColour(token)])) as Record<
+    keyof typeof COLOURS,
+    string
+  >),
   series: SERIES.map(tokenColour),
   font: getComputedStyle(document.body).fontFamily,
 });

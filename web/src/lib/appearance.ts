@@ -28,6 +28,6 @@ export function toggleScheme(): void {
 
 if (typeof document !== 'undefined') {
   effect(() => {
-    document.documentElement.dataset.theme = scheme.value;
+    document.documentElement.style.colorScheme = scheme.value;
   });
 }

@@ -1,4 +1,4 @@
-import { nameInWords } from './words';
+import { capital, lastPart, nameInWords } from './words';
 
 // What the program refuses, as a sentence. It says `key: got X, expected Y`, for files and terminals.
 
@@ -8,10 +8,8 @@ const NUMBER = /^a(?:n integer| number) in \[([^,\]]+), ([^\]]+)\](?: (.+))?$/;
 const unquoted = (text: string): string => text.replace(/^"(.*)"$/s, '$1');
 
 /** The last part of a key, without its unit: "speed limit" of `tracking_mpc.speed_limit_mps`. */
-function settingInWords(key: string): string {
-  const words = nameInWords((key.split('.').at(-1) ?? key).replace(/_(mps2?|radps|rad|deg|ms|s|m|kg|n|hz)$/, ''));
-  return words.charAt(0).toUpperCase() + words.slice(1);
-}
+const settingInWords = (key: string): string =>
+  capital(nameInWords(lastPart(key).replace(/_(mps2?|radps|rad|deg|ms|s|m|kg|n|hz)$/, '')));
 
 /** "Speed limit cannot be 9999: choose 0.1 to 110 m/s." All other sentences stay as they are. */
 export function refusalInWords(sentence: string): string {

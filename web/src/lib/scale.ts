@@ -55,3 +55,7 @@ export function tidy(value: number): string {
   if (!Number.isFinite(value)) return '–';
   return String(Number(value.toPrecision(6))).replace('-', '−');
 }
+
+/** A value of a setting for display. */
+export const valueInWords = (value: number | boolean | string): string =>
+  typeof value === 'number' ? tidy(value) : String(value);

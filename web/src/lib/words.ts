@@ -8,7 +8,14 @@ export interface Sentence {
   readonly text: string;
 }
 
-const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
+export const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
+
+/** With a capital and a full stop; nothing stays nothing. */
+export const sentenceOf = (text: string): string =>
+  text === '' ? '' : `${capital(text)}${text.endsWith('.') ? '' : '.'}`;
+
+/** The sentence of what was thrown. */
+export const reasonOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
 /** What the guard found, by Frame.guard_reason. */
 export const reasonInWords = (reason: number): string => REASON_WORDS[reason]?.text ?? `unknown reason ${reason}`;
@@ -77,6 +84,9 @@ const LIMITER_NAMES: Readonly<Record<keyof typeof SPEED_LIMITER, string>> = {
 
 /** By Frame.speed_limiter. */
 export const LIMITERS: readonly string[] = Object.values(LIMITER_NAMES);
+
+/** The last part of a key: "latency" of `a.b.latency`. */
+export const lastPart = (key: string): string => key.split('.').at(-1) ?? key;
 
 /** snake_case to words, with abbreviations in capitals. */
 export const nameInWords = (name: string): string =>

@@ -1,4 +1,5 @@
 import { byCost, type Comparison, signed, toneOf, whyOf } from '../state/comparison';
+import { Heads } from './controls';
 
 interface Options {
   readonly comparison: Comparison;
@@ -15,14 +16,7 @@ export function CornerTable({ comparison, at, pick }: Options) {
   return (
     <table class="corner-costs" data-testid="corner-costs">
       <caption class="sr-only">Corners by cost</caption>
-      <thead class="sr-only">
-        <tr>
-          <th scope="col">Corner</th>
-          <th scope="col">Share</th>
-          <th scope="col">Lost, s</th>
-          <th scope="col">Because</th>
-        </tr>
-      </thead>
+      <Heads quiet of={['Corner', 'Share', 'Lost, s', 'Because']} />
       <tbody>
         {corners.map((corner) => {
           const { name, lost, from, to, apex } = corner;

@@ -1,5 +1,7 @@
 import { lapTime } from '../lib/format';
-import { atStart, type Comparison, type Course, headlineOf } from '../state/comparison';
+import { capital } from '../lib/words';
+import { type Comparison, type Course, headlineOf } from '../state/comparison';
+import { Select } from './controls';
 
 interface WordOptions {
   readonly label: string;
@@ -14,13 +16,16 @@ function Word({ label, name, course, courses, choose }: WordOptions) {
   return (
     <span class={label === 'B' ? 'chosen other' : 'chosen'}>
       <span aria-hidden="true">{name}</span>
-      <select aria-label={label} value={course.id} onChange={({ currentTarget }) => choose(currentTarget.value)}>
-        {courses.map(({ id, name: each, total }) => (
-          <option key={id} value={id}>
-            {Number.isFinite(total) ? `${atStart(each)}, ${lapTime(total, 3)}` : atStart(each)}
-          </option>
-        ))}
-      </select>
+      <Select
+        class="cover"
+        label={label}
+        value={course.id}
+        choose={choose}
+        choices={courses.map(({ id, name: each, total }) => ({
+          value: id,
+          label: Number.isFinite(total) ? `${capital(each)}, ${lapTime(total, 3)}` : capital(each),
+        }))}
+      />
     </span>
   );
 }
@@ -38,19 +43,17 @@ export function Headline({ comparison, courses, choose, level = 1 }: Options) {
   const Heading = `h${level}` as const;
   const { a, b } = comparison;
   const { verb, amount, tone, to, rest } = headlineOf(comparison);
-  const isFromStandstill = a.isStanding && !b.isStanding;
   return (
     <Heading class="verdict" data-testid="headline">
       <Word
         label="A"
-        name={atStart(a.name)}
+        name={capital(a.name)}
         course={a}
         courses={courses.filter(({ id }) => id !== b.id && id !== 'limit')}
         choose={(id) => choose(0, id)}
       />
-      {isFromStandstill && ', from standstill,'}
       {verb}
-      {amount !== '' && <b class={tone}>{amount}</b>}
+      {amount !== '' && <b class={`keep ${tone}`}>{amount}</b>}
       {to}
       <Word
         label="B"

@@ -1,8 +1,8 @@
 import { useLayoutEffect, useMemo, useRef, useState } from 'preact/hooks';
-import { rangeInSteps, ticksOf } from '../draw/axis';
+import { aboutZero, fromZero, rangeInSteps, ticksOf } from '../draw/axis';
 import { curvePath } from '../draw/curve';
 import { duration, fixed } from '../lib/format';
-import { degrees, extent, niceCeil } from '../lib/math';
+import { degrees, extent } from '../lib/math';
 import { onScreen } from '../lib/on_screen';
 import { tidy } from '../lib/scale';
 import { type SpeedUnit, speedUnit } from '../lib/units';
@@ -27,19 +27,6 @@ interface ChannelRow extends Pick<Row, 'title' | 'unit' | 'write'> {
   readonly range: (columns: readonly Float64Array[]) => readonly [number, number];
 }
 
-const STEERS = [5, 10, 15, 20, 30, 45, 60, 90];
-const reachOf = (columns: readonly Float64Array[]): number =>
-  Math.max(0, ...columns.flatMap((column) => extent(column) ?? []).map(Math.abs));
-
-function aboutZero(columns: readonly Float64Array[]): readonly [number, number] {
-  const reach = reachOf(columns);
-  const end = STEERS.find((each) => each >= reach) ?? 180;
-  return [-end, end];
-}
-const upTo =
-  (least: number) =>
-  (columns: readonly Float64Array[]): readonly [number, number] => [0, niceCeil(Math.max(least, reachOf(columns)))];
-
 const inUnit =
   (unit: string, decimals = 0) =>
   (value: number): string =>
@@ -61,18 +48,25 @@ const offset = { unit: 'm from the centre, + left', write: inUnit(' m', 2) };
 const errorAhead = { unit: 'cm, a delay and a step ahead', write: inUnit(' cm', 1) };
 const DRIVER_ROWS: readonly ChannelRow[] = [
   { title: 'Pedal', unit: '%, − brakes', channel: 'throttle', factor: 100, range: fullPedal, write: percent },
-  { title: 'Steer', channel: 'steer_rad', factor: degrees(1), range: aboutZero, ...angle },
+  { title: 'Steer', channel: 'steer_rad', factor: degrees(1), range: aboutZero(5, 1), ...angle },
 ];
 
 /** What solver and controller did: behind the switch Engineer. */
 const ENGINEER_ROWS: readonly ChannelRow[] = [
-  { title: 'Line', channel: 'lateral_error_m', factor: 1, range: aboutZero, ...offset },
-  { title: 'Grip used', unit: '%', channel: 'grip', factor: 100, range: upTo(100), write: percent },
-  { title: 'Control step', unit: 'µs', channel: 'step_time_us', factor: 1, range: upTo(1000), write: micros },
-  { title: 'Solver', unit: 'iterations', channel: 'iterations', factor: 1, range: upTo(8), write: inUnit('') },
-  { title: 'Cost', unit: 'of the plan', channel: 'cost', factor: 1, range: upTo(1), write: tidy },
-  { title: 'Model error', channel: 'prediction_error_m', factor: 100, range: upTo(10), ...errorAhead },
-  { title: 'Delay', unit: 'ms, compensated', channel: 'delay_s', factor: 1000, range: upTo(100), write: inUnit(' ms') },
+  { title: 'Line', channel: 'lateral_error_m', factor: 1, range: aboutZero(5, 1), ...offset },
+  { title: 'Grip used', unit: '%', channel: 'grip', factor: 100, range: fromZero(100, 1), write: percent },
+  { title: 'Control step', unit: 'µs', channel: 'step_time_us', factor: 1, range: fromZero(1000, 1), write: micros },
+  { title: 'Solver', unit: 'iterations', channel: 'iterations', factor: 1, range: fromZero(8, 1), write: inUnit('') },
+  { title: 'Cost', unit: 'of the plan', channel: 'cost', factor: 1, range: fromZero(1, 1), write: tidy },
+  { title: 'Model error', channel: 'prediction_error_m', factor: 100, range: fromZero(10, 1), ...errorAhead },
+  {
+    title: 'Delay',
+    unit: 'ms, compensated',
+    channel: 'delay_s',
+    factor: 1000,
+    range: fromZero(100, 1),
+    write: inUnit(' ms'),
+  },
 ];
 
 /** Shares of the height. */
@@ -123,7 +117,6 @@ const [TOP, BOTTOM, HEAD, BETWEEN] = [24, 24, 22, 10]; // [px]
 const NARROW_PX = 520;
 
 interface Frame {
-  readonly width: number;
   readonly height: number;
   readonly left: number;
   readonly right: number; // of the plotted area
@@ -141,7 +134,7 @@ function frameOf(rows: readonly Row[], width: number, height: number, hasCursor:
     from += size;
     return place;
   });
-  return { width, height, left: isNarrow ? 36 : 44, right: width - margin, perRow };
+  return { height, left: isNarrow ? 36 : 44, right: width - margin, perRow };
 }
 
 const px = (value: number): string => value.toFixed(1);
@@ -169,7 +162,7 @@ function GapCurve({ row, x, y }: { row: Row; x: (i: number) => number; y: (value
               class="fill"
               d={`${pathOf(known, x, y)}L${px(x(part.length - 1))} ${px(y(0))}L${px(x(0))} ${px(y(0))}z`}
             />
-            <path class="line" d={pathOf(line, x, y)} />
+            <path d={pathOf(line, x, y)} />
           </g>
         );
       })}
@@ -188,7 +181,7 @@ function Curves({ comparison, rows, frame }: { comparison: Comparison; rows: rea
     <g>
       {corners.map(({ name, entry, exit }) => (
         <g key={name}>
-          <rect class="band" x={along(entry)} y={TOP} width={along(exit) - along(entry)} height={base - TOP} />
+          <rect x={along(entry)} y={TOP} width={along(exit) - along(entry)} height={base - TOP} />
           <text class="turn" x={(along(entry) + along(exit)) / 2} y="12" text-anchor="middle">
             {name}
           </text>
@@ -321,6 +314,7 @@ export function LapPlots({ comparison, isEngineer = false, at, move }: Options) 
   return (
     <div class={isEngineer ? 'lap-plots engineer' : 'lap-plots'} ref={host} {...(slider || {})}>
       <svg
+        class="chart"
         viewBox={`0 0 ${size.width} ${size.height}`}
         role="img"
         aria-label={`${rows.map(({ title }) => title).join(', ')} along the lap`}

@@ -4,7 +4,8 @@ import type { Setting } from '../protocol/source';
 import type { Lap, Limit } from '../protocol/topics';
 import { signed, toneOf } from '../state/comparison';
 import { setupInWords } from '../state/lap_setup';
-import { bestsOf } from '../state/lap_table';
+import { bestOf } from '../state/lap_table';
+import { Button, Heads } from './controls';
 
 interface Options {
   /** Name of the run, where a page has several. */
@@ -22,7 +23,7 @@ const SECTORS = [0, 1, 2] as const;
 
 /** All laps, below the limit: times, what each is behind it, sectors, top speed, distance to the edge. */
 export function LapTable({ of = '', laps, limit, start = NO_START, pick }: Options) {
-  const bests = bestsOf(laps);
+  const best = bestOf(laps)?.lap;
   const setups = laps.map((lap) => setupInWords(lap, start).join(', '));
   const hasSetups = setups.some((words) => words !== '');
   const heads = [
@@ -38,15 +39,7 @@ export function LapTable({ of = '', laps, limit, start = NO_START, pick }: Optio
   return (
     <div class="table-scroll" role="region" aria-label={of === '' ? 'All laps' : `All laps of ${of}`} tabIndex={0}>
       <table class="lap-rows" data-testid="lap-rows">
-        <thead>
-          <tr>
-            {[...heads, ...(hasSetups ? ['Driven with'] : [])].map((head) => (
-              <th key={head} scope="col">
-                {head}
-              </th>
-            ))}
-          </tr>
-        </thead>
+        <Heads of={hasSetups ? [...heads, 'Driven with'] : heads} />
         <tbody>
           {limit && (
             <tr class="limit other" data-testid="limit">
@@ -63,14 +56,14 @@ export function LapTable({ of = '', laps, limit, start = NO_START, pick }: Optio
           )}
           {laps.map((lap, i) => {
             const behind = limit && lap.lap >= limit.first_lap ? lap.lap_time_s - limit.lap_time_s : NaN;
-            const remarks = [lap.lap === bests.lap ? 'best' : '', lap.is_clean ? '' : 'off the road'].filter(Boolean);
+            const remarks = [lap.lap === best ? 'best' : '', lap.is_clean ? '' : 'off the road'].filter(Boolean);
             return (
-              <tr key={lap.lap} class={lap.lap === bests.lap ? 'best' : ''}>
+              <tr key={lap.lap} class={lap.lap === best ? 'best' : ''}>
                 <th scope="row">
                   {pick ? (
-                    <button type="button" onClick={() => pick(lap.lap)} title={`Compare lap ${lap.lap}`}>
+                    <Button act={() => pick(lap.lap)} title={`Compare lap ${lap.lap}`}>
                       {lap.lap}
-                    </button>
+                    </Button>
                   ) : (
                     lap.lap
                   )}

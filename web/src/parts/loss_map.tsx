@@ -1,4 +1,4 @@
-import { boundsOf } from '../lib/math';
+import { boundsOf, type Point } from '../lib/math';
 import { type Comparison, pointAt, scaleOf, stretches } from '../state/comparison';
 
 const PIECE_M = 12;
@@ -14,7 +14,7 @@ function colourOf(lost: number, most: number): string {
 export function LossMap({ comparison, at }: { comparison: Comparison; at?: number }) {
   const { a, corners, length } = comparison;
   const [xs, ys] = [a.channel('x_m'), a.channel('y_m')];
-  const pointOf = (place: number) => {
+  const pointOf = (place: number): Point => {
     const i = pointAt(comparison, place);
     return { x: xs?.[i] ?? NaN, y: -(ys?.[i] ?? NaN) };
   };
@@ -23,30 +23,27 @@ export function LossMap({ comparison, at }: { comparison: Comparison; at?: numbe
   if (!box) return null;
   const [width, height] = [box.maxX - box.minX, box.maxY - box.minY];
   const scale = SIZE / Math.max(width, height, 1);
-  const place = ({ x, y }: { x: number; y: number }): [number, number] => [
-    (x - box.minX) * scale,
-    (y - box.minY) * scale,
-  ];
+  const place = ({ x, y }: Point): [number, number] => [(x - box.minX) * scale, (y - box.minY) * scale];
   const pieces = stretches(comparison, PIECE_M);
   const most = scaleOf(pieces);
   const margin = 90;
   const labels = corners.flatMap(({ name, apex }) => {
     const [before, here, after] = [-0.01, 0, 0.01].map((step) => pointOf(apex + step * length)) as [
-      { x: number; y: number },
-      { x: number; y: number },
-      { x: number; y: number },
+      Point,
+      Point,
+      Point,
     ];
     // Outwards: away from the middle of the chord.
     const [dx, dy] = [here.x - (before.x + after.x) / 2, here.y - (before.y + after.y) / 2];
     const far = Math.hypot(dx, dy) || 1;
     const [x, y] = place(here);
     // A lap that was seen in part has no place for some corners.
-    return Number.isFinite(x + y + far) ? [{ name, x: x + (62 * dx) / far, y: y + (62 * dy) / far }] : [];
+    return Number.isFinite(x + y + dx + dy) ? [{ name, x: x + (62 * dx) / far, y: y + (62 * dy) / far }] : [];
   });
   const dot = at === undefined ? null : place(pointOf(at));
   return (
     <svg
-      class="loss-map"
+      class="loss-map chart"
       viewBox={`${-margin} ${-margin} ${width * scale + 2 * margin} ${height * scale + 2 * margin}`}
       role="img"
       aria-label={`The way of ${a.name} in the colours of the time lost`}
@@ -59,8 +56,7 @@ export function LossMap({ comparison, at }: { comparison: Comparison; at?: numbe
           <polyline
             key={from}
             points={known.map(([x, y]) => `${x.toFixed(1)},${y.toFixed(1)}`).join(' ')}
-            stroke={colourOf(lost, most)}
-            stroke-width={12 + 9 * share}
+            style={{ stroke: colourOf(lost, most), strokeWidth: 12 + 9 * share }}
           />
         );
       })}

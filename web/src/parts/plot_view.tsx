@@ -60,9 +60,8 @@ export function PlotView({ plot }: { plot: Plot }) {
           </span>
         ))}
       </figcaption>
-      <svg viewBox={`0 0 ${frame.width} ${frame.height}`} role="img" aria-label={plot.title}>
+      <svg class="chart" viewBox={`0 0 ${frame.width} ${frame.height}`} role="img" aria-label={plot.title}>
         <rect
-          class="ground"
           x={MARGIN.left}
           y={MARGIN.top}
           width={frame.width - MARGIN.left - MARGIN.right}
@@ -73,9 +72,8 @@ export function PlotView({ plot }: { plot: Plot }) {
           <path
             key={i}
             class={series.draw}
-            style={toneOf(series)}
+            style={{ ...toneOf(series), strokeWidth: series.draw === 'dots' ? dotSize(series) : 1.6 }}
             d={pathOf(series, frame)}
-            stroke-width={series.draw === 'dots' ? dotSize(series) : undefined}
           />
         ))}
       </svg>

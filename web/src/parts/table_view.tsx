@@ -9,10 +9,10 @@ function Interval({ of: [low, high, value, assumed] }: { of: NonNullable<MoreTha
   const at = (place: number): number =>
     4 + (INTERVAL_WIDTH - 8) * (most > least ? (place - least) / (most - least) : 0.5);
   return (
-    <svg class="interval" viewBox={`0 0 ${INTERVAL_WIDTH} 14`} width={INTERVAL_WIDTH} height="14" aria-hidden="true">
-      <path class="span" d={`M${at(low)} 7H${at(high)}`} />
-      <circle class="value" cx={at(value)} cy="7" r="3.5" />
-      <path class="assumed" d={`M${at(assumed)} 1V13`} />
+    <svg viewBox={`0 0 ${INTERVAL_WIDTH} 14`} width={INTERVAL_WIDTH} height="14" aria-hidden="true">
+      <path stroke="var(--edge)" stroke-width="4" d={`M${at(low)} 7H${at(high)}`} />
+      <circle fill="var(--ink)" cx={at(value)} cy="7" r="3.5" />
+      <path stroke="var(--other)" stroke-width="2" d={`M${at(assumed)} 1V13`} />
     </svg>
   );
 }
@@ -28,7 +28,7 @@ function Contents({ cell }: { cell: Cell }) {
           <a href={cell.link}>open</a>
         </>
       )}
-      {cell.remark && <small>{cell.remark}</small>}
+      {cell.remark && <small class="lost">{cell.remark}</small>}
       {cell.interval && <Interval of={cell.interval} />}
     </>
   );
@@ -42,9 +42,14 @@ function looks(cell: Cell | undefined, isNumber: boolean) {
     more?.is_code && 'command',
     more?.is_marked && 'marked',
     more?.share !== undefined && 'shaded',
-    more?.signed !== undefined && (more.signed < 0 ? 'below' : 'above'),
+    more?.signed !== undefined && 'signed',
   ].filter(Boolean);
-  const style = { '--share': more?.share ?? Math.abs(more?.signed ?? 0) };
+  const signed = more?.signed ?? 0;
+  const mixed = `color-mix(in srgb, var(--won) ${100 * (more?.share ?? 0)}%, var(--lost))`;
+  const style =
+    more?.share === undefined
+      ? { '--share': Math.abs(signed), '--tone': `var(--${signed < 0 ? 'won' : 'lost'})` }
+      : { '--share': 0.7, '--tone': mixed };
   return { class: kinds.join(' '), title: more?.hint, ...(more ? { style } : {}) };
 }
 

@@ -4,8 +4,6 @@ import { fields, list, number, text } from '../lib/json';
 export interface SchemaEntry {
   readonly key: string;
   readonly group: string;
-  /** Name of the controller whose option it is: "pure-pursuit"; empty where it is no controller's. */
-  readonly controller?: string;
   readonly kind: 'number' | 'integer' | 'bool' | 'choice' | 'text';
   readonly unit: string;
   readonly minimum: number | null;
@@ -63,7 +61,6 @@ export const readSchema = (json: unknown): SchemaEntry[] =>
       return {
         key,
         group: text(each.group) || (key.split('.')[0] ?? ''),
-        controller: text(each.controller),
         kind,
         unit: text(each.unit),
         minimum: numberOr(each.minimum),

@@ -1,4 +1,5 @@
 import {
+  type Stamp,
   UNKNOWN_CHANGE,
   UNKNOWN_FRAME,
   UNKNOWN_LAP,
@@ -8,7 +9,10 @@ import {
   UNKNOWN_SITUATION,
 } from './messages';
 
-export type { Change, Frame, Lap, Limit, Plan, Run, Situation, Stamp } from './messages';
+export type { Change, Frame, Lap, Limit, Plan, Run, Situation } from './messages';
+
+/** When a message was sent, on the time line of the run [s]. */
+export const timeOf = ({ stamp }: { readonly stamp: Stamp }): number => stamp.sec + stamp.nsec / 1e9;
 
 /** The part of nav_msgs/msg/Path this page draws. */
 export interface Path {

@@ -1,5 +1,6 @@
 import type { FunctionComponent } from 'preact';
 import { store } from '../lib/store';
+import { reasonOf } from '../lib/words';
 import type { Source } from '../protocol/source';
 import { notice } from '../state/link';
 import { attach } from '../state/operate';
@@ -17,8 +18,6 @@ function take(source: Source): void {
   attach(source);
 }
 
-const sentence = (error: unknown): string => (error instanceof Error ? error.message : String(error));
-
 /** Shows the recordings that the page was opened for, otherwise the live run; and recordings dropped on the page. */
 export async function begin(live: () => Source): Promise<void> {
   addEventListener('dragover', (event) => {
@@ -29,11 +28,11 @@ export async function begin(live: () => Source): Promise<void> {
     if (files.length === 0) return;
     event.preventDefault();
     askedLog.value = null; // the program knows nothing of these
-    show((player) => player.playFiles(files)).catch((error: unknown) => (notice.value = sentence(error)));
+    show((player) => player.playFiles(files)).catch((error: unknown) => (notice.value = reasonOf(error)));
   });
   const mode = await findMode();
   if (mode.name === 'live') return take(live());
-  await show((player) => player.playMode(mode)).catch((error: unknown) => (notice.value = sentence(error)));
+  await show((player) => player.playMode(mode)).catch((error: unknown) => (notice.value = reasonOf(error)));
   (await import('./ask_server')).offerWhatIf();
 }
 

@@ -1,5 +1,5 @@
 import { begunBits } from '../lib/bits';
-import { nameInWords } from '../lib/words';
+import { nameInWords, reasonOf } from '../lib/words';
 import type { ServiceName, SetAnswer, Setting, Source, SourceEvents } from '../protocol/source';
 import type { Frame, Lap, Run, TopicName } from '../protocol/topics';
 import type { LoggedMessage, McapLog } from './mcap_log';
@@ -75,14 +75,6 @@ export class LogSource implements Source {
     events.services(new Set<ServiceName>(['/pause', '/step', '/reset']));
     source.#sendPace(true);
     return source;
-  }
-
-  get position(): number {
-    return this.#position;
-  }
-
-  get isPlaying(): boolean {
-    return this.#isPlaying;
   }
 
   /** Where the runs of this recording begin [s], ascending, the first at 0. */
@@ -211,9 +203,7 @@ export class LogSource implements Source {
       this.#readTo = to;
     } catch (error) {
       this.#isPlaying = false;
-      this.#events.notice(
-        `the recording cannot be read further: ${error instanceof Error ? error.message : String(error)}`,
-      );
+      this.#events.notice(`the recording cannot be read further: ${reasonOf(error)}`);
     } finally {
       this.#isReading = false;
     }

@@ -1,5 +1,6 @@
 import { McapIndexedReader, type McapTypes } from '@mcap/core';
 import { decompress } from 'fzstd';
+import { reasonOf } from '../lib/words';
 import { decoder } from '../protocol/decoder';
 import { TOPIC_NAMES, type TopicName, type Topics } from '../protocol/topics';
 
@@ -46,7 +47,7 @@ export class McapLog {
         decompressHandlers: { zstd: (bytes, size) => decompress(bytes, new Uint8Array(Number(size))) },
       });
     } catch (error) {
-      const why = error instanceof Error ? error.message : String(error);
+      const why = reasonOf(error);
       throw new Error(
         `${name} cannot be read as a closed MCAP file (${why}); ` +
           `\`chicane replay ${name}\` also opens one that was cut short`,
@@ -71,17 +72,6 @@ export class McapLog {
         message: known.decode(data) as Topics[TopicName],
       };
     }
-  }
-
-  /** The scenario that was recorded, as YAML; empty where there is none. */
-  async settings(): Promise<string> {
-    try {
-      for await (const { mediaType, data } of this.#reader.readAttachments())
-        if (mediaType === 'application/yaml') return new TextDecoder().decode(data);
-    } catch {
-      // A report without it is a report.
-    }
-    return '';
   }
 
   async read(topics: readonly TopicName[], from: number, to: number): Promise<LoggedMessage[]> {

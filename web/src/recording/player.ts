@@ -1,5 +1,6 @@
 import { computed, effect, untracked } from '@preact/signals';
 import { store } from '../lib/store';
+import { reasonOf } from '../lib/words';
 import { readSchema } from '../protocol/schema';
 import { complete, type Frame, type Run } from '../protocol/topics';
 import { posesOf, RecordedDrive } from '../scene3d/ghost';
@@ -35,18 +36,7 @@ export const duration = computed(() => player.value?.log.duration ?? 0);
 
 /** Schema of the pace, the only setting of a recording. */
 const PACE = readSchema([
-  {
-    key: 'run.pace',
-    group: 'run',
-    kind: 'number',
-    unit: '',
-    minimum: 0.05,
-    maximum: 20,
-    choices: [],
-    default: 1,
-    meaning: 'How fast the recording plays.',
-    is_live: true,
-  },
+  { key: 'run.pace', kind: 'number', minimum: 0.05, maximum: 20, default: 1, meaning: 'How fast the recording plays.' },
 ]);
 
 async function framesOf(log: McapLog): Promise<{ time: number; frame: Frame }[]> {
@@ -81,7 +71,7 @@ export async function play(recordings: Recordings, which = 0, start = recordings
     },
   });
   player.value = source;
-  seekTo.value = (time) => void source.seek(time).catch((error: unknown) => (notice.value = String(error)));
+  seekTo.value = (time) => void source.seek(time).catch((error: unknown) => (notice.value = reasonOf(error)));
   await source.seek(start);
   void look(source);
   await showBeside(beside.value, log);
@@ -133,7 +123,7 @@ async function readRuns({ logs: all }: Recordings): Promise<void> {
     if (all.length > 1) for (const log of all) others.runs = [...others.runs, ...(await runsOf(log))];
     offerOthers();
   } catch (error) {
-    notice.value = error instanceof Error ? error.message : String(error);
+    notice.value = reasonOf(error);
   }
 }
 
@@ -176,7 +166,7 @@ async function look(source: LogSource): Promise<void> {
       });
     });
   } catch (error) {
-    notice.value = error instanceof Error ? error.message : String(error);
+    notice.value = reasonOf(error);
   }
 }
 

@@ -1,11 +1,13 @@
 import { lapTime } from '../lib/format';
+import { reasonOf } from '../lib/words';
+import { Button, Select } from '../parts/controls';
 import { notice } from '../state/link';
 import { attach } from '../state/operate';
 import type { Landmark } from './log_source';
 import { beside, duration, landmarks, logs, play, played, player, position, searched, showBeside } from './player';
 
 const seek = (time: number): void =>
-  void player.value?.seek(time).catch((error: unknown) => (notice.value = String(error)));
+  void player.value?.seek(time).catch((error: unknown) => (notice.value = reasonOf(error)));
 
 /** The next landmark in a direction, from a time [s]. */
 export function neighbour(all: readonly Landmark[], time: number, direction: 1 | -1): Landmark | null {
@@ -15,24 +17,24 @@ export function neighbour(all: readonly Landmark[], time: number, direction: 1 |
   return (direction > 0 ? onward[0] : onward.at(-1)) ?? null;
 }
 
-function jump(direction: 1 | -1): void {
-  const next = neighbour(landmarks.value, position.value, direction);
-  if (next) seek(next.time);
-}
-
 export async function choose(which: number): Promise<void> {
   try {
     attach(await play({ logs: logs.value, start: position.value }, which, position.value));
   } catch (error) {
-    notice.value = error instanceof Error ? error.message : String(error);
+    notice.value = reasonOf(error);
   }
 }
 
-function Arrow({ direction }: { direction: 1 | -1 }) {
+/** To the next landmark in a direction. */
+function Jump({ direction }: { direction: 1 | -1 }) {
+  const label = direction > 0 ? 'Next landmark' : 'Previous landmark';
+  const next = neighbour(landmarks.value, position.value, direction);
   return (
-    <svg viewBox="0 0 16 16" width="16" height="16" aria-hidden="true">
-      <path d={direction > 0 ? 'M3 3l7 5-7 5zM11 3h2v10h-2z' : 'M13 3L6 8l7 5zM5 3H3v10h2z'} fill="currentColor" />
-    </svg>
+    <Button class="icon" aria-label={label} title={label} disabled={!next} act={() => next && seek(next.time)}>
+      <svg viewBox="0 0 16 16" width="16" height="16" aria-hidden="true">
+        <path d={direction > 0 ? 'M3 3l7 5-7 5zM11 3h2v10h-2z' : 'M13 3L6 8l7 5zM5 3H3v10h2z'} fill="currentColor" />
+      </svg>
+    </Button>
   );
 }
 
@@ -43,7 +45,7 @@ function Marks() {
       {landmarks.value.map(({ time, kind, label }) => (
         <i
           key={`${kind}${time}${label}`}
-          class={`is-${kind}`}
+          class={kind === 'lap' ? 'won' : 'lost'}
           style={{ left: `${(100 * time) / length}%` }}
           title={`${lapTime(time)}: ${label}`}
         />
@@ -57,18 +59,10 @@ export function TimelineView() {
   const source = player.value;
   if (!source) return null;
   const length = duration.value;
+  const names = logs.value.map((log, i) => ({ value: i, label: log.name }));
   return (
     <section class="timeline row" aria-label="Time line of the recording">
-      <button
-        type="button"
-        class="icon"
-        aria-label="Previous landmark"
-        title="Previous landmark"
-        disabled={!neighbour(landmarks.value, position.value, -1)}
-        onClick={() => jump(-1)}
-      >
-        <Arrow direction={-1} />
-      </button>
+      <Jump direction={-1} />
       <div class="timeline-track">
         <Marks />
         <input
@@ -82,62 +76,35 @@ export function TimelineView() {
           onInput={(event) => seek(event.currentTarget.valueAsNumber)}
         />
       </div>
-      <button
-        type="button"
-        class="icon"
-        aria-label="Next landmark"
-        title="Next landmark"
-        disabled={!neighbour(landmarks.value, position.value, 1)}
-        onClick={() => jump(1)}
-      >
-        <Arrow direction={1} />
-      </button>
+      <Jump direction={1} />
       <output class="timeline-time">
         {lapTime(position.value)} <span>/ {lapTime(length)}</span>
       </output>
       {logs.value.length > 1 ? (
-        <select
-          aria-label="Recording shown"
-          value={played.value}
-          onChange={(event) => void choose(Number(event.currentTarget.value))}
-        >
-          {logs.value.map((log, i) => (
-            <option key={log.name} value={i}>
-              {log.name}
-            </option>
-          ))}
-        </select>
+        <Select label="Recording shown" value={played.value} choices={names} choose={(which) => void choose(which)} />
       ) : (
-        <span class="timeline-name">{source.log.name}</span>
+        <span class="timeline-name soft cut">{source.log.name}</span>
       )}
       {logs.value.length > 2 && (
-        <select
-          aria-label="Recording shown beside it"
+        <Select
+          label="Recording shown beside it"
           value={beside.value}
-          onChange={(event) => void showBeside(Number(event.currentTarget.value))}
-        >
-          <option value={-1}>none beside it</option>
-          {logs.value.map((log, i) =>
-            i === played.value ? null : (
-              <option key={log.name} value={i}>
-                beside: {log.name}
-              </option>
-            ),
-          )}
-        </select>
+          choices={[
+            { value: -1, label: 'none beside it' },
+            ...names
+              .filter(({ value }) => value !== played.value)
+              .map(({ value, label }) => ({ value, label: `beside: ${label}` })),
+          ]}
+          choose={(which) => void showBeside(which)}
+        />
       )}
       {source.starts.length > 1 && (
-        <select
-          aria-label="Run of the recording"
+        <Select
+          label="Run of the recording"
           value={source.runAt(position.value)}
-          onChange={(event) => seek(source.starts[Number(event.currentTarget.value)] ?? 0)}
-        >
-          {source.starts.map((start, i) => (
-            <option key={start} value={i}>
-              run {i + 1} of {source.starts.length}
-            </option>
-          ))}
-        </select>
+          choices={source.starts.map((_, i) => ({ value: i, label: `run ${i + 1} of ${source.starts.length}` }))}
+          choose={(which) => seek(source.starts[which] ?? 0)}
+        />
       )}
       {searched.value < 1 && <progress max={1} value={searched.value} aria-label="Looking for landmarks" />}
     </section>

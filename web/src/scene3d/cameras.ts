@@ -4,11 +4,11 @@ import type { Vector } from './mesh';
 
 export type CameraName = 'chase' | 'top' | 'cockpit' | 'free';
 
-export const CAMERAS: readonly { view: CameraName; label: string; title: string }[] = [
-  { view: 'chase', label: 'Chase', title: 'From behind the car' },
-  { view: 'top', label: 'Top', title: 'From above, looking ahead' },
-  { view: 'cockpit', label: 'Cockpit', title: "From the driver's eyes" },
-  { view: 'free', label: 'Free', title: 'Round the car: drag, arrow keys, wheel' },
+export const CAMERAS: readonly { value: CameraName; label: string; title: string }[] = [
+  { value: 'chase', label: 'Chase', title: 'From behind the car' },
+  { value: 'top', label: 'Top', title: 'From above, looking ahead' },
+  { value: 'cockpit', label: 'Cockpit', title: "From the driver's eyes" },
+  { value: 'free', label: 'Free', title: 'Round the car: drag, arrow keys, wheel' },
 ];
 
 /** Position and target of a camera in W; `up` is the picture's upward direction. */

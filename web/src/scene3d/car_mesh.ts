@@ -1,6 +1,6 @@
 import type { CarSize } from '../draw/car';
 import { addClosedBody, COUPE, type Profile, SALOON, VAN } from './closed_body';
-import { type Colour, MeshBuilder, type MeshData, mirroredRing, type Vector } from './mesh';
+import { type Colour, MeshBuilder, type MeshData, mirroredRing, onSide, plate, type Vector } from './mesh';
 import { addModelCar } from './model_car';
 import { ACCENT, CARBON, LAMP, LIGHT, METAL, type Measures, type Parts, RUBBER, SOOT, WHITE } from './parts';
 
@@ -13,8 +13,6 @@ export interface CarModel {
   readonly helmet: MeshData; // the driver's; hidden in the cockpit view
   readonly hand: MeshData; // the steering wheel, about its own centre; it turns about its x axis
   readonly wheel: MeshData; // about its hub, axis along y, outer side to the left
-  /** Front left, front right, rear left, rear right. */
-  readonly wheels: readonly { x: number; y: number; radius: number }[];
   readonly wheelRadius: number;
   readonly steeringWheel: Vector; // its centre
   readonly eye: Vector; // of the driver
@@ -171,9 +169,11 @@ function addTub({ paint, dark }: Parts, { k, front, rear, nose, tail, tub, at }:
   for (const side of [-1, 1]) {
     paint.rod([at(0.37), side * tub * 0.9, 0.68 * k], [at(0.62), side * tub * 0.8, 0.64 * k], 0.055 * k, WHITE);
   }
-  dark.hull(
-    mirroredRing(at(0.3), section(0.13 * k, 0.84 * k, 1.0 * k)),
-    mirroredRing(at(0.345), section(0.12 * k, 0.84 * k, 1.02 * k)),
+  dark.loft(
+    [
+      mirroredRing(at(0.3), section(0.13 * k, 0.84 * k, 1.0 * k)),
+      mirroredRing(at(0.345), section(0.12 * k, 0.84 * k, 1.02 * k)),
+    ],
     SOOT,
   );
   paint.loft(
@@ -185,9 +185,11 @@ function addTub({ paint, dark }: Parts, { k, front, rear, nose, tail, tub, at }:
     ACCENT,
   );
   // Windscreen: a low dark wedge.
-  dark.hull(
-    mirroredRing(at(0.6), section(tub * 0.66, 0.6 * k, 0.75 * k)),
-    mirroredRing(at(0.71), section(tub * 0.6, 0.6 * k, 0.64 * k)),
+  dark.loft(
+    [
+      mirroredRing(at(0.6), section(tub * 0.66, 0.6 * k, 0.75 * k)),
+      mirroredRing(at(0.71), section(tub * 0.6, 0.6 * k, 0.64 * k)),
+    ],
     CARBON,
   );
 }
@@ -195,17 +197,15 @@ function addTub({ paint, dark }: Parts, { k, front, rear, nose, tail, tub, at }:
 /** Side pods with their intakes, mirrors, and the floor. */
 function addPods({ paint, dark }: Parts, { k, inner, tub, pod, at }: Measures): void {
   for (const side of [-1, 1]) {
-    const ring = (x: number, from: number, to: number, low: number, high: number): Vector[] => {
-      const corners: Vector[] = [
+    const ring = (x: number, from: number, to: number, low: number, high: number) =>
+      onSide(side, [
         [x, from, low],
         [x, to - 0.06 * k, low],
         [x, to, low + 0.08 * k],
         [x, to, high - 0.09 * k],
         [x, to - 0.12 * k, high],
         [x, from, high],
-      ];
-      return side > 0 ? corners : corners.map(([a, b, c]): Vector => [a, -b, c]).reverse();
-    };
+      ]);
     paint.loft(
       [
         ring(at(0.1), tub * 0.5, tub * 0.95, 0.12 * k, 0.4 * k),
@@ -234,24 +234,18 @@ function addPods({ paint, dark }: Parts, { k, inner, tub, pod, at }: Measures): 
 /** Front wing in two planes with end plates, rear wing on its plates, and the lamps. */
 function addWings({ paint, dark, lamps, headlamps }: Parts, { k, rear, nose, tail, halfWidth, inner }: Measures): void {
   const wing = halfWidth - 0.02 * k;
-  const slanted = (x0: number, x1: number, z0: number, z1: number, half: number): readonly [Vector[], Vector[]] => [
-    mirroredRing(x0, [
-      [half, z0],
-      [half, z0 + 0.025 * k],
-    ]),
-    mirroredRing(x1, [
-      [half, z1],
-      [half, z1 + 0.02 * k],
-    ]),
+  const slanted = (x0: number, x1: number, z0: number, z1: number, half: number): Vector[][] => [
+    plate(x0, half, z0, z0 + 0.025 * k),
+    plate(x1, half, z1, z1 + 0.02 * k),
   ];
-  paint.hull(...slanted(nose - 0.34 * k, nose - 0.04 * k, 0.15 * k, 0.11 * k, wing), WHITE);
-  paint.hull(...slanted(nose - 0.46 * k, nose - 0.28 * k, 0.24 * k, 0.17 * k, wing), ACCENT);
+  paint.loft(slanted(nose - 0.34 * k, nose - 0.04 * k, 0.15 * k, 0.11 * k, wing), WHITE);
+  paint.loft(slanted(nose - 0.46 * k, nose - 0.28 * k, 0.24 * k, 0.17 * k, wing), ACCENT);
   dark.rod([nose - 0.2 * k, 0.09 * k, 0.24 * k], [nose - 0.2 * k, 0.1 * k, 0.12 * k], 0.04 * k, CARBON);
   dark.rod([nose - 0.2 * k, -0.09 * k, 0.24 * k], [nose - 0.2 * k, -0.1 * k, 0.12 * k], 0.04 * k, CARBON);
   // Rear wing on its plates.
   const back = Math.min(inner + 0.18 * k, halfWidth);
-  paint.hull(...slanted(tail + 0.02 * k, tail + 0.34 * k, 0.9 * k, 0.84 * k, back), ACCENT);
-  paint.hull(...slanted(tail - 0.06 * k, tail + 0.1 * k, 0.99 * k, 0.93 * k, back), WHITE);
+  paint.loft(slanted(tail + 0.02 * k, tail + 0.34 * k, 0.9 * k, 0.84 * k, back), ACCENT);
+  paint.loft(slanted(tail - 0.06 * k, tail + 0.1 * k, 0.99 * k, 0.93 * k, back), WHITE);
   for (const side of [-1, 1]) {
     const [a, b] = [side * wing, side * (wing + 0.025 * k)];
     paint.box([nose - 0.48 * k, a, 0.1 * k], [nose - 0.02 * k, b, 0.28 * k], ACCENT);
@@ -294,11 +288,7 @@ function addScreenAndFin({ paint, dark }: Parts, { k, rear, tub, at }: Measures)
     dark.rod([at(0.62), side * tub * 0.3, 0.92 * k], [at(0.64), 0, 0.91 * k], frame, SOOT);
   }
   dark.rod([at(0.64), 0, 0.91 * k], [at(0.74), 0, 0.64 * k], frame, SOOT);
-  const fin = (x: number, low: number, high: number): Vector[] =>
-    mirroredRing(x, [
-      [0.012 * k, low * k],
-      [0.012 * k, high * k],
-    ]);
+  const fin = (x: number, low: number, high: number): Vector[] => plate(x, 0.012 * k, low * k, high * k);
   paint.loft([fin(rear - 0.1 * k, 0.56, 0.86), fin(at(0.16), 0.7, 1.02), fin(at(0.3), 0.84, 1.03)], ACCENT);
 }
 
@@ -332,7 +322,7 @@ export function carModel(size: CarLooks): CarModel {
   const body = bodyOf(size);
   const isClosed = typeof body === 'object';
   const measures = measure(size, isClosed);
-  const { k, front, rear, radius, tyre, halfTrack, halfWidth, length, at } = measures;
+  const { k, radius, tyre, halfWidth, length, at } = measures;
   const parts: Parts = {
     paint: new MeshBuilder(),
     dark: new MeshBuilder(),
@@ -360,12 +350,6 @@ export function carModel(size: CarLooks): CarModel {
     helmet: body === 'model' ? nobody : driver,
     hand: body === 'model' ? nobody : handMesh(k),
     wheel: wheelMesh(radius, tyre),
-    wheels: [
-      { x: front, y: halfTrack, radius },
-      { x: front, y: -halfTrack, radius },
-      { x: rear, y: halfTrack, radius },
-      { x: rear, y: -halfTrack, radius },
-    ],
     wheelRadius: radius,
     steeringWheel,
     eye,

@@ -32,9 +32,9 @@ class Wheels {
 
   constructor(model: CarModel, size: CarSize, makeMesh: () => Mesh[]) {
     this.#size = size;
-    for (const { x, y, radius } of model.wheels) {
+    for (const { x, y } of carShape(size, 0).wheels) {
       const turn = new Group();
-      turn.position.set(x, y, radius);
+      turn.position.set(x, y, model.wheelRadius);
       const side = new Group();
       if (y < 0) side.rotation.z = Math.PI; // outer side outwards
       const roll = new Group();
@@ -103,6 +103,7 @@ export class CarView {
   readonly model: CarModel;
   readonly group = new Group();
   readonly #scene: Scene;
+  readonly #size: CarSize;
   readonly #body = new Group();
   readonly #helmet: Mesh;
   readonly #hand: Mesh;
@@ -114,7 +115,7 @@ export class CarView {
   readonly #garbage: { dispose(): void }[] = [];
 
   constructor(scene: Scene, size: CarLooks) {
-    this.#scene = scene;
+    [this.#scene, this.#size] = [scene, size];
     this.model = carModel(size);
     const paint = this.#keep(new MeshStandardMaterial({ vertexColors: true, metalness: 0.15, roughness: 0.38 }));
     const dark = this.#keep(new MeshLambertMaterial({ vertexColors: true }));
@@ -176,7 +177,7 @@ export class CarView {
       }),
     );
     const beam = new Mesh(this.#keep(new PlaneGeometry(ahead, wide)), material);
-    beam.position.x = (this.model.wheels[0]?.x ?? 0) + ahead / 2;
+    beam.position.x = this.#size.front_axle_m + ahead / 2;
     beam.renderOrder = 0;
     return beam;
   }
@@ -193,7 +194,7 @@ export class CarView {
       new MeshBasicMaterial({ color: 0x000000, map: this.#keep(spotTexture()), transparent: true, depthWrite: false }),
     );
     const spot = new Mesh(this.#keep(new PlaneGeometry(length * 1.16, width * 1.2)), material);
-    spot.position.x = ((this.model.wheels[0]?.x ?? 0) + (this.model.wheels[2]?.x ?? 0)) / 2;
+    spot.position.x = (this.#size.front_axle_m - this.#size.rear_axle_m) / 2;
     spot.renderOrder = 8;
     return spot;
   }

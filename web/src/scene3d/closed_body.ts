@@ -1,4 +1,4 @@
-import { type Colour, mirroredRing, type Vector } from './mesh';
+import { type Colour, mirroredRing, onSide, plate, type Vector } from './mesh';
 import { ACCENT, GLASS, LAMP, LIGHT, type Measures, type Parts, RUBBER, WHITE } from './parts';
 
 // Bodies with a roof: a saloon, a van and a coupé. Lengths and heights are those of the shape, drawn for a car of its
@@ -124,26 +124,20 @@ export function addClosedBody(
   const wide = (x: number): number => half * (1 - 0.1 * Math.abs((2 * (x - tail)) / (nose - tail) - 1) ** 4);
 
   // Between the wheels, then the sides over them.
-  const middle = edges.map(({ x }) =>
-    mirroredRing(x, [
-      [inner, profile.sill * k],
-      [inner, height(x)],
-    ]),
-  );
+  const middle = edges.map(({ x }) => plate(x, inner, profile.sill * k, height(x)));
   paint.loft(middle, (_x, face) => (face === 1 ? profile.upper : profile.lower));
   for (const side of [-1, 1]) {
     const rings = edges.map(({ x, low }) => {
       const [out, top] = [wide(x), height(x)];
       const shoulder = Math.max(low + 0.02 * k, top - 0.1 * k);
-      const corners: Vector[] = [
+      return onSide(side, [
         [x, inner, low],
         [x, out - 0.03 * k, low],
         [x, out, Math.min(low + 0.08 * k, shoulder - 0.01 * k)],
         [x, out, shoulder],
         [x, out - 0.07 * k, Math.max(top, shoulder + 0.01 * k)],
         [x, inner, Math.max(top, shoulder + 0.01 * k)],
-      ];
-      return side > 0 ? corners : corners.map(([a, b, c]): Vector => [a, -b, c]).reverse();
+      ]);
     });
     paint.loft(rings, profile.lower);
   }

@@ -36,7 +36,7 @@ describe('cameras', () => {
   const car: Subject = { x: 100, y: 50, yaw: 0.6, speed: 30, length: 4.5, eye: [0, 0, 1] };
 
   it('keep the car in front of the lens', () => {
-    for (const { view } of CAMERAS) {
+    for (const { value: view } of CAMERAS) {
       const shot = new CameraMan().shoot(view, car, LENS, 0.016);
       const look = shot.target.map((value, i) => value - (shot.position[i] ?? 0));
       const ahead = (look[0] as number) * Math.cos(car.yaw) + (look[1] as number) * Math.sin(car.yaw);

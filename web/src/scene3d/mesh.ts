@@ -64,15 +64,7 @@ export class MeshBuilder {
       [at, right, high],
       [at, left, high],
     ];
-    this.hull(ring(x[0]), ring(x[1]), colour);
-  }
-
-  /**
-   * The solid between two polygons with equally many corners; `near` at smaller x, corners counter-clockwise from
-   * ahead.
-   */
-  hull(near: readonly Vector[], far: readonly Vector[], colour: Colour): void {
-    this.loft([near, far], colour);
+    this.loft([ring(x[0]), ring(x[1])], colour);
   }
 
   /** A closed surface over sections along x, each counter-clockwise seen from ahead (where y points right). */
@@ -138,3 +130,14 @@ export function mirroredRing(x: number, half: readonly (readonly [y: number, z: 
     .map(([y, z]): Vector => [x, -y, z]);
   return [...left, ...right];
 }
+
+/** An upright plate across the car, so wide to each side. */
+export const plate = (x: number, half: number, low: number, high: number): Vector[] =>
+  mirroredRing(x, [
+    [half, low],
+    [half, high],
+  ]);
+
+/** A section drawn for the left side, on that side or mirrored to the right. */
+export const onSide = (side: number, corners: readonly Vector[]): readonly Vector[] =>
+  side > 0 ? corners : corners.map(([x, y, z]): Vector => [x, -y, z]).reverse();

@@ -1,44 +1,28 @@
 import { clamp, extrapolate, wrapAngle } from '../lib/math';
 import type { Frame } from '../protocol/topics';
 
-/** The part of a frame needed to draw the car. SI, radians, W; NaN for unknown. */
-export interface Motion {
-  time: number; // of the run [s]
-  x: number;
-  y: number;
-  yaw: number; // unwrapped within a Playout
-  vx: number; // in the car's axes [m/s]
-  vy: number;
-  yawRate: number;
-  speed: number;
-  steer: number; // applied
-  throttle: number; // applied
-  ax: number; // [m/s²]
-  ay: number;
-  lapTime: number;
-  frontUse: number; // share of the tyres' grip
-  rearUse: number;
-}
+/** The fields of a frame that drawing the car needs. SI, radians, W; not-a-number for unknown. */
+const FIELDS = {
+  time: 'time_s', // of the run
+  x: 'x_m',
+  y: 'y_m',
+  yaw: 'yaw_rad', // unwrapped within a Playout
+  vx: 'vx_mps', // in the car's axes
+  vy: 'vy_mps',
+  yawRate: 'yaw_rate_radps',
+  speed: 'speed_mps',
+  steer: 'steer_applied_rad',
+  throttle: 'throttle_applied',
+  ax: 'longitudinal_acceleration_mps2',
+  ay: 'lateral_acceleration_mps2',
+  lapTime: 'lap_time_s',
+  frontUse: 'front_tire_use', // share of the tyres' grip
+  rearUse: 'rear_tire_use',
+} as const;
+export type Motion = Record<keyof typeof FIELDS, number>;
 
-export function motionOf(frame: Frame): Motion {
-  return {
-    time: frame.time_s,
-    x: frame.x_m,
-    y: frame.y_m,
-    yaw: frame.yaw_rad,
-    vx: frame.vx_mps,
-    vy: frame.vy_mps,
-    yawRate: frame.yaw_rate_radps,
-    speed: frame.speed_mps,
-    steer: frame.steer_applied_rad,
-    throttle: frame.throttle_applied,
-    ax: frame.longitudinal_acceleration_mps2,
-    ay: frame.lateral_acceleration_mps2,
-    lapTime: frame.lap_time_s,
-    frontUse: frame.front_tire_use,
-    rearUse: frame.rear_tire_use,
-  };
-}
+export const motionOf = (frame: Frame): Motion =>
+  Object.fromEntries(Object.entries(FIELDS).map(([name, field]) => [name, frame[field]])) as Motion;
 
 const known = (value: number): number => (Number.isFinite(value) ? value : 0);
 const mix = (a: number, b: number, u: number): number => known(a) + (known(b) - known(a)) * u;
@@ -55,6 +39,8 @@ const worldVelocity = (m: Motion): [number, number] => {
   return [vx * cos - vy * sin, vx * sin + vy * cos];
 };
 
+const MIXED = ['vx', 'vy', 'yawRate', 'speed', 'steer', 'ax', 'ay'] as const;
+
 /** The motion at `time` in [a.time, b.time]: position and velocity agree with both. */
 export function interpolate(a: Motion, b: Motion, time: number): Motion {
   const span = b.time - a.time;
@@ -62,22 +48,15 @@ export function interpolate(a: Motion, b: Motion, time: number): Motion {
   const [[ax, ay], [bx, by]] = [worldVelocity(a), worldVelocity(b)];
   const hasRates = Number.isFinite(a.yawRate) && Number.isFinite(b.yawRate);
   const step = wrapAngle(b.yaw - a.yaw);
+  const mixed = MIXED.map((name) => [name, mix(a[name], b[name], u)]);
   return {
+    ...b,
+    ...Object.fromEntries(mixed),
     time,
     x: hermite(a.x, ax, b.x, bx, span, u),
     y: hermite(a.y, ay, b.y, by, span, u),
     yaw: a.yaw + (hasRates ? hermite(0, a.yawRate, step, b.yawRate, span, u) : step * u),
-    vx: mix(a.vx, b.vx, u),
-    vy: mix(a.vy, b.vy, u),
-    yawRate: mix(a.yawRate, b.yawRate, u),
-    speed: mix(a.speed, b.speed, u),
-    steer: mix(a.steer, b.steer, u),
-    throttle: b.throttle, // not interpolated
-    ax: mix(a.ax, b.ax, u),
-    ay: mix(a.ay, b.ay, u),
     lapTime: b.lapTime >= a.lapTime ? mix(a.lapTime, b.lapTime, u) : b.lapTime - (b.time - time),
-    frontUse: b.frontUse,
-    rearUse: b.rearUse,
   };
 }
 
@@ -115,17 +94,9 @@ export class Playout {
     const last = this.#frames.at(-1);
     if (last && frame.time === last.time && frame.x === last.x && frame.y === last.y) return;
     this.#close = now - (this.#arrivals.at(-1) ?? -Infinity) < BURST_MS ? this.#close + 1 : 0;
-    if (this.#close >= BURST) {
-      // The pace of arrival says nothing: only the newest counts.
-      this.#frames = [];
-      this.#arrivals = [];
-      this.#shown = NaN;
-    } else if (last && isJump(last, frame)) {
-      this.#frames = [];
-      this.#arrivals = [];
-      this.#shown = NaN;
-      ++this.jumps;
-    }
+    // In a burst the pace of arrival says nothing: only the newest frame counts.
+    if (this.#close >= BURST) this.#forget();
+    else if (last && isJump(last, frame)) this.clear();
     this.#frames.push(frame);
     this.#arrivals.push(now);
     if (this.#frames.length > KEPT) {
@@ -135,10 +106,14 @@ export class Playout {
   }
 
   clear(): void {
+    this.#forget();
+    ++this.jumps;
+  }
+
+  #forget(): void {
     this.#frames = [];
     this.#arrivals = [];
     this.#shown = NaN;
-    ++this.jumps;
   }
 
   /** Run time per clock time, from the arrival of the frames; 1 before two have arrived. */

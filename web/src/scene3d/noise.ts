@@ -1,3 +1,5 @@
+import { mod } from '../lib/math';
+
 /** Random numbers in [0, 1), equal for equal seeds: pictures of the same track are equal. */
 export function randomNumbers(seed: number): () => number {
   let state = seed >>> 0;
@@ -17,8 +19,7 @@ export function noiseTile(size: number, amplitude: number, cells: readonly numbe
   const random = randomNumbers(seed);
   for (const count of cells) {
     const knots = Float32Array.from({ length: count * count }, () => (2 * random() - 1) * (amplitude / cells.length));
-    const knot = (i: number, j: number): number =>
-      knots[(((j % count) + count) % count) * count + (((i % count) + count) % count)] ?? 0;
+    const knot = (i: number, j: number): number => knots[mod(j, count) * count + mod(i, count)] ?? 0;
     const smooth = (u: number): number => u * u * (3 - 2 * u);
     for (let y = 0; y < size; ++y) {
       for (let x = 0; x < size; ++x) {

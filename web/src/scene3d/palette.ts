@@ -1,30 +1,5 @@
 import { scheme } from '../lib/appearance';
-import { type Colour, colourOf } from './mesh';
-import type { RoadPaint } from './road_mesh';
-
-/** Colours of the scene by day and at dusk; linear. */
-export interface Palette {
-  readonly isDark: boolean;
-  readonly zenith: Colour;
-  readonly horizon: Colour;
-  readonly ground: Colour;
-  readonly hills: Colour;
-  readonly farHills: Colour;
-  readonly leaves: readonly Colour[];
-  readonly trunk: Colour;
-  readonly road: RoadPaint;
-  readonly trace: Colour;
-  readonly racingLine: Colour;
-  readonly plan: Colour;
-  readonly predicted: Colour;
-  readonly act: Colour;
-  readonly lost: Colour;
-  readonly outcome: Colour;
-  readonly ghost: Colour;
-  readonly rubber: Colour;
-  readonly sun: number; // intensity of the directional light
-  readonly sky: number; // intensity of the ambient light
-}
+import { colourOf } from './mesh';
 
 /** What is drawn on the road, as in tokens.css: it has the same colour by day and at dusk. */
 const LINES = {
@@ -38,30 +13,31 @@ const LINES = {
   lost: colourOf('#ffa566'),
 };
 
-const DAY: Omit<Palette, 'isDark'> = {
-  zenith: colourOf('#5b9bd9'),
-  horizon: colourOf('#dce9f1'),
-  ground: colourOf('#a5bd86'),
-  hills: colourOf('#9db8a4'),
-  farHills: colourOf('#bccfd8'),
-  leaves: ['#5f8f55', '#6f9d5c', '#4f7f50'].map(colourOf),
-  trunk: colourOf('#6b5848'),
+/** Colours of the scene by day, linear, and how strong its lights are. */
+const DAY = {
+  zenith: colourOf('#b9cfe0'),
+  horizon: colourOf('#edf2f4'),
+  ground: colourOf('#cbd5c0'),
+  hills: colourOf('#c3d0ca'),
+  farHills: colourOf('#d3dee3'),
+  leaves: ['#9cb393', '#a8bc9d', '#91a98a'].map(colourOf),
+  trunk: colourOf('#8f8579'),
   road: {
     road: colourOf('#5d636c'),
     edge: colourOf('#f6f6f2'),
     centreLine: colourOf('#a3aab3'),
-    verge: colourOf('#bdc79b'),
-    concrete: colourOf('#b9bcb8'),
-    kerbRed: colourOf('#c8342c'),
+    verge: colourOf('#d3d9c6'),
+    concrete: colourOf('#c6c8c5'),
+    kerbRed: colourOf('#b5645c'),
     kerbWhite: colourOf('#f2f2ee'),
   },
   ...LINES,
   rubber: colourOf('#16181c'),
-  sun: 2.6,
-  sky: 1.3,
+  sun: 2.6, // the directional light
+  sky: 1.3, // the ambient light
 };
 
-const DUSK: Omit<Palette, 'isDark'> = {
+const DUSK: typeof DAY = {
   zenith: colourOf('#0a101d'),
   horizon: colourOf('#3a4a63'),
   ground: colourOf('#1c2722'),
@@ -83,6 +59,10 @@ const DUSK: Omit<Palette, 'isDark'> = {
   sun: 1.3,
   sky: 1.0,
 };
+
+export interface Palette extends Readonly<typeof DAY> {
+  readonly isDark: boolean;
+}
 
 /** The palette for the page's colour scheme. */
 export function palette(): Palette {

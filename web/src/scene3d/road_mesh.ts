@@ -1,7 +1,8 @@
 import { lengthsOf, lineOf } from '../draw/line';
-import type { Point } from '../lib/math';
+import { mod, type Point } from '../lib/math';
 import type { RoadLines } from '../state/road';
 import { type Colour, colourOf } from './mesh';
+import type { Palette } from './palette';
 
 /** A flat mesh on the ground: corners in W at z = 0, three for each triangle, all facing up. */
 export interface FlatMesh {
@@ -10,15 +11,7 @@ export interface FlatMesh {
 }
 
 /** Colours of the road in one theme. */
-export interface RoadPaint {
-  readonly road: Colour;
-  readonly edge: Colour;
-  readonly centreLine: Colour;
-  readonly verge: Colour;
-  readonly concrete: Colour;
-  readonly kerbRed: Colour;
-  readonly kerbWhite: Colour;
-}
+export type RoadPaint = Palette['road'];
 
 const BLACK = colourOf('#15181d');
 
@@ -91,8 +84,7 @@ export function curvatures(centre: readonly Point[], isClosed: boolean): Float64
   const result = new Float64Array(count);
   const reach = 3; // points: suppresses the noise of single points
   const distinct = isClosed ? count - 1 : count;
-  const at = (i: number): Point =>
-    centre[isClosed ? ((i % distinct) + distinct) % distinct : Math.min(Math.max(i, 0), count - 1)] as Point;
+  const at = (i: number): Point => centre[isClosed ? mod(i, distinct) : Math.min(Math.max(i, 0), count - 1)] as Point;
   for (let i = 0; i < count; ++i) {
     const [a, b, c] = [at(i - reach), at(i), at(i + reach)];
     const cross = (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);

@@ -13,7 +13,7 @@ import { listenToPointers } from './pointer';
 import { renderer } from './renderer';
 import { session } from './session';
 import type { Stage, View } from './stage';
-import { camera3d, isReady, obstacle, orbit } from './view_state';
+import { camera3d, isReady, obstacle, orbit, shows3d } from './view_state';
 
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
 
@@ -96,7 +96,13 @@ export function Scene3dView({ label }: { label: string }) {
   return (
     <canvas
       ref={canvas}
-      class={isFree ? 'map-3d is-free' : 'map-3d'}
+      class="map-3d cover"
+      style={{
+        touchAction: isFree ? 'none' : 'pan-y',
+        cursor: 'grab',
+        outlineOffset: '-3px', // of the focus: inside the picture
+        visibility: shows3d.value ? 'visible' : 'hidden',
+      }}
       role={isFree ? 'application' : 'img'}
       aria-label={isFree ? `${label}. Arrow keys turn the camera.` : label}
       {...(isFree ? { tabIndex: 0 } : {})}

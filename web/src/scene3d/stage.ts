@@ -216,15 +216,12 @@ export class Stage {
   }
 
   #isWorth(now: number, view: View, motion: Motion | null, width: number, height: number): boolean {
-    const { orbit } = view;
     const key = [
       motion?.time,
       motion?.x,
       motion?.yaw,
       view.camera,
-      orbit.azimuth,
-      orbit.elevation,
-      orbit.zoom,
+      ...Object.values(view.orbit),
       width,
       height,
       view.roadVersion,
@@ -332,14 +329,7 @@ export class Stage {
     this.#ghost.paint(this.#palette);
     const reach = this.#car.model.length;
     const shadow = this.#sun.shadow.camera;
-    [shadow.left, shadow.right, shadow.bottom, shadow.top, shadow.near, shadow.far] = [
-      -reach,
-      reach,
-      -reach,
-      reach,
-      1,
-      10 * reach,
-    ];
+    Object.assign(shadow, { left: -reach, right: reach, bottom: -reach, top: reach, near: 1, far: 10 * reach });
     shadow.updateProjectionMatrix();
     this.#sun.shadow.bias = -0.002;
   }

@@ -8,13 +8,13 @@ import { renderer } from './renderer';
 export type FlatView = 'track' | 'ahead';
 export type CameraChoice = CameraName | FlatView;
 
-export const ALL_CAMERAS: readonly { view: CameraChoice; label: string; title: string }[] = [
+export const ALL_CAMERAS: readonly { value: CameraChoice; label: string; title: string }[] = [
   ...CAMERAS,
-  { view: 'track', label: 'Track', title: 'The whole track, from above' },
-  { view: 'ahead', label: 'Map', title: 'The road about the car, from above' },
+  { value: 'track', label: 'Track', title: 'The whole track, from above' },
+  { value: 'ahead', label: 'Map', title: 'The road about the car, from above' },
 ];
 
-const isCamera = (value: unknown): boolean => value === '' || ALL_CAMERAS.some(({ view }) => view === value);
+const isCamera = (value: unknown): boolean => value === '' || ALL_CAMERAS.some((each) => each.value === value);
 
 /** The camera chosen, empty at first; kept in the browser's storage. */
 const chosen = persisted<CameraChoice | ''>('camera', '', isCamera);
@@ -30,7 +30,7 @@ export const isReady = store.signal('page', false);
 
 /** The camera of the 3D picture; null where the picture is flat. */
 export const camera3d = computed<CameraName | null>(
-  () => CAMERAS.find(({ view }) => view === camera.value && obstacle.value === null)?.view ?? null,
+  () => CAMERAS.find(({ value }) => value === camera.value && obstacle.value === null)?.value ?? null,
 );
 export const shows3d = computed(() => camera3d.value !== null && isReady.value);
 
@@ -42,8 +42,8 @@ export function choose(next: CameraChoice): void {
 }
 
 export function nextCamera(): void {
-  const at = ALL_CAMERAS.findIndex(({ view }) => view === camera.value);
-  choose(ALL_CAMERAS[(at + 1) % ALL_CAMERAS.length]?.view ?? 'chase');
+  const at = ALL_CAMERAS.findIndex(({ value }) => value === camera.value);
+  choose(ALL_CAMERAS[(at + 1) % ALL_CAMERAS.length]?.value ?? 'chase');
 }
 
 export function zoomCamera(factor: number): void {

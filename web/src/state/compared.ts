@@ -13,7 +13,7 @@ import {
 import { type Corner, cornersOf } from './corners';
 import { lapCourse, limitCourse, recordedCourse } from './courses';
 import type { LapSamples } from './lap_samples';
-import { bestsOf } from './lap_table';
+import { bestOf } from './lap_table';
 import { lapSamples, laps, sampledLaps } from './laps';
 import { limit } from './limit';
 import { isSameRoad, otherLaps } from './other_laps';
@@ -73,7 +73,7 @@ export const pair = computed<readonly [Course | null, Course | null]>(() => {
   if (chosenB || !a) return [a, chosenB ?? null];
   const lap = laps.value.find((each) => `lap ${each.lap}` === a.id)?.lap ?? Infinity;
   const fastest = lap >= (limit.value?.first_lap ?? Infinity) ? find(LIMIT) : undefined;
-  const best = bestsOf(laps.value.filter((each) => each.lap !== lap && find(`lap ${each.lap}`))).lap;
+  const best = bestOf(laps.value.filter((each) => each.lap !== lap && find(`lap ${each.lap}`)))?.lap;
   return [a, fastest ?? find(`lap ${best}`) ?? find(LIMIT) ?? null];
 });
 

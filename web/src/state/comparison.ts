@@ -1,5 +1,7 @@
 import { fixed } from '../lib/format';
+import { mod } from '../lib/math';
 import { type SpeedUnit, speedUnit } from '../lib/units';
+import { capital } from '../lib/words';
 import type { Limit } from '../protocol/topics';
 import type { Corner } from './corners';
 import type { LapChannel } from './lap_samples';
@@ -21,7 +23,6 @@ export interface Course {
 /** A corner with the road before and behind it, up to the middles of its straights; distances from the line [m]. */
 export interface CornerCost {
   readonly name: string; // "T4"
-  readonly number: number;
   readonly from: number;
   readonly entry: number;
   readonly apex: number;
@@ -135,8 +136,7 @@ function slowsAt(along: Along, speed: Float64Array, from: number, apex: number):
 
 /** The corners by their distance from the start line, at `line` along the road's centre line [m]. */
 export function numbered(corners: readonly Corner[], line: number, length: number): (Corner & { at: number })[] {
-  const from = (place: number): number => place - line - length * Math.floor((place - line) / length);
-  return corners.map((corner) => ({ ...corner, at: from(corner.apex) })).sort((a, b) => a.at - b.at);
+  return corners.map((corner) => ({ ...corner, at: mod(corner.apex - line, length) })).sort((a, b) => a.at - b.at);
 }
 
 /** What A loses in each corner, with the straights halved between their corners. */
@@ -145,8 +145,11 @@ function cornerCosts(along: Along, corners: readonly Corner[], line: number): Co
   const none = new Float64Array();
   const [speedA, speedB] = [a.channel('speed_mps') ?? none, b.channel('speed_mps') ?? none];
   const all = numbered(corners, line, length).map(({ from, to, apex, at }) => {
-    const back = (x: number, y: number): number => x - y - length * Math.floor((x - y) / length);
-    return { apex: at, entry: Math.max(0, at - back(apex, from)), exit: Math.min(length, at + back(to, apex)) };
+    return {
+      apex: at,
+      entry: Math.max(0, at - mod(apex - from, length)),
+      exit: Math.min(length, at + mod(to - apex, length)),
+    };
   });
   const middle = (i: number): number =>
     i < 0 ? 0 : i + 1 >= all.length ? length : ((all[i]?.exit ?? 0) + (all[i + 1]?.entry ?? 0)) / 2;
@@ -157,7 +160,6 @@ function cornerCosts(along: Along, corners: readonly Corner[], line: number): Co
       speed.subarray(pointAt(along, entry), pointAt(along, exit) + 1).reduce((x, y) => Math.min(x, y), Infinity);
     return {
       name: `T${i + 1}`,
-      number: i + 1,
       from,
       entry,
       apex: corner.apex,
@@ -202,7 +204,7 @@ export function whyOf({ lost, slower, earlier }: CornerCost, unit: SpeedUnit = s
 
 /** "Lap 3 lost 3.45 s to the limit; T4 cost most, 1.08 s.", in parts: A and B are between them. */
 export interface Headline {
-  readonly verb: string; // " lost "
+  readonly verb: string; // " lost ", ", from standstill, lost "
   readonly amount: string; // "3.45 s"
   readonly tone: 'lost' | 'won' | '';
   readonly to: string; // " to "
@@ -210,11 +212,12 @@ export interface Headline {
 }
 
 export function headlineOf(comparison: Comparison): Headline {
-  const { total } = comparison;
+  const { a, b, total } = comparison;
   const tone = toneOf(total);
+  const from = a.isStanding && !b.isStanding ? ', from standstill,' : '';
   if (!Number.isFinite(total))
-    return { verb: ' beside ', amount: '', tone: '', to: '', rest: ': one of them is not known to its end.' };
-  if (tone === '') return { verb: ' took as long as ', amount: '', tone, to: '', rest: '.' };
+    return { verb: `${from} beside `, amount: '', tone: '', to: '', rest: ': one of them is not known to its end.' };
+  if (tone === '') return { verb: `${from} took as long as `, amount: '', tone, to: '', rest: '.' };
   const most = byCost(comparison)[0];
   const rest =
     most && toneOf(most.lost) === tone
@@ -222,19 +225,8 @@ export function headlineOf(comparison: Comparison): Headline {
       : '.';
   const amount = `${fixed(Math.abs(total), 2)} s`;
   return tone === 'lost'
-    ? { verb: ' lost ', amount, tone, to: ' to ', rest }
-    : { verb: ' won ', amount, tone, to: ' from ', rest };
-}
-
-/** The name of a course at the beginning of a sentence. */
-export const atStart = (name: string): string => `${name[0]?.toUpperCase() ?? ''}${name.slice(1)}`;
-
-/** The headline as one text, for screen readers, titles and tests. */
-export function headlineText(comparison: Comparison): string {
-  const { verb, amount, to, rest } = headlineOf(comparison);
-  const { a, b } = comparison;
-  const standing = a.isStanding !== b.isStanding && a.isStanding ? ', from standstill,' : '';
-  return `${atStart(a.name)}${standing}${verb}${amount}${to}${b.name}${rest}`;
+    ? { verb: `${from} lost `, amount, tone, to: ' to ', rest }
+    : { verb: `${from} won `, amount, tone, to: ' from ', rest };
 }
 
 /** A cause of the gap to the limit, and how much faster a lap is without it [s]. Causes do not add up. */
@@ -273,7 +265,7 @@ export function causesText(causes: readonly GapCause[]): string {
   const names = free.map(({ name }) => name).join(' and ');
   return [
     parts.length > 0 ? `${parts.join(', ')}.` : '',
-    names === '' ? '' : `${atStart(names)} ${free.length > 1 ? 'cost' : 'costs'} nothing.`,
+    names === '' ? '' : `${capital(names)} ${free.length > 1 ? 'cost' : 'costs'} nothing.`,
   ]
     .filter((each) => each !== '')
     .join(' ');

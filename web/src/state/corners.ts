@@ -1,4 +1,4 @@
-import { type Point, wrapAngle } from '../lib/math';
+import { mod, type Point, wrapAngle } from '../lib/math';
 
 // The corners of a road, found from its centre line.
 
@@ -59,7 +59,7 @@ function sampled(points: readonly Point[]): Sampled | null {
   const half = (SMOOTHED_OVER - 1) / 2;
   const curvature = raw.map((_, i) => {
     let sum = 0;
-    for (let k = -half; k <= half; ++k) sum += raw[(i + k + count) % count] ?? 0;
+    for (let k = -half; k <= half; ++k) sum += raw[mod(i + k, count)] ?? 0;
     return sum / SMOOTHED_OVER;
   });
   return { spacing, curvature };
@@ -71,7 +71,7 @@ export function cornersOf(centre: readonly Point[]): Corner[] {
   if (!road) return [];
   const { spacing, curvature } = road;
   const count = curvature.length;
-  const at = (i: number): number => curvature[((i % count) + count) % count] ?? 0;
+  const at = (i: number): number => curvature[mod(i, count)] ?? 0;
   const sideAt = (i: number): number => (Math.abs(at(i)) < LEAST_CURVATURE ? 0 : Math.sign(at(i)));
   // From a place on, where the road is straight or changes its side: no corner is cut in two.
   const begin = Array.from({ length: count }, (_, i) => i).find((i) => sideAt(i) === 0 || sideAt(i - 1) !== sideAt(i));

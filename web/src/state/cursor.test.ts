@@ -27,7 +27,6 @@ describe('the cursor', () => {
     cursorTime.value = 10;
     expect(cursorMark()?.x).toBeCloseTo(0, 6);
     expect(cursorMark()?.y).toBeCloseTo(100, 6);
-    expect(cursorMark()?.place).toBeCloseTo(157, 6);
   });
 
   it('finds the newest time at a point of the road, and nothing far from it', () => {

@@ -9,7 +9,6 @@ export interface CursorMark {
   readonly x: number; // in W [m]
   readonly y: number;
   readonly yaw: number; // [rad]
-  readonly place: number; // along the road [m]
 }
 
 /** The car under the cursor: of the run, or of a lap that is compared; null without a cursor. */
@@ -19,7 +18,7 @@ export function cursorMark(): CursorMark | null {
     const history = plotted();
     const row = firstSince(history.column(Column.time_s), time - 1e-9);
     const at = (column: number): number => history.column(column)[row] ?? NaN;
-    const mark = { x: at(Column.x_m), y: at(Column.y_m), yaw: at(Column.yaw_rad), place: at(Column.s_m) };
+    const mark = { x: at(Column.x_m), y: at(Column.y_m), yaw: at(Column.yaw_rad) };
     return Number.isFinite(mark.x) ? mark : null;
   }
   const on = cursorPlace.value;
@@ -29,7 +28,7 @@ export function cursorMark(): CursorMark | null {
   if (!Number.isFinite(x)) return null;
   const ahead = on.place + 2;
   const yaw = Math.atan2(at('y_m', ahead) - y, at('x_m', ahead) - x);
-  return { x, y, yaw: Number.isFinite(yaw) ? yaw : 0, place: on.place };
+  return { x, y, yaw: Number.isFinite(yaw) ? yaw : 0 };
 }
 
 /** Farther than this from where the car has been, a click on the road means nothing [m]. */

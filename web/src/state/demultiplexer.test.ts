@@ -4,7 +4,7 @@ import { Column, costColumn } from './columns';
 import { beginSession, frameListeners, receive, rewind } from './demultiplexer';
 import { events } from './event_log';
 import { bestLap, laps } from './laps';
-import { gapsToLimit, limit, whyNoLimit } from './limit';
+import { gapToLimit, limit, whyNoLimit } from './limit';
 import { live } from './live';
 import { road } from './road';
 import { run } from './run';
@@ -58,9 +58,7 @@ describe('a message', () => {
     expect(whyNoLimit.value).toBe('');
     receive('/chicane/limit', { is_known: true, lap_time_s: 20 } as Limit, 0);
     receive('/chicane/lap', { lap: 1, lap_time_s: 22, sector_times_s: Float64Array.of(5, 6, 11) } as Lap, 0);
-    await vi.waitFor(() =>
-      expect(laps.value.map((lap) => gapsToLimit(lap, limit.value).lap)).toEqual([expect.closeTo(10)]),
-    );
+    await vi.waitFor(() => expect(laps.value.map((lap) => gapToLimit(lap, limit.value))).toEqual([expect.closeTo(10)]));
   });
 });
 

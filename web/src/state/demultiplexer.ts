@@ -98,7 +98,7 @@ function receiveFrame(frame: Frame, now: number): void {
     past.keepNew(frame);
     keepRecent(frame, last.plan);
     noteEvents(frame, before);
-    noteFaultMarks(frame, before, run.value?.fault_names ?? []);
+    noteFaultMarks(frame, before);
     noteLap(frame);
   }
   if (isShown) for (const listener of frameListeners) listener(frame, now);
@@ -121,7 +121,7 @@ export function receivePastLeft(left: number, now: number): void {
   for (const frame of frames) {
     keepFrame(frame, now, true, false); // the newest one is shown already
     noteEvents(frame, before);
-    noteFaultMarks(frame, before, run.value?.fault_names ?? []);
+    noteFaultMarks(frame, before);
     noteLap(frame);
     if (isShown) for (const listener of frameListeners) listener(frame, now);
     before = frame;

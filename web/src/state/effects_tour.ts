@@ -15,7 +15,7 @@ const isSlowerThan = (mph: number) => (frame: Frame) => isDriving(frame) && fram
 /** Farther from its line than the preset ever is, or stopped by the guard. */
 const isWide = (frame: Frame): boolean => Math.abs(frame.lateral_error_m) > 1.5 || frame.rung !== 0;
 
-interface Effect extends Pick<Step, 'name' | 'title' | 'text' | 'mode' | 'where'> {
+interface Effect extends Pick<Step, 'name' | 'title' | 'text'> {
   readonly key: string;
   /** What it is set to, or beyond. */
   readonly to: number;
@@ -28,6 +28,8 @@ interface Effect extends Pick<Step, 'name' | 'title' | 'text' | 'mode' | 'where'
 function stepOf({ key, to, tasks, isSeen, ...rest }: Effect): Step {
   return {
     ...rest,
+    mode: 'try',
+    where: `.setting[data-key="${key}"]`,
     search: key,
     tasks: [...tasks, 'Take it back'],
     isPossible: () => run.value?.controller === 'cubic-mpc' && settings.value.has(key),
@@ -47,8 +49,6 @@ const EFFECTS: readonly Effect[] = [
     text:
       'The plan looks N steps ahead: 25 of 0.025 s, the short line before the car. The longer it is, the more a ' +
       'higher speed saves: N = 40 is faster. Much longer plans cut the bends. Search for it; ↺ takes it back.',
-    mode: 'try',
-    where: '[data-key="cubic_mpc.horizon_steps"]',
     key: 'cubic_mpc.horizon_steps',
     to: 40,
     tasks: ['Set N, “Horizon steps”, to 40', 'Watch it drive faster than 60 mph: the preset reaches 50'],
@@ -60,8 +60,6 @@ const EFFECTS: readonly Effect[] = [
     text:
       'dt is the time between two points of the plan. With 25 steps of 0.1 s the plan is four times as long and four ' +
       'times as coarse: the car drives up to 100 mph, and strays from its line where it should turn.',
-    mode: 'try',
-    where: '[data-key="cubic_mpc.step_length_s"]',
     key: 'cubic_mpc.step_length_s',
     to: 0.1,
     tasks: ['Set dt, “Step length”, to 0.1 s', 'Watch it stray 1.5 m from its line, or the guard stop it'],
@@ -73,8 +71,6 @@ const EFFECTS: readonly Effect[] = [
     text:
       'The reference of 180 mph is never reached: the weight of the speed error pulls against the weight of the ' +
       'throttle. The write-up has 80 for 50 mph, and 48 for its fast lap. With 160 the same controller drives 29 mph.',
-    mode: 'try',
-    where: '[data-key="cubic_mpc.weight_throttle"]',
     key: 'cubic_mpc.weight_throttle',
     to: 160,
     tasks: ['Set “Weight throttle” to 160', 'Watch it slow down below 33 mph'],
@@ -86,8 +82,6 @@ const EFFECTS: readonly Effect[] = [
     text:
       'Commands act 100 ms late, and the controller rolls its state forward by 100 ms before it plans. With 300 ms ' +
       'it still compensates 100: it corrects errors that are being corrected already, and weaves.',
-    mode: 'try',
-    where: '.setting[data-key="latency_ms"]',
     key: 'latency_ms',
     to: 300,
     tasks: ['Set the latency to 300 ms', 'Watch it stray 1.5 m from its line, or the guard stop it'],

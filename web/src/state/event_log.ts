@@ -1,14 +1,12 @@
 import { begunBits, hasBit } from '../lib/bits';
 import { store } from '../lib/store';
-import { nameInWords, rungInWords, type Severity, statusInWords } from '../lib/words';
-import type { Change, Frame } from '../protocol/topics';
+import { nameInWords, rungInWords, type Sentence, statusInWords } from '../lib/words';
+import { type Change, type Frame, timeOf } from '../protocol/topics';
 import { shortly } from './lap_setup';
 
 /** An event of the run: when it began and, once it has ended, how long it lasted. */
-export interface RunEvent {
+export interface RunEvent extends Sentence {
   readonly id: number;
-  readonly severity: Severity;
-  readonly text: string;
   readonly time: number; // of the run [s]
   readonly duration: number | null; // null: not over yet, or without a duration
   readonly isChange?: boolean; // somebody changed something; all others are found in frames
@@ -22,7 +20,7 @@ export const events = store.signal<readonly RunEvent[]>('moment', []);
 interface Watch {
   readonly name: string;
   /** The condition in this frame, or null for none. A different text is a different event. */
-  look(frame: Frame): { severity: Severity; text: string } | null;
+  look(frame: Frame): Sentence | null;
 }
 
 const WATCHES: readonly Watch[] = [
@@ -57,7 +55,7 @@ function add(event: RunEvent): void {
   events.value = [...events.value.slice(0, before), event, ...events.value.slice(before)].slice(0, KEPT);
 }
 
-function follow(key: string, now: { severity: Severity; text: string } | null, time: number): void {
+function follow(key: string, now: Sentence | null, time: number): void {
   const running = found.open.get(key);
   if (running && running.text !== now?.text) {
     const ended = { ...running, duration: time - running.time };
@@ -90,7 +88,8 @@ export function noteNotices(notices: readonly string[]): void {
 
 export const faultInWords = (name: string): string => nameInWords(name.replace(/^fault\./, ''));
 
-export function noteChange({ stamp, name, value }: Change): void {
+export function noteChange(change: Change): void {
+  const { name, value } = change;
   const isPlan = name === 'run.racing_line';
   if (/^(manual|fault|run)\./.test(name) && !isPlan) return; // noteEvents() or the page itself shows these
   const [grip, ...more] = value.split(', ');
@@ -105,7 +104,7 @@ export function noteChange({ stamp, name, value }: Change): void {
     id: kept.nextId++,
     severity: isPlan ? 'good' : 'unknown',
     text: isPlan ? planned : `${name} set to ${shortly(value)}`,
-    time: stamp.sec + stamp.nsec / 1e9,
+    time: timeOf(change),
     duration: null,
     isChange: true,
   });

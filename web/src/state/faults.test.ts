@@ -28,9 +28,9 @@ describe('faults', () => {
   it('leave a mark where they began', () => {
     const well = { ...UNKNOWN_FRAME, active_faults: 0 };
     const ill = { ...well, active_faults: 2, time_s: 4, x_m: 10, y_m: 20 };
-    noteFaultMarks(well, null, ['link_lost', 'half_grip']);
-    noteFaultMarks(ill, well, ['link_lost', 'half_grip']);
-    noteFaultMarks({ ...ill, time_s: 5 }, ill, ['link_lost', 'half_grip']);
-    expect(faultMarks.value).toEqual([{ name: 'half_grip', time: 4, x: 10, y: 20 }]);
+    noteFaultMarks(well, null);
+    noteFaultMarks(ill, well);
+    noteFaultMarks({ ...ill, time_s: 5 }, ill);
+    expect(faultMarks.value).toEqual([{ x: 10, y: 20 }]);
   });
 });

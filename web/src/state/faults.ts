@@ -1,6 +1,7 @@
 import { begunBits, hasBit } from '../lib/bits';
+import type { Point } from '../lib/math';
 import { store } from '../lib/store';
-import type { Change, Frame } from '../protocol/topics';
+import { type Change, type Frame, timeOf } from '../protocol/topics';
 import { faultInWords } from './event_log';
 import { entryOf } from './settings';
 
@@ -8,15 +9,8 @@ import { entryOf } from './settings';
 
 const MARKS_KEPT = 60;
 
-/** Where and when a fault began. */
-export interface FaultMark {
-  readonly name: string;
-  readonly time: number; // of the run [s]
-  readonly x: number; // in W [m]
-  readonly y: number;
-}
-
-export const faultMarks = store.signal<readonly FaultMark[]>('moment', []);
+/** Where faults began, in W [m]. */
+export const faultMarks = store.signal<readonly Point[]>('moment', []);
 /** When each fault that was switched on will end [s], by its key. */
 const untils = new Map<string, number>();
 
@@ -28,21 +22,17 @@ export function forgetFaultMarks(): void {
 }
 
 /** Takes from a change of a switch how long its fault will last: "true", or "+5*0.5". */
-export function noteFaultChange({ stamp, name, value }: Change): void {
+export function noteFaultChange(change: Change): void {
+  const { name, value } = change;
   if (!name.startsWith('fault.')) return;
   const own = entryOf(name)?.fault?.duration_s ?? NaN;
   const told = /^\+([\d.e-]+)/.exec(value)?.[1];
   if (value === 'false') untils.delete(name);
-  else untils.set(name, stamp.sec + stamp.nsec / 1e9 + (told === undefined ? own : Number(told)));
+  else untils.set(name, timeOf(change) + (told === undefined ? own : Number(told)));
 }
 
-export function noteFaultMarks(frame: Frame, before: Frame | null, names: readonly string[]): void {
-  const marks = begunBits(frame.active_faults, before?.active_faults).map((bit) => ({
-    name: names[bit] ?? `#${bit + 1}`,
-    time: frame.time_s,
-    x: frame.x_m,
-    y: frame.y_m,
-  }));
+export function noteFaultMarks({ active_faults, x_m: x, y_m: y }: Frame, before: Frame | null): void {
+  const marks = begunBits(active_faults, before?.active_faults).map(() => ({ x, y }));
   if (marks.length > 0) faultMarks.value = [...faultMarks.value, ...marks].slice(-MARKS_KEPT);
 }
 

@@ -1,4 +1,4 @@
-import { mix } from '../lib/math';
+import { mix, mod } from '../lib/math';
 import type { Frame } from '../protocol/topics';
 import { LONGEST_SILENCE_S } from './silence';
 
@@ -174,7 +174,7 @@ export class LapSamples {
     if (slot?.lap !== lap || slot.isComplete || last?.lap !== lap) return;
     const rest = time - last.time_s;
     if (!(rest >= 0 && rest <= LONGEST_SILENCE_S)) return; // a lap of another run with the same number
-    if (!Number.isFinite(this.#line)) this.#line = this.#onRoad(last.s_m + last.speed_mps * rest);
+    if (!Number.isFinite(this.#line)) this.#line = mod(last.s_m + last.speed_mps * rest, this.#length);
     this.#fill(last, this.#after(last, { ...last, s_m: this.#line, time_s: time }));
     slot.isComplete = true;
     slot.time = time;
@@ -183,11 +183,6 @@ export class LapSamples {
 
   get #done(): Slot[] {
     return this.#slots.filter((slot) => slot.lap >= 0 && slot.isComplete);
-  }
-
-  /** A distance along the road, wrapped to one lap. */
-  #onRoad(s: number): number {
-    return s - this.#length * Math.floor(s / this.#length);
   }
 
   get #spacing(): number {
@@ -214,7 +209,7 @@ export class LapSamples {
       return;
     }
     const line = between(last, moment, Math.min(1, Math.max(0, rest / (rest + moment.time_s))));
-    if (!Number.isFinite(this.#line)) this.#line = this.#onRoad(line.s_m);
+    if (!Number.isFinite(this.#line)) this.#line = mod(line.s_m, this.#length);
     // Each crossing is found a little elsewhere: the first point belongs to the new lap, whatever this one says.
     const first = this.#after(last, { ...line, s_m: this.#firstPoint * this.#spacing }).s_m;
     if (isHeard) this.#fill(last, { ...line, time_s: lastLapTime }, -Infinity, first);
@@ -262,7 +257,7 @@ export class LapSamples {
 }
 
 /** The index of a point, wrapped to one lap. */
-const index = (point: number): number => ((point % POINTS) + POINTS) % POINTS;
+const index = (point: number): number => mod(point, POINTS);
 
 /** The same values from the point `first` on. */
 function rotated(values: Float64Array, first: number): Float64Array {

@@ -1,5 +1,5 @@
 import { tidy } from '../lib/scale';
-import { nameInWords } from '../lib/words';
+import { lastPart, nameInWords } from '../lib/words';
 import type { Setting } from '../protocol/source';
 import type { Lap } from '../protocol/topics';
 
@@ -33,9 +33,7 @@ export function driverOf({ by_hand_share: share }: Setup): string {
 
 /** All that is unusual about a lap, in a few words each. */
 export function setupInWords(lap: Setup, start: ReadonlyMap<string, Setting>): string[] {
-  const settings = [...changesOf(lap, start)].map(
-    ([key, text]) => `${nameInWords(key.split('.').at(-1) ?? key)} ${shortly(text)}`,
-  );
+  const settings = [...changesOf(lap, start)].map(([key, text]) => `${nameInWords(lastPart(key))} ${shortly(text)}`);
   return [
     ...[driverOf(lap)].filter((text) => text !== ''),
     ...lap.faults.map((name) => `fault: ${nameInWords(name)}`),

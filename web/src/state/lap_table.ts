@@ -1,33 +1,14 @@
 import { csv } from '../lib/csv';
 import type { Lap, Limit } from '../protocol/topics';
 import { LAP_CHANNELS, type LapSamples } from './lap_samples';
-import { gapsToLimit } from './limit';
+import { gapToLimit } from './limit';
 
-export interface LapBests {
-  /** Fastest clean lap, or the fastest if none is clean; −1 without laps. The first counts while there is no other. */
-  readonly lap: number;
-  readonly time: number;
-  readonly sectors: readonly number[];
-  readonly topSpeed: number;
-}
-
-const least = (values: readonly number[]): number => values.reduce((a, b) => (b < a || Number.isNaN(a) ? b : a), NaN);
-
-/**
- * The best value of each column over the clean laps, or over all laps if none is clean. The first lap begins from
- * standstill: it is no measure for others.
- */
-export function bestsOf(laps: readonly Lap[]): LapBests {
+/** The fastest clean lap, or the fastest if none is clean. The first begins from standstill: it counts when alone. */
+export function bestOf(laps: readonly Lap[]): Lap | undefined {
   const clean = laps.filter(({ is_clean }) => is_clean);
   const flying = clean.filter(({ lap }) => lap > 1);
-  const count = flying.length > 0 ? flying : clean.length > 0 ? clean : laps;
-  const time = least(count.map(({ lap_time_s }) => lap_time_s));
-  return {
-    lap: count.find(({ lap_time_s }) => lap_time_s === time)?.lap ?? -1,
-    time,
-    sectors: [0, 1, 2].map((sector) => least(count.map(({ sector_times_s }) => sector_times_s[sector] ?? NaN))),
-    topSpeed: -least(laps.map(({ top_speed_mps }) => -top_speed_mps)),
-  };
+  const [first, ...others] = flying.length > 0 ? flying : clean.length > 0 ? clean : laps;
+  return others.reduce((a, b) => (b.lap_time_s < (a?.lap_time_s ?? NaN) ? b : a), first);
 }
 
 const SECTORS = [1, 2, 3] as const;
@@ -43,7 +24,7 @@ export function lapsCsv(laps: readonly Lap[], limit: Limit | null): string {
     top_speed_mps: lap.top_speed_mps,
     min_edge_distance_m: lap.min_edge_distance_m,
     rms_lateral_error_m: lap.rms_lateral_error_m,
-    gap_to_limit_percent: gapsToLimit(lap, limit).lap,
+    gap_to_limit_percent: gapToLimit(lap, limit),
     by_hand_share: lap.by_hand_share,
     settings: lap.setting_names.map((name, i) => `${name}=${lap.setting_values[i]}`).join(' '),
   }));

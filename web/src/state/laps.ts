@@ -2,7 +2,7 @@ import { computed } from '@preact/signals';
 import { store } from '../lib/store';
 import type { Frame, Lap } from '../protocol/topics';
 import { LapSamples, momentOf } from './lap_samples';
-import { bestsOf } from './lap_table';
+import { bestOf } from './lap_table';
 import { run } from './run';
 
 const LAPS_KEPT = 1000;
@@ -14,7 +14,7 @@ export const laps = store.signal<readonly Lap[]>('moment', []);
 /** The fastest lap time that a frame has reported [s], for runs that report no details of their laps. */
 const bestSeen = store.signal('moment', NaN);
 /** Time of the best lap [s], the same everywhere on the page; not-a-number before the first lap. */
-export const bestLap = computed(() => (laps.value.length > 0 ? bestsOf(laps.value).time : bestSeen.value));
+export const bestLap = computed(() => bestOf(laps.value)?.lap_time_s ?? bestSeen.value);
 /** Laps as functions of the distance, sampled from frames. */
 export const lapSamples = new LapSamples();
 
@@ -62,8 +62,8 @@ export function receiveLap(lap: Lap): void {
     : [...before.filter((each) => each.lap !== lap.lap), lap].sort((a, b) => a.lap - b.lap);
   lapSamples.complete(lap.lap - 1, lap.lap_time_s); // after the last lap no frame says so
   sampledLaps.value = lapSamples.completed;
-  const best = all.length > LAPS_KEPT ? bestsOf(all).lap : NaN;
-  table.kept = all.filter((each, i) => i >= all.length - LAPS_KEPT || each.lap === best);
+  const best = all.length > LAPS_KEPT ? bestOf(all) : undefined;
+  table.kept = all.filter((each, i) => i >= all.length - LAPS_KEPT || each === best);
   publish();
 }
 

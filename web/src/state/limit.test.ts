@@ -6,7 +6,7 @@ import { UNKNOWN_LIMIT } from '../protocol/messages';
 import type { Limit } from '../protocol/topics';
 import { timeGap } from './comparison';
 import { LapSamples, UNKNOWN_MOMENT } from './lap_samples';
-import { gapsToLimit, limitChannel, limit as limitOfThePage, limitTimeAt, receiveLimit, whyNoLimit } from './limit';
+import { gapToLimit, limitChannel, limit as limitOfThePage, limitTimeAt, receiveLimit, whyNoLimit } from './limit';
 import { lapWith } from './test_messages';
 
 const limit: Limit = {
@@ -34,11 +34,6 @@ function samples(): LapSamples {
         s_m: (500 + 10 * (i + 100)) % 1000,
         time_s: since,
         speed_mps: 50,
-        lateral_error_m: 0,
-        steer_rad: 0,
-        throttle: 0,
-        x_m: 0,
-        y_m: 0,
       },
       20,
     );
@@ -60,27 +55,12 @@ describe('the limit', () => {
     expect(now()).toEqual([null, '']);
   });
 
-  it('is computed for laps that were driven before it was known', () => {
-    const lap = lapWith(1, 22, { sector_times_s: Float64Array.of(5, 6, 11) });
-    expect(gapsToLimit(lap, limit)).toEqual({
-      lap: expect.closeTo(10),
-      sectors: [expect.closeTo(0), expect.closeTo(20), expect.closeTo(10)],
-    });
-    expect(gapsToLimit(lap, null)).toEqual({ lap: NaN, sectors: [NaN, NaN, NaN] });
-  });
-
-  it('holds for laps from first_lap on', () => {
-    expect(gapsToLimit(lapWith(4, 22), { ...limit, first_lap: 5 }).lap).toBeNaN();
-    expect(gapsToLimit(lapWith(5, 22), { ...limit, first_lap: 5 }).lap).toBeCloseTo(10);
-  });
-
-  it('is taken from the lap if it was sent', () => {
-    const told = lapWith(1, 22, {
-      gap_to_limit_percent: 7,
-      sector_gaps_to_limit_percent: Float64Array.of(1, 2, 3),
-    });
-    expect(gapsToLimit(told, limit)).toEqual({ lap: 7, sectors: [1, 2, 3] });
-    expect(gapsToLimit(lapWith(1, 22), null).lap).toBeNaN();
+  it('is compared with a lap: as was sent, or from first_lap on', () => {
+    const lap = lapWith(4, 22);
+    expect(gapToLimit(lap, limit)).toBeCloseTo(10);
+    expect(gapToLimit(lap, null)).toBeNaN();
+    expect(gapToLimit(lap, { ...limit, first_lap: 5 })).toBeNaN();
+    expect(gapToLimit({ ...lap, gap_to_limit_percent: 7 }, limit)).toBe(7);
   });
 
   it('is sampled at the points of driven laps', () => {
@@ -168,11 +148,6 @@ describe('a lap against itself as the limit', () => {
             s_m: s[i] ?? NaN,
             time_s: since,
             speed_mps: speed[i] ?? NaN,
-            lateral_error_m: 0,
-            steer_rad: 0,
-            throttle: 0,
-            x_m: 0,
-            y_m: 0,
           },
           lap === 0 ? 0 : lapTime,
         );

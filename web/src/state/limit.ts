@@ -1,4 +1,4 @@
-import { firstSince, mix } from '../lib/math';
+import { firstSince, mix, mod } from '../lib/math';
 import { store } from '../lib/store';
 import type { Lap, Limit } from '../protocol/topics';
 import type { LapChannel, LapSamples } from './lap_samples';
@@ -22,27 +22,11 @@ const COLUMNS: Partial<Record<LapChannel, 'time_s' | 'speed_mps' | 'n_m' | 'x_m'
   y_m: 'y_m',
 };
 
-const gap = (time: number, limit: number | undefined): number => 100 * (time / (limit ?? NaN) - 1);
-
-/**
- * How much slower a lap and its sectors were than the limit [%]: as sent with the lap, or computed where the limit was
- * found later.
- */
-export function gapsToLimit(lap: Lap, limit: Limit | null): { lap: number; sectors: readonly number[] } {
-  const of = limit && lap.lap >= limit.first_lap ? limit : null;
-  const known = (told: number | undefined, computed: number): number =>
-    Number.isFinite(told) ? (told ?? NaN) : computed;
-  return {
-    lap: known(lap.gap_to_limit_percent, gap(lap.lap_time_s, of?.lap_time_s)),
-    sectors: [0, 1, 2].map((i) =>
-      known(lap.sector_gaps_to_limit_percent[i], gap(lap.sector_times_s[i] ?? NaN, of?.sector_times_s[i])),
-    ),
-  };
+/** How much slower a lap was than the limit [%]: as sent with it, or computed where the limit was found later. */
+export function gapToLimit(lap: Lap, limit: Limit | null): number {
+  if (Number.isFinite(lap.gap_to_limit_percent)) return lap.gap_to_limit_percent;
+  return limit && lap.lap >= limit.first_lap ? 100 * (lap.lap_time_s / limit.lap_time_s - 1) : NaN;
 }
-
-/** Distance from `from` on to `to` along a closed road of this length [m], in [0, length). */
-const forward = (from: number, to: number, length: number): number =>
-  to - from - length * Math.floor((to - from) / length);
 
 const drivenTo = new WeakMap<Limit, Float64Array>();
 
@@ -55,7 +39,7 @@ function drivenDistances(limit: Limit, length: number): Float64Array {
   if (known) return known;
   const distances = new Float64Array(limit.s_m.length);
   for (let i = 1; i < distances.length; ++i)
-    distances[i] = (distances[i - 1] ?? NaN) + forward(limit.s_m[i - 1] ?? NaN, limit.s_m[i] ?? NaN, length);
+    distances[i] = (distances[i - 1] ?? NaN) + mod((limit.s_m[i] ?? NaN) - (limit.s_m[i - 1] ?? NaN), length);
   drivenTo.set(limit, distances);
   return distances;
 }
@@ -64,7 +48,7 @@ function drivenDistances(limit: Limit, length: number): Float64Array {
 function valueAt(limit: Limit, column: ArrayLike<number>, length: number, place: number): number {
   if (limit.s_m.length < 2 || !(length > 0) || !Number.isFinite(place)) return NaN;
   const distances = drivenDistances(limit, length);
-  const driven = forward(limit.s_m[0] ?? NaN, place, length);
+  const driven = mod(place - (limit.s_m[0] ?? NaN), length);
   if (driven > (distances.at(-1) ?? NaN) + 1e-3) return NaN; // 1 mm: the lap is closed up to rounding
   const next = Math.min(Math.max(1, firstSince(distances, driven)), distances.length - 1);
   const [from, to] = [distances[next - 1] ?? NaN, distances[next] ?? NaN];

@@ -46,14 +46,9 @@ export function call(name: ServiceName, data?: boolean): void {
   });
 }
 
-/** Asks for another future of the run that goes on. */
-export const ask = (question: string): Promise<AskAnswer> =>
-  operated.source?.ask?.('/what_if', question) ??
-  Promise.resolve({ isTaken: false, message: 'nobody is there to ask' });
-
-/** Begins a race against a second car, or ends it. */
-export const askRival = (question: string): Promise<AskAnswer> =>
-  operated.source?.ask?.('/rival', question) ?? Promise.resolve({ isTaken: false, message: 'nobody is there to ask' });
+/** Asks for another future of the run that goes on; or begins a race against a second car, or ends it. */
+export const ask = (name: '/what_if' | '/rival', question: string): Promise<AskAnswer> =>
+  operated.source?.ask?.(name, question) ?? Promise.resolve({ isTaken: false, message: 'nobody is there to ask' });
 
 /** Whether a setting can be changed now. */
 export const canSet = (key: string): boolean =>

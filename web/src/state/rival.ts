@@ -10,7 +10,7 @@ import { LapSamples } from './lap_samples';
 import { lapSamples } from './laps';
 import { link, notice } from './link';
 import { live } from './live';
-import { askRival, can, canSet, requests } from './operate';
+import { ask, can, canSet, requests } from './operate';
 import { programPage } from './program_page';
 import { type Race, type RacePoses, readRace, sampleRace } from './rival_answer';
 import { run } from './run';
@@ -107,7 +107,7 @@ restartListeners.add(() => void look());
 export async function startRace(wishes: readonly Wish[]): Promise<void> {
   raceProblem.value = '';
   const settings = Object.fromEntries(wishes.map(({ key, value }) => [key, value]));
-  const answer = await askRival(JSON.stringify({ settings }));
+  const answer = await ask('/rival', JSON.stringify({ settings }));
   if (!answer.isTaken) {
     raceProblem.value = answer.message;
     return;
@@ -117,7 +117,7 @@ export async function startRace(wishes: readonly Wish[]): Promise<void> {
 }
 
 export async function endRace(): Promise<void> {
-  await askRival('{}');
+  await ask('/rival', '{}');
   race.value = null;
 }
 

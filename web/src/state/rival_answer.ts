@@ -7,39 +7,21 @@ import { type LapSamples, UNKNOWN_MOMENT } from './lap_samples';
 
 const SAME_S = 0.005;
 
-/** A lap of one car. */
-export interface RaceLap {
-  readonly lap: number;
-  readonly time: number; // [s]
-  readonly isClean: boolean;
-}
-
 export const POSE_COLUMNS = ['time_s', 'x_m', 'y_m', 'yaw_rad', 'steer_rad', 'speed_mps', 'distance_m'] as const;
 export type RacePoses = Readonly<Record<(typeof POSE_COLUMNS)[number], readonly number[]>>;
 
-export interface Race {
-  readonly id: number;
-  readonly state: 'none' | 'building' | 'racing' | 'ended' | 'failed';
-  readonly why: string;
-  readonly a: readonly RaceLap[];
-  readonly b: readonly RaceLap[];
-  /** The newest poses of B. */
-  readonly poses: RacePoses;
-}
+export type Race = Readonly<ReturnType<typeof readRace>>;
+export type RaceLap = Race['a'][number];
 
-const readLaps = (value: unknown): RaceLap[] =>
+const readLaps = (value: unknown) =>
   list(value)
     .map(fields)
-    .map((each) => ({
-      lap: number(each.lap),
-      time: number(each.lap_time_s),
-      isClean: each.is_clean === true,
-    }));
+    .map((each) => ({ lap: number(each.lap), time: number(each.lap_time_s), isClean: each.is_clean === true }));
 
-const STATES: readonly Race['state'][] = ['none', 'building', 'racing', 'ended', 'failed'];
+const STATES = ['none', 'building', 'racing', 'ended', 'failed'] as const;
 
-/** Reads a parsed /rival.json. */
-export function readRace(json: unknown): Race {
+/** Reads a parsed /rival.json: the laps of both cars, and the newest poses of B. */
+export function readRace(json: unknown) {
   const all = fields(json);
   return {
     id: number(all.id),

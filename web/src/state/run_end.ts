@@ -1,6 +1,6 @@
 import { computed } from '@preact/signals';
 import { plural } from '../lib/format';
-import type { Severity } from '../lib/words';
+import { type Severity, sentenceOf } from '../lib/words';
 import { attempt, link } from './link';
 import { run } from './run';
 
@@ -32,10 +32,7 @@ export const runEnd = computed<RunEnd | null>(() => {
 
 function endOf(kind: string, reason: string): RunEnd {
   if (kind === 'finished') return { kind, severity: 'good', title: 'Finished', why: 'All laps that were asked for.' };
-  if (kind === 'stopped') return { kind, severity: 'unknown', title: 'Stopped', why: sentence(reason) };
+  if (kind === 'stopped') return { kind, severity: 'unknown', title: 'Stopped', why: sentenceOf(reason) };
   const isOff = /left the road/.test(reason);
-  return { kind: 'failed', severity: 'bad', title: isOff ? 'Off the road' : 'Not finished', why: sentence(reason) };
+  return { kind: 'failed', severity: 'bad', title: isOff ? 'Off the road' : 'Not finished', why: sentenceOf(reason) };
 }
-
-const sentence = (reason: string): string =>
-  reason === '' ? '' : `${reason[0]?.toUpperCase()}${reason.slice(1)}${reason.endsWith('.') ? '' : '.'}`;

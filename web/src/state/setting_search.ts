@@ -1,4 +1,4 @@
-import { nameInWords } from '../lib/words';
+import { lastPart, nameInWords } from '../lib/words';
 import type { SchemaEntry } from '../protocol/schema';
 
 type Described = Pick<SchemaEntry, 'key' | 'meaning' | 'group' | 'unit'>;
@@ -18,7 +18,7 @@ const SUFFIXES: Readonly<Record<string, string>> = {
 
 /** The last part of a key in words, without the unit, which is shown beside it. */
 export function labelOf({ key, unit }: Pick<SchemaEntry, 'key' | 'unit'>): string {
-  const name = key.split('.').at(-1) ?? key;
+  const name = lastPart(key);
   const suffix = SUFFIXES[unit];
   const bare = suffix !== undefined && name.endsWith(`_${suffix}`) ? name.slice(0, -suffix.length - 1) : name;
   return nameInWords(bare);

@@ -98,7 +98,6 @@ describe('the schema', () => {
     const good = {
       key: 'a.b',
       group: 'a',
-      controller: 'some-one',
       kind: 'number',
       unit: 'm',
       minimum: 0,
@@ -115,7 +114,6 @@ describe('the schema', () => {
       {
         key: 'a.b',
         group: 'a',
-        controller: '',
         kind: 'bool',
         unit: '',
         minimum: null,

@@ -1,6 +1,6 @@
 import { store } from '../lib/store';
 import type { Sentence } from '../lib/words';
-import type { Frame, Situation } from '../protocol/topics';
+import { type Frame, type Situation, timeOf } from '../protocol/topics';
 import { REPLAY_S } from './replay';
 
 // What the program says of the run in each control cycle. The page shows it, and decides nothing.
@@ -10,8 +10,6 @@ export const situation = store.signal<Situation | null>('run', null);
 
 const MOST_KEPT = 1200;
 const kept = store.data('moment', () => ({ recent: [] as Situation[] }));
-
-const timeOf = ({ stamp }: Situation): number => stamp.sec + stamp.nsec / 1e9;
 
 /** Keeps the situations of the last seconds, which may be shown again. */
 export function receiveSituation(message: Situation): void {

@@ -44,7 +44,7 @@ describe('an answer', () => {
     const replies = [{ id: 4, state: 'computing', share: 0.5 }, done];
     vi.stubGlobal('fetch', () => Promise.resolve(told(replies.shift() ?? {})));
     await ask();
-    expect(answer.value?.id).toBe(4);
+    expect(answer.value?.at).toBe(1);
     expect(problem.value).toBe('');
   });
 

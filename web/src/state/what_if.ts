@@ -1,8 +1,8 @@
 import { effect } from '@preact/signals';
 import { refusalInWords } from '../lib/refusal';
-import { tidy } from '../lib/scale';
+import { valueInWords } from '../lib/scale';
 import { store } from '../lib/store';
-import { nameInWords } from '../lib/words';
+import { lastPart, nameInWords, reasonOf } from '../lib/words';
 import type { SchemaEntry } from '../protocol/schema';
 import type { AskAnswer, Setting } from '../protocol/source';
 import { restartListeners } from './demultiplexer';
@@ -114,12 +114,12 @@ export async function ask(): Promise<void> {
   problem.value = '';
   progress.value = 0;
   try {
-    const taken = await (askedLog.value?.ask(question()) ?? askRun(question()));
+    const taken = await (askedLog.value?.ask(question()) ?? askRun('/what_if', question()));
     if (!taken.isTaken) throw new Error(taken.message);
     await waitFor(Number(taken.message), mine);
     if (mine === asking.newest) asked.value = sent;
   } catch (error) {
-    if (mine === asking.newest) problem.value = refusalInWords(error instanceof Error ? error.message : String(error));
+    if (mine === asking.newest) problem.value = refusalInWords(reasonOf(error));
   } finally {
     if (mine === asking.newest) progress.value = null;
   }
@@ -129,8 +129,7 @@ export async function ask(): Promise<void> {
 export function futureNames(): readonly [string, string] {
   const [first, ...others] = asked.value;
   if (!first) return ['as it is', 'what if'];
-  const value = typeof first.value === 'number' ? tidy(first.value) : first.value;
-  const name = `${nameInWords(first.key.split('.').at(-1) ?? first.key)} ${value}`;
+  const name = `${nameInWords(lastPart(first.key))} ${valueInWords(first.value)}`;
   return ['as it is', others.length === 0 ? `with ${name}` : `with ${others.length + 1} changes`];
 }
 

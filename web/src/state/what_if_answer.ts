@@ -1,4 +1,4 @@
-import { columns, fields, list, number, text } from '../lib/json';
+import { columns, type Fields, fields, list, number, text } from '../lib/json';
 import { firstSince, mix } from '../lib/math';
 import type { Course } from './comparison';
 import type { LapChannel } from './lap_samples';
@@ -20,50 +20,10 @@ export const TRACE_COLUMNS = [
 type TraceColumn = (typeof TRACE_COLUMNS)[number];
 export type Trace = Readonly<Record<TraceColumn, readonly number[]>>;
 
-/** The end of a third of a lap. */
-export interface Passage {
-  readonly lap: number;
-  readonly sector: number;
-  readonly time: number; // since the branch [s]
-}
+/** A future as it is read. */
+type Future = Readonly<ReturnType<typeof readFuture>>;
 
-export interface Future {
-  readonly duration: number; // [s]
-  readonly lapTimes: readonly number[]; // [s]
-  readonly largestError: number; // [m]
-  readonly leastEdge: number; // [m]
-  readonly meanSpeed: number; // [m/s]
-  readonly topSpeed: number; // [m/s]
-  readonly offTrack: number; // times
-  readonly interventions: number; // control steps
-  readonly passages: readonly Passage[];
-  readonly trace: Trace;
-}
-
-/** The simulator of ours that stood in for a car that another program simulates. */
-export interface StandIn {
-  readonly plant: string;
-  /** For so long before the moment ours drove from the same place, to be compared [s]. */
-  readonly compared: number;
-  /** And came so far from the car that was driven [m]. */
-  readonly apart: number;
-}
-
-export interface WhatIfAnswer {
-  readonly id: number;
-  /** The moment of the branch, on the run's time line [s]. */
-  readonly at: number;
-  /** Up to here the first future is what was driven; beyond, what would be without the change [s]. */
-  readonly knownUntil: number;
-  /** Whether the run came out the same, bit for bit, when it was computed again. */
-  readonly isExact: boolean;
-  /** Why the second future ended early; empty when it did not. */
-  readonly endReason: string;
-  /** Null where the run's own car drove both futures. */
-  readonly standIn: StandIn | null;
-  readonly was: Future;
-  readonly branch: Future;
-}
+export type WhatIfAnswer = Readonly<ReturnType<typeof readAnswer>>;
 
 /** What the program says of a question: being computed, answered, or failed. */
 export type WhatIfState =
@@ -71,28 +31,32 @@ export type WhatIfState =
   | { readonly kind: 'failed'; readonly id: number; readonly why: string }
   | { readonly kind: 'done'; readonly id: number; readonly answer: WhatIfAnswer };
 
-function readFuture(value: unknown): Future {
-  const all = fields(value);
-  return {
-    duration: number(all.duration_s),
-    lapTimes: list(all.lap_times_s).map((each) => number(each)),
-    largestError: number(all.max_abs_lateral_error_m),
-    leastEdge: number(all.min_edge_distance_m),
-    meanSpeed: number(all.mean_speed_mps),
-    topSpeed: number(all.top_speed_mps),
-    offTrack: number(all.off_track_events),
-    interventions: number(all.interventions),
-    passages: list(all.passages)
-      .map(fields)
-      .map((each) => ({ lap: number(each.lap), sector: number(each.sector), time: number(each.time_s) })),
-    trace: columns(all.trace, TRACE_COLUMNS),
-  };
-}
+/** One future; passages are the ends of thirds of laps, by the time since the branch [s]. */
+const readFuture = ({ min_edge_distance_m, interventions, passages, trace }: Fields) => ({
+  leastEdge: number(min_edge_distance_m), // [m]
+  interventions: number(interventions), // control steps
+  passages: list(passages)
+    .map(fields)
+    .map((each) => ({ lap: number(each.lap), sector: number(each.sector), time: number(each.time_s) })),
+  trace: columns(trace, TRACE_COLUMNS),
+});
 
-function readStandIn(value: unknown): StandIn | null {
-  const { plant, compared_s, apart_m } = fields(value);
-  return typeof plant === 'string' ? { plant, compared: number(compared_s), apart: number(apart_m) } : null;
-}
+/**
+ * The simulator of ours that stood in for a car that another program simulates: so long before the moment it drove from
+ * the same place, to be compared [s], and came so far from the car that was driven [m]. Null where the run's own car
+ * drove both futures.
+ */
+const readStandIn = ({ plant, compared_s, apart_m }: Fields) =>
+  typeof plant === 'string' ? { plant, compared: number(compared_s), apart: number(apart_m) } : null;
+
+const readAnswer = (all: Fields) => ({
+  at: number(all.at_s), // the moment of the branch, on the run's time line [s]
+  isExact: all.is_exact === true, // the run came out the same, bit for bit, when it was computed again
+  endReason: text(all.end_reason), // why the second future ended early; empty when it did not
+  standIn: readStandIn(fields(all.stand_in)),
+  was: readFuture(fields(all.was)),
+  branch: readFuture(fields(all.branch)),
+});
 
 /** Reads a parsed /what_if.json; null for one without a question. */
 export function readWhatIf(json: unknown): WhatIfState | null {
@@ -100,18 +64,7 @@ export function readWhatIf(json: unknown): WhatIfState | null {
   const id = number(all.id);
   if (all.state === 'computing') return { kind: 'computing', id, share: number(all.share) };
   if (all.state === 'failed') return { kind: 'failed', id, why: String(all.why) };
-  if (all.state !== 'done') return null;
-  const answer = {
-    id,
-    at: number(all.at_s),
-    knownUntil: number(all.known_until_s),
-    isExact: all.is_exact === true,
-    standIn: readStandIn(all.stand_in),
-    endReason: text(all.end_reason),
-    was: readFuture(all.was),
-    branch: readFuture(all.branch),
-  };
-  return { kind: 'done', id, answer };
+  return all.state === 'done' ? { kind: 'done', id, answer: readAnswer(all) } : null;
 }
 
 /** A column of a trace at a distance along the road; not-a-number where it was not driven. */
@@ -188,7 +141,7 @@ export function futureCourses(
 }
 
 /** Whose car drove both futures, and how far it is to be trusted, for a car that another program simulates. */
-export function trustOf({ plant, compared, apart }: StandIn): string {
+export function trustOf({ plant, compared, apart }: NonNullable<WhatIfAnswer['standIn']>): string {
   const whose = `Both futures are driven by our own car (${plant}), from where your simulator's car was.`;
   if (!(compared >= 1)) return `${whose} The run is too young to say how well it stands in.`;
   const over = `Over the ${compared.toFixed(0)} s before, from the same place`;

@@ -1,5 +1,6 @@
 import { lapTime } from '../lib/format';
 import { store } from '../lib/store';
+import { Button, Refusal, Select } from '../parts/controls';
 import { watchBoth } from '../recording/what_if_ghost';
 import { toAsk } from '../state/chosen_settings';
 import { chosen, futures } from '../state/compared';
@@ -35,42 +36,29 @@ const kept = store.signal<readonly Wish[] | null>('page', null);
 
 export const canDriveBoth = (): boolean => offered().length > 0 && canAsk();
 
-const SPANS: readonly { span: Span; label: string }[] = [
-  { span: '10', label: '10 s' },
-  { span: '30', label: '30 s' },
-  { span: 'lap', label: 'a lap' },
+const SPANS: readonly { value: Span; label: string }[] = [
+  { value: '10', label: '10 s' },
+  { value: '30', label: '30 s' },
+  { value: 'lap', label: 'a lap' },
 ];
 
 /** From when, and for how long, as words of a sentence. */
 export function WhenView() {
   const cursor = cursorTime.value;
+  const moments: readonly { value: From; label: string; disabled?: boolean }[] = [
+    { value: 'now', label: askedLog.value ? 'here' : 'now' },
+    { value: 'line', label: 'the line' },
+    {
+      value: 'cursor',
+      label: `the cursor${cursor === null ? '' : `, ${lapTime(cursor)}`}`,
+      disabled: cursor === null && from.value !== 'cursor',
+    },
+  ];
   return (
     <p class="when">
       Both drive from{' '}
-      <select
-        aria-label="From when"
-        value={from.value}
-        onChange={(event) => (from.value = event.currentTarget.value as From)}
-      >
-        <option value="now">{askedLog.value ? 'here' : 'now'}</option>
-        <option value="line">the line</option>
-        <option value="cursor" disabled={cursor === null && from.value !== 'cursor'}>
-          the cursor{cursor === null ? '' : `, ${lapTime(cursor)}`}
-        </option>
-      </select>{' '}
-      for{' '}
-      <select
-        aria-label="For how long"
-        value={span.value}
-        onChange={(event) => (span.value = event.currentTarget.value as Span)}
-      >
-        {SPANS.map(({ span: value, label }) => (
-          <option key={value} value={value}>
-            {label}
-          </option>
-        ))}
-      </select>
-      .
+      <Select label="From when" value={from.value} choices={moments} choose={(next) => (from.value = next)} /> for{' '}
+      <Select label="For how long" value={span.value} choices={SPANS} choose={(next) => (span.value = next)} />.
     </p>
   );
 }
@@ -88,22 +76,19 @@ export function DriveBothButton() {
     return (
       <div class="row">
         <progress max={1} value={share} aria-label="Computing both futures" />
-        <button type="button" onClick={forgetAnswer}>
-          Cancel
-        </button>
+        <Button act={forgetAnswer}>Cancel</Button>
       </div>
     );
   }
   return (
-    <button
-      type="button"
+    <Button
       class="go primary"
       disabled={!isReady}
       title={isReady ? 'The run as it is, and with the changes, from the same moment' : 'Change a setting first'}
-      onClick={driveBoth}
+      act={driveBoth}
     >
       Drive both
-    </button>
+    </Button>
   );
 }
 
@@ -118,61 +103,48 @@ const changesInWords = (all: readonly Wish[]): string =>
 /** The answer as a sentence, and what can be done with it. */
 export function AnswerView() {
   const found = answer.value;
-  if (problem.value !== '') {
-    return (
-      <p class="refusal" role="alert">
-        {problem.value}
-      </p>
-    );
-  }
+  if (problem.value !== '') return <Refusal text={problem.value} />;
   if (!found) return null;
   const both = futures.value;
   const isKept = kept.value === asked.value;
   const fixed = asked.value.map(({ key }) => key).filter((key) => entryOf(key)?.is_fixed === true);
   return (
     <div class="answer stack">
-      <p role="status" data-testid="what-if-verdict">
+      <p class="value" role="status" data-testid="what-if-verdict">
         <span class="other">{changesInWords(asked.value)}</span>: {verdictOf(found, both ? -both.total : NaN)}
       </p>
       <div class="row">
         {replayLeft.value === null ? (
-          <button
-            type="button"
+          <Button
             title="Both drives on the picture, from the same moment: the car as it is, the ghost as it would be"
-            onClick={() => watchBoth(found)}
+            act={() => watchBoth(found)}
           >
             Watch both
-          </button>
+          </Button>
         ) : (
-          <button type="button" onClick={endReplay}>
-            End watching
-          </button>
+          <Button act={endReplay}>End watching</Button>
         )}
         {both && (
-          <button
-            type="button"
+          <Button
             title="Both futures along the road"
-            onClick={() => {
+            act={() => {
               chosen.value = [both.a.id, both.b.id];
               mode.value = 'understand';
             }}
           >
             Compare
-          </button>
+          </Button>
         )}
         {!askedLog.value && (
-          <button
-            type="button"
+          <Button
             disabled={isKept || fixed.length === asked.value.length}
-            onClick={keep}
+            act={keep}
             title="The run goes on with these settings"
           >
             {isKept ? 'Kept' : 'Keep the change'}
-          </button>
+          </Button>
         )}
-        <button type="button" onClick={forgetAnswer}>
-          Forget it
-        </button>
+        <Button act={forgetAnswer}>Forget it</Button>
       </div>
       {found.endReason !== '' && <p class="soft">The changed run ended: {found.endReason}.</p>}
       {found.standIn && <p class="soft">{trustOf(found.standIn)}</p>}

@@ -1,5 +1,6 @@
 import { plural, UNKNOWN } from '../lib/format';
 import { gateInWords, roadInWords, type Sentence, sightInWords, worstInWords } from '../lib/words';
+import { Sign } from '../parts/controls';
 import type { Frame } from '../protocol/topics';
 import { run } from '../state/run';
 import { solverInWords } from '../state/sentence';
@@ -11,7 +12,7 @@ function Row({ label, sentence, id }: { label: string; sentence: Sentence | null
     <div>
       <dt>{label}</dt>
       <dd data-testid={id}>
-        {sentence ? <span class={`severity ${sentence.severity}`} aria-hidden="true" /> : null}
+        {sentence && <Sign of={sentence.severity} />}
         {sentence?.text ?? UNKNOWN}
       </dd>
     </div>

@@ -1,4 +1,5 @@
 import { store } from '../lib/store';
+import { Button } from '../parts/controls';
 
 /** Where browsers allow no clipboard (addresses without TLS that are not this machine), the text is selected. */
 function copy(field: HTMLInputElement | null, said: (text: string) => void): void {
@@ -20,18 +21,17 @@ export function Copied({ id, label, text }: { id: string; label: string; text: s
       <label for={id}>{label}</label>
       <div class="row apart">
         <input id={id} type="text" readOnly value={text} onFocus={(event) => event.currentTarget.select()} />
-        <button
-          type="button"
+        <Button
           aria-label={`Copy the ${label.toLowerCase()}`}
-          onClick={() =>
+          act={() =>
             copy(document.getElementById(id) as HTMLInputElement | null, (words) => (said.value = { id, text: words }))
           }
         >
           Copy
-        </button>
+        </Button>
       </div>
       <p class="soft" role="status">
-        {said.value?.id === id ? said.value.text : ''}
+        {said.value?.id === id ? said.value.text : '\u00a0'}
       </p>
     </div>
   );

@@ -1,8 +1,9 @@
 import { hasBit } from '../lib/bits';
 import { fixed } from '../lib/format';
 import { LIMITERS, nameInWords } from '../lib/words';
+import { Heads } from '../parts/controls';
 import { Column } from '../state/columns';
-import { bitSharesOf, sharesOf } from '../state/explain';
+import { shareOf } from '../state/explain';
 import { learnedOf } from '../state/learned';
 import { live } from '../state/live';
 import { run } from '../state/run';
@@ -17,18 +18,20 @@ const WINDOW_S = 20;
 function Share({ share }: { share: number }) {
   return (
     <div class="share">
-      <span class="share-bar" aria-hidden="true">
-        <span style={{ width: `${share * 100}%` }} />
-      </span>
-      <span class="unit">{fixed(share * 100, 0)} %</span>
+      <i class="gauge other" aria-hidden="true">
+        <u class="cover" style={{ transform: `scaleX(${share})` }} />
+      </i>
+      <span class="unit keep">{fixed(share * 100, 0)} %</span>
     </div>
   );
 }
 
 function Limiters() {
   void shown.value;
-  const shares = sharesOf(live.plots, Column.speed_limiter, LIMITERS.length, WINDOW_S);
-  const rows = LIMITERS.map((short, i) => ({ short, share: shares[i] ?? 0 })).filter(({ share }) => share > 0.005);
+  const rows = LIMITERS.map((short, i) => ({
+    short,
+    share: shareOf(live.plots, Column.speed_limiter, WINDOW_S, (value) => value === i),
+  })).filter(({ share }) => share > 0.005);
   return (
     <section class="stack" aria-label="What limits the speed">
       <h2>What limited the speed, last {WINDOW_S} s</h2>
@@ -52,31 +55,23 @@ function Constraints() {
   const names = run.value?.constraint_names ?? [];
   const frame = shown.value;
   if (names.length === 0) return null;
-  const shares = bitSharesOf(live.plots, Column.active_now, names.length, WINDOW_S);
   return (
     <section class="stack" aria-label="Constraints">
       <h2>Constraints</h2>
       <table class="constraints">
-        <thead>
-          <tr>
-            <th scope="col">at the limit</th>
-            <th scope="col">now</th>
-            <th scope="col">ahead</th>
-            <th scope="col" class="wide">
-              of the last {WINDOW_S} s
-            </th>
-          </tr>
-        </thead>
+        <Heads of={['at the limit', 'now', 'ahead', `of the last ${WINDOW_S} s`]} />
         <tbody>
           {names.map((name, i) => {
             const [isNow, isAhead] = [hasBit(frame?.active_now ?? 0, i), hasBit(frame?.active_ahead ?? 0, i)];
             return (
-              <tr key={name} class={isNow ? 'now' : isAhead ? 'ahead' : ''}>
-                <th scope="row">{nameInWords(name)}</th>
-                <td>{isNow ? <span class="active-mark">now</span> : <span class="soft">–</span>}</td>
-                <td>{isAhead ? <span class="active-mark">ahead</span> : <span class="soft">–</span>}</td>
+              <tr key={name}>
+                <th scope="row" class={isNow ? 'lost' : ''}>
+                  {nameInWords(name)}
+                </th>
+                <td>{isNow ? <b class="lost">now</b> : <span class="soft">–</span>}</td>
+                <td>{isAhead ? <b class="lost">ahead</b> : <span class="soft">–</span>}</td>
                 <td>
-                  <Share share={shares[i] ?? 0} />
+                  <Share share={shareOf(live.plots, Column.active_now, WINDOW_S, (set) => hasBit(set, i))} />
                 </td>
               </tr>
             );
@@ -112,7 +107,7 @@ export function EngineerView() {
   return (
     <section class="engineer-parts stack" aria-label="Engineer">
       <PlotsView />
-      <div class="blocks">
+      <div class="blocks columns">
         <Limiters />
         <Constraints />
         <ControllerView />

@@ -1,4 +1,5 @@
 import { fixed } from '../lib/format';
+import { Sign } from '../parts/controls';
 import { events } from '../state/event_log';
 
 /** The events of the run, newest first. */
@@ -11,12 +12,12 @@ export function EventsView() {
       ) : (
         <ol class="events" tabIndex={0}>
           {events.value.map(({ id, severity, text, time, duration }) => (
-            <li class="row" key={id}>
-              <span class="event-time">{fixed(time, 2)} s</span>
-              <span class={`severity ${severity}`} aria-hidden="true" />
+            <li class="row line" key={id}>
+              <span class="event-time keep">{fixed(time, 2)} s</span>
+              <Sign of={severity} />
               <span>{text}</span>
               {duration !== null && (
-                <span class="unit">
+                <span class="unit keep">
                   for {duration < 1 ? `${fixed(duration * 1000, 0)} ms` : `${fixed(duration, 1)} s`}
                 </span>
               )}

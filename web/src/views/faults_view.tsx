@@ -4,6 +4,8 @@ import { fixed } from '../lib/format';
 import { clamp } from '../lib/math';
 import { tidy } from '../lib/scale';
 import { store } from '../lib/store';
+import { capital } from '../lib/words';
+import { Button } from '../parts/controls';
 import type { FaultEntry } from '../protocol/schema';
 import { faultInWords } from '../state/event_log';
 import { secondsLeft } from '../state/faults';
@@ -106,14 +108,14 @@ function Parameters({ fault: { key, name }, entry }: { fault: Fault; entry: Faul
   );
   const { strength_meaning: meaning, weakest, strongest } = entry;
   return (
-    <div class="row parameter">
-      <span class="row parameter">
+    <div class="row label">
+      <span class="row label">
         <span>for</span>
         {box(`Duration of ${name} [s]`, duration, (text) => ({ duration: numberIn(text, ...DURATIONS_S) }))}
         <span>s</span>
       </span>
       {meaning !== '' && (
-        <span class="row parameter">
+        <span class="row label">
           {box(`Strength of ${name}: ${meaning}`, strength, (text) => ({
             strength: numberIn(text, weakest, strongest),
           }))}
@@ -132,18 +134,17 @@ function FaultButton({ fault }: { fault: Fault }) {
   const { key, name, meaning, isActive } = fault;
   const left = isActive ? secondsLeft(key, shown.value?.time_s ?? NaN) : NaN;
   return (
-    <button
-      type="button"
+    <Button
       class="fault"
       data-key={key}
       title={meaning}
       aria-pressed={isActive}
       disabled={!canSet(key)}
-      onClick={() => toggleFault(fault)}
+      act={() => toggleFault(fault)}
     >
-      {name}
+      {capital(name)}
       {isActive && <span class="left">{Number.isFinite(left) ? `${fixed(left, 1)} s left` : 'active'}</span>}
-    </button>
+    </Button>
   );
 }
 
@@ -159,7 +160,7 @@ function FaultTable({ all }: { all: readonly Fault[] }) {
             <h3>{title}</h3>
             <ul>
               {members.map((fault) => (
-                <li key={fault.key}>
+                <li key={fault.key} class="stack">
                   <FaultButton fault={fault} />
                   <span class="soft">{fault.meaning}</span>
                   {fault.entry && <Parameters fault={fault} entry={fault.entry} />}
@@ -194,13 +195,13 @@ export function FaultsView() {
         </div>
       )}
       <div class="row">
-        <button type="button" class="plain" onClick={() => (showsAll.value = !showsAll.value)}>
+        <Button class="plain" act={() => (showsAll.value = !showsAll.value)}>
           {showsAll.value ? 'Fewer' : `All ${all.length}, how long and how strong`}
-        </button>
+        </Button>
         {active.length > 0 && (
-          <button type="button" class="plain" onClick={() => active.forEach(({ key }) => set(key, false))}>
+          <Button class="plain" act={() => active.forEach(({ key }) => set(key, false))}>
             Clear all
-          </button>
+          </Button>
         )}
       </div>
       {active.length > 0 && answer && (

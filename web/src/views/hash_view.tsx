@@ -15,7 +15,7 @@ export function HashView() {
   }, []);
   if (!ended?.state_hash) return null;
   return (
-    <p class="end-command" title="The same bits as the program's, as long as nothing was changed while it ran">
+    <p title="The same bits as the program's, as long as nothing was changed while it ran">
       State hash <code data-testid="state-hash">{ended.state_hash}</code>, as{' '}
       <code>CHICANE_SIMD=baseline {commandOf(sharedNow.value)} --fast</code> gives it ({ended.arithmetic} arithmetic).
     </p>

@@ -1,4 +1,5 @@
 import { fixed } from '../lib/format';
+import { Button } from '../parts/controls';
 import { link, notice } from '../state/link';
 import { MODES, type Mode, mode } from '../state/mode';
 import { canSet } from '../state/operate';
@@ -21,7 +22,7 @@ function RunSummary() {
     guardInWords(now),
   ];
   return (
-    <p class="run" title={all.filter((part) => part !== '').join(' · ')}>
+    <p class="run cut" title={all.filter((part) => part !== '').join(' · ')}>
       {now.car} on {now.track}, {now.preset || now.controller}
     </p>
   );
@@ -31,17 +32,16 @@ function Modes() {
   return (
     <nav class="modes" aria-label="Modes">
       {MODES.map((name, i) => (
-        <button
+        <Button
           key={name}
-          type="button"
           id={`mode-${name}`}
           data-label={TITLES[name]}
           aria-current={mode.value === name ? 'page' : undefined}
           aria-keyshortcuts={String(i + 1)}
-          onClick={() => (mode.value = name)}
+          act={() => (mode.value = name)}
         >
           {TITLES[name]}
-        </button>
+        </Button>
       ))}
     </nav>
   );
@@ -52,9 +52,9 @@ function One() {
   const now = oneButton.value;
   if (!now) return null;
   return (
-    <button type="button" class="one" aria-keyshortcuts="Space" disabled={!now.isPossible} onClick={() => now.act()}>
+    <Button class="one" aria-keyshortcuts="Space" disabled={!now.isPossible} act={() => now.act()}>
       {now.label}
-    </button>
+    </Button>
   );
 }
 
@@ -69,23 +69,15 @@ function Notes() {
             {inWords(otherRun.value)}.
           </p>
           <div class="row">
-            {canSet('track') && (
-              <button type="button" onClick={() => void chooseBefore()}>
-                Drive that again
-              </button>
-            )}
-            <button type="button" onClick={forgetOtherRun}>
-              Keep this one
-            </button>
+            {canSet('track') && <Button act={chooseBefore}>Drive that again</Button>}
+            <Button act={forgetOtherRun}>Keep this one</Button>
           </div>
         </div>
       )}
       {notice.value !== null && (
         <div class="note row apart" data-testid="notice">
           <p>{notice.value}</p>
-          <button type="button" onClick={() => (notice.value = null)}>
-            Dismiss
-          </button>
+          <Button act={() => (notice.value = null)}>Dismiss</Button>
         </div>
       )}
     </div>
@@ -96,15 +88,15 @@ export function HeaderView() {
   return (
     <>
       <header class="head">
-        <div class="left">
+        <div class="row line">
           <MenuView />
           <RunSummary />
         </div>
         <Modes />
-        <div class="right">
-          <div class="pills">
+        <div class="row line end">
+          <div class="row line end cut">
             {pills.value.map((text) => (
-              <span key={text.split(',')[0]} class="pill">
+              <span key={text.split(',')[0]} class="pill cut">
                 {text}
               </span>
             ))}

@@ -1,24 +1,25 @@
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import { allShortcuts, GROUPS } from '../lib/keys';
 import { store } from '../lib/store';
+import { Button } from '../parts/controls';
 
 const isHelpOpen = store.signal('page', false);
 export const openHelp = (): void => {
   isHelpOpen.value = true;
 };
 
+interface DialogOptions {
+  readonly isOpen: boolean;
+  readonly title: string;
+  readonly onClose: () => void;
+  readonly close?: string; // what the button that closes it says
+  /** A button that does more than to close it. */
+  readonly answer?: { readonly label: string; readonly act: () => unknown; readonly disabled?: boolean };
+  readonly children: preact.ComponentChildren;
+}
+
 /** A modal dialog, with the browser's handling of focus and Escape. */
-export function Dialog({
-  isOpen,
-  title,
-  onClose,
-  children,
-}: {
-  isOpen: boolean;
-  title: string;
-  onClose: () => void;
-  children: preact.ComponentChildren;
-}) {
+export function Dialog({ isOpen, title, onClose, close = 'Close', answer, children }: DialogOptions) {
   const element = useRef<HTMLDialogElement>(null);
   // With the page, not after its next picture: keys pressed in between would still be the dialog's.
   useLayoutEffect(() => {
@@ -40,6 +41,16 @@ export function Dialog({
         <div class="dialog-body stack">
           <h2>{title}</h2>
           {children}
+          <div class="row end">
+            <Button class={answer ? '' : 'primary'} act={onClose}>
+              {close}
+            </Button>
+            {answer && (
+              <Button class="primary" disabled={answer.disabled} act={answer.act}>
+                {answer.label}
+              </Button>
+            )}
+          </div>
         </div>
       )}
     </dialog>
@@ -52,7 +63,7 @@ export function HelpView() {
   };
   return (
     <Dialog isOpen={isHelpOpen.value} title="Keys" onClose={close}>
-      <div class="help-groups">
+      <div class="columns" style={{ '--least': '250px' }}>
         {GROUPS.map((group) => (
           <section key={group} aria-label={group}>
             <h3>{group}</h3>
@@ -82,11 +93,6 @@ export function HelpView() {
           Foxglove, Lichtblick, your own scripts.
         </p>
       )}
-      <div class="row end">
-        <button type="button" class="primary" onClick={close}>
-          Close
-        </button>
-      </div>
     </Dialog>
   );
 }

@@ -3,6 +3,7 @@ import { useRef } from 'preact/hooks';
 import { scheme, toggleScheme } from '../lib/appearance';
 import { download } from '../lib/download';
 import { nextSpeedUnit, speedUnit } from '../lib/units';
+import { Button } from '../parts/controls';
 import { services } from '../state/link';
 import { mode } from '../state/mode';
 import { call, can, canSet, set } from '../state/operate';
@@ -41,23 +42,23 @@ export function MenuView() {
   const box = useRef<HTMLDivElement>(null);
   const pace = settings.value.get('run.pace');
   const Item = (props: { act: () => void; name?: string; off?: boolean; children: ComponentChildren }) => (
-    <button
-      type="button"
+    <Button
+      class="row apart"
       disabled={props.off}
       aria-keyshortcuts={props.name}
-      onClick={() => {
+      act={() => {
         box.current?.hidePopover();
         props.act();
       }}
     >
       <span>{props.children}</span> {props.name && <kbd>{props.name}</kbd>}
-    </button>
+    </Button>
   );
   return (
     <>
       <button type="button" class="name" popovertarget="menu" title="Menu">
-        <svg viewBox="0 0 20 20" aria-hidden="true">
-          <path d="M5 18c0-6 10-5 10-10 0-3-3-4-3-6" />
+        <svg viewBox="0 0 20 20" width="20" aria-hidden="true">
+          <path d="M5 18c0-6 10-5 10-10 0-3-3-4-3-6" fill="none" stroke="currentColor" stroke-width="2.6" />
         </svg>
         chicane<span class="sr-only">: menu</span>
       </button>
@@ -78,19 +79,18 @@ export function MenuView() {
           </Item>
         )}
         {pace !== undefined && (
-          <div class="pace">
+          <div class="row apart">
             <span id="pace-label">Pace</span>
             <div class="segments" role="group" aria-labelledby="pace-label">
               {PACES.map((each) => (
-                <button
+                <Button
                   key={each}
-                  type="button"
                   aria-pressed={pace === each}
                   disabled={!canSet('run.pace')}
-                  onClick={() => set('run.pace', each)}
+                  act={() => set('run.pace', each)}
                 >
                   {each}×
-                </button>
+                </Button>
               ))}
             </div>
           </div>
@@ -98,7 +98,13 @@ export function MenuView() {
         <hr />
         {settings.value.has('track') && <Item act={openShare}>Share this run …</Item>}
         {settings.value.size > 0 && (
-          <a class="item" href="preset.yaml" download="my-preset.yaml" onClick={savePreset}>
+          <a
+            class="row apart"
+            style={{ color: 'inherit', textDecoration: 'none' }}
+            href="preset.yaml"
+            download="my-preset.yaml"
+            onClick={savePreset}
+          >
             Keep these settings as a preset
           </a>
         )}

@@ -1,6 +1,7 @@
 import { fixed, plural } from '../lib/format';
 import { tidy } from '../lib/scale';
 import { nameInWords } from '../lib/words';
+import { Heads } from '../parts/controls';
 import type { Run } from '../protocol/topics';
 import { run } from '../state/run';
 import { labelOf } from '../state/setting_search';
@@ -58,13 +59,7 @@ function Found({ values }: { values: readonly Identified[] }) {
     <>
       <table class="identified">
         <caption class="sr-only">Parameters that a log found</caption>
-        <thead>
-          <tr>
-            <th scope="col">Found by the log</th>
-            <th scope="col">value</th>
-            <th scope="col">95 % interval</th>
-          </tr>
-        </thead>
+        <Heads of={['Found by the log', 'value', '95 % interval']} />
         <tbody>
           {found.map(({ key, value, low, high }) => (
             <tr key={key}>
@@ -72,7 +67,7 @@ function Found({ values }: { values: readonly Identified[] }) {
                 <Name of={key} />
               </th>
               <td>{tidy(value)}</td>
-              <td>
+              <td class="keep">
                 {tidy(low)} to {tidy(high)}
               </td>
             </tr>

@@ -1,8 +1,9 @@
 import { useComputed } from '@preact/signals';
-import { rangeAboutZero, rangeFromZero, rangeInSteps } from '../draw/axis';
+import { aboutZero, fromZero, rangeInSteps } from '../draw/axis';
 import { fixed } from '../lib/format';
 import { type SpeedUnit, speedUnit } from '../lib/units';
 import { nameInWords } from '../lib/words';
+import { Button } from '../parts/controls';
 import { COST_TERMS, Column, costColumn } from '../state/columns';
 import {
   cursorTime,
@@ -43,10 +44,6 @@ const commands = (sent: number, asked: number, applied: number, factor: number):
   { column: asked, label: 'asked', colour: ASKED, isDashed: true, factor },
   { column: applied, label: 'applied', colour: APPLIED, factor },
 ];
-const aboutZero =
-  (least: number): PlotSpec['range'] =>
-  (columns) =>
-    rangeAboutZero(columns, least);
 
 const BEFORE_COST: readonly PlotSpec[] = [
   {
@@ -85,7 +82,7 @@ const BEFORE_COST: readonly PlotSpec[] = [
       { column: Column.front_tire_use, label: 'front', colour: APPLIED, factor: PERCENT },
       { column: Column.rear_tire_use, label: 'rear', colour: ASKED, factor: PERCENT },
     ],
-    range: (columns) => rangeFromZero(columns, 110),
+    range: fromZero(110),
   },
 ];
 
@@ -95,7 +92,7 @@ const AFTER_COST: readonly PlotSpec[] = [
     unit: 'of each solve',
     decimals: 0,
     series: [{ column: Column.iterations, label: 'iterations', colour: APPLIED }],
-    range: (columns) => rangeFromZero(columns, 5),
+    range: fromZero(5),
     under: drawStatusStrip,
   },
   {
@@ -103,7 +100,7 @@ const AFTER_COST: readonly PlotSpec[] = [
     unit: 'ms',
     decimals: 2,
     series: [{ column: Column.step_time_us, label: 'taken', colour: APPLIED, factor: 1e-3 }],
-    range: (columns) => rangeFromZero(columns, 0.5),
+    range: fromZero(0.5),
   },
 ];
 
@@ -120,44 +117,36 @@ function costSpec(names: readonly string[]): PlotSpec {
     unit: names.length > 0 ? 'of the plan, stacked' : 'of the plan',
     decimals: 1,
     series: names.length > 0 ? layers : [{ column: Column.cost, label: 'all', colour: APPLIED }],
-    range: (columns) => rangeFromZero(columns.slice(-1), 1e-3),
+    range: (columns) => fromZero(1e-3)(columns.slice(-1)),
   };
 }
 
 function Toolbar() {
   return (
     <div class="row" role="group" aria-label="Plots">
-      <button
-        type="button"
+      <Button
         aria-pressed={isFrozen.value}
         aria-keyshortcuts="P"
         title="Hold the plots while the run goes on (P)"
-        onClick={toggleFrozen}
+        act={toggleFrozen}
       >
         {isFrozen.value ? 'Follow' : 'Hold plots'}
-      </button>
+      </Button>
       <div class="segments" role="group" aria-label="Time shown">
         {WINDOWS_S.map((seconds) => (
-          <button
+          <Button
             key={seconds}
-            type="button"
             aria-pressed={windowSeconds.value === seconds && !zoomed.value}
-            onClick={() => {
+            act={() => {
               zoomed.value = null;
               windowSeconds.value = seconds;
             }}
           >
             {seconds} s
-          </button>
+          </Button>
         ))}
       </div>
-      {zoomed.value ? (
-        <button type="button" onClick={thaw}>
-          Reset zoom
-        </button>
-      ) : (
-        <span class="soft wide-only">Drag to zoom</span>
-      )}
+      {zoomed.value ? <Button act={thaw}>Reset zoom</Button> : <span class="soft">Drag to zoom</span>}
     </div>
   );
 }
@@ -166,11 +155,9 @@ function Toolbar() {
 function Mark() {
   if (markTime.value === null) return null;
   return (
-    <div class="plot-mark">
-      <button type="button" aria-keyshortcuts="X" onClick={toggleMark}>
-        Remove the mark{cursorTime.value === null ? '' : `, Δt ${fixed(cursorTime.value - markTime.value, 2)} s`}
-      </button>
-    </div>
+    <Button class="plot-mark" aria-keyshortcuts="X" act={toggleMark}>
+      Remove the mark{cursorTime.value === null ? '' : `, Δt ${fixed(cursorTime.value - markTime.value, 2)} s`}
+    </Button>
   );
 }
 
@@ -181,7 +168,7 @@ export function PlotsView() {
   return (
     <div class="plots-view stack">
       <Toolbar />
-      <div class="plots">
+      <div class="plots columns">
         {[speed.value, ...BEFORE_COST, cost.value, ...AFTER_COST].map((spec) => (
           <TimePlot key={spec.title} spec={spec} />
         ))}

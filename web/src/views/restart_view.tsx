@@ -5,20 +5,18 @@ import { Dialog } from './help_view';
 export function RestartView() {
   const request = pendingConfirmation.value;
   return (
-    <Dialog isOpen={request !== null} title="Restart the run?" onClose={() => confirm(false)}>
+    <Dialog
+      isOpen={request !== null}
+      title="Restart the run?"
+      close="Keep driving"
+      onClose={() => confirm(false)}
+      answer={{ label: 'Restart', act: () => confirm(true) }}
+    >
       <p>
         <code>{request?.key}</code> cannot change while the car drives. The run restarts from standstill; its laps and
         plots are cleared.
       </p>
       <p class="soft">You will not be asked again.</p>
-      <div class="row end">
-        <button type="button" onClick={() => confirm(false)}>
-          Keep driving
-        </button>
-        <button type="button" class="primary" onClick={() => confirm(true)}>
-          Restart
-        </button>
-      </div>
     </Dialog>
   );
 }

@@ -1,4 +1,5 @@
 import { useRef } from 'preact/hooks';
+import { sentenceOf } from '../lib/words';
 import { situation } from '../state/situation';
 
 /** What happens now: `alarm` where a person must know or act. */
@@ -7,9 +8,6 @@ export interface Situation {
   readonly text: string;
   readonly why: string;
 }
-
-const sentenceOf = (text: string): string =>
-  text === '' || text.endsWith('.') ? text : `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
 
 /** The remedy by keys: beside an alarm stand the buttons with these keys. */
 const KEYS_REMEDY = / ?On the dashboard, [^.]*\./;
@@ -32,7 +30,7 @@ export function SentenceView({ of }: { of: Situation }) {
   if (spoken.current.kind !== of.kind) spoken.current = { kind: of.kind, text: of.text };
   const isAlarm = of.kind === 'alarm';
   return (
-    <div class="true" data-testid="why">
+    <div class="true value" data-testid="why">
       <p role={isAlarm ? 'alert' : undefined}>{of.text}</p>
       {of.why !== '' && <small>{of.why}</small>}
       {!isAlarm && (

@@ -1,4 +1,6 @@
-import { type Range, scaleOf, shareOf, tidy, valueAt } from '../lib/scale';
+import { type Range, scaleOf, shareOf, tidy, valueAt, valueInWords } from '../lib/scale';
+import { capital } from '../lib/words';
+import { Button, Refusal, Select } from '../parts/controls';
 import type { SchemaEntry } from '../protocol/schema';
 import type { Setting } from '../protocol/source';
 import { canChange, change, firstValueOf, target, valueShown } from '../state/chosen_settings';
@@ -25,7 +27,7 @@ export function typed(text: string): Setting | null {
 }
 
 const asText = (value: Setting | undefined): string =>
-  typeof value === 'number' ? tidy(value).replace('−', '-') : value === undefined ? '' : String(value);
+  value === undefined ? '' : valueInWords(value).replace('−', '-');
 
 /** A box for a number or a text, sent once it is complete. */
 function ValueBox({ entry, label }: { entry: SchemaEntry; label: string }) {
@@ -93,15 +95,19 @@ export function ChoiceBox({
   const now = String(value ?? '');
   const choices = entry.choices.includes(now) || now === '' ? entry.choices : [now, ...entry.choices];
   return (
-    <select aria-label={label} value={now} disabled={!isPossible} onChange={(event) => put(event.currentTarget.value)}>
-      {choices.map((choice) => (
-        <option key={choice} value={choice} selected={choice === now}>
-          {choice}
-        </option>
-      ))}
-    </select>
+    <Select
+      label={label}
+      value={now}
+      disabled={!isPossible}
+      choices={choices.map((choice) => ({ value: choice, label: choice }))}
+      choose={put}
+    />
   );
 }
+
+const isChoice = ({ kind, choices }: SchemaEntry): boolean => kind === 'choice' || choices.length > 0;
+/** A number has a slider, a box and a unit. */
+const hasUnit = (entry: SchemaEntry): boolean => !isChoice(entry) && entry.kind !== 'bool' && entry.kind !== 'text';
 
 function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
   const value = valueShown(entry.key);
@@ -118,7 +124,7 @@ function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
       />
     );
   }
-  if (entry.kind === 'choice' || entry.choices.length > 0) {
+  if (isChoice(entry)) {
     const put = (choice: string): void => change(entry.key, choice);
     return <ChoiceBox entry={entry} label={label} value={value} isPossible={canChange(entry.key)} put={put} />;
   }
@@ -133,17 +139,15 @@ function Control({ entry, label }: { entry: SchemaEntry; label: string }) {
   );
 }
 
-const inWords = (value: Setting): string => (typeof value === 'number' ? tidy(value) : String(value));
-
 /** A setting with its value before and after. */
 export function ChangeOf({ of: { key, from, to } }: { of: { key: string; from: Setting; to: Setting } }) {
   return (
     <>
-      <code>{key}</code> <span class="was">{inWords(from)}</span>{' '}
+      <code>{key}</code> <s class="soft">{valueInWords(from)}</s>{' '}
       <span role="img" aria-label="to">
         →
       </span>{' '}
-      <b>{inWords(to)}</b>
+      <b>{valueInWords(to)}</b>
     </>
   );
 }
@@ -155,14 +159,14 @@ export const whyFixed = (key: string): string => `Fixed when the run starts. On 
 function Mark({ entry }: { entry: SchemaEntry }) {
   if (entry.is_fixed) {
     return (
-      <span class="restarts" role="img" title={whyFixed(entry.key)} aria-label="fixed when the run starts">
+      <span class="label" role="img" title={whyFixed(entry.key)} aria-label="fixed when the run starts">
         fixed
       </span>
     );
   }
   if (entry.is_live) return null;
   return (
-    <span class="restarts" role="img" title="A change restarts the run" aria-label="restarts the run">
+    <span class="label" role="img" title="A change restarts the run" aria-label="restarts the run">
       ↻
     </span>
   );
@@ -173,7 +177,7 @@ export function SettingMeaning({ entry, label }: { entry: SchemaEntry; label: st
   const { minimum, maximum, unit, meaning, is_live, is_fixed, key } = entry;
   const hasRange = minimum !== null && maximum !== null && maximum > minimum;
   return (
-    <Meaning of={label}>
+    <Meaning of={capital(label)}>
       {meaning}
       {hasRange && <span>{`${tidy(minimum)} to ${tidy(maximum)} ${unit}`}</span>}
       {is_fixed ? <span>{whyFixed(key)}</span> : !is_live && <span>A change restarts the run.</span>}
@@ -191,30 +195,24 @@ export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string 
   const refusal = target.value === 'run' ? refusals.value.get(entry.key) : undefined;
   return (
     <div
-      class={`setting kind-${entry.kind}${isChanged ? ' changed' : ''}`}
+      class={`setting${hasUnit(entry) ? '' : ' is-short'}${isChanged ? ' changed' : ''}`}
       data-key={entry.key}
       title={entry.is_fixed ? whyFixed(entry.key) : undefined}
     >
       <span class="setting-name">
-        <SettingMeaning entry={entry} label={label} />
-        <Mark entry={entry} />
+        <SettingMeaning entry={entry} label={label} /> <Mark entry={entry} />
       </span>
       <Control entry={entry} label={label} />
-      <button
-        type="button"
+      <Button
         class="icon small"
         aria-label={`Reset ${label}`}
         title={start === undefined ? '' : `Back to ${asText(start)}`}
         disabled={!isChanged || !canChange(entry.key)}
-        onClick={() => start !== undefined && change(entry.key, start)}
+        act={() => start !== undefined && change(entry.key, start)}
       >
         ↺
-      </button>
-      {refusal !== undefined && (
-        <p class="refusal" role="alert">
-          {refusal}
-        </p>
-      )}
+      </Button>
+      <Refusal text={refusal} />
     </div>
   );
 }

@@ -1,5 +1,5 @@
 import { plural } from '../lib/format';
-import { tidy } from '../lib/scale';
+import { valueInWords } from '../lib/scale';
 import { store } from '../lib/store';
 import { notice } from '../state/link';
 import { mode } from '../state/mode';
@@ -56,10 +56,8 @@ function Offer() {
       ) : (
         <>
           <p class="soft">
-            {[...shared.choices]
-              .map(([key, value]) => `${key} ${typeof value === 'number' ? tidy(value) : value}`)
-              .join(', ')}
-            , {changes}. Whoever opens it with <code>chicane drive</code> running is asked once, and drives the same.
+            {[...shared.choices].map(([key, value]) => `${key} ${valueInWords(value)}`).join(', ')}, {changes}. Whoever
+            opens it with <code>chicane drive</code> running is asked once, and drives the same.
           </p>
           {fixedChanges.value.length > 0 && (
             <p class="soft" data-testid="share-fixed">
@@ -70,11 +68,6 @@ function Offer() {
           <Copied id="share-command" label="Command" text={commandOf(shared)} />
         </>
       )}
-      <div class="row end">
-        <button type="button" class="primary" onClick={close}>
-          Close
-        </button>
-      </div>
     </Dialog>
   );
 }
@@ -93,10 +86,15 @@ function Question() {
     wantedTexts.value = null;
   };
   const request = wanted.value;
-  const mayDrive = canSet('track');
   const isSame = request?.differences.length === 0;
   return (
-    <Dialog isOpen={request !== null} title="Drive the run of this link?" onClose={decline}>
+    <Dialog
+      isOpen={request !== null}
+      title="Drive the run of this link?"
+      close={isSame ? 'Close' : 'Keep this run'}
+      onClose={decline}
+      {...(isSame ? {} : { answer: { label: 'Drive it', act: accept, disabled: !canSet('track') } })}
+    >
       {request && (
         <>
           {isSame ? (
@@ -104,7 +102,7 @@ function Question() {
           ) : (
             <>
               <p>The run that goes on ends, and this one begins from standstill:</p>
-              <ul class="link-differences stack" data-testid="wanted">
+              <ul class="stack" data-testid="wanted">
                 {request.differences.map((each) => (
                   <li key={each.key}>
                     <ChangeOf of={each} />
@@ -116,16 +114,6 @@ function Question() {
           {request.unknown.length > 0 && (
             <p class="soft">Left out, since a link cannot set it here: {request.unknown.join(', ')}.</p>
           )}
-          <div class="row end">
-            <button type="button" onClick={decline}>
-              {isSame ? 'Close' : 'Keep this run'}
-            </button>
-            {!isSame && (
-              <button type="button" class="primary" disabled={!mayDrive} onClick={() => void accept()}>
-                Drive it
-              </button>
-            )}
-          </div>
         </>
       )}
     </Dialog>

@@ -2,10 +2,11 @@ import type { ComponentChildren } from 'preact';
 import { fixed, lapTime, plural, side, UNKNOWN } from '../lib/format';
 import { clamp, degrees } from '../lib/math';
 import { inSpeedUnit, speedUnit } from '../lib/units';
+import { Button } from '../parts/controls';
 import { signed, toneOf } from '../state/comparison';
-import { bestsOf } from '../state/lap_table';
+import { bestOf } from '../state/lap_table';
 import { lapSamples, laps } from '../state/laps';
-import { gapsToLimit, limit, limitTimeAt } from '../state/limit';
+import { gapToLimit, limit, limitTimeAt } from '../state/limit';
 import { attempt, link } from '../state/link';
 import { call, can, canSet } from '../state/operate';
 import { canReplay, REPLAY_S, replayLeft, startReplay } from '../state/replay';
@@ -22,9 +23,9 @@ import { SentenceView, situationNow } from './sentence_view';
 
 function Speed() {
   return (
-    <p class="speed">
+    <p class="speed row line">
       <b data-testid="speed">{fixed(inSpeedUnit(shown.value?.speed_mps ?? NaN), 0)}</b>
-      <span class="unit">{speedUnit().name}</span>
+      <span class="unit label">{speedUnit().name}</span>
     </p>
   );
 }
@@ -34,10 +35,10 @@ function Bar({ label, share, text, id }: { label: string; share: number; text: s
   const at = 50 * clamp(Number.isFinite(share) ? share : 0, -1, 1);
   return (
     <div class="bar">
-      <span>{label}</span>
-      <i aria-hidden="true">
+      <span class="label">{label}</span>
+      <i class="gauge" aria-hidden="true">
         {/* Moved by transforms, which need no layout in each repaint. */}
-        <u style={{ transform: `translateX(${50 + Math.min(0, at)}%) scaleX(${Math.abs(at) / 100})` }} />
+        <u class="cover" style={{ transform: `translateX(${50 + Math.min(0, at)}%) scaleX(${Math.abs(at) / 100})` }} />
       </i>
       <span class="sr-only" data-testid={id}>
         {text}
@@ -84,8 +85,8 @@ function Cell({
 }) {
   return (
     <p class="cell">
-      <span>{label}</span>
-      <b class={tone} data-testid={id}>
+      <span class="label">{label}</span>
+      <b class={`value ${tone}`} data-testid={id}>
         {children}
       </b>
     </p>
@@ -123,9 +124,9 @@ function Gap() {
 
 function Key({ label, name, isPossible, act }: { label: string; name: string; isPossible: boolean; act: () => void }) {
   return (
-    <button type="button" disabled={!isPossible} aria-keyshortcuts={name} onClick={act}>
+    <Button disabled={!isPossible} aria-keyshortcuts={name} act={act}>
       {label} <kbd>{name}</kbd>
-    </button>
+    </Button>
   );
 }
 
@@ -144,7 +145,7 @@ function Driving() {
       {now ? (
         <SentenceView of={now} />
       ) : (
-        <p class="true">{run.value ? 'Waiting for the car.' : 'Waiting for a run.'}</p>
+        <p class="true value">{run.value ? 'Waiting for the car.' : 'Waiting for a run.'}</p>
       )}
       {isAlarm && (
         <div class="keys row">
@@ -165,7 +166,7 @@ function Driving() {
 function Lost() {
   return (
     <section class="strip alarm" aria-label="Now" data-testid="banner">
-      <div class="true">
+      <div class="true value">
         <p role="alert">
           <span data-testid="end-title">Connection lost</span>.
         </p>
@@ -191,10 +192,10 @@ function Again() {
   });
   return (
     <span class="again">
-      <code>{command}</code>{' '}
-      <button type="button" class="plain" onClick={() => void navigator.clipboard?.writeText(command)}>
+      <code class="cut">{command}</code>{' '}
+      <Button class="plain" act={() => navigator.clipboard?.writeText(command)}>
         Copy
-      </button>
+      </Button>
     </span>
   );
 }
@@ -204,9 +205,8 @@ function Ended() {
   const end = runEnd.value;
   if (!end) return null;
   const all = laps.value;
-  const bests = bestsOf(all);
-  const best = all.find(({ lap }) => lap === bests.lap);
-  const gap = best ? gapsToLimit(best, limit.value).lap : NaN;
+  const best = bestOf(all);
+  const gap = best ? gapToLimit(best, limit.value) : NaN;
   const unclean = all.filter(({ is_clean }) => !is_clean).length;
   const isOver = oneButton.value?.label !== 'Drive again' && run.value?.mode === 'drive';
   return (
@@ -215,7 +215,7 @@ function Ended() {
       aria-label="End of the run"
       data-testid="end-card"
     >
-      <div class="true">
+      <div class="true value">
         <p role="status">
           <span data-testid="end-title">{end.title}</span>. {end.why}
         </p>
@@ -226,12 +226,12 @@ function Ended() {
         )}
         {__PAGE__ && <HashView />}
       </div>
-      <div class="facts">
+      <div class="facts row line">
         <Cell id="end-laps" label="Laps">
           {String(all.length)}
         </Cell>
-        <Cell id="end-best" label={bests.lap === 1 ? 'Best, from standstill' : `Best, lap ${bests.lap || UNKNOWN}`}>
-          {lapTime(bests.time, 3)}
+        <Cell id="end-best" label={best?.lap === 1 ? 'Best, from standstill' : `Best, lap ${best?.lap ?? UNKNOWN}`}>
+          {lapTime(best?.lap_time_s ?? NaN, 3)}
         </Cell>
         {Number.isFinite(gap) && <Cell id="end-gap" label="Above the limit">{`${fixed(gap, 1)} %`}</Cell>}
         {unclean > 0 && (
@@ -241,9 +241,9 @@ function Ended() {
         )}
       </div>
       <div class="keys row">
-        <button type="button" disabled={!canReplay()} onClick={startReplay}>
+        <Button disabled={!canReplay()} act={startReplay}>
           Replay the last {REPLAY_S} s
-        </button>
+        </Button>
       </div>
     </section>
   );

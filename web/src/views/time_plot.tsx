@@ -223,8 +223,11 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
         </h2>
         <p class="row">
           {spec.series.map((series) => (
-            <span key={series.label} class="key">
-              <span class={series.isDashed ? 'stroke dashed' : 'stroke'} style={{ '--tone': toneOf(series.colour) }} />
+            <span
+              key={series.label}
+              class={series.isDashed ? 'key dashed' : 'key'}
+              style={{ '--tone': toneOf(series.colour) }}
+            >
               {spec.series.length > 1 ? `${series.label} ` : ''}
               {spec.series.some(({ isFilled }) => isFilled) ? null : <b>{readout(series, spec.decimals)}</b>}
             </span>
@@ -232,7 +235,7 @@ export function TimePlot({ spec }: { spec: PlotSpec }) {
         </p>
       </header>
       <div class="plot-area" ref={host}>
-        <canvas />
+        <canvas class="cover" />
         <i class="plot-cursor" hidden />
         {spec.series.map(({ label, colour }) => (
           <i key={label} class="plot-dot" style={{ '--tone': toneOf(colour) }} hidden />

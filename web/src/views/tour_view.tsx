@@ -1,6 +1,7 @@
 import { effect } from '@preact/signals';
 import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import { addShortcuts } from '../lib/keys';
+import { Button } from '../parts/controls';
 import { settingWords } from '../state/chosen_settings';
 import { link } from '../state/link';
 import { mode } from '../state/mode';
@@ -35,6 +36,11 @@ function showWhere(): void {
   settingWords.value = step.value.search ?? '';
 }
 
+function goOnThere(): void {
+  goOn();
+  showWhere();
+}
+
 /** The tour is about a run that can be changed. */
 export const isTourOffered = (): boolean =>
   run.value !== null && run.value.mode !== 'replay' && settings.value.size > 0;
@@ -60,7 +66,7 @@ function Heading({ text }: { text: string }) {
   const element = useRef<HTMLHeadingElement>(null);
   useLayoutEffect(() => element.current?.focus(), [text]);
   return (
-    <h2 ref={element} tabIndex={-1}>
+    <h2 ref={element} tabIndex={-1} style={{ outline: 'none' }}>
       {text}
     </h2>
   );
@@ -70,14 +76,9 @@ function Tasks({ of }: { of: Step }) {
   return (
     <ol class="tour-tasks row">
       {of.tasks.map((task, i) => (
-        <li key={task} class={done.value[i] ? 'done' : ''}>
-          <span class="tick" aria-hidden="true">
-            {done.value[i] ? '✓' : ''}
-          </span>
-          <span>
-            {task}
-            <span class="sr-only">{done.value[i] ? ': done' : ': to do'}</span>
-          </span>
+        <li key={task} class={done.value[i] ? 'done won' : ''}>
+          <span aria-hidden="true">{done.value[i] ? '✓' : '○'}</span> {task}
+          <span class="sr-only">{done.value[i] ? ': done' : ': to do'}</span>
         </li>
       ))}
     </ol>
@@ -103,33 +104,11 @@ function StepCard({ of }: { of: Step }) {
       <p>{isPossible ? of.text : 'This run does not offer it.'}</p>
       {isPossible && <Tasks of={of} />}
       <div class="row">
-        {isPossible && !isThere && (
-          <button type="button" onClick={showWhere}>
-            Show me where
-          </button>
-        )}
-        {!isStepDone.value && (
-          <button
-            type="button"
-            onClick={() => {
-              goOn();
-              showWhere();
-            }}
-          >
-            Skip
-          </button>
-        )}
-        <button
-          type="button"
-          class="primary"
-          disabled={!isStepDone.value}
-          onClick={() => {
-            goOn();
-            showWhere();
-          }}
-        >
+        {isPossible && !isThere && <Button act={showWhere}>Show me where</Button>}
+        {!isStepDone.value && <Button act={goOnThere}>Skip</Button>}
+        <Button class="primary" disabled={!isStepDone.value} act={goOnThere}>
           Next
-        </button>
+        </Button>
       </div>
       <p class="sr-only" role="status">
         {announcement(of)}
@@ -140,18 +119,17 @@ function StepCard({ of }: { of: Step }) {
 
 function ListCard() {
   return (
-    <ul class="tour-list row">
+    <ul class="row">
       {TOURS.map(({ name, title, steps }) => (
         <li key={name}>
-          <button
-            type="button"
-            onClick={() => {
+          <Button
+            act={() => {
               chooseTour(name);
               showWhere();
             }}
           >
-            {title} <span class="unit">{steps.length} steps</span>
-          </button>
+            {title}, {steps.length} steps
+          </Button>
         </li>
       ))}
     </ul>
@@ -167,15 +145,11 @@ function EndCard({ of }: { of: Tour }) {
         <kbd>?</kbd> lists all keys.
       </p>
       <div class="row">
-        <button type="button" onClick={putBack}>
-          Put everything back
-        </button>
-        <button type="button" onClick={() => chooseTour('')}>
-          Tours
-        </button>
-        <button type="button" class="primary" onClick={leaveTour}>
+        <Button act={putBack}>Put everything back</Button>
+        <Button act={() => chooseTour('')}>Tours</Button>
+        <Button class="primary" act={leaveTour}>
           Close
-        </button>
+        </Button>
       </div>
     </>
   );
@@ -192,19 +166,13 @@ export function TourView() {
       <header class="row apart">
         <Heading text={taken ? heading : 'Tours'} />
         {now && (
-          <button type="button" class="small" title="Choose another tour" onClick={() => chooseTour('')}>
+          <Button class="small" title="Choose another tour" act={() => chooseTour('')}>
             Tours
-          </button>
+          </Button>
         )}
-        <button
-          type="button"
-          class="icon small"
-          aria-label="Leave the tour"
-          title="Leave; the menu goes on with it"
-          onClick={leaveTour}
-        >
+        <Button class="icon small" aria-label="Leave the tour" title="Leave; the menu goes on with it" act={leaveTour}>
           ×
-        </button>
+        </Button>
       </header>
       {taken === null ? <ListCard /> : now ? <StepCard of={now} /> : <EndCard of={taken} />}
     </section>

@@ -2,7 +2,7 @@ import { useEffect, useRef } from 'preact/hooks';
 import { CachedPicture, isSame } from '../draw/cached_picture';
 import { allRound, behind, type Camera, fitting, project, unproject, zoomed } from '../draw/camera';
 import { carShape } from '../draw/car';
-import { aheadOf, type Line } from '../draw/line';
+import { aheadOf, type Line as RoadLine } from '../draw/line';
 import { Paper } from '../draw/paper';
 import {
   drawCursor,
@@ -21,18 +21,10 @@ import { paintSize } from '../lib/paint_size';
 import type { Pose } from '../lib/poses';
 import { store } from '../lib/store';
 import { inSpeedUnit, speedUnit } from '../lib/units';
+import { Select } from '../parts/controls';
 import { Scene3dView } from '../scene3d/scene3d_view';
 import { session } from '../scene3d/session';
-import {
-  ALL_CAMERAS,
-  type CameraChoice,
-  camera,
-  camera3d,
-  choose,
-  obstacle,
-  shows3d,
-  zoomCamera,
-} from '../scene3d/view_state';
+import { ALL_CAMERAS, camera, camera3d, choose, obstacle, shows3d, zoomCamera } from '../scene3d/view_state';
 import { lossesToLimit, markedCorners, startLine } from '../state/compared';
 import { cursorMark, pointAt, timeNear } from '../state/cursor';
 import { faultMarks } from '../state/faults';
@@ -86,10 +78,10 @@ function carNow(now: number): Scene['car'] {
 }
 
 /** The plan from where the car is now. */
-const planAhead = (car: Scene['car']): Line =>
+const planAhead = (car: Scene['car']): RoadLine =>
   live.plan && car ? aheadOf({ x: live.plan.x_m, y: live.plan.y_m }, car) : { x: [], y: [] };
 
-const pointsOf = ({ x, y }: Line): Point[] => Array.from(x, (each, i) => ({ x: each, y: y[i] ?? NaN }));
+const pointsOf = ({ x, y }: RoadLine): Point[] => Array.from(x, (each, i) => ({ x: each, y: y[i] ?? NaN }));
 
 /** Paints the track from above; keeps state from one picture to the next. */
 class Painter {
@@ -126,6 +118,7 @@ class Painter {
       racingLine: layers.racingLine.value ? limit.value : null,
       corners: markedCorners(),
       kerb: run.value?.kerb_width_m ?? 0,
+      isWhole,
       start: startLine(),
       losses,
       size: run.value ? paintSize(run.value) : 1,
@@ -275,29 +268,31 @@ function describePicture(): string {
   return `${what} of the track: the car is ${place} at ${fixed(inSpeedUnit(frame.speed_mps), 0)} ${speedUnit().spoken}`;
 }
 
+/** What a line on the road is. */
+const Line = ({ name, token, kind = '' }: { name: string; token: string; kind?: string }) => (
+  <span class={`key line-key ${kind}`} style={{ '--tone': `var(--${token})` }}>
+    {name}
+  </span>
+);
+
 /** The camera's name, and what the lines on the road are. */
 function Corner() {
   const ghost = ghostLabel.value;
   return (
     <div class="corner row">
-      <select
+      <Select
         class="camera"
-        aria-label="Camera"
-        aria-keyshortcuts="C"
+        label="Camera"
+        keys="C"
         title="Camera (C)"
         value={camera.value}
-        onChange={(event) => choose(event.currentTarget.value as CameraChoice)}
-      >
-        {ALL_CAMERAS.map(({ view, label, title }) => (
-          <option key={view} value={view} title={title}>
-            {label}
-          </option>
-        ))}
-      </select>
-      {live.plan !== null && <span class="line-key plan">plan</span>}
-      {layers.racingLine.value && limit.value && <span class="line-key">the limit's line</span>}
-      {layers.hindsight.value && <span class="line-key past">plan 1 s ago</span>}
-      {ghost !== null && <span class="line-key ghost">{ghost}</span>}
+        choices={ALL_CAMERAS}
+        choose={choose}
+      />
+      {live.plan !== null && <Line name="plan" token="road-plan" />}
+      {layers.racingLine.value && limit.value && <Line name="the limit's line" token="other" />}
+      {layers.hindsight.value && <Line name="plan 1 s ago" token="road-past" kind="past" />}
+      {ghost !== null && <Line name={ghost} token="other" kind="ghost" />}
       {obstacle.value !== null && <span role="status">{obstacle.value}</span>}
     </div>
   );
@@ -352,7 +347,7 @@ export function TrackView() {
   return (
     <section class={shows3d.value ? 'map has-3d' : 'map'} aria-label="Picture">
       {camera3d.value !== null && <Scene3dView label={label} />}
-      <canvas ref={canvas} class="map-2d" role="img" aria-label={label} hidden={shows3d.value} />
+      <canvas ref={canvas} class="map-2d cover" role="img" aria-label={label} hidden={shows3d.value} />
       {isInSky && <SmallMap />}
       <Corner />
     </section>

@@ -2,6 +2,7 @@ import type { ComponentChildren } from 'preact';
 import { plural } from '../lib/format';
 import { tidy } from '../lib/scale';
 import { store } from '../lib/store';
+import { Button, Refusal, Select } from '../parts/controls';
 import {
   aimAt,
   canChange,
@@ -66,18 +67,13 @@ function Latency() {
   const now = Number(settings.value.get('latency_ms'));
   const all = [...new Set([...LATENCIES_MS, now])].filter(Number.isFinite).sort((a, b) => a - b);
   return (
-    <select
-      aria-label="Latency"
+    <Select
+      label="Latency"
       value={now}
       disabled={!canSet('latency_ms')}
-      onChange={(event) => set('latency_ms', Number(event.currentTarget.value))}
-    >
-      {all.map((ms) => (
-        <option key={ms} value={ms}>
-          {tidy(ms)} ms
-        </option>
-      ))}
-    </select>
+      choices={all.map((ms) => ({ value: ms, label: `${tidy(ms)} ms` }))}
+      choose={(ms) => set('latency_ms', ms)}
+    />
   );
 }
 
@@ -89,14 +85,13 @@ function FaultWord() {
     for (const each of all) if (each.isActive !== (each.key === key)) toggleFault(each);
   };
   return (
-    <select class="b" aria-label="Fault" value={now?.key ?? ''} onChange={(event) => choose(event.currentTarget.value)}>
-      <option value="">no fault</option>
-      {all.map(({ key, name }) => (
-        <option key={key} value={key}>
-          {name}
-        </option>
-      ))}
-    </select>
+    <Select
+      class="b"
+      label="Fault"
+      value={now?.key ?? ''}
+      choices={[{ value: '', label: 'no fault' }, ...all.map(({ key, name }) => ({ value: key, label: name }))]}
+      choose={choose}
+    />
   );
 }
 
@@ -126,11 +121,9 @@ function Changes() {
   return (
     <section class="changes stack" aria-label="Changes" data-testid="changes">
       <header class="row apart">
-        <h2>{changes.length === 0 ? 'No changes' : plural(changes.length, 'change')}</h2>
+        {changes.length === 0 ? <p class="soft">No changes</p> : <h2>{plural(changes.length, 'change')}</h2>}
         {changes.length > 0 && (
-          <button type="button" onClick={() => changes.forEach(({ key, from }) => set(key, from))}>
-            Reset all
-          </button>
+          <Button act={() => changes.forEach(({ key, from }) => set(key, from))}>Reset all</Button>
         )}
       </header>
       {changes.length > 0 && (
@@ -138,14 +131,9 @@ function Changes() {
           {changes.map((each) => (
             <li key={each.key} class="row">
               <ChangeOf of={each} />
-              <button
-                type="button"
-                class="icon small"
-                aria-label={`Reset ${each.key}`}
-                onClick={() => set(each.key, each.from)}
-              >
+              <Button class="icon small" aria-label={`Reset ${each.key}`} act={() => set(each.key, each.from)}>
                 ↺
-              </button>
+              </Button>
             </li>
           ))}
         </ul>
@@ -160,9 +148,9 @@ function Target() {
   return (
     <div class="segments" role="group" aria-label="The sliders change">
       {(['run', 'second'] as const).map((each) => (
-        <button key={each} type="button" aria-pressed={target.value === each} onClick={() => aimAt(each)}>
+        <Button key={each} aria-pressed={target.value === each} act={() => aimAt(each)}>
           {each === 'run' ? 'This run' : 'A second car'}
-        </button>
+        </Button>
       ))}
     </div>
   );
@@ -191,12 +179,8 @@ function Settings() {
         {shown.map(({ entry, name }) => (
           <SettingRow key={entry.key} entry={entry} {...(name === undefined ? {} : { name })} />
         ))}
-        {shown.length === 0 && words !== '' && <p class="empty">Nothing matches.</p>}
-        {wishRefusal.value !== '' && (
-          <p class="refusal" role="alert">
-            {wishRefusal.value}
-          </p>
-        )}
+        {shown.length === 0 && words !== '' && <p class="soft">Nothing matches.</p>}
+        <Refusal text={wishRefusal.value} />
       </div>
       {target.value === 'run' && <Changes />}
       {shown.some(({ entry }) => !canChange(entry.key)) && target.value === 'second' && (
@@ -208,9 +192,9 @@ function Settings() {
 
 /** Says why there is nothing to set. */
 function NothingToSet() {
-  if (link.value !== 'live') return <p class="empty">Waiting for the connection.</p>;
+  if (link.value !== 'live') return <p class="soft">Waiting for the connection.</p>;
   return (
-    <p class="empty">
+    <p class="soft">
       This run can be viewed but not changed{run.value?.mode === 'replay' ? ': it is a recording' : ''}.
     </p>
   );

@@ -3,6 +3,8 @@ import { lapTime } from '../lib/format';
 import { addShortcuts } from '../lib/keys';
 import { persisted } from '../lib/persisted';
 import { store } from '../lib/store';
+import { reasonOf } from '../lib/words';
+import { Button, Refusal } from '../parts/controls';
 import { CornerTable } from '../parts/corner_table';
 import { Headline } from '../parts/headline';
 import { LapPlots } from '../parts/lap_plots';
@@ -39,13 +41,13 @@ async function addRecordings(files: readonly File[]): Promise<void> {
   try {
     await (await import('../recording/add_laps')).addLapsOf(files);
   } catch (error) {
-    problem.value = error instanceof Error ? error.message : String(error);
+    problem.value = reasonOf(error);
   }
 }
 
 function EngineerSwitch() {
   return (
-    <label class="switch row" title="Plan, solver, guard and estimates (E)">
+    <label class="switch row soft" title="Plan, solver, guard and estimates (E)">
       <input
         type="checkbox"
         role="switch"
@@ -53,7 +55,6 @@ function EngineerSwitch() {
         checked={isEngineer.value}
         onChange={({ currentTarget }) => (isEngineer.value = currentTarget.checked)}
       />
-      <span aria-hidden="true" />
       Engineer
     </label>
   );
@@ -97,7 +98,7 @@ function Causes({ both }: { both: Comparison }) {
   const isToLimit = both.b.id === 'limit';
   const text = limit.value && isToLimit ? causesText(causesOf(limit.value, bestLap.value)) : '';
   return (
-    <div class="causes stack">
+    <div class="causes stack label">
       {text !== '' && <p data-testid="causes">{text}</p>}
       {text === '' && isToLimit && (
         <p>
@@ -126,23 +127,21 @@ function AllLaps({ both }: { both: Comparison | null }) {
         />
       )}
       <div class="row">
-        <button
-          type="button"
+        <Button
           disabled={laps.value.length === 0}
-          onClick={() => download(fileName([...parts, 'laps'], 'csv'), lapsCsv(laps.value, limit.value), 'text/csv')}
+          act={() => download(fileName([...parts, 'laps'], 'csv'), lapsCsv(laps.value, limit.value), 'text/csv')}
         >
           Table as CSV
-        </button>
-        <button
-          type="button"
+        </Button>
+        <Button
           disabled={!lapSamples.laps.includes(lap - 1)}
           title="Time, speed, error and commands of A along the track"
-          onClick={() =>
+          act={() =>
             download(fileName([...parts, `lap-${lap}`], 'csv'), lapSamplesCsv(lapSamples, lap - 1), 'text/csv')
           }
         >
           This lap as CSV
-        </button>
+        </Button>
         <label class="button">
           <input
             type="file"
@@ -158,11 +157,7 @@ function AllLaps({ both }: { both: Comparison | null }) {
           Compare with a recording …
         </label>
       </div>
-      {problem.value !== '' && (
-        <p class="lost" role="alert">
-          {problem.value}
-        </p>
-      )}
+      <Refusal text={problem.value} />
     </details>
   );
 }
