@@ -33,6 +33,7 @@ constexpr double kFollowed = 0.1;         // share of a difference that is made 
 constexpr double kBurst = 0.5;            // share by which a step in lock step differs that had to wait
 constexpr double kOfStep = 0.15;          // share by which its time differs from the others
 constexpr double kSampling = 0.02;   // [s] by which a state may be younger or older: a usual physics step
+constexpr double kLegSamples = 5.0;  // of which a leg consists at least
 constexpr double kOtherClock = 0.5;  // logarithm of a leg's ratio to the median, from another clock
 constexpr double kSame = 0.03;       // logarithm of a ratio that counts as 1
 
@@ -136,9 +137,10 @@ PlantClock::Leg PlantClock::step_of(double wall, const model::Measurement& now,
   const double plant = way / std::max(speed, 1e-6);
   const double longest = std::min(std::max(plant, ratio_ * wall), 1.0);
   if (std::fabs(gained) > kSpeedJump + kMostBraking * longest) forget();
-  const bool is_driving = speed > kLeastSpeed * std::sqrt(size_) && way > 0.0;
+  // The simulator may have made no step of its own since: the next way is longer by it.
+  const bool is_driving = speed > kLeastSpeed * std::sqrt(size_) && way >= 0.0;
   const bool is_along = across < kJump * size_ + kClockAcross * way;
-  if (!is_driving || !is_along || plant < kSlowest * wall || plant > kFastest * wall) {
+  if (!is_driving || !is_along || plant > kFastest * wall) {
     leg_ = {};
     return {};
   }
@@ -153,8 +155,9 @@ PlantClock::Leg PlantClock::step_of(double wall, const model::Measurement& now,
 /// Adds a step to the running leg. True: a leg is complete.
 bool PlantClock::add(const Leg& step) {
   leg_ = {leg_.wall + step.wall, leg_.plant + step.plant, leg_.way + step.way, leg_.steps + 1};
-  if (leg_.way < kLegWay * size_) return false;
-  legs_[count_++ % kLegs] = leg_;
+  // One of the simulator's own steps more or less must not make a leg that fit() takes for another clock's.
+  if (leg_.way < kLegWay * size_ || leg_.plant < kLegSamples * kSampling) return false;
+  if (leg_.plant > kSlowest * leg_.wall) legs_[count_++ % kLegs] = leg_;
   leg_ = {};
   return count_ >= kLeastLegs;
 }

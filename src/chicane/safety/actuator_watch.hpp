@@ -21,7 +21,8 @@ struct ActuatorAnswer {
   double delay = 0.0;    ///< beyond the configured one [s]
 
   /// Commands have the effect that they are meant to have.
-  [[nodiscard]] bool is_usual() const noexcept { return gain == 1.0 && offset == 0.0 && braking == 1.0; }
+  [[nodiscard]] bool is_usual() const noexcept { return *this == ActuatorAnswer{}; }
+  [[nodiscard]] bool operator==(const ActuatorAnswer&) const = default;
   /// The command that turns the wheels as `wanted` says.
   [[nodiscard]] model::Command command_for(const model::Command& wanted) const noexcept {
     return {(wanted.steer - offset) / gain, wanted.throttle};

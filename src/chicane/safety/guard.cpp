@@ -129,7 +129,7 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   choose(seen, cycle, result);
   const model::Command asked = result.command;
   if (options_.mode == GuardMode::kOn && !cycle.manual) {
-    free_stuck_car(seen.time, result);
+    free_stuck_car(seen.time, cycle.interval, result);
     watch_rest(seen.time, result.command.throttle);
     result.command = limited(result.command, cycle.interval);
   }
@@ -152,8 +152,9 @@ void Guard::send(const Cycle& cycle, const model::Command& asked, controller::St
   if (answer().is_usual()) return;
   stop_ = filter_.stop();
   for (int i = 0; i < stop_.size; ++i) {
-    model::Command& command = stop_.points[static_cast<std::size_t>(i)].command;
-    command = answer().command_for(command);
+    StopPoint& point = stop_.points[static_cast<std::size_t>(i)];
+    point.command = answer().command_for(point.command);
+    point.time -= std::min(answer().delay, 0.0);  // not before the next command as it is configured
   }
 }
 
@@ -227,7 +228,8 @@ const model::Measurement& Guard::look(const model::Measurement& measured) noexce
     expected.reset();
   }
   const model::Measurement& seen = monitor_.check(measured, expected ? &*expected : nullptr);
-  road_.add(seen);
+  // The waypoints of a place in doubt are in doubt, too; the stop needs the road that was known.
+  if (!monitor_.findings().position_jump) road_.add(seen);
   take_up_line();
   watch_actuators(seen);
   estimator_.correct(seen, sent_);

@@ -124,7 +124,7 @@ class Guard {
   [[nodiscard]] bool try_reset(const std::optional<StopStart>& start, const Cycle& cycle, double time,
                                controller::StepResult& result) noexcept;
   void watch_rest(double time, double throttle) noexcept;
-  void free_stuck_car(double time, controller::StepResult& result) noexcept;
+  void free_stuck_car(double time, double interval, controller::StepResult& result) noexcept;
   [[nodiscard]] const model::Measurement& look(const model::Measurement& measured) noexcept;
   void set_grip(double share) noexcept;
   void count_with_actuators() noexcept;
@@ -179,7 +179,7 @@ class Guard {
     bool is_idle = false;           ///< its controller does not drive a car that stands, or is led
     bool rests = false;             ///< it came to rest, and has not been asked to drive since
     bool is_by_hand = false;        ///< a person drove in the last cycle
-    bool has_jumped = false;        ///< the measured place, since something is in doubt
+    bool has_jumped_aside = false;  ///< the measured place, of its road, since something is in doubt
     double ask_at = 0.0;            ///< from when on a car in doubt may be tried again [s]
     double ask_pause = kAskPause;   ///< after the next trial [s]
     double tried = 0.0;             ///< way driven to see whether the car was put elsewhere, by the model [m]

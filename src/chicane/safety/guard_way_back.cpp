@@ -165,14 +165,13 @@ constexpr double kNoAnswerTime = 1.0;      // [s] after which a controller witho
 
 /// A car that was put elsewhere, or is measured right again, begins anew where it answers.
 void Guard::watch_for_reset(const model::Measurement& measured) noexcept {
-  const bool has_jumped = reset_watch_.has_jumped() && monitor_.findings().position_jump;
   reset_watch_.see(measured, sent_.at(measured.time).throttle);
   if (!Supervisor::wants_trial(monitor_.findings())) {
-    run_.has_jumped = false;
+    run_.has_jumped_aside = false;
     run_.ask_at = 0.0;
     run_.ask_pause = kAskPause;
   }
-  run_.has_jumped = run_.has_jumped || has_jumped;
+  run_.has_jumped_aside |= reset_watch_.has_jumped() && !agrees_with_road(measured);
   if (may_ask(measured)) {
     reset_watch_.ask();
     run_.ask_at = measured.time + run_.ask_pause;
@@ -191,7 +190,7 @@ bool Guard::may_ask(const model::Measurement& measured) const noexcept {
   const bool is_doubted = Supervisor::wants_trial(found) && !found.unmeasured && !found.frozen && !found.late;
   const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed && reset_watch_.rests();
   if (!is_doubted || !stands || reset_watch_.is_waiting() || !(measured.time >= run_.ask_at)) return false;
-  return !run_.has_jumped || agrees_with_road(measured);
+  return !run_.has_jumped_aside || agrees_with_road(measured);
 }
 
 bool Guard::agrees_with_road(const model::Measurement& measured) const noexcept {
@@ -225,7 +224,7 @@ void Guard::begin_here() noexcept {
   filter_.forget();
   if (options_.mode == GuardMode::kOn) controller_->reset();
   if (options_.road == GuardRoad::kWaypoints) road_.reset();
-  run_.has_place = run_.is_astray = run_.is_led = run_.has_jumped = false;
+  run_.has_place = run_.is_astray = run_.is_led = run_.has_jumped_aside = false;
 }
 
 /// A controller without an answer to whole measurements begins anew now and then: the car may have been put
@@ -254,6 +253,7 @@ bool Guard::try_reset(const std::optional<StopStart>& start, const Cycle& cycle,
   const bool has_room = edge < 0.0 || (edge >= kTrialRoom && std::fabs(start->e) < kAlong);
   const bool has_stop = start && verify(*start, cycle, command, true) != Fit::kNone;
   if (!has_room && !has_stop) return false;
+  if (run_.tried == 0.0) reset_watch_.ask();  // a car that still rolled has turned round since it was asked
   run_.tried += std::max(speed, kTrialSpeed) * std::max(cycle.interval, 0.0);
   take_over(command, Rung::kReturnToRoad, result);
   return true;
@@ -325,6 +325,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
     const double steer = result.command.steer;
     if (!stands || !drive_backup(*start, result)) return false;
     result.command.steer = steer;
+    filter_.begin_cycle();  // a receiver that plays the stop from now on would turn the wheels back
     return true;
   }
   if (fit == Fit::kNone) filter_.forget();
@@ -374,7 +375,7 @@ void Guard::watch_rest(double time, double throttle) noexcept {
 /// A car that should move and stands is stuck after kStuckTime, where nothing worse is said of it. Its pedals
 /// are released for a cycle now and then: a brake that stays on lets go then. It holds a slow car, too, that
 /// gains no speed by its drive.
-void Guard::free_stuck_car(double time, controller::StepResult& result) noexcept {
+void Guard::free_stuck_car(double time, double interval, controller::StepResult& result) noexcept {
   model::Command& command = result.command;
   const model::VehicleParams& car = model_.vehicle();
   const double speed = std::fabs(estimator_.state().vx);
@@ -389,7 +390,9 @@ void Guard::free_stuck_car(double time, controller::StepResult& result) noexcept
   controller::GuardReason& reason = report_.reason;
   const bool has_worse = controller::word_of(reason).severity == Severity::kError;
   if (stands && run_.stuck.lasts(time) > kStuckTime && !has_worse) reason = controller::GuardReason::kStuck;
-  if (!(run_.released.lasts(time) > (car.latches_brakes() ? kReleaseTime : kStuckTime))) return;
+  // Between two releases there is a cycle in which the car is driven.
+  const double pause = std::max(car.latches_brakes() ? kReleaseTime : kStuckTime, 1.5 * interval);
+  if (!(run_.released.lasts(time) > pause)) return;
   command.throttle = car.latches_brakes() ? car.brake_release_throttle : 0.0;
   run_.released.at = time;
 }
