@@ -31,6 +31,7 @@ constexpr std::size_t kMostWindows = 400;  ///< limit of windows in the fit
 constexpr int kRoughSteps = 12;            ///< steps of the rough round
 constexpr double kRoughAccuracy = 3e-2,
                  kAccuracy = 1e-3;  ///< in deviations of the prior: an interval is a tenth of one
+constexpr double kMoreGrip = 0.4;   ///< logarithm of the first guess of the friction over the assumed one
 constexpr std::string_view kRotating = "rotating";  ///< estimated with the others, but not reported
 constexpr std::size_t kFewWindows = 12;             ///< windows of the first, rough round
 
@@ -321,6 +322,9 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
   }
   WindowFit fit;
   fit.theta = first.mean;
+  // With too little grip the car spins in the model, and no step helps; with too much it only slips less.
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (rows[i].key == "friction") fit.theta[i] += kMoreGrip;
   const int rounds = options.is_rough ? 1 : 3;
   bool goes_on = true;
   int round = 0;
