@@ -29,8 +29,7 @@ constexpr double kCorrelated = 2.0;        // [s] of which correlation and varia
 constexpr double kMostCorrelation = 0.98;  // from one measurement to the next: some information is left
 constexpr double kSure = 3.0;              // deviations by which an estimate differs from what is driven with
 constexpr double kShown = 1.0;             // [s] of driving until the estimate is reported
-constexpr double kMostDeviation =
-    0.1;  // of the usual deviation: an estimate that is less certain tells too little
+constexpr double kMostDeviation = 0.1;  // share of the usual deviation: a less certain estimate is not used
 
 // Of delay [s], gain, offset [rad] and grip: by how much an estimator differs, what is assumed to be usual
 // (standard deviation), the step in which the car is driven with, and the range.
@@ -105,7 +104,7 @@ void ActuatorEstimator::see(const model::Measurement& now,
   last.correct(now, effect(commanded, here_));
   const tracking::StateEstimator::Surprise n = last.surprise();
   Values aside{}, heading{};
-  double sum = n.aside + n.heading;
+  double sum = n.aside + n.heading, apart = 0.0;
   for (std::size_t i = 0; i < kUnknowns; ++i) {
     const double by = kRows[i].change;
     Values changed = here_;
@@ -115,11 +114,10 @@ void ActuatorEstimator::see(const model::Measurement& now,
     aside[i] = (n.aside - other.aside) / by;
     heading[i] = (n.heading - other.heading) / by;
     sum += other.aside + other.heading;
+    apart = std::max(apart, std::fabs(n.aside - other.aside));
   }
   const bool is_seen =
       elapsed > 0.0 && elapsed < kLongestSilence && std::isfinite(sum) && std::fabs(n.aside) < kFarAside;
-  double apart = 0.0;
-  for (std::size_t i = 0; i < kUnknowns; ++i) apart = std::max(apart, std::fabs(aside[i] * kRows[i].change));
   const bool slides = tire_use(last) > kMostUse || apart > kMostApart;
   for (tracking::StateEstimator& each : estimators_) {
     each.average_over(slides ? kAverageSliding : kAverage);

@@ -24,11 +24,10 @@ namespace chicane::safety {
 /// Everything returned is finite and inside the vehicle's range, whatever came in. No allocation; one thread.
 class Fallback {
  public:
-  static constexpr double kPlanAge = 0.5;  ///< [s]
-  static constexpr double kHoldAge = 1.5;  ///< [s]
-  static constexpr double kGentleBraking =
-      0.4;  ///< share of the useful braking, VehicleParams::brake_throttle_limit
-  static constexpr double kFadeSpeed = 2.5;  ///< [m/s]
+  static constexpr double kPlanAge = 0.5;        ///< [s]
+  static constexpr double kHoldAge = 1.5;        ///< [s]
+  static constexpr double kGentleBraking = 0.4;  ///< share of VehicleParams::brake_throttle_limit
+  static constexpr double kFadeSpeed = 2.5;      ///< [m/s]
 
   struct Answer {
     model::Command command;

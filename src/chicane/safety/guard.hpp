@@ -86,12 +86,11 @@ class Guard {
   [[nodiscard]] const controller::Controller& controller() const noexcept { return *controller_; }
 
  private:
-  static constexpr double kStandingSpeed = 0.5;  ///< [m/s]
-  static constexpr double kStuckTime = 3.0;      ///< [s] a car that should move may stand
-  static constexpr double kAskPause = 4.0;       ///< [s] after the first trial of a car in doubt
-  static constexpr double kGuessedWidth = 1.0;   ///< [m] by which an assumed width may be too small
-  static constexpr double kRollsBackAtMost =
-      3.0;  ///< [m/s] faster a car does not roll back: its heading is wrong
+  static constexpr double kStandingSpeed = 0.5;    ///< [m/s]
+  static constexpr double kStuckTime = 3.0;        ///< [s] a car that should move may stand
+  static constexpr double kAskPause = 4.0;         ///< [s] after the first trial of a car in doubt
+  static constexpr double kGuessedWidth = 1.0;     ///< [m] by which an assumed width may be too small
+  static constexpr double kRollsBackAtMost = 3.0;  ///< [m/s] faster, not the car rolls: its heading is wrong
 
   void take_up_line() noexcept;
   void note_residual(const model::State& expected, double time) noexcept;

@@ -11,13 +11,12 @@ namespace chicane::safety {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLongestGap = 0.5;     // [s] between measurements that say anything of each other
-constexpr double kMismatch = 2.0;       // [m] between displacement and integrated speed
-constexpr double kMismatchShare = 0.3;  // and of the larger one
-constexpr double kBlindSpeedDrift =
-    6.0;                             // [m/s²] that the expected speed may be wrong by, without measurements
-constexpr double kLongFrozen = 0.2;  // [s] after which what was doubted before says nothing any more
-constexpr double kJumpBack = 1.0;    // [m] otherwise than the car moved, between two measurements
+constexpr double kLongestGap = 0.5;       // [s] between measurements that say anything of each other
+constexpr double kMismatch = 2.0;         // [m] between displacement and integrated speed
+constexpr double kMismatchShare = 0.3;    // and of the larger one
+constexpr double kBlindSpeedDrift = 6.0;  // [m/s²] error of the expected speed without measurements
+constexpr double kLongFrozen = 0.2;       // [s] after which what was doubted before says nothing any more
+constexpr double kJumpBack = 1.0;         // [m] otherwise than the car moved, between two measurements
 
 }  // namespace
 

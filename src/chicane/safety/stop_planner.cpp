@@ -120,8 +120,7 @@ constexpr int kStepsPerPoint = 2;  // of the simulation, in the plan
 constexpr double kStanding = 0.3;  // [m/s] slower than that the car counts as standing
 constexpr double kSlow = 3.0;      // [m/s] below which its turning is corrected
 constexpr double kDamping = 0.7;
-constexpr double kLapDamping =
-    1.0;  // the same to a planned lap, which is too near to the edge to overshoot it
+constexpr double kLapDamping = 1.0;        // the same to a planned lap: no room to overshoot it
 constexpr double kYawBandwidth = 6.0;      // [rad/s] of the feedback to the yaw rate
 constexpr double kPreview = 0.2;           // [s] the car answers the wheel about so late
 constexpr double kGripShare = 0.85;        // of the assumed tyre force of the rear axle, used sideways
