@@ -174,6 +174,7 @@ TEST(ActuatorEstimator, LearnsNothingFromHardBraking) {
       EXPECT_NEAR(learned.offset.value, 0.007 * side, 4.0 * learned.offset.deviation) << i;
       EXPECT_NEAR(learned.gain.value, 1.0, 4.0 * learned.gain.deviation) << i;
     }
+    EXPECT_LT(car.estimator.learned().offset.deviation, 0.003) << side;
   }
 }
 

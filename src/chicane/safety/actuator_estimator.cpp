@@ -15,12 +15,12 @@ namespace {
 
 constexpr double kSlowest = 5.0;          // [m/s] slower, the wheels turn the car too little
 constexpr double kLongestSilence = 0.25;  // [s] between measurements; then the estimators settle first
-constexpr double kMostUse = 0.5;          // of the tyres' peak slip: beyond it no model is exact enough
+constexpr double kMostUse = 0.5;          // share of peak slip or peak force: beyond it no model is exact
 constexpr double kCalmFor = 0.5;          // [s] after that, until the estimators have settled
 constexpr double kFarAside = 1.0;         // [m] a measurement that is another thing than noise
 constexpr double kPerfectSensor = 1e-8;   // of m and rad: that of a perfect sensor
 constexpr double kAverage = 0.5;          // [s] over which the estimators forget what they did not expect
-constexpr double kMostApart = 0.1;        // [m] further, the estimators' differences are no slopes
+constexpr double kMostApart = 0.1;        // [m] twice the usual: further, the differences are no slopes
 constexpr double kAverageSliding = 0.2;   // [s] the same beyond kMostUse, where a car may be unstable
 constexpr double kCounted = 0.5;          // [s] that the estimators count from one place at least
 constexpr double kKeptBehind = 0.5;       // share of the sums that is kept where the estimators move on

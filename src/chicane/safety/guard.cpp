@@ -228,8 +228,8 @@ const model::Measurement& Guard::look(const model::Measurement& measured) noexce
     expected.reset();
   }
   const model::Measurement& seen = monitor_.check(measured, expected ? &*expected : nullptr);
-  // The waypoints of a place in doubt are in doubt, too; the stop needs the road that was known.
-  if (!monitor_.findings().position_jump) road_.add(seen);
+  // The waypoints of a place in doubt are in doubt, too: the stop needs the road that was known.
+  if (options_.mode != GuardMode::kOn || !monitor_.findings().position_jump) road_.add(seen);
   take_up_line();
   watch_actuators(seen);
   estimator_.correct(seen, sent_);

@@ -282,7 +282,7 @@ class Correlation {
 WindowFit fit_windows(const std::vector<DriveLog>& logs, std::vector<Window>& windows,
                       const Prior& of_numbers, const std::vector<double>& from, const Noise& noise,
                       double accuracy, const std::function<bool()>& go_on) {
-  constexpr int kMostIterations = 40;  // limit of Gauss-Newton steps
+  constexpr int kMostIterations = 40;  // limit of trial steps (Levenberg and Marquardt)
   const Expectation prior(of_numbers);
   VectorXd theta = mapped(from);
   WindowFit fit;
