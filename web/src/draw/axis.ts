@@ -9,7 +9,7 @@ const HEADROOM = 1.06; // lines do not touch the frame
 const reachOf = (columns: Columns): number =>
   Math.max(0, ...columns.flatMap((column) => extent(column) ?? []).map(Math.abs));
 
-/** From 0 to a round number above all values, at least `least`: the axis seldom changes. */
+/** From 0 to a round number above all absolute values, at least `least`: the axis seldom changes. */
 export const fromZero =
   (least: number, headroom = HEADROOM): AxisRange =>
   (columns) => [0, niceCeil(Math.max(least, headroom * reachOf(columns)))];

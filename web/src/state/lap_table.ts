@@ -5,9 +5,10 @@ import { gapToLimit } from './limit';
 
 /** The fastest clean lap, or the fastest if none is clean. The first begins from standstill: it counts when alone. */
 export function bestOf(laps: readonly Lap[]): Lap | undefined {
-  const clean = laps.filter(({ is_clean }) => is_clean);
+  const timed = laps.filter(({ lap_time_s }) => Number.isFinite(lap_time_s));
+  const clean = timed.filter(({ is_clean }) => is_clean);
   const flying = clean.filter(({ lap }) => lap > 1);
-  const [first, ...others] = flying.length > 0 ? flying : clean.length > 0 ? clean : laps;
+  const [first, ...others] = flying.length > 0 ? flying : clean.length > 0 ? clean : timed;
   return others.reduce((a, b) => (b.lap_time_s < (a?.lap_time_s ?? NaN) ? b : a), first);
 }
 
