@@ -192,6 +192,7 @@ namespace {
 
 constexpr double kSpeedError = 1.5;  // times the measured speed that a car may move between two measurements
 constexpr double kMemory = 0.5;      // [s] for which the car answers to a pedal
+constexpr double kStill = 0.05;      // [m/s] of a car that stands or turns round
 
 }  // namespace
 
@@ -231,6 +232,10 @@ void ResetWatch::see(const model::Measurement& now, double pedal) noexcept {
   } else if (is_waiting_) {
     driven_ += 0.5 * elapsed * (now.speed + last_.speed);
     asked_ = (asked_ + elapsed * pedal) * kMemory / (kMemory + elapsed);
+    if (now.speed < kStill) {  // a car that turns round drives its way from here
+      origin_ = {.time = origin_.time, .x = now.x, .y = now.y, .psi = now.psi};
+      driven_ = 0.0;
+    }
     const double dx = now.x - origin_.x;
     const double dy = now.y - origin_.y;
     const double along = dx * cos(origin_.psi) + dy * sin(origin_.psi);
