@@ -130,8 +130,7 @@ bool ActuatorWatch::measure(Window& window, double length, double elapsed) const
   const Sample& now = back(0);
   const Sample& from = back(samples_back_to(now.time - length));
   const Sample& middle = back(samples_back_to(0.5 * (now.time + from.time)));
-  const double first = middle.time - from.time;
-  const double second = now.time - middle.time;
+  const double first = middle.time - from.time, second = now.time - middle.time;
   if (!(first > 0.0 && second > 0.0)) return false;
   const double time = first + second;
   const double change = (now.turned - middle.turned) / second - (middle.turned - from.turned) / first;
@@ -198,8 +197,7 @@ void ActuatorWatch::judge_steering(Window& window, double length, double elapsed
 
 /// Least squares with a memory, about the usual answer.
 void ActuatorWatch::fit_steering(const Window& window, double length, double elapsed) noexcept {
-  const double asked = window.asked;
-  const double difference = window.angle - asked;
+  const double asked = window.asked, difference = window.angle - asked;
   memory_ = std::min(memory_ + elapsed, kMemory);
   const double kept = 1.0 - elapsed / (memory_ + elapsed);
   const double variance = kAngleNoise * kAngleNoise + window.noise;
@@ -212,8 +210,7 @@ void ActuatorWatch::fit_steering(const Window& window, double length, double ela
   const double a = gg_ + 1.0 / (kGainPrior * kGainPrior);
   const double b = oo_ + 1.0 / (kOffsetPrior * kOffsetPrior);
   const double determinant = a * b - go_ * go_;
-  const double gain = (b * g_ - go_ * o_) / determinant;
-  const double offset = (a * o_ - go_ * g_) / determinant;
+  const double gain = (b * g_ - go_ * o_) / determinant, offset = (a * o_ - go_ * g_) / determinant;
   answer_.gain = std::clamp(1.0 + gain, kLeastGain, kMostGain);
   answer_.offset = std::clamp(offset, -kMostOffset, kMostOffset);
   const bool is_usual = std::fabs(gain) < kUsualGain && std::fabs(offset) < kUsualOffset;

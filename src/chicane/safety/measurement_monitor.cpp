@@ -236,8 +236,7 @@ void ResetWatch::see(const model::Measurement& now, double pedal) noexcept {
       origin_ = {.time = origin_.time, .x = now.x, .y = now.y, .psi = now.psi};
       driven_ = 0.0;
     }
-    const double dx = now.x - origin_.x;
-    const double dy = now.y - origin_.y;
+    const double dx = now.x - origin_.x, dy = now.y - origin_.y;
     const double along = dx * cos(origin_.psi) + dy * sin(origin_.psi);
     const double way = hypot(dx, dy);
     const bool agrees = std::fabs(way - driven_) < kDisagreement + kDisagreementShare * way &&
