@@ -367,7 +367,7 @@ class PredictionModel {
   static constexpr double kMostSlip = 1.4;      ///< largest front slip z of steer_for()
   static constexpr double kMostAlong = 0.95;    ///< largest longitudinal force, share of the peak
   static constexpr double kLeastSide = 1e-3;    ///< keeps quotients defined without acceleration [m/s²]
-  static constexpr double kLeastLoad = 0.1;     ///< least load of a wheel, share of that at rest
+  static constexpr double kLeastLoad = 0.1;     ///< least share of the load at rest, and least 1 − u²
   static constexpr double kLeastSquare = 1e-8;  ///< least square of a slip: the secant has a kink at 0
   // Widths over which change() is smooth where advance() has a kink.
   static constexpr double kSmoothUse = 0.02;             ///< at kMostAlong, share of the peak
