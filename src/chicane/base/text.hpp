@@ -68,7 +68,7 @@ namespace chicane {
   return true;
 }
 
-/// Severity of a state of the program. The numbers are those of ROS 2's diagnostic_msgs/DiagnosticStatus.
+/// Severity of a state of the program. The numbers equal ROS 2's diagnostic_msgs/DiagnosticStatus.
 enum class Severity : std::uint8_t { kOk = 0, kWarning = 1, kError = 2 };
 
 /// One value of an enumeration, as programs and as people read it.

@@ -49,7 +49,7 @@ model::VehicleParams without_name(model::VehicleParams vehicle) noexcept {
   return vehicle;
 }
 
-/// Of the axle that uses more: slip over that of the peak, or longitudinal force over the peak force.
+/// Use of the tyres at the busier axle: slip over peak slip, or longitudinal force over peak force.
 double tire_use(const tracking::StateEstimator& estimator) noexcept {
   const model::State& car = estimator.state();
   const auto use = estimator.model().tire_use(

@@ -19,9 +19,9 @@ namespace chicane::safety {
 /// one unknown changed each, and least squares over the last kMemory of driving finds the unknowns with their
 /// deviations. The grip is among them, so that tyres that give less do not pass for another steering.
 ///
-/// What is driven with, answer(), follows the estimate in steps: the offset where it is certain enough, delay
-/// and gain where all three are, each if it differs by more than a step and three deviations of both. One
-/// thread; allocates nothing.
+/// answer(), which is driven with, follows the estimate in steps: the offset where it is certain enough,
+/// delay and gain where all three are, each if it differs by more than a step and three deviations of both.
+/// One thread; allocates nothing.
 class ActuatorEstimator {
  public:
   static constexpr double kMemory = 10.0;    ///< time constant of forgetting [s]

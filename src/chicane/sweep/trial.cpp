@@ -177,7 +177,7 @@ std::string url_encoded(std::string_view text) {
   return encoded;
 }
 
-/// Settings with each key once, its last value, in the place of that setting.
+/// Settings with each key once: its last value, where that stood.
 Settings winning(const Settings& settings) {
   Settings last;
   for (const auto& setting : settings) {

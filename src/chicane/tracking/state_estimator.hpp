@@ -111,7 +111,7 @@ class StateEstimator {
   /// replaced by the model's.
   void correct(const model::Measurement& now, const CommandHistory& sent) noexcept;
   [[nodiscard]] const model::State& state() const noexcept { return now_.state; }
-  /// Replaces the estimate, as by that of another model.
+  /// Replaces the estimated state, as by another estimator's.
   void set_state(const model::State& state) noexcept { now_.state = state; }
   [[nodiscard]] double time() const noexcept { return time_; }  ///< of state() [s]
   [[nodiscard]] bool is_started() const noexcept { return is_started_; }

@@ -31,7 +31,7 @@ struct UdacityModel {
   sim::UdacityCarParams car{};
   const RoadNodes* road = nullptr;
   double margin = 0.0;                    ///< kept from the edges [m]
-  double slip_share = kNoCap;             ///< cap on slip of the front tyres over that of peak force
+  double slip_share = kNoCap;             ///< cap on front slip over the slip of peak force
   static constexpr double kNoCap = 10.0;  ///< caps nothing
   double brake_share = 1.0;               ///< share of the force at which the rear wheels lock
   double steer_weight = 1e-5, pedal_weight = 1e-5;
@@ -185,7 +185,7 @@ struct DoubleTrackModel {
   const RoadNodes* road = nullptr;
   double margin = 0.0;  ///< kept from the edges [m]
   double grip_share = 1.0;
-  double slip_share = kNoCap;  ///< cap on combined slip over that of peak force
+  double slip_share = kNoCap;  ///< cap on combined slip over the slip of peak force
   double steer_weight = 1e-5, pedal_weight = 1e-5;
 
   template <class T>
@@ -314,7 +314,7 @@ struct VehicleModel {
   bool slides = false;  ///< the rear tyres slip as far as `sliding` permits
   const RoadNodes* road = nullptr;
   double margin = 0.0;         ///< kept from the edges [m]
-  double slip_share = 1.0;     ///< cap on slip of an axle over that of its peak
+  double slip_share = 1.0;     ///< cap on an axle's slip over its peak slip
   double brake_share = 1.0;    ///< share of the largest useful deceleration
   double speed_limit = 100.0;  ///< [m/s]
   double steer_weight = 1e-3;  ///< weight of the steering's rate squared, in time [s/rad²·s]
