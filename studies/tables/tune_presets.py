@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Tunes each of the five presets by two optimisers, and writes the table of docs/measured/racing.md: by hand, and what was found.
+"""Tunes each of the five presets by two optimisers, and prints the table of docs/measured/racing.md: by hand, and what was found.
 
     studies/tables/tune_presets.py LOGS [--evaluations N] [--presets NAME,...] [--program PROGRAM]
 
-LOGS is a folder for the searches' logs: a campaign that was ended goes on, and one that is over only writes the table. Deterministic. PROGRAM is
+LOGS is a folder for the searches' logs: a campaign that was ended goes on, and one that is over only prints the table. Deterministic. PROGRAM is
 build/release/apps/chicane/chicane when left out.
 """
 import argparse
@@ -12,8 +12,6 @@ import subprocess
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-BEGIN, END = "<!-- tuning: studies/tables/tune_presets.py -->\n", "<!-- /tuning -->\n"
-PRESETS = ("measured-latency", "fast-short-step", "sixty-mph", "weighted", "delay-in-model")
 OPTIMIZERS = ("sbplx", "crs")
 
 
@@ -35,39 +33,30 @@ def widest(log, by_hand):
     return max(passed, key=lambda each: each["margin_m"], default=None)
 
 
-def row(preset, name, verdict, tuning):
+def print_row(preset, name, verdict, tuning):
     lap = f"{verdict['lap_time_s']:.2f}" if verdict["lap_time_s"] is not None else "–"
     counts = f"{tuning['evaluations']} | {tuning['runs']}" if tuning else " | "
-    return (f"| {preset} | {name} | {lap} | {verdict['margin_m']:.3f} | {verdict['steering_rate_radps']:.3f} | {counts} |\n")
-
-
-def table(program, options):
-    lines = ["| preset | tuning | flying lap [s] | margin [m] | steering [rad/s] | evaluations | runs |\n", "|---|---|--:|--:|--:|--:|--:|\n"]
-    for preset in options.presets.split(","):
-        for optimizer in OPTIMIZERS:
-            tuning = tuned(program, preset, optimizer, options)
-            if optimizer == OPTIMIZERS[0]:
-                lines.append(row(f"`{preset}`", "by hand", tuning["by_hand"], None))
-            lines.append(row("", f"`{optimizer}`, the fastest" if tuning["is_better"] else f"`{optimizer}`: none better", tuning["found"], tuning))
-            wide = widest(Path(options.logs) / f"{preset}.{optimizer}.jsonl", tuning["by_hand"])
-            if wide:
-                lines.append(row("", f"`{optimizer}`, the most margin", wide, None))
-            print("".join(lines[-3:]), end="", flush=True)
-    return "".join(lines)
+    print(f"| {preset} | {name} | {lap} | {verdict['margin_m']:.3f} | {verdict['steering_rate_radps']:.3f} | {counts} |", flush=True)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("logs")
     parser.add_argument("--evaluations", type=int, default=2000)
-    parser.add_argument("--presets", default=",".join(PRESETS))
+    parser.add_argument("--presets", default="measured-latency,fast-short-step,sixty-mph,weighted,delay-in-model")
     parser.add_argument("--program", default=str(ROOT / "build/release/apps/chicane/chicane"))
     options = parser.parse_args()
     Path(options.logs).mkdir(parents=True, exist_ok=True)
-    new = table(options.program, options)
-    page = ROOT / "docs/measured/racing.md"
-    head, rest = page.read_text(encoding="utf-8").split(BEGIN)
-    page.write_text(head + BEGIN + new + END + rest.split(END)[1], encoding="utf-8")
+    print("| preset | tuning | flying lap [s] | margin [m] | steering [rad/s] | evaluations | runs |\n|---|---|--:|--:|--:|--:|--:|")
+    for preset in options.presets.split(","):
+        for optimizer in OPTIMIZERS:
+            tuning = tuned(options.program, preset, optimizer, options)
+            if optimizer == OPTIMIZERS[0]:
+                print_row(f"`{preset}`", "by hand", tuning["by_hand"], None)
+            print_row("", f"`{optimizer}`, the fastest" if tuning["is_better"] else f"`{optimizer}`: none better", tuning["found"], tuning)
+            wide = widest(Path(options.logs) / f"{preset}.{optimizer}.jsonl", tuning["by_hand"])
+            if wide:
+                print_row("", f"`{optimizer}`, the most margin", wide, None)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 #include "chicane/base/compiler.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/model/wheel_forces.hpp"
 
 namespace chicane::model {
 
@@ -205,6 +206,8 @@ class PredictionModel {
                                                           const T& steer) const noexcept {
     const model::VehicleParams& p = vehicle_;
     const double per_wheelbase = 1.0 / p.wheelbase();
+    const double rest_front = p.rear_axle * per_wheelbase;  // of the load
+    const double rest_rear = p.front_axle * per_wheelbase;
     const T speed = sqrt(m.vx * m.vx + kSpeedFloor * kSpeedFloor);
     const T load_now = p.load_constant + (p.load_per_speed + p.load_quadratic * speed) * speed;
     // Load transfer depends on the weight alone, not on downforce.
@@ -212,8 +215,8 @@ class PredictionModel {
     const T transfer = (p.height / kGravity) * rest * m.acceleration;
     const T part_front = least<kSmooth>(1.0 - (1.0 / p.rear_axle) * transfer);  // of its load at rest
     const T part_rear = least<kSmooth>(1.0 + (1.0 / p.front_axle) * transfer);
-    const T load_front = (p.rear_axle * per_wheelbase) * load_now * part_front;
-    const T load_rear = (p.front_axle * per_wheelbase) * load_now * part_rear;
+    const T load_front = rest_front * load_now * part_front;
+    const T load_rear = rest_rear * load_now * part_rear;
     const T grip_front = 1.0 + p.load_sensitivity * (1.0 - part_front);  // friction over that at rest
     const T grip_rear = 1.0 + p.load_sensitivity * (1.0 - part_rear);
     Tires<T> t;
@@ -253,28 +256,12 @@ class PredictionModel {
     const T driving = (drive + kLeastSide) / (drive + brake + kLeastSide);
     struct LoadedAxle {
       double cornering, unloading, rest;
-      T slip, part, grip, pull, along, square, stiffness;
+      T slip, part, grip, pull;
+      T along{}, square{}, stiffness{};
     };
-    LoadedAxle axles[2] = {{p.cornering_front,
-                            unloading_front_,
-                            p.rear_axle * per_wheelbase,
-                            slip_front,
-                            part_front,
-                            grip_front,
-                            pulls[0],
-                            {},
-                            {},
-                            {}},
-                           {p.cornering_rear,
-                            unloading_rear_,
-                            p.front_axle * per_wheelbase,
-                            slip_rear,
-                            part_rear,
-                            grip_rear,
-                            pulls[1],
-                            {},
-                            {},
-                            {}}};
+    LoadedAxle axles[2] = {
+        {p.cornering_front, unloading_front_, rest_front, slip_front, part_front, grip_front, pulls[0]},
+        {p.cornering_rear, unloading_rear_, rest_rear, slip_rear, part_rear, grip_rear, pulls[1]}};
     T lost[2] = {T(0.0), T(0.0)};
     // Not unrolled: a quarter of the code to compile.
 #pragma GCC unroll 1
@@ -322,9 +309,9 @@ class PredictionModel {
   /// falls by a quarter between z = 1 and 2.5.
   template <class T>
   [[nodiscard]] [[gnu::noinline]] T secant(const T& square) const noexcept {
-    const T z = sqrt(square + kLeastSquare);
-    if (vehicle_.tire_shape > 0.0)
-      return sin(vehicle_.tire_shape * atan((1.0 / vehicle_.tire_shape) * z)) / z;
+    const T least = square + kLeastSquare;
+    if (vehicle_.tire_shape > 0.0) return model::magic_secant(vehicle_.tire_shape, least);
+    const T z = sqrt(least);
     const T beyond = (z - 1.0) * (1.0 / 1.5);
     const T w = select(beyond < 1.0, beyond, T(1.0));
     return select(z < 1.0, 1.0 + z - z * z, (1.0 - 0.25 * (w * w * (3.0 - 2.0 * w))) / z);

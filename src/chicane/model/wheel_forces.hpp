@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 
+#include "chicane/base/jet.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/model/vehicle.hpp"
 
@@ -31,17 +32,26 @@ struct MagicFormula {
   [[nodiscard]] double peak_slip() const noexcept { return tan(kPi / (2.0 * shape)) / stiffness; }
 };
 
-/// sin(C atan(x/C)) over x, by the square of the slip x > 0: the magic formula's secant. For C = 3/2 without
-/// an angle, cos θ = 1/√(1 + (x/C)²) and sin(3θ/2) = sin θ (1 + 2 cos θ) / (2 cos(θ/2)).
-/// T is double or a Pack.
+/// sin(C atan(x/C)) over x, by the square of the slip x > 0: the magic formula's secant. For C = 3/2 by
+/// docs/model.md, eq. 10a, with its derivatives by dc/d(x²) = −c³/(2C²).
 template <class T>
 [[nodiscard]] T magic_secant(double shape, const T& square) noexcept {
   if (shape != 1.5) {
     const T size = sqrt(square);
-    return sin(shape * atan(size / shape)) / size;
+    return sin(shape * atan((1.0 / shape) * size)) / size;
   }
-  const T cosine = 1.0 / sqrt(1.0 + square / (shape * shape));
-  return cosine * (1.0 + 2.0 * cosine) / (2.0 * shape * sqrt(0.5 * (1.0 + cosine)));
+  const auto& x2 = jet::value(square);
+  const auto c = 1.0 / sqrt(1.0 + (1.0 / 2.25) * x2);
+  const auto h2 = 0.5 * (1.0 + c);
+  const auto per_half = 1.0 / sqrt(h2);
+  const auto secant = (1.0 / 3.0) * per_half * c * (1.0 + 2.0 * c);
+  if constexpr (AnyJet<T>) {
+    const auto cube = c * c * c * per_half / h2;
+    return jet::chain(square, secant, (-1.0 / 54.0) * cube * (2.0 + c * (9.0 + 6.0 * c)),
+                      (1.0 / 243.0) * cube * c * c / h2 * (3.0 + c * (19.5 + c * (26.25 + 10.5 * c))));
+  } else {
+    return secant;
+  }
 }
 
 /// Friction curve of PhysX wheels as Unity's WheelCollider takes it: from (0, 0) to an extremum to an
