@@ -38,6 +38,11 @@ model::Measurement measured(double time, const model::State& car) {
   return now;
 }
 
+/// The car as it was `age` [s] ago.
+model::Measurement measured_late(double time, double age, double yaw_rate) {
+  return measured(time, car_at(time - age, yaw_rate));
+}
+
 using Change = std::function<void(model::Measurement&)>;
 
 /// What is doubted first within `seconds` of a signal that is wrong from the fifth second on. The estimate
@@ -247,11 +252,7 @@ TEST(SensorWatch, IsNotSureOfACarWhoseWheelsSwing) {
 
 TEST(SensorWatch, TellsLateMeasurementsFromOtherPlaces) {
   for (const double age : {0.05, 0.1, 0.3, 0.8, 1.5}) {
-    const auto late = [=](model::Measurement& now) {
-      const double time = now.time;
-      now = measured(time - age, car_at(time - age, kYawRate));
-      now.time = time;
-    };
+    const auto late = [=](model::Measurement& now) { now = measured_late(now.time, age, kYawRate); };
     const SensorDoubts doubts = doubts_of(late, kCycle);
     EXPECT_TRUE(doubts.late && doubts.is_old) << age;
     EXPECT_FALSE(doubts.place || doubts.heading || doubts.speed) << age;
@@ -260,11 +261,7 @@ TEST(SensorWatch, TellsLateMeasurementsFromOtherPlaces) {
 
 /// A sensor is not late by seconds: then it is another place.
 TEST(SensorWatch, TellsAPlaceOfLongAgoFromALateMeasurement) {
-  const auto long_ago = [](model::Measurement& now) {
-    const double time = now.time;
-    now = measured(time - 3.0, car_at(time - 3.0, 0.0));
-    now.time = time;
-  };
+  const auto long_ago = [](model::Measurement& now) { now = measured_late(now.time, 3.0, 0.0); };
   const SensorDoubts doubts = doubts_of(long_ago, kCycle, 0.0);
   EXPECT_TRUE(doubts.place);
   EXPECT_FALSE(doubts.late || doubts.is_old || doubts.heading || doubts.speed);
@@ -276,14 +273,29 @@ TEST(SensorWatch, AcceptsMeasurementsOfNowAgain) {
   for (double time = 0.0; time < 12.0; time += kCycle) {
     const model::State expected = car_at(time, kYawRate);
     const bool is_late = time >= 5.0 && time < 7.0;
-    model::Measurement now =
-        measured(time - (is_late ? 0.5 : 0.0), car_at(time - (is_late ? 0.5 : 0.0), kYawRate));
-    now.time = time;
-    const SensorDoubts& doubts = watch.see(now, expected);
+    const SensorDoubts& doubts = watch.see(measured_late(time, is_late ? 0.5 : 0.0, kYawRate), expected);
     EXPECT_EQ(doubts.is_old, is_late) << time;
     if (!doubts.late && ended == 0.0 && time > 5.1) ended = time;
   }
   EXPECT_NEAR(ended, 7.0 + SensorWatch::kAgreeing, 0.1);
+}
+
+/// A place that is accepted after a trial says nothing of the age of measurements: the start of the car does.
+TEST(SensorWatch, WatchesTheStartOfACarWhoseMeasurementsWereLate) {
+  for (const double lag : {0.0, 0.4}) {
+    SensorWatch watch{kLength, kWheelbase};
+    for (double time = 0.0; time < 5.2; time += kCycle)
+      watch.see(measured_late(time, time < 5.0 ? 0.0 : 0.5, kYawRate), car_at(time, kYawRate));
+    watch.reset();
+    double speed = 0.0;
+    for (double time = 5.2; time < 10.0; time += kCycle) {
+      const model::State expected{.vx = speed + (time > 8.0 ? 3.0 * kCycle : 0.0)};
+      speed = std::max(0.0, 3.0 * (time - 8.0 - lag));
+      const bool late = watch.see(measured(time, {.vx = speed}), expected).late;
+      const bool is_sure = time < 6.1 || (time > 6.3 && time < 8.0) || time > 8.7;
+      EXPECT_TRUE(!is_sure || late == (time < 6.1 || (time > 8.7 && lag > 0.0))) << time;
+    }
+  }
 }
 
 /// The way driven in a silence is not known.

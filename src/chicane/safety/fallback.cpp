@@ -130,14 +130,6 @@ double Fallback::gentle_share() const noexcept {
   return std::clamp(needed / std::max(most, 0.1), kGentleBraking, 1.0);
 }
 
-void Fallback::reset() noexcept {
-  plan_size_ = 0;
-  has_time_ = false;
-  last_steer_ = last_throttle_ = 0.0;
-  speed_ = distance_ = 0.0;
-  has_speed_ = false;
-}
-
 /// The command planned for `time`; nullptr when the plan ends before.
 const model::Command* Fallback::planned(double time) const noexcept {
   if (plan_size_ == 0 || time > plan_[static_cast<std::size_t>(plan_size_ - 1)].time) return nullptr;

@@ -51,7 +51,7 @@ class Fallback {
   /// Another car's limits from now on; plan and steering stay.
   void set_vehicle(const model::VehicleParams& vehicle) noexcept { vehicle_ = vehicle; }
   /// Forgets plan and steering: a new run begins.
-  void reset() noexcept;
+  void reset() noexcept { *this = Fallback{vehicle_}; }
 
  private:
   struct Intention {
@@ -104,10 +104,7 @@ class CommandGate {
   [[nodiscard]] GateResult pass(const model::Command& asked, double elapsed) noexcept;
   /// What pass() would send.
   [[nodiscard]] GateResult limited(const model::Command& asked, double elapsed) const noexcept;
-  void reset() noexcept {
-    last_ = {};
-    wheel_ = 0.0;
-  }
+  void reset() noexcept { *this = CommandGate{vehicle_}; }
   /// Another car's limits from now on; the last command stays.
   void set_vehicle(const model::VehicleParams& vehicle) noexcept { vehicle_ = vehicle; }
 

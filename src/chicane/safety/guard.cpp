@@ -68,7 +68,7 @@ Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::Ve
 
 void Guard::reset() noexcept {
   controller_->reset();
-  monitor_.reset();
+  monitor_ = MeasurementMonitor{vehicle_.length, vehicle_.wheelbase()};
   reset_watch_.reset();
   actuators_.reset();
   learned_.reset();

@@ -240,7 +240,7 @@ void Guard::watch_answer(const model::Measurement& seen, bool has_answer) noexce
 /// it shows whether it answers there. False where it is not tried.
 bool Guard::try_reset(const std::optional<StopStart>& start, const Cycle& cycle, double time,
                       controller::StepResult& result) noexcept {
-  if (!(run_.still.lasts(time) > kStillTime)) return false;
+  if (monitor_.findings().late || !(run_.still.lasts(time) > kStillTime)) return false;
   if (run_.tried > kTrialWay * model_.vehicle().length) {
     reset_watch_.give_up();
     return false;

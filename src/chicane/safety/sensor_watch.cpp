@@ -56,7 +56,13 @@ double SensorWatch::Noise::deviation() const noexcept { return std::sqrt(square)
 SensorWatch::SensorWatch(double length, double wheelbase) noexcept
     : size_{std::min(length / kFullSize, 1.0)}, wheelbase_{wheelbase} {}
 
-void SensorWatch::reset() noexcept { *this = SensorWatch{size_ * kFullSize, wheelbase_}; }
+void SensorWatch::reset() noexcept {
+  const bool may_be_late = doubts_.late || is_tried_;
+  const double retry = retry_;
+  *this = SensorWatch{size_ * kFullSize, wheelbase_};
+  doubts_.late = may_be_late;
+  retry_ = retry;
+}
 
 const SensorWatch::Sample& SensorWatch::back(std::size_t count) const noexcept {
   return samples_[(count_ - 1 - count) % kSamples];
@@ -107,6 +113,7 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
       y_ = expected.y;
     }
   }
+  try_start(now, expected, elapsed);
   if (!has_doubts()) {
     learn(seen, most, elapsed);
     if (!is_sure()) clean_from_ = now.time - calm_;
@@ -204,11 +211,11 @@ void SensorWatch::judge_age(const model::Measurement& now, const model::State& e
   const bool is_far = seen.place > most.place;
   doubts_.is_old = goes_on || (is_far && !doubts_.place && is_earlier(now, most));
   doubts_.late |= doubts_.is_old;
-  // A place in doubt stays far; the age of a car that stands does not show in it.
+  // A place in doubt stays far; the age of a car that stands does not show in it, nor that of a slow one.
   const bool is_other = is_far && !(stands && doubts_.place);
-  late_agrees_ = doubts_.is_old || is_other ? 0.0 : late_agrees_ + elapsed;
-  if (!doubts_.late) return try_start(now, expected, elapsed);
-  if (late_agrees_ < kAgreeing || (stands && now.time < retry_)) return;
+  const bool is_slow = !stands && std::fabs(now.speed) * kMostLag < most.place;
+  late_agrees_ = doubts_.is_old || is_other || is_slow ? 0.0 : late_agrees_ + elapsed;
+  if (!doubts_.late || late_agrees_ < kAgreeing || now.time < retry_) return;
   doubts_.late = false;
   is_tried_ = stands;
   asked_speed_ = lag_ = 0.0;

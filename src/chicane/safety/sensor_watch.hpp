@@ -29,6 +29,7 @@ class SensorWatch {
 
   /// `length`: of the car [m]; `wheelbase` [m].
   SensorWatch(double length, double wheelbase) noexcept;
+  /// What was seen of a car is another one's. That measurements may be late stays until a start shows it.
   void reset() noexcept;
 
   /// The doubts in a finite measurement; `expected`: the car by the estimate at now.time.
