@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "chicane/base/math.hpp"
 
@@ -29,83 +30,84 @@ void MeasurementMonitor::reset() noexcept {
 
 const model::Measurement& MeasurementMonitor::check(const model::Measurement& now,
                                                     const model::State* expected) noexcept {
-  checked_ = now;
-  const Findings before = own_;
   const bool was_frozen = findings_.frozen && now.time - thawed_ > kLongFrozen;
   if (!findings_.frozen) thawed_ = now.time;
-  findings_ = {};
   const double elapsed = has_last_ ? now.time - last_.time : 0.0;
   const bool is_later = std::isfinite(now.time) && (!has_last_ || elapsed > 0.0);
-  const bool has_place = std::isfinite(now.x) && std::isfinite(now.y);
-  const bool is_whole = is_later && has_place && std::isfinite(now.psi) && std::isfinite(now.speed);
-  findings_.unmeasured = !is_whole;
-  if (!is_later) {
-    checked_.x = checked_.y = checked_.psi = checked_.speed = kNaN;
-    return checked_;
-  }
-  if (is_whole) findings_.frozen = is_frozen(now, elapsed);
-  bool is_blind = !is_whole || findings_.frozen;
-
-  if (expected != nullptr && is_whole && !findings_.frozen) {
-    const double speed = hypot(expected->vx, expected->vy);
-    const double step = std::clamp(elapsed, 0.0, kLongestGap);
-    findings_.speed_mismatch =
-        std::fabs(now.speed - speed) > kSpeedJump + kAcceleration * step + other_drift_ ||
-        contradicts_displacement(now, elapsed);
-    // A speed that was wrong is right again when it says so of a car that moves.
-    findings_.speed_mismatch |= before.speed_mismatch && now.speed < kMoving;
-    findings_.heading_jump = std::fabs(angle_difference(now.psi, expected->psi)) >
-                             kHeadingJump + kYawAcceleration * step * step + 0.1 * other_drift_;
-    findings_.position_jump =
-        hypot(now.x - expected->x, now.y - expected->y) > kJump + kAcceleration * step * step + place_drift_;
-    // A place that jumped is right again when it jumps back, not when what is expected has drifted up to it.
-    findings_.position_jump |= before.position_jump && !jumps(now, elapsed);
-    // Where place and speed are both wrong, the heading comes from the same wrong sensor.
-    findings_.heading_jump |= findings_.position_jump && findings_.speed_mismatch;
-  }
-  own_ = findings_;
-  if (expected != nullptr && is_whole && !findings_.frozen) {
-    if (is_stuck(now, *expected)) {
-      findings_.frozen = is_blind = true;
-    } else {
-      if (was_frozen) watch_.forget_doubts();
-      const SensorDoubts& doubts = watch_.see(now, *expected);
-      if (doubts.is_old) findings_ = own_ = {};
-      findings_.late = doubts.late;
-      is_blind |= doubts.is_old;
-      findings_.position_jump |= doubts.place;
-      findings_.heading_jump |= doubts.heading;
-      findings_.speed_mismatch |= doubts.speed;
-    }
-  }
-  // While something is missing, what is expected drifts away from the car.
-  const double driven =
-      expected != nullptr ? std::max(elapsed, 0.0) * hypot(expected->vx, expected->vy) : 0.0;
-  if (is_blind) {
-    place_drift_ += kBlindDrift * driven;
-    other_drift_ += kBlindSpeedDrift * std::clamp(elapsed, 0.0, kLongestGap);
-  } else {
-    place_drift_ = findings_.position_jump ? place_drift_ + kKnownDrift * driven : 0.0;
-    other_drift_ = 0.0;
-  }
-  if (is_whole) {
-    last_ = now;
-    has_last_ = true;
-  } else if (has_last_) {
-    last_.time = now.time;
-    sample_count_ = 0;
-  }
-  if (findings_.frozen || (findings_.late && watch_.doubts().is_old))
-    checked_.x = checked_.y = checked_.psi = checked_.speed = kNaN;
-  if (findings_.position_jump) checked_.x = checked_.y = kNaN;
-  if (watch_.doubts().place && !findings_.frozen && !watch_.doubts().is_old && !findings_.heading_jump &&
-      !findings_.speed_mismatch && !findings_.unmeasured && watch_.x() != expected->x) {
+  const bool is_whole = is_later && std::isfinite(now.x) && std::isfinite(now.y) && std::isfinite(now.psi) &&
+                        std::isfinite(now.speed);
+  constexpr Signals kAll{true, true, true};
+  findings_ = {.unmeasured = !is_whole};
+  if (!is_later) return checked_ = without(now, kAll);
+  findings_.frozen = is_whole && is_frozen(now, elapsed);
+  const bool is_judged = expected != nullptr && is_whole && !findings_.frozen;
+  if (is_judged)
+    judge(now, *expected, elapsed, was_frozen);
+  else
+    own_ = findings_;
+  const bool is_old = findings_.late && watch_.doubts().is_old;
+  const bool is_blind = !is_whole || findings_.frozen || is_old;
+  count_drift(is_blind, elapsed, expected != nullptr ? hypot(expected->vx, expected->vy) : 0.0);
+  if (is_whole) last_ = now;
+  last_.time = now.time;
+  has_last_ |= is_whole;
+  if (!is_whole) sample_count_ = 0;
+  const Signals wrong{findings_.position_jump, findings_.heading_jump, findings_.speed_mismatch};
+  checked_ = without(now, findings_.frozen || is_old ? kAll : wrong);
+  const bool counts_on = is_judged && !is_blind && watch_.doubts().place && !wrong.heading && !wrong.speed;
+  if (counts_on && watch_.x() != expected->x) {
     checked_.x = watch_.x();
     checked_.y = watch_.y();
   }
-  if (findings_.heading_jump) checked_.psi = kNaN;
-  if (findings_.speed_mismatch) checked_.speed = kNaN;
   return checked_;
+}
+
+/// Equations 7 and 8, and what the watch doubts.
+void MeasurementMonitor::judge(const model::Measurement& now, const model::State& expected, double elapsed,
+                               bool was_frozen) noexcept {
+  const Findings before = std::exchange(own_, {});
+  const double speed = hypot(expected.vx, expected.vy);
+  const double step = std::min(elapsed, kLongestGap);
+  own_.speed_mismatch = std::fabs(now.speed - speed) > kSpeedJump + kAcceleration * step + other_drift_ ||
+                        contradicts_displacement(now, elapsed) ||
+                        // A speed that was wrong is right again when it says so of a car that moves.
+                        (before.speed_mismatch && now.speed < kMoving);
+  // A place that jumped is right again when it jumps back, not when what is expected has drifted up to it.
+  own_.position_jump =
+      hypot(now.x - expected.x, now.y - expected.y) > kJump + kAcceleration * step * step + place_drift_ ||
+      (before.position_jump && !jumps(now, elapsed));
+  // Where place and speed are both wrong, the heading comes from the same wrong sensor.
+  own_.heading_jump = std::fabs(angle_difference(now.psi, expected.psi)) >
+                          kHeadingJump + kYawAcceleration * step * step + 0.1 * other_drift_ ||
+                      (own_.position_jump && own_.speed_mismatch);
+  findings_ = own_;
+  if (is_stuck(now, expected)) {
+    findings_.frozen = true;
+    return;
+  }
+  if (was_frozen) watch_.forget_doubts();
+  const SensorDoubts& doubts = watch_.see(now, expected);
+  if (doubts.is_old) own_ = {};
+  findings_ = {.late = doubts.late,
+               .speed_mismatch = own_.speed_mismatch || doubts.speed,
+               .heading_jump = own_.heading_jump || doubts.heading,
+               .position_jump = own_.position_jump || doubts.place};
+}
+
+/// While something is missing, what is expected of a car of this speed [m/s] drifts away from it.
+void MeasurementMonitor::count_drift(bool is_blind, double elapsed, double speed) noexcept {
+  const double driven = elapsed * speed;
+  const double share = is_blind ? kBlindDrift : kKnownDrift;
+  place_drift_ = is_blind || findings_.position_jump ? place_drift_ + share * driven : 0.0;
+  other_drift_ = is_blind ? other_drift_ + kBlindSpeedDrift * std::min(elapsed, kLongestGap) : 0.0;
+}
+
+/// `now` without the signals named in `missing`.
+model::Measurement MeasurementMonitor::without(model::Measurement now, const Signals& missing) noexcept {
+  if (missing.place) now.x = now.y = kNaN;
+  if (missing.heading) now.psi = kNaN;
+  if (missing.speed) now.speed = kNaN;
+  return now;
 }
 
 bool MeasurementMonitor::is_frozen(const model::Measurement& now, double elapsed) noexcept {

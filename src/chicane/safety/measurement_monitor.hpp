@@ -64,6 +64,10 @@ class MeasurementMonitor {
   static constexpr int kSamples = 16;
   static constexpr double kSampleSpacing = 0.06;  ///< [s]
 
+  void judge(const model::Measurement& now, const model::State& expected, double elapsed,
+             bool was_frozen) noexcept;
+  void count_drift(bool is_blind, double elapsed, double speed) noexcept;
+  [[nodiscard]] static model::Measurement without(model::Measurement now, const Signals& missing) noexcept;
   [[nodiscard]] bool jumps(const model::Measurement& now, double elapsed) const noexcept;
   [[nodiscard]] bool is_frozen(const model::Measurement& now, double elapsed) noexcept;
   [[nodiscard]] bool is_stuck(const model::Measurement& now, const model::State& expected) noexcept;
