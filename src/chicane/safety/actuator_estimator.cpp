@@ -28,7 +28,7 @@ constexpr double kFar = 1.0;  // deviations of the estimate from that place, fro
 constexpr double kCorrelated = 2.0;        // [s] of which correlation and variance are the mean
 constexpr double kMostCorrelation = 0.98;  // from one measurement to the next: some information is left
 constexpr double kSure = 3.0;              // deviations by which an estimate differs from what is driven with
-constexpr double kShown = 1.0;             // [s] of driving until the estimate is reported
+constexpr double kShown = 1.0;  // [s] of driving until the estimate is reported and an offset driven with
 constexpr double kMostDeviation = 0.1;  // share of the usual deviation: a less certain estimate is not used
 
 // Of delay [s], gain, offset [rad] and grip: by how much an estimator differs, what is assumed to be usual
@@ -221,7 +221,8 @@ ActuatorEstimator::Solution ActuatorEstimator::solve() const noexcept {
 }
 
 bool ActuatorEstimator::is_certain(Unknown i) const noexcept {
-  return time_ >= kEnough && solution_.deviation[i] <= kMostDeviation * kRows[i].usual;
+  return time_ >= (i == kOffset ? kShown : kEnough) &&
+         solution_.deviation[i] <= kMostDeviation * kRows[i].usual;
 }
 
 /// Delay and gain pass for each other, and for what the model lacks, in bends that are much alike: both are

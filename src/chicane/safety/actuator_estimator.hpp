@@ -25,7 +25,7 @@ namespace chicane::safety {
 class ActuatorEstimator {
  public:
   static constexpr double kMemory = 10.0;    ///< time constant of forgetting [s]
-  static constexpr double kEnough = 5.0;     ///< remembered driving until an estimate is driven with [s]
+  static constexpr double kEnough = 5.0;     ///< remembered driving until delay and gain are driven with [s]
   static constexpr double kMostDelay = 0.3;  ///< [s]
 
   explicit ActuatorEstimator(const model::VehicleParams& vehicle) noexcept;
