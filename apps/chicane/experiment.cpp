@@ -139,7 +139,7 @@ std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
           : limit.is_cut_short ? "what could be driven: the budget ended the search for that (--budget-s)\n"
                                : "what could be driven: no plan could\n";
   text +=
-      fmt::format("bound    {:.3f} s ({:.3f} {:.3f} {:.3f} by thirds), optimum of the plant's equations\n",
+      fmt::format("bound    {:.3f} s ({:.3f} {:.3f} {:.3f} by thirds), the plant's optimum\n",
                   limit.bound.lap, limit.bound.sectors[0], limit.bound.sectors[1], limit.bound.sectors[2]);
   if (limit.witness)
     text += fmt::format(

@@ -47,9 +47,7 @@ struct Assign {
   std::string operator()(Off to) const { return *to.value = false, ""; }
   /// A value that the setting refuses is named by the option.
   std::string operator()(Setting to) const {
-    const protocol::Parameter* setting = protocol::find(to.key);
-    const Result<protocol::Value> read =
-        setting != nullptr ? protocol::parse(*setting, text) : protocol::Value{};
+    const Result<protocol::Value> read = protocol::parse(*protocol::find(to.key), text);
     if (!read) return read.error().message.substr(read.error().message.find("expected ") + 9);
     return settings.emplace_back(to.key, text), "";
   }
