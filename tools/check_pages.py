@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Checks that pages can be read: no line of text beyond 120 columns, each formula a paragraph, README and guides without riddle words.
 
-    tools/check_pages.py             prints what is too long or not rendered, and the words of each group of pages; exit code 1 on a violation
+    tools/check_pages.py [ROOT]      prints what is too long or not rendered, and the words of each group of pages; exit code 1 on a violation
     tools/check_pages.py --lengths   also, for each page, words, words of a sentence (mean and most), riddle words and you/we per 1,000 words
 
 Code, tables, formulas, pictures and what a program writes between two markers may be wider. Riddle words stand for an agent or a noun that
@@ -67,12 +67,12 @@ def groups_of(root, pages):
     for page in pages:
         kind = "guides" if page.name in guides else "other pages"
         groups[{"docs": kind, root.name: "README"}.get(page.parent.name, page.parent.name)].append(page)
-    return groups
+    return groups | {"all": pages}
 
 
 def main():
     usage.print_if_asked(__doc__)
-    root = Path(__file__).resolve().parent.parent
+    root = Path(next((word for word in sys.argv[1:] if not word.startswith("-")), Path(__file__).parents[1])).resolve()
     pages = [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
     if "--lengths" in sys.argv[1:]:
         print("words, of a sentence: mean, most; riddle words and you/we per 1,000 words")

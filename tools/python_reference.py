@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes docs/reference/python_reference.md from the docstrings of the Python module and the stubs of its compiled part.
+"""Writes docs/reference/python_reference.md from the docstrings of the Python module, in numpydoc's format.
 
     ./run.sh python tools/python_reference.py           writes the page
     ./run.sh python tools/python_reference.py --check   exit code 1 where it is another one"""
-import ast
 import inspect
 import re
 import sys
@@ -29,12 +28,9 @@ PARTS = (
 )
 PLAIN = {"Symbol", "NO_ANSWER", "acos", "asin", "atan", "cos", "exp", "log", "sin", "sqrt", "tan", "tanh"}
 """Of numpy, or said elsewhere."""
-
-
-def stubs() -> dict[str, ast.ClassDef]:
-    """Classes of the compiled part, whose docstrings are in its stubs."""
-    tree = ast.parse((ROOT / "python/chicane/_chicane.pyi").read_text(encoding="utf-8"))
-    return {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
+INSIDE = {"all_inputs", "all_rows", "close", "cost_offset", "full_count", "full_parameters", "has_expression_cost", "hidden_parameters", "input_bounds",
+          "make_interpreter", "stage_parameters"}
+"""Members for other modules of the package."""
 
 
 def signature(function: object) -> str:
@@ -47,10 +43,20 @@ def signature(function: object) -> str:
     return re.sub(r"\s+", " ", str(inspect.Signature(kept)))
 
 
+def items(title: str, text: str) -> str:
+    """A section of names with types and meanings as a table; an answer without a name, and what is raised, as a sentence."""
+    found = [(name, kind, " ".join(meaning.split())) for name, kind, meaning in re.findall(r"^(\S[^:\n]*?)(?: : (.*))?\n((?: +.*\n?)+)", text + "\n", re.M)]
+    if title in ("Returns", "Raises"):
+        said = [f"{f'`{name}`, {kind}' if kind else name}: {meaning[0].lower()}{meaning[1:].rstrip('.')}" for name, kind, meaning in found]
+        return f"*{title}* {'; '.join(said)}."
+    return "||||\n|---|---|---|\n" + "\n".join(f"|`{name}`|{kind}|{meaning}|" for name, kind, meaning in found)
+
+
 def block(text: str) -> str:
-    """A docstring: examples, which are indented, as code; words as they are."""
+    """A docstring: sections as lists, examples, which are indented, as code, words as they are."""
+    words, *sections = re.split(r"\n\n(\w+)\n-+\n", inspect.cleandoc(text))
     lines, is_code = [], False
-    for line in inspect.cleandoc(text).split("\n"):
+    for line in words.split("\n"):
         deep = line.startswith("    ") and (is_code or not lines or not lines[-1].strip())
         if deep and not is_code:
             lines.append("```python")
@@ -62,6 +68,7 @@ def block(text: str) -> str:
         lines.append(line[4:] if is_code else re.sub(r"^([a-z][\w, ]{0,60}: )", r"- \1", line))
     if is_code:
         lines.append("```")
+    lines += [f"\n{items(title, part)}" for title, part in zip(sections[::2], sections[1::2])]
     return "\n".join(line.rstrip() if line.strip() else "" for line in "\n".join(lines).split("\n"))
 
 
@@ -70,7 +77,7 @@ def members(one: type) -> list[str]:
     text = []
     for name, member in vars(one).items():
         doc = inspect.getdoc(member)
-        if name.startswith("_") or not doc:
+        if name.startswith("_") or name in INSIDE or not doc:
             continue
         if isinstance(member, property):
             text.append(f"**`{name}`** {block(doc)}")
@@ -79,23 +86,16 @@ def members(one: type) -> list[str]:
     return text
 
 
-def entry(name: str, compiled: dict[str, ast.ClassDef]) -> list[str]:
+def entry(name: str) -> list[str]:
     one = getattr(ch, name)
-    if name in compiled:
-        node = compiled[name]
-        text = [f"### {name}", block(ast.get_docstring(node) or "")]
-        rows = [f"| `{member.name}` | {' '.join((ast.get_docstring(member) or '').split())} |" for member in node.body
-                if isinstance(member, ast.FunctionDef) and ast.get_docstring(member)]
-        return text + (["| | |\n|---|---|\n" + "\n".join(rows)] if rows else [])
     doc = block(inspect.getdoc(one) or "")
     if not isinstance(one, type):
         return [f"### `{name}{signature(one)}`", doc]
-    return [f"### {name}", f"`{name}{signature(one.__init__)}`" if "__init__" in vars(one) and name in ("Problem", "Env", "VecEnv", "Track") else "", doc,
+    return [f"### {name}", f"`{name}{signature(one.__init__)}`" if "__init__" in vars(one) and name in ("Problem", "Env", "Track") else "", doc,
             *members(one)]
 
 
 def page() -> str:
-    compiled = stubs()
     missing = set(ch.__all__) - PLAIN - {"__version__"} - {name for _, names in PARTS for name in names}
     if missing:
         sys.exit(f"python_reference: in no part of the page: {', '.join(sorted(missing))}")
@@ -104,7 +104,7 @@ def page() -> str:
     for title, names in PARTS:
         text.append(f"## {title}")
         for name in names:
-            text += entry(name, compiled)
+            text += entry(name)
     return "\n\n".join(part.strip() for part in text if part.strip()) + "\n"
 
 

@@ -138,18 +138,17 @@ std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
               ? fmt::format("{:.3f} s ({:+.2f} %)\n", limit.witness->lap_time, 100.0 * limit.bracket())
           : limit.is_cut_short ? "what could be driven: the budget ended the search for that (--budget-s)\n"
                                : "what could be driven: no plan could\n";
-  text += fmt::format(
-      "bound    {:.3f} s ({:.3f} {:.3f} {:.3f} by thirds): the optimum of the plant's own equations\n",
-      limit.bound.lap, limit.bound.sectors[0], limit.bound.sectors[1], limit.bound.sectors[2]);
+  text +=
+      fmt::format("bound    {:.3f} s ({:.3f} {:.3f} {:.3f} by thirds), the plant's optimum\n",
+                  limit.bound.lap, limit.bound.sectors[0], limit.bound.sectors[1], limit.bound.sectors[2]);
   if (limit.witness)
     text += fmt::format(
-        "witness  {:.3f} s: the best of {} laps driven in succession, the slowest {:.3f} s; {:.3f} m to the "
-        "edge at least\n",
+        "witness  {:.3f} s, the best of {} laps (slowest {:.3f} s), {:.3f} m to the edge at least\n",
         limit.witness->lap_time, limit.witness->laps, limit.witness->worst, limit.witness->least_edge);
   text += fmt::format("speed    {:.1f} mph at least, {:.1f} at most\n", mps_to_mph(extent.least_speed),
                       mps_to_mph(extent.top_speed));
   text +=
-      fmt::format("found in {:.1f} s: {} nodes, {} iterations; stationarity {:.1e}, violation {:.1e}\n",
+      fmt::format("found in {:.1f} s: {} nodes, {} iterations; stationarity {:.0e}, violation {:.0e}\n",
                   run.wall_time, limit.nodes, limit.effort.iterations, limit.stationarity, limit.violation);
   return text;
 }

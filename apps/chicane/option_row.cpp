@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/schema.hpp"
 #include "commands.hpp"
 
 namespace chicane::apps {
@@ -44,7 +45,12 @@ struct Assign {
 
   std::string operator()(bool* to) const { return *to = true, ""; }
   std::string operator()(Off to) const { return *to.value = false, ""; }
-  std::string operator()(Setting to) const { return settings.emplace_back(to.key, text), ""; }
+  /// A value that the setting refuses is named by the option.
+  std::string operator()(Setting to) const {
+    const Result<protocol::Value> read = protocol::parse(*protocol::find(to.key), text);
+    if (!read) return read.error().message.substr(read.error().message.find("expected ") + 9);
+    return settings.emplace_back(to.key, text), "";
+  }
   std::string operator()(std::string* to) const { return *to = text, ""; }
   std::string operator()(std::vector<std::string>* to) const { return to->push_back(text), ""; }
   std::string operator()(const Take& take) const { return take(text); }

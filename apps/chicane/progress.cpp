@@ -77,16 +77,14 @@ namespace {
 constexpr std::chrono::milliseconds kTerminalPeriod{100};
 constexpr double kLinePeriod = 10.0;  // seconds of the run
 
+/// At most 80 columns.
 std::string line(const telemetry::Frame& frame) {
-  const double speed = frame.measurement.speed;
   const double error = frame.has_truth ? frame.lateral_error : frame.result.report.lateral_error;
   const std::string place =
-      frame.has_truth ? fmt::format("lap {:<3} {:6.0f} m ", frame.lap + 1, frame.s) : "";
-  const std::string solve =
-      frame.solve_time > 0.0 ? fmt::format("  solve {:5.0f} µs", 1e6 * frame.solve_time) : "";
+      frame.has_truth ? fmt::format("lap {:<2} {:5.0f} m ", frame.lap + 1, frame.s) : "";
   const std::string beside = std::isfinite(error) ? fmt::format("error {:+6.2f} m", error) : "error unknown";
-  return fmt::format("{:7.1f} s  {}{:6.1f} mph  {}{}  {}", frame.time, place, mps_to_mph(speed), beside,
-                     solve, sentence_of(frame.situation));
+  return fmt::format("{:6.1f} s  {}{:5.1f} mph  {}  {}", frame.time, place,
+                     mps_to_mph(frame.measurement.speed), beside, sentence_of(frame.situation));
 }
 
 }  // namespace

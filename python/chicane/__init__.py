@@ -43,6 +43,7 @@ from ._view import report, view  # noqa: E402
 if TYPE_CHECKING:
     from ._env import Env, VecEnv
 
+_interpreter.document(CarState, Command, Measurement, type(NO_ANSWER))
 __all__ = [
     "CarState", "Command", "Controller", "Env", "Feedback", "Frames", "Iterations", "Limit", "NO_ANSWER", "Plant", "Problem", "Recording", "Road", "Run",
     "Measurement", "Solution", "Solutions", "Symbol", "TraceError", "Track", "TrackReader", "VecEnv", "__version__", "acos", "asin", "atan", "atan2",

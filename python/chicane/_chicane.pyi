@@ -14,31 +14,38 @@ class Request:
     def __init__(self, scenario: str, settings: list[tuple[str, str]], speed_mps: str, faults: list[str]) -> None: ...
 
 class Command:
-    """What a controller asks of the car: steer, the angle of the front wheels [rad], left positive, and throttle in
-    [-1, 1], negative brakes."""
+    """A command of a controller to the car.
+
+    Attributes
+    ----------
+    steer : float
+        Angle of the front wheels [rad], left positive.
+    throttle : float
+        One pedal in [-1, 1], negative brakes.
+    """
     steer: float
     throttle: float
     def __init__(self, steer: float = 0.0, throttle: float = 0.0) -> None: ...
 
 class NoAnswer:
-    """The type of NO_ANSWER."""
+    """The type of NO_ANSWER, which a controller returns when it has no command to give."""
 
 NO_ANSWER: NoAnswer
 
 class Measurement:
-    """A controller's measurement in one cycle, of the car as it is, noise, age and faults of the sensors included."""
+    """A controller's measurement in one cycle, noise, age and faults of the sensors included."""
     @property
     def time(self) -> float:
-        """When it was measured, from the start of the run [s]."""
+        """Time of the measurement, from the start of the run [s]."""
     @property
     def x(self) -> float:
-        """Of the centre of mass in the world [m]."""
+        """Position of the centre of mass in the world [m]."""
     @property
     def y(self) -> float:
-        """Of the centre of mass in the world [m]."""
+        """Position of the centre of mass in the world [m]."""
     @property
     def yaw(self) -> float:
-        """In the world, counter-clockwise positive [rad]."""
+        """Heading in the world, counter-clockwise positive [rad]."""
     @property
     def speed(self) -> float:
         """Magnitude of the velocity [m/s]."""
@@ -50,24 +57,36 @@ class Measurement:
         """Pedal that acted in the cycle before, [-1, 1]."""
     @property
     def delay(self) -> float:
-        """From `time` until the command acts that is computed now [s]."""
+        """Time from `time` until the command acts that is computed now [s]."""
     @property
     def waypoints(self) -> Array:
-        """The next points of the road in the world, in driving order, shape (n, 2) [m]; the first may lie behind the car.
-        A copy."""
+        """Next points of the road in the world, in driving order, shape (n, 2) [m]; the first may lie behind the car. A copy."""
     @property
     def waypoints_ahead(self) -> Array:
-        """The same seen from the car, x ahead and y to the left, shape (n, 2) [m]. A copy."""
+        """The waypoints seen from the car, x ahead and y to the left, shape (n, 2) [m]. A copy."""
     @property
     def wheelbase(self) -> float:
-        """Of the car [m]."""
+        """Distance between the axles [m]."""
     @property
     def steer_limit(self) -> float:
         """Largest angle of the front wheels [rad]."""
 
 class CarState:
-    """Motion of a car in the plane: position of the centre of mass x, y [m] and yaw [rad] in the world, velocity along the car vx and to its
-    left vy [m/s], yaw_rate [rad/s], and the angle of the front wheels, steer [rad], left positive."""
+    """Motion of a car in the plane.
+
+    Attributes
+    ----------
+    x, y : float
+        Position of the centre of mass in the world [m].
+    yaw : float
+        Heading in the world [rad].
+    vx, vy : float
+        Velocity along the car and to its left [m/s].
+    yaw_rate : float
+        Rate of the heading [rad/s].
+    steer : float
+        Angle of the front wheels [rad], left positive.
+    """
     x: float
     y: float
     yaw: float

@@ -22,12 +22,22 @@ class Controller:
     """
 
     def step(self, seen: Measurement) -> Command | tuple[float, float] | NoAnswer:
-        """The command for one measurement: Command(steer [rad], throttle [-1, 1]), or these two as a tuple.
+        """Computes the command for one measurement, once in each control period (40 ms by default).
 
-        Called once in each control period (40 ms unless said otherwise). The command acts `seen.delay` seconds after
-        `seen.time`. It is limited to what the car can do. NO_ANSWER where there is none to give, such as without waypoints:
-        the guard then continues the last plan, and brakes."""
+        The command acts `seen.delay` seconds after `seen.time`, and is limited to what the car can do.
+
+        Parameters
+        ----------
+        seen : Measurement
+            What the sensors show.
+
+        Returns
+        -------
+        Command, tuple of two float, or NO_ANSWER
+            Steer [rad] and throttle in [-1, 1]. After NO_ANSWER, for instance without waypoints, the guard continues the
+            last plan, and brakes.
+        """
         raise NotImplementedError(f"{type(self).__name__}.step(seen) is not written yet")
 
     def reset(self) -> None:
-        """A new run begins: forget what was learned. Called before the first step."""
+        """Forgets what was learned, because a new run begins; called before the first step."""

@@ -11,7 +11,7 @@ from typing import Any
 from . import _chicane
 from ._controller import Controller
 from ._plant import Plant
-from ._request import Settings, make_request
+from ._request import Settings, listed, make_request
 from ._run import Frames, Recording, Run
 from ._track import AnyTrack
 
@@ -20,20 +20,51 @@ def drive(track: AnyTrack | None = None, *, car: str | None = None, preset: str 
           controller: str | Controller | None = None, plant: str | Plant | None = None, laps: int | None = None, latency_ms: float | None = None,
           seed: int | None = None, speed_mps: float | None = None, settings: Settings | None = None, faults: Iterable[str] = (),
           record: str | os.PathLike[str] = "", frames: bool = True, step_limit_s: float = 10.0) -> Run:
-    """Drives a car round a track, in virtual time, and returns what came of it: the run of `chicane drive --fast`.
+    """Drives a car round a track in virtual time, as `chicane drive --fast` does.
 
-    track, car, preset, scenario: names of what ships (tracks(), cars(), ...) or files; track also a Track of your own.
-    controller, plant: the name of one of the library's, or an instance of a Controller or a Plant of your own.
-    laps: the first is from standstill; 0: until the car is lost or `settings["time_limit_s"]` is over.
-    latency_ms: from measurement to the command's effect [ms].
-    speed_mps: the reference of whichever controller drives [m/s].
-    settings: any setting by its key, such as {"plant_options.friction_scale": 0.7}: parameters() lists them.
-    faults: "half_grip@12+5*0.5" is half_grip at 12 s for 5 s of strength 0.5; faults() lists them.
-    record: a file for `read`, `verify`, `chicane replay` and the dashboard (.mcap); an older recording is replaced.
-    frames: False leaves Run.frames empty, which saves memory: about 500 bytes for each control cycle.
-    step_limit_s: longest time of one step of a Controller or a Plant of your own by the wall clock [s]; 0: none.
+    Parameters
+    ----------
+    track : str, path or Track
+        Name of a shipped track (tracks()), file, or road of your own.
+    car : str or path
+        Name of a shipped car (cars()), or file.
+    preset : str or path
+        Name of a controller with its settings (presets()), or file.
+    scenario : str
+        Name of settings that the other arguments override (scenarios()), or file.
+    controller : str or Controller
+        Name of a controller, or one of your own.
+    plant : str or Plant
+        Name of the simulated car's equations, or a car of your own.
+    laps : int
+        Laps to drive, the first from standstill; 0: until the car is lost or `settings["time_limit_s"]` is over.
+    latency_ms : float
+        Time from a measurement to its command's effect [ms].
+    seed : int
+        Seed of everything random.
+    speed_mps : float
+        Speed reference of the controller [m/s].
+    settings : dict
+        Any setting by its key, such as {"plant_options.friction_scale": 0.7}: parameters() lists them.
+    faults : list of str
+        "half_grip@12+5*0.5" is half_grip at 12 s for 5 s of strength 0.5; faults() lists them.
+    record : str or path
+        Recording to write (.mcap), for read(), verify(), `chicane replay` and the dashboard; an older one is replaced.
+    frames : bool
+        False leaves Run.frames empty, which saves 500 bytes for each control cycle.
+    step_limit_s : float
+        Longest time of one step of a Controller or Plant of your own by the wall clock [s]; 0: none.
 
-    The same arguments give the same run, bit for bit: run["state_hash"] tells. ValueError for what cannot be driven."""
+    Returns
+    -------
+    Run
+        Report, laps and frames. The same arguments give the same run, bit for bit: compare run["state_hash"].
+
+    Raises
+    ------
+    ValueError
+        If this cannot be driven.
+    """
     _refuse_classes(controller=controller, plant=plant)
     own = controller if isinstance(controller, Controller) or hasattr(controller, "step") else None
     own_plant = plant if not isinstance(plant, str) else None
@@ -44,9 +75,8 @@ def drive(track: AnyTrack | None = None, *, car: str | None = None, preset: str 
     reply = _chicane.drive(request, own, own_plant, os.fspath(record), frames, step_limit_s)
     error = reply["error"]
     if error is not None:
-        print(f"chicane: {type(own).__name__} failed at {reply['error_time']:.2f} s; the guard stops the car:\n{error}",
-              end="", file=sys.stderr)
-    again = None if own is not None or own_plant is not None else dict(named=named, settings=dict(settings or {}), faults=_listed(faults), scenario=scenario,
+        print(f"chicane: {type(own).__name__} failed at {reply['error_time']:.2f} s; the guard stops the car:\n{error}", end="", file=sys.stderr)
+    again = None if own is not None or own_plant is not None else dict(named=named, settings=dict(settings or {}), faults=listed(faults), scenario=scenario,
                                               speed_mps=speed_mps)
     return Run(json.loads(reply["report"]), reply["table"], Frames(reply["frames"]), reply["situations"], reply["road"], error,
                os.fspath(record), again)
@@ -67,13 +97,24 @@ def _make_room(record: str | os.PathLike[str]) -> None:
             os.unlink(record)
 
 
-def _listed(faults: Iterable[str]) -> list[str]:
-    return [faults] if isinstance(faults, str) else list(faults)
-
-
 def read(path: str | os.PathLike[str]) -> Recording:
-    """Reads a recording of `drive(record=...)`, `chicane drive --record`, `serve` or `simulate` (.mcap); of several runs
-    in one file the last. ValueError for what is no recording of chicane."""
+    """Reads a recording of drive(), or of the program's `drive`, `serve` or `simulate`.
+
+    Parameters
+    ----------
+    path : str or path
+        Recording (.mcap); of several runs in one file the last is read.
+
+    Returns
+    -------
+    Recording
+        Head, laps, frames and road.
+
+    Raises
+    ------
+    ValueError
+        If the file is no recording of chicane.
+    """
     reply = _chicane.read(os.fspath(path))
     return Recording(os.fspath(path), reply["head"], Frames(reply["frames"]), reply["laps"], reply["road"])
 
@@ -81,7 +122,19 @@ def read(path: str | os.PathLike[str]) -> Recording:
 def verify(path: str | os.PathLike[str], controller: Controller | None = None, step_limit_s: float = 10.0) -> dict[str, Any]:
     """Computes every command of a recording again, as `chicane replay --verify` does.
 
-    controller: a new instance of the Controller that drove; None: the library's controller that did.
-    Returns "steps", "identical", "different", "first_difference" (a cycle, or None), "is_verified" and "error"."""
+    Parameters
+    ----------
+    path : str or path
+        Recording (.mcap).
+    controller : Controller
+        New instance of the Controller that drove; None: the library's controller that did.
+    step_limit_s : float
+        Longest time of one step of a Controller of your own by the wall clock [s]; 0: none.
+
+    Returns
+    -------
+    dict
+        "steps", "identical", "different", "first_difference" (a cycle, or None), "is_verified" and "error".
+    """
     _refuse_classes(controller=controller)
     return _chicane.verify(os.fspath(path), controller, step_limit_s)

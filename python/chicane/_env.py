@@ -50,34 +50,59 @@ class Env(BaseEnv):
         observation, info = env.reset()
         observation, reward, terminated, truncated, info = env.step([steer, throttle])
 
-    It is a gymnasium.Env where gymnasium can be imported, made by gymnasium.make("chicane/Race-v0") too, and has the same
-    methods where not. A pickle or a copy is another one with the same arguments, whose first episode begins: a run has no
-    copy.
+    It is a gymnasium.Env if gymnasium can be imported, also made by gymnasium.make("chicane/Race-v0"), and has the same
+    methods if not. A pickle or copy is another one with the same arguments, whose first episode begins.
 
-    action: array of shape (2,): steer [rad], left positive, and throttle in [-1, 1], negative brakes. It answers the
-        observation before it, acts `latency_ms` later, and is limited to what the car can do.
-    observation: float64, of what the sensors say, with their noise, age and faults; not-a-number where they say nothing.
+    Actions are arrays of shape (2,): steer [rad], left positive, and throttle in [-1, 1], negative brakes. An action answers
+    the observation before it, acts `latency_ms` later, and is limited to what the car can do.
+
+    An episode is terminated when a tyre has left the road (unless ends_off_road=False), or settings["laps"] laps are driven. It
+    is truncated after `episode_s`, or when the car is lost. `info` has the truth: time_s, s_m, lateral_error_m,
+    edge_distance_m, speed_mps, lap, is_off_track.
+
+    Parameters
+    ----------
+    track : str, path or Track
+        Road, as for drive().
+    car : str or path
+        Car, as for drive().
+    rate_hz : float
+        Observations in a second [1/s], 1 to 200.
+    noise : bool or dict
+        True: that of a good localisation (0.05 m, 0.3°, 0.1 m/s); or settings by key ("sensor.position_noise_m").
+    seed : int
+        Seed of the first episode; each reset() without a seed adds one. Everything random follows from it.
+    observation : {"track", "waypoints", "pose", "scan"}
+        Kind of observations: float64, by the sensors, with their noise, age and faults; not-a-number if they show nothing.
         "track", shape (15,): speed [m/s], distance from the centre line [m], heading against it [rad], steer [rad],
-            throttle, and the curvature of the centre line 5, 10, ... 50 m ahead [1/m] (times the scale of a model car).
+        throttle, and the curvature of the centre line 5, 10, ... 50 m ahead [1/m] (times the scale of a model car).
         "waypoints", shape (3 + 2 n,): speed [m/s], steer [rad], throttle, and n waypoints seen from the car, x ahead and
-            y to the left [m]; n is settings["waypoints_sent"], 6 unless said otherwise.
+        y to the left [m]; n is settings["waypoints_sent"], 6 by default.
         "pose", shape (7,): time [s], x, y [m], yaw [rad], speed [m/s], steer [rad], throttle.
-        "scan", shape (3 + 1080): speed [m/s], steer [rad], throttle, and a laser as F1TENTH has it: distances [m] to walls
-            along the edges of the road, from -135° on the right to 135° on the left, at most 30 m, without noise and delay.
-    reward: metres gained along the centre line; less `off_road_cost` when a tyre leaves the road. A function of
-        observation and info takes its place: reward=lambda observation, info: info["speed_mps"].
-    terminated: a tyre has left the road (unless ends_off_road=False), or settings["laps"] laps are driven.
-    truncated: `episode_s` seconds are over (0: no limit), or the car is lost.
-    info: the truth: time_s, s_m, lateral_error_m, edge_distance_m, speed_mps, lap, is_off_track.
-
-    track, car: names or files. rate_hz: of observations, 1 to 200.
-    noise: True: NOISE; or settings of the sensor by key ("sensor.position_noise_m").
-    seed: of the first episode; each reset() without a seed adds one. Everything random follows from it.
-    faults: in every episode, as in drive(). random_faults: one of these in each episode.
-    randomise: settings that are drawn evenly for each episode: {"plant_options.friction_scale": (0.7, 1.0)}.
-    starts_anywhere: on the centre line, standing; else at the track's start.
-    settings: any others; the guard is off unless settings["guard.mode"] says otherwise.
-    render_mode: "rgb_array" for pictures by render(), or None."""
+        "scan", shape (3 + 1080,): speed [m/s], steer [rad], throttle, and a laser as F1TENTH has it: distances [m] to walls
+        along the edges of the road, from -135° on the right to 135° on the left, at most 30 m, without noise and delay.
+    reward : function
+        Function of observation and info, such as lambda observation, info: info["speed_mps"]; None: metres gained along the
+        centre line, less `off_road_cost`.
+    faults : list of str
+        Faults of every episode, as in drive().
+    random_faults : list of str
+        Faults of which each episode gets one.
+    randomise : dict
+        Settings that are drawn evenly for each episode: {"plant_options.friction_scale": (0.7, 1.0)}.
+    starts_anywhere : bool
+        Whether the car starts, standing, anywhere on the centre line; else at the track's start.
+    ends_off_road : bool
+        Whether an episode ends when a tyre leaves the road.
+    off_road_cost : float
+        Cost of leaving the road, in metres.
+    episode_s : float
+        Length of an episode [s]; 0: no limit.
+    settings : dict
+        Any others; the guard is off unless you set "guard.mode".
+    render_mode : {None, "rgb_array"}
+        Whether render() makes pictures.
+    """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 20}
 
@@ -99,7 +124,22 @@ class Env(BaseEnv):
         self.observation_space: Box = _observation_space(self._core)
 
     def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None) -> tuple[Array, Info]:
-        """Begins an episode. `seed`: of everything random in it; None: the one after the last. `options` are not used."""
+        """Begins an episode.
+
+        Parameters
+        ----------
+        seed : int
+            Seed of everything random in it; None: the one after the last.
+        options : dict
+            Not used.
+
+        Returns
+        -------
+        observation : array
+            First observation.
+        info : dict
+            The truth.
+        """
         super().reset(seed=seed)
         if seed is not None:
             self._next_seed = seed
@@ -108,7 +148,24 @@ class Env(BaseEnv):
         return self._core.observe(), self._core.info()
 
     def step(self, action: npt.ArrayLike) -> tuple[Array, float, bool, bool, Info]:
-        """One control period with this command. Beyond the end of an episode nothing moves: truncated."""
+        """Drives one control period with a command; beyond the end of an episode nothing moves: truncated.
+
+        Parameters
+        ----------
+        action : array of shape (2,)
+            Steer [rad] and throttle in [-1, 1].
+
+        Returns
+        -------
+        observation : array
+            Next observation.
+        reward : float
+            Reward of the step.
+        terminated, truncated : bool
+            Whether the episode has ended.
+        info : dict
+            The truth.
+        """
         outcome = self._core.step(action)
         if self._reward is None:
             return outcome
@@ -116,31 +173,43 @@ class Env(BaseEnv):
         return observation, self._reward(observation, info), terminated, truncated, info
 
     def set(self, key: str, value: Any) -> None:
-        """Changes a setting of the episode that goes on, or switches a fault: set("fault.half_grip", True)."""
+        """Changes a setting of the present episode, or switches a fault: set("fault.half_grip", True).
+
+        Parameters
+        ----------
+        key : str
+            Setting.
+        value : Any
+            Its value, in the setting's unit.
+        """
         from ._request import text_of
         self._core.set(key, text_of(value))
 
     @property
     def drawn(self) -> list[float]:
-        """The values drawn for this episode, in the order of `randomise`."""
+        """Values drawn for this episode, in the order of `randomise`."""
         return self._core.drawn
 
     @property
     def state_hash(self) -> str:
-        """Of every state and command of the episode: that of a run (run["state_hash"]) with the same commands."""
+        """Hash of every state and command of the episode: that of a run (run["state_hash"]) with the same commands."""
         return f"{self._core.state_hash:016x}"
 
     def render(self) -> npt.NDArray[np.uint8] | None:
-        """The road from above and the car, shape (400, 400, 3), with render_mode="rgb_array"; else None.
+        """Paints the road and the car from above; the recording of a trained controller (drive(record=...), view()) shows more.
 
-        A recording of the trained controller (drive(record=...), view()) shows more."""
+        Returns
+        -------
+        array of shape (400, 400, 3), or None
+            Picture with render_mode="rgb_array".
+        """
         return _picture(self._core.edges(), *self._core.pose()) if self.render_mode else None
 
     def __reduce__(self) -> Any:
         return partial(type(self), **self._arguments), ()
 
     def close(self) -> None:
-        """Nothing to give back."""
+        """Does nothing: an environment holds nothing to give back."""
 
     def __repr__(self) -> str:
         return f"<Env: observation {self.observation_space.shape}, episode step {self._core.steps}>"
@@ -153,11 +222,22 @@ class VecEnv(BaseVecEnv):
         observations, infos = envs.reset()
         observations, rewards, terminated, truncated, infos = envs.step(actions)      # (64, 2)
 
-    Arguments are those of Env, and `count`, `threads` (0: as many as processors). Shapes have `count` in front. The bits
-    do not depend on `threads`: environment i begins with seed + i, and each episode that ends is followed at once by one
-    with the next seed. Then infos["final_obs"] has the last observations of all environments, and infos["_final_obs"] says
-    of which the episode has ended (gymnasium's AutoresetMode.SAME_STEP). `reward` is called for each environment, as Env's,
-    with its last observation and the truth there."""
+    Shapes have `count` in front. The bits do not depend on `threads`: environment i begins with seed + i, and each episode that
+    ends is followed at once by one with the next seed. Then infos["final_obs"] has the last observations of all environments,
+    and infos["_final_obs"] says whose episode has ended (gymnasium's AutoresetMode.SAME_STEP). `reward` is called for each
+    environment with its last observation and the truth there.
+
+    Parameters
+    ----------
+    count : int
+        Number of environments.
+    track, car, rate_hz, noise, seed : Any
+        As for Env.
+    threads : int
+        Threads; 0: as many as processors.
+    observation, reward, faults, random_faults, randomise, starts_anywhere, ends_off_road, off_road_cost, episode_s, settings : Any
+        As for Env.
+    """
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AUTORESET}
 
@@ -179,14 +259,42 @@ class VecEnv(BaseVecEnv):
         self.observation_space: Box = batch_space(self.single_observation_space, count)
 
     def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None) -> tuple[Array, Info]:
-        """Begins an episode in each. `seed`: of the first; None: the one of the constructor. `options` are not used."""
+        """Begins an episode in each environment.
+
+        Parameters
+        ----------
+        seed : int
+            Seed of the first; None: the one of the constructor.
+        options : dict
+            Not used.
+
+        Returns
+        -------
+        observations : array
+            First observations.
+        infos : dict
+            Empty.
+        """
         super().reset(seed=seed)
         if seed is not None:
             self._seed = seed
         return self._core.reset(self._seed), {}
 
     def step(self, actions: npt.ArrayLike) -> tuple[Array, Array, npt.NDArray[np.bool_], npt.NDArray[np.bool_], Info]:
-        """One control period in each; `actions` of shape (count, 2)."""
+        """Drives one control period in each environment.
+
+        Parameters
+        ----------
+        actions : array of shape (count, 2)
+            Steer [rad] and throttle in [-1, 1].
+
+        Returns
+        -------
+        observations, rewards, terminated, truncated : array
+            As of Env.step(), with `count` in front.
+        infos : dict
+            "final_obs" and "_final_obs" if an episode has ended.
+        """
         observations, rewards, terminated, truncated, last, truths = self._core.step(actions, self._reward is not None)
         if self._reward is not None:
             rewards = np.array([self._reward(*reply) for reply in zip(last, truths)], float)
@@ -195,11 +303,28 @@ class VecEnv(BaseVecEnv):
         return observations, rewards, terminated, truncated, infos
 
     def info(self, index: int) -> Info:
-        """The truth of one environment, as Env.step() tells it."""
+        """The truth of one environment, as Env.step() returns it.
+
+        Parameters
+        ----------
+        index : int
+            Number of the environment.
+
+        Returns
+        -------
+        dict
+            The truth.
+        """
         return self._core.at(index).info()
 
     def close(self, **kwargs: Any) -> None:
-        """Nothing to give back."""
+        """Does nothing: the environments hold nothing to give back.
+
+        Parameters
+        ----------
+        **kwargs : Any
+            Not used.
+        """
 
     def __len__(self) -> int:
         return self.num_envs

@@ -47,15 +47,50 @@ def _check(name: str, h: float, steps: int) -> None:
 
 
 def implicit_euler(derivative: Callable[..., Any], h: float, steps: int = 1) -> Implicit:
-    """Dynamics from ẋ = derivative(x, u[, p]) by the implicit method of Euler, of first order, for stiff systems: `steps` times over an
-    interval of h [s], with the input held. Adds steps · nx unknowns and equalities to each stage."""
+    """Makes dynamics from ẋ = derivative(x, u[, p]) by the implicit method of Euler, of first order, for stiff systems.
+
+    Adds steps · nx unknowns and equalities to each stage.
+
+    Parameters
+    ----------
+    derivative : function
+        Rates of the states.
+    h : float
+        Length of an interval [s], in which the input is held.
+    steps : int
+        Steps in an interval.
+
+    Returns
+    -------
+    Implicit
+        Argument for Problem.dynamics().
+    """
     _check("implicit_euler", h, steps)
     return Implicit(derivative, h, steps, np.array([[1.0]]), np.array([1.0]))
 
 
 def gauss_legendre(derivative: Callable[..., Any], h: float, stages: int = 2, steps: int = 1) -> Implicit:
-    """Dynamics from ẋ = derivative(x, u[, p]) by collocation at Legendre's points: of order 2 with one stage (the implicit midpoint
-    rule), 4 with two; A-stable, and symplectic. Adds steps · stages · nx unknowns and equalities to each stage."""
+    """Makes dynamics from ẋ = derivative(x, u[, p]) by collocation at Legendre's points.
+
+    With one stage it is of order 2 (the implicit midpoint rule), with two of order 4; A-stable, and symplectic. Adds
+    steps · stages · nx unknowns and equalities to each stage of the problem.
+
+    Parameters
+    ----------
+    derivative : function
+        Rates of the states.
+    h : float
+        Length of an interval [s], in which the input is held.
+    stages : {2, 1}
+        Points in a step.
+    steps : int
+        Steps in an interval.
+
+    Returns
+    -------
+    Implicit
+        Argument for Problem.dynamics().
+    """
     _check("gauss_legendre", h, steps)
     if stages not in _TABLEAUS:
         raise ValueError(f"gauss_legendre: got {stages} stages, expected 1 or 2")

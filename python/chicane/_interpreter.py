@@ -2,6 +2,7 @@
 """What has to be right before the compiled part is imported: the interpreter, numpy, the shipped data, the processor."""
 from __future__ import annotations
 
+import ast
 import os
 import sys
 from pathlib import Path
@@ -33,6 +34,17 @@ def find_data(*packages: Path) -> None:
             if (place / "presets").is_dir():
                 os.environ[_DATA] = str(place)
                 return
+
+
+def document(*classes: type) -> None:
+    """Gives compiled classes the docstrings of their stubs, for help()."""
+    stubs = ast.parse((Path(__file__).parent / "_chicane.pyi").read_text(encoding="utf-8"))
+    nodes = {node.name: node for node in stubs.body if isinstance(node, ast.ClassDef)}
+    for one in classes:
+        one.__doc__ = ast.get_docstring(nodes[one.__name__])
+        for member in nodes[one.__name__].body:
+            if isinstance(member, ast.FunctionDef) and ast.get_docstring(member):
+                getattr(one, member.name).__doc__ = ast.get_docstring(member)
 
 
 def no_numpy() -> str:

@@ -18,10 +18,16 @@ _KINDS = np.array(["full step", "descent", "filter"])
 class Iterations(Mapping[str, npt.NDArray[Any]]):
     """The iterations of a solve as columns, each of shape (iterations,): iterations["cost"]. print() shows a table.
 
+    The columns are:
+
     kind: how the step was found: "full step" by the working set, "descent" by a line search over simulations, "filter" by the filter
-    method. cost: of the point where the iteration began. stationarity, defect, complementarity: how far that is from optimal.
-    step: the longest move of an input from there; 0 where none was taken. barrier: of soft constraints, or of the filter method.
-    round: of the multipliers of what must hold, from 1, whose shares are in the cost; 0: of none."""
+    method.
+    cost: of the point where the iteration began.
+    stationarity, defect, complementarity: how far that point is from optimal.
+    step: the longest move of an input from there; 0 if none was taken.
+    barrier: of soft constraints, or of the filter method.
+    round: of the multipliers of what must hold, from 1, whose shares are in the cost; 0: of none.
+    """
 
     def __init__(self, columns: dict[str, npt.NDArray[Any]]) -> None:
         self._columns = columns | {"kind": _KINDS[columns["kind"]]}
@@ -44,7 +50,13 @@ class Iterations(Mapping[str, npt.NDArray[Any]]):
         return len(self._columns["cost"])
 
     def to_pandas(self) -> pd.DataFrame:
-        """A DataFrame with a row for each iteration (needs python3-pandas)."""
+        """Makes a table (needs python3-pandas).
+
+        Returns
+        -------
+        pandas.DataFrame
+            Row for each iteration.
+        """
         import pandas as pd
         return pd.DataFrame(self._columns)
 

@@ -14,10 +14,21 @@ from ._track import AnyTrack
 class Limit:
     """The fastest lap of a car on a road (docs/limit.md): no controller should beat `bound_s`.
 
-    bound_s: the optimum of the plant's own equations [s].
-    witness_s: the best lap that was really driven after such a plan [s]; None: none was asked for, or none could be.
-    sector_times_s: the thirds of the bound [s].
-    line: the racing line of the optimum: "s_m" and "speed_mps" of shape (n,), "xy_m" of shape (n, 2)."""
+    Attributes
+    ----------
+    bound_s : float
+        Optimum of the plant's own equations [s].
+    witness_s : float or None
+        Best lap that was driven after such a plan [s]; None: not asked for, or none could be driven.
+    sector_times_s : list of float
+        Thirds of the bound [s].
+    iterations : int
+        Iterations of the optimisation.
+    violation : float
+        Largest violation of a constraint, scaled to 1.
+    line : dict of array
+        Racing line of the optimum: "s_m" and "speed_mps" of shape (n,), "xy_m" of shape (n, 2).
+    """
 
     def __init__(self, reply: dict[str, Any]) -> None:
         self.bound_s: float = reply["bound_s"]
@@ -32,11 +43,28 @@ class Limit:
         return f"<Limit: {self.bound_s:.3f} s{witness}>"
 
 
-def limit(track: AnyTrack | None = None, *, car: str | None = None, settings: Settings | None = None,
-          witness: bool = True) -> Limit:
-    """Finds the fastest lap of a car on a closed road: 1 to 60 s, as `chicane limit` does.
+def limit(track: AnyTrack | None = None, *, car: str | None = None, settings: Settings | None = None, witness: bool = True) -> Limit:
+    """Finds the fastest lap of a car on a closed road in 1 to 60 s, as `chicane limit` does.
 
-    witness: also drives it, which takes most of the time.
-    ValueError for an open road, a model car, or a road too narrow or with a bend too tight for the car."""
-    request = make_request({"track": track, "car": car}, settings)
-    return Limit(_chicane.limit(request, witness))
+    Parameters
+    ----------
+    track : str, path or Track
+        Closed road, as for drive().
+    car : str or path
+        Car, as for drive().
+    settings : dict
+        Any setting by its key.
+    witness : bool
+        Whether a lap is driven after the plan, too, which takes most of the time.
+
+    Returns
+    -------
+    Limit
+        Times and line.
+
+    Raises
+    ------
+    ValueError
+        If the road is open, too narrow for the car or has a bend too tight for it, or the car is a model car.
+    """
+    return Limit(_chicane.limit(make_request({"track": track, "car": car}, settings), witness))

@@ -18,28 +18,59 @@ class Plant:
                                    state.yaw + self.step_s * yaw_rate, vx=speed, yaw_rate=yaw_rate, steer=steer)
 
     It takes the place of the library's cars in the same loop: with latency, sensors, faults, guard, judge, metrics and recording.
-    What it raises, a state that is not finite, and a step that takes longer than `step_limit_s` end drive() with that error."""
+    What it raises, a state that is not finite, and a step that takes longer than `step_limit_s` end drive() with that error.
+
+    Attributes
+    ----------
+    step_s : float
+        Length of a step [s], 0.0001 to 0.05.
+    front_axle, rear_axle : float
+        Distance of the axles from the centre of mass [m], as the `car` of drive() has them.
+    steer_limit : float
+        Largest angle of the front wheels [rad]; step() gets none above.
+    friction_scale : float
+        Setting plant_options.friction_scale: tyre forces times this.
+    mass_scale : float
+        Setting plant_options.mass_scale.
+    grip : float
+        Share of the tyre forces that faults such as half_grip leave.
+    side_acceleration : float
+        Push to the left by faults such as side_wind [m/s²].
+    """
 
     step_s: float = 0.005
-    """Length of a step [s], 0.0001 to 0.05."""
     front_axle: float
-    """From the centre of mass to the front axle [m]: of the `car` of drive(), as the two below."""
     rear_axle: float
     steer_limit: float
-    """Largest angle of the front wheels [rad]; step() gets none above."""
     friction_scale: float = 1.0
-    """Setting plant_options.friction_scale: tyre forces times this."""
     mass_scale: float = 1.0
-    """Setting plant_options.mass_scale."""
     grip: float = 1.0
-    """Of faults, such as half_grip: tyre forces times this, too."""
     side_acceleration: float = 0.0
-    """Of faults, such as side_wind: a push to the left [m/s²]."""
 
     def step(self, state: CarState, steer: float, throttle: float) -> CarState:
-        """The state step_s later. steer: angle of the front wheels that is commanded [rad], left positive. throttle: one pedal in
-        [-1, 1], negative brakes. Called in each physics step."""
+        """Computes the state `step_s` later; called in each physics step.
+
+        Parameters
+        ----------
+        state : CarState
+            State at the beginning of the step.
+        steer : float
+            Commanded angle of the front wheels [rad], left positive.
+        throttle : float
+            One pedal in [-1, 1], negative brakes.
+
+        Returns
+        -------
+        CarState
+            State at the end of the step.
+        """
         raise NotImplementedError(f"{type(self).__name__}.step(state, steer, throttle) is not written yet")
 
     def reset(self, state: CarState) -> None:
-        """The car is put at a state: forget what else there was. Called before the first step."""
+        """Forgets all but the state, because the car is put somewhere; called before the first step.
+
+        Parameters
+        ----------
+        state : CarState
+            State from which the car continues.
+        """

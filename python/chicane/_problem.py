@@ -23,7 +23,7 @@ _INSIDE = "the implicit step"
 
 
 class Problem:
-    """min Σ_k cost(x_k, u_k) + terminal(x_N)  s.t.  x_0 given, x_{k+1} = dynamics(x_k, u_k), and further constraints.
+    """Minimises Σ_k cost(x_k, u_k) + terminal(x_N) with x_0 given, x_{k+1} = dynamics(x_k, u_k), and further constraints.
 
         ocp = ch.Problem(nx=2, nu=1, horizon=20)
 
@@ -34,12 +34,23 @@ class Problem:
         ocp.bounds(u=(-1, 1))
         solution = ocp.solve([1.0, 0.0])
 
-    Functions are called once, with symbols: x of shape (nx,), u of shape (nu,), then, where they take them, p of shape
-    (parameters,) and k, the number of the stage. Functions at the end are called with x, and p and k where they take them.
-    What they do with them is recorded and differentiated; what cannot be recorded is refused with its line.
+    Functions are called once, with symbols: x of shape (nx,), u of shape (nu,), then, if they take them, p of shape
+    (parameters,) and k, the number of the stage. Functions at the end are called with x, and p and k if they take them.
+    Their operations are recorded and differentiated; what cannot be recorded is refused with its line.
 
-    nx, nu: at most 52 and 8. horizon: intervals N, at most 200. parameters: how many numbers solve() gets as p.
-    One thread at a time; the interpreter's lock is released while C++ works."""
+    One thread at a time; the interpreter's lock is released while C++ works.
+
+    Parameters
+    ----------
+    nx : int
+        Number of states, at most 52.
+    nu : int
+        Number of inputs, at most 8.
+    horizon : int
+        Number of intervals N, at most 200.
+    parameters : int
+        Number of values that solve() gets as p.
+    """
 
     def __init__(self, nx: int, nu: int, horizon: int, parameters: int = 0) -> None:
         for name, value, least, most in (("nx", nx, 1, 52), ("nu", nu, 1, 8), ("horizon", horizon, 1, 200), ("parameters", parameters, 0, 1000)):
@@ -70,7 +81,18 @@ class Problem:
     # ---- what the problem is
 
     def dynamics(self, function: Function) -> Function:
-        """The next state, nx values. Also as a decorator. ch.rk4, ch.implicit_euler and ch.gauss_legendre make it from ẋ = f(x, u)."""
+        """Sets the next state; also a decorator.
+
+        Parameters
+        ----------
+        function : function
+            Function of x, u[, p, k] that returns nx values. ch.rk4, ch.implicit_euler and ch.gauss_legendre make one from ẋ = f(x, u).
+
+        Returns
+        -------
+        function
+            Unchanged.
+        """
         if self.rows["dynamics"]:
             raise ValueError("dynamics: got a second function, expected one: a problem has one next state")
         if isinstance(function, Implicit):
@@ -83,17 +105,49 @@ class Problem:
         return function
 
     def cost(self, function: Function, at_least: float = 0.0) -> Function:
-        """What a stage costs, added to what it costs already: one twice differentiable expression, or a list of residuals r,
-        which costs ½ Σ r². An expression that is not a sum of squares must stay above `at_least`."""
+        """Adds a cost of each stage.
+
+        Parameters
+        ----------
+        function : function
+            Function of x, u[, p, k] that returns one twice differentiable expression, or a list of residuals r, which costs ½ Σ r².
+        at_least : float
+            Bound below an expression that is not a sum of squares.
+
+        Returns
+        -------
+        function
+            Unchanged.
+        """
         return self._add_cost(function, "residual", at_least)
 
     def terminal(self, function: Function, at_least: float = 0.0) -> Function:
-        """The same of the state at the end."""
+        """Adds a cost of the last state.
+
+        Parameters
+        ----------
+        function : function
+            Function of x[, p, k], as for cost().
+        at_least : float
+            As for cost().
+
+        Returns
+        -------
+        function
+            Unchanged.
+        """
         return self._add_cost(function, "terminal_residual", at_least)
 
     def bounds(self, u: Any = None, x: Any = None) -> None:
-        """Bounds (low, high) on inputs and states: numbers, or arrays of shape (nu,) or (horizon, nu), (nx,) for states. Inputs never
-        leave theirs; states are hard constraints from x_1 on. Infinite: none."""
+        """Sets bounds of inputs, which they never leave, and of states, hard constraints from x_1 on.
+
+        Parameters
+        ----------
+        u : pair
+            Low and high: numbers, or arrays of shape (nu,) or (horizon, nu). Infinite: none.
+        x : pair
+            Low and high: numbers, or arrays of shape (nx,). Infinite: none.
+        """
         if u is not None:
             self._lower, self._upper = self._pair("u", u, (self.horizon, self.nu))
         if x is not None:
@@ -109,10 +163,30 @@ class Problem:
 
     def subject_to(self, function: Function, *, hard: bool = False, penalty: tuple[float, float] = (500.0, 200.0), cap: float = np.inf,
                    name: str = "", at_end: bool = False, price: tuple[float, float] | None = None) -> Function:
-        """function(x, u) <= 0 in each stage, one value or several; with `at_end` function(x) <= 0 of the last state, which is hard.
+        """Adds the constraint function(x, u) <= 0 of each stage, or of the last state, which is hard.
 
-        Soft: violating it by s > 0 costs penalty[0] s + ½ penalty[1] s²; a violation above `cap` at the end makes the problem
-        infeasible. Hard: holds, or the problem is infeasible. name: for messages. price: the former name of penalty."""
+        Parameters
+        ----------
+        function : function
+            Function of x, u[, p, k] that returns one value or several; with `at_end` of x[, p, k].
+        hard : bool
+            Whether the problem is infeasible if the constraint does not hold.
+        penalty : tuple of two float
+            Cost of violating a soft constraint by s > 0: penalty[0] s + ½ penalty[1] s².
+        cap : float
+            Violation of a soft constraint above which the problem is infeasible.
+        name : str
+            Name in messages.
+        at_end : bool
+            Whether it constrains the last state only.
+        price : tuple of two float
+            Former name of penalty.
+
+        Returns
+        -------
+        function
+            Unchanged.
+        """
         if at_end:
             self._add_hard(function, "terminal_constraint", name)
         else:
@@ -125,11 +199,37 @@ class Problem:
         return function
 
     def equality(self, function: Function, name: str = "") -> Function:
-        """function(x, u) = 0 in each stage."""
+        """Adds function(x, u) = 0 in each stage.
+
+        Parameters
+        ----------
+        function : function
+            Function of x, u[, p, k] that returns one value or several.
+        name : str
+            Name in messages.
+
+        Returns
+        -------
+        function
+            Unchanged.
+        """
         return self._add_hard(function, "equality", name)
 
     def terminal_equality(self, function: Function, name: str = "") -> Function:
-        """function(x) = 0 of the last state."""
+        """Adds function(x) = 0 of the last state.
+
+        Parameters
+        ----------
+        function : function
+            Function of x[, p, k] that returns one value or several.
+        name : str
+            Name in messages.
+
+        Returns
+        -------
+        function
+            Unchanged.
+        """
         return self._add_hard(function, "terminal_equality", name)
 
     # ---- solving it
@@ -137,13 +237,36 @@ class Problem:
     def solve(self, x0: npt.ArrayLike, p: npt.ArrayLike | None = None, *, u: npt.ArrayLike | None = None, x: npt.ArrayLike | None = None,
               start: Solution | None = None, tolerance: float = 1e-6, max_iterations: int = 1000, budget_s: float = 0.0,
               second_order: bool = True, log: bool = False) -> Solution:
-        """The best inputs from x0.
+        """Finds the best inputs from x0.
 
-        x0: (nx,). p: (parameters,), or (horizon + 1, parameters) with a row for each stage and the end.
-        u: inputs to start from, (horizon, nu); x: states to start from, (horizon + 1, nx); else inputs of 0, simulated.
-        start: an earlier solution, in the place of both, with its multipliers.
-        tolerance: of the conditions of optimality, (0, 1e-2]. budget_s: when to stop, best answer so far [s]; 0: never.
-        log: the iterations are in the solution's log, one row each (Iterations)."""
+        Parameters
+        ----------
+        x0 : array of shape (nx,)
+            First state.
+        p : array
+            Parameters: (parameters,), or (horizon + 1, parameters) with a row for each stage and the end.
+        u : array of shape (horizon, nu)
+            Inputs to start from; None: 0.
+        x : array of shape (horizon + 1, nx)
+            States to start from; None: simulated.
+        start : Solution
+            Earlier solution that replaces u and x, with its multipliers.
+        tolerance : float
+            Tolerance of the conditions of optimality, (0, 1e-2].
+        max_iterations : int
+            Most iterations.
+        budget_s : float
+            Time after which the best answer so far is returned [s]; 0: no limit.
+        second_order : bool
+            Whether exact second derivatives are used.
+        log : bool
+            Whether the solution gets its iterations.
+
+        Returns
+        -------
+        Solution
+            Inputs, states, status and multipliers.
+        """
         state = state_of(x0, self.nx)
         inputs = array_of("u", 0.0 if start is None and u is None else start.u if start is not None else u, (self.horizon, self.nu))
         has_states = start is not None or x is not None
@@ -171,12 +294,30 @@ class Problem:
 
     def prepare(self, x0: npt.ArrayLike | None = None, p: npt.ArrayLike | None = None, *, shift: int = 0, tolerance: float = 1e-6,
                 max_iterations: int = 1000, budget_s: float = 0.0) -> Solution:
-        """What can be done before the state is measured: solves for the expected x0, linearises and factorises there. Then
-        feedback(x0) answers the measured one in microseconds.
+        """Solves for the expected x0, linearises and factorises there, before the state is measured.
 
-        x0: expected; the last answer's x[shift] unless said otherwise. p: as solve(); that of the last solution unless said otherwise.
-        shift: stages by which the horizon has moved on since the last answer, with which the solve starts. max_iterations: 1 is
-        the real-time iteration; the more, the better the point that is linearised at."""
+        Then feedback(x0) answers the measured one in microseconds.
+
+        Parameters
+        ----------
+        x0 : array of shape (nx,)
+            Expected state; None: the last answer's x[shift].
+        p : array
+            As for solve(); None: that of the last solution.
+        shift : int
+            Stages by which the horizon has moved on since the last answer, with which the solve starts.
+        tolerance : float
+            As for solve().
+        max_iterations : int
+            Most iterations; 1 is the real-time iteration, more give a better point to linearise at.
+        budget_s : float
+            As for solve() [s].
+
+        Returns
+        -------
+        Solution
+            The answer for the expected state.
+        """
         last = self._last
         if last is None and x0 is None:
             raise ValueError("prepare: got no x0 and no earlier answer, expected one of both")
@@ -195,9 +336,21 @@ class Problem:
         return solution
 
     def feedback(self, x0: npt.ArrayLike) -> Feedback:
-        """Inputs and states from the measured x0, by what prepare() has left: exact to first order in the distance from the expected
-        one. Input bounds become active and inactive as in a quadratic program; soft constraints, and what must hold, answer by their
-        derivatives. May be called again and again."""
+        """Answers the measured x0 by the last prepare(), exact to first order in the distance from the expected one.
+
+        Input bounds become active and inactive as in a quadratic program; soft constraints, and what must hold, answer by their
+        derivatives. May be called again and again.
+
+        Parameters
+        ----------
+        x0 : array of shape (nx,)
+            Measured state.
+
+        Returns
+        -------
+        Feedback
+            Inputs and states.
+        """
         if self._prepared is None:
             raise ValueError("feedback: got no preparation, expected prepare() after the last solve() or change")
         state = state_of(x0, self.nx)
@@ -207,10 +360,28 @@ class Problem:
 
     def solve_many(self, x0: npt.ArrayLike, p: npt.ArrayLike | None = None, *, u: npt.ArrayLike | None = None, threads: int = 0,
                    tolerance: float = 1e-6, max_iterations: int = 1000) -> Solutions:
-        """One solve from each row of x0, each on its own, on `threads` (0: as many as there are processors): the same bits
-        for any number of them.
+        """Solves from each row of x0 on threads, with the same bits for any number of them.
 
-        x0: (n, nx). p: as solve(), or (n, parameters) or (n, horizon + 1, parameters). u: (horizon, nu), where all start."""
+        Parameters
+        ----------
+        x0 : array of shape (n, nx)
+            First states.
+        p : array
+            As for solve(), or (n, parameters), or (n, horizon + 1, parameters).
+        u : array of shape (horizon, nu)
+            Inputs from which all start; None: 0.
+        threads : int
+            Threads; 0: as many as processors.
+        tolerance : float
+            As for solve().
+        max_iterations : int
+            As for solve().
+
+        Returns
+        -------
+        Solutions
+            One row for each problem.
+        """
         states = np.ascontiguousarray(x0, float)
         if states.ndim != 2 or states.shape[1] != self.nx:
             raise ValueError(f"x0: got shape {states.shape}, expected (n, {self.nx})")
@@ -230,14 +401,26 @@ class Problem:
         return Solutions(reply)
 
     def export(self, file: str | Path, name: str = "Problem") -> None:
-        """Writes the problem as a C++ header for the library: a struct `name` that chicane::solver::OcpSolver takes, with the
-        same optimum (docs/python_problems.md)."""
+        """Writes the problem as a C++ header for the library (docs/python_problems.md), with the same optimum.
+
+        Parameters
+        ----------
+        file : str or path
+            Header to write.
+        name : str
+            Name of the struct, which chicane::solver::OcpSolver takes.
+        """
         from . import _export
         Path(file).write_text(_export.header(self, name), encoding="utf-8")
 
     def export_c(self, path: str | Path) -> None:
-        """Writes the problem for programs in C, and for all that call C (MATLAB, Julia, Rust, embedded targets): path.cpp, which a C++
-        compiler compiles, and path.h, with a function of that name for chicane/solver.h (docs/python_problems.md)."""
+        """Writes the problem for programs in C, and for all that call C (docs/python_problems.md).
+
+        Parameters
+        ----------
+        path : str or path
+            Writes path.cpp, which a C++ compiler compiles, and path.h, with a function of that name for chicane/solver.h.
+        """
         from . import _export
         _export.write_c(self, Path(path))
 
@@ -365,7 +548,18 @@ class Problem:
         return low, high
 
     def stage_parameters(self, p: npt.ArrayLike | None) -> Array:
-        """p by stage: (horizon + 1, parameters)."""
+        """Parameters p by stage, as solve() takes them.
+
+        Parameters
+        ----------
+        p : array
+            As for solve().
+
+        Returns
+        -------
+        array of shape (horizon + 1, parameters)
+            Row for each stage and the end.
+        """
         if p is None and self.parameters > 0:
             raise ValueError(f"p: got none, expected {self.parameters} numbers")
         if p is None:
@@ -381,7 +575,7 @@ class Problem:
 
     @property
     def has_expression_cost(self) -> bool:
-        """Whether there is a cost that is no sum of squares."""
+        """Whether a cost is not a sum of squares."""
         return any(rest is not None for rest in self._rest.values())
 
     def _shifts(self) -> tuple[float, ...]:
@@ -404,7 +598,13 @@ class Problem:
         return total
 
     def all_rows(self) -> dict[str, list[Symbol]]:
-        """Of each function, with the roots of costs that are no sums of squares."""
+        """Rows of each function, with the roots of costs that are not sums of squares.
+
+        Returns
+        -------
+        dict of list
+            Symbols by function.
+        """
         if not self.rows["dynamics"]:
             raise ValueError("Problem: got no dynamics, expected @ocp.dynamics with a function of x and u")
         rows = {name: list(own) for name, own in self.rows.items()}
@@ -417,7 +617,18 @@ class Problem:
         return rows
 
     def make_interpreter(self, with_parameters: bool = False) -> _chicane.Interpreter:
-        """The recorded problem in C++. with_parameters: derivatives in p as well, as inputs behind the others."""
+        """The recorded problem in C++.
+
+        Parameters
+        ----------
+        with_parameters : bool
+            Whether parameters are inputs behind the others, for derivatives in p.
+
+        Returns
+        -------
+        Interpreter
+            Object of the compiled part.
+        """
         rows = self.all_rows()
         operations = {name: n for n, name in enumerate(_chicane.TAPE_OPERATIONS)}
         nodes = list(self.graph.nodes)
@@ -439,15 +650,27 @@ class Problem:
 
     @property
     def full_count(self) -> int:
-        """Parameters with those that the problem has of its own."""
+        """Number of parameters, the problem's own included."""
         return self.parameters + (2 if self.has_expression_cost else 0)
 
     def hidden_parameters(self) -> list[float]:
-        """Of its own, as a solve begins with them."""
+        """The problem's own parameters, as a solve begins with them.
+
+        Returns
+        -------
+        list of float
+            Values.
+        """
         return [float(value) for value in self._with_shifts(np.zeros((1, 0)), self._shifts()[0])[0]]
 
     def cost_offset(self) -> float:
-        """What the residuals' cost lacks of the problem's, with these."""
+        """Difference between the problem's cost and its residuals' with these parameters.
+
+        Returns
+        -------
+        float
+            Cost.
+        """
         return self._offset(self._with_shifts(np.zeros((1, self.parameters)), self._shifts()[0]))
 
     @property
@@ -460,7 +683,7 @@ class Problem:
 
     @property
     def all_inputs(self) -> int:
-        """Inputs, and unknowns inside intervals behind them."""
+        """Number of inputs, and of the unknowns inside intervals behind them."""
         return self.nu + self.unknowns
 
     def __repr__(self) -> str:

@@ -22,10 +22,16 @@ AnyFile = str | os.PathLike[str]
 class Road(os.PathLike[str]):
     """A road that was imported: give it to drive(), limit() or Env() as their track.
 
-    file: the road as a table of points with widths.
-    remarks: what was assumed about the file, in the words of `chicane import`.
-    numbers: is_closed, length_m, narrowest_m, widest_m, tightest_radius_m (None: straight), points of the file, and rms_m and
-        max_m, their distance from the line."""
+    Attributes
+    ----------
+    file : str
+        Table of points with widths.
+    remarks : list of str
+        Assumptions about the file, in the words of `chicane import`.
+    numbers : dict
+        "is_closed", "length_m", "narrowest_m", "widest_m", "tightest_radius_m" (None: straight), "points" of the file, and
+        "rms_m" and "max_m", their distance from the line.
+    """
 
     def __init__(self, file: str, reply: dict[str, Any]) -> None:
         self.file = file
@@ -42,12 +48,27 @@ class Road(os.PathLike[str]):
 def road(file: AnyFile, output: AnyFile = "", **options: Any) -> Road:
     """Makes a road of a map, cones, coordinates or another program's file (docs/tracks.md), as `chicane import` does.
 
-    file: the content decides about the format.
-    output: table to write (.csv), an older one is replaced; a temporary file when left out.
-    options: of `chicane import --help`, with underscores: width_m=7, direction="cw", start=(3.5, -1), closed=True.
+    Parameters
+    ----------
+    file : str or path
+        File, whose content decides about the format.
+    output : str or path
+        Table to write (.csv), an older one is replaced; empty: a temporary file.
+    **options : Any
+        Options of `chicane import --help`, with underscores: width_m=7, direction="cw", start=(3.5, -1), closed=True.
 
-    ValueError for a file that is no road, with file, line and element, and for an option that is unknown or out of its range.
-    RuntimeError where the program is not there."""
+    Returns
+    -------
+    Road
+        Table, remarks and numbers.
+
+    Raises
+    ------
+    ValueError
+        If the file is no road (with file, line and element), or an option is unknown or out of its range.
+    RuntimeError
+        If the program is not there.
+    """
     to = os.fspath(output) or str(Path(tempfile.mkdtemp(prefix="chicane-")) / f"{Path(os.fspath(file)).stem}.csv")
     return Road(to, json.loads(run("import", file, output=to, json=True, **options)))
 
@@ -55,15 +76,30 @@ def road(file: AnyFile, output: AnyFile = "", **options: Any) -> Road:
 def identify(logs: AnyFile | Sequence[AnyFile], output: AnyFile = "", *, settings: Settings | None = None, **options: Any) -> dict[str, Any]:
     """Finds the model of a car in logs of driving it (docs/identification.md), as `chicane identify` does.
 
-    logs: one or several recordings, bags and CSV files of one car.
-    output: car file to write (.yaml), for `car` of drive(); an older one is replaced.
-    settings: what the search begins with, by key: {"vehicle.mass_kg": 950}.
-    options: of `chicane identify --help`, with underscores: car="road-car", report="mine.html", budget_s=60.
+    Parameters
+    ----------
+    logs : str, path or list of these
+        Recordings, bags and CSV files of one car.
+    output : str or path
+        Car file to write (.yaml), for `car` of drive(); an older one is replaced.
+    settings : dict
+        Start of the search by key: {"vehicle.mass_kg": 950}.
+    **options : Any
+        Options of `chicane identify --help`, with underscores: car="road-car", report="mine.html", budget_s=60.
 
-    Returns estimates (a list with key, unit, value, low, high, assumed and is_excited), delay_ms, residual_m, held_out (how far
-    predictions are off), predicts, knows_tires, friction_low and more. ValueError for logs that cannot be read or hold too little
-    driving and, with `output`, for a car that does not predict its log; force=True writes it. RuntimeError where the program is
-    not there."""
+    Returns
+    -------
+    dict
+        "estimates" (a list with key, unit, value, low, high, assumed and is_excited), "delay_ms", "residual_m", "held_out" (errors of
+        the predictions), "predicts", "knows_tires", "friction_low" and more.
+
+    Raises
+    ------
+    ValueError
+        If logs cannot be read or hold too little driving or, with `output`, the car does not predict its log; force=True writes it.
+    RuntimeError
+        If the program is not there.
+    """
     files = [logs] if isinstance(logs, (str, os.PathLike)) else logs
     chosen = [word for key, value in (settings or {}).items() for word in ("--set", f"{key}={text_of(value)}")]
     found: dict[str, Any] = json.loads(run("identify", *files, *chosen, output=output, json=True, **options))
@@ -73,12 +109,27 @@ def identify(logs: AnyFile | Sequence[AnyFile], output: AnyFile = "", *, setting
 def league(entries: AnyFile | Mapping[str, Any], output: AnyFile = "", **options: Any) -> pd.DataFrame:
     """Compares controllers on tracks, in cars and under disturbances (docs/sweep.md), as `chicane league` does.
 
-    entries: a league's file, or its content: {"entries": {...}, "tracks": [...], ...}.
-    output: page to write (.html); an older one is replaced.
-    options: of `chicane league --help`, with underscores: results="mine.jsonl" keeps what was driven, jobs=2.
+    Parameters
+    ----------
+    entries : str, path or dict
+        League's file, or its content: {"entries": {...}, "tracks": [...], ...}.
+    output : str or path
+        Page to write (.html); an older one is replaced.
+    **options : Any
+        Options of `chicane league --help`, with underscores: results="mine.jsonl" keeps what was driven, jobs=2.
 
-    Returns a row for each controller, track, car and disturbance, with the columns of `--json` (needs python3-pandas). ValueError
-    for a league that cannot be driven, RuntimeError where the program is not there."""
+    Returns
+    -------
+    pandas.DataFrame
+        Row for each controller, track, car and disturbance, with the columns of `--json`.
+
+    Raises
+    ------
+    ValueError
+        If the league cannot be driven.
+    RuntimeError
+        If the program is not there.
+    """
     import pandas as pd
     with tempfile.TemporaryDirectory(prefix="chicane-") as folder:
         file = entries

@@ -22,10 +22,13 @@ def text_of(value: Any) -> str:
     return str(value)
 
 
+def listed(faults: Iterable[str]) -> list[str]:
+    """Faults as a list; one text is one fault."""
+    return [faults] if isinstance(faults, str) else list(faults)
+
+
 def make_request(named: Settings, settings: Settings | None, faults: Iterable[str] = (), scenario: str = "",
                  speed_mps: float | None = None) -> _chicane.Request:
     """The experiment asked for. `settings` win over `named`; None is left out."""
-    if isinstance(faults, str):
-        faults = [faults]
     pairs = [(key, file_of(value) if key == "track" else text_of(value)) for key, value in [*named.items(), *(settings or {}).items()] if value is not None]
-    return _chicane.Request(scenario, pairs, "" if speed_mps is None else text_of(speed_mps), list(faults))
+    return _chicane.Request(scenario, pairs, "" if speed_mps is None else text_of(speed_mps), listed(faults))

@@ -25,8 +25,9 @@ Part = Literal["guard", "total", "step_time_us", "solve_time_us", "solver", "gua
 class Frames(Mapping[str, Array]):
     """The control cycles of a run as columns: frames["speed_mps"] is an array of shape (cycles,).
 
-    frame_fields() says what each column means; its unit is the end of its name. Of a run that was driven, columns have
-    the type of the message (float64, bool, uint8, ...) and own their memory; those of a recording are float64."""
+    frame_fields() has the meaning of each column; its unit is the end of its name. Columns of a run that was driven have
+    the type of the message (float64, bool, uint8, ...) and own their memory; those of a recording are float64.
+    """
 
     def __init__(self, columns: Mapping[str, Array]) -> None:
         self._columns = dict(columns)
@@ -49,12 +50,29 @@ class Frames(Mapping[str, Array]):
         return len(next(iter(self._columns.values()), ()))
 
     def to_pandas(self) -> pd.DataFrame:
-        """A DataFrame with a row for each control cycle, indexed by time_s (needs python3-pandas)."""
+        """Makes a table (needs python3-pandas).
+
+        Returns
+        -------
+        pandas.DataFrame
+            Row for each control cycle, indexed by time_s.
+        """
         import pandas as pd
         return pd.DataFrame(self._columns).set_index("time_s")
 
     def meaning(self, name: str) -> str:
-        """One sentence about a column."""
+        """Says what a column means.
+
+        Parameters
+        ----------
+        name : str
+            Column.
+
+        Returns
+        -------
+        str
+            One sentence.
+        """
         return _chicane.frame_fields()[name]
 
     def __repr__(self) -> str:
@@ -62,18 +80,22 @@ class Frames(Mapping[str, Array]):
 
 
 class Run(Mapping[str, Any]):
-    """A run that was driven. As a mapping it holds the report of `chicane drive --json`, with the keys of docs/reference/cli.md:
-    run["off_track_events"], run["state_hash"].
+    """A run that was driven, as a mapping the report of `chicane drive --json`: run["off_track_events"], run["state_hash"].
 
-    laps: one dict for each completed lap, with lap_time_s, mean_speed_mps, min_edge_distance_m and more.
-    frames: what happened in each control cycle (Frames).
-    situations: what the car did and what limited or stopped it, one dict for each change: time_s of the run at which it
-        began, severity ("normal", "notice", "alarm"), sentence of at most six words, reason, ends_it, driver. Empty with
-        frames=False.
-    road: "centre", "left" and "right" as arrays of shape (n, 2) [m].
-    error: the traceback of a Controller of your own that failed, or None.
+    Its keys are in docs/reference/cli.md. It can be pickled.
 
-    It can be pickled."""
+    Attributes
+    ----------
+    frames : Frames
+        What happened in each control cycle.
+    situations : list of dict
+        What the car did and what limited or stopped it, one for each change: time_s of the run at which it began, severity
+        ("normal", "notice", "alarm"), sentence of at most six words, reason, ends_it, driver. Empty with frames=False.
+    road : dict of array
+        "centre", "left" and "right" of shape (n, 2) [m].
+    error : str or None
+        Traceback of a Controller of your own that failed.
+    """
 
     def __init__(self, report: dict[str, Any], table: str, frames: Frames, situations: list[dict[str, Any]], road: dict[str, Array],
                  error: str | None, file: str, request: dict[str, Any] | None) -> None:
@@ -115,21 +137,33 @@ class Run(Mapping[str, Any]):
 
     @property
     def laps(self) -> list[dict[str, Any]]:
-        """The completed laps, the first from standstill."""
+        """The completed laps, the first from standstill: dicts with lap_time_s, mean_speed_mps, min_edge_distance_m and more."""
         laps: list[dict[str, Any]] = self._report["laps"]
         return laps
 
     @property
     def best_lap_s(self) -> float:
-        """The shortest lap time [s]; not-a-number without a completed lap."""
+        """Shortest lap time [s]; not-a-number without a completed lap."""
         return min((float(lap["lap_time_s"]) for lap in self.laps), default=float("nan"))
 
     def table(self) -> str:
-        """The laps and what the run was like, as the program prints them."""
+        """Laps and totals, as the program prints them.
+
+        Returns
+        -------
+        str
+            Table of text.
+        """
         return self._table
 
     def summary(self) -> str:
-        """The run in one line."""
+        """The run in one line.
+
+        Returns
+        -------
+        str
+            Car, track, preset, laps and end.
+        """
         laps = f"{self['laps_completed']} laps, the best {self.best_lap_s:.3f} s" if self.laps else "no lap completed"
         off = self["off_track_events"]
         end = self["end_reason"]
@@ -152,13 +186,19 @@ class Run(Mapping[str, Any]):
 class Recording:
     """A recording that was read.
 
-    head: who recorded what, as text by key (docs/viewer.md#recordings).
-    frames: what happened in each control cycle (Frames, all columns float64).
-    laps: one dict for each completed lap.
-    road: "centre", "left" and "right" as arrays of shape (n, 2) [m]; empty where no track was known."""
+    Attributes
+    ----------
+    head : dict of str
+        Who recorded what (docs/viewer.md#recordings).
+    frames : Frames
+        What happened in each control cycle, all columns float64.
+    laps : list of dict
+        Completed laps.
+    road : dict of array
+        "centre", "left" and "right" of shape (n, 2) [m]; empty if no track was known.
+    """
 
-    def __init__(self, file: str, head: dict[str, str], frames: Frames, laps: list[dict[str, float]],
-                 road: dict[str, Array]) -> None:
+    def __init__(self, file: str, head: dict[str, str], frames: Frames, laps: list[dict[str, float]], road: dict[str, Array]) -> None:
         self.file = file
         self.head = head
         self.frames = frames

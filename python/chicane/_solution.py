@@ -20,15 +20,38 @@ Array = npt.NDArray[np.float64]
 class Solution:
     """The answer to an optimal control problem.
 
-    u: inputs, (horizon, nu). x: states, (horizon + 1, nx).
-    status: "optimal"; "at_floor" and "budget_spent", which are usable; "stalled", "infeasible" and "not_finite", which are
-    not. is_usable: which of these. cost: the objective, penalties of violated soft constraints included.
-    violation: the largest amount by which something that should hold does not, in its own unit, and `violated`, what and where.
-    multipliers: "dynamics" (horizon, nx), of each next state; "bounds" (horizon, nu); "constraints" and "equalities",
-    (horizon, rows); "terminal_equality", "terminal_constraint", (rows,).
-    unknowns: states inside the intervals of an implicit method, (horizon, count). iterations: iterations of the solver. residual: how far from optimal. gap: what
-    the barrier of soft and hard limits costs, at most in a convex problem. time: how long C++ worked [s]. log: the iterations, where solve() was
-    asked for them (Iterations), else None."""
+    Attributes
+    ----------
+    u : array of shape (horizon, nu)
+        Inputs.
+    x : array of shape (horizon + 1, nx)
+        States.
+    status : str
+        "optimal"; "at_floor" and "budget_spent", which are usable; "stalled", "infeasible" and "not_finite", which are not.
+    is_usable : bool
+        Whether the inputs may be applied.
+    cost : float
+        Objective, penalties of violated soft constraints included.
+    violation : float
+        Largest violation of a constraint, in the constraint's unit.
+    violated : str
+        Name and stage of that constraint.
+    multipliers : dict of array
+        "dynamics" (horizon, nx), of each next state; "bounds" (horizon, nu); "constraints" and "equalities",
+        (horizon, rows); "terminal_equality", "terminal_constraint", (rows,).
+    unknowns : array of shape (horizon, count)
+        States inside the intervals of an implicit method.
+    iterations : int
+        Iterations of the solver.
+    residual : float
+        Distance from the conditions of an optimum.
+    gap : float
+        Cost of the barrier of soft and hard limits, at most in a convex problem.
+    time : float
+        Time of the work in C++ [s].
+    log : Iterations or None
+        Iterations, with solve(log=True).
+    """
 
     def __init__(self, problem: Problem, reply: dict[str, Any], x0: Array, parameters: Array, full: Array,
                  tolerance: float) -> None:
@@ -67,7 +90,18 @@ class Solution:
         return found
 
     def sensitivity(self, of: str = "x0") -> Sensitivity:
-        """How the solution changes with "x0" or with "p": derivatives of u and x, the set of active constraints fixed."""
+        """Derivatives of u and x, the set of active constraints fixed.
+
+        Parameters
+        ----------
+        of : {"x0", "p"}
+            Numbers that change.
+
+        Returns
+        -------
+        Sensitivity
+            Derivatives, and whether they hold on one side only.
+        """
         if not hasattr(self, "_problem"):
             raise ValueError("sensitivity: got a solution from a pickle, expected one that solve() has returned")
         from . import _sensitivity
@@ -75,12 +109,12 @@ class Solution:
 
     @property
     def parameters(self) -> Array:
-        """p by stage, (horizon + 1, parameters)."""
+        """Parameters p by stage, (horizon + 1, parameters)."""
         return self._parameters
 
     @property
     def full_parameters(self) -> Array:
-        """p by stage, with what the problem has of its own behind it."""
+        """Parameters p by stage, followed by the problem's own."""
         return self._full
 
     def __bool__(self) -> bool:
@@ -106,8 +140,19 @@ class Solution:
 
 
 class Feedback:
-    """The answer of feedback(): u (horizon, nu) and x (horizon + 1, nx) from x0, by the linearisation of the last prepare().
-    is_solved: the quadratic program is; else inputs were cut to their bounds. time: how long C++ worked [s]."""
+    """The answer of feedback(), by the linearisation of the last prepare().
+
+    Attributes
+    ----------
+    u : array of shape (horizon, nu)
+        Inputs from x0.
+    x : array of shape (horizon + 1, nx)
+        States from x0.
+    is_solved : bool
+        Whether the quadratic program is solved; else inputs were cut to their bounds.
+    time : float
+        Time of the work in C++ [s].
+    """
 
     def __init__(self, reply: dict[str, Any], x0: Array) -> None:
         self.x0 = x0
@@ -121,8 +166,19 @@ class Feedback:
 
 
 class Solutions:
-    """The answers to many problems, row by row: u (n, horizon, nu), x (n, horizon + 1, nx), cost, violation, iterations, time [s],
-    status (n words) and is_usable, each of shape (n,)."""
+    """The answers to many problems, row by row.
+
+    Attributes
+    ----------
+    u : array of shape (n, horizon, nu)
+        Inputs.
+    x : array of shape (n, horizon + 1, nx)
+        States.
+    cost, violation, iterations, status, is_usable : array of shape (n,)
+        As of Solution.
+    time : array of shape (n,)
+        Times of the work in C++ [s].
+    """
 
     def __init__(self, reply: dict[str, Any]) -> None:
         self.u: Array = reply["u"]

@@ -30,21 +30,37 @@ def plan_of(axes: Mapping[str, Any], settings: Settings | None = None, keep: Ite
 
 def sweep(axes: Mapping[str, Any], *, settings: Settings | None = None, keep: Iterable[str] = (), jobs: int = 0, name: str = "sweep",
           output: str | os.PathLike[str] = "") -> pd.DataFrame:
-    """Drives one run for each combination of the axes' values, on threads, and returns a table (needs python3-pandas).
+    """Drives one run for each combination of the axes' values, on threads.
 
         ch.sweep({"preset": ["default", "race"], "latency_ms": range(0, 300, 50)}, settings={"laps": 2}, jobs=2)
 
-    axes: values by key: a list, range or array, or a range of the plan's grammar ({"from": 20, "to": 80, "step": 10}). The
-        last axis turns fastest. Keys are those of docs/sweep.md.
-    settings: what all runs share.
-    keep: columns of the results; all when left out.
-    jobs: threads; 0: as many as processors.
-    output: a file for the results (.jsonl), with the same lines as `chicane sweep` writes. What it holds already is not
-        driven again.
+    Parameters
+    ----------
+    axes : dict
+        Values by key (docs/sweep.md): a list, range or array, or a range of the plan's grammar ({"from": 20, "to": 80,
+        "step": 10}). The last axis changes fastest.
+    settings : dict
+        Settings of all runs.
+    keep : list of str
+        Columns of the results; empty: all.
+    jobs : int
+        Threads; 0: as many as processors.
+    name : str
+        Name of the sweep.
+    output : str or path
+        File for the results (.jsonl), as `chicane sweep` writes them. Runs that it holds are not driven again.
 
-    The table has a row for each run, in the order of the plan: `run`, the keys of the axes, then the results; None and
-    not-a-number where nothing was measured, `error` where a run could not be driven. A run depends on the plan and its
-    number alone, not on `jobs`. ValueError for a plan that is wrong, with the line of plan_of()."""
+    Returns
+    -------
+    pandas.DataFrame
+        Row for each run in the order of the plan: `run`, the keys of the axes, the results; None and not-a-number if nothing
+        was measured, `error` if a run could not be driven. A run depends on the plan and its number only, not on `jobs`.
+
+    Raises
+    ------
+    ValueError
+        If the plan is wrong, with the line of plan_of().
+    """
     import tempfile  # here, because importing chicane shall be quick
 
     import pandas as pd
@@ -58,14 +74,9 @@ def sweep(axes: Mapping[str, Any], *, settings: Settings | None = None, keep: It
         file = Path(os.fspath(output) or Path(folder) / "sweep.jsonl")
         _chicane.sweep(plan, f"sweep {name}", str(file), jobs)
         lines = file.read_text(encoding="utf-8").splitlines()
-    rows = sorted((_row(json.loads(line)) for line in lines[1:]), key=lambda row: int(row["run"]))
-    return pd.DataFrame(rows)
-
-
-def _row(reply: dict[str, Any]) -> dict[str, Any]:
-    """A line of the results with its settings as columns; results of the same name win."""
-    settings = reply.pop("settings")
-    return {"run": reply.pop("run"), **settings, **reply}
+    # Settings are columns; results of the same name win.
+    rows = ({"run": reply.pop("run"), **reply.pop("settings"), **reply} for reply in map(json.loads, lines[1:]))
+    return pd.DataFrame(sorted(rows, key=lambda row: int(row["run"])))
 
 
 def _json(value: Any) -> str:

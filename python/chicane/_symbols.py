@@ -20,7 +20,7 @@ _OWN_FOLDERS = (str(Path(__file__).parent), str(Path(np.__file__).parent))
 
 
 class TraceError(ValueError):
-    """Something that cannot be recorded, with the line that did it and what to write instead."""
+    """Something that cannot be recorded, with its line and what to write instead."""
 
 
 def caller() -> str:
@@ -107,10 +107,11 @@ class Graph:
 
 
 class Symbol:
-    """A number that is not known yet: a state, an input, a parameter, or what is computed from them.
+    """A number that is not known yet: a state, an input, a parameter, or a result of them.
 
     Arithmetic, `abs`, numpy's functions of one argument and the functions of this module work on it; comparisons are for
-    `where`. It has no value: a branch on it, `float()`, and functions of `math` are refused."""
+    `where`. It has no value: a branch on it, `float()`, and functions of `math` are refused.
+    """
     __slots__ = ("graph", "node")
     __array_priority__ = 1000.0
 
@@ -147,7 +148,13 @@ class Symbol:
     def __neg__(self) -> Symbol: return self._make("negate", self.node)
     def __pos__(self) -> Symbol: return self
     def is_comparison(self) -> bool:
-        """Whether it is the 1 or 0 of a < b or a <= b."""
+        """Whether it is the 1 or 0 of a < b or a <= b.
+
+        Returns
+        -------
+        bool
+            True for a comparison.
+        """
         op, _, b = self.graph.nodes[self.node][:3]
         return op == "less" or (op == "subtract" and self.graph.nodes[b][0] == "less")
 
@@ -206,8 +213,25 @@ class Symbol:
 
 
 def where(condition: Any, then: Any, otherwise: Any) -> Any:
-    """`then` where the condition holds, else `otherwise`, for symbols, numbers and arrays of them. Both are computed: a root
-    of a negative number in the one that is not chosen does no harm to the value, but see docs/python_problems.md."""
+    """Chooses `then` if the condition holds, else `otherwise`, for symbols, numbers and arrays of them.
+
+    Both are computed: a root of a negative number in the one that is not chosen does no harm to the value, but see
+    docs/python_problems.md.
+
+    Parameters
+    ----------
+    condition : comparison or bool
+        Condition.
+    then : Symbol, float or array
+        Value if it holds.
+    otherwise : Symbol, float or array
+        Value if not.
+
+    Returns
+    -------
+    Symbol, float or array
+        The chosen one.
+    """
     if any(isinstance(part, (np.ndarray, list, tuple)) for part in (condition, then, otherwise)):
         return np.vectorize(where, otypes=[object])(condition, then, otherwise)
     if not isinstance(condition, Symbol):
@@ -216,17 +240,50 @@ def where(condition: Any, then: Any, otherwise: Any) -> Any:
 
 
 def minimum(a: Any, b: Any) -> Any:
-    """The smaller one of each pair."""
+    """The smaller one of each pair.
+
+    Parameters
+    ----------
+    a, b : Symbol, float or array
+        Values.
+
+    Returns
+    -------
+    Symbol, float or array
+        Smaller ones.
+    """
     return where(_less(b, a), b, a)
 
 
 def maximum(a: Any, b: Any) -> Any:
-    """The larger one of each pair."""
+    """The larger one of each pair.
+
+    Parameters
+    ----------
+    a, b : Symbol, float or array
+        Values.
+
+    Returns
+    -------
+    Symbol, float or array
+        Larger ones.
+    """
     return where(_less(a, b), b, a)
 
 
 def clip(x: Any, low: Any, high: Any) -> Any:
-    """`x`, not below `low` and not above `high`."""
+    """Limits `x` to [low, high].
+
+    Parameters
+    ----------
+    x, low, high : Symbol, float or array
+        Value and bounds.
+
+    Returns
+    -------
+    Symbol, float or array
+        Limited value.
+    """
     return minimum(maximum(x, low), high)
 
 
@@ -237,19 +294,52 @@ def _less(a: Any, b: Any) -> Any:
 
 
 def atan2(y: Any, x: Any) -> Any:
-    """The angle of (x, y) [rad], in (-π, π]."""
+    """The angle of (x, y), in (-π, π].
+
+    Parameters
+    ----------
+    y, x : Symbol, float or array
+        Coordinates.
+
+    Returns
+    -------
+    Symbol, float or array
+        Angle [rad].
+    """
     if isinstance(x, Symbol) and not isinstance(y, Symbol):
         y = Symbol(x.graph, x.graph.constant(float(y)))
     return np.arctan2(y, x)
 
 
 def hypot(a: Any, b: Any) -> Any:
-    """The length of (a, b)."""
+    """The length of (a, b).
+
+    Parameters
+    ----------
+    a, b : Symbol, float or array
+        Sides.
+
+    Returns
+    -------
+    Symbol, float or array
+        Length.
+    """
     return np.sqrt(a * a + b * b)
 
 
 def norm2(vector: Sequence[Any] | Objects) -> Any:
-    """The sum of the squares of a vector's entries."""
+    """The sum of the squares of a vector's entries.
+
+    Parameters
+    ----------
+    vector : list or array
+        Vector.
+
+    Returns
+    -------
+    Symbol or float
+        Sum.
+    """
     return sum(entry * entry for entry in vector)
 
 
@@ -258,8 +348,22 @@ asin, acos, atan = np.arcsin, np.arccos, np.arctan
 
 
 def rk4(derivative: Callable[..., Any], h: float, steps: int = 1) -> Callable[..., Any]:
-    """Dynamics from ẋ = derivative(x, u[, p]): Runge and Kutta's method of fourth order, `steps` times over an interval of
-    h [s], with the input held."""
+    """Makes dynamics from ẋ = derivative(x, u[, p]) by Runge and Kutta's method of fourth order.
+
+    Parameters
+    ----------
+    derivative : function
+        Rates of the states.
+    h : float
+        Length of an interval [s], in which the input is held.
+    steps : int
+        Steps in an interval.
+
+    Returns
+    -------
+    function
+        Argument for Problem.dynamics().
+    """
     if not (h > 0 and steps >= 1):
         raise ValueError(f"rk4: got h = {h} and {steps} steps, expected h > 0 and at least one")
     dt = h / steps
@@ -278,9 +382,20 @@ def rk4(derivative: Callable[..., Any], h: float, steps: int = 1) -> Callable[..
 
 
 def table(points: npt.ArrayLike, values: npt.ArrayLike) -> Callable[[Any], Any]:
-    """A smooth function through points: the natural cubic spline, continued by straight lines. Works on numbers and on symbols.
+    """Makes a smooth function through points: the natural cubic spline, continued by straight lines.
 
-    points: 3 to 64, increasing. values: as many."""
+    Parameters
+    ----------
+    points : array of shape (n,)
+        Increasing arguments, n from 3 to 64.
+    values : array of shape (n,)
+        Values there.
+
+    Returns
+    -------
+    function
+        Function of a number, a symbol or an array.
+    """
     at, y = np.asarray(points, float), np.asarray(values, float)
     if at.ndim != 1 or at.shape != y.shape or not 3 <= at.size <= 64 or not np.all(np.diff(at) > 0):
         raise ValueError(f"table: got points of shape {at.shape} and values of shape {y.shape}, expected 3 to 64 increasing points and as "

@@ -12,13 +12,23 @@ from ._types import npt
 
 
 class Track:
-    """A road of your own: give it to drive(), limit() or Env() in the place of a name, or as a setting "track".
+    """A road of your own: give it to drive(), limit() or Env() instead of a name, or as the setting "track".
 
-    xy: points of a line along the road in driving order, shape (n, 2) [m], n >= 4. left, right: distance from there to the edges [m],
-    numbers or of shape (n,). closed: whether it is a circuit; None: where the gap from end to start is like the others.
-    options: of the comments of a file (docs/tracks.md), such as start_s_m, kerb_width_m, smoothing_sigma_m.
+    An edge across itself or a gap is refused when you drive on the road.
 
-    What is no road (an edge across itself, a gap) is refused by whoever drives on it."""
+    Parameters
+    ----------
+    xy : array of shape (n, 2)
+        Points of a line along the road in driving order [m], n >= 4.
+    left, right : float or array of shape (n,)
+        Distance from the points to the edges [m].
+    closed : bool
+        Whether it is a circuit; None: if the gap from end to start is like the others.
+    name : str
+        Name of the road in reports and recordings.
+    **options : float
+        Options of a road's file (docs/tracks.md), such as start_s_m, kerb_width_m, smoothing_sigma_m.
+    """
 
     def __init__(self, xy: npt.ArrayLike, left: npt.ArrayLike = 4.5, right: npt.ArrayLike = 4.5, *, closed: bool | None = None,
                  name: str = "own", **options: float) -> None:
@@ -34,7 +44,13 @@ class Track:
         self.closed, self.name, self.options = closed, name, options
 
     def text(self) -> str:
-        """As a file of the library, to the last bit."""
+        """Text of the road as a file of the library, exact to the last bit.
+
+        Returns
+        -------
+        str
+            Table with the columns x_m, y_m, w_tr_right_m, w_tr_left_m.
+        """
         options = {key: repr(float(value)) for key, value in self.options.items()}
         if self.closed is not None:
             options["closed"] = "true" if self.closed else "false"
@@ -43,11 +59,23 @@ class Track:
         return "\n".join([*head, "# x_m,y_m,w_tr_right_m,w_tr_left_m", *rows]) + "\n"
 
     def save(self, file: str | os.PathLike[str]) -> None:
-        """Writes it as .csv, for the program."""
+        """Writes the road as a table that the program reads.
+
+        Parameters
+        ----------
+        file : str or path
+            File to write (.csv).
+        """
         Path(file).write_text(self.text(), encoding="utf-8")
 
     def file(self) -> str:
-        """A file with it in $XDG_CACHE_HOME/chicane/tracks, kept by its content: recordings name it."""
+        """Keeps the road in $XDG_CACHE_HOME/chicane/tracks, by its content, so that recordings can name it.
+
+        Returns
+        -------
+        str
+            Path of the file.
+        """
         text = self.text()
         cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "chicane/tracks"
         file = cache / hashlib.sha256(text.encode()).hexdigest()[:16] / f"{self.name}.csv"
@@ -67,7 +95,7 @@ AnyTrack = str | os.PathLike[str] | Track
 
 
 class TrackReader:
-    """Reads roads from files of a kind of your own: derive from it, write read(), and tell use_track_reader().
+    """Reads roads from files of a format of your own: derive from it, write read(), and give it to use_track_reader().
 
         class Points(ch.TrackReader):
             extension = ".points"
@@ -75,13 +103,29 @@ class TrackReader:
             def read(self, path):
                 return ch.Track(np.loadtxt(path), left=4, right=4)
         ch.use_track_reader(Points())
-        ch.drive("road.points")"""
+        ch.drive("road.points")
+
+    Attributes
+    ----------
+    extension : str
+        End of the files' names, such as ".gpx".
+    """
 
     extension: str = ""
-    """End of the files' names, such as ".gpx"."""
 
     def read(self, path: str) -> Track:
-        """The road of a file."""
+        """Reads the road of a file.
+
+        Parameters
+        ----------
+        path : str
+            File.
+
+        Returns
+        -------
+        Track
+            Its road.
+        """
         raise NotImplementedError(f"{type(self).__name__}.read(path) is not written yet")
 
 
@@ -89,7 +133,13 @@ _readers: dict[str, TrackReader] = {}
 
 
 def use_track_reader(reader: TrackReader) -> None:
-    """From now on files with the reader's extension can be given wherever a track can. A later reader of the same extension wins."""
+    """Lets you give files with the reader's extension as tracks; a later reader of the same extension replaces it.
+
+    Parameters
+    ----------
+    reader : TrackReader
+        Reader, with an extension other than ".csv".
+    """
     if not isinstance(reader, TrackReader) or not reader.extension.startswith(".") or reader.extension == ".csv":
         raise ValueError(f"use_track_reader: got {reader!r}, expected a TrackReader with an extension such as \".gpx\"; .csv is the library's")
     _readers[reader.extension] = reader

@@ -31,12 +31,26 @@ class Page:
 def report(run: Run | Recording | str | os.PathLike[str], output: str | os.PathLike[str], *, height: int = 700) -> Page:
     """Writes the dashboard with a run as one HTML file that needs no network, as `chicane report` does.
 
-    run: of drive() or read(), or a recording's file. A run that was not recorded is driven once more.
-    output: page to write; an older one is replaced.
-    height: of the cell of a notebook that shows the answer [px].
+    Parameters
+    ----------
+    run : Run, Recording, str or path
+        Result of drive() or read(), or a recording's file. A run that was not recorded is driven once more.
+    output : str or path
+        Page to write; an older one is replaced.
+    height : int
+        Height of the cell of a notebook that shows the answer [px].
 
-    ValueError for a run with a Controller of your own that was not recorded (drive(..., record=...)), and where the module was
-    built without Node.js, which the dashboard needs."""
+    Returns
+    -------
+    Page
+        Shown by a notebook.
+
+    Raises
+    ------
+    ValueError
+        If a Controller of your own drove without drive(..., record=...), or the module was built without Node.js, which the
+        dashboard needs.
+    """
     import tempfile  # here, because importing chicane shall be quick
     file = os.fspath(output)
     with tempfile.TemporaryDirectory(prefix="chicane-") as folder:
@@ -46,8 +60,20 @@ def report(run: Run | Recording | str | os.PathLike[str], output: str | os.PathL
 
 
 def view(run: Run | Recording | str | os.PathLike[str], *, height: int = 700) -> Page:
-    """Shows the page of report(), with its arguments but for output, and its errors: in a notebook in its cell, elsewhere in a tab of the
-    browser."""
+    """Shows the page of report(): in a notebook in its cell, elsewhere in a tab of the browser.
+
+    Parameters
+    ----------
+    run : Run, Recording, str or path
+        As for report().
+    height : int
+        Height of the cell of a notebook [px].
+
+    Returns
+    -------
+    Page
+        Shown by a notebook.
+    """
     import tempfile
     import webbrowser
     page = report(run, tempfile.mkstemp(prefix="chicane-", suffix=".html")[1], height=height)

@@ -149,7 +149,8 @@ const Parameter* find_option(std::string_view controller, std::string_view name)
 std::string_view nearest(std::string_view word, std::span<const std::string_view> known) {
   std::string_view best;
   if (word.size() > 100) return best;
-  int best_distance = std::max(2, static_cast<int>(word.size()) / 4) + 1;
+  // Two changes make any short word of any other.
+  int best_distance = word.size() < 5 ? 2 : std::max(2, static_cast<int>(word.size()) / 4) + 1;
   for (const std::string_view candidate : known) {
     const bool unit_forgotten = candidate.starts_with(word) && candidate.size() > word.size() &&
                                 (candidate[word.size()] == '_' || candidate[word.size()] == '-');

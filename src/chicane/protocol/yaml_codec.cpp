@@ -212,7 +212,8 @@ void YamlReader::fault(int line, std::string_view key, std::string_view what) {
 }
 
 void YamlReader::fault(int line, const Error& error) {
-  if (!is_full()) faults_.push_back(place(file_, line) + error.message);
+  std::string text = place(file_, line) + error.message;
+  if (!is_full() && (faults_.empty() || faults_.back() != text)) faults_.push_back(std::move(text));
 }
 
 void YamlReader::refuse(const YamlNode& node, std::string_view key, std::string_view expected) {

@@ -210,7 +210,7 @@ class PlanReader : private detail::SettingsReader {
       } else if (takes(dimension.key, entry.value)) {
         dimension.list.push_back(entry.value.text);
       }
-      if (dimension.list.empty())
+      if (dimension.list.empty() && is_faultless())
         fault(entry.key.line, printable(dimension.key), "got no values, expected some");
       length = dimension.list.size();
     }

@@ -289,6 +289,7 @@ class Merger {
  private:
   Result<void> read(std::uint32_t index) {
     const std::string& file = files_[index];
+    if (!streams_[index]) return fail(refusal(file + ": file", "none", "a file"));
     std::string first;
     std::getline(streams_[index], first);
     const Result<Header> header = parse_header(first, file);
