@@ -47,8 +47,8 @@ struct Assign {
   std::string operator()(Off to) const { return *to.value = false, ""; }
   /// A value that the setting refuses is named by the option.
   std::string operator()(Setting to) const {
-    const Result<protocol::Value> read = protocol::parse(*protocol::find(to.key), text);
-    if (!read) return read.error().message.substr(read.error().message.find("expected ") + 9);
+    const protocol::Parameter& parameter = *protocol::find(to.key);
+    if (!protocol::parse(parameter, text)) return chicane::expectation(parameter.option);
     return settings.emplace_back(to.key, text), "";
   }
   std::string operator()(std::string* to) const { return *to = text, ""; }
