@@ -155,10 +155,10 @@ class Side {
     udp->interfaceWhiteList.emplace_back("127.0.0.1");
     qos.transport().use_builtin_transports = false;
     qos.transport().user_transports.push_back(udp);
-    const auto at = [domain](int index) {
+    const auto at = [domain](int participant) {
       rtps::Locator_t locator;
       eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, 127, 0, 0, 1);
-      locator.port = static_cast<std::uint32_t>(7400 + 250 * domain + 10 + 2 * index);
+      locator.port = static_cast<std::uint32_t>(7400 + 250 * domain + 10 + 2 * participant);
       return locator;
     };
     qos.wire_protocol().participant_id = index;
