@@ -23,6 +23,7 @@ constexpr std::size_t kCdrHeader = 4;
 constexpr uint32_t kTakenAtOnce = 64;
 constexpr dds_duration_t kWriteTimeout = DDS_MSECS(2);  // a control step cannot wait longer
 constexpr std::string_view kDiscovery = "ros_discovery_info";
+constexpr std::string_view kOurs = "chicane";  // user data of our writers of it, which fit any release
 // Lengths of a GUID there: up to ROS 2 Humble, and from Iron on, whose endpoints have a hash of their type.
 constexpr std::size_t kHumbleGuid = 24, kIronGuid = 16;  // [byte]
 
@@ -71,14 +72,13 @@ Qos qos_of(const dds_qos_t* from) {
   return qos;
 }
 
-bool has_type_hash(const dds_qos_t* from) {
+std::string user_data_of(const dds_qos_t* from) {
   void* data = nullptr;
   std::size_t size = 0;
-  if (!dds_qget_userdata(from, &data, &size) || data == nullptr) return false;
-  const bool has =
-      std::string_view(static_cast<const char*>(data), size).find("typehash=") != std::string_view::npos;
+  if (!dds_qget_userdata(from, &data, &size) || data == nullptr) return {};
+  const std::string text(static_cast<const char*>(data), size);
   dds_free(data);
-  return has;
+  return text;
 }
 
 std::string escaped(std::string_view text) {
@@ -175,7 +175,9 @@ class CycloneParticipant final : public Participant {
                                          const Qos& qos) override {
     const auto handle = topic_of(topic, type);
     if (!handle) return fail(handle.error());
-    const dds_entity_t made = dds_create_writer(participant_.get(), *handle, cyclone_qos(qos).get(), nullptr);
+    const QosHandle own = cyclone_qos(qos);
+    if (topic == kDiscovery) dds_qset_userdata(own.get(), kOurs.data(), kOurs.size());
+    const dds_entity_t made = dds_create_writer(participant_.get(), *handle, own.get(), nullptr);
     if (made < 0)
       return fail(ErrorCode::kIo, fmt::format("DDS: writer of {}: {}", topic, dds_strretcode(-made)));
     dds_get_guid(made, &writers_.emplace_back());
@@ -241,8 +243,9 @@ class CycloneParticipant final : public Participant {
       const auto* endpoint = static_cast<const dds_builtintopic_endpoint_t*>(samples[at]);
       const bool is_own = std::memcmp(&endpoint->participant_key, &own_, sizeof own_) == 0;
       if (!infos[at].valid_data || is_own || endpoint->topic_name == nullptr) continue;
-      if (is_writer && endpoint->topic_name == kDiscovery)
-        partners_guid_ = has_type_hash(endpoint->qos) ? kIronGuid : kHumbleGuid;
+      const std::string data = user_data_of(endpoint->qos);
+      if (is_writer && endpoint->topic_name == kDiscovery && data != kOurs)
+        partners_guid_ = data.find("typehash=") != std::string::npos ? kIronGuid : kHumbleGuid;
       found.push_back({.is_writer = is_writer,
                        .topic = ros_topic(endpoint->topic_name),
                        .type = ros_type(endpoint->type_name),
