@@ -9,7 +9,7 @@ run_packages=(
 # To compare with Ipopt in `chicane bench`, on top of those.
 bench_packages=(coinor-libipopt-dev liblapack-dev libblas-dev)
 # For `chicane ros`, on top of the first.
-ros_packages=(cyclonedds-dev libssl-dev)
+ros_packages=(cyclonedds-dev)
 # For chicane-lab, the program of many runs, logs and reports, on top of the first.
 lab_packages=(libeigen3-dev libsqlite3-dev)
 # For `chicane tune`, on top of those.

@@ -104,7 +104,7 @@ class Campaign:
         if "relaxation_m" in numbers:
             off += [f"plant_params.relaxation_across_m={numbers['relaxation_m'] * 1.4:.8g}",
                     f"plant_params.load_lag_ms={numbers['load_lag_ms'] * 0.7:.8g}"]
-        done = run(self.chicane, "identify", log, "--car", file, "-o", self.folder / f"{name}.yaml", "--json",
+        done = run(self.chicane, "identify", log, "--car", file, "-o", self.folder / f"{name}.yaml", "--json", "--budget-s", "3000",
                    *(word for each in off for word in ("--set", each)))
         if done.returncode != 0:
             return {"refused": done.stderr.strip()}

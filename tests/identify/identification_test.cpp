@@ -105,6 +105,18 @@ TEST(Identification, DoesNotPredictByCommandsThatDidNotDriveTheCar) {
   EXPECT_FALSE(found->predicts()) << found->held_out[0].position << ' ' << found->held_out[0].kept_position;
 }
 
+// A public log of a car that spins: 26 degrees off after a third of a second, and a car that keeps its yaw
+// rate 30.
+TEST(Identification, DoesNotPredictWhatIsBeyondTheSensors) {
+  Identification found;
+  found.residual = {0.074, 0.032, 0.08};
+  found.held_out = {{.ahead = 0.32, .position = 0.60, .yaw = 0.46, .kept_position = 0.74, .kept_yaw = 0.52}};
+  EXPECT_FALSE(found.predicts());
+  found.held_out[0].position = 0.4;
+  found.held_out[0].yaw = 0.15;
+  EXPECT_TRUE(found.predicts());
+}
+
 #ifdef CHICANE_SLOW_TESTS
 // What the controllers' model leaves out was found in it: 9 % of the inertia, 3 % of the friction, 4 % of the
 // rear tyres' stiffness, and 12 to 50 % of the inertia from other logs.

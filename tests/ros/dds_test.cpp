@@ -22,11 +22,12 @@ TEST(Dds, SendsBytesAsTheyAreOnLoopback) {
   ASSERT_TRUE(writer && reader);
   const std::string bytes = protocol::encode(protocol::OdometryMessage{
       .stamp = 1'700'000'000'123'456'789, .frame = "map", .child_frame = "car", .vx = 3.0});
-  ASSERT_TRUE((*writer)->write(bytes));
+  ASSERT_TRUE((*writer)->write(bytes) && (*writer)->reply(bytes, std::string(24, 'x')));
   (*node)->wait(2s);
   const auto taken = (*reader)->take();
-  ASSERT_EQ(taken.size(), 1U);
+  ASSERT_EQ(taken.size(), 2U);
   EXPECT_EQ(taken[0].bytes, bytes);
+  EXPECT_EQ(taken[1].bytes, bytes) << "the call is beside the message";
   EXPECT_NE(taken[0].writer, 0U);
   EXPECT_EQ((*writer)->matched(), 1);
   EXPECT_EQ((*reader)->matched(), 1);

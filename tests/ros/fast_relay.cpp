@@ -4,6 +4,8 @@
 // messages, and shifts the simulator's clock, where asked. Tells at its end, as JSON, what passed.
 //   fast_relay SIMULATOR_DOMAIN CONTROLLER_DOMAIN SECONDS [loss=0.1] [twice=0.1] [swap=0.1] [jump_s=5]
 //              [jump_at_s=8] [best-effort] [reliable]
+//   fast_relay node DOMAIN [iron]   is a ROS 2 node by rmw_fastrtps, of Humble or of Iron: asks the parameter
+//              services of /chicane, and tells what it saw of both nodes, of /map and of /scan
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
 
@@ -33,7 +35,9 @@
 #include <map>
 #include <memory>
 #include <random>
+#include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -44,8 +48,8 @@ using eprosima::fastcdr::Cdr;
 using eprosima::fastcdr::FastBuffer;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint32_t kLargest = 100'000;  // of a message [bytes]
-constexpr int kOwnIndex = 20;                // of our first participant; those of the others are small
+constexpr std::uint32_t kLargest = 1'000'000;  // of a message [bytes]
+constexpr int kOwnIndex = 20;                  // of our first participant; those of the others are small
 std::atomic<bool> stop{false};
 
 /// A message as its bytes, with the header of CDR.
@@ -151,10 +155,10 @@ class Side {
     udp->interfaceWhiteList.emplace_back("127.0.0.1");
     qos.transport().use_builtin_transports = false;
     qos.transport().user_transports.push_back(udp);
-    const auto at = [domain](int index) {
+    const auto at = [domain](int participant) {
       rtps::Locator_t locator;
       eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, 127, 0, 0, 1);
-      locator.port = static_cast<std::uint32_t>(7400 + 250 * domain + 10 + 2 * index);
+      locator.port = static_cast<std::uint32_t>(7400 + 250 * domain + 10 + 2 * participant);
       return locator;
     };
     qos.wire_protocol().participant_id = index;
@@ -166,15 +170,18 @@ class Side {
     publisher_ = participant_->create_publisher(fast::PUBLISHER_QOS_DEFAULT);
     subscriber_ = participant_->create_subscriber(fast::SUBSCRIBER_QOS_DEFAULT);
   }
-  fast::DataReader* reader(const char* topic, const char* type, bool is_reliable) {
+  fast::DataReader* reader(const char* topic, const char* type, bool is_reliable, bool is_late = false) {
     fast::DataReaderQos qos = fast::DATAREADER_QOS_DEFAULT;
+    if (is_late) qos.durability().kind = fast::TRANSIENT_LOCAL_DURABILITY_QOS;
     qos.reliability().kind = is_reliable ? fast::RELIABLE_RELIABILITY_QOS : fast::BEST_EFFORT_RELIABILITY_QOS;
     qos.history().depth = 10;
     qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
     return subscriber_->create_datareader(this->topic(topic, type), qos);
   }
-  fast::DataWriter* writer(const char* topic, const char* type, bool is_reliable) {
+  fast::DataWriter* writer(const char* topic, const char* type, bool is_reliable,
+                           const std::string& user_data = {}) {
     fast::DataWriterQos qos = fast::DATAWRITER_QOS_DEFAULT;
+    qos.user_data().data_vec({user_data.begin(), user_data.end()});
     qos.reliability().kind = is_reliable ? fast::RELIABLE_RELIABILITY_QOS : fast::BEST_EFFORT_RELIABILITY_QOS;
     qos.history().depth = 10;
     qos.publish_mode().kind = fast::SYNCHRONOUS_PUBLISH_MODE;
@@ -184,6 +191,7 @@ class Side {
 
  private:
   fast::Topic* topic(const char* topic, const char* type) {
+    if (auto* known = dynamic_cast<fast::Topic*>(participant_->lookup_topicdescription(topic))) return known;
     fast::TypeSupport(new BytesType(type)).register_type(participant_);
     return participant_->create_topic(topic, type, fast::TOPIC_QOS_DEFAULT);
   }
@@ -227,6 +235,106 @@ class Road {
   std::mt19937 random_{1};
 };
 
+/// A request in CDR.
+template <class... Values>
+std::string encoded(const Values&... values) {
+  std::vector<char> memory(kLargest);
+  FastBuffer buffer(memory.data(), memory.size());
+  Cdr to(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR);
+  to.serialize_encapsulation();
+  (to << ... << values);
+  return {buffer.getBuffer(), to.getSerializedDataLength()};
+}
+
+/// The first values of a message.
+template <class... Values>
+void decode(std::string bytes, Values&... values) {
+  FastBuffer buffer(bytes.data(), bytes.size());
+  Cdr from(buffer, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR);
+  from.read_encapsulation();
+  (from >> ... >> values);
+}
+
+/// Asks a service of /chicane as rmw_fastrtps does, and waits for the reply that names the request.
+std::string ask(Side& side, const std::string& service, const std::string& type, std::string request) {
+  const std::string full = "rcl_interfaces::srv::dds_::" + type;
+  fast::DataWriter* requests =
+      side.writer(("rq/chicane/" + service + "Request").c_str(), (full + "_Request_").c_str(), true);
+  fast::DataReader* replies =
+      side.reader(("rr/chicane/" + service + "Reply").c_str(), (full + "_Response_").c_str(), true);
+  fast::PublicationMatchedStatus asked;
+  fast::SubscriptionMatchedStatus heard;
+  for (int i = 0; i < 500 && (asked.current_count == 0 || heard.current_count == 0); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    requests->get_publication_matched_status(asked);
+    replies->get_subscription_matched_status(heard);
+  }
+  rtps::WriteParams call;
+  call.related_sample_identity().writer_guid(replies->guid());
+  requests->write(&request, call);
+  std::string bytes;
+  fast::SampleInfo info;
+  while (replies->wait_for_unread_message(eprosima::fastrtps::Duration_t(5, 0))) {
+    replies->take_next_sample(&bytes, &info);
+    if (info.related_sample_identity.writer_guid() == replies->guid() &&
+        info.related_sample_identity.sequence_number() == call.sample_identity().sequence_number())
+      return bytes;
+  }
+  return {};
+}
+
+/// Prints what a node of rmw_fastrtps sees of ours.
+int be_a_node(int domain, bool is_iron) {
+  using Names = std::vector<std::string>;
+  constexpr const char* kInfo = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
+  Side side(domain, kOwnIndex);
+  static_cast<void>(side.writer("ros_discovery_info", kInfo, true, is_iron ? "typehash=RIHS01_0;" : ""));
+  fast::DataReader* nodes = side.reader("ros_discovery_info", kInfo, true, true);
+  fast::DataReader* map = side.reader("rt/map", "nav_msgs::msg::dds_::OccupancyGrid_", true, true);
+  fast::DataReader* scan = side.reader("rt/scan", "sensor_msgs::msg::dds_::LaserScan_", false);
+  const std::string key = "tracking_mpc.weight_lateral";
+  Names listed;
+  decode(ask(side, "list_parameters", "ListParameters", encoded(Names{}, std::uint64_t{0})), listed);
+  std::vector<std::uint8_t> types;
+  decode(ask(side, "get_parameter_types", "GetParameterTypes", encoded(Names{key})), types);
+  const std::uint32_t one = 1, none = 0;
+  const auto setting = encoded(one, key, std::uint8_t{3}, false, std::int64_t{0}, 2.0, std::string(), none,
+                               none, none, none, none);
+  std::uint32_t count = 0;
+  bool is_set = false, are_set = true, flag = false;
+  decode(ask(side, "set_parameters", "SetParameters", setting), count, is_set);
+  decode(ask(side, "set_parameters_atomically", "SetParametersAtomically", setting), are_set);
+  std::uint8_t type = 0;
+  std::int64_t integer = 0;
+  double value = 0.0;
+  decode(ask(side, "get_parameters", "GetParameters", encoded(Names{key})), count, type, flag, integer,
+         value);
+  const std::size_t described =
+      ask(side, "describe_parameters", "DescribeParameters", encoded(listed)).size();
+  std::set<std::string> seen;
+  std::size_t maps = 0, scans = 0;
+  for (int i = 0; i < 200 && (seen.size() < 2 || maps == 0 || scans == 0); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds{50});
+    for (std::string bytes : take(nodes)) {
+      bytes.erase(4, is_iron ? 16 : 24);  // the GUID of the participant
+      std::string space, name;
+      decode(bytes, count, space, name);
+      if (space == "/") seen.insert("\"" + space + name + "\"");  // else in the other release's layout
+    }
+    maps += take(map).size();
+    scans += take(scan).size();
+  }
+  std::string names;
+  for (const std::string& name : seen) names += (names.empty() ? "" : ", ") + name;
+  std::printf(
+      "{\"listed\": %zu, \"type\": %d, \"set\": %d, \"set_atomically\": %d, \"value\": %g, "
+      "\"described_bytes\": %zu, \"nodes\": [%s], \"maps\": %zu, \"scans\": %zu}\n",
+      listed.size(), types.empty() ? -1 : types[0], is_set, are_set, value, described, names.c_str(), maps,
+      scans);
+  std::fflush(stdout);
+  std::_Exit(0);
+}
+
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return -1.0;
   std::sort(values.begin(), values.end());
@@ -236,6 +344,7 @@ double quantile(std::vector<double> values, double share) {
 }  // namespace
 
 int main(int count, char** words) {
+  if (count >= 3 && std::string(words[1]) == "node") return be_a_node(std::atoi(words[2]), count > 3);
   if (count < 4) return 2;
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop = true; });
   std::map<std::string, double> told;

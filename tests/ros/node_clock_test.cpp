@@ -48,7 +48,6 @@ TEST(ClockWatch, AcceptsStampsThatRiseAsTimeDoes) {
   for (int i = 0; i < 10; ++i)
     EXPECT_TRUE(watch.accept(kNow + i * 20 * kMs, i * 20 * kMs, kNow + i * 20 * kMs));
   EXPECT_EQ(watch.news(), "");
-  EXPECT_FALSE(watch.is_simulated());
 }
 
 TEST(ClockWatch, LeavesOutWhatComesTwiceOrTooLate) {
@@ -59,7 +58,6 @@ TEST(ClockWatch, LeavesOutWhatComesTwiceOrTooLate) {
   EXPECT_EQ(watch.news(), "a message of /odom came twice: such messages are left out");
   EXPECT_FALSE(watch.accept(kNow + 20 * kMs, 42 * kMs, kNow));
   EXPECT_EQ(watch.news(), "");  // once is enough
-  EXPECT_EQ(watch.dropped(), 2U);
 }
 
 TEST(ClockWatch, SaysThatTheClockJumpedAndGoesOn) {
@@ -88,7 +86,6 @@ TEST(ClockWatch, KnowsWhenALateMessageWasStamped) {
 TEST(ClockWatch, KnowsSimulatedTime) {
   ClockWatch watch("/odom");
   EXPECT_TRUE(watch.accept(12 * kMs, 0, kNow));
-  EXPECT_TRUE(watch.is_simulated());
   EXPECT_NE(watch.news().find("simulated time"), std::string::npos);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A partner for two_processes.py, which asks for something or does it wrong: ros_partner DOMAIN SECONDS WHAT
 //
-// set              asks the controller's parameter service to set a weight
 // stop, go         tells the controller to stop the car, to drive on
 // best-effort      odometry with a quality of service that a reliable reader cannot use
 // wrong-type       another type on the topic of the odometry
@@ -11,14 +10,11 @@
 // garbage          now and then bytes that are no message
 // no-numbers       now and then numbers that are not finite
 // odom-frame       odometry in a frame that a transform leads to
-// measure          prints the time from odometry to command
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
-#include <map>
 #include <memory>
 #include <string>
 #include <thread>
@@ -67,59 +63,6 @@ int tell_stop(Participant& node, bool wanted) {
   return 0;
 }
 
-/// Listens to both topics, and prints how long after an odometry its command came.
-int measure(Participant& node, std::chrono::steady_clock::time_point end) {
-  auto odometry = node.reader(kOdometry, std::string(OdometryMessage::kType), {.is_reliable = false});
-  auto drive =
-      node.reader("/drive", std::string(chicane::protocol::DriveMessage::kType), {.is_reliable = false});
-  if (!odometry || !drive) return 3;
-  std::map<std::int64_t, std::chrono::steady_clock::time_point> asked;
-  std::vector<double> answers;  // [ms]
-  while (std::chrono::steady_clock::now() < end) {
-    node.wait(milliseconds{20});
-    const auto now = std::chrono::steady_clock::now();
-    for (const auto& sample : (*odometry)->take())
-      if (const auto message = chicane::protocol::decode<chicane::protocol::OdometryMessage>(sample.bytes))
-        asked[message->stamp] = now;
-    for (const auto& sample : (*drive)->take()) {
-      const auto message = chicane::protocol::decode<chicane::protocol::DriveMessage>(sample.bytes);
-      const auto since = message ? asked.find(message->stamp) : asked.end();
-      if (since != asked.end())
-        answers.push_back(std::chrono::duration<double, std::milli>(now - since->second).count());
-    }
-  }
-  std::sort(answers.begin(), answers.end());
-  const auto quantile = [&](double share) {
-    return answers.empty()
-               ? -1.0
-               : answers[static_cast<std::size_t>(share * static_cast<double>(answers.size() - 1))];
-  };
-  std::printf("{\"answered\": %zu, \"p50_ms\": %.3f, \"p999_ms\": %.3f}\n", answers.size(), quantile(0.5),
-              quantile(0.999));
-  return answers.empty() ? 1 : 0;
-}
-
-/// 0 when the service said that it did.
-int set_weight(Participant& node, std::chrono::steady_clock::time_point end) {
-  auto writer =
-      node.writer("rq/chicane/set_parametersRequest", "rcl_interfaces/srv/SetParameters_Request", {});
-  auto reader =
-      node.reader("rr/chicane/set_parametersReply", "rcl_interfaces/srv/SetParameters_Response", {});
-  if (!writer || !reader) return 3;
-  while (std::chrono::steady_clock::now() < end && ((*writer)->matched() == 0 || (*reader)->matched() == 0))
-    std::this_thread::sleep_for(milliseconds{20});
-  (*writer)->write(
-      encode(chicane::protocol::SetRequest{.parameters = {{"tracking_mpc.weight_lateral", 2.0}}}));
-  while (std::chrono::steady_clock::now() < end) {
-    node.wait(milliseconds{50});
-    for (const auto& sample : (*reader)->take()) {
-      const auto reply = chicane::protocol::decode<chicane::protocol::SetReply>(sample.bytes);
-      return reply && reply->outcomes.size() == 1 && reply->outcomes[0].is_successful ? 0 : 1;
-    }
-  }
-  return 1;
-}
-
 }  // namespace
 
 int main(int count, char** words) {
@@ -129,8 +72,6 @@ int main(int count, char** words) {
   if (!node) return 3;
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{std::atoi(words[2])};
   if (fault == "stop" || fault == "go") return tell_stop(**node, fault == "stop");
-  if (fault == "measure") return measure(**node, end);
-  if (fault == "set") return set_weight(**node, end);
   if (fault == "reliable-reader") {
     auto reader = (*node)->reader("/drive", std::string(chicane::protocol::DriveMessage::kType), {});
     std::this_thread::sleep_until(end);

@@ -91,12 +91,12 @@ std::string interval(const Estimate& each) {
 std::string doubt(const Identification& found) {
   if (found.predicts()) return {};
   const identify::PredictionError& error = found.held_out.front();
+  const auto [most, most_yaw] = found.worst_prediction();
   constexpr double kDegrees = 180.0 / kPi;
   return fmt::format(
-      "held-out prediction: got {:.2f} m and {:.1f} deg off after {:.2g} s, expected less than the {:.2f} m "
-      "and "
-      "{:.1f} deg of a car that keeps its speed and yaw rate",
-      error.position, kDegrees * error.yaw, error.ahead, error.kept_position, kDegrees * error.kept_yaw);
+      "held-out prediction: got {:.2f} m and {:.1f} deg off after {:.2g} s, expected at most {:.2f} m and "
+      "{:.1f} deg (six times what the fit leaves unexplained, or a car that keeps its speed and yaw rate)",
+      error.position, kDegrees * error.yaw, error.ahead, most, kDegrees * most_yaw);
 }
 
 std::string advice(const Identification& found) {

@@ -32,8 +32,7 @@ constexpr int kRoughSteps = 12;            ///< steps of the rough round
 constexpr double kRoughAccuracy = 3e-2,
                  kAccuracy = 1e-3;  ///< in deviations of the prior: an interval is a tenth of one
 constexpr double kMoreGrip = 0.4;   ///< logarithm of the first guess of the friction over the assumed one
-constexpr std::string_view kRotating = "rotating";  ///< estimated with the others, but not reported
-constexpr std::size_t kFewWindows = 12;             ///< windows of the first, rough round
+constexpr std::size_t kFewWindows = 12;  ///< windows of the first, rough round
 
 /// Estimated number: where it is stored in a car in full size, and its prior.
 struct Row {
@@ -109,7 +108,7 @@ std::vector<Row> rows_for(const model::VehicleParams& start, const Wheels& wheel
         {"relaxation_m", unit::kMetre, true, wheels.relaxation, 0.7, put<&Car::wheels, &Wheels::relaxation>});
     rows.push_back({"load_lag_ms", unit::kMillisecond, true, wheels.load_lag, 1.0,
                     put<&Car::wheels, &Wheels::load_lag>});
-    rows.push_back({std::string(kRotating), unit::kNone, true, wheels.rotating, 0.03,
+    rows.push_back({"rotating", unit::kNone, true, wheels.rotating, 0.03,
                     put<&Car::wheels, &Wheels::rotating>, 1.0, 0.005});
   }
   add("steer_rate_limit", 1.0);
@@ -164,14 +163,15 @@ void add_windows(const std::vector<DriveLog>& logs, std::size_t log, double from
   }
 }
 
-/// Measurement and prediction side by side.
-Compared compared(const Sample& seen, const Expected& e) {
-  return {seen.time, seen.x, seen.y, seen.psi, seen.speed, e[0], e[1], e[2], e[3]};
+/// Measurement and prediction side by side, brought from full size to the actual car.
+Compared compared(const Sample& seen, const Expected& e, const model::Similarity& from) {
+  const double l = from.length(), v = from.speed(), t = seen.time / from.time();
+  return {t, seen.x / l, seen.y / l, seen.psi, seen.speed / v, e[0] / l, e[1] / l, e[2], e[3] / v};
 }
 
 /// Evaluates the windows with the estimated car: residuals of the samples, and used share of the tyres.
 void look_back(const std::vector<DriveLog>& logs, const std::vector<Window>& windows, const Car& car,
-               Identification& found) {
+               const model::Similarity& similarity, Identification& found) {
   const model::PredictionModel model(car.vehicle);
   std::array<std::vector<double>, 2> uses;
   std::vector<Expected> expected;
@@ -184,7 +184,7 @@ void look_back(const std::vector<DriveLog>& logs, const std::vector<Window>& win
       const auto use = model.tire_use(model::BodyMotion<double>{e[5], e[6], e[4], e[7], 0.0});
       uses[0].push_back(use.front);
       uses[1].push_back(use.rear);
-      found.fitted.push_back(compared(logs[window.log].samples[window.first + i], e));
+      found.fitted.push_back(compared(logs[window.log].samples[window.first + i], e, similarity));
     }
   }
   const auto most_of = [](std::vector<double>& axle, std::array<int, 30>& bins) {
@@ -200,7 +200,8 @@ void look_back(const std::vector<DriveLog>& logs, const std::vector<Window>& win
 }
 
 std::vector<PredictedStretch> predict(const std::vector<DriveLog>& logs, std::vector<Window> windows,
-                                      const Car& car, const Noise& noise) {
+                                      const Car& car, const Noise& noise,
+                                      const model::Similarity& similarity) {
   std::vector<PredictedStretch> stretches;
   std::vector<Actuators> actuators;
   for (const DriveLog& log : logs) actuators.emplace_back(log, car);
@@ -211,9 +212,9 @@ std::vector<PredictedStretch> predict(const std::vector<DriveLog>& logs, std::ve
     while (seen < window.last && samples[seen].time < samples[window.first].time + kSeen) ++seen;
     fit_start(logs, window, seen, car, actuators[window.log], noise);
     drive(car, logs[window.log], actuators[window.log], window.first, window.last, window.start, expected);
-    PredictedStretch stretch{.known = samples[seen - 1].time, .samples = {}};
+    PredictedStretch stretch{.known = samples[seen - 1].time / similarity.time(), .samples = {}};
     for (std::size_t i = 0; i < expected.size(); ++i)
-      stretch.samples.push_back(compared(samples[window.first + i], expected[i]));
+      stretch.samples.push_back(compared(samples[window.first + i], expected[i], similarity));
     stretches.push_back(std::move(stretch));
   }
   return stretches;
@@ -230,24 +231,24 @@ Compared kept_motion(const PredictedStretch& stretch, const Compared& at) {
   const double half_turn = 0.5 * rate * ahead;
   const double middle = last->psi + half_turn;
   const double chord = last->speed * ahead * (std::fabs(half_turn) > 1e-6 ? sin(half_turn) / half_turn : 1.0);
-  return {.time = at.time,
-          .model_x = last->x + chord * cos(middle),
+  return {.model_x = last->x + chord * cos(middle),
           .model_y = last->y + chord * sin(middle),
           .model_psi = last->psi + rate * ahead};
 }
 
-/// Errors of predictions one, two and three seconds ahead.
-std::vector<PredictionError> prediction_errors(const std::vector<PredictedStretch>& stretches) {
+/// Errors of predictions one, two and three seconds ahead, in full size.
+std::vector<PredictionError> prediction_errors(const std::vector<PredictedStretch>& stretches,
+                                               double to_full_size) {
   std::vector<PredictionError> found;
-  for (const double ahead : {1.0, 2.0, 3.0}) {
+  for (const double seconds : {1.0, 2.0, 3.0}) {
+    const double ahead = seconds / to_full_size;
     PredictionError sum{.ahead = ahead};
     int count = 0;
     for (const PredictedStretch& stretch : stretches) {
       const auto at = std::find_if(stretch.samples.begin(), stretch.samples.end(),
                                    [&](const Compared& each) { return each.time >= stretch.known + ahead; });
       if (at == stretch.samples.end()) continue;
-      sum.position +=
-          (at->model_x - at->x) * (at->model_x - at->x) + (at->model_y - at->y) * (at->model_y - at->y);
+      sum.position += Vec2{at->model_x - at->x, at->model_y - at->y}.squared_norm();
       sum.yaw += (at->model_psi - at->psi) * (at->model_psi - at->psi);
       sum.speed += (at->model_speed - at->speed) * (at->model_speed - at->speed);
       const Compared kept = kept_motion(stretch, *at);
@@ -261,14 +262,6 @@ std::vector<PredictionError> prediction_errors(const std::vector<PredictedStretc
                      mean(sum.kept_yaw)});
   }
   return found;
-}
-
-/// Scales a comparison from full size to the actual car.
-Compared own_size(Compared each, const model::Similarity& from) {
-  each.time /= from.time();
-  for (double* length : {&each.x, &each.y, &each.model_x, &each.model_y}) *length /= from.length();
-  for (double* speed : {&each.speed, &each.model_speed}) *speed /= from.speed();
-  return each;
 }
 
 /// Keeps every other window until there are few enough.
@@ -330,11 +323,23 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
   int round = 0;
   for (; round < rounds && goes_on; ++round) {
     int step = 0;
-    fit = fit_windows(logs, windows, round == 0 ? first : prior, fit.theta, noise,
-                      round + 1 < rounds ? kRoughAccuracy : kAccuracy, [&] {
-                        goes_on = options.progress((round + std::min(1.0, 0.07 * step)) / rounds);
-                        return goes_on && (step++ < kRoughSteps || !options.is_rough);
-                      });
+    const auto search = [&](std::vector<Window>& starts, const std::vector<double>& from) {
+      return fit_windows(logs, starts, round == 0 ? first : prior, from, noise,
+                         round + 1 < rounds ? kRoughAccuracy : kAccuracy, [&] {
+                           goes_on = options.progress((round + std::min(1.0, 0.07 * step)) / rounds);
+                           return goes_on && (step++ < kRoughSteps || !options.is_rough);
+                         });
+    };
+    // Where the rate of the steering is limited, the first round's lag stands for that limit.
+    std::vector<Window> others = windows;
+    std::vector<double> other = fit.theta;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (rows[i].key.starts_with("steer_") || rows[i].key == "latency_ms") other[i] = prior.mean[i];
+    fit = search(windows, fit.theta);
+    if (WindowFit again; round == 1 && goes_on && (again = search(others, other)).loss < fit.loss) {
+      fit = std::move(again);
+      windows = std::move(others);
+    }
     // Use one deviation for both directions of the place.
     fit.residual[0] = fit.residual[1] = std::max(fit.residual[0], fit.residual[1]);
     for (std::size_t kind = 0; kind < noise.size(); ++kind)
@@ -367,7 +372,7 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
                                outside(fit.theta[i] + 2.0 * deviation), outside(prior.mean[i]),
                                deviation < 0.4 * prior.deviation[i]});
   }
-  look_back(logs, windows, car, found);
+  look_back(logs, windows, car, similarity, found);
   for (Estimate& each : found.estimates) {
     if (each.key == "latency_ms")
       for (double* number : {&each.value, &each.low, &each.high}) *number = std::max(0.0, *number);
@@ -375,19 +380,8 @@ Result<Identification> identify_full_size(const std::vector<DriveLog>& logs,
     if (each.key == "friction" && !found.knows_tires()) each.is_excited = false;
   }
   found.correlations = std::move(fit.correlations);
-  found.stretches = predict(logs, std::move(held_out), car, noise);
-  found.held_out = prediction_errors(found.stretches);
-  for (Compared& each : found.fitted) each = own_size(each, similarity);
-  for (PredictedStretch& stretch : found.stretches) {
-    stretch.known /= similarity.time();
-    for (Compared& each : stretch.samples) each = own_size(each, similarity);
-  }
-  for (PredictionError& error : found.held_out) {
-    error.ahead /= similarity.time();
-    error.position /= similarity.length();
-    error.kept_position /= similarity.length();
-    error.speed /= similarity.speed();
-  }
+  found.stretches = predict(logs, std::move(held_out), car, noise, similarity);
+  found.held_out = prediction_errors(found.stretches, similarity.time());
   return found;
 }
 
@@ -426,11 +420,16 @@ double turning_wheelbase(const std::vector<DriveLog>& logs) {
   return count >= kFewest && wheelbase > 0.0 ? wheelbase : std::numeric_limits<double>::quiet_NaN();
 }
 
-bool Identification::predicts() const noexcept {
-  if (held_out.empty()) return true;
+std::array<double, 2> Identification::worst_prediction() const noexcept {
+  constexpr double kResiduals = 6.0;
   const PredictionError& error = held_out.front();
-  return error.position <= std::max(error.kept_position, 0.1) &&
-         error.yaw <= std::max(error.kept_yaw, kPi / 180.0);
+  return {std::max(std::min(error.kept_position, kResiduals * residual[0]), 0.1),
+          std::max(std::min(error.kept_yaw, kResiduals * residual[1]), kPi / 180.0)};
+}
+
+bool Identification::predicts() const noexcept {
+  return held_out.empty() || (held_out.front().position <= worst_prediction()[0] &&
+                              held_out.front().yaw <= worst_prediction()[1]);
 }
 
 bool Identification::knows_tires() const noexcept {
@@ -456,7 +455,6 @@ Result<Identification> identify(const std::vector<DriveLog>& logs, const model::
                                 const IdentifyOptions& options) {
   // A model car is fitted in full size, as controllers see it: the model's lower bounds are for such a car.
   const model::Similarity similarity(start);
-  if (similarity.is_identity()) return identify_full_size(logs, start, options);
   std::vector<DriveLog> scaled;
   for (const DriveLog& each : logs) scaled.push_back(full_size(each, similarity));
   return identify_full_size(scaled, start, options);

@@ -89,8 +89,10 @@ struct Identification {
   double correlation = 1.0;
   double loss = 0.0;      ///< minimised sum (docs/identification.md, eq. 6)
   bool has_pedal = true;  ///< the log has a pedal; else drive and brakes are taken from `start`
-  /// Whether the car predicts the held-out motion one second ahead better than keeping speed and yaw rate
-  /// does, or within 0.1 m and 1 degree. True if nothing was held out.
+  /// Largest errors of a held-out prediction one second ahead that is taken for one [m], [rad]: six residuals
+  /// of the fit, and those of a car that keeps speed and yaw rate; at least 0.1 m and 1 degree.
+  [[nodiscard]] std::array<double, 2> worst_prediction() const noexcept;
+  /// Whether the held-out prediction is within them. True if nothing was held out.
   [[nodiscard]] bool predicts() const noexcept;
   /// Whether the tyres were used enough for a lap near the limit: kRaceUse of the peak's slip at the axle
   /// that limits the car, kLeastRaceUse at the other one.

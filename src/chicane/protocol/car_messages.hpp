@@ -70,14 +70,13 @@ struct AutowareMessage {
   static constexpr std::string_view kType = "autoware_control_msgs/msg/Control";
   DriveMessage drive{};
   static void fields(auto& archive, auto& message) {
-    const auto times = [&] {
-      for (int i = 0; i < 2; ++i) archive.time(message.drive.stamp);
+    const auto times = [&](int count) {
+      for (int i = 0; i < count; ++i) archive.time(message.drive.stamp);
     };
-    times();
-    times();
+    times(4);
     archive.template as<float>(message.drive.steer);
     archive.constant(0.0F, false);
-    times();
+    times(2);
     archive.template as<float>(message.drive.speed, message.drive.acceleration);
     archive.constant(0.0F, true, false);
   }
@@ -236,6 +235,8 @@ struct ServiceCall {
   std::int64_t sequence = 0;
 };
 void call_fields(auto& archive, auto& message) { archive(message.call.client, message.call.sequence); }
+/// rcl_interfaces/msg/ParameterType of its value.
+[[nodiscard]] std::uint8_t type_number(const foxglove::Parameter& parameter);
 /// rcl_interfaces/msg/ParameterValue, and ParameterDescriptor.
 void value_fields(WritingArchive& archive, const foxglove::Parameter& parameter);
 void value_fields(ReadingArchive& archive, foxglove::Parameter& parameter);

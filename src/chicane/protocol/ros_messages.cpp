@@ -416,6 +416,8 @@ Type type_of(const Setting& parameter) {
 
 }  // namespace
 
+std::uint8_t type_number(const Setting& parameter) { return static_cast<std::uint8_t>(type_of(parameter)); }
+
 /// rcl_interfaces/msg/ParameterValue: a field for each kind of value; the first number selects the valid one.
 void value_fields(WritingArchive& archive, const Setting& parameter) {
   const Type type = type_of(parameter);

@@ -113,31 +113,16 @@ std::string PartnerWatch::missing(const Entry& entry, const std::vector<Endpoint
 }
 
 std::vector<WantedPartner> wanted_partners(const NodeOptions& node) {
-  std::vector<WantedPartner> wanted{{.topic = node.topics.odom,
-                                     .type = std::string(protocol::OdometryMessage::kType),
-                                     .qos = node.odom_qos,
-                                     .qos_option = "--odom-qos",
-                                     .topic_option = "--odom-topic"},
-                                    {.is_reader = false,
-                                     .topic = node.topics.drive,
-                                     .type = std::string(protocol::DriveMessage::kType),
-                                     .qos = node.drive_qos,
-                                     .qos_option = "--drive-qos",
-                                     .topic_option = "--drive-topic"}};
-  if (node.is_time_simulated) {
-    wanted.push_back({.topic = "/clock",
-                      .type = std::string(protocol::ClockMessage::kType),
-                      .qos = {.is_reliable = false},
-                      .qos_option = "",
-                      .topic_option = ""});
-  }
-  if (!node.topics.path.empty()) {
-    wanted.push_back({.topic = node.topics.path,
-                      .type = std::string(protocol::PathMessage::kType),
-                      .qos = {.is_reliable = false},
-                      .qos_option = "",
-                      .topic_option = "--path-topic"});
-  }
+  const Qos any{.is_reliable = false};
+  std::vector<WantedPartner> wanted{{true, node.topics.odom, std::string(protocol::OdometryMessage::kType),
+                                     node.odom_qos, "--odom-qos", "--odom-topic"},
+                                    {false, node.topics.drive, std::string(protocol::DriveMessage::kType),
+                                     node.drive_qos, "--drive-qos", "--drive-topic"}};
+  if (node.is_time_simulated)
+    wanted.push_back({true, "/clock", std::string(protocol::ClockMessage::kType), any});
+  if (!node.topics.path.empty())
+    wanted.push_back(
+        {true, node.topics.path, std::string(protocol::PathMessage::kType), any, "", "--path-topic"});
   return wanted;
 }
 
@@ -146,7 +131,6 @@ Result<CarTopics> CarTopics::create(Participant& at, const NodeOptions& node) {
   Endpoints endpoints{at};
   const Qos any{.is_reliable = false};
   endpoints.read(topics.odom, node.topics.odom, protocol::OdometryMessage::kType, node.odom_qos);
-  endpoints.read(topics.imu, node.topics.imu, protocol::ImuMessage::kType, any);
   endpoints.read(topics.path, node.topics.path, protocol::PathMessage::kType, any);
   // One that was sent before, too: a volatile reader gets none of those, and a transient local one no
   // others.

@@ -70,7 +70,7 @@ class PartnerWatch {
 
 /// The controller's ends of the topics; null where their names are empty.
 struct CarTopics {
-  std::unique_ptr<Reader> odom{}, imu{}, path{}, kept_path{}, initial_pose{}, stop{};
+  std::unique_ptr<Reader> odom{}, path{}, kept_path{}, initial_pose{}, stop{};
   std::unique_ptr<Reader> transforms{}, fixed_transforms{};  ///< /tf, /tf_static
   std::unique_ptr<Reader> clock{};                           ///< null where time is not simulated
   std::unique_ptr<Writer> drive{}, autoware{}, stop_plan{};

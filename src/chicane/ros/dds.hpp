@@ -30,8 +30,9 @@ struct Qos {
 /// One message that arrived, its bytes as in RosTopic: CDR with its four-byte header.
 struct Sample {
   std::string bytes{};
-  std::int64_t sent = 0;     ///< time by the writer's system clock [ns since 1970]
   std::uint64_t writer = 0;  ///< handle of the writer: another number is another writer
+  /// Of a request that rmw_fastrtps sends: what the reply has to name, 24 bytes; empty: sent without.
+  std::string call{};
 };
 
 /// A reader or writer that another program has.
@@ -47,7 +48,9 @@ class Writer {
  public:
   virtual ~Writer() = default;
   /// Sends `bytes` (CDR with header). False when DDS refuses, as when a reliable reader does not keep up.
-  virtual bool write(std::string_view bytes) = 0;
+  bool write(std::string_view bytes) { return reply(bytes, {}); }
+  /// Sends the reply to a request, whose Sample::call is `call`.
+  virtual bool reply(std::string_view bytes, std::string_view call) = 0;
   /// Readers that get the messages now.
   [[nodiscard]] virtual int matched() const = 0;
 };
@@ -79,6 +82,9 @@ class Participant {
   virtual void wait(std::chrono::nanoseconds patience) = 0;
   /// Endpoints of other programs in this domain. Allocates.
   [[nodiscard]] virtual std::vector<Endpoint> others() = 0;
+  /// Announces readers and writers as those of a ROS 2 node, to the partners that others() found last. Sends
+  /// nothing where nothing changed.
+  virtual void announce(const std::string& node) = 0;
 };
 
 /// Readers and writers of a node, one after the other: a topic without a name is left out, and after the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// DDS by Cyclone: the only file that includes it, besides the type in type_hash.cpp.
+// DDS by Cyclone: the only file that includes it, besides the type in cdr_type.cpp.
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
@@ -12,8 +12,9 @@
 #include <map>
 #include <utility>
 
+#include "chicane/protocol/car_messages.hpp"
+#include "chicane/ros/cdr_type.hpp"
 #include "chicane/ros/dds.hpp"
-#include "chicane/ros/type_hash.hpp"
 
 namespace chicane::ros {
 namespace {
@@ -21,6 +22,10 @@ namespace {
 constexpr std::size_t kCdrHeader = 4;
 constexpr uint32_t kTakenAtOnce = 64;
 constexpr dds_duration_t kWriteTimeout = DDS_MSECS(2);  // a control step cannot wait longer
+constexpr std::string_view kDiscovery = "ros_discovery_info";
+constexpr std::string_view kOurs = "chicane";  // user data of our writers of it, which fit any release
+// Lengths of a GUID there: up to ROS 2 Humble, and from Iron on, whose endpoints have a hash of their type.
+constexpr std::size_t kHumbleGuid = 24, kIronGuid = 16;  // [byte]
 
 /// An entity of Cyclone DDS, deleted with its owner.
 class Entity {
@@ -42,7 +47,7 @@ class Entity {
 
 using QosHandle = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 
-QosHandle cyclone_qos(const Qos& qos, const std::string& type) {
+QosHandle cyclone_qos(const Qos& qos) {
   QosHandle to(dds_create_qos(), dds_delete_qos);
   dds_qset_reliability(to.get(), qos.is_reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
                        kWriteTimeout);
@@ -52,10 +57,6 @@ QosHandle cyclone_qos(const Qos& qos, const std::string& type) {
   if (qos.is_transient_local) {
     dds_qset_durability_service(to.get(), 0, DDS_HISTORY_KEEP_LAST, qos.depth, DDS_LENGTH_UNLIMITED,
                                 DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
-  }
-  if (const std::string hash = type_hash(type); !hash.empty()) {
-    const std::string data = fmt::format("typehash={};", hash);
-    dds_qset_userdata(to.get(), data.data(), data.size());
   }
   return to;
 }
@@ -69,6 +70,15 @@ Qos qos_of(const dds_qos_t* from) {
   qos.is_reliable = reliability == DDS_RELIABILITY_RELIABLE;
   qos.is_transient_local = durability != DDS_DURABILITY_VOLATILE;
   return qos;
+}
+
+std::string user_data_of(const dds_qos_t* from) {
+  void* data = nullptr;
+  std::size_t size = 0;
+  if (!dds_qget_userdata(from, &data, &size) || data == nullptr) return {};
+  const std::string text(static_cast<const char*>(data), size);
+  dds_free(data);
+  return text;
 }
 
 std::string escaped(std::string_view text) {
@@ -94,7 +104,8 @@ std::string configuration(const NetworkOptions& options) {
   const bool has_multicast = !is_loopback && options.peers.empty();
   return fmt::format(
       "<CycloneDDS><Domain id=\"any\"><General><Interfaces>{}</Interfaces><AllowMulticast>{}</AllowMulticast>"
-      "</General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
+      "<MaxMessageSize>65000B</MaxMessageSize><FragmentSize>60000B</FragmentSize></"
+      "General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
       "<MaxAutoParticipantIndex>60</MaxAutoParticipantIndex><LeaseDuration>4s</LeaseDuration>{}</Discovery>"
       "<Tracing><Verbosity>none</Verbosity></Tracing></Domain></CycloneDDS>",
       interface, has_multicast ? "default" : "false",
@@ -104,8 +115,9 @@ std::string configuration(const NetworkOptions& options) {
 class CycloneWriter final : public Writer {
  public:
   explicit CycloneWriter(Entity writer) : writer_{std::move(writer)} {}
-  bool write(std::string_view bytes) override {
-    return bytes.size() >= kCdrHeader && dds_write(writer_.get(), &bytes) == DDS_RETCODE_OK;
+  bool reply(std::string_view bytes, std::string_view call) override {
+    const OutgoingMessage message{bytes, call};
+    return bytes.size() >= kCdrHeader && dds_write(writer_.get(), &message) == DDS_RETCODE_OK;
   }
   [[nodiscard]] int matched() const override {
     return std::max(0, static_cast<int>(dds_get_matched_subscriptions(writer_.get(), nullptr, 0)));
@@ -131,8 +143,8 @@ class CycloneReader final : public Reader {
         const dds_sample_info_t& info = infos[static_cast<std::size_t>(i)];
         if (info.valid_data) {
           taken.push_back({.bytes = std::string(bytes_of(*message)),
-                           .sent = info.source_timestamp,
-                           .writer = info.publication_handle});
+                           .writer = info.publication_handle,
+                           .call = std::string(call_of(*message))});
         }
         ddsi_serdata_unref(message);
       }
@@ -163,10 +175,12 @@ class CycloneParticipant final : public Participant {
                                          const Qos& qos) override {
     const auto handle = topic_of(topic, type);
     if (!handle) return fail(handle.error());
-    const dds_entity_t made =
-        dds_create_writer(participant_.get(), *handle, cyclone_qos(qos, type).get(), nullptr);
+    const QosHandle own = cyclone_qos(qos);
+    if (topic == kDiscovery) dds_qset_userdata(own.get(), kOurs.data(), kOurs.size());
+    const dds_entity_t made = dds_create_writer(participant_.get(), *handle, own.get(), nullptr);
     if (made < 0)
       return fail(ErrorCode::kIo, fmt::format("DDS: writer of {}: {}", topic, dds_strretcode(-made)));
+    dds_get_guid(made, &writers_.emplace_back());
     return std::unique_ptr<Writer>(std::make_unique<CycloneWriter>(Entity(made)));
   }
 
@@ -174,10 +188,10 @@ class CycloneParticipant final : public Participant {
                                          const Qos& qos) override {
     const auto handle = topic_of(topic, type);
     if (!handle) return fail(handle.error());
-    const dds_entity_t made =
-        dds_create_reader(participant_.get(), *handle, cyclone_qos(qos, type).get(), nullptr);
+    const dds_entity_t made = dds_create_reader(participant_.get(), *handle, cyclone_qos(qos).get(), nullptr);
     if (made < 0)
       return fail(ErrorCode::kIo, fmt::format("DDS: reader of {}: {}", topic, dds_strretcode(-made)));
+    dds_get_guid(made, &readers_.emplace_back());
     dds_set_status_mask(made, DDS_DATA_AVAILABLE_STATUS);
     dds_waitset_attach(waitset_.get(), made, 0);
     return std::unique_ptr<Reader>(std::make_unique<CycloneReader>(Entity(made)));
@@ -195,8 +209,31 @@ class CycloneParticipant final : public Participant {
     return found;
   }
 
+  void announce(const std::string& node) override {
+    if (partners_guid_ == announced_guid_) return;
+    announced_guid_ = partners_guid_;
+    protocol::CdrWriter to;
+    const auto put = [&](const dds_guid_t& guid) {
+      for (std::size_t i = 0; i < announced_guid_; ++i)
+        to.put(i < sizeof guid.v ? guid.v[i] : std::uint8_t{0});
+    };
+    put(own_);
+    to.count(1).text("/").text(node);
+    for (const std::vector<dds_guid_t>* guids : {&readers_, &writers_}) {
+      to.count(guids->size());
+      for (const dds_guid_t& guid : *guids) put(guid);
+    }
+    if (!announcer_) {
+      auto made = writer(std::string(kDiscovery), "rmw_dds_common/msg/ParticipantEntitiesInfo",
+                         {.is_transient_local = true, .depth = 1});
+      if (!made) return;
+      announcer_ = std::move(*made);
+    }
+    announcer_->write(to.bytes());
+  }
+
  private:
-  void collect(dds_entity_t builtin, bool is_writer, std::vector<Endpoint>& found) const {
+  void collect(dds_entity_t builtin, bool is_writer, std::vector<Endpoint>& found) {
     std::array<void*, 256> samples{};
     std::array<dds_sample_info_t, 256> infos{};
     const int count = dds_read_mask(builtin, samples.data(), infos.data(), samples.size(), samples.size(),
@@ -206,6 +243,9 @@ class CycloneParticipant final : public Participant {
       const auto* endpoint = static_cast<const dds_builtintopic_endpoint_t*>(samples[at]);
       const bool is_own = std::memcmp(&endpoint->participant_key, &own_, sizeof own_) == 0;
       if (!infos[at].valid_data || is_own || endpoint->topic_name == nullptr) continue;
+      const std::string data = user_data_of(endpoint->qos);
+      if (is_writer && endpoint->topic_name == kDiscovery && data != kOurs)
+        partners_guid_ = data.find("typehash=") != std::string::npos ? kIronGuid : kHumbleGuid;
       found.push_back({.is_writer = is_writer,
                        .topic = ros_topic(endpoint->topic_name),
                        .type = ros_type(endpoint->type_name),
@@ -225,6 +265,7 @@ class CycloneParticipant final : public Participant {
       ddsi_sertype_unref(made);
       return fail(ErrorCode::kIo, fmt::format("DDS: topic {}: {}", topic, dds_strretcode(-handle)));
     }
+    let_messages_have_calls(*made);
     topics_[{topic, type}] = handle;
     return handle;
   }
@@ -233,6 +274,10 @@ class CycloneParticipant final : public Participant {
   Entity participant_;
   Entity waitset_, publications_, subscriptions_;
   dds_guid_t own_{};
+  std::vector<dds_guid_t> readers_, writers_;
+  std::unique_ptr<Writer> announcer_;
+  std::size_t partners_guid_ = 0;   ///< length of the partners' GUIDs [byte]; 0: no partner is a ROS 2 node
+  std::size_t announced_guid_ = 0;  ///< length of the GUIDs that were announced
   std::map<std::pair<std::string, std::string>, dds_entity_t> topics_;
 };
 
@@ -251,7 +296,10 @@ Result<std::unique_ptr<Participant>> Participant::create(const NetworkOptions& o
                             options.domain, options.interface, dds_strretcode(-code)));
   };
   if (domain.get() < 0) return refused(domain.get());
-  Entity participant(dds_create_participant(domain_id, nullptr, nullptr));
+  const QosHandle qos(dds_create_qos(), dds_delete_qos);
+  constexpr std::string_view kEnclave = "enclave=/;";  // marks a participant of ROS 2
+  dds_qset_userdata(qos.get(), kEnclave.data(), kEnclave.size());
+  Entity participant(dds_create_participant(domain_id, qos.get(), nullptr));
   if (participant.get() < 0) return refused(participant.get());
   return std::unique_ptr<Participant>(
       std::make_unique<CycloneParticipant>(std::move(domain), std::move(participant)));

@@ -71,7 +71,6 @@ class DriveNode {
       read_transforms();
       read_path();
       read_odometry();
-      read_imu();
       const Clock::time_point now = time_.now();
       if (is_stopped_) {
         play_stop(now);
@@ -125,11 +124,6 @@ class DriveNode {
         if (const auto transforms = protocol::decode<protocol::TransformsMessage>(sample.bytes))
           for (const protocol::TransformMessage& transform : transforms->transforms) frames_.put(transform);
     }
-  }
-
-  /// Pose of `frame` on the road's map; the map's origin without a transform.
-  [[nodiscard]] model::Pose place_of(const std::string& frame) const {
-    return frames_.find(node_.frames.map, frame).value_or(model::Pose{});
   }
 
   /// Into the frame of the road. Says once whether there is a transform.
@@ -331,7 +325,7 @@ class DriveNode {
         continue;
       }
       std::vector<Vec2> points;
-      const model::Pose place = path->frame == node_.frames.map ? model::Pose{} : place_of(path->frame);
+      const model::Pose place = frames_.find(node_.frames.map, path->frame).value_or(model::Pose{});
       points.reserve(path->poses.size());
       for (const protocol::StampedPose& each : path->poses) {
         const model::Pose moved = composed(place, {.x = each.pose.x, .y = each.pose.y});
@@ -342,29 +336,11 @@ class DriveNode {
     }
   }
 
-  /// Compares yaw rates: a gyro that turns the other way has its axes or its unit wrong.
-  void read_imu() {
-    if (!topics_.imu) return;
-    constexpr double kDifference = 0.3, kShare = 0.3;  // [rad/s], and of the yaw rate
-    constexpr int kOften = 25;
-    for (const Sample& sample : topics_.imu->take()) {
-      const auto imu = protocol::decode<protocol::ImuMessage>(sample.bytes);
-      if (!imu || !is_driving_) continue;
-      const double difference = std::fabs(imu->yaw_rate - odometry_.yaw_rate);
-      const bool is_odd = difference > kDifference + kShare * std::fabs(odometry_.yaw_rate);
-      odd_imu_ = is_odd ? odd_imu_ + 1 : 0;
-      if (odd_imu_ != kOften || std::exchange(has_said_imu_, true)) continue;
-      log_.say(fmt::format(
-          "{}: got a yaw rate of {:.2f} rad/s, expected the {:.2f} rad/s of {}: are its axes those "
-          "of the car, in rad/s?",
-          node_.topics.imu, imu->yaw_rate, odometry_.yaw_rate, node_.topics.odom));
-    }
-  }
-
   void look_at_partners(Clock::time_point now) {
     if (seconds(now - looked_) < kLookPeriod) return;
     looked_ = now;
     const std::vector<Endpoint> others = participant_->others();
+    participant_->announce("chicane");
     for (const std::string& line : partners_.look(drive_.time(now), others, topics_.matched()))
       log_.say(line);
     const bool has_clock = std::any_of(others.begin(), others.end(), [](const Endpoint& other) {
@@ -406,8 +382,6 @@ class DriveNode {
   bool is_stopped_ = false;  ///< stopped by request
   std::optional<safety::StopPlayer> player_;
   model::Command stopping_;  ///< the last command before the stop
-  int odd_imu_ = 0;
-  bool has_said_imu_ = false;
   bool has_said_clock_ = false;
 };
 

@@ -37,7 +37,6 @@ bool ClockWatch::accept(std::int64_t stamp, std::int64_t received, std::int64_t 
     say(fmt::format("the clock of {} jumped by {:+.1f} s", topic_, by_stamp - by_arrival));
     offset_ = received - stamp;
   } else if (by_stamp <= 0.0) {
-    ++dropped_;
     if (!std::exchange(has_said_dropped_, true))
       say(fmt::format("a message of {} came {}: such messages are left out", topic_,
                       by_stamp == 0.0 ? "twice" : "after a newer one"));

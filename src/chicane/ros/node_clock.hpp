@@ -26,10 +26,6 @@ class ClockWatch {
   static constexpr double kLatest = 0.1;  ///< longest delay that is compensated [s]
   /// Newest sentence for the user since the last call; empty: none.
   [[nodiscard]] std::string news();
-  /// Number of messages dropped as repeated or late.
-  [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
-  /// Whether the stamps are not this machine's time: simulated, or of a clock that differs by hours.
-  [[nodiscard]] bool is_simulated() const { return is_simulated_; }
   /// Forgets the clock of the sender, for another sender.
   void forget() { last_.reset(); }
 
@@ -43,9 +39,8 @@ class ClockWatch {
   std::string topic_;
   std::optional<Arrival> last_;
   std::string news_{};
-  std::int64_t offset_ = 0;  ///< monotonic clock less stamp, of the fastest messages [ns]
-  std::uint64_t dropped_ = 0;
-  bool is_simulated_ = false;
+  std::int64_t offset_ = 0;    ///< monotonic clock less stamp, of the fastest messages [ns]
+  bool is_simulated_ = false;  ///< the stamps are hours from this machine's time
   bool has_said_dropped_ = false;
 };
 

@@ -22,7 +22,7 @@ struct TopicNames {
   std::string odom = "/ego_racecar/odom";        ///< nav_msgs/msg/Odometry, from the car
   std::string drive = "/drive";                  ///< ackermann_msgs/msg/AckermannDriveStamped, to the car
   std::string autoware{};                        ///< autoware_control_msgs/msg/Control, to the car
-  std::string imu = "/imu";                      ///< sensor_msgs/msg/Imu, from the car
+  std::string imu = "/imu";                      ///< sensor_msgs/msg/Imu, of the simulator
   std::string path{};                            ///< nav_msgs/msg/Path to follow; empty: the track is known
   std::string initial_pose = "/initialpose";     ///< geometry_msgs/msg/PoseWithCovarianceStamped
   std::string stop = "/chicane/stop";            ///< std_msgs/msg/Bool: true stops, false drives on

@@ -103,16 +103,11 @@ std::string list(ParameterStore& store, std::string_view bytes) {
   return encode(reply);
 }
 
-std::string get(ParameterStore& store, std::string_view bytes) {
+/// The named parameters, in a reply of one kind.
+template <class Reply>
+std::string named(ParameterStore& store, std::string_view bytes) {
   const auto request = protocol::decode<protocol::NamesRequest>(bytes);
-  return request ? encode(protocol::GetReply{request->call, values_of(store, request->names)})
-                 : std::string();
-}
-
-std::string describe(ParameterStore& store, std::string_view bytes) {
-  const auto request = protocol::decode<protocol::NamesRequest>(bytes);
-  return request ? encode(protocol::DescribeReply{request->call, values_of(store, request->names)})
-                 : std::string();
+  return request ? encode(Reply{request->call, values_of(store, request->names)}) : std::string();
 }
 
 std::string set(ParameterStore& store, std::string_view bytes) {
@@ -126,15 +121,37 @@ std::string set(ParameterStore& store, std::string_view bytes) {
   return encode(reply);
 }
 
+std::string types(ParameterStore& store, std::string_view bytes) {
+  const auto request = protocol::decode<protocol::NamesRequest>(bytes);
+  if (!request) return {};
+  protocol::CdrWriter reply;
+  reply.put(request->call.client, request->call.sequence).count(request->names.size());
+  for (const Parameter& each : values_of(store, request->names)) reply.put(protocol::type_number(each));
+  return reply.bytes();
+}
+
+/// Nothing: the store sets one after the other.
+std::string set_atomically(ParameterStore&, std::string_view bytes) {
+  const auto request = protocol::decode<protocol::SetRequest>(bytes);
+  if (!request) return {};
+  protocol::CdrWriter reply;
+  reply.put(request->call.client, request->call.sequence, std::uint8_t{0});
+  return reply.text("got set_parameters_atomically, expected set_parameters").bytes();
+}
+
 struct Offer {
   const char* name;
   const char* type;
   std::string (*answer)(ParameterStore&, std::string_view);
 };
-constexpr std::array<Offer, 4> kOffers{{{"list_parameters", "ListParameters", list},
-                                        {"get_parameters", "GetParameters", get},
-                                        {"describe_parameters", "DescribeParameters", describe},
-                                        {"set_parameters", "SetParameters", set}}};
+// rclpy's clients, as `ros2 param`, wait for all of them.
+constexpr std::array<Offer, 6> kOffers{
+    {{"list_parameters", "ListParameters", list},
+     {"get_parameters", "GetParameters", named<protocol::GetReply>},
+     {"get_parameter_types", "GetParameterTypes", types},
+     {"describe_parameters", "DescribeParameters", named<protocol::DescribeReply>},
+     {"set_parameters", "SetParameters", set},
+     {"set_parameters_atomically", "SetParametersAtomically", set_atomically}}};
 
 }  // namespace
 
@@ -155,11 +172,16 @@ Result<std::unique_ptr<ParameterServices>> ParameterServices::create(Participant
 }
 
 void ParameterServices::serve() {
+  // rmw_cyclonedds has the call in the message, behind its header; rmw_fastrtps beside it.
+  constexpr std::size_t kHeader = 4, kCall = sizeof(protocol::ServiceCall);
   for (Service& service : services_) {
     for (Sample& sample : service.requests->take()) {
-      run_([this, replies = service.replies, answer = service.answer, bytes = std::move(sample.bytes)] {
-        if (const std::string reply = answer(store_, bytes); !reply.empty())
-          static_cast<void>(replies->write(reply));
+      if (!sample.call.empty()) sample.bytes.insert(kHeader, kCall, '\0');
+      run_([this, replies = service.replies, answer = service.answer, sample = std::move(sample)] {
+        std::string reply = answer(store_, sample.bytes);
+        if (reply.empty()) return;
+        if (!sample.call.empty()) reply.erase(kHeader, kCall);
+        static_cast<void>(replies->reply(reply, sample.call));
       });
     }
   }

@@ -45,9 +45,8 @@ class RunPublisher {
   telemetry::Frame shifted_;
 };
 
-/// The parameter services of the node /chicane: list_parameters, get_parameters, set_parameters and
-/// describe_parameters, for clients that use rmw_cyclonedds. A setting takes effect at the next control step,
-/// as one of a viewer does.
+/// The six parameter services of the node /chicane, for clients of rmw_cyclonedds and of rmw_fastrtps. A
+/// setting takes effect at the next control step, as one of a viewer does.
 class ParameterServices {
  public:
   /// Runs a task on the thread to which the store belongs.

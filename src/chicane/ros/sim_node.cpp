@@ -55,23 +55,25 @@ Clock::duration duration(double seconds) {
 }
 
 std::vector<WantedPartner> partners_of_simulator(const NodeOptions& node) {
-  return {{.topic = node.topics.drive,
-           .type = std::string(protocol::DriveMessage::kType),
-           .qos = {.is_reliable = false},
-           .qos_option = "--drive-qos",
-           .topic_option = "--drive-topic"},
-          {.is_reader = false,
-           .topic = node.topics.odom,
-           .type = std::string(protocol::OdometryMessage::kType),
-           .qos_option = "--odom-qos",
-           .topic_option = "--odom-topic",
-           .is_awaited = false}};
+  return {{true,
+           node.topics.drive,
+           std::string(protocol::DriveMessage::kType),
+           {.is_reliable = false},
+           "--drive-qos",
+           "--drive-topic"},
+          {false,
+           node.topics.odom,
+           std::string(protocol::OdometryMessage::kType),
+           {},
+           "--odom-qos",
+           "--odom-topic",
+           false}};
 }
 
 /// Topics of the simulator.
 struct SimTopics {
   std::unique_ptr<Reader> drive{}, stop_plan{}, initial_pose{};
-  std::unique_ptr<Writer> odom{}, transform{}, fixed_transform{}, imu{}, scan{}, clock{};
+  std::unique_ptr<Writer> odom{}, transform{}, fixed_transform{}, imu{}, scan{}, map{}, clock{};
 
   static Result<SimTopics> create(Participant& at, const NodeOptions& node) {
     SimTopics topics;
@@ -87,10 +89,43 @@ struct SimTopics {
     endpoints.send(topics.imu, node.topics.imu, protocol::ImuMessage::kType, {});
     if (node.pace > 0.0) endpoints.send(topics.clock, "/clock", protocol::ClockMessage::kType, {});
     endpoints.send(topics.scan, node.topics.scan, protocol::ScanMessage::kType, {});
+    endpoints.send(topics.map, "/map", "nav_msgs/msg/OccupancyGrid",
+                   {.is_transient_local = true, .depth = 1});
     if (!endpoints.made()) return fail(endpoints.made().error());
     return topics;
   }
 };
+
+/// The walls of a road as a map: cells with a point of them, and a margin.
+sim::OccupancyGrid drawn(const std::vector<std::vector<Vec2>>& walls, double resolution) {
+  constexpr double kMargin = 1.0;  // [m]
+  Vec2 low = walls.front().front(), high = low;
+  for (const std::vector<Vec2>& wall : walls) {
+    for (const Vec2& point : wall) {
+      low = {std::min(low.x(), point.x()), std::min(low.y(), point.y())};
+      high = {std::max(high.x(), point.x()), std::max(high.y(), point.y())};
+    }
+  }
+  low -= Vec2{kMargin, kMargin};
+  const Vec2 sides = high + Vec2{kMargin, kMargin} - low;
+  sim::OccupancyGrid grid{.width = static_cast<int>(sides.x() / resolution),
+                          .height = static_cast<int>(sides.y() / resolution),
+                          .resolution = resolution,
+                          .origin = {.x = low.x(), .y = low.y()}};
+  grid.is_wall.resize(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height));
+  for (const std::vector<Vec2>& wall : walls) {
+    for (std::size_t i = 1; i < wall.size(); ++i) {
+      const Vec2 step = wall[i] - wall[i - 1];
+      const int parts = 1 + static_cast<int>(2.0 * step.norm() / resolution);
+      for (int part = 0; part <= parts; ++part) {
+        const Vec2 at = (wall[i - 1] + (static_cast<double>(part) / parts) * step - low) / resolution;
+        grid.is_wall[static_cast<std::size_t>(at.y()) * static_cast<std::size_t>(grid.width) +
+                     static_cast<std::size_t>(at.x())] = true;
+      }
+    }
+  }
+  return grid;
+}
 
 /// Walls that the laser sees: the road's, or a map's.
 class Walls {
@@ -99,13 +134,24 @@ class Walls {
     if (map_file.empty()) {
       auto road = sim::RangeScanner::create(track, {.spacing = std::max(0.05, 0.5 * size)});
       if (!road) return fail(road.error());
-      return Walls(std::move(*road));
+      sim::OccupancyGrid grid = drawn(road->walls(), road->options().spacing);
+      return Walls(std::move(*road), std::move(grid));
     }
-    const auto grid = read_map(map_file);
+    auto grid = read_map(map_file);
     if (!grid) return fail(grid.error());
     auto map = sim::MapScanner::create(*grid);
     if (!map) return fail(map.error().code, map_file + ": " + map.error().message);
-    return Walls(std::move(*map));
+    return Walls(std::move(*map), std::move(*grid));
+  }
+  /// nav_msgs/msg/OccupancyGrid, in the frame `frame`.
+  [[nodiscard]] std::string message(std::int64_t stamp, const std::string& frame) const {
+    constexpr std::int8_t kOccupied = 100, kFree = 0;
+    protocol::CdrWriter to(grid_.is_wall.size() + 200);
+    to.stamp_ns(stamp).text(frame).stamp_ns(stamp).put(static_cast<float>(grid_.resolution));
+    to.put(grid_.width, grid_.height, grid_.origin.x, grid_.origin.y, 0.0).orientation(grid_.origin.psi);
+    to.count(grid_.is_wall.size());
+    for (const bool is_wall : grid_.is_wall) to.put(is_wall ? kOccupied : kFree);
+    return to.bytes();
   }
   void scan(const model::Pose& sensor, std::span<float> ranges) const {
     std::visit([&](const auto& scanner) { scanner.scan(sensor, ranges); }, scanner_);
@@ -122,8 +168,9 @@ class Walls {
 
  private:
   template <class Scanner>
-  explicit Walls(Scanner scanner) : scanner_{std::move(scanner)} {}
+  Walls(Scanner scanner, sim::OccupancyGrid grid) : scanner_{std::move(scanner)}, grid_{std::move(grid)} {}
   std::variant<sim::RangeScanner, sim::MapScanner> scanner_;
+  sim::OccupancyGrid grid_;
 };
 
 class SimNode {
@@ -150,6 +197,7 @@ class SimNode {
     started_ = began_ = Clock::now();
     if (topics_.clock) next_tick_ = 0.0;
     send_scanner_place();
+    static_cast<void>(topics_.map->write(walls_.message(stamp(0.0), node_.frames.map)));
     const model::State& car = car_.plant->state();
     if (walls_.is_wall({car.x, car.y})) {
       log_.say(fmt::format(
@@ -362,8 +410,9 @@ class SimNode {
     looked_ = now;
     const std::vector<int> matched{topics_.drive ? topics_.drive->matched() : 0,
                                    topics_.odom ? topics_.odom->matched() : 0};
-    for (const std::string& line : partners_.look(seconds(now - started_), participant_->others(), matched))
-      log_.say(line);
+    const std::vector<Endpoint> others = participant_->others();
+    participant_->announce("chicane_simulator");
+    for (const std::string& line : partners_.look(seconds(now - started_), others, matched)) log_.say(line);
   }
 
   const NodeOptions& node_;

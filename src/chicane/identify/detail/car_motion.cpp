@@ -342,7 +342,8 @@ void drive_single_track(const Car& car, const DriveLog& log, const Actuators& ac
   Place at{start[0], start[1], start[2]};
   model::BodyMotion<double> now{start[3], start[4], start[5], 0.0, 0.0};
   double t = log.samples[first].time;
-  auto i = static_cast<std::size_t>((t - actuators.start()) / kStep);
+  // The nearest step: the one before it would act up to 10 ms too late.
+  auto i = static_cast<std::size_t>((t - actuators.start()) / kStep + 0.5);
   now.acceleration = actuators.acceleration(i);
   for (std::size_t sample = first; sample < last; ++sample) {
     const double until = log.samples[sample].time;
@@ -374,7 +375,8 @@ void drive_four_wheels(const Car& car, const DriveLog& log, const Actuators& act
   const bool has_throttle = log.has_throttle();
   Place at{start[0], start[1], start[2]};
   double t = log.samples[first].time;
-  auto i = static_cast<std::size_t>((t - actuators.start()) / kStep);
+  // The nearest step: the one before it would act up to 10 ms too late.
+  auto i = static_cast<std::size_t>((t - actuators.start()) / kStep + 0.5);
   const auto steer_at = [&](std::size_t n) { return actuators.steer(n) + car.steer_offset; };
   const auto steer_mean = [&](std::size_t n) { return actuators.steer_mean(n) + car.steer_offset; };
   FourWheels::Motion now =

@@ -16,13 +16,6 @@ namespace chicane::ros {
 /// The reverse of dds_type(). Names of other kinds stay as they are.
 [[nodiscard]] std::string ros_type(std::string_view type);
 
-/// The description of a type as it is hashed: JSON of type_description_interfaces/msg/TypeDescription without
-/// default values, as in REP 2016. `schema`: protocol::ros_schema(type).
-[[nodiscard]] std::string type_description(std::string_view type, std::string_view schema);
-/// The hash that ROS 2 announces for a type from Iron on, "RIHS01_" and 64 hexadecimal digits: SHA-256 of
-/// type_description(). Empty for a type whose definition is not known.
-[[nodiscard]] std::string type_hash(std::string_view type);
-
 }  // namespace chicane::ros
 
 // Cyclone's.
@@ -31,10 +24,19 @@ struct ddsi_sertype;
 
 namespace chicane::ros {
 
-/// Type of Cyclone DDS whose samples are bytes, sent and received without change. The sample of dds_write()
-/// is a std::string_view. Freed by Cyclone.
+/// A message as dds_write() takes it of make_cdr_type().
+struct OutgoingMessage {
+  std::string_view bytes{};  ///< CDR with its header
+  std::string_view call{};   ///< of a reply: its request's Sample::call; empty: none
+};
+
+/// Type of Cyclone DDS whose samples are bytes, sent and received without change. Freed by Cyclone.
 [[nodiscard]] ddsi_sertype* make_cdr_type(const std::string& name);
+/// Before the first message with a call is sent in the domain of `type`, of which a topic was made.
+void let_messages_have_calls(const ddsi_sertype& type);
 /// The bytes of a message of such a type, as long as it lives.
 [[nodiscard]] std::string_view bytes_of(const ddsi_serdata& message);
+/// Its Sample::call.
+[[nodiscard]] std::string_view call_of(const ddsi_serdata& message);
 
 }  // namespace chicane::ros
