@@ -244,13 +244,14 @@ class FatropSolver {
   void set_up() {
     problem_->set_sizes();
     builder_ = std::make_unique<fatrop::IpAlgBuilder<Type>>(problem_);
-    algorithm_ = builder_->with_options_registry(&options_).build();
-    options_.set_option("print_level", 0);
-    options_.set_option("suppress_banner", true);
-    options_.set_option("tolerance", 1e-6);
-    options_.set_option("max_iter", 1000);
+    options_ = std::make_unique<fatrop::OptionRegistry>();
+    algorithm_ = builder_->with_options_registry(options_.get()).build();
+    options_->set_option("print_level", 0);
+    options_->set_option("suppress_banner", true);
+    options_->set_option("tolerance", 1e-6);
+    options_->set_option("max_iter", 1000);
   }
-  fatrop::OptionRegistry options_;
+  std::unique_ptr<fatrop::OptionRegistry> options_;  // knows what it sets: one for each builder
   std::shared_ptr<FatropProblem<P, Capacity>> problem_ = std::make_shared<FatropProblem<P, Capacity>>();
   std::unique_ptr<fatrop::IpAlgBuilder<Type>> builder_;
   std::shared_ptr<fatrop::IpAlgorithm<Type>> algorithm_;

@@ -11,8 +11,8 @@
 namespace chicane::bench {
 
 /// Sequential quadratic programming in full steps with Gauss and Newton's Hessian; HPIPM (Frison, Diehl 2020)
-/// solves each program. x_0 is no variable, soft constraints are HPIPM's own. The independent check says when
-/// a point is optimal.
+/// solves each program, from the solution of the last one where it was solved. x_0 is no variable, soft
+/// constraints are HPIPM's own. The independent check says when a point is optimal.
 template <solver::OcpProblem P, int Capacity>
 class HpipmSolver {
  public:
@@ -25,9 +25,10 @@ class HpipmSolver {
     const bool is_new = rows_.at.horizon != t.horizon;
     rows_.pose(arrays, x0, t);
     if (is_new) set_up();
+    status_ = 1;
     Outcome outcome;
     const double begin = cpu_time();
-    while (outcome.iterations < kMostSteps && !outcome.is_solved && make_step(outcome.iterations > 0)) {
+    while (outcome.iterations < kMostSteps && !outcome.is_solved && make_step()) {
       ++outcome.iterations;
       const Stopwatch stopwatch(rows_.time_in_functions);
       outcome.is_solved = is_optimal();
@@ -69,6 +70,8 @@ class HpipmSolver {
     create(d_ocp_qp_sol_memsize(&dim_), [&](void* at) { d_ocp_qp_sol_create(&dim_, &answer_, at); });
     create(d_ocp_qp_ipm_arg_memsize(&dim_), [&](void* at) { d_ocp_qp_ipm_arg_create(&dim_, &options_, at); });
     d_ocp_qp_ipm_arg_set_default(SPEED, &options_);
+    int most = 100;
+    d_ocp_qp_ipm_arg_set_iter_max(&most, &options_);
     double tolerance = 1e-8;
     for (auto* set : {&d_ocp_qp_ipm_arg_set_tol_stat, &d_ocp_qp_ipm_arg_set_tol_eq,
                       &d_ocp_qp_ipm_arg_set_tol_ineq, &d_ocp_qp_ipm_arg_set_tol_comp})
@@ -174,12 +177,12 @@ class HpipmSolver {
     d_ocp_qp_set_D(k, d.data(), &qp_);
   }
   /// One whole step; false where HPIPM ends with what is not a number.
-  bool make_step(bool has_solution) {
-    int warm = has_solution ? 1 : 0, status = 0;
+  bool make_step() {
+    int warm = status_ == 0 ? 2 : 0;
     for (int k = 0; k <= rows_.at.horizon; ++k) set_stage(k);
     d_ocp_qp_ipm_arg_set_warm_start(&warm, &options_);
     d_ocp_qp_ipm_solve(&qp_, &answer_, &options_, &work_);
-    d_ocp_qp_ipm_get_status(&work_, &status);
+    d_ocp_qp_ipm_get_status(&work_, &status_);
     for (int k = 0; k <= rows_.at.horizon; ++k) {
       const auto at = static_cast<std::size_t>(k);
       std::array<double, kNx> dx{};
@@ -192,7 +195,7 @@ class HpipmSolver {
       for (std::size_t m = 0; m < du.size(); ++m)
         rows_.at.u[at][m] = std::clamp(rows_.at.u[at][m] + du[m], low[m], high[m]);
     }
-    return status != 3;
+    return status_ != 3;
   }
   bool is_optimal() {
     const auto multiplier = [&](int k, int line) {
@@ -223,6 +226,7 @@ class HpipmSolver {
   d_ocp_qp_sol answer_{};
   d_ocp_qp_ipm_arg options_{};
   d_ocp_qp_ipm_ws work_{};
+  int status_ = 1;  ///< of the last program; 0: solved
 };
 
 }  // namespace chicane::bench
