@@ -99,11 +99,7 @@ int main(int argc, char** argv) {
   const long count = argc > 1 ? std::atol(argv[1]) : 100000, first = argc > 2 ? std::atol(argv[2]) : 0;
   Tally tally;
   for (long seed = first; seed < first + count; ++seed) {
-    if (seed % 2 == 0) {
-      try_one<2, 1>(seed, tally);
-    } else {
-      try_one<4, 2>(seed, tally);
-    }
+    seed % 2 == 0 ? try_one<2, 1>(seed, tally) : try_one<4, 2>(seed, tally);
   }
   std::printf(
       "of %ld possible %ld solved; of %ld impossible %ld told; %ld between, %ld unknown; %ld untrue; %.0f "
