@@ -63,7 +63,7 @@ int main() {
   solver::roll_out(problem, x0, guess);
   const bench::OverArrays<Problem> arrays{problem};
   bench::IpoptSolver<bench::OverArrays<Problem>> ipopt;
-  bench::IpoptReport reference;
+  bench::Outcome reference;
   double ipopt_least = 1e30, ipopt_cost = 0.0;
 #if defined(WRITTEN)
   const bench::CartPole by_hand;

@@ -5,13 +5,17 @@
 //   chicane-robustness [-n INSTANCES] [-f FIRST] [-i IPOPT] [-t TOLERANCE] [-m TURNS] [--each]
 //                      [--references FILE] [NAME...]
 //   chicane-robustness --tolerances [-n INSTANCES] [NAME...]     statuses and residuals, without Ipopt
-//   chicane-robustness --closed-loop [-n INSTANCES] [NAME...]     20 cycles of a controller for each instance
+//   chicane-robustness --peers [-n INSTANCES] [-i IPOPT] [NAME...]     times beside HPIPM's, fatrop's and
+//   Ipopt's chicane-robustness --closed-loop [-n INSTANCES] [NAME...]     20 cycles of a controller for each
+//   instance
 //
 // Prints the tables of docs/measured/solver.md. FIRST: seed of the first instance.
 // IPOPT: it solves so many of each, and what is not solved; all without. NAME: families whose name contains
 // it; all without. FILE keeps what Ipopt finds, which takes minutes; without Ipopt (Debian:
 // coinor-libipopt-dev) FILE alone is compared with.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -147,11 +151,68 @@ int print_loops(const FamilyRequest& request, const std::vector<std::string_view
   return 0;
 }
 
+using Compared = std::vector<std::array<SolveTime, kSolvers.size()>>;
+
+/// The share of instances that each solver has solved within so many times the time of the fastest.
+void print_profile(const Compared& all) {
+  std::printf("\n| times the fastest |");
+  constexpr std::array kTimes{1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0};
+  for (const double times : kTimes) std::printf(" %.0f |", times);
+  std::printf("\n|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+  for (std::size_t s = 0; s < kSolvers.size(); ++s) {
+    std::printf("| %s |", kSolvers[s]);
+    for (const double times : kTimes) {
+      const auto count = std::count_if(all.begin(), all.end(), [&](const auto& one) {
+        const auto less = [](const SolveTime& a, const SolveTime& b) { return a.free < b.free; };
+        return one[s].total < 1e30 &&
+               one[s].free <= times * std::min_element(one.begin(), one.end(), less)->free;
+      });
+      std::printf(" %.0f %% |", 100.0 * static_cast<double>(count) / static_cast<double>(all.size()));
+    }
+    std::printf("\n");
+  }
+}
+/// Each family beside other solvers; ratios are medians of what both solve.
+int print_peers(FamilyRequest request, const std::vector<std::string_view>& names) {
+  request.with_peers = true;
+  Compared everything;
+  std::printf(
+      "| family | from | solver | solved | less / more | time over ours | its functions free "
+      "|\n|---|---|---|--:|--:|--:|--:|\n");
+  for (const Family& family : all_families()) {
+    if (!is_wanted(family, names)) continue;
+    for (const NaiveStart start : {NaiveStart::kIdle, NaiveStart::kLine}) {
+      References none;
+      const Compared all = family.measure(request, start, none).compared;
+      everything.insert(everything.end(), all.begin(), all.end());
+      for (std::size_t s = 0; s < kSolvers.size(); ++s) {
+        std::vector<double> total, free;
+        long solved = 0, less = 0, more = 0;
+        for (const auto& one : all) {
+          const double margin = 1e-2 * std::fabs(one[0].cost) + 1e-6;
+          solved += one[s].total < 1e30 ? 1 : 0;
+          if (!(one[s].total < 1e30 && one[0].total < 1e30)) continue;
+          total.push_back(one[s].total / one[0].total);
+          free.push_back(one[s].free / one[0].total);
+          less += one[s].cost < one[0].cost - margin ? 1 : 0;
+          more += one[s].cost > one[0].cost + margin ? 1 : 0;
+        }
+        std::printf("| %s | %s | %s | %ld of %zu | %ld / %ld | %.1f | %.1f |\n", family.name.data(),
+                    to_string(start).data(), kSolvers[s], solved, all.size(), less, more,
+                    detail::at_share(total, 0.5), detail::at_share(free, 0.5));
+        std::fflush(stdout);
+      }
+    }
+  }
+  print_profile(everything);
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   FamilyRequest request{.with_ipopt = true};
-  bool are_tolerances = false, are_loops = false;
+  bool are_tolerances = false, are_loops = false, are_peers = false;
   std::string file;
   std::vector<std::string_view> names;
   for (int i = 1; i < argc; ++i) {
@@ -162,6 +223,8 @@ int main(int argc, char** argv) {
     } else if (word == "--tolerances") {
       are_tolerances = true;
       request.instances = 30;
+    } else if (word == "--peers") {
+      are_peers = true;
     } else if (word == "--closed-loop") {
       are_loops = true;
       request.instances = 20;
@@ -179,6 +242,7 @@ int main(int argc, char** argv) {
     }
   }
   if (are_tolerances) return print_tolerances(request, names);
+  if (are_peers) return print_peers(request, names);
   if (are_loops) return print_loops(request, names);
   References references = read(file);
   print_head();

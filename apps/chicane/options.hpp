@@ -190,7 +190,6 @@ struct Options {
 
   int instances = 100;                    ///< bench: of each family
   std::vector<int> horizons{10, 20, 50};  ///< bench
-  std::string reference_folder;           ///< bench: problems with known optima; empty: none
 };
 
 /// Result of a command line that only prints text.

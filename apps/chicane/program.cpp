@@ -181,7 +181,6 @@ namespace {
 std::vector<std::string> words_for_bench(const Options& options) {
   std::vector<std::string> words{"--instances", std::to_string(options.instances), "--horizons",
                                  fmt::format("{}", fmt::join(options.horizons, ","))};
-  if (!options.reference_folder.empty()) words.insert(words.end(), {"--reference", options.reference_folder});
   if (options.is_json) words.emplace_back("--json");
   return words;
 }

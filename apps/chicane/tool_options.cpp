@@ -106,8 +106,6 @@ Rows bench_rows(Options& o) {
            &o.instances, between(1, 100000) | kShown},
           {"--horizons", "N,...", "Numbers of intervals, with commas", &o.horizons,
            between(2, kLongestHorizon) | kShown},
-          {"--reference", "FOLDER", "Folder of recorded problems with known optima (lap_*.csv, golden_*.csv)",
-           &o.reference_folder},
           json_row(o)};
 }
 

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace chicane::bench {
 
@@ -14,6 +18,14 @@ enum class NaiveStart { kIdle, kLine };
   return start == NaiveStart::kIdle ? "idle" : "line";
 }
 
+namespace detail {
+inline double at_share(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+}  // namespace detail
+
 /// What Ipopt found of one instance.
 struct ReferenceAnswer {
   bool is_solved = false;
@@ -21,6 +33,7 @@ struct ReferenceAnswer {
   double cost = 0.0;           ///< then: the sum of the misses of its inputs, simulated
   double time = 0.0;
   int iterations = 0;
+  double time_in_functions = 0.0;  ///< 0 of what comes from a file
 };
 /// By family, start and seed; kept in a file, as Ipopt takes minutes.
 using References = std::map<std::string, ReferenceAnswer>;
@@ -31,10 +44,19 @@ struct FamilyRequest {
   double tolerance = 1e-6;
   int max_iterations = 1000;
   bool with_ipopt = false;
+  bool with_peers = false;        ///< fatrop and HPIPM, too
   int ipopt_instances = 1 << 30;  ///< Ipopt solves the first so many, and what is not solved
   bool is_impossible = false;     ///< the instances that leave no solution
   bool each = false;              ///< a line for each instance
 };
+
+/// What a solver took for an instance that it solved; infinite where it did not.
+struct SolveTime {
+  double total = std::numeric_limits<double>::infinity();  ///< [s]
+  double free = total;                                     ///< without the problem's functions
+  double cost = 0.0;
+};
+inline constexpr std::array<const char*, 4> kSolvers{"ours", "HPIPM", "fatrop", "Ipopt"};
 
 /// One row of the table.
 struct FamilyRow {
@@ -49,6 +71,7 @@ struct FamilyRow {
   double iterations = 0.0, time = 0.0, most_time = 0.0, ratio = 0.0, least_ratio = 0.0;
   double worst_residual = 0.0;  ///< of those that are optimal, by the independent check
   double floor_residual = 0.0;  ///< and of those at the floor
+  std::vector<std::array<SolveTime, kSolvers.size()>> compared{};  ///< of each instance, with peers
 };
 
 /// A family in closed loop: each solve starts from the answer of the one before, a stage later.

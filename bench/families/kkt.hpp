@@ -82,11 +82,20 @@ struct NoHardMultipliers {
   double terminal_constraint_multiplier(int) const { return 0.0; }
 };
 
-/// Dual numbers at `values`, variables from number `first` on.
-template <class D, std::size_t N>
-[[nodiscard]] std::array<D, N> variables_at(const std::array<double, N>& values, int first) {
-  std::array<D, N> result;
-  for (std::size_t i = 0; i < N; ++i) result[i] = D::variable(values[i], first + static_cast<int>(i));
+/// Scalars at `values`: plain numbers, dual ones or those of second order, variables from number `first` on.
+template <class T, std::size_t N>
+[[nodiscard]] std::array<T, N> variables_at(const std::array<double, N>& values, [[maybe_unused]] int first) {
+  std::array<T, N> result;
+  for (std::size_t i = 0; i < N; ++i) {
+    [[maybe_unused]] const int index = first + static_cast<int>(i);
+    if constexpr (std::is_same_v<T, double>) {
+      result[i] = values[i];
+    } else if constexpr (std::is_same_v<decltype(T::v), double>) {
+      result[i] = T::variable(values[i], index);
+    } else {
+      result[i] = T::variable(decltype(T::v)::variable(values[i], index), index);
+    }
+  }
   return result;
 }
 

@@ -20,16 +20,12 @@
 #if defined(CHICANE_HAVE_IPOPT)
 #include "problems/ipopt_problem.hpp"
 #endif
+#if defined(CHICANE_HAVE_PEERS)
+#include "references/fatrop_solver.hpp"
+#include "references/hpipm_solver.hpp"
+#endif
 
 namespace chicane::bench {
-
-namespace detail {
-inline double at_share(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-}  // namespace detail
 
 /// Whether a family has instances that leave no solution.
 template <class P>
@@ -129,6 +125,13 @@ class FamilyMeasurement {
         row.lower += kkt.cost < reference.cost - margin ? 1 : 0;
         row.higher += kkt.cost > reference.cost + margin ? 1 : 0;
       }
+      if (request.with_peers) {
+        auto& all = row.compared.emplace_back();
+        if (is_optimal) all[0] = {time, time, kkt.cost};
+        ask_peers(one, start, all);
+        if (reference.is_solved)
+          all[3] = {reference.time, reference.time - reference.time_in_functions, reference.cost};
+      }
       if (request.each) {
         std::printf(
             "%s %s %d: %s iterations %d sweeps %d cost %.8g stat %.2e defect %.2e | check stat %.2e defect "
@@ -150,6 +153,24 @@ class FamilyMeasurement {
   }
 
  private:
+  static void ask_peers([[maybe_unused]] const FamilyInstance<P>& one, [[maybe_unused]] NaiveStart start,
+                        [[maybe_unused]] std::array<SolveTime, kSolvers.size()>& all) {
+#if defined(CHICANE_HAVE_PEERS)
+    static HpipmSolver<P, kHorizon> hpipm;
+    static FatropSolver<P, kHorizon> fatrop;
+    const auto ask = [&](auto& solver, SolveTime& answer) {
+      for (int repeat = 0; repeat < 2; ++repeat) {
+        const auto t = std::make_unique<Trajectory>(guess(one, start));
+        const Outcome outcome = solver.solve(one.problem, one.start, *t);
+        if (!outcome.is_solved || outcome.time > answer.total) continue;
+        const KktResidual kkt = check_kkt(OverArrays<P>{one.problem}, *t, [](int, int) { return 0.0; });
+        answer = {outcome.time, outcome.time - outcome.time_in_functions, kkt.cost};
+      }
+    };
+    ask(hpipm, all[1]);
+    ask(fatrop, all[2]);
+#endif
+  }
   static ReferenceAnswer reference_of([[maybe_unused]] const FamilyRequest& request, References& references,
                                       [[maybe_unused]] const FamilyInstance<P>& one,
                                       [[maybe_unused]] const OverArrays<P>& arrays, NaiveStart start,
@@ -161,7 +182,7 @@ class FamilyMeasurement {
     if (!request.with_ipopt || !is_asked) return {};
     static IpoptSolver<OverArrays<P>> ipopt;
     const auto t = std::make_unique<Trajectory>(guess(one, start));
-    const IpoptReport report = ipopt.solve(arrays, one.start, *t);
+    const Outcome report = ipopt.solve(arrays, one.start, *t);
     if (report.is_impossible) {
       for (int k = 0; k < kHorizon; ++k) {
         const auto low = one.problem.input_lower(k), high = one.problem.input_upper(k);
@@ -171,8 +192,9 @@ class FamilyMeasurement {
       solver::roll_out(one.problem, one.start, *t);
     }
     const KktResidual kkt = check_kkt(arrays, *t, [](int, int) { return 0.0; });
-    return references[key] = {report.is_solved, report.is_impossible,
-                              report.is_impossible ? kkt.total : kkt.cost, report.time, report.iterations};
+    return references[key] = {
+               report.is_solved, report.is_impossible, report.is_impossible ? kkt.total : kkt.cost,
+               report.time,      report.iterations,    report.time_in_functions};
 #else
     return {};
 #endif

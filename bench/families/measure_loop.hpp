@@ -123,9 +123,9 @@ class LoopMeasurement {
     };
     const auto t = std::make_unique<Trajectory>(start);
     ipopt_.remember();
-    const IpoptReport warm = ipopt_.solve_warm(arrays, x, *t);
+    const Outcome warm = ipopt_.solve_warm(arrays, x, *t);
     *t = start;
-    const IpoptReport report = ipopt_.solve(arrays, x, *t);
+    const Outcome report = ipopt_.solve(arrays, x, *t);
     row_.reference += report.is_solved ? 1 : 0;
     if (!report.is_solved || !is_optimal_) return;
     ++row_.both;

@@ -25,4 +25,13 @@ class Stopwatch {
   double begin_;
 };
 
+/// What another solver did with one instance.
+struct Outcome {
+  bool is_solved = false;
+  bool is_impossible = false;  ///< it ended where the misses have a local minimum
+  int iterations = 0;
+  double time = 0.0;               ///< CPU time from the call to the answer [s]
+  double time_in_functions = 0.0;  ///< values and derivatives of the problem in it [s]; 0 = not measured
+};
+
 }  // namespace chicane::bench

@@ -5,12 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <type_traits>
+#include <memory>
 #include <vector>
 
-#include "chicane/solver/hard_constraints.hpp"
-#include "chicane/solver/problem.hpp"
-#include "problems/dual.hpp"
+#include "families/kkt.hpp"
 #include "problems/ipopt_solver.hpp"
 
 namespace chicane::bench {
@@ -32,7 +30,7 @@ class IpoptProblem : public SparseNlp<IpoptProblem<P>> {
   template <int Capacity>
   void pose(const P& problem, const std::array<double, kNx>& x0,
             const solver::Trajectory<kNx, kNu, Capacity>& t) {
-    problem_ = &problem;
+    problem_ = std::make_unique<OverArrays<P>>(OverArrays<P>{problem});
     x0_ = x0;
     horizon_ = t.horizon;
     this->start.assign(static_cast<std::size_t>(t.horizon * (kNz + kNc)), 1e-2);
@@ -84,7 +82,7 @@ class IpoptProblem : public SparseNlp<IpoptProblem<P>> {
       }
       for (int c = 0; c < kNc; ++c) {
         low[at_s(k) + c] = 0.0;
-        if (must_hold(c)) high[at_s(k) + c] = 0.0;
+        if (is_hard(*problem_, c)) high[at_s(k) + c] = 0.0;
         g_low[horizon_ * kNx + k * kNc + c] = -2e19;
       }
     }
@@ -157,10 +155,6 @@ class IpoptProblem : public SparseNlp<IpoptProblem<P>> {
   /// Where variable v of (x_k, u_k) stands among the unknowns; −1 for the given x_0.
   static int position(int k, int v) { return v >= kNx ? at_u(k) + v - kNx : (k > 0 ? at_x(k) + v : -1); }
 
-  bool must_hold([[maybe_unused]] int c) const {
-    if constexpr (requires { problem_->is_hard(0); }) return problem_->is_hard(c);
-    return false;
-  }
   /// Calls visit(position, slope) for the unknowns of stage k.
   template <class Visit>
   void each_slope(int k, const First& value, const Visit& visit) const {
@@ -172,9 +166,9 @@ class IpoptProblem : public SparseNlp<IpoptProblem<P>> {
   template <class T, class Visit>
   void each_residual(const Number* w, int k, const Visit& visit) const {
     if (k < horizon_) {
-      for (const T& r : problem_->residual(k, state<T>(w, k), input<T>(w, k))) visit(r);
+      for (const T& r : problem_->template residual<T>(k, state<T>(w, k), input<T>(w, k))) visit(r);
     } else {
-      for (const T& r : problem_->terminal_residual(state<T>(w, k))) visit(r);
+      for (const T& r : problem_->template terminal_residual<T>(state<T>(w, k))) visit(r);
     }
   }
   /// Calls visit(position, penalty) for the slacks of stage k.
@@ -189,59 +183,37 @@ class IpoptProblem : public SparseNlp<IpoptProblem<P>> {
   template <class T, class Visit>
   void each_row(const Number* w, int k, const Visit& visit) const {
     const auto x = state<T>(w, k);
-    if (k == horizon_) return each_row_of_the_end(x, visit);
+    int row = terminal_row(0);
+    if (k == horizon_) {
+      for (const T& h : problem_->template terminal_equality<T>(x)) visit(row++, h, -1);
+      for (const T& c : problem_->template terminal_constraint<T>(x)) visit(row++, c, -1);
+      return;
+    }
     const auto u = input<T>(w, k);
-    int row = k * kNx, less = at_x(k + 1);
-    for (const T& next : problem_->dynamics(k, x, u)) visit(row++, next, less++);
-    if constexpr (kNc > 0) {
-      row = horizon_ * kNx + k * kNc;
-      less = at_s(k);
-      for (const T& value : problem_->constraint(k, x, u)) visit(row++, value, less++);
-    }
-    if constexpr (kNh > 0) {
-      row = horizon_ * (kNx + kNc) + k * kNh;
-      for (const T& h : problem_->equality(k, x, u)) visit(row++, h, -1);
-    }
-  }
-  template <class X, class Visit>
-  void each_row_of_the_end([[maybe_unused]] const X& x, [[maybe_unused]] const Visit& visit) const {
-    [[maybe_unused]] int row = terminal_row(0);
-    if constexpr (kNeh > 0) {
-      for (const auto& h : problem_->terminal_equality(x)) visit(row++, h, -1);
-    }
-    if constexpr (kNec > 0) {
-      for (const auto& c : problem_->terminal_constraint(x)) visit(row++, c, -1);
-    }
+    row = k * kNx;
+    int less = at_x(k + 1);
+    for (const T& next : problem_->template dynamics<T>(k, x, u)) visit(row++, next, less++);
+    row = horizon_ * kNx + k * kNc;
+    less = at_s(k);
+    for (const T& value : problem_->template constraint<T>(k, x, u)) visit(row++, value, less++);
+    row = horizon_ * (kNx + kNc) + k * kNh;
+    for (const T& h : problem_->template equality<T>(k, x, u)) visit(row++, h, -1);
   }
 
   template <class T>
-  static T seed(double value, int index) {
-    if constexpr (std::is_same_v<T, double>) {
-      return value;
-    } else if constexpr (std::is_same_v<decltype(T::v), double>) {
-      return T::variable(value, index);
-    } else {
-      return T::variable(decltype(T::v)::variable(value, index), index);
-    }
-  }
-  template <class T>
   std::array<T, kNx> state(const Number* w, int k) const {
-    std::array<T, kNx> x;
-    for (int i = 0; i < kNx; ++i) {
-      const double value = w == nullptr ? 0.0 : (k == 0 ? x0_[static_cast<std::size_t>(i)] : w[at_x(k) + i]);
-      x[static_cast<std::size_t>(i)] = seed<T>(value, i);
-    }
-    return x;
+    std::array<double, kNx> x = x0_;
+    if (w != nullptr && k > 0) std::copy_n(w + at_x(k), kNx, x.begin());
+    return variables_at<T>(x, 0);
   }
   template <class T>
   static std::array<T, kNu> input(const Number* w, int k) {
-    std::array<T, kNu> u;
-    for (int m = 0; m < kNu; ++m)
-      u[static_cast<std::size_t>(m)] = seed<T>(w == nullptr ? 0.0 : w[at_u(k) + m], kNx + m);
-    return u;
+    std::array<double, kNu> u{};
+    if (w != nullptr) std::copy_n(w + at_u(k), kNu, u.begin());
+    return variables_at<T>(u, kNx);
   }
 
-  const P* problem_ = nullptr;
+  std::unique_ptr<OverArrays<P>> problem_;
   std::array<double, kNx> x0_{};
   int horizon_ = 0;
 };

@@ -127,21 +127,13 @@ class SparseNlp : public Ipopt::TNLP {
   Own& own() { return static_cast<Own&>(*this); }
 };
 
-struct IpoptReport {
-  bool is_solved = false;
-  bool is_impossible = false;  ///< a local minimum of what is missed: the trajectory is that
-  int iterations = 0;
-  double time = 0.0;               ///< CPU time from the call to the answer [s]
-  double time_in_functions = 0.0;  ///< values and derivatives of the problem in it [s]
-};
-
 /// Ipopt for one type of nonlinear programs, set up once.
 template <class Nlp>
 class IpoptRunner {
  public:
   /// The trajectory is the start; then the optimum, or as it was.
   template <class P, class X, class Trajectory>
-  IpoptReport solve(const P& problem, const X& x0, Trajectory& t) {
+  Outcome solve(const P& problem, const X& x0, Trajectory& t) {
     return run(*app_, problem, x0, t);
   }
   /// Keeps the multipliers of the last answer, shifted by one interval, for solve_warm().
@@ -151,7 +143,7 @@ class IpoptRunner {
   }
   /// Starts from the remembered multipliers, too, with a barrier of 1e-5.
   template <class P, class X, class Trajectory>
-  IpoptReport solve_warm(const P& problem, const X& x0, Trajectory& t) {
+  Outcome solve_warm(const P& problem, const X& x0, Trajectory& t) {
     return run(*warm_app_, problem, x0, t);
   }
 
@@ -159,10 +151,10 @@ class IpoptRunner {
   using App = Ipopt::SmartPtr<Ipopt::IpoptApplication>;
 
   template <class P, class X, class Trajectory>
-  IpoptReport run(Ipopt::IpoptApplication& app, const P& problem, const X& x0, Trajectory& t) {
+  Outcome run(Ipopt::IpoptApplication& app, const P& problem, const X& x0, Trajectory& t) {
     nlp_->pose(problem, x0, t);
     nlp_->time_in_functions = 0.0;
-    IpoptReport report;
+    Outcome report;
     const double begin = cpu_time();
     const auto status = app.OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(Ipopt::GetRawPtr(nlp_)));
     report.time = cpu_time() - begin;

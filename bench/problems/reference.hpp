@@ -7,19 +7,20 @@
 #include <vector>
 
 #include "problems/corridor_problem.hpp"
+#include "problems/cpu_time.hpp"
 #include "problems/described_problem.hpp"
 #include "problems/families.hpp"
 #include "problems/structured_solver.hpp"
 
 namespace chicane::bench {
 
-/// What another solver did with one instance.
-struct Outcome {
-  bool is_solved = false;
-  int iterations = 0;
-  double time = 0.0;               ///< CPU time from the call to the answer [s]
-  double time_in_functions = 0.0;  ///< values and derivatives of the problem in it [s]; 0 = not measured
-};
+/// The structured form of an instance, which starts at without_cte(instance.start).
+inline StructuredDescribedProblem structured(const Instance<DescribedProblem, kLongestHorizon>& instance) {
+  return StructuredDescribedProblem{instance.problem, instance.start[4]};
+}
+inline StructuredCorridorProblem structured(const Instance<CorridorProblem, kLongestHorizon>& instance) {
+  return {instance.problem, instance.start[4], instance.guess.horizon};
+}
 
 /// Another solver, for comparison: it gets the same problem and the same start.
 template <class Problem>
@@ -29,7 +30,7 @@ class Reference {
   using Trajectory = DescribedTrajectory<kLongestHorizon>;
 
   virtual ~Reference() = default;
-  /// For tables, and as a key in JSON: "ipopt", "ipopt_hot", "cppad".
+  /// For tables, and as a key in JSON: "ipopt", "ipopt_hot", "fatrop".
   [[nodiscard]] virtual std::string_view name() const = 0;
   /// Starts from its own multipliers of the cycle before; makes sense for warm families only.
   [[nodiscard]] virtual bool is_hot() const { return false; }
@@ -41,7 +42,7 @@ class Reference {
 struct References {
   std::vector<std::unique_ptr<Reference<DescribedProblem>>> described;
   std::vector<std::unique_ptr<Reference<CorridorProblem>>> corridor;
-  std::string versions;  ///< "Ipopt 3.11.9, CppAD 20140000"; empty without any
+  std::string versions;  ///< "Ipopt 3.11.9, fatrop 1.1.7"; empty without any
 
   template <class Problem>
   [[nodiscard]] auto& of() {

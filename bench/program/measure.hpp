@@ -11,7 +11,7 @@
 namespace chicane::bench {
 
 /// Everything that `chicane bench` times, beside these solvers; says on stderr what it is at. Ends early,
-/// with what there is, when `stop` is set. Fails like solve_golden() and like run::ClosedLoop::create().
+/// with what there is, when `stop` is set. Fails like run::ClosedLoop::create().
 [[nodiscard]] Result<BenchReport> measure(const Request& request, References& references,
                                           const std::atomic<bool>& stop);
 

@@ -80,20 +80,6 @@ std::string reference_table(const std::vector<SolveRow>& rows) {
   return text;
 }
 
-std::string golden_table(const std::vector<GoldenRow>& rows) {
-  std::string text =
-      "| set | start | problems | unsolved | agree to 1e-8 | bounds moved | ours lower | ours higher | worst "
-      "excess | first steer, median / worst [rad] | median µs "
-      "|\n|---|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const GoldenRow& row : rows) {
-    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} / {} | {:.1f} |\n", row.set,
-                        row.start, row.problems, row.unsolved, row.agree, row.relaxed, row.better, row.worse,
-                        small(row.worst_excess), small(row.median_first_steer), small(row.worst_first_steer),
-                        row.median_us);
-  }
-  return text;
-}
-
 std::string target_table(const std::vector<Target>& rows) {
   std::string text = "| what | promised | aim | measured | kept |\n|---|---|---|---|---|\n";
   for (const Target& row : rows) {
@@ -162,24 +148,6 @@ Json json_of(const std::vector<SolveRow>& rows) {
   return list;
 }
 
-Json json_of(const std::vector<GoldenRow>& rows) {
-  Json list = Json::array();
-  for (const GoldenRow& row : rows) {
-    list.push_back({{"set", row.set},
-                    {"start", row.start},
-                    {"problems", row.problems},
-                    {"unsolved", row.unsolved},
-                    {"agree", row.agree},
-                    {"relaxed", row.relaxed},
-                    {"better", row.better},
-                    {"worse", row.worse},
-                    {"worst_excess", row.worst_excess},
-                    {"worst_first_steer_rad", row.worst_first_steer},
-                    {"p50_us", row.median_us}});
-  }
-  return list;
-}
-
 Json json_of(const std::vector<Target>& rows) {
   Json list = Json::array();
   for (const Target& row : rows) {
@@ -222,23 +190,15 @@ std::vector<Target> targets(const BenchReport& report) {
         own(family, 20).time_us.p99 / own(family, 20).time_us.median);
     add(fmt::format("{}, N = 20, times faster than Ipopt with exact derivatives", family), 800, 1500, false,
         against(family, "ipopt"));
-    add(fmt::format("{}, N = 20, times faster than Ipopt with CppAD", family), 1200, 2500, false,
-        against(family, "cppad"));
   }
   add("warm, N = 20, times faster than Ipopt at its best (hot start)", 400, 800, false,
       against("warm", "ipopt_hot"));
   add("corridor-warm, N = 20, median [µs]", 15, 10, true, own("corridor-warm", 20).time_us.median);
   add("corridor-warm, N = 40, median [µs]", 35, 25, true, own("corridor-warm", 40).time_us.median);
   add("warm, N = 20, time of the dense form over the structured one", 3, 2, true, against("warm", "dense"));
-  add("exponent of the time over N, 10 to 200", 1.1, 1.1, true, report.growth_exponent);
   double unsolved = 0.0;
   for (const SolveRow& row : report.solves) unsolved += row.own.unsolved;
-  for (const GoldenRow& row : report.golden) unsolved += row.unsolved;
   add("problems not solved", 0, 0, true, report.solves.empty() ? std::nan("") : unsolved);
-  double higher = 0.0;
-  for (const GoldenRow& row : report.golden) higher += row.worse;
-  add("recorded problems whose optimum is above the golden one", 0, 0, true,
-      report.golden.empty() ? std::nan("") : higher);
   const StepTimes& guarded = report.with_guard;
   const StepTimes& bare = report.without_guard;
   add("control step of default without guard, p99.9 of CPU time [µs]", 100, 40, true,
@@ -246,12 +206,6 @@ std::vector<Target> targets(const BenchReport& report) {
   add("control step of default with guard, p99.9 of CPU time [µs]", 100, 40, true,
       guarded.steps > 0 ? guarded.cpu_us.p999 : std::nan(""));
   return list;
-}
-
-int wrong_answers(const std::vector<GoldenRow>& rows) {
-  int count = 0;
-  for (const GoldenRow& row : rows) count += row.unsolved + row.worse;
-  return count;
 }
 
 Machine this_machine(const References& references) {
@@ -278,15 +232,6 @@ std::string to_markdown(const BenchReport& report) {
             own_table(report.solves);
     text += "\n" + reference_table(report.solves);
   }
-  if (!report.growth.empty()) {
-    text += "\nMedian of warm solves against the horizon:";
-    for (const SolveRow& row : report.growth) {
-      text += fmt::format(" N = {}: {:.1f} µs{}", row.horizon, row.own.time_us.median,
-                          &row == &report.growth.back() ? "" : ",");
-    }
-    text += fmt::format("; exponent {}.\n", number(report.growth_exponent, 2));
-  }
-  if (!report.golden.empty()) text += "\n" + golden_table(report.golden);
   if (report.with_guard.steps > 0) {
     text += fmt::format(
                 "\nControl step of `default` in closed loop, {} steps with the guard and {} without "
@@ -311,9 +256,6 @@ std::string to_json(const BenchReport& report) {
                   {"load_after", machine.load_after},
                   {"interrupted", report.was_interrupted},
                   {"solves", json_of(report.solves)},
-                  {"growth", json_of(report.growth)},
-                  {"growth_exponent", report.growth_exponent},
-                  {"golden", json_of(report.golden)},
                   {"form", kForm},
                   {"step_with_guard", json_of(report.with_guard)},
                   {"step_without_guard", json_of(report.without_guard)},

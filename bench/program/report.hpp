@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "program/golden.hpp"
 #include "program/solves.hpp"
 
 namespace chicane::bench {
@@ -29,10 +28,7 @@ struct StepTimes {
 struct BenchReport {
   Machine machine;
   std::vector<SolveRow> solves{};
-  std::vector<SolveRow> growth{};  ///< cost against horizon, own solver only
-  double growth_exponent = 0.0;    ///< growth of the median time with the horizon; NaN when not measured
   StepTimes with_guard{}, without_guard{};
-  std::vector<GoldenRow> golden{};
   bool was_interrupted = false;
 };
 
@@ -47,10 +43,6 @@ struct Target {
   [[nodiscard]] bool is_kept() const { return is_ceiling ? measured <= least : measured >= least; }
 };
 [[nodiscard]] std::vector<Target> targets(const BenchReport& report);
-
-/// Recorded problems that were not solved, or to a worse optimum than the recorded one: a benchmark of
-/// answers that are wrong fails.
-[[nodiscard]] int wrong_answers(const std::vector<GoldenRow>& rows);
 
 [[nodiscard]] std::string to_markdown(const BenchReport& report);
 [[nodiscard]] std::string to_json(const BenchReport& report);

@@ -42,24 +42,23 @@ Result<Request> parse_request(const std::vector<std::string>& words) {
       request.is_json = true;
       continue;
     }
-    const bool is_known = option == "--instances" || option == "--horizons" || option == "--reference";
+    const bool is_known = option == "--instances" || option == "--horizons";
     if (!is_known || i + 1 == words.size()) {
-      return fail(ErrorCode::kInvalidArgument,
-                  fmt::format("got {}, expected --instances N, --horizons N,..., --reference FOLDER or "
-                              "--json (see `chicane bench --help`)",
-                              option));
+      return fail(
+          ErrorCode::kInvalidArgument,
+          fmt::format("got {}, expected --instances N, --horizons N,... or --json (see `chicane bench "
+                      "--help`)",
+                      option));
     }
     const std::string& value = words[++i];
     if (option == "--instances") {
       const Result<int> number = number_of(option, value, 1, kMostInstances);
       if (!number) return fail(number.error());
       request.instances = *number;
-    } else if (option == "--horizons") {
+    } else {
       Result<std::vector<int>> horizons = numbers_of(value);
       if (!horizons) return fail(horizons.error());
       request.horizons = std::move(*horizons);
-    } else {
-      request.reference_folder = value;
     }
   }
   return request;

@@ -12,12 +12,11 @@ namespace chicane::bench {
 struct Request {
   int instances = 100;                    ///< of each family
   std::vector<int> horizons{10, 20, 50};  ///< intervals, each 2 to kLongestHorizon
-  std::string reference_folder;           ///< problems with known optima; empty: none
   bool is_json = false;
 };
 
-/// Reads `--instances N --horizons N,... --reference FOLDER --json`, as `chicane bench` passes them on; all
-/// may be left out. kInvalid: "--horizons: got X, expected Y".
+/// Reads `--instances N --horizons N,... --json`, as `chicane bench` passes them on; all may be left out.
+/// kInvalid: "--horizons: got X, expected Y".
 [[nodiscard]] Result<Request> parse_request(const std::vector<std::string>& words);
 
 }  // namespace chicane::bench

@@ -39,13 +39,6 @@ void judge(const Case<Problem>& instance, const Trajectory& answer, Sample& samp
   }
 }
 
-StructuredDescribedProblem structured(const Case<DescribedProblem>& instance) {
-  return StructuredDescribedProblem{instance.problem, instance.start[4]};
-}
-StructuredCorridorProblem structured(const Case<CorridorProblem>& instance) {
-  return {instance.problem, instance.start[4], instance.guess.horizon};
-}
-
 /// Our solver on the structured form of the problem, with the instruction set that is chosen: the best of
 /// some trials, each long enough for the clock.
 template <class Problem>

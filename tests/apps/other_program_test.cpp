@@ -80,8 +80,8 @@ TEST_F(OtherProgram, BenchStartsTheProgramBesideIt) {
   put_script("bin/chicane-bench");
   EXPECT_EQ(run("bench"), 7);
   EXPECT_EQ(out, "--instances 100 --horizons 10,20,50\n");
-  EXPECT_EQ(run("bench --json --horizons 2,200 --reference 'a b' --instances 3"), 7);
-  EXPECT_EQ(out, "--instances 3 --horizons 2,200 --reference a b --json\n");
+  EXPECT_EQ(run("bench --json --horizons 2,200 --instances 3"), 7);
+  EXPECT_EQ(out, "--instances 3 --horizons 2,200 --json\n");
 }
 
 TEST_F(OtherProgram, BenchStartsTheProgramOfAnInstallation) {

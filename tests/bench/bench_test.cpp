@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "program/golden.hpp"
 #include "program/report.hpp"
 #include "program/solves.hpp"
 #ifdef CHICANE_HAVE_IPOPT
@@ -65,19 +64,6 @@ TEST(TimeSolves, StopsWhenAsked) {
   const std::atomic<bool> stop{true};
   References references = all_references();
   EXPECT_EQ(time_solves("cold0", 6, 5, references, stop).instances, 0);
-}
-
-TEST(Golden, CountsProblemsThatAreUnsolvedOrWorse) {
-  EXPECT_EQ(wrong_answers({}), 0);
-  EXPECT_EQ(wrong_answers({{.set = "a", .agree = 5, .better = 2}, {.set = "b", .unsolved = 1, .worse = 3}}),
-            4);
-}
-
-TEST(Golden, RefusesAFolderWithoutProblems) {
-  const std::atomic<bool> stop{false};
-  const auto rows = solve_golden(std::string(CHICANE_SOURCE_DIR) + "/docs", stop);
-  ASSERT_FALSE(rows.has_value());
-  EXPECT_NE(rows.error().message.find("golden_<speed>_N<nodes>.csv"), std::string::npos);
 }
 
 }  // namespace

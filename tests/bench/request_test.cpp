@@ -18,17 +18,14 @@ TEST(Request, HasDefaults) {
   ASSERT_TRUE(request.has_value());
   EXPECT_EQ(request->instances, 100);
   EXPECT_THAT(request->horizons, ElementsAre(10, 20, 50));
-  EXPECT_EQ(request->reference_folder, "");
   EXPECT_FALSE(request->is_json);
 }
 
 TEST(Request, TakesEveryOption) {
-  const auto request =
-      parse_request({"--json", "--instances", "7", "--reference", "some folder", "--horizons", "2,200"});
+  const auto request = parse_request({"--json", "--instances", "7", "--horizons", "2,200"});
   ASSERT_TRUE(request.has_value()) << request.error().message;
   EXPECT_EQ(request->instances, 7);
   EXPECT_THAT(request->horizons, ElementsAre(2, kLongestHorizon));
-  EXPECT_EQ(request->reference_folder, "some folder");
   EXPECT_TRUE(request->is_json);
 }
 
