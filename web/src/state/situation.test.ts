@@ -35,6 +35,22 @@ describe('the situation', () => {
     expect(situation.value?.sentence).toBe('The car stands');
   });
 
+  it('is one alarm as long as the guard stops the car again within a second, or until a person drives', () => {
+    beginSession();
+    const shownAt = (time: number, sentence: string, more = {}) => {
+      receive('/chicane/frame', frameWith({ time_s: time }), 0);
+      receive('/chicane/situation', said(time, sentence, more), 0);
+      refreshText(0);
+      return situation.value?.sentence;
+    };
+    const [stops, alarm] = ['The guard stops the car', { severity: 'alarm' }];
+    expect(shownAt(2, stops, alarm)).toBe(stops);
+    expect(shownAt(2.9, 'Rolls')).toBe(stops);
+    expect(shownAt(3.1, 'Rolls')).toBe('Rolls');
+    expect(shownAt(3.2, stops, alarm)).toBe(stops);
+    expect(shownAt(3.3, 'A person drives', { driver: 'person' })).toBe('A person drives');
+  });
+
   it('has a reason behind its sentence', () => {
     const stop = said(1, 'The guard stops the car', { severity: 'alarm', reason: 'the controller has no answer' });
     expect(situationInWords(stop)).toEqual({
