@@ -224,7 +224,7 @@ describe('the workbench', () => {
     const left = async () => Number(/(\d+\.\d) s left/.exec((await badge.allInnerTexts()).join())?.[1]);
     const first = await dashboard.until(left, (seconds) => seconds > 100 && seconds <= 300, 'a countdown');
     await dashboard.until(left, (seconds) => seconds < first - 1, 'less time left');
-    await page.locator('.pill', { hasText: /Fault: ice patch, \d+ s left/ }).waitFor();
+    await page.locator('.pill', { hasText: /Ice patch, \d+ s left/ }).waitFor();
     assert.match(await dashboard.text('fault-answer'), /What is done about it: \S+/);
     assert.deepEqual(await dashboard.accessibilityFindings('main', 'all'), []); // with the marks of a fault
     await dashboard.button('Clear all').click();
