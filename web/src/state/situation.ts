@@ -23,8 +23,8 @@ export function receiveSituation(message: Situation): void {
 }
 
 /**
- * Shows the one of a frame; without one yet, the newest before it. An event is one alarm, also where the guard stops the
- * car and lets it go in turn; who takes the wheel ends it.
+ * Shows the one of a frame; without one yet, the newest before it. An event is one alarm, also where the guard stops
+ * the car and lets it go in turn; who takes the wheel ends it.
  */
 export function showSituation(frame: Frame | null): void {
   const time = (frame?.time_s ?? NaN) + 1e-6;
