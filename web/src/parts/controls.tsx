@@ -74,7 +74,5 @@ const SIGNS = { good: ['won', '●'], warning: ['lost', '■'], bad: ['lost', '�
 
 /** How bad it is, before its words. */
 export const Sign = ({ of }: { of: Severity }) => (
-  <span class={SIGNS[of][0]} aria-hidden="true">
-    {SIGNS[of][1]}{' '}
-  </span>
+  <span class={`sign ${SIGNS[of][0]}`} data-sign={SIGNS[of][1]} aria-hidden="true" />
 );
