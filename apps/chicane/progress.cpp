@@ -152,21 +152,21 @@ std::string picture_of(const road::Track& track) {
 /// Page shown while a lap is planned; `done`: share of the work [%], drawn on the road in the colour of plans
 /// (web/src/styles/tokens.css).
 net::Content waiting_page(const std::string& road, const std::string& line, double done, double lap_time) {
-  return {
-      .content_type = "text/html; charset=utf-8",
-      .bytes = fmt::format(
-          "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" "
-          "content=\"1\"><meta name=\"viewport\" content=\"width=device-width\"><title>chicane</title>"
-          "<body style=\"color-scheme:light dark;margin:0;height:100vh;display:grid;"
-          "grid-template-rows:48px minmax(0,1fr) auto;font:14px/1.4 system-ui,sans-serif;"
-          "background:light-dark(#f6f7f8,#0f1419);color:light-dark(#17202a,#e8edf2)\">"
-          "<b style=\"padding:14px 24px\">chicane</b><svg aria-hidden=\"true\" fill=\"none\" width=\"100%\" "
-          "height=\"100%\" style=\"background:light-dark(#dfe4da,#141b1c);"
-          "stroke:light-dark(#5c646e,#2a323a)\" {}{:.1f} "
-          "100\"/></svg><main style=\"padding:8px 24px\">"
-          "<h1 style=\"font-size:18px;margin:0\">{}</h1>The plan so far takes {:.2f} s for the lap. The "
-          "dashboard follows here.</main>",
-          road, done, line, lap_time)};
+  return {.content_type = "text/html; charset=utf-8",
+          .bytes = fmt::format(
+              "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" "
+              "content=\"1\"><meta name=\"viewport\" content=\"width=device-width\"><title>chicane</title>"
+              "<body style=\"color-scheme:light dark;margin:0;height:100vh;display:grid;"
+              "grid-template-rows:48px minmax(0,1fr) auto;font:14px/1.4 system-ui,sans-serif;"
+              "background:light-dark(#f6f7f8,#0f1419);color:light-dark(#17202a,#e8edf2)\">"
+              "<style>h1::first-letter{{text-transform:uppercase}}</style><b style=\"padding:14px "
+              "24px\">chicane</b><svg aria-hidden=\"true\" fill=\"none\" width=\"100%\" "
+              "height=\"100%\" style=\"background:light-dark(#dfe4da,#141b1c);"
+              "box-sizing:border-box;padding:24px;stroke:light-dark(#5c646e,#2a323a)\" {}{:.1f} "
+              "100\"/></svg><main style=\"padding:8px 24px\">"
+              "<h1 style=\"font-size:18px;font-weight:500;margin:0\">{}.</h1>"
+              "The plan so far takes {:.2f} s for the lap. The dashboard follows here.</main>",
+              road, done, line, lap_time)};
 }
 
 }  // namespace

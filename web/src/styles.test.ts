@@ -13,7 +13,7 @@ const COLOUR = /#[0-9a-f]{3,8}\b(?=[;, )])|\b(?:rgb|hsl|oklch)a?\(/gi;
 const DISTANCE = /\b(?:gap|padding|margin)[a-z-]*:[^;{}]*?\b\d*\.?\d+(?:px|r?em)\b/g;
 const SIZE = /\bfont(?:-size)?:[^;{}]*?\b\d*\.?\d+(?:px|r?em)\b/g;
 /** What follows from the shape of a thing: half of its own size, a hairline, or units of its own drawing. */
-const OWN_SHAPE = /\.start-mark|\.pad-stick|\.segments|\.switch|\.loss-map text|\.timeline-marks/;
+const OWN_SHAPE = /\.start-mark|\.pad-stick|\[type="checkbox"\]/;
 
 it('colours, distances and sizes of text come from tokens.css', () => {
   const found = sheets.flatMap((name) => {

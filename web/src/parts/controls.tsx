@@ -52,7 +52,7 @@ export function Select<T extends string | number>({ label, value, choices, choos
 /** Why something could not be done; nothing without a reason. */
 export const Refusal = ({ text = '' }: { text?: string | undefined }) =>
   text === '' ? null : (
-    <p class="refusal lost" role="alert">
+    <p class="wide lost" role="alert">
       {text}
     </p>
   );
@@ -70,7 +70,7 @@ export const Heads = ({ of, quiet = false }: { of: readonly string[]; quiet?: bo
   </thead>
 );
 
-const SIGNS = { good: ['won', '●'], warning: ['lost', '■'], bad: ['alarming', '■'], unknown: ['soft', '●'] } as const;
+const SIGNS = { good: ['won', '●'], warning: ['lost', '■'], bad: ['lost', '▲'], unknown: ['soft', '●'] } as const;
 
 /** How bad it is, before its words. */
 export const Sign = ({ of }: { of: Severity }) => (

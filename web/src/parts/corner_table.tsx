@@ -24,17 +24,21 @@ export function CornerTable({ comparison, at, pick }: Options) {
             <tr key={name} class={at !== undefined && at >= from && at < to ? 'at' : ''} onClick={() => pick?.(apex)}>
               <th scope="row">
                 {pick ? (
-                  <button type="button" title={`Put the cursor on ${name}`}>
+                  <button type="button" class="plain" title={`Put the cursor on ${name}`}>
                     {name}
                   </button>
                 ) : (
                   name
                 )}
               </th>
-              <td class="bar-of-cost">
-                <i class={toneOf(lost)} style={{ width: `${(100 * Math.abs(lost)) / most}%` }} />
+              <td>
+                <i class={`gauge ${toneOf(lost)}`}>
+                  <u class="cover" style={{ transform: `scaleX(${Math.abs(lost) / most})` }} />
+                </i>
               </td>
-              <td class="cost">{signed(lost)}</td>
+              <td class="number">
+                <b>{signed(lost)}</b>
+              </td>
               <td class="why">{whyOf(corner)}</td>
             </tr>
           );

@@ -44,7 +44,7 @@ export function Headline({ comparison, courses, choose, level = 1 }: Options) {
   const { a, b } = comparison;
   const { verb, amount, tone, to, rest } = headlineOf(comparison);
   return (
-    <Heading class="verdict" data-testid="headline">
+    <Heading class="verdict grow" data-testid="headline">
       <Word
         label="A"
         name={capital(a.name)}

@@ -197,7 +197,7 @@ function Curves({ comparison, rows, frame }: { comparison: Comparison; rows: rea
             </text>
             {ticksOf(...row.range, Math.max(2, (place.bottom - place.top) / 22)).map((tick) => (
               <g key={tick}>
-                <line class={tick === 0 ? 'zero' : 'grid'} x1={left} x2={right} y1={y(tick)} y2={y(tick)} />
+                <line class={tick === 0 ? 'grid zero' : 'grid'} x1={left} x2={right} y1={y(tick)} y2={y(tick)} />
                 <text x={left - 8} y={y(tick) + 4} text-anchor="end">
                   {tidy(tick)}
                 </text>

@@ -61,7 +61,7 @@ export function LapTable({ of = '', laps, limit, start = NO_START, pick }: Optio
               <tr key={lap.lap} class={lap.lap === best ? 'best' : ''}>
                 <th scope="row">
                   {pick ? (
-                    <Button act={() => pick(lap.lap)} title={`Compare lap ${lap.lap}`}>
+                    <Button class="plain" act={() => pick(lap.lap)} title={`Compare lap ${lap.lap}`}>
                       {lap.lap}
                     </Button>
                   ) : (

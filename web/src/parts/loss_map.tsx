@@ -28,7 +28,7 @@ export function LossMap({ comparison, at }: { comparison: Comparison; at?: numbe
   const most = scaleOf(pieces);
   const margin = 90;
   const labels = corners.flatMap(({ name, apex }) => {
-    const [before, here, after] = [-0.01, 0, 0.01].map((step) => pointOf(apex + step * length)) as [
+    const [before, here, after] = [-0.03, 0, 0.03].map((step) => pointOf(apex + step * length)) as [
       Point,
       Point,
       Point,
@@ -61,11 +61,13 @@ export function LossMap({ comparison, at }: { comparison: Comparison; at?: numbe
         );
       })}
       {labels.map(({ name, x, y }) => (
-        <text key={name} x={x} y={y}>
+        <text key={name} class="turn" font-size="46" text-anchor="middle" dominant-baseline="central" x={x} y={y}>
           {name}
         </text>
       ))}
-      {dot && Number.isFinite(dot[0] + dot[1]) && <circle class="cursor" cx={dot[0]} cy={dot[1]} r="19" />}
+      {dot && Number.isFinite(dot[0] + dot[1]) && (
+        <circle class="cursor" cx={dot[0]} cy={dot[1]} r="19" style={{ strokeWidth: 9 }} />
+      )}
     </svg>
   );
 }

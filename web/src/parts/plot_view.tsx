@@ -51,8 +51,8 @@ export function PlotView({ plot }: { plot: Plot }) {
   const frame = frameOf(plot, width);
   const named = namedIn(plot.series);
   return (
-    <figure ref={figure} class={`plot-figure ${plot.part}`}>
-      <figcaption>
+    <figure ref={figure} class={plot.part}>
+      <figcaption class="row">
         {plot.title}
         {named.map((series) => (
           <span key={series.name} class={`key ${series.draw}`} style={toneOf(series)}>

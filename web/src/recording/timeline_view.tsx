@@ -63,7 +63,7 @@ export function TimelineView() {
   return (
     <section class="timeline row" aria-label="Time line of the recording">
       <Jump direction={-1} />
-      <div class="timeline-track">
+      <div class="grow">
         <Marks />
         <input
           type="range"

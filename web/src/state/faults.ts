@@ -1,6 +1,7 @@
 import { begunBits, hasBit } from '../lib/bits';
 import type { Point } from '../lib/math';
 import { store } from '../lib/store';
+import { capital } from '../lib/words';
 import { type Change, type Frame, timeOf } from '../protocol/topics';
 import { faultInWords } from './event_log';
 import { entryOf } from './settings';
@@ -42,11 +43,11 @@ export function secondsLeft(key: string, now: number): number {
   return left >= 0 ? left : NaN;
 }
 
-/** The faults that are on, in words: "Fault: half grip, 2 s left". */
+/** The faults that are on, in words: "Half grip, 2 s left". */
 export function faultsInWords({ active_faults, time_s }: Frame, names: readonly string[]): string[] {
   return names.flatMap((name, bit) => {
     if (!hasBit(active_faults, bit)) return [];
     const left = secondsLeft(`fault.${name.replace(/^fault\./, '')}`, time_s);
-    return [`Fault: ${faultInWords(name)}${Number.isFinite(left) ? `, ${Math.ceil(left)} s left` : ''}`];
+    return [`${capital(faultInWords(name))}${Number.isFinite(left) ? `, ${Math.ceil(left)} s left` : ''}`];
   });
 }

@@ -32,7 +32,10 @@ export const runEnd = computed<RunEnd | null>(() => {
 
 function endOf(kind: string, reason: string): RunEnd {
   if (kind === 'finished') return { kind, severity: 'good', title: 'Finished', why: 'All laps that were asked for.' };
-  if (kind === 'stopped') return { kind, severity: 'unknown', title: 'Stopped', why: sentenceOf(reason) };
+  if (kind === 'stopped') {
+    const why = sentenceOf(reason.replace(/^stopped /, ''));
+    return { kind, severity: 'unknown', title: 'Stopped', why };
+  }
   const isOff = /left the road/.test(reason);
   return { kind: 'failed', severity: 'bad', title: isOff ? 'Off the road' : 'Not finished', why: sentenceOf(reason) };
 }

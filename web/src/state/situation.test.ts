@@ -13,26 +13,30 @@ const said = (time: number, sentence: string, more = {}) => ({
   ...more,
 });
 
+const shownAt = (time: number, sentence = '', more = {}): string | undefined => {
+  receive('/chicane/frame', frameWith({ time_s: time }), 0);
+  if (sentence !== '') receive('/chicane/situation', said(time, sentence, more), 0);
+  refreshText(0);
+  return situation.value?.sentence;
+};
+
 describe('the situation', () => {
-  it('is the one of the frame that is shown', () => {
+  it('is the one of the frame that is shown, of a run that begins anew another', () => {
     beginSession();
-    receive('/chicane/frame', frameWith({ time_s: 1 }), 0);
-    refreshText(0);
-    expect(situation.value, 'a program that says nothing').toBeNull();
+    expect(shownAt(1), 'a program that says nothing').toBeUndefined();
     receive('/chicane/situation', said(1, 'Rolls'), 0);
     receive('/chicane/situation', said(1.5, 'Brakes'), 0);
-    refreshText(0);
-    expect(situation.value?.sentence).toBe('Rolls');
-    receive('/chicane/frame', frameWith({ time_s: 1.5 }), 0);
-    refreshText(0);
-    expect(situation.value?.sentence).toBe('Brakes');
+    expect(shownAt(1)).toBe('Rolls');
+    expect(shownAt(1.5)).toBe('Brakes');
+    expect(shownAt(0, 'The car stands')).toBe('The car stands');
   });
 
-  it('of a run that begins anew is another', () => {
-    receive('/chicane/frame', frameWith({ time_s: 0 }), 0);
-    receive('/chicane/situation', said(0, 'The car stands'), 0);
-    refreshText(0);
-    expect(situation.value?.sentence).toBe('The car stands');
+  it('is one alarm as long as the guard stops the car again within a second, or until a person drives', () => {
+    beginSession();
+    expect(shownAt(2, 'stops', { severity: 'alarm' })).toBe('stops');
+    expect([2.9, 3.1].map((time) => shownAt(time, 'rolls'))).toEqual(['stops', 'rolls']);
+    expect(shownAt(3.2, 'stops', { severity: 'alarm' })).toBe('stops');
+    expect(shownAt(3.3, 'by hand', { driver: 'person' })).toBe('by hand');
   });
 
   it('has a reason behind its sentence', () => {

@@ -9,6 +9,8 @@ import { REPLAY_S } from './replay';
 export const situation = store.signal<Situation | null>('run', null);
 
 const MOST_KEPT = 1200;
+/** An alarm stays for so long after its last cycle, as the program counts events (telemetry::kAlarmPause) [s]. */
+const ALARM_HELD_S = 1;
 const kept = store.data('moment', () => ({ recent: [] as Situation[] }));
 
 /** Keeps the situations of the last seconds, which may be shown again. */
@@ -20,12 +22,18 @@ export function receiveSituation(message: Situation): void {
   if (isOld || kept.recent.length > MOST_KEPT) kept.recent.splice(0, kept.recent.length / 2);
 }
 
-/** Shows the one of a frame; without one yet, the newest before it. */
+/**
+ * Shows the one of a frame; without one yet, the newest before it. An event is one alarm, also where the guard stops
+ * the car and lets it go in turn; who takes the wheel ends it.
+ */
 export function showSituation(frame: Frame | null): void {
-  const isOf = (each: Situation): boolean => timeOf(each) <= (frame?.time_s ?? NaN) + 1e-6;
-  let last = kept.recent.length - 1;
-  while (last >= 0 && !isOf(kept.recent[last] as Situation)) --last;
-  situation.value = kept.recent[last] ?? null;
+  const time = (frame?.time_s ?? NaN) + 1e-6;
+  const now = kept.recent.findLast((each) => timeOf(each) <= time) ?? null;
+  const isEvent = (each: Situation): boolean => {
+    const age = time - timeOf(each);
+    return each.severity === 'alarm' && age >= 0 && age <= ALARM_HELD_S;
+  };
+  situation.value = now?.driver === 'person' ? now : (kept.recent.findLast(isEvent) ?? now);
 }
 
 const SEVERITY = { normal: 'good', notice: 'warning', alarm: 'bad' } as const;

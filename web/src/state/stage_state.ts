@@ -65,10 +65,11 @@ export const pills = computed<readonly string[]>(() => {
   const asked = settings.value.get('run.pace'); // a paused recording has no frame with a new pace
   const pace = typeof asked === 'number' ? asked : (frame?.pace ?? NaN);
   const laps = Number(settings.value.get('laps')); // 0: until it is stopped
+  const next = (run.value?.building ?? '').replace(/\w+ = /g, ''); // "preset = race"
   const isLast = laps > 0 && run.value?.mode === 'drive' && run.value.end === '' && frame?.lap === laps - 1;
   return [
     ...(isLast ? ['Last lap'] : []),
-    ...((run.value?.building ?? '') === '' ? [] : [`Next: ${run.value?.building} …`]),
+    ...(next === '' ? [] : [`Next: ${next} …`]),
     ...(frame?.is_manual ? ['By hand'] : []),
     ...(frame ? faultsInWords(frame, run.value?.fault_names ?? []) : []),
     ...(pastLeft.value > SOON ? [`Loading the past: ${pastLeft.value} frames`] : []),

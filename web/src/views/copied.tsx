@@ -17,7 +17,7 @@ const said = store.signal<{ readonly id: string; readonly text: string } | null>
 /** A text in a field, with a button that copies it. */
 export function Copied({ id, label, text }: { id: string; label: string; text: string }) {
   return (
-    <div class="copied stack">
+    <div class="stack">
       <label for={id}>{label}</label>
       <div class="row apart">
         <input id={id} type="text" readOnly value={text} onFocus={(event) => event.currentTarget.select()} />

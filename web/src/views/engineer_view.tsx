@@ -17,8 +17,8 @@ const WINDOW_S = 20;
 /** A share as a bar and in figures. */
 function Share({ share }: { share: number }) {
   return (
-    <div class="share">
-      <i class="gauge other" aria-hidden="true">
+    <div class="row line">
+      <i class="gauge grow other" aria-hidden="true">
         <u class="cover" style={{ transform: `scaleX(${share})` }} />
       </i>
       <span class="unit keep">{fixed(share * 100, 0)} %</span>

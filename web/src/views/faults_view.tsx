@@ -158,7 +158,7 @@ function FaultTable({ all }: { all: readonly Fault[] }) {
         return (
           <section key={group} class="fault-group stack" aria-label={title}>
             <h3>{title}</h3>
-            <ul>
+            <ul class="stack">
               {members.map((fault) => (
                 <li key={fault.key} class="stack">
                   <FaultButton fault={fault} />

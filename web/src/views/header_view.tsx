@@ -35,7 +35,6 @@ function Modes() {
         <Button
           key={name}
           id={`mode-${name}`}
-          data-label={TITLES[name]}
           aria-current={mode.value === name ? 'page' : undefined}
           aria-keyshortcuts={String(i + 1)}
           act={() => (mode.value = name)}

@@ -38,8 +38,8 @@ export function Dialog({ isOpen, title, onClose, close = 'Close', answer, childr
       onClick={(event) => event.target === element.current && onClose()}
     >
       {isOpen && (
-        <div class="dialog-body stack">
-          <h2>{title}</h2>
+        <div class="stack">
+          <h2 class="value">{title}</h2>
           {children}
           <div class="row end">
             <Button class={answer ? '' : 'primary'} act={onClose}>

@@ -81,7 +81,7 @@ export function MenuView() {
         {pace !== undefined && (
           <div class="row apart">
             <span id="pace-label">Pace</span>
-            <div class="segments" role="group" aria-labelledby="pace-label">
+            <div class="row line" role="group" aria-labelledby="pace-label">
               {PACES.map((each) => (
                 <Button
                   key={each}

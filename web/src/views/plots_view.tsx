@@ -132,7 +132,7 @@ function Toolbar() {
       >
         {isFrozen.value ? 'Follow' : 'Hold plots'}
       </Button>
-      <div class="segments" role="group" aria-label="Time shown">
+      <div class="row line" role="group" aria-label="Time shown">
         {WINDOWS_S.map((seconds) => (
           <Button
             key={seconds}
@@ -146,18 +146,15 @@ function Toolbar() {
           </Button>
         ))}
       </div>
-      {zoomed.value ? <Button act={thaw}>Reset zoom</Button> : <span class="soft">Drag to zoom</span>}
+      {zoomed.value && <Button act={thaw}>Reset zoom</Button>}
+      {markTime.value === null ? (
+        <span class="soft">Drag to zoom</span>
+      ) : (
+        <Button aria-keyshortcuts="X" act={toggleMark}>
+          Remove the mark{cursorTime.value === null ? '' : `, Δt ${fixed(cursorTime.value - markTime.value, 2)} s`}
+        </Button>
+      )}
     </div>
-  );
-}
-
-/** Lies on the plots: in the toolbar it would take a row, and the plots would move away under the click. */
-function Mark() {
-  if (markTime.value === null) return null;
-  return (
-    <Button class="plot-mark" aria-keyshortcuts="X" act={toggleMark}>
-      Remove the mark{cursorTime.value === null ? '' : `, Δt ${fixed(cursorTime.value - markTime.value, 2)} s`}
-    </Button>
   );
 }
 
@@ -173,7 +170,6 @@ export function PlotsView() {
           <TimePlot key={spec.title} spec={spec} />
         ))}
       </div>
-      <Mark />
     </div>
   );
 }

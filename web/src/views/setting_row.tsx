@@ -203,15 +203,16 @@ export function SettingRow({ entry, name }: { entry: SchemaEntry; name?: string 
         <SettingMeaning entry={entry} label={label} /> <Mark entry={entry} />
       </span>
       <Control entry={entry} label={label} />
-      <Button
-        class="icon small"
-        aria-label={`Reset ${label}`}
-        title={start === undefined ? '' : `Back to ${asText(start)}`}
-        disabled={!isChanged || !canChange(entry.key)}
-        act={() => start !== undefined && change(entry.key, start)}
-      >
-        ↺
-      </Button>
+      {isChanged && canChange(entry.key) && (
+        <Button
+          class="icon small"
+          aria-label={`Reset ${label}`}
+          title={`Back to ${asText(start)}`}
+          act={() => change(entry.key, start)}
+        >
+          ↺
+        </Button>
+      )}
       <Refusal text={refusal} />
     </div>
   );

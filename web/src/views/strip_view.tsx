@@ -191,12 +191,12 @@ function Again() {
     port: Number(location.port),
   });
   return (
-    <span class="again">
-      <code class="cut">{command}</code>{' '}
+    <p class="again label row line">
+      Again: <code class="cut">{command}</code>
       <Button class="plain" act={() => navigator.clipboard?.writeText(command)}>
         Copy
       </Button>
-    </span>
+    </p>
   );
 }
 
@@ -219,27 +219,21 @@ function Ended() {
         <p role="status">
           <span data-testid="end-title">{end.title}</span>. {end.why}
         </p>
-        {isOver && (
-          <small>
-            Again: <Again />
-          </small>
-        )}
+        {isOver && <Again />}
         {__PAGE__ && <HashView />}
       </div>
-      <div class="facts row line">
-        <Cell id="end-laps" label="Laps">
-          {String(all.length)}
+      <Cell id="end-laps" label="Laps">
+        {String(all.length)}
+      </Cell>
+      <Cell id="end-best" label={best?.lap === 1 ? 'Best, from standstill' : `Best, lap ${best?.lap ?? UNKNOWN}`}>
+        {lapTime(best?.lap_time_s ?? NaN, 3)}
+      </Cell>
+      {Number.isFinite(gap) && <Cell id="end-gap" label="Above the limit">{`${fixed(gap, 1)} %`}</Cell>}
+      {unclean > 0 && (
+        <Cell id="end-off" label="Off the road">
+          {plural(unclean, 'lap')}
         </Cell>
-        <Cell id="end-best" label={best?.lap === 1 ? 'Best, from standstill' : `Best, lap ${best?.lap ?? UNKNOWN}`}>
-          {lapTime(best?.lap_time_s ?? NaN, 3)}
-        </Cell>
-        {Number.isFinite(gap) && <Cell id="end-gap" label="Above the limit">{`${fixed(gap, 1)} %`}</Cell>}
-        {unclean > 0 && (
-          <Cell id="end-off" label="Off the road">
-            {plural(unclean, 'lap')}
-          </Cell>
-        )}
-      </div>
+      )}
       <div class="keys row">
         <Button disabled={!canReplay()} act={startReplay}>
           Replay the last {REPLAY_S} s

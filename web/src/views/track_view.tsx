@@ -277,6 +277,7 @@ const Line = ({ name, token, kind = '' }: { name: string; token: string; kind?: 
 
 /** The camera's name, and what the lines on the road are. */
 function Corner() {
+  void shown.value; // a plan comes with the frames
   const ghost = ghostLabel.value;
   return (
     <div class="corner row">

@@ -146,7 +146,7 @@ function Changes() {
 function Target() {
   if (!canDriveBoth() || askedLog.value) return null;
   return (
-    <div class="segments" role="group" aria-label="The sliders change">
+    <div class="row line" role="group" aria-label="The sliders change">
       {(['run', 'second'] as const).map((each) => (
         <Button key={each} aria-pressed={target.value === each} act={() => aimAt(each)}>
           {each === 'run' ? 'This run' : 'A second car'}
@@ -164,6 +164,7 @@ function Settings() {
       <div class="find row">
         <input
           id="search"
+          class="grow"
           ref={takeFocus}
           type="search"
           placeholder={`Search all ${countOfSettings.value} settings`}

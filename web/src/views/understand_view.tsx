@@ -47,7 +47,7 @@ async function addRecordings(files: readonly File[]): Promise<void> {
 
 function EngineerSwitch() {
   return (
-    <label class="switch row soft" title="Plan, solver, guard and estimates (E)">
+    <label class="row line soft" title="Plan, solver, guard and estimates (E)">
       <input
         type="checkbox"
         role="switch"
@@ -168,7 +168,7 @@ export function UnderstandView() {
   const at = cursorAlong.value;
   return (
     <section class={isEngineer.value ? 'understand with-engineer' : 'understand'} aria-label="Understand">
-      <div class="headline-row row apart">
+      <div class="headline row apart">
         {both ? (
           <Headline
             comparison={both}
@@ -176,7 +176,7 @@ export function UnderstandView() {
             choose={(which, id) => (chosen.value = which === 0 ? [id, both.b.id] : [both.a.id, id])}
           />
         ) : (
-          <h1 class="verdict" data-testid="headline">
+          <h1 class="verdict grow" data-testid="headline">
             {waitingFor()}
           </h1>
         )}
