@@ -259,13 +259,12 @@ Standing stands_after(const FaultRun& run) {
 /// lock that its wheels do not reach; between a way back and a stop that turn its wheels in turn; across a
 /// hairpin, nearer to the edge than it takes to turn by the tangent of its lock, without any fault.
 TEST(MovesAgain, FromWhereItStood) {
-  for (const FaultRun& run :
-       {FaultRun{"pid", "vw-vanagon", "oval", 0.902734, "gps_noise", 4.350844, 1.0},
-        {"sixty-mph", "vw-vanagon", "hairpins", 1.144555, "half_grip", 8.07, 5.0},
-        {"pid", "bmw-320i", "oval", 0.892637, "steering_stuck", 5.112047, 5.0},
-        {"sixty-mph", "bmw-320i", "hairpins", 1.080957, "throttle_stuck", 20.5398, 2.0},
-        {"sixty-mph", "vw-vanagon", "hairpins", 0.983686, "slow_solver", 4.0, 0.3},
-        {"sixty-mph", "bmw-320i", "hairpins", 0.839345, "slow_solver", 4.0, 0.3}}) {
+  for (const FaultRun& run : {FaultRun{"pid", "vw-vanagon", "oval", 0.902734, "gps_noise", 4.350844, 1.0},
+                              {"sixty-mph", "vw-vanagon", "hairpins", 1.144555, "half_grip", 8.07, 5.0},
+                              {"pid", "bmw-320i", "oval", 0.892637, "steering_stuck", 5.112047, 5.0},
+                              {"sixty-mph", "bmw-320i", "hairpins", 1.080957, "throttle_stuck", 20.5398, 2.0},
+                              {"sixty-mph", "vw-vanagon", "hairpins", 0.983686, "slow_solver", 4.0, 0.3},
+                              {"sixty-mph", "bmw-320i", "hairpins", 0.839345, "slow_solver", 4.0, 0.3}}) {
     const Standing standing = stands_after(run);
     EXPECT_LT(standing.time, kAgain) << run.car << " on " << run.track << ", " << run.fault << ": "
                                      << standing.why;

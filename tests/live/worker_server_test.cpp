@@ -9,7 +9,6 @@
 namespace chicane::live {
 namespace {
 
-
 class InWorker : public testing::Test {
  protected:
   std::vector<std::string> sent, events;

@@ -150,14 +150,14 @@ constexpr double kTrialWay = 0.5;    // share of the car's length that is driven
 constexpr double kTrialRoom = 1.0;   // to the edge [m], where no stop fits
 constexpr double kTrialSpeed = 1.0;  // [m/s]
 constexpr double kTrialPedal = 0.3;
-constexpr double kCreep = 1.5;         // [m/s] of a car that turns at the edge
-constexpr double kCreepDrive = 2.5;    // [1/s] of its drive: turned wheels resist
-constexpr double kCreepStep = 0.1;     // [s] of creeping that are simulated at once
-constexpr double kLongestCreep = 6.0;  // [s]
-constexpr double kKeptShare = 0.25;    // of the margin that creeping leaves at least
-constexpr double kCreepNearer = 5e-3;  // [m] by which a car that has less may come nearer
-constexpr double kSeenTurn = 0.06;     // [rad] of turning after which a car that is led is judged by it
-constexpr double kLeastTurned = 0.5;   // share of it that shows that the wheels answer
+constexpr double kCreep = 1.5;             // [m/s] of a car that turns at the edge
+constexpr double kCreepDrive = 2.5;        // [1/s] of its drive: turned wheels resist
+constexpr double kCreepStep = 0.1;         // [s] of creeping that are simulated at once
+constexpr double kLongestCreep = 6.0;      // [s]
+constexpr double kKeptShare = 0.25;        // of the margin that creeping leaves at least
+constexpr double kCreepNearer = 5e-3;      // [m] by which a car that has less may come nearer
+constexpr double kSeenTurn = 0.06;         // [rad] of turning after which a car that is led is judged by it
+constexpr double kLeastTurned = 0.5;       // share of it that shows that the wheels answer
 constexpr double kTurnedWheels = 0.1;      // share of full lock that wheels may lack
 constexpr double kLongestAskPause = 60.0;  // [s] between two trials
 constexpr double kMostAside = 1.0;         // [m] by which a place may have jumped across the road
@@ -333,8 +333,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   // Who drives before the wheels have turned uses the room that turning takes.
   const bool has_turned = std::fabs(result.command.steer - car.steer) < kTurnedWheels * vehicle.steer_limit;
   const bool waits = stands && is_on_road && !(turns_as_asked(act, car) && has_turned);
-  if (stands && result.command.throttle > 0.0)
-    result.command = creep(result.command.steer, car.vx, vehicle);
+  if (stands && result.command.throttle > 0.0) result.command = creep(result.command.steer, car.vx, vehicle);
   Fit fit = start && !waits ? verify(*start, cycle, result.command, true) : Fit::kNone;
   const double kept = std::min(edge, kKeptShare * options_.margin) - kCreepNearer;
   if (fit == Fit::kNone && stands && is_on_road && !waits &&
