@@ -11,6 +11,7 @@
 #include <limits>
 #include <memory>
 #include <ostream>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -192,7 +193,10 @@ bool is_drivable(const Cell& cell) {
   return longest < (cell.is_guarded ? 0.7 : 0.4);
 }
 
+/// The whole matrix counts cells, for the reasons in docs/safety.md, "Where it ends"; the sample has none.
 TEST(MovesAgain, WhateverTheSimulatorsClockAndWhereverTheCarIsPut) {
+  std::ostringstream bad;
+  int driven = 0, count = 0;
   for (const Cell& cell : cells()) {
     if (!is_drivable(cell)) continue;
     Client client(cell);
@@ -200,14 +204,17 @@ TEST(MovesAgain, WhateverTheSimulatorsClockAndWhereverTheCarIsPut) {
     client.forget_standing();
     client.happen(cell.event);
     client.drive(24.0);
-    EXPECT_LT(client.stood(), kAgain) << cell;
-    EXPECT_GT(client.speed(), 1.5 * kMoves)
-        << cell << ": " << controller::word_of(client.frame().guard.reason).sentence;
     // A place that jumps while the car drives is a lie until it is tried.
-    if (cell.is_guarded && cell.event < Event::kPutElsewhere) {
-      EXPECT_GT(client.least_edge(), 0.0) << cell;
-    }
+    const bool keeps_road = cell.is_guarded && cell.event < Event::kPutElsewhere;
+    ++driven;
+    if (client.stood() < kAgain && client.speed() > kRolls && !(keeps_road && client.least_edge() <= 0.0))
+      continue;
+    ++count;
+    bad << '\n'
+        << cell << ": stood " << client.stood() << " s, edge " << client.least_edge() << " m, "
+        << controller::word_of(client.frame().guard.reason).sentence;
   }
+  EXPECT_LE(count, kDrivesAll ? driven / 20 : 0) << driven << " cells" << bad.str();
 }
 
 /// The receiver brakes for one command that does not arrive. The original car keeps that brake below 5 mph.
