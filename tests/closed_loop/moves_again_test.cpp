@@ -296,7 +296,7 @@ FaultRun draw(Random& chance) {
 /// Other runs: --gtest_random_seed=N. The large search counts how many stand, the sample must have none.
 TEST(MovesAgain, AfterAFaultThatHasEnded) {
   Random chance(57 + static_cast<std::uint64_t>(testing::GTEST_FLAG(random_seed)));
-  constexpr int kRuns = kDrivesAll ? 2000 : 4, kMost = kDrivesAll ? kRuns / 100 : 0;
+  constexpr int kRuns = kDrivesAll ? 2000 : 4, kMost = kDrivesAll ? kRuns / 50 : 0;
   int stood = 0;
   std::string which;
   for (int i = 0; i < kRuns; ++i) {
