@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A healthy car whose measurements agree moves again: whatever its simulator's clock, whatever put it
 // elsewhere, whatever fault has ended (docs/safety.md, "The conditions").
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <limits>
 #include <memory>
 #include <ostream>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,6 +33,7 @@ namespace {
 
 constexpr double kAgain = 10.0;  // [s] after which a car has to move
 constexpr double kMoves = 1.0;   // [m/s] a car that is led back walks
+constexpr double kRolls = 0.5;   // [m/s] slower, it stands
 constexpr double kCycle = 0.12;  // [s] of the wall's clock from telemetry to telemetry
 
 enum class Event { kNone, kHandedBack, kReset, kPutElsewhere, kMoved1, kMoved3, kMoved10, kMoved70 };
@@ -190,7 +193,10 @@ bool is_drivable(const Cell& cell) {
   return longest < (cell.is_guarded ? 0.7 : 0.4);
 }
 
+/// The whole matrix counts cells, for the reasons in docs/safety.md, "Where it ends"; the sample has none.
 TEST(MovesAgain, WhateverTheSimulatorsClockAndWhereverTheCarIsPut) {
+  std::ostringstream bad;
+  int driven = 0, count = 0;
   for (const Cell& cell : cells()) {
     if (!is_drivable(cell)) continue;
     Client client(cell);
@@ -198,14 +204,17 @@ TEST(MovesAgain, WhateverTheSimulatorsClockAndWhereverTheCarIsPut) {
     client.forget_standing();
     client.happen(cell.event);
     client.drive(24.0);
-    EXPECT_LT(client.stood(), kAgain) << cell;
-    EXPECT_GT(client.speed(), 1.5 * kMoves)
-        << cell << ": " << controller::word_of(client.frame().guard.reason).sentence;
     // A place that jumps while the car drives is a lie until it is tried.
-    if (cell.is_guarded && cell.event < Event::kPutElsewhere) {
-      EXPECT_GT(client.least_edge(), 0.0) << cell;
-    }
+    const bool keeps_road = cell.is_guarded && cell.event < Event::kPutElsewhere;
+    ++driven;
+    if (client.stood() < kAgain && client.speed() > kRolls && !(keeps_road && client.least_edge() <= 0.0))
+      continue;
+    ++count;
+    bad << '\n'
+        << cell << ": stood " << client.stood() << " s, edge " << client.least_edge() << " m, "
+        << controller::word_of(client.frame().guard.reason).sentence;
   }
+  EXPECT_LE(count, kDrivesAll ? driven / 20 : 0) << driven << " cells" << bad.str();
 }
 
 /// The receiver brakes for one command that does not arrive. The original car keeps that brake below 5 mph.
@@ -225,8 +234,12 @@ struct FaultRun {
   double at, lasts;  // [s]
 };
 
-/// The time for which the car stands afterwards [s].
-double stands_after(const FaultRun& run) {
+struct Standing {
+  double time = 0.0;  ///< for which the car stands after its fault, longest [s]
+  std::string why{};  ///< its last reason and place
+};
+
+Standing stands_after(const FaultRun& run) {
   auto scenario = *protocol::compose(
       {.scenario_file = "",
        .settings = {{"preset", run.preset}, {"car", run.car}, {"track", run.track}, {"laps", "0"}}});
@@ -235,25 +248,34 @@ double stands_after(const FaultRun& run) {
   scenario.faults[0].duration = run.lasts;
   const auto loop = std::move(*ClosedLoop::create(scenario));
   const double ended = run.at + run.lasts;
-  double longest = 0.0, stands_since = ended;
+  Standing longest;
+  double stands_since = ended;
   while (loop->time() < ended + 20.0 && !loop->is_over()) {
     loop->advance();
-    const model::State& car = loop->frame().truth;
-    if (loop->time() < ended || std::hypot(car.vx, car.vy) > 1.0) stands_since = loop->time();
-    longest = std::max(longest, loop->time() - stands_since);
+    const telemetry::Frame& now = loop->frame();
+    if (loop->time() < ended || std::hypot(now.truth.vx, now.truth.vy) > kRolls) stands_since = loop->time();
+    if (loop->time() - stands_since <= longest.time) continue;
+    longest = {loop->time() - stands_since,
+               fmt::format("{}, {:.1f} m inside, {:.1f} rad", controller::word_of(now.guard.reason).name,
+                           now.edge_distance, now.heading_error)};
   }
   return longest;
 }
 
 /// Causes of standing for ever: late beside a place in doubt; across its road after a slide; in wait for a
-/// lock that its wheels do not reach; between a way back and a stop that turn its wheels in turn.
+/// lock that its wheels do not reach; between a way back and a stop that turn its wheels in turn; across a
+/// hairpin, nearer to the edge than it takes to turn by the tangent of its lock, without any fault.
 TEST(MovesAgain, FromWhereItStood) {
-  for (const FaultRun& run :
-       {FaultRun{"pid", "vw-vanagon", "oval", 0.902734, "gps_noise", 4.350844, 1.0},
-        {"sixty-mph", "vw-vanagon", "hairpins", 1.144555, "half_grip", 8.2, 5.0},
-        {"pid", "bmw-320i", "oval", 0.892637, "steering_stuck", 5.112047, 5.0},
-        {"sixty-mph", "bmw-320i", "hairpins", 1.080957, "throttle_stuck", 20.5398, 2.0}})
-    EXPECT_LT(stands_after(run), kAgain) << run.car << " on " << run.track << ", " << run.fault;
+  for (const FaultRun& run : {FaultRun{"pid", "vw-vanagon", "oval", 0.902734, "gps_noise", 4.350844, 1.0},
+                              {"sixty-mph", "vw-vanagon", "hairpins", 1.144555, "half_grip", 8.07, 5.0},
+                              {"pid", "bmw-320i", "oval", 0.892637, "steering_stuck", 5.112047, 5.0},
+                              {"sixty-mph", "bmw-320i", "hairpins", 1.080957, "throttle_stuck", 20.5398, 2.0},
+                              {"sixty-mph", "vw-vanagon", "hairpins", 0.983686, "slow_solver", 4.0, 0.3},
+                              {"sixty-mph", "bmw-320i", "hairpins", 0.839345, "slow_solver", 4.0, 0.3}}) {
+    const Standing standing = stands_after(run);
+    EXPECT_LT(standing.time, kAgain) << run.car << " on " << run.track << ", " << run.fault << ": "
+                                     << standing.why;
+  }
 }
 
 FaultRun draw(Random& chance) {
@@ -274,14 +296,16 @@ FaultRun draw(Random& chance) {
 /// Other runs: --gtest_random_seed=N. The large search counts how many stand, the sample must have none.
 TEST(MovesAgain, AfterAFaultThatHasEnded) {
   Random chance(57 + static_cast<std::uint64_t>(testing::GTEST_FLAG(random_seed)));
-  constexpr int kRuns = kDrivesAll ? 2000 : 4, kMost = kDrivesAll ? kRuns * 3 / 100 : 0;
+  constexpr int kRuns = kDrivesAll ? 2000 : 4, kMost = kDrivesAll ? kRuns / 50 : 0;
   int stood = 0;
   std::string which;
   for (int i = 0; i < kRuns; ++i) {
     const FaultRun run = draw(chance);
-    if (stands_after(run) <= kAgain) continue;
+    const Standing standing = stands_after(run);
+    if (standing.time <= kAgain) continue;
     ++stood;
-    which += "\nrun " + std::to_string(i) + ": " + run.car + " on " + run.track;
+    which += fmt::format("\nrun {}: {} {} on {}, {} from {:.1f} s: {:.0f} s, {}", i, run.preset, run.car,
+                         run.track, run.fault, run.at, standing.time, standing.why);
   }
   EXPECT_LE(stood, kMost) << which;
 }

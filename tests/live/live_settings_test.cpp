@@ -285,43 +285,6 @@ TEST(LiveSettings, TakeTheLastOfQuickChoicesWithThoseBefore) {
   EXPECT_EQ(live.settings.scenario().car, "road-car");
 }
 
-TEST(LiveSettings, CountForBothRunsWhileOneIsBuilt) {
-  Live live;
-  ASSERT_TRUE(live.settings.set({"track", std::string("oval")}));
-  ASSERT_TRUE(live.settings.set({"latency_ms", 40.0}));
-  ASSERT_TRUE(live.settings.set({"latency_ms", 50.0}));
-  EXPECT_EQ(live.next().value.view(), "40");  // the run that goes on
-  EXPECT_EQ(live.next().value.view(), "50");
-  EXPECT_EQ(live.requests.front(), nullptr);
-  EXPECT_EQ(live.accepted.track, "lakeside");
-  EXPECT_EQ(live.accepted.latency, 0.05);
-  live.end_of_build();
-  EXPECT_TRUE(live.next().starts_anew);
-  const telemetry::Change again = live.next();  // what was built did not know of it
-  EXPECT_EQ(again.name.view(), "latency_ms");
-  EXPECT_EQ(again.value.view(), "50");
-  EXPECT_FALSE(again.starts_anew);
-  EXPECT_EQ(live.requests.front(), nullptr);
-  EXPECT_EQ(live.settings.scenario().latency, 0.05);
-  live.settings.tell({.name = "track", .value = "oval", .starts_anew = true});
-  EXPECT_EQ(live.settings.applied().size(), 1U);
-  EXPECT_EQ(live.accepted.track, "oval");  // and its description hears of it
-  EXPECT_EQ(live.accepted.latency, 0.05);
-}
-
-TEST(LiveSettings, WaitWithARunThatIsReadyUntilTheQueueHasRoom) {
-  Live live;
-  ASSERT_TRUE(live.settings.set({"track", std::string("oval")}));
-  for (std::uint64_t i = 0; i < run::SettingQueue::kCapacity; ++i)
-    ASSERT_TRUE(live.settings.set({"manual.steer", 0.001 * static_cast<double>(i)}));
-  live.end_of_build();
-  EXPECT_EQ(live.settings.scenario().track, "lakeside");
-  for (std::uint64_t i = 0; i < run::SettingQueue::kCapacity; ++i) live.next();
-  live.settings.update();
-  EXPECT_TRUE(live.next().starts_anew);
-  EXPECT_EQ(live.settings.scenario().track, "oval");
-}
-
 TEST(LiveSettings, OfferTheControllerOnlyForAnExternalSimulatorAndShowWhatIsFixed) {
   run::SettingQueue requests;
   LiveSettings settings({.scenario = scenario_of({{"preset", "weighted"}}), .has_world = false}, requests);

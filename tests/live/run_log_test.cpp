@@ -162,20 +162,6 @@ recording::BranchReport branch_from_checkpoint(RunLog& log, const recording::Bra
   }
 }
 
-TEST(RunLog, SparesABranchTheWayFromTheStart) {
-  const auto loop = oval("tracking-mpc");
-  RunLog log(true);
-  log.begin(loop->scenario());
-  drive(*loop, log, 500);
-  const recording::BranchOptions now{.at = 1e9, .duration = 2.0, .drives_both = true};
-  const auto report = branch_from_checkpoint(log, now, 260);
-  EXPECT_FALSE(report.first_difference);
-  EXPECT_EQ(report.cycle, 500U);
-  const auto before_any = log.branch({.at = 0.0, .duration = 2.0, .drives_both = true}, {});
-  ASSERT_TRUE(before_any) << before_any.error().message;
-  EXPECT_EQ(before_any->cycle, 0U);
-}
-
 TEST(RunLog, FollowsARunThatBeginsAnew) {
   const auto loop = oval();
   RunLog log(true);
@@ -207,23 +193,6 @@ TEST(RunLog, GoesOnWhereTheStartIsForgottenAndSaysSoOfWhatIs) {
   const auto too_early = log.branch({.at = 1.0, .duration = 1.0, .drives_both = true}, {});
   ASSERT_FALSE(too_early);
   EXPECT_THAT(too_early.error().message, testing::HasSubstr("ask for a moment after"));
-}
-
-TEST(RunLog, HasAFewCheckpointsNeverFartherBehindAMomentThanItIsAgo) {
-  const auto loop = oval();
-  RunLog log(true);
-  log.begin(loop->scenario());
-  drive(*loop, log, 1800);
-  const double now = loop->time();
-  const recording::BranchOptions newest{.at = 1e9, .duration = 1.0, .drives_both = true};
-  branch_from_checkpoint(log, newest, 260);
-  for (const double at : {7.0, 24.0, 45.0, 57.0, 68.0}) {
-    const auto report = log.branch({.at = at, .duration = 1.0, .drives_both = true}, {});
-    ASSERT_TRUE(report) << report.error().message;
-    EXPECT_FALSE(report->first_difference);
-    EXPECT_LE(static_cast<double>(report->steps_before) * 0.04, std::max(now - at, RunLog::kSpacing) + 0.1)
-        << at;
-  }
 }
 
 }  // namespace

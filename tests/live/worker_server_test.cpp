@@ -9,8 +9,6 @@
 namespace chicane::live {
 namespace {
 
-using std::chrono::milliseconds;
-
 class InWorker : public testing::Test {
  protected:
   std::vector<std::string> sent, events;
@@ -70,21 +68,6 @@ TEST_F(InWorker, HoldsBackWhatThePageHasNotTakenAndOfFramesTheNewest) {
   server.acknowledge(1000);
   EXPECT_EQ(sent.back(), "other");
   EXPECT_EQ(server.waiting(WorkerServer::kPage), 1U);
-}
-
-TEST_F(InWorker, DoesWhatIsDueOnceAndNotWhatThatAsksForNow) {
-  std::vector<std::string> done;
-  server.run_after(milliseconds(20), [&] { done.emplace_back("later"); });
-  server.run_after(milliseconds(0), [&] {
-    done.emplace_back("soon");
-    server.run_after(milliseconds(0), [&] { done.emplace_back("next"); });
-  });
-  server.pass_time(0.001);
-  EXPECT_EQ(done, (std::vector<std::string>{"soon"}));
-  server.pass_time(0.002);
-  server.pass_time(0.030);
-  server.pass_time(0.040);
-  EXPECT_EQ(done, (std::vector<std::string>{"soon", "next", "later"}));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "chicane/live/worker.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <atomic>
 #include <chrono>
@@ -43,28 +42,6 @@ TEST(Worker, WorksEachPeriodUntilItIsDestroyed) {
   const int at_end = works;
   std::this_thread::sleep_for(5ms);
   EXPECT_EQ(works, at_end);
-}
-
-TEST(Worker, IsBehindTheThreadThatMakesIt) {
-  std::promise<int> nice;
-  Worker worker([&] { nice.set_value(::getpriority(PRIO_PROCESS, 0)); });
-  worker.wake();
-  EXPECT_GE(nice.get_future().get(), 10);
-}
-
-TEST(Worker, WaitsForAWorkUnderWay) {
-  std::promise<void> began;
-  bool has_ended = false;
-  {
-    Worker worker([&] {
-      began.set_value();
-      std::this_thread::sleep_for(20ms);
-      has_ended = true;
-    });
-    worker.wake();
-    began.get_future().wait();
-  }
-  EXPECT_TRUE(has_ended);
 }
 
 }  // namespace

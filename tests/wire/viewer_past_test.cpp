@@ -93,38 +93,6 @@ TEST_F(ViewerOfAPast, IsToldHowMuchOfItIsLeft) {
   EXPECT_EQ(left, (std::vector{108, 0}));
 }
 
-TEST_F(ViewerOfAPast, IsPacedByWhatItHasRead) {
-  begin();
-  connect(2, false, "/viewer?past&paced");
-  endpoint->on_message(2, subscribe(4, "/chicane/frame"), false);
-  endpoint->on_message(2, subscribe_past(5), false);
-  server.take();
-  std::size_t sent = 0;
-  int newest = 0;
-  const auto look = [&] {
-    for (const auto& message : server.take()) {
-      if (message.to != 2 || !message.binary) continue;
-      EXPECT_EQ(message.delivery, net::Delivery::kReliable) << "nothing that is counted may be replaced";
-      sent += message.bytes->size();
-      if (message.bytes->front() == 1 && subscription_of(message) == 4) ++newest;
-    }
-  };
-  drive(50);
-  look();
-  EXPECT_GE(newest, 1);
-  EXPECT_LT(newest, 15) << "it reads nothing";
-  EXPECT_LT(sent, LinkPace::kFirst + 4096 + 2000);
-  const std::string read = json{{"op", "received"}, {"bytes", sent}, {"at", 12.5}}.dump();
-  endpoint->on_message(2, read, false);
-  const auto next = std::exchange(server.sent, {});
-  EXPECT_EQ(json::parse(*next.at(0).bytes), (json{{"op", "heard"}, {"at", 12.5}, {"held", 0.0}}));
-  EXPECT_EQ(next.at(1).bytes->front(), 2);
-  EXPECT_EQ(subscription_of(next.at(2)), 4U) << "at once, and before more of the past";
-  EXPECT_EQ(subscription_of(next.at(next.size() - 2)), 5U) << "what is left is told last";
-  endpoint->on_message(1, read, false);
-  EXPECT_THAT(answer()["message"].get<std::string>(), HasSubstr("does not ask for pacing"));
-}
-
 TEST_F(ViewerOfAPast, HasTheLastLapBeforeItIsSentAway) {
   begin();
   connect(2, false, "/viewer?paced");

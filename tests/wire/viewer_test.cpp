@@ -220,19 +220,6 @@ TEST_F(Viewer, LearnsTheLastFrameWhenItComesLate) {
   EXPECT_EQ(server.take().size(), 1U);
 }
 
-TEST_F(Viewer, SharesBytesWithViewersOfTheSameKind) {
-  start({});
-  connect(2, true);
-  for (const net::ConnectionId id : {1U, 2U}) endpoint->on_message(id, subscribe(4, "/odom"), false);
-  server.take();
-  endpoint->publish(frame_at(1.0));
-  server.pass_time();
-  const auto messages = server.take();
-  ASSERT_EQ(messages.size(), 4U);
-  EXPECT_EQ(messages[2].bytes, messages[3].bytes);
-  EXPECT_NE(messages[2].to, messages[3].to);
-}
-
 TEST_F(Viewer, GetsNothingAfterItHasLeftOrUnsubscribed) {
   start({});
   connect(2, true);

@@ -113,7 +113,7 @@ class Guard {
   [[nodiscard]] bool should_lead_back(double time, bool has_answer) noexcept;
   [[nodiscard]] bool lead_back(double act, const Cycle& cycle, controller::StepResult& result) noexcept;
   [[nodiscard]] model::VehicleParams led_vehicle() const noexcept;
-  [[nodiscard]] model::Command creep_step(const StopStart& start, const model::State& car) const noexcept;
+  [[nodiscard]] bool turns_as_asked(double time, const model::State& car) noexcept;
   [[nodiscard]] double against_rolling_back() const noexcept;
   void watch_for_reset(const model::Measurement& measured) noexcept;
   [[nodiscard]] bool may_ask(const model::Measurement& measured) const noexcept;
@@ -183,6 +183,9 @@ class Guard {
     double ask_pause = kAskPause;   ///< after the next trial [s]
     double tried = 0.0;             ///< way driven to see whether the car was put elsewhere, by the model [m]
     double held_speed = 0.0;        ///< of a car that should move, when it began not to [m/s]
+    double led_at = 0.0;            ///< it is led, last [s]
+    model::Pose led_from{};         ///< where it was judged by its turning last
+    double stays_until = 0.0;       ///< its wheels turned it otherwise than asked [s]
     Since answered;                 ///< the controller, last
     Since still;                    ///< a car that is measured elsewhere stands by the estimate
     Since refused;                  ///< commands of a standing car

@@ -150,16 +150,38 @@ constexpr double kTrialWay = 0.5;    // share of the car's length that is driven
 constexpr double kTrialRoom = 1.0;   // to the edge [m], where no stop fits
 constexpr double kTrialSpeed = 1.0;  // [m/s]
 constexpr double kTrialPedal = 0.3;
-constexpr double kCreep = 1.0;             // [m/s] of a car that turns at the edge
+constexpr double kCreep = 1.5;             // [m/s] of a car that turns at the edge
 constexpr double kCreepDrive = 2.5;        // [1/s] of its drive: turned wheels resist
-constexpr double kCreepAhead = 0.3;        // [s] of creeping that is simulated
-constexpr double kCreepNearer = 1e-3;      // [m] by which it may come nearer in that time
+constexpr double kCreepStep = 0.1;         // [s] of creeping that are simulated at once
+constexpr double kLongestCreep = 6.0;      // [s]
+constexpr double kKeptShare = 0.25;        // of the margin that creeping leaves at least
+constexpr double kCreepNearer = 5e-3;      // [m] by which a car that has less may come nearer
+constexpr double kSeenTurn = 0.06;         // [rad] of turning after which a car that is led is judged by it
+constexpr double kLeastTurned = 0.5;       // share of it that shows that the wheels answer
 constexpr double kTurnedWheels = 0.1;      // share of full lock that wheels may lack
 constexpr double kLongestAskPause = 60.0;  // [s] between two trials
 constexpr double kMostAside = 1.0;         // [m] by which a place may have jumped across the road
 constexpr double kChord = 0.7;             // [m] by which waypoints cut a bend
 constexpr double kAlongWaypoints = 0.35;   // [rad] off the line of waypoints that bends between them
 constexpr double kNoAnswerTime = 1.0;      // [s] after which a controller without an answer begins anew
+
+/// The command of a car that creeps.
+model::Command creep(double steer, double vx, const model::VehicleParams& car) noexcept {
+  return {steer, throttle_for(car, kCreepDrive * std::max(kCreep - vx, 0.0), vx)};
+}
+
+/// The least distance to the edge of a car that creeps from `at` on with its wheels turned, until it is along
+/// the road or as far from the edge as before (docs/guard.md, eq. 6c). It comes to rest on this arc wherever
+/// it is stopped.
+double creeping_edge(const StopPlanner& planner, const road::KnownRoad& road, StopStart at, double steer,
+                     const model::VehicleParams& car) noexcept {
+  const double edge = planner.edge(road, at), ends = at.time + kLongestCreep;
+  double least = edge;
+  do {
+    at = planner.advance(road, at, creep(steer, at.body.vx, car), kCreepStep, least);
+  } while (at.time < ends && at.e * steer < 0.0 && !(planner.edge(road, at) > edge));
+  return least;
+}
 
 }  // namespace
 
@@ -294,34 +316,33 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const road::ReferenceLine& line = road_.line();
   if (line.is_empty() || !estimator_.is_started() || !std::isfinite(act)) return false;
   const model::State car = estimator_.predict(act, sent_).state;
-  if (!std::isfinite(car.x + car.y + car.psi + car.vx)) return false;
   const bool rolls_back = direction_.rolls_back();
-  if (!rolls_back && !(std::fabs(car.vx) < kLedBackSpeed)) return false;
+  const bool is_slow = rolls_back || std::fabs(car.vx) < kLedBackSpeed;
+  if (!std::isfinite(car.x + car.y + car.psi + car.vx) || !is_slow) return false;
   const road::ReferenceLine::Projection place =
       line.project_along({car.x, car.y}, car.psi, 2.0 * model_.vehicle().width);
   if (!(place.distance < kLost)) return false;
+  const model::VehicleParams vehicle = led_vehicle();
   result.command = rolls_back ? model::Command{0.0, against_rolling_back()}
-                              : tracking::way_back(line, place, car, led_vehicle());
+                              : tracking::way_back(line, place, car, vehicle);
   const std::optional<StopStart> start = place_on_road(act);
   if (run_.is_astray) filter_.forget();
   const double edge = start ? filter_.planner().edge(road_, *start) : 0.0;
   const bool stands = std::fabs(car.vx) < kStandingSpeed && !rolls_back;
-  const bool creeps = start && stands && !run_.is_astray && edge >= 0.0 && edge < options_.margin;
-  Fit fit = Fit::kNone;
-  if (creeps) {
-    result.command = creep_step(*start, car);
+  const bool is_on_road = start && edge >= 0.0;
+  // Who drives before the wheels have turned uses the room that turning takes.
+  const bool has_turned = std::fabs(result.command.steer - car.steer) < kTurnedWheels * vehicle.steer_limit;
+  const bool waits = stands && is_on_road && !(turns_as_asked(act, car) && has_turned);
+  if (stands && result.command.throttle > 0.0) result.command = creep(result.command.steer, car.vx, vehicle);
+  Fit fit = start && !waits ? verify(*start, cycle, result.command, true) : Fit::kNone;
+  const double kept = std::min(edge, kKeptShare * options_.margin) - kCreepNearer;
+  if (fit == Fit::kNone && stands && is_on_road && !waits &&
+      creeping_edge(filter_.planner(), road_, *start, car.steer, vehicle) > kept)
     fit = Fit::kSeen;
-  } else if (stands && result.command.throttle > 0.0) {
-    const double gently = result.command.throttle;
-    result.command.throttle = throttle_for(model_.vehicle(), kCreepDrive * kCreep, car.vx);
-    if (start) fit = verify(*start, cycle, result.command, true);
-    if (start && edge >= -options_.margin && fit == Fit::kNone) result.command.throttle = gently;
-  }
-  if (start && fit == Fit::kNone) fit = verify(*start, cycle, result.command, true);
   // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there,
   // and once it stands. Otherwise a car that stands turns its wheels: it needs less room then.
-  const bool may_leave = run_.has_stood_astray && result.answer != Answer::kDrive;
-  if (start && !(edge < 0.0) && fit == Fit::kNone && !may_leave) {
+  const bool may_leave = run_.has_stood_astray && !waits && result.answer != Answer::kDrive;
+  if (is_on_road && fit == Fit::kNone && !may_leave) {
     const double steer = result.command.steer;
     if (!stands || !drive_backup(*start, result)) return false;
     result.command.steer = steer;
@@ -341,20 +362,21 @@ model::VehicleParams Guard::led_vehicle() const noexcept {
   return vehicle;
 }
 
-/// At full lock away from the near edge a car soon comes no nearer to it (eq. 6a); until then it may take
-/// half of the margin. Its wheels turn first: the stop of a car that does not move is the standstill it
-/// begins from.
-model::Command Guard::creep_step(const StopStart& start, const model::State& car) const noexcept {
-  const model::VehicleParams vehicle = led_vehicle();
-  const double lock = std::copysign(vehicle.steer_limit, -start.d);
-  const model::Command rest{lock, throttle_to_rest(vehicle, -kCreepDrive, std::max(car.vx, 0.0))};
-  if (!(std::fabs(lock - car.steer) < kTurnedWheels * vehicle.steer_limit)) return rest;
-  const double drive = kCreepDrive * std::max(kCreep - car.vx, 0.0);
-  const model::Command creep{lock, throttle_for(vehicle, drive, car.vx)};
-  double edge = filter_.planner().edge(road_, start);
-  const double kept = std::min(edge, 0.5 * options_.margin) - kCreepNearer;
-  static_cast<void>(filter_.planner().advance(road_, start, creep, kCreepAhead, edge));
-  return edge > kept ? creep : rest;
+/// Whether a car that is led turns as its wheels say. Where it does not, it stands for a while: its way is
+/// another one than is verified.
+bool Guard::turns_as_asked(double time, const model::State& car) noexcept {
+  const model::State& now = estimator_.state();
+  const model::Pose from = run_.led_from;
+  const bool goes_on = time - std::exchange(run_.led_at, time) < kStillTime;
+  const double way = (now.x - from.x) * cos(now.psi) + (now.y - from.y) * sin(now.psi);
+  const double asked = way * car.steer / model_.vehicle().wheelbase();
+  const bool is_judged = goes_on && std::fabs(asked) > kSeenTurn;
+  if (is_judged && angle_difference(now.psi, from.psi) / asked < kLeastTurned)
+    run_.stays_until = time + kAskPause;
+  if (!goes_on || is_judged) run_.led_from = {now.x, now.y, now.psi};
+  const bool stays = time < run_.stays_until;
+  if (stays) report_.reason = controller::GuardReason::kOtherSteering;
+  return !stays;
 }
 
 double Guard::against_rolling_back() const noexcept {

@@ -18,7 +18,7 @@ constexpr double kShortestHold = 0.09;  // [s] a command is held where the next 
 constexpr double kLongestHold = 0.5;    // [s] a command is held
 constexpr double kRecovery = 0.5;       // [s] after a silence until the car is controlled again
 constexpr double kDrivenOpen = 2.0;     // [s] of silence for which a stop that is being driven is certified
-constexpr double kTurnReserve = 1.5;    // times the room in which a car that stood turns back to the road
+constexpr double kTurnReserve = 1.2;    // times the room in which a car that stood turns back to the road
 constexpr double kLedShare = 0.5;       // of the margin that turning back leaves at least
 constexpr double kCrawl = 0.5;          // [m/s]
 constexpr double kWalkingPace = 3.0;    // [m/s] below it slip angles say little
@@ -225,7 +225,7 @@ Fit PredictiveFilter::verify_held(const Request& request, double held, GuardRepo
   const StopStart next = planner_.advance(road, request.start, request.command, held, edge_until);
   const Goal goal{.margin = margin_for(request, next, edge_now),
                   .open_time = terms_.open_time,
-                  .turns_back = !request.is_led};
+                  .turns_back = !request.is_led || request.start.body.vx > kCrawl};
   const double slip = this->slip(next);
   if (!(slip < (road.slides() ? kMostSlipOfSlides : kMostSlip)) || !(edge_until >= goal.margin))
     return Fit::kNone;

@@ -268,11 +268,13 @@ double StopPlanner::turning_room(const road::KnownRoad& road, const StopStart& a
   const double length = car.wheelbase();
   const double side = at.e < 0.0 ? -1.0 : 1.0;
   const double bend = side * road.line().demand(at.s).curvature;  // the road turns away, or after the car
-  const double radius = 1.0 / std::max(tan(car.steer_limit) / length + bend, kLeastTurning);
+  const double radius = 1.0 / std::max(car.steer_limit / length + bend, kLeastTurning);
   const double outside = radius + 0.5 * (car.track_width + car.tire_width);
   const double now = outside * cos(at.e) + length * side * sin(at.e);  // the front wheel, from the centre
-  const bool comes_nearer = std::fabs(at.e) > atan2(length, outside);
-  return comes_nearer ? hypot(outside, length) - now : 0.0;
+  const road::KnownRoad::Edges edges = road.edges(at.s);
+  const double farther = side * (edges.left - edges.right - 2.0 * at.d);  // the edge that it turns along
+  if (!(std::fabs(at.e) > atan2(length, outside))) return 0.0;
+  return std::max(hypot(outside, length) - now - std::max(farther, 0.0), 0.0);
 }
 
 /// That of a car that moves like `m` and brakes, with the slopes of the axles' forces at their slip angles.

@@ -220,7 +220,7 @@ Situation situation_of(const Frame& frame, const Situation& before, const Situat
   const double speed = speed_of(frame);
   const bool stood = last.stands_since >= 0.0;
   if (stood ? !(speed > kMoving) : speed < kStanding)
-    now.stands_since = stood ? last.stands_since : frame.time;
+    now.stands_since = stood && !frame.is_manual ? last.stands_since : frame.time;
   if (frame.is_judged) place(frame.s, terms.corners, now);
 
   const double grip = used_grip(frame);
@@ -230,7 +230,7 @@ Situation situation_of(const Frame& frame, const Situation& before, const Situat
     now.kind = last.kind;
   now.kind_since = now.kind == last.kind && !begins ? last.kind_since : frame.time;
   if (now.kind == Kind::kGrip) now.number = grip;
-  if (now.kind == Kind::kOffRoad) now.number = std::max(0.0, -frame.edge_distance);
+  if (now.kind == Kind::kOffRoad) now.number = std::max(0.1, -frame.edge_distance);
 
   if (severity_of(now) == Severity::kError) {
     const bool goes_on = last.alarmed_at >= 0.0 && frame.time - last.alarmed_at <= kAlarmPause;
