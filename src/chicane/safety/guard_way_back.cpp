@@ -150,7 +150,7 @@ constexpr double kTrialWay = 0.5;    // share of the car's length that is driven
 constexpr double kTrialRoom = 1.0;   // to the edge [m], where no stop fits
 constexpr double kTrialSpeed = 1.0;  // [m/s]
 constexpr double kTrialPedal = 0.3;
-constexpr double kCreep = 1.5;             // [m/s] of a car that turns at the edge
+constexpr double kCreep = 1.0;             // [m/s] of a car that turns at the edge
 constexpr double kCreepDrive = 2.5;        // [1/s] of its drive: turned wheels resist
 constexpr double kCreepStep = 0.1;         // [s] of creeping that are simulated at once
 constexpr double kLongestCreep = 6.0;      // [s]
@@ -340,11 +340,12 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
       creeping_edge(filter_.planner(), road_, *start, car.steer, vehicle) > kept)
     fit = Fit::kSeen;
   // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there,
-  // and once it stands. Otherwise a car that stands turns its wheels: it needs less room then.
+  // and once it stands. Otherwise a car that creeps or stands turns its wheels: it needs less room then.
   const bool may_leave = run_.has_stood_astray && !waits && result.answer != Answer::kDrive;
   if (is_on_road && fit == Fit::kNone && !may_leave) {
     const double steer = result.command.steer;
-    if (!stands || !drive_backup(*start, result)) return false;
+    const bool is_on_arc = std::fabs(car.vx) < kCreep && !rolls_back;
+    if (!is_on_arc || !drive_backup(*start, result)) return false;
     result.command.steer = steer;
     filter_.begin_cycle();  // a receiver that plays the stop from now on would turn the wheels back
     return true;
