@@ -375,9 +375,9 @@ bool Guard::turns_as_asked(double time, const model::State& car) noexcept {
   if (is_judged && angle_difference(now.psi, from.psi) / asked < kLeastTurned)
     run_.stays_until = time + kAskPause;
   if (!goes_on || is_judged) run_.led_from = {now.x, now.y, now.psi};
-  const bool stays = time < run_.stays_until;
-  if (stays) report_.reason = controller::GuardReason::kOtherSteering;
-  return !stays;
+  if (!(time < run_.stays_until)) return true;
+  report_.reason = controller::GuardReason::kOtherSteering;
+  return false;
 }
 
 double Guard::against_rolling_back() const noexcept {

@@ -22,10 +22,8 @@ constexpr double kJumpBack = 1.0;         // [m] otherwise than the car moved, b
 }  // namespace
 
 void MeasurementMonitor::reset() noexcept {
-  SensorWatch watch = watch_;
-  watch.reset();
-  *this = MeasurementMonitor{1.0, 1.0};
-  watch_ = watch;
+  watch_.reset();
+  *this = MeasurementMonitor{watch_};
 }
 
 const model::Measurement& MeasurementMonitor::check(const model::Measurement& now,
@@ -81,10 +79,8 @@ void MeasurementMonitor::judge(const model::Measurement& now, const model::State
                           kHeadingJump + kYawAcceleration * step * step + 0.1 * other_drift_ ||
                       (own_.position_jump && own_.speed_mismatch);
   findings_ = own_;
-  if (is_stuck(now, expected)) {
-    findings_.frozen = true;
-    return;
-  }
+  findings_.frozen = is_stuck(now, expected);
+  if (findings_.frozen) return;
   if (was_frozen) watch_.forget_doubts();
   const SensorDoubts& doubts = watch_.see(now, expected);
   if (doubts.is_old) own_ = {};

@@ -48,6 +48,7 @@ class MeasurementMonitor {
   [[nodiscard]] const Findings& findings() const noexcept { return findings_; }
 
  private:
+  explicit MeasurementMonitor(const SensorWatch& watch) noexcept : watch_{watch} {}
   /// Displacement and speed over the last second: what was measured at its beginning.
   struct Sample {
     double time = 0.0;

@@ -57,11 +57,10 @@ SensorWatch::SensorWatch(double length, double wheelbase) noexcept
     : size_{std::min(length / kFullSize, 1.0)}, wheelbase_{wheelbase} {}
 
 void SensorWatch::reset() noexcept {
-  const bool may_be_late = doubts_.late || is_tried_;
-  const double retry = retry_;
-  *this = SensorWatch{size_ * kFullSize, wheelbase_};
-  doubts_.late = may_be_late;
-  retry_ = retry;
+  SensorWatch watch{size_ * kFullSize, wheelbase_};
+  watch.doubts_.late = doubts_.late || is_tried_;
+  watch.retry_ = retry_;
+  *this = watch;
 }
 
 const SensorWatch::Sample& SensorWatch::back(std::size_t count) const noexcept {
