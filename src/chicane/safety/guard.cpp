@@ -68,7 +68,7 @@ Guard::Guard(std::unique_ptr<controller::Controller> controller, const model::Ve
 
 void Guard::reset() noexcept {
   controller_->reset();
-  monitor_ = MeasurementMonitor{vehicle_.length, vehicle_.wheelbase()};
+  monitor_.reset(/*forgets_lateness=*/true);
   reset_watch_.reset();
   actuators_.reset();
   learned_.reset();
@@ -118,7 +118,10 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   if (options_.mode != GuardMode::kOn) learned_.see(now, commanded_);
   // What was in doubt while a person drove says nothing of where the person has driven to.
   const bool is_handed_back = std::exchange(run_.is_by_hand, cycle.manual.has_value()) && !cycle.manual;
-  if (is_handed_back && Supervisor::wants_trial(monitor_.findings())) begin_here();
+  if (is_handed_back && Supervisor::wants_trial(monitor_.findings())) {
+    begin_here();
+    monitor_.reset(/*forgets_lateness=*/true);
+  }
   const model::Measurement& seen = is_off ? now : look(now);
   result = controller_->step(seen, deadline);
   watch_answer(seen, result.answer != Answer::kNone);

@@ -21,8 +21,8 @@ constexpr double kJumpBack = 1.0;         // [m] otherwise than the car moved, b
 
 }  // namespace
 
-void MeasurementMonitor::reset() noexcept {
-  watch_.reset();
+void MeasurementMonitor::reset(bool forgets_lateness) noexcept {
+  watch_.reset(forgets_lateness);
   *this = MeasurementMonitor{watch_};
 }
 

@@ -36,7 +36,8 @@ class MeasurementMonitor {
 
   /// `length`: of the car [m]; `wheelbase` [m].
   MeasurementMonitor(double length, double wheelbase) noexcept : watch_{length, wheelbase} {}
-  void reset() noexcept;
+  /// Forgets what was measured; lateness as SensorWatch::reset() does.
+  void reset(bool forgets_lateness = false) noexcept;
 
   /// `now`, with NaN where it is not plausible; `expected` at now.time, null when nothing is known yet. Valid
   /// until the next call.

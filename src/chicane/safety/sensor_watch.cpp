@@ -56,9 +56,9 @@ double SensorWatch::Noise::deviation() const noexcept { return std::sqrt(square)
 SensorWatch::SensorWatch(double length, double wheelbase) noexcept
     : size_{std::min(length / kFullSize, 1.0)}, wheelbase_{wheelbase} {}
 
-void SensorWatch::reset() noexcept {
+void SensorWatch::reset(bool forgets_lateness) noexcept {
   SensorWatch watch{size_ * kFullSize, wheelbase_};
-  watch.doubts_.late = doubts_.late || is_tried_;
+  watch.doubts_.late = !forgets_lateness && (doubts_.late || is_tried_);
   watch.retry_ = retry_;
   *this = watch;
 }
@@ -100,11 +100,12 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
   // Where a command that acts late turns the car by more than (10), its heading is not known well enough.
   const double rate = expected.vx * tan(expected.steer) / wheelbase_;
   if (std::fabs(rate - std::exchange(asked_rate_, rate)) * kLateCommand > most.heading) calm_ = 0.0;
-  if (is_sure() || has_doubts()) {
+  const bool is_judged = is_sure() || doubts_.place || doubts_.heading || doubts_.speed;
+  if (is_judged || doubts_.late) {
     end_doubts(seen, most, elapsed, angle_difference(now.psi, expected.psi));
     judge_age(now, expected, seen, most, elapsed);
     const bool was_doubted = doubts_.place;
-    if (!doubts_.is_old) begin_doubts(seen, most);
+    if (is_judged && !doubts_.is_old) begin_doubts(seen, most);
     if (place_confirms_speed(elapsed, now, expected)) doubts_.speed = false;
     if (doubts_.place && !was_doubted) {
       has_jumped_ = true;
@@ -135,8 +136,8 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
   return doubts_;
 }
 
-/// Equation 10a: the place, which does not depend on the speed, has moved by the measured speed and not by
-/// the expected one. Then the model is wrong, not the sensor.
+/// docs/guard.md, eq. 10a: the place, which does not depend on the speed, has moved by the measured speed and
+/// not by the expected one. Then the model is wrong, not the sensor.
 bool SensorWatch::place_confirms_speed(double elapsed, const model::Measurement& now,
                                        const model::State& expected) const noexcept {
   if (doubts_.place || doubts_.is_old) return false;
@@ -213,8 +214,9 @@ void SensorWatch::judge_age(const model::Measurement& now, const model::State& e
   // A place in doubt stays far; the age of a car that stands does not show in it, nor that of a slow one.
   const bool is_other = is_far && !(stands && doubts_.place);
   const bool is_slow = !stands && std::fabs(now.speed) * kMostLag < most.place;
-  late_agrees_ = doubts_.is_old || is_other || is_slow ? 0.0 : late_agrees_ + elapsed;
-  if (!doubts_.late || late_agrees_ < kAgreeing || now.time < retry_) return;
+  late_agrees_ = doubts_.is_old || is_other ? 0.0 : late_agrees_ + (is_slow ? 0.0 : elapsed);
+  const double waits = retry_ - now.time;
+  if (!doubts_.late || late_agrees_ < kAgreeing || (waits > 0.0 && waits < kRetry)) return;
   doubts_.late = false;
   is_tried_ = stands;
   asked_speed_ = lag_ = 0.0;

@@ -29,8 +29,9 @@ class SensorWatch {
 
   /// `length`: of the car [m]; `wheelbase` [m].
   SensorWatch(double length, double wheelbase) noexcept;
-  /// What was seen of a car is another one's. That measurements may be late stays until a start shows it.
-  void reset() noexcept;
+  /// Forgets the samples. `late` stays until a start shows that measurements are current, unless it is
+  /// forgotten, too.
+  void reset(bool forgets_lateness = false) noexcept;
 
   /// The doubts in a finite measurement; `expected`: the car by the estimate at now.time.
   const SensorDoubts& see(const model::Measurement& now, const model::State& expected) noexcept;

@@ -31,7 +31,8 @@ struct Condition {
 /// All of them; of several findings that last too long, the last is named. A moment's doubt comes from
 /// noise or a car that slides, so 0.1 s of it, five measurements of the fastest sensor, is tolerated; without
 /// a measurement 0.12 s, three at the simulator's 25 Hz. What is frozen has repeated for 0.3 m of driving
-/// before it is found. Whether a speed is wrong or the model is shows in the next measurement (eq. 10a).
+/// before it is found. Whether a speed is wrong or the model is shows in the next measurement
+/// (docs/guard.md, eq. 10a).
 inline constexpr std::array<Condition, 13> kConditions{{
     {&Findings::late, controller::GuardReason::kLate, 0.12, ConditionEnd::kByItself},
     {&Findings::unmeasured, controller::GuardReason::kNotMeasured, 0.12, ConditionEnd::kByItself},
