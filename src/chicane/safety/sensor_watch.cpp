@@ -215,8 +215,8 @@ void SensorWatch::judge_age(const model::Measurement& now, const model::State& e
   const bool is_other = is_far && !(stands && doubts_.place);
   const bool is_slow = !stands && std::fabs(now.speed) * kMostLag < most.place;
   late_agrees_ = doubts_.is_old || is_other ? 0.0 : late_agrees_ + (is_slow ? 0.0 : elapsed);
-  const double waits = retry_ - now.time;
-  if (!doubts_.late || late_agrees_ < kAgreeing || (waits > 0.0 && waits < kRetry)) return;
+  const bool must_wait = retry_ > 0.0 && (!stands || (now.time < retry_ && now.time > retry_ - kRetry));
+  if (!doubts_.late || late_agrees_ < kAgreeing || must_wait) return;
   doubts_.late = false;
   is_tried_ = stands;
   asked_speed_ = lag_ = 0.0;
@@ -234,6 +234,7 @@ void SensorWatch::try_start(const model::Measurement& now, const model::State& e
     retry_ = now.time + kRetry;
   }
   if (doubts_.late || std::fabs(now.speed) > tried) is_tried_ = false;
+  if (!doubts_.late && !is_tried_) retry_ = 0.0;
 }
 
 void SensorWatch::begin_doubts(const Innovation& seen, const Innovation& most) noexcept {
