@@ -9,6 +9,7 @@
 #include <deque>
 #include <limits>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "chicane/base/text.hpp"
@@ -154,11 +155,9 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
   for (const std::string_view candidate : known) {
     const bool unit_forgotten = candidate.starts_with(word) && candidate.size() > word.size() &&
                                 (candidate[word.size()] == '_' || candidate[word.size()] == '-');
-    const int distance = unit_forgotten ? 1 : edit_distance(word, candidate);
-    if (distance < best_distance) {
-      best = candidate;
-      best_distance = distance;
-    }
+    const bool is_swapped = std::is_permutation(word.begin(), word.end(), candidate.begin(), candidate.end());
+    const int distance = unit_forgotten || is_swapped ? 1 : edit_distance(word, candidate);
+    if (distance < best_distance) std::tie(best, best_distance) = std::pair{candidate, distance};
   }
   return best;
 }
