@@ -82,7 +82,7 @@ struct NoHardMultipliers {
   double terminal_constraint_multiplier(int) const { return 0.0; }
 };
 
-/// Scalars at `values`: plain numbers, dual ones or those of second order, variables from number `first` on.
+/// Scalars at `values`: double, dual or of second order, with variables from number `first` on.
 template <class T, std::size_t N>
 [[nodiscard]] std::array<T, N> variables_at(const std::array<double, N>& values, [[maybe_unused]] int first) {
   std::array<T, N> result;

@@ -176,7 +176,7 @@ class HpipmSolver {
     d_ocp_qp_set_ubu(k, high.data(), &qp_);
     d_ocp_qp_set_D(k, d.data(), &qp_);
   }
-  /// One whole step; false where HPIPM ends with what is not a number.
+  /// One whole step; false where HPIPM ends with a value that is not a number.
   bool make_step() {
     int warm = status_ == 0 ? 2 : 0;
     for (int k = 0; k <= rows_.at.horizon; ++k) set_stage(k);

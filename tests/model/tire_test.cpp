@@ -50,7 +50,7 @@ TEST(MagicFormula, HasItsSecantWithoutAnAngle) {
     for (double slip = 1e-4; slip < 20.0; slip *= 1.3)
       EXPECT_NEAR(magic_secant(shape, slip * slip), curve(slip) / slip, 1e-15) << shape << ' ' << slip;
   }
-  // Its derivatives are those of sin(C atan(x/C)) over x by the rules of the jets.
+  // Its derivatives equal the jets' of sin(C atan(x/C)) over x.
   for (double square = 1e-4; square < 400.0; square *= 1.7) {
     const auto x2 = FullJet<1, 2>::variable(square, 0);
     const auto x = sqrt(x2);

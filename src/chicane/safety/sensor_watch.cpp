@@ -211,7 +211,7 @@ void SensorWatch::judge_age(const model::Measurement& now, const model::State& e
   const bool is_far = seen.place > most.place;
   doubts_.is_old = goes_on || (is_far && !doubts_.place && is_earlier(now, most));
   doubts_.late |= doubts_.is_old;
-  // A place in doubt stays far; the age of a car that stands does not show in it, nor that of a slow one.
+  // A place in doubt stays far. The place of a standing or slow car does not show the age of a measurement.
   const bool is_other = is_far && !(stands && doubts_.place);
   const bool is_slow = !stands && std::fabs(now.speed) * kMostLag < most.place;
   late_agrees_ = doubts_.is_old || is_other ? 0.0 : late_agrees_ + (is_slow ? 0.0 : elapsed);

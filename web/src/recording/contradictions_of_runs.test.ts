@@ -118,7 +118,7 @@ describe.skipIf(program === undefined)('recorded runs', () => {
   it('are told without contradictions', { timeout: 1_800_000 }, async () => {
     const found = new Map<string, string>();
     const states = new Set<string>();
-    let [runs, frames, known, onsets] = [0, 0, 0, 0]; // events that a person must know, and alarms that told them
+    let [runs, frames, known, onsets] = [0, 0, 0, 0]; // events that a person must know of, and alarms for them
     const refuse = (text: string, words: Words): void => void (found.has(text) || found.set(text, words.join(' ')));
     for (const words of runsOf()) {
       ++runs;
