@@ -20,7 +20,8 @@ namespace {
 
 /// How many of each; `open`: their least miss lies between GLPK's precision and the tolerance.
 struct Tally {
-  long possible = 0, solved = 0, impossible = 0, reported = 0, open = 0, unknown = 0, untrue = 0, iterations = 0;
+  long possible = 0, solved = 0, impossible = 0, reported = 0, open = 0, unknown = 0, untrue = 0,
+       iterations = 0;
 };
 
 template <int Nx, int Nu>
@@ -57,7 +58,8 @@ void try_one(long seed, Tally& tally) {
   for (auto& u : t.u) u.fill(chance(0.3) ? random.normal() : 0.0);
   for (auto& x : t.x) x = start;
   const solver::HardReport report = ocp->solve(problem, start, t);
-  const bool is_reported = report.status == solver::SolveStatus::kInfeasible, is_usable = usable(report.status);
+  const bool is_reported = report.status == solver::SolveStatus::kInfeasible,
+             is_usable = usable(report.status);
   tally.iterations += report.iterations;
   const char* wrong = nullptr;
   // GLPK rounds, too: an answer that holds shows that the problem is possible, inputs of GLPK that miss when
@@ -102,7 +104,8 @@ int main(int argc, char** argv) {
     seed % 2 == 0 ? try_one<2, 1>(seed, tally) : try_one<4, 2>(seed, tally);
   }
   std::printf(
-      "of %ld possible %ld solved; of %ld impossible %ld reported; %ld between, %ld unknown; %ld untrue; %.0f "
+      "of %ld possible %ld solved; of %ld impossible %ld reported; %ld between, %ld unknown; %ld untrue; "
+      "%.0f "
       "iterations\n",
       tally.possible, tally.solved, tally.impossible, tally.reported, tally.open, tally.unknown, tally.untrue,
       static_cast<double>(tally.iterations) / static_cast<double>(count));
