@@ -17,7 +17,7 @@ axes = {"car": [CARS[i % 3] for i in range(count)], "track": [TRACKS[i // 3 % 4]
 for key, low, high in (("plant_options.friction_scale", 0.9, 1.05), ("plant_options.mass_scale", 0.95, 1.1),
                        ("sensor.latency_ms", 0, 30), ("fault", -0.5, 0.5)):
     axes[key] = [("steering_offset@0+1000*" if key == "fault" else "") + f"{draw.uniform(low, high):.3f}" for _ in range(count)]
-print(f"name: cars-{seed}\nsettings: {{laps: 4, time_limit_s: 400, sensor.position_noise_m: 0.05, sensor.heading_noise_deg: 0.3, "
+print(f"name: cars-{seed}\nsettings: {{laps: 4, time_limit_s: 600, sensor.position_noise_m: 0.05, sensor.heading_noise_deg: 0.3, "
       "sensor.speed_noise_mps: 0.1}\naxes:\n  - preset: [race, default]")
 print("  - " + "\n    ".join(f"{key}: [{', '.join(map(str, values))}]" for key, values in axes.items()))
 print("keep: [completed, end_reason, off_track_events, lap_times_s, lap_time_s, min_edge_distance_m, guard_reasons]")
