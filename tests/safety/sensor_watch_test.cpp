@@ -289,8 +289,7 @@ TEST(SensorWatch, WatchesTheStartOfACarWhoseMeasurementsWereLate) {
     for (double time = 0.0; time < 5.2; time += kCycle)
       watch.see(measured_late(time, time < 5.0 ? 0.0 : 0.5, kYawRate), car_at(time, kYawRate));
     watch.reset();
-    double speed = 0.0;
-    for (double time = 5.2; time < 10.0; time += kCycle) {
+    for (double time = 5.2, speed = 0.0; time < 10.0; time += kCycle) {
       const model::State expected{.vx = speed + (time > 8.0 ? 3.0 * kCycle : 0.0)};
       speed = std::max(0.0, 3.0 * (time - 8.0 - lag));
       const bool late = watch.see(measured(time, {.vx = speed + noise * random.normal()}), expected).late;

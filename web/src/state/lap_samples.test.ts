@@ -180,14 +180,16 @@ describe('lap samples', () => {
     expect(only.channel(0, 'time_s')?.[500]).toBeCloseTo(only.s(500) / 20, 2);
   });
 
-  it('do not guess where the line is after missing frames', () => {
-    const samples = new LapSamples();
-    samples.setLength(LENGTH);
-    cover(samples, 0, [0, 0], [600, 30]);
-    cover(samples, 1, [300, 15], [999, 49.95], 50);
-    expect(samples.laps).toEqual([]);
-    samples.push(2, moment(1, 0.05), 50);
-    expect(samples.laps).toEqual([1]);
-    expect(samples.place(0)).toBeCloseTo(LINE, -1);
+  it('know the line where a run begins, and do not guess it after missing frames', () => {
+    for (const begin of [0, 100]) {
+      const samples = new LapSamples();
+      samples.setLength(LENGTH);
+      cover(samples, 0, [begin, begin / 20], [600, 30]);
+      cover(samples, 1, [300, 15], [999, 49.95], 50);
+      expect(samples.laps).toEqual(begin > 0 ? [] : [0]);
+      samples.push(2, moment(1, 0.05), 50);
+      expect(samples.laps).toEqual(begin > 0 ? [1] : [0, 1]);
+      expect(samples.place(0)).toBeCloseTo(LINE, -1);
+    }
   });
 });

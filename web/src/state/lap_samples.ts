@@ -163,6 +163,8 @@ export class LapSamples {
       if (moment.time_s - last.time_s <= LONGEST_SILENCE_S) this.#fill(last, this.#after(last, moment));
       return;
     }
+    // A run begins on the start line.
+    if (!last && lap === 0 && moment.time_s <= LONGEST_SILENCE_S) this.#line = mod(moment.s_m, this.#length);
     if (last && this.#current && lap === last.lap + 1) this.#cross(last, this.#after(last, moment), lap, lastLapTime);
     else this.#drop(lap);
   }
