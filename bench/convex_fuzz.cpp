@@ -27,7 +27,7 @@ struct Tally {
 template <int Nx, int Nu>
 void try_one(long seed, Tally& tally) {
   constexpr int kCapacity = 20;
-  constexpr double kPrecision = 1e-9;  // of GLPK
+  constexpr double kPrecision = 1e-9;  // feasibility tolerance of GLPK
   using P = RandomConvex<Nx, Nu, kCapacity>;
   using Ocp = solver::OcpSolver<P, kCapacity>;
   using Lp = LinearProgram<P, kCapacity>;

@@ -7,6 +7,7 @@
 import inspect
 import re
 import sys
+import textwrap
 from pathlib import Path
 
 import usage
@@ -48,7 +49,7 @@ def items(title: str, text: str) -> str:
     found = [(name, kind, " ".join(meaning.split())) for name, kind, meaning in re.findall(r"^(\S[^:\n]*?)(?: : (.*))?\n((?: +.*\n?)+)", text + "\n", re.M)]
     if title in ("Returns", "Raises"):
         said = [f"{f'`{name}`, {kind}' if kind else name}: {meaning[0].lower()}{meaning[1:].rstrip('.')}" for name, kind, meaning in found]
-        return f"*{title}* {'; '.join(said)}."
+        return textwrap.fill(f"*{title}* {'; '.join(said)}.", 120, break_long_words=False, break_on_hyphens=False)
     return "||||\n|---|---|---|\n" + "\n".join(f"|`{name}`|{kind}|{meaning}|" for name, kind, meaning in found)
 
 

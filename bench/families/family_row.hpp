@@ -50,7 +50,7 @@ struct FamilyRequest {
   bool each = false;              ///< a line for each instance
 };
 
-/// What a solver took for an instance that it solved; infinite where it did not.
+/// Time of a solver for an instance; infinite where it did not solve it.
 struct SolveTime {
   double total = std::numeric_limits<double>::infinity();  ///< [s]
   double free = total;                                     ///< without the problem's functions
@@ -71,7 +71,7 @@ struct FamilyRow {
   double iterations = 0.0, time = 0.0, most_time = 0.0, ratio = 0.0, least_ratio = 0.0;
   double worst_residual = 0.0;  ///< of those that are optimal, by the independent check
   double floor_residual = 0.0;  ///< and of those at the floor
-  std::vector<std::array<SolveTime, kSolvers.size()>> compared{};  ///< of each instance, with peers
+  std::vector<std::array<SolveTime, kSolvers.size()>> compared{};  ///< times for each instance, with peers
 };
 
 /// A family in closed loop: each solve starts from the answer of the one before, a stage later.

@@ -53,7 +53,7 @@ struct RandomConvex {
   std::array<Row, Nx> motion;
   std::array<Row, 2> limit, end;  ///< limit[0] is soft unless `all_hard`
   Row equation, end_limit;
-  solver::StageData<Capacity> demand;  ///< of `equation`
+  solver::StageData<Capacity> demand;  ///< right side of `equation`
   X<double> goal{}, weight{}, end_weight{};
   U<double> input_weight{}, low{}, high{};
   solver::SoftPenalty penalty;

@@ -25,7 +25,7 @@ class Stopwatch {
   double begin_;
 };
 
-/// What another solver did with one instance.
+/// Result of another solver on one instance.
 struct Outcome {
   bool is_solved = false;
   bool is_impossible = false;  ///< it ended where the misses have a local minimum

@@ -81,7 +81,7 @@ class HpipmSolver {
     d_ocp_qp_set_all_zero(&qp_);
     for (int k = 0; k <= last; ++k) set_constants(k);
   }
-  /// Which bounds stage k has, and its penalties.
+  /// Sets the bounds of stage k and their penalties.
   void set_constants(int k) {
     const bool is_end = k == rows_.at.horizon;
     std::vector<int> index(kNu), slack_of(static_cast<std::size_t>(kNu), -1);

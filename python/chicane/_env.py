@@ -69,7 +69,7 @@ class Env(BaseEnv):
     rate_hz : float
         Observations in a second [1/s], 1 to 200.
     noise : bool or dict
-        True: that of a good localisation (0.05 m, 0.3°, 0.1 m/s); or settings by key ("sensor.position_noise_m").
+        True: noise of a good localisation (0.05 m, 0.3°, 0.1 m/s); or settings by key ("sensor.position_noise_m").
     seed : int
         Seed of the first episode; each reset() without a seed adds one. Everything random follows from it.
     observation : {"track", "waypoints", "pose", "scan"}
@@ -192,7 +192,7 @@ class Env(BaseEnv):
 
     @property
     def state_hash(self) -> str:
-        """Hash of every state and command of the episode: that of a run (run["state_hash"]) with the same commands."""
+        """Hash of every state and command of the episode, as run["state_hash"] of a run with the same commands."""
         return f"{self._core.state_hash:016x}"
 
     def render(self) -> npt.NDArray[np.uint8] | None:

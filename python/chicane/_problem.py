@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Optimal control problems in plain Python, solved at once (docs/python_problems.md)."""
+"""Optimal control problems in plain Python, solved at once (docs/python_problems.md).
+
+Over 500 lines because most of them are docstrings of one class, `Problem`, and of its solution.
+"""
 from __future__ import annotations
 
 import inspect
@@ -303,7 +306,7 @@ class Problem:
         x0 : array of shape (nx,)
             Expected state; None: the last answer's x[shift].
         p : array
-            As for solve(); None: that of the last solution.
+            As for solve(); None: the last solution's.
         shift : int
             Stages by which the horizon has moved on since the last answer, with which the solve starts.
         tolerance : float

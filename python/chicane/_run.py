@@ -26,7 +26,7 @@ class Frames(Mapping[str, Array]):
     """The control cycles of a run as columns: frames["speed_mps"] is an array of shape (cycles,).
 
     frame_fields() has the meaning of each column; its unit is the end of its name. Columns of a run that was driven have
-    the type of the message (float64, bool, uint8, ...) and own their memory; those of a recording are float64.
+    the type of the message (float64, bool, uint8, ...) and own their memory; arrays of a recording are float64.
     """
 
     def __init__(self, columns: Mapping[str, Array]) -> None:

@@ -70,7 +70,7 @@ void MeasurementMonitor::judge(const model::Measurement& now, const model::State
                         contradicts_displacement(now, elapsed) ||
                         // A speed that was wrong is right again when it says so of a car that moves.
                         (before.speed_mismatch && now.speed < kMoving);
-  // A place that jumped is right again when it jumps back, not when what is expected has drifted up to it.
+  // A place that jumped is right again when it jumps back, not when the estimate has drifted up to it.
   own_.position_jump =
       hypot(now.x - expected.x, now.y - expected.y) > kJump + kAcceleration * step * step + place_drift_ ||
       (before.position_jump && !jumps(now, elapsed));
@@ -90,7 +90,7 @@ void MeasurementMonitor::judge(const model::Measurement& now, const model::State
                .position_jump = own_.position_jump || doubts.place};
 }
 
-/// While something is missing, what is expected of a car of this speed [m/s] drifts away from it.
+/// While a signal is missing, the estimate of a car of this speed [m/s] drifts away from the car.
 void MeasurementMonitor::count_drift(bool is_blind, double elapsed, double speed) noexcept {
   const double driven = elapsed * speed;
   const double share = is_blind ? kBlindDrift : kKnownDrift;

@@ -115,7 +115,7 @@ async function play(look: (frame: Frame) => void): Promise<void> {
 }
 
 describe.skipIf(program === undefined)('recorded runs', () => {
-  it('are told without contradictions', { timeout: 1_800_000 }, async () => {
+  it('are raised without contradictions', { timeout: 1_800_000 }, async () => {
     const found = new Map<string, string>();
     const states = new Set<string>();
     let [runs, frames, known, onsets] = [0, 0, 0, 0]; // events that a person must know of, and alarms for them
@@ -124,12 +124,12 @@ describe.skipIf(program === undefined)('recorded runs', () => {
       ++runs;
       if (words[0] === '--manual') driveByNobody();
       else drive(words);
-      let [since, wasAlarm, mine, told] = [0, false, 0, 0];
+      let [since, wasAlarm, mine, raised] = [0, false, 0, 0];
       await play((frame) => {
         ++frames;
         showSituation(frame);
         const now = situation.value ?? UNKNOWN_SITUATION;
-        if (now.severity === 'alarm' && !wasAlarm) ++told;
+        if (now.severity === 'alarm' && !wasAlarm) ++raised;
         wasAlarm = now.severity === 'alarm';
         mine = now.alarms;
         const isLong = frame.time_s - now.stands_since_s > 10 && now.driver !== 'person';
@@ -145,12 +145,12 @@ describe.skipIf(program === undefined)('recorded runs', () => {
         states.add([words.join(' '), sentence, pedal].join('|'));
       });
       known += mine;
-      onsets += told;
-      if (told > mine) refuse(`${told} alarms of ${mine} events`, words);
+      onsets += raised;
+      if (raised > mine) refuse(`${raised} alarms of ${mine} events`, words);
       if (whyNoLimit.value.includes('--')) refuse(`an option is named: ${whyNoLimit.value}`, words);
       for (const { text } of events.value)
         if (/\bgot\b.*\bexpected\b|\bNaN (?!measurement)|undefined/.test(text))
-          refuse(`an event is told raw: ${text}`, words);
+          refuse(`an event is raised raw: ${text}`, words);
     }
     const counted = `${found.size} contradictions; ${onsets} alarms of ${known} events`;
     console.log(`${states.size} states in ${frames} frames of ${runs} runs, ${counted}`);
