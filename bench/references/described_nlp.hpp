@@ -71,20 +71,20 @@ class DescribedNlp final : public SparseNlp<DescribedNlp> {
     return true;
   }
   double cost_at(const Number* z) const {
-    double cost = 0.0;
+    double sum = 0.0;
     for (int k = 0; k <= horizon_; ++k) {
       const double* s = z + at_s(k);
       const double dv = s[3] - problem_->speed_reference;
-      cost += kCte * s[4] * s[4] + kEpsi * s[5] * s[5] + kSpeed * dv * dv;
+      sum += kCte * s[4] * s[4] + kEpsi * s[5] * s[5] + kSpeed * dv * dv;
       if (k == horizon_) break;
       const double* u = z + at_u(k);
-      cost += kInput[0] * u[0] * u[0] + kInput[1] * u[1] * u[1];
+      sum += kInput[0] * u[0] * u[0] + kInput[1] * u[1] * u[1];
       for (int i = 0; k > 0 && i < 2; ++i) {
         const double change = u[i] - u[i - kNz];
-        cost += kChange[i] * change * change;
+        sum += kChange[i] * change * change;
       }
     }
-    return cost;
+    return sum;
   }
   void add_gradient(const Number* z, Number* gradient) const {
     for (int k = 0; k <= horizon_; ++k) {

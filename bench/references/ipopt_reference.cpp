@@ -26,9 +26,8 @@ class IpoptReference final : public Reference<Problem> {
       solver_.remember();
     }
     answer = now.guess;
-    const Outcome report = is_hot ? solver_.solve_warm(now.problem, now.start, answer)
-                                  : solver_.solve(now.problem, now.start, answer);
-    return {report.is_solved, report.iterations, report.time, report.time_in_functions};
+    return is_hot ? solver_.solve_warm(now.problem, now.start, answer)
+                  : solver_.solve(now.problem, now.start, answer);
   }
 
  private:
