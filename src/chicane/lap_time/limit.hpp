@@ -77,7 +77,7 @@ struct PlantLimit {
   double stationarity = 0.0;  ///< at the optimum: largest slope of the Lagrangian, scaled
   double violation = 0.0;     ///< largest violated equation or inequality, scaled
 
-  /// Whether no budget ended a search: the answer is the same without one.
+  /// Whether the bound is one and no budget ended a search: the answer is the same without one.
   [[nodiscard]] bool is_whole() const noexcept { return !line.is_best_so_far && !is_cut_short; }
   /// Excess of the witness over the bound, relative; not-a-number without a bound.
   [[nodiscard]] double bracket() const noexcept;

@@ -143,6 +143,11 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
                                             {.margin = 0.2, .grip_share = 0.98, .slip_share = 0.8}};
     return kReserves;
   }
+  /// From the peak on: a tyre gives less force beyond it, and laps of most cars use less than twice its slip.
+  [[nodiscard]] std::span<const double> slip_caps() const override {
+    static constexpr double kCaps[] = {1.0, 1.1, 1.25, 1.5, 2.0, 10.0};
+    return kCaps;
+  }
   [[nodiscard]] GuessCar guess_car() const override {
     return {.grip = 0.68 * model_.car.friction * kGravity,
             .drive = 0.5 * model_.car.drive_force / model_.car.mass,
