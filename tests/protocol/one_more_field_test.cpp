@@ -3,9 +3,6 @@
 // the library's own: what a new signal touches is this table, and nothing else.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <fstream>
-
 #include "protocol/decoded_frame.hpp"
 #include "protocol/typescript.hpp"
 #include "protocol/viewer_samples.hpp"
