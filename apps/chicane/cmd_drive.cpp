@@ -9,21 +9,19 @@
 #include <optional>
 #include <utility>
 
-#include "access.hpp"
 #include "chicane/base/file.hpp"
-#include "chicane/live/description.hpp"
 #include "chicane/live/live_run.hpp"
+#include "chicane/live/pages.hpp"
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/laps_without.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/plan_cache.hpp"
+#include "chicane/run/racing.hpp"
 #include "chicane/run/run_steps.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "program.hpp"
 #include "progress.hpp"
-#include "record.hpp"
 
 namespace chicane::apps {
 namespace {

@@ -22,7 +22,7 @@
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/external_drive.hpp"
 #include "chicane/run/make.hpp"
-#include "chicane/run/observe.hpp"
+#include "chicane/run/simulated_car.hpp"
 #include "chicane/sim/fault.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"

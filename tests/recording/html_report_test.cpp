@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "chicane/protocol/library.hpp"
-#include "chicane/recording/log_files.hpp"
 #include "chicane/recording/recorder.hpp"
+#include "chicane/recording/replay.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/telemetry/mcap.hpp"
 #include "telemetry/sample_mcap.hpp"

@@ -18,7 +18,7 @@
 #include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/identify/identification.hpp"
-#include "chicane/live/description.hpp"
+#include "chicane/live/pages.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/origin.hpp"
@@ -29,7 +29,7 @@
 #include "experiment.hpp"
 #include "lab/identify_page.hpp"
 #include "program.hpp"
-#include "record.hpp"
+#include "progress.hpp"
 
 namespace chicane::apps {
 namespace {

@@ -25,7 +25,7 @@ struct LapTimes {
   std::vector<double> corners{};  ///< times of corners, each with half of the straights beside it
 };
 
-/// Best lap of a run that was repeated without one cause of lost time (run/laps_without.hpp).
+/// Best lap of a run that was repeated without one cause of lost time (run/racing.hpp).
 struct LapWithout {
   std::string cause;                                           ///< name of the cause: "latency"
   double lap_time = std::numeric_limits<double>::quiet_NaN();  ///< [s]; not-a-number: no lap was completed

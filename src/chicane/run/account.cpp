@@ -10,7 +10,7 @@
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/model/vehicle.hpp"
-#include "chicane/run/observe.hpp"
+#include "chicane/run/simulated_car.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::run {
