@@ -23,7 +23,7 @@ Result<void> can_be_reported(const std::string& file) {
   if (live::document_bundle().script.empty()) {
     return fail(
         ErrorCode::kNotFound,
-        "--report: this program was built without its dashboard: install Node.js and npm, and build again");
+        "--report: built without its dashboard: remove web_assets.cpp, build with Node.js and npm online");
   }
   return check_writable(file);
 }
