@@ -73,6 +73,7 @@ Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop
 }
 
 constexpr const char* kNotAsked = "not asked for (--limit)";
+constexpr const char* kModelCar = "it is computed for cars in full size";
 /// Reason in a recording whose reader can no longer give options to this run.
 constexpr const char* kNotLookedFor = "this run was driven without looking for it";
 
@@ -85,7 +86,8 @@ lap_time::LimitAnswer answer_of(const road::Track& track, const lap_time::PlantL
 /// The limit that was asked for, and the laps that explain the gap to it where these were.
 Result<lap_time::LimitAnswer> asked_limit(const Options& options, const run::ClosedLoop& loop,
                                           const run::RunControls& controls) {
-  if (!options.wants_limit) return lap_time::LimitAnswer{.why_not = kNotAsked};
+  const bool is_model = loop.scenario().vehicle.scale != 1.0;
+  if (!options.wants_limit) return lap_time::LimitAnswer{.why_not = is_model ? kModelCar : kNotAsked};
   double wall_time = 0.0;
   const auto found =
       limit_of(loop.scenario(), loop.track(), {.wants_witness = false}, controls.wants_stop, wall_time);

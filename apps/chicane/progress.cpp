@@ -94,9 +94,10 @@ std::string line(const telemetry::Frame& frame) {
   const double error = frame.has_truth ? frame.lateral_error : frame.result.report.lateral_error;
   const std::string place =
       frame.has_truth ? fmt::format("lap {:<2} {:5.0f} m ", frame.lap + 1, frame.s) : "";
-  const std::string beside = std::isfinite(error) ? fmt::format("error {:+6.2f} m", error) : "error unknown";
-  return fmt::format("{:6.1f} s  {}{:5.1f} mph  {}  {}", frame.time, place,
-                     mps_to_mph(frame.measurement.speed), beside, sentence_of(frame.situation));
+  const std::string off = std::isfinite(error) ? fmt::format("error {:+6.2f} m", error) : "error unknown";
+  const double speed = mps_to_mph(frame.measurement.speed);
+  const std::string fast = std::isfinite(speed) ? fmt::format("{:5.1f} mph", speed) : "speed unknown";
+  return fmt::format("{:6.1f} s  {}{}  {}  {}", frame.time, place, fast, off, sentence_of(frame.situation));
 }
 
 }  // namespace
@@ -286,7 +287,7 @@ Result<void> can_be_reported(const std::string& file) {
   if (live::document_bundle().script.empty()) {
     return fail(
         ErrorCode::kNotFound,
-        "--report: this program was built without its dashboard: install Node.js and npm, and build again");
+        "--report: this program has no dashboard: install Node.js and npm, remove the build folder, and build again");
   }
   return check_writable(file);
 }

@@ -36,7 +36,7 @@ ExternalDrive::ExternalDrive(ExternalDriveOptions options, std::unique_ptr<contr
       hooks_{hooks},
       scenario_{options_.scenario},
       cycle_{std::move(controller), options_.scenario, options_.track},
-      roadside_{options_.track, options_.scenario},
+      roadside_{options_.track, options_.scenario, options_.remedy},
       clock_{options_.clock, options_.scenario.vehicle, Clock::now()} {
   cycle_.use_line(options_.lap);
 }

@@ -9,10 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <future>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <thread>
