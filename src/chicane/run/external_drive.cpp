@@ -48,6 +48,11 @@ void ExternalDrive::begin() {
 }
 
 void ExternalDrive::begin_anew() {
+  clock_.pause();
+  forget();
+}
+
+void ExternalDrive::forget() {
   cycle_.begin(cycle_.next());
   last_received_.reset();
   last_time_.reset();
@@ -103,7 +108,7 @@ void ExternalDrive::count_time(const Sighting& sighting) {
   const model::Measurement* measured = sighting.measured ? &*sighting.measured : nullptr;
   const bool is_another = clock_.advance(sighting.received, measured, std::exchange(acting_, last_sent_));
   if (!is_another) return;
-  begin_anew();
+  forget();
   if (hooks_.on_clock) hooks_.on_clock(clock_.news());
 }
 

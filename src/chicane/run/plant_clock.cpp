@@ -18,8 +18,8 @@ constexpr double kLegWay = 0.5;           // [m] of one leg, for a car in full s
 constexpr double kLeastSpeed = 0.5;       // [m/s] needed to judge a time, for a car in full size
 constexpr double kLongestCycle = 1.0;     // [s] between answers; longer ones are silences
 constexpr double kLongestStep = 5.0;      // [s] between measurements that say anything of each other
-constexpr std::size_t kLeastLegs = 5;     // legs needed to judge a clock
-constexpr double kLeastWallTime = 0.6;    // least wall time of these legs [s]
+constexpr std::size_t kLeastLegs = 3;     // legs needed to judge a clock
+constexpr double kLate = 0.15;            // [s] that a busy machine's last delay adds to their sum
 constexpr double kClockAcross = 0.3;      // share of the way that a car may move across its heading
 constexpr double kJump = 0.3;             // [m] allowed in addition
 constexpr double kSpeedJump = 2.0;        // [m/s] allowed in addition
@@ -28,14 +28,18 @@ constexpr double kDrives = 0.1;           // pedal that drives
 constexpr double kPedalMemory = 3.0;      // [s]
 constexpr double kLeastAsked = 1.0;       // [m/s] change by the pedal that distinguishes a clock from a speed
 constexpr double kSteadier = 0.5;         // deviation over the other's below which one explanation is better
-constexpr double kLeastDeviation = 0.02;  // deviation below which both clocks fit
+constexpr double kLeastDeviation = 0.01;  // [s] of the running sums, below which both clocks fit
+constexpr double kErrors = 4.0;           // times the deviation of the sums: two of their standard errors
 constexpr double kFollowed = 0.1;         // share of a difference that is made up for with each leg
 constexpr double kBurst = 0.5;            // share by which a step in lock step differs that had to wait
 constexpr double kOfStep = 0.15;          // share by which its time differs from the others
-constexpr double kSampling = 0.02;   // [s] by which a state may be younger or older: a usual physics step
-constexpr double kLegSamples = 5.0;  // of which a leg consists at least
-constexpr double kOtherClock = 0.5;  // logarithm of a leg's ratio to the median, from another clock
-constexpr double kSame = 0.03;       // logarithm of a ratio that counts as 1
+constexpr double kSampling = 0.02;     // [s] by which a state may be younger or older: a usual physics step
+constexpr double kLegSamples = 5.0;    // of which a leg consists at least
+constexpr double kSampledSpeed = 4.0;  // [m/s] from which a displacement shows that
+constexpr double kLeastCounted = 0.1;  // share of the expected time that passes in any case
+constexpr double kSampledLeft = 0.95;  // share of what sampling has added that is left after an answer
+constexpr double kOtherClock = 0.5;    // logarithm of a leg's ratio to the median, from another clock
+constexpr double kSame = 0.03;         // logarithm of a ratio that counts as 1
 
 double in_seconds(PlantClock::Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
@@ -54,6 +58,10 @@ PlantClock::PlantClock(const PlantClockOptions& options, const model::VehiclePar
       size_{std::min(vehicle.length / kFullSize, 1.0)},
       wall_{start},
       step_{options.lock_step} {}
+
+void PlantClock::pause() {
+  if (!options_.is_measured) has_last_ = false;
+}
 
 void PlantClock::begin() {
   ratio_ = 1.0;
@@ -114,13 +122,15 @@ bool PlantClock::follow(const model::Measurement* measured) {
 double PlantClock::time_of(double wall, const Leg& step) {
   if (step_ > 0.0) return step_;
   const double expected = ratio_ * wall;
-  if (step.way < kLegWay * size_ || count_ < kLeastLegs) return expected;
+  if (step.steps == 0 || std::fabs(last_.speed) < kSampledSpeed * std::sqrt(size_) || count_ < kLeastLegs)
+    return expected;
   const double usual = fit([](const Leg& leg) { return leg.steps; }).value;
   const bool has_waited = std::fabs(step.plant - expected) > kBurst * expected;
   if (has_waited && std::fabs(step.plant - usual) < kOfStep * usual) return step.plant;
   const double counted =
-      std::clamp(step.plant, expected - sampled_ - kSampling, expected - sampled_ + kSampling);
-  sampled_ += counted - expected;
+      std::clamp(step.plant, std::max(expected - sampled_ - kSampling, kLeastCounted * expected),
+                 expected - sampled_ + kSampling);
+  sampled_ = kSampledLeft * (sampled_ + counted - expected);
   return counted;
 }
 
@@ -162,24 +172,33 @@ bool PlantClock::add(const Leg& step) {
   return count_ >= kLeastLegs;
 }
 
+/// Sums of the legs near the median, and how the running sums deviate from their ratio: of the right clock by
+/// the noise of a place and a step of the simulator, however long, of a wrong one by more with each leg.
 template <class Base>
 PlantClock::Fit PlantClock::fit(const Base& base) const {
   const std::size_t size = std::min(count_, kLegs);
+  const auto leg = [&](std::size_t i) -> const Leg& { return legs_[(count_ - size + i) % kLegs]; };
+  const auto value_of = [&](std::size_t i) { return log(leg(i).plant / base(leg(i))); };
   std::array<double, kLegs> values{};
-  const auto value_of = [&](std::size_t i) { return log(legs_[i].plant / base(legs_[i])); };
   for (std::size_t i = 0; i < size; ++i) values[i] = value_of(i);
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(size / 2);
   std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(size));
-  Fit fit;
   double plant = 0.0, counted = 0.0;
+  const auto is_near = [&](std::size_t i) { return std::fabs(value_of(i) - *middle) < kOtherClock; };
   for (std::size_t i = 0; i < size; ++i) {
-    const double off = std::fabs(value_of(i) - *middle);
-    fit.deviation += off / static_cast<double>(size);
-    if (!(off < kOtherClock)) continue;
-    plant += legs_[i].plant;
-    counted += base(legs_[i]);
+    if (!is_near(i)) continue;
+    plant += leg(i).plant;
+    counted += base(leg(i));
   }
-  fit.value = plant / counted;
+  Fit fit{.value = plant / counted, .plant = plant, .is_whole = true};
+  double sum = 0.0, mean = 0.0, square = 0.0;
+  for (std::size_t i = 0; i < size; ++i) {
+    fit.is_whole &= is_near(i);
+    if (is_near(i)) sum += leg(i).plant - fit.value * base(leg(i));
+    mean += sum / static_cast<double>(size);
+    square += sum * sum / static_cast<double>(size);
+  }
+  fit.deviation = std::sqrt(std::max(square - mean * mean, 0.0));
   return fit;
 }
 
@@ -191,7 +210,8 @@ bool PlantClock::differs(double ratio) const {
     sum.wall += legs_[i].wall;
     sum.plant += legs_[i].plant;
   }
-  return sum.wall > kLeastWallTime && std::fabs(log(sum.plant / (ratio * sum.wall))) > log(kLeastChange);
+  return std::fabs(sum.plant - ratio * sum.wall) > kLate * std::max(ratio, 1.0) &&
+         std::fabs(log(sum.plant / (ratio * sum.wall))) > log(kLeastChange);
 }
 
 /// Whether the pedals gain speed as in the time that the displacement shows: with a speed in another unit
@@ -212,17 +232,15 @@ bool PlantClock::take_up() {
   // In real time with equal steps a busy machine makes the wall's clock look worse; but a step that waited is
   // longer by the wait.
   const bool is_real_time = !was_in_step && ratio_ == 1.0 && !differs(ratio_);
-  const bool is_in_step =
-      was_in_step ? !(is_distinct && by_clock.deviation < kSteadier * by_step.deviation)
-                  : is_distinct && !is_real_time && by_step.deviation < kSteadier * by_clock.deviation;
+  const bool is_in_step = was_in_step ? !(is_distinct && by_clock.deviation < kSteadier * by_step.deviation)
+                                      : is_distinct && !is_real_time && by_step.is_whole &&
+                                            by_step.deviation < kSteadier * by_clock.deviation;
   const double counted = was_in_step ? step_ : ratio_;
-  const double found = is_in_step ? by_step.value : by_clock.value;
-  const double deviation = is_in_step ? by_step.deviation : by_clock.deviation;
-  const double size = static_cast<double>(std::min(count_, kLegs));
-  const double off = log(found / counted);
-  const bool is_another =
-      is_in_step != was_in_step || (std::fabs(off) > log(kLeastChange) + 2.0 * deviation / std::sqrt(size) &&
-                                    (was_in_step || differs(ratio_)));
+  const Fit& found = is_in_step ? by_step : by_clock;
+  const double off = log(found.value / counted);
+  const bool is_another = is_in_step != was_in_step ||
+                          (std::fabs(off) > log(kLeastChange) + kErrors * found.deviation / found.plant &&
+                           (was_in_step || differs(ratio_)));
   if (!is_another) {
     if (count_ >= kLegs) is_speed_known_ = true;
     // Follow closely if the count is not the wall's anyway.

@@ -38,6 +38,8 @@ class PlantClock {
 
   /// Resets for another car, with an unknown clock. The run's time continues.
   void begin();
+  /// The next measurement says nothing of the time since the last: a person drove, or nothing came.
+  void pause();
   /// Takes a message that came at `received`, with `measured` (null: nothing usable), while `acting` acted on
   /// the car. True: the clock has changed, and results by the earlier time are void.
   bool advance(Clock::time_point received, const model::Measurement* measured, const model::Command& acting);
@@ -60,9 +62,11 @@ class PlantClock {
     int steps = 0;
   };
   static constexpr std::size_t kLegs = 12;
-  /// Ratio of the sums of the legs near the median, and the mean deviation of their logarithms from it.
+  /// Ratio of sums of legs, and how far their running sums deviate from it: a root mean square.
   struct Fit {
-    double value = 0.0, deviation = 0.0;
+    double value = 0.0;
+    double plant = 0.0, deviation = 0.0;  ///< [s]
+    bool is_whole = false;                ///< all legs are near the median
   };
 
   void forget();

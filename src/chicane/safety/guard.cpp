@@ -15,8 +15,9 @@ using controller::Answer;
 using controller::GuardReason;
 using controller::Rung;
 
-constexpr int kShown = 64;          // points of a backup that is drawn
-constexpr double kShownStep = 0.1;  // [s]
+constexpr double kLateMemory = 30.0;  // [s] in which a late command is forgotten
+constexpr int kShown = 64;            // points of a backup that is drawn
+constexpr double kShownStep = 0.1;    // [s]
 // Braking of a car that is too fast for a silence: gentle, and stable without feedback.
 constexpr Braking kHeldBack{0.8, 1.6, 0.7};
 
@@ -112,6 +113,7 @@ void Guard::count_with_actuators() noexcept {
 model::Command Guard::step(const model::Measurement& measured, Deadline deadline, const Cycle& cycle,
                            controller::StepResult& result) noexcept {
   take_up_actuators();
+  run_.longest = std::max(cycle.interval, run_.longest * (1.0 - cycle.interval / kLateMemory));
   model::Measurement now = measured;
   now.delay = std::max(now.delay + learned_.answer().delay, 0.0);
   const bool is_off = options_.mode == GuardMode::kOff;
@@ -312,6 +314,7 @@ Fit Guard::verify(const StopStart& start, const Cycle& cycle, const model::Comma
                          .start = start,
                          .command = limited(command, cycle.interval),
                          .interval = cycle.interval,
+                         .longest = run_.longest,
                          .is_led = is_led},
                         report_);
 }

@@ -179,6 +179,7 @@ class Guard {
     bool rests = false;             ///< it came to rest, and has not been asked to drive since
     bool is_by_hand = false;        ///< a person drove in the last cycle
     bool has_jumped_aside = false;  ///< the measured place, of its road, since something is in doubt
+    double longest = 0.0;           ///< between two commands, fading [s]
     double ask_at = 0.0;            ///< from when on a car in doubt may be tried again [s]
     double ask_pause = kAskPause;   ///< after the next trial [s]
     double tried = 0.0;             ///< way driven to see whether the car was put elsewhere, by the model [m]

@@ -145,10 +145,11 @@ constexpr double kReleaseTime = 0.5;   // [s] a car that should move may stand b
 constexpr double kDrives = 0.1;        // pedal from which on a car should move
 constexpr double kGain = 0.1;          // [m/s] by which a car gains speed that nothing holds
 constexpr double kMostAgainstRolling = 0.7;  // pedal against rolling back
-constexpr double kStillTime = 1.0;   // [s] a car stands before it is tried whether it was put elsewhere
-constexpr double kTrialWay = 0.5;    // share of the car's length that is driven for that
-constexpr double kTrialRoom = 1.0;   // to the edge [m], where no stop fits
-constexpr double kTrialSpeed = 1.0;  // [m/s]
+constexpr double kStillTime = 1.0;      // [s] a car stands before it is tried whether it was put elsewhere
+constexpr double kTrialWay = 0.5;       // share of the car's length that is driven for that
+constexpr double kTrialRoom = 1.0;      // to the edge [m], where no stop fits
+constexpr double kTrialRoomLeft = 0.5;  // and during the trial
+constexpr double kTrialSpeed = 1.0;     // [m/s]
 constexpr double kTrialPedal = 0.3;
 constexpr double kCreep = 1.0;             // [m/s] of a car that turns at the edge
 constexpr double kCreepDrive = 2.5;        // [1/s] of its drive: turned wheels resist
@@ -269,10 +270,10 @@ bool Guard::try_reset(const std::optional<StopStart>& start, const Cycle& cycle,
   }
   const double speed = std::fabs(estimator_.state().vx);
   const model::Command command{0.0, speed < kTrialSpeed ? kTrialPedal : 0.0};
-  // A car that stopped where the known road ends has no stop ahead of it, nor one that is off the road; the
-  // way of the trial does without there, and well inside the edges and along the road.
+  // A car that stopped where the known road ends has no stop ahead of it, nor one that is across the road or
+  // off it; the way of the trial does without there, and as far inside the edges as walking pace needs.
   const double edge = start ? filter_.planner().edge(road_, *start) : -kFarFromRoad;
-  const bool has_room = edge < 0.0 || (edge >= kTrialRoom && std::fabs(start->e) < kAlong);
+  const bool has_room = edge < 0.0 || edge >= (run_.tried > 0.0 ? kTrialRoomLeft : kTrialRoom);
   const bool has_stop = start && verify(*start, cycle, command, true) != Fit::kNone;
   if (!has_room && !has_stop) return false;
   if (run_.tried == 0.0) reset_watch_.ask();  // a car that still rolled has turned round since it was asked
