@@ -20,12 +20,9 @@ double seconds(ExternalDrive::Clock::duration duration) {
 /// A cycle without a measurement says only that time has passed.
 model::Measurement nothing_measured() {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  return {.x = kUnknown,
-          .y = kUnknown,
-          .psi = kUnknown,
-          .speed = kUnknown,
-          .steer = kUnknown,
-          .throttle = kUnknown};
+  model::Measurement none;
+  none.x = none.y = none.psi = none.speed = none.steer = none.throttle = kUnknown;
+  return none;
 }
 
 }  // namespace
@@ -49,10 +46,6 @@ void ExternalDrive::begin() {
 
 void ExternalDrive::begin_anew() {
   clock_.pause();
-  forget();
-}
-
-void ExternalDrive::forget() {
   cycle_.begin(cycle_.next());
   last_received_.reset();
   last_time_.reset();
@@ -108,7 +101,7 @@ void ExternalDrive::count_time(const Sighting& sighting) {
   const model::Measurement* measured = sighting.measured ? &*sighting.measured : nullptr;
   const bool is_another = clock_.advance(sighting.received, measured, std::exchange(acting_, last_sent_));
   if (!is_another) return;
-  forget();
+  begin_anew();
   if (hooks_.on_clock) hooks_.on_clock(clock_.news());
 }
 

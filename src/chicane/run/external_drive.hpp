@@ -87,7 +87,6 @@ class ExternalDrive {
   [[nodiscard]] telemetry::RunSummary summary() const { return roadside_.summary(); }
 
  private:
-  void forget();
   void watch_gap(double gap, double delay);
   void count_time(const Sighting& sighting);
   void check_road(const Sighting& sighting);

@@ -62,11 +62,12 @@ class PlantClock {
     int steps = 0;
   };
   static constexpr std::size_t kLegs = 12;
-  /// Ratio of sums of legs, and how far their running sums deviate from it: a root mean square.
+  /// Sums of legs.
   struct Fit {
-    double value = 0.0;
-    double plant = 0.0, deviation = 0.0;  ///< [s]
-    bool is_whole = false;                ///< all legs are near the median
+    double value = 0.0;            ///< their ratio, of those near the median
+    double near = 0.0, all = 0.0;  ///< of the plant's time [s]
+    double all_counted = 0.0;      ///< and of what it is compared with
+    double deviation = 0.0;        ///< of the running sums from the ratio, root mean square [s]
   };
 
   void forget();
@@ -74,7 +75,6 @@ class PlantClock {
   [[nodiscard]] Leg step_of(double wall, const model::Measurement& now, const model::Command& acting);
   [[nodiscard]] bool add(const Leg& step);
   [[nodiscard]] bool take_up();
-  [[nodiscard]] bool differs(double ratio) const;
   [[nodiscard]] bool agrees_with_pedal() const;
   template <class Base>
   [[nodiscard]] Fit fit(const Base& base) const;

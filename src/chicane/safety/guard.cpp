@@ -113,7 +113,7 @@ void Guard::count_with_actuators() noexcept {
 model::Command Guard::step(const model::Measurement& measured, Deadline deadline, const Cycle& cycle,
                            controller::StepResult& result) noexcept {
   take_up_actuators();
-  run_.longest = std::max(cycle.interval, run_.longest * (1.0 - cycle.interval / kLateMemory));
+  longest_ = std::max(cycle.interval, longest_ * (1.0 - cycle.interval / kLateMemory));
   model::Measurement now = measured;
   now.delay = std::max(now.delay + learned_.answer().delay, 0.0);
   const bool is_off = options_.mode == GuardMode::kOff;
@@ -281,7 +281,7 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   const bool is_kept = run_.refused.lasts(seen.time) > kStuckTime || run_.is_led;
   if (may_send && !run_.is_astray && !(run_.is_idle && is_kept)) {
     // One accepted command does not move a car that stands.
-    if (!run_.is_idle && std::fabs(estimator_.state().vx) >= kStandingSpeed) {
+    if (!run_.is_idle && !stands()) {
       run_.is_led = false;
       run_.refused.at = seen.time;
     }
@@ -314,7 +314,7 @@ Fit Guard::verify(const StopStart& start, const Cycle& cycle, const model::Comma
                          .start = start,
                          .command = limited(command, cycle.interval),
                          .interval = cycle.interval,
-                         .longest = run_.longest,
+                         .longest = longest_,
                          .is_led = is_led},
                         report_);
 }
