@@ -314,8 +314,8 @@ Fit Guard::verify(const StopStart& start, const Cycle& cycle, const model::Comma
                          .start = start,
                          .command = limited(command, cycle.interval),
                          .interval = cycle.interval,
-                         .longest = longest_,
-                         .is_led = is_led},
+                         .is_led = is_led,
+                         .longest = longest_},
                         report_);
 }
 
