@@ -13,27 +13,27 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kFullSize = 4.5;         // [m] length of a car
-constexpr double kLegWay = 0.5;           // [m] of one leg, for a car in full size
-constexpr double kLeastSpeed = 0.5;       // [m/s] needed to judge a time, for a car in full size
-constexpr double kLongestCycle = 1.0;     // [s] between answers; longer ones are silences
-constexpr double kLongestStep = 5.0;      // [s] between measurements that say anything of each other
-constexpr std::size_t kLeastLegs = 2;     // legs needed to judge a clock
-constexpr double kLate = 0.15;            // [s] that a busy machine's last delay adds to their sum
-constexpr double kClockAcross = 0.3;      // share of the way that a car may move across its heading
-constexpr double kJump = 0.3;             // [m] allowed in addition
-constexpr double kSpeedJump = 2.0;        // [m/s] allowed in addition
-constexpr double kMostBraking = 20.0;     // [m/s²] by which a speed changes
-constexpr double kDrives = 0.1;           // pedal that drives
-constexpr double kPedalMemory = 3.0;      // [s]
-constexpr double kLeastAsked = 1.0;       // [m/s] change by the pedal that distinguishes a clock from a speed
-constexpr double kSteadier = 0.5;         // deviation over the other's below which one explanation is better
-constexpr double kLeastDeviation = 0.01;  // [s] of the running sums, below which both clocks fit
-constexpr double kLateInFew = 4.0;        // times as much of kLeastLegs
-constexpr double kErrors = 4.0;           // times the deviation of the sums: two of their standard errors
-constexpr double kFollowed = 0.1;         // share of a difference that is made up for with each leg
-constexpr double kBurst = 0.5;            // share by which a step in lock step differs that had to wait
-constexpr double kOfStep = 0.15;          // share by which its time differs from the others
+constexpr double kFullSize = 4.5;      // [m] length of a car
+constexpr double kLegWay = 0.5;        // [m] of one leg, for a car in full size
+constexpr double kLeastSpeed = 0.5;    // [m/s] needed to judge a time, for a car in full size
+constexpr double kLongestCycle = 1.0;  // [s] between answers; longer ones are silences
+constexpr double kLongestStep = 5.0;   // [s] between measurements that say anything of each other
+constexpr std::size_t kLeastLegs = 2;  // legs needed to judge a clock
+constexpr double kLate = 0.15;         // [s] that a busy machine's last delay adds to their sum
+constexpr double kClockAcross = 0.3;   // share of the way that a car may move across its heading
+constexpr double kJump = 0.3;          // [m] allowed in addition
+constexpr double kSpeedJump = 2.0;     // [m/s] allowed in addition
+constexpr double kMostBraking = 20.0;  // [m/s²] by which a speed changes
+constexpr double kDrives = 0.1;        // pedal that drives
+constexpr double kPedalMemory = 3.0;   // [s]
+constexpr double kLeastAsked = 1.0;    // [m/s] change by the pedal that distinguishes a clock from a speed
+constexpr double kSteadier = 0.5;      // deviation over the other's below which one explanation is better
+constexpr double kLeastDeviation = 0.002;  // [s] of the running sums, below which both clocks fit
+constexpr double kLateInFew = 4.0;         // times as much of kLeastLegs
+constexpr double kErrors = 4.0;            // times the deviation of the sums: two of their standard errors
+constexpr double kFollowed = 0.1;          // share of a difference that is made up for with each leg
+constexpr double kBurst = 0.5;             // share by which a step in lock step differs that had to wait
+constexpr double kOfStep = 0.15;           // share by which its time differs from the others
 constexpr double kSampling = 0.02;     // [s] by which a state may be younger or older: a usual physics step
 constexpr double kLegSamples = 5.0;    // of which a leg consists at least
 constexpr double kSampledSpeed = 4.0;  // [m/s] from which a displacement shows that
@@ -55,10 +55,6 @@ PlantClock::PlantClock(const PlantClockOptions& options, const model::VehiclePar
       size_{std::min(vehicle.length / kFullSize, 1.0)},
       wall_{start},
       step_{options.lock_step} {}
-
-void PlantClock::pause() {
-  if (!options_.is_measured) has_last_ = false;
-}
 
 void PlantClock::begin() {
   ratio_ = 1.0;
@@ -222,7 +218,8 @@ bool PlantClock::take_up() {
   // longer by the wait.
   const bool is_real_time = ratio_ == 1.0 && !differs;
   const bool is_in_step = was_in_step ? !(is_distinct && by_clock.deviation < kSteadier * by_step.deviation)
-                                      : is_distinct && !is_real_time && by_step.near == by_step.all &&
+                                      : is_distinct && !is_real_time && count_ >= kLegs / 2 &&
+                                            by_step.near == by_step.all &&
                                             by_step.deviation < kSteadier * by_clock.deviation;
   const Fit& found = is_in_step ? by_step : by_clock;
   double& counted = was_in_step ? step_ : ratio_;

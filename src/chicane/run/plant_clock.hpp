@@ -39,7 +39,7 @@ class PlantClock {
   /// Resets for another car, with an unknown clock. The run's time continues.
   void begin();
   /// The next measurement says nothing of the time since the last: a person drove, or nothing came.
-  void pause();
+  void pause() { has_last_ &= options_.is_measured; }
   /// Takes a message that came at `received`, with `measured` (null: nothing usable), while `acting` acted on
   /// the car. True: the clock has changed, and results by the earlier time are void.
   bool advance(Clock::time_point received, const model::Measurement* measured, const model::Command& acting);
