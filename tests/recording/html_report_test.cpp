@@ -216,7 +216,7 @@ TEST_F(ReportTest, SaysWhatIsMissing) {
   EXPECT_EQ(unreadable.error().code, ErrorCode::kIo);
   const auto without = write_report({.output = page_, .logs = {}, .bundle = {}});
   ASSERT_FALSE(without);
-  EXPECT_THAT(without.error().message, HasSubstr("without its dashboard"));
+  EXPECT_THAT(without.error().message, HasSubstr("has no dashboard"));
   write_log(log_.path());
   page_ = "/no/such/folder/page.html";
   EXPECT_FALSE(write("run.mcap"));
