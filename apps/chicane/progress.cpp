@@ -285,9 +285,9 @@ namespace {
 /// Checks before the run that its recording can become a report.
 Result<void> can_be_reported(const std::string& file) {
   if (live::document_bundle().script.empty()) {
-    return fail(
-        ErrorCode::kNotFound,
-        "--report: this program has no dashboard: install Node.js and npm, remove the build folder, and build again");
+    return fail(ErrorCode::kNotFound,
+                "--report: this program has no dashboard: install Node.js and npm, remove the build folder, "
+                "and build again");
   }
   return check_writable(file);
 }
