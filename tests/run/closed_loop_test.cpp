@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,41 @@ telemetry::RunSummary run(const scenario::Scenario& scenario) {
   Result<std::unique_ptr<ClosedLoop>> loop = ClosedLoop::create(scenario);
   EXPECT_TRUE(loop) << (loop ? "" : loop.error().message);
   return loop ? run_closed_loop(**loop) : telemetry::RunSummary{};
+}
+
+void expect_clean(const telemetry::RunSummary& summary, unsigned most_fallbacks = 0) {
+  EXPECT_TRUE(summary.completed) << summary.end_reason;
+  EXPECT_EQ(summary.off_track_events, 0);
+  EXPECT_LE(summary.fallbacks, most_fallbacks);
+  for (const auto& lap : summary.laps) {
+    EXPECT_NEAR(lap.sector_times[0] + lap.sector_times[1] + lap.sector_times[2], lap.lap_time, 1e-9);
+    ASSERT_EQ(lap.corner_times.size(), summary.corners.size());
+    EXPECT_NEAR(std::accumulate(lap.corner_times.begin(), lap.corner_times.end(), 0.0), lap.lap_time, 1e-9);
+    EXPECT_GT(*std::min_element(lap.corner_times.begin(), lap.corner_times.end()), 0.0);
+  }
+}
+
+TEST(DefaultPreset, LapsBothLakesFastAndClean) {
+  for (const char* track : {"lakeside", "original-lake"}) {
+    SCOPED_TRACE(track);
+    const telemetry::RunSummary summary = run(scenario_of("udacity", track, 3));
+    expect_clean(summary);
+    ASSERT_EQ(summary.laps.size(), 3U);
+    EXPECT_LE(summary.laps.back().lap_time, 29.0);
+    EXPECT_GE(summary.laps.back().top_speed, 100.0 * 0.44704);
+  }
+}
+
+/// Commands that arrive up to 40 ms later than the controller is told: clean, another run with another seed,
+/// the same with the same.
+TEST(DefaultPreset, LapsCleanWithJitterOfTheLatency) {
+  scenario::Scenario scenario = scenario_of("udacity", "lakeside", 2);
+  scenario.latency_jitter = 0.04;
+  const telemetry::RunSummary first = run(scenario);
+  expect_clean(first, 5);
+  EXPECT_EQ(run(scenario).state_hash, first.state_hash);
+  scenario.seed = 2;
+  EXPECT_NE(run(scenario).state_hash, first.state_hash);
 }
 
 TEST(LatencyJitter, IsNotTold) {
@@ -88,6 +125,15 @@ TEST(ClosedLoop, LookedAtBeforeEachStepDrivesTheSame) {
 
 class ShippedTrack : public ::testing::TestWithParam<const char*> {};
 
+TEST_P(ShippedTrack, IsDrivenCleanlyByBothCarsWithTheSameTuning) {
+  for (const char* car : {"udacity", "road-car"}) {
+    SCOPED_TRACE(car);
+    const bool is_long = std::string(GetParam()) == "speedway";
+    // At 55 m/s into a bend the guard refuses a few answers of road-car (docs/measured/numbers.md).
+    const bool is_at_the_edge = std::string(car) == "road-car" && is_long;
+    expect_clean(run(scenario_of(car, GetParam(), is_long ? 1 : 2)), is_at_the_edge ? 10 : 0);
+  }
+}
 INSTANTIATE_TEST_SUITE_P(Tracks, ShippedTrack, ::testing::Values("lakeside", "oval", "hairpins", "speedway"),
                          [](const auto& track) { return std::string(track.param); });
 
@@ -110,6 +156,15 @@ TEST(ClosedLoop, OfARunUntilStoppedGoesOnAfterAnExcursionByHand) {
   loop->apply({.name = "manual.is_on", .value = "false"});
   while (loop->time() < 120.0 && !loop->is_over()) static_cast<void>(loop->advance());
   EXPECT_FALSE(loop->is_over());
+}
+
+TEST(ClosedLoop, DoesTheSameTwice) {
+  const scenario::Scenario scenario = scenario_of("udacity", "lakeside", 1);
+  const telemetry::RunSummary first = run(scenario);
+  EXPECT_EQ(first.state_hash, run(scenario).state_hash);
+  scenario::Scenario other = scenario;
+  other.latency = 0.1001;
+  EXPECT_NE(first.state_hash, run(other).state_hash) << "the hash sees what happens";
 }
 
 TEST(ClosedLoop, SeesTheSeedOnlyWhereThereIsNoise) {
