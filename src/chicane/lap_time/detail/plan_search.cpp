@@ -137,9 +137,9 @@ Result<NodePlan> PlanSearch::find_coarse() {
   constexpr Start kStarts[] = {{0.01, 1.0}, {0.003, 1.0}, {0.03, 0.7}, {0.001, 0.7}, {0.1, 0.5}};
   constexpr int kEnough = 2;
   const RoadNodes coarse = lay_nodes(track_, model_.guess_car(), kCoarse * options_.time_step);
-  expected_ = work_ + (kEnough * kIterationsOfStart * static_cast<double>(coarse.s.size()) +
-                       kIterationsOfFine * kCoarse * static_cast<double>(coarse.s.size())) /
-                          PlanProgress::kNodesPerSecond;
+  const double iterations = kEnough * kIterationsOfStart + kIterationsOfFine * kCoarse +
+                            kIterationsOfFine * static_cast<double>(options_.slip_caps.size());
+  expected_ = work_ + iterations * static_cast<double>(coarse.s.size()) / PlanProgress::kNodesPerSecond;
   NodePlan best;
   int found = 0;
   for (const Start& start : kStarts) {
