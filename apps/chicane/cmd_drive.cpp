@@ -79,7 +79,9 @@ constexpr const char* kNotLookedFor = "this run was driven without looking for i
 
 lap_time::LimitAnswer answer_of(const road::Track& track, const lap_time::PlantLimit& limit) {
   if (!limit.is_whole())
-    return {.why_not = "its search has used up its budget; `chicane limit` has one to set"};
+    return {.why_not = limit.is_cut_short
+                           ? "its search has used up its budget; `chicane limit` has one to set"
+                           : lap_time::kNoOptimum};
   return {.found = std::make_shared<const lap_time::Limit>(lap_time::bound_from_start(track, limit))};
 }
 

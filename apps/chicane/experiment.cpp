@@ -132,8 +132,7 @@ std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
         "speed    {:.1f} mph at least, {:.1f} at most\n"
         "searched {:.1f} s: {} nodes, {} iterations; stationarity {:.1e}, violation {:.1e}\n",
         run.car, run.track, limit.bound.lap,
-        limit.is_cut_short ? "the budget ended the search (--budget-s)"
-                           : "with more slip of the tyres the search finds no optimum",
+        limit.is_cut_short ? "the budget ended the search (--budget-s)" : lap_time::kNoOptimum,
         mps_to_mph(extent.least_speed), mps_to_mph(extent.top_speed), run.wall_time, limit.nodes,
         limit.effort.iterations, limit.stationarity, limit.violation);
   std::string text = fmt::format("{} on {}: between {:.3f} s and ", run.car, run.track, limit.bound.lap);

@@ -57,6 +57,9 @@ struct Witness {
   road::RacingLine line;    ///< line that was driven; its margin is the planned gap
 };
 
+/// Reason of a lap that is the best so far though no budget ended its search.
+inline constexpr const char* kNoOptimum = "with more slip of the tyres the search finds no optimum";
+
 /// Effort of a search; work as in PlanProgress.
 struct SearchEffort {
   int iterations = 0;

@@ -235,7 +235,7 @@ Result<lap_time::PlantLimit> cached_limit(const road::Track& track, std::string_
   if (name.empty() || !found) return found;
   lap_time::PlantLimitOptions unlimited = options;
   unlimited.budget = lap_time::PlantLimitOptions{}.budget;
-  cache->keep(found->is_whole() ? name_of_limit(track, plant, deviation, unlimited, params) : name,
+  cache->keep(!found->is_cut_short ? name_of_limit(track, plant, deviation, unlimited, params) : name,
               to_bytes(*found));
   return found;
 }

@@ -85,6 +85,7 @@ void Guard::reset() noexcept {
   direction_.reset();
   filter_.forget();
   run_ = {};
+  longest_ = 0.0;
 }
 
 void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {

@@ -197,7 +197,7 @@ class Guard {
     Since released;                 ///< its brake, or began to be stuck
   };
   Run run_;
-  double longest_ = 0.0;     ///< between two commands lately: the machine's, whichever run it is [s]
+  double longest_ = 0.0;     ///< interval between two commands lately [s]
   double act_speed_ = 0.0;   ///< estimated where the command acts [m/s]
   double most_drive_ = 0.0;  ///< acceleration that the tyres can give then [m/s²]
   double sent_from_ = 0.0;   ///< from which the command of this cycle acts [s]

@@ -15,7 +15,7 @@ namespace {
 constexpr double kAssumedCycle = 0.25;  // [s] between commands where that is not known: after the first one
 constexpr double kLateness = 0.06;      // [s] by which the next command may come late, before a stop begins
 constexpr double kShortestHold = 0.09;  // [s] a command is held where the next one comes at once
-constexpr double kLongestHold = 0.75;   // [s] a command is held: longer, a run begins anew
+constexpr double kLongestHold = 0.75;   // [s] a command is held, at most
 constexpr double kFirstHold = 0.5;      // [s] the command by which a led car begins to move is held
 constexpr double kRecovery = 0.5;       // [s] after a silence until the car is controlled again
 constexpr double kDrivenOpen = 2.0;     // [s] of silence for which a stop that is being driven is certified

@@ -28,7 +28,7 @@ class LimitModel : public PlanModel {
   /// Reserves for plans to be driven, in order: the first plan that can be driven is taken.
   [[nodiscard]] virtual std::span<const Reserve> reserves() const = 0;
 
-  /// Caps on slip over the slip of peak force, from which to which the search goes; empty: none is needed.
+  /// PlanSearch::Options::slip_caps; empty: the search converges without.
   [[nodiscard]] virtual std::span<const double> slip_caps() const { return {}; }
 
   /// Feedback along a plan: the first `driven` states, and two inputs from variable `input` on. Weights of

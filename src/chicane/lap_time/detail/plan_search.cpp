@@ -185,13 +185,13 @@ Result<NodePlan> PlanSearch::find() {
   };
   calm_ = on_fine_nodes(coarse.front());
   const auto is_whole = [&] { return coarse.size() >= caps.size(); };
-  for (const bool is_all = is_whole(); !coarse.empty(); coarse.pop_back()) {
+  for (; !coarse.empty(); coarse.pop_back()) {
     if (is_out_of_budget_) return best_so_far(std::move(coarse.back()));
     if (!caps.empty()) model_.set_reserve({.slip_share = caps[coarse.size() - 1]});
     for (const double barrier : {kWarmBarrier, 1e-2, 1e-3}) {  // after the warm start two colder ones
       NodePlan fine = on_fine_nodes(coarse.back());
       if (solve(fine, barrier, kFineIterations, options_.tolerance))
-        return is_all && is_whole() ? fine : best_so_far(std::move(fine));
+        return is_whole() ? fine : best_so_far(std::move(fine));
       if (is_stopped_) return fail(ErrorCode::kInvalidArgument, kStopped);
       if (is_out_of_budget_)
         return best_so_far(violation_ <= kUsable ? std::move(fine) : std::move(coarse.back()));

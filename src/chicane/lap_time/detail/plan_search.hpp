@@ -40,8 +40,8 @@ class PlanSearch {
   struct Options {
     double time_step = 0.05;  ///< time between nodes [s]
     double tolerance = 1e-6;  ///< stationarity at an optimum (Collocation::Options)
-    /// Caps on the slip over the slip of peak force, from which to which find() goes on coarse nodes; empty:
-    /// the model's own. A search without a cap converges from near the optimum only.
+    /// Rising caps on the slip over the slip of peak force: find() solves with each in turn on coarse nodes.
+    /// Empty: one search, with the reserve that the model has.
     std::span<const double> slip_caps{};
     double budget = std::numeric_limits<double>::infinity();  ///< limit of find()'s work [s]
     /// Progress callback: count of iterations and lap time [s]; false ends the search. May be empty.

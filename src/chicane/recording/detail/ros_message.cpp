@@ -108,6 +108,7 @@ bool RosReader::read_type(const std::string& type, const std::string& name, prot
   if (fields == types_.end() || depth > kMostDepth) return false;
   for (const Field& field : fields->second) {
     const std::size_t count = field.many == Field::Many::kCounted ? source.count(1) : field.count;
+    if (count > kMostElements) return false;
     const std::string path = name.empty() ? field.name : name + "." + field.name;
     for (std::size_t i = 0; i < count; ++i)
       if (!read_type(field.type, path, source, depth + 1, content)) return false;
@@ -119,7 +120,7 @@ Result<RosContent> RosReader::read(std::string_view bytes) const {
   RosContent content;
   protocol::CdrSource source(bytes);
   if (!read_type("", "", source, 0, content))
-    return fail(ErrorCode::kParse, "got a message that ends too early");
+    return fail(ErrorCode::kParse, "got a message that is cut short, or not in plain CDR");
   return content;
 }
 
