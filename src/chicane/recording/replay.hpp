@@ -94,8 +94,8 @@ struct ReplayReport {
 [[nodiscard]] Result<void> can_be_bag(const std::string& recording);
 
 /// Writes metadata.yaml beside a recording, of version 5, which rosbag2 reads from ROS 2 Humble on: the
-/// topics in CDR with their messages counted. Chicane's own topics are among them; players leave out types
-/// that they do not know. Reads the whole recording. kIo as read_mcap() fails, and where the file cannot be
+/// topics in CDR with their messages counted. Chicane's own topics are among them; players skip unknown
+/// types. Reads the whole recording. kIo as read_mcap() fails, and where the file cannot be
 /// written.
 [[nodiscard]] Result<void> write_bag_metadata(const std::string& recording);
 

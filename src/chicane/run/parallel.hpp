@@ -47,8 +47,8 @@ struct Shard {
 /// null. kInvalidArgument for numbers that make no sense, and for arrays with holes.
 [[nodiscard]] Result<Shard> environment_shard(const std::function<const char*(const char*)>& variable);
 
-/// Values from one thread to one other, in order: a ring in fixed memory. Neither waits; no allocation beside
-/// what assigning an Item takes.
+/// Values from one thread to one other, in order: a ring in fixed memory. Neither waits; allocates
+/// only where assigning an Item does.
 template <class Item, std::uint64_t Capacity = 256>
 class ThreadQueue {
  public:

@@ -35,7 +35,7 @@ constexpr double kFollowed = 0.1;      // share of a difference that is made up 
 constexpr double kBurst = 0.5;         // share by which a step in lock step differs that had to wait
 constexpr double kOfStep = 0.15;       // share by which its time differs from the others
 constexpr double kSampling = 0.02;     // [s] by which a state may be younger or older: a usual physics step
-constexpr double kLegSamples = 5.0;    // of which a leg consists at least
+constexpr double kLegSamples = 5.0;    // least length of a leg, in kSampling
 constexpr double kSampledSpeed = 4.0;  // [m/s] from which a displacement shows that
 constexpr double kLeastCounted = 0.1;  // share of the expected time that passes in any case
 constexpr double kSampledLeft = 0.95;  // share of what sampling has added that is left after an answer
@@ -209,8 +209,7 @@ bool PlantClock::take_up() {
   const Fit by_step = fit([](const Leg& leg) { return leg.steps; });
   const bool was_in_step = step_ > 0.0;
   const bool is_distinct = std::max(by_clock.deviation, by_step.deviation) > kLeastDeviation;
-  // All legs together. What delays one message shortens the next stretch, so that a busy machine changes
-  // their sum by its last delay only.
+  // Sums of all legs: a late message shortens the next leg, so a busy machine changes them by its last delay.
   const double late = kLate * std::max(ratio_, 1.0) * (count_ == kLeastLegs ? kLateInFew : 1.0);
   const bool differs = std::fabs(by_clock.all - ratio_ * by_clock.all_counted) > late &&
                        std::fabs(log(by_clock.all / (ratio_ * by_clock.all_counted))) > log(kLeastChange);

@@ -64,10 +64,10 @@ class PlantClock {
   static constexpr std::size_t kLegs = 12;
   /// Sums of legs.
   struct Fit {
-    double value = 0.0;            ///< their ratio, of those near the median
-    double near = 0.0, all = 0.0;  ///< of the plant's time [s]
-    double all_counted = 0.0;      ///< and of what it is compared with
-    double deviation = 0.0;        ///< of the running sums from the ratio, root mean square [s]
+    double value = 0.0;            ///< ratio of the sums, over legs near the median
+    double near = 0.0, all = 0.0;  ///< plant's time: legs near the median, all legs [s]
+    double all_counted = 0.0;      ///< time that all legs are compared with [s]
+    double deviation = 0.0;        ///< root mean square of the running sums' error [s]
   };
 
   void forget();

@@ -143,7 +143,8 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
                                             {.margin = 0.2, .grip_share = 0.98, .slip_share = 0.8}};
     return kReserves;
   }
-  /// From the peak on: a tyre gives less force beyond it, and laps of most cars use less than twice its slip.
+  /// Caps from the peak on: beyond it a tyre gives less force, and laps of most cars use less than twice its
+  /// slip.
   [[nodiscard]] std::span<const double> slip_caps() const override {
     static constexpr double kCaps[] = {1.0, 1.1, 1.25, 1.5, 2.0, 10.0};
     return kCaps;
