@@ -230,6 +230,38 @@ TEST(PredictiveFilter, ForgetsWhenItRefused) {
   EXPECT_EQ(answer(1.0), first);
 }
 
+/// docs/guard.md, eq. 5d: a stop that comes nearer to the edge than it was certified for asks for that room.
+TEST(PredictiveFilter, AsksForTheRoomThatADrivenStopHasLost) {
+  for (const double side : {1.0, -1.0}) {
+    const road::KnownRoad road = round_road(side);
+    const auto fit_after = [&](double pushed, bool is_measured, bool forgets) {
+      PredictiveFilter filter(model::udacity_params(), {});
+      GuardReport report;
+      StopStart at = driving(20.0, side);
+      for (int i = 0; i < 5; ++i) {  // pushed outwards while its stop is driven
+        EXPECT_TRUE(filter.drive(road, at, false, is_measured, report));
+        at.time += 0.04;
+        at.d -= 0.2 * side * pushed;
+      }
+      if (forgets) filter.forget();
+      StopStart outwards = driving(20.0, side);  // its stop comes nearer to the edge than it is
+      outwards.time = at.time + 2.0;
+      outwards.d = -3.0 * side;
+      outwards.e = -0.06 * side;
+      const Fit fit = filter.verify({road, outwards, {side * 0.03, 0.0}, 0.04}, report);
+      if (fit != Fit::kNone) {
+        EXPECT_GT(report.stop_edge, 0.2);
+        EXPECT_LT(report.stop_edge, 0.6);
+      }
+      return fit;
+    };
+    EXPECT_NE(fit_after(0.0, true, false), Fit::kNone);
+    EXPECT_EQ(fit_after(1.0, true, false), Fit::kNone);
+    EXPECT_NE(fit_after(1.0, false, false), Fit::kNone) << "a doubted measurement says nothing of the model";
+    EXPECT_NE(fit_after(1.0, true, true), Fit::kNone) << "another run";
+  }
+}
+
 TEST(PredictiveFilter, AllocatesNothing) {
   const road::KnownRoad road = round_road(1.0);
   PredictiveFilter filter(model::road_car_params(), {});

@@ -44,11 +44,6 @@ constexpr std::array<Row, 4> kRows{{
 }};
 constexpr std::array kUsual{0.0, 1.0, 0.0, 1.0};
 
-model::VehicleParams without_name(model::VehicleParams vehicle) noexcept {
-  vehicle.name.clear();
-  return vehicle;
-}
-
 /// Use of the tyres at the busier axle: slip over peak slip, or longitudinal force over peak force.
 double tire_use(const tracking::StateEstimator& estimator) noexcept {
   const model::State& car = estimator.state();

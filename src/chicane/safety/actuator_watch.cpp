@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "chicane/base/math.hpp"
 
@@ -25,13 +26,11 @@ constexpr double kDeviations = 5.0;     // of the noise, added to the band
 constexpr double kLearned = 4.0;        // [s] of which the noise is the mean
 constexpr double kLeastLearned = 1.0;   // [s] of it before anything is judged
 constexpr double kMemory = 3.0;         // [s] of which the answer is estimated
-constexpr double kGainPrior = 0.5;      // standard deviation that is assumed of a gain
+constexpr double kGainPrior = 0.2;      // standard deviation that is assumed of a gain
 constexpr double kOffsetPrior = 0.1;    // [rad] and of an offset
 constexpr double kAngleNoise = 0.01;    // [rad] of a mean angle
-constexpr double kLeastGain = 0.35;
-constexpr double kMostGain = 2.5;
 constexpr double kMostOffset = 0.25;    // [rad]
-constexpr double kUsualGain = 0.1;      // within which a gain is the usual one again
+constexpr double kUsualGain = 0.1;      // of wheels that follow: others miss commands, or are stuck
 constexpr double kUsualOffset = 0.012;  // [rad]
 constexpr double kBraked = 0.25;        // of the useful braking, from which brakes are judged
 constexpr double kWeakFor = 0.12;       // [s]
@@ -41,12 +40,12 @@ constexpr double kStrong = 0.9;        // share of the braking from which brakes
 constexpr double kLateCommand = 0.06;  // [s] by which a command may act later than configured
 constexpr int kParts = 4;              // of a step, in which the command may change
 
+}  // namespace
+
 model::VehicleParams without_name(model::VehicleParams vehicle) noexcept {
   vehicle.name.clear();
   return vehicle;
 }
-
-}  // namespace
 
 ActuatorWatch::ActuatorWatch(const model::VehicleParams& vehicle) noexcept
     : model_{without_name(vehicle)}, pace_{std::sqrt(std::min(vehicle.length / kFullSize, 1.0))} {}
@@ -168,7 +167,7 @@ void ActuatorWatch::judge_steering(Window& window, double length, double elapsed
     return;
   }
   const double before = window.difference;
-  window.difference = window.angle - answer_.gain * window.asked - answer_.offset;
+  window.difference = window.angle - window.asked - answer_.offset;
   const double slip_share = window.use > kSpareUse ? kSlipShareUsed : kSlipShare;
   const double band = kBand + kBandShare * std::fabs(window.asked) +
                       slip_share * std::max(std::fabs(window.slip), std::fabs(window.rear_slip)) +
@@ -183,8 +182,8 @@ void ActuatorWatch::judge_steering(Window& window, double length, double elapsed
       std::min(std::fabs(window.difference - before), kBand + 3.0 * std::sqrt(window.noise));
   window.learned = std::min(window.learned + elapsed, kLearned);
   window.noise += (0.5 * change * change - window.noise) * elapsed / window.learned;
-  if (window.differs_for > kDiffersFor * pace_) {
-    is_steered_ = true;
+  if (window.differs_for > kDiffersFor * pace_ && (follows_ || !is_steered_)) {
+    is_steered_ = follows_ = true;
     gg_ = go_ = oo_ = g_ = o_ = memory_ = 0.0;
     usual_for_ = 0.0;
     for (Window& each : windows_) each.differs_for = 0.0;
@@ -195,7 +194,8 @@ void ActuatorWatch::judge_steering(Window& window, double length, double elapsed
     fit_steering(window, length, elapsed);
 }
 
-/// Least squares with a memory, about the usual answer.
+/// Least squares with a memory, about the usual answer. Wheels whose angle does not follow the commands get
+/// none of them, or get them late, or are stuck: no other command mends that.
 void ActuatorWatch::fit_steering(const Window& window, double length, double elapsed) noexcept {
   const double asked = window.asked, difference = window.angle - asked;
   memory_ = std::min(memory_ + elapsed, kMemory);
@@ -211,13 +211,12 @@ void ActuatorWatch::fit_steering(const Window& window, double length, double ela
   const double b = oo_ + 1.0 / (kOffsetPrior * kOffsetPrior);
   const double determinant = a * b - go_ * go_;
   const double gain = (b * g_ - go_ * o_) / determinant, offset = (a * o_ - go_ * g_) / determinant;
-  answer_.gain = std::clamp(1.0 + gain, kLeastGain, kMostGain);
-  answer_.offset = std::clamp(offset, -kMostOffset, kMostOffset);
-  const bool is_usual = std::fabs(gain) < kUsualGain && std::fabs(offset) < kUsualOffset;
+  const bool begins_to_follow = !std::exchange(follows_, std::fabs(gain) < kUsualGain) && follows_;
+  answer_.offset = follows_ ? std::clamp(offset, -kMostOffset, kMostOffset) : 0.0;
+  const bool is_usual = follows_ && std::fabs(offset) < kUsualOffset;
   usual_for_ = is_usual ? usual_for_ + elapsed : 0.0;
-  if (usual_for_ < kUsualFor) return;
+  if (usual_for_ < kUsualFor && !begins_to_follow) return;
   is_steered_ = false;
-  answer_.gain = 1.0;
   answer_.offset = 0.0;
 }
 

@@ -40,10 +40,13 @@ struct ActuatorAnswer {
   }
 };
 
+/// The same car without a name: copies do not allocate.
+[[nodiscard]] model::VehicleParams without_name(model::VehicleParams vehicle) noexcept;
+
 /// Compares how the car turns and brakes with what was sent to it, by its model (docs/guard.md,
-/// eq. 12 and 13). The answer is the usual one until the difference exceeds its band; then it is estimated,
-/// until it has been the usual one for kUsualFor. It judges a car that moves forward, faster than kSlowest,
-/// with grip to spare. No allocation; one thread.
+/// eq. 12 and 13). The answer is the usual one until the difference exceeds its band; then offset and braking
+/// are estimated, until they have been usual for kUsualFor. It judges a car that moves forward, faster than
+/// kSlowest, with grip to spare. No allocation; one thread.
 class ActuatorWatch {
  public:
   static constexpr double kBand = 0.01;          ///< [rad] by which an angle may differ
@@ -68,14 +71,11 @@ class ActuatorWatch {
   /// A measurement that is not in doubt; `sent`: the commands to the actuators. While the rear axle slides
   /// the steering is not judged, and while either does the brakes are not.
   void see(const model::Measurement& now, const tracking::CommandHistory& sent, const AxleUse& use) noexcept;
-  void see(const model::Measurement& now, const tracking::CommandHistory& sent) noexcept {
-    see(now, sent, {});
-  }
   /// No measurement is usable.
   void skip() noexcept { count_ = 0; }
 
   [[nodiscard]] const ActuatorAnswer& answer() const noexcept { return answer_; }
-  /// The car with usual actuators. Its name is empty: copies do not allocate.
+  /// The car with usual actuators, without its name.
   [[nodiscard]] const model::VehicleParams& usual_vehicle() const noexcept { return model_.vehicle(); }
   /// The car with the brakes that it has.
   [[nodiscard]] model::VehicleParams vehicle() const noexcept {
@@ -136,7 +136,8 @@ class ActuatorWatch {
   double last_psi_ = 0.0;            ///< [rad]
   std::array<Window, 2> windows_{};  ///< a short one, and a long one for noisy sensors
   double usual_for_ = 0.0;           ///< [s]
-  bool is_steered_ = false;          ///< gain and offset are estimated
+  bool follows_ = true;              ///< the wheels turn as much as they are asked to
+  bool is_steered_ = false;          ///< the offset is estimated
   // Normal equations of (gain - 1, offset), and the time that they remember [s].
   double gg_ = 0.0, go_ = 0.0, oo_ = 0.0, g_ = 0.0, o_ = 0.0, memory_ = 0.0;
   double weak_for_ = 0.0;  ///< [s]

@@ -145,22 +145,22 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
 
 /// The last word: the command for the actuators, in range and rate.
 void Guard::send(const Cycle& cycle, const model::Command& asked, controller::StepResult& result) noexcept {
-  const model::Command commanded = answer().command_for(result.command);
+  const model::Command commanded = answer_.command_for(result.command);
   const GateResult gated = gate_.pass(cycle.manual.value_or(commanded), cycle.interval);
   result.command = gated.command;
   report_.gated = gated.reason != GateReason::kNone ||
-                  !is_same(gated.command, cycle.manual.value_or(answer().command_for(asked)));
-  const model::Command effect = answer().effect_of(gated.command);
+                  !is_same(gated.command, cycle.manual.value_or(answer_.command_for(asked)));
+  const model::Command effect = answer_.effect_of(gated.command);
   controller_->note_sent(effect);
   if (!std::isfinite(sent_from_)) return;
   commanded_.add(sent_from_, gated.command);
   sent_.add(sent_from_, effect);
-  if (answer().is_usual()) return;
+  if (answer_.is_usual()) return;
   stop_ = filter_.stop();
   for (int i = 0; i < stop_.size; ++i) {
     StopPoint& point = stop_.points[static_cast<std::size_t>(i)];
-    point.command = answer().command_for(point.command);
-    point.time -= std::min(answer().delay, 0.0);  // not before the next command as it is configured
+    point.command = answer_.command_for(point.command);
+    point.time -= std::min(answer_.delay, 0.0);  // not before the next command as it is configured
   }
 }
 
@@ -204,12 +204,11 @@ void Guard::watch_actuators(const model::Measurement& seen) noexcept {
     const auto tires = model_.tire_use(model::BodyMotion<double>{car.vx, car.vy, car.r, car.steer, 0.0});
     use = {tires.front, tires.rear, car.vy / car.vx};
   }
-  const ActuatorAnswer& usual = learned_.answer();
-  actuators_.see(seen, commanded_.changed([&](const auto& command) { return usual.effect_of(command); }),
-                 use);
+  actuators_.see(
+      seen, commanded_.changed([&](const auto& command) { return learned_.answer().effect_of(command); }),
+      use);
   const ActuatorAnswer& after = actuators_.answer();
-  if (after.gain != before.gain || after.offset != before.offset || after.braking != before.braking)
-    count_with_answer();
+  if (after.offset != before.offset || after.braking != before.braking) count_with_answer();
   if (after.braking != before.braking) count_with_actuators();
 }
 
@@ -333,9 +332,9 @@ bool Guard::slow_down(const StopStart& start, const Cycle& cycle, controller::St
 /// The command inside range and rate, without the reverse gear: a stop ends in standstill. No drive beyond
 /// the speed up to which the car's parameters hold: no stop can be computed from there.
 model::Command Guard::limited(const model::Command& command, double interval) const noexcept {
-  const model::Command commanded = answer().command_for(command);
+  const model::Command commanded = answer_.command_for(command);
   const model::Command gated = gate_.limited(commanded, interval).command;
-  model::Command inside = is_same(gated, commanded) ? command : answer().effect_of(gated);
+  model::Command inside = is_same(gated, commanded) ? command : answer_.effect_of(gated);
   const model::VehicleParams& car = model_.vehicle();
   const double v = act_speed_;
   if (inside.throttle > 0.0) {
@@ -379,8 +378,8 @@ void Guard::take_over(const model::Command& command, Rung rung, controller::Step
 bool Guard::drive_backup(const StopStart& start, controller::StepResult& result) noexcept {
   const Findings& findings = monitor_.findings();
   const bool is_open = findings.unmeasured || findings.frozen || findings.late;
-  const bool may_race_on = report_.reason == GuardReason::kNoWayToStop;
-  if (!filter_.drive(road_, start, is_open, may_race_on, report_)) return false;
+  const bool is_measured = !is_open && report_.reason == GuardReason::kNoWayToStop;
+  if (!filter_.drive(road_, start, is_open, is_measured, report_)) return false;
   take_over(filter_.stop().points[0].command, Rung::kGuardStop, result);
   show_backup(start, result.plan);
   return true;

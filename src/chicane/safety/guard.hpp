@@ -82,7 +82,7 @@ class Guard {
 
   /// The stop at hand after step(): from the moment at which the next command would act. Size 0: none.
   /// As commands for the actuators, like the command that is sent.
-  [[nodiscard]] const StopPlan& stop() const noexcept { return answer().is_usual() ? filter_.stop() : stop_; }
+  [[nodiscard]] const StopPlan& stop() const noexcept { return answer_.is_usual() ? filter_.stop() : stop_; }
   [[nodiscard]] controller::Controller& controller() noexcept { return *controller_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return *controller_; }
 
@@ -134,7 +134,6 @@ class Guard {
   void take_up_actuators() noexcept;
   void count_with_answer() noexcept;
   void report_learned(controller::LearnedCar& learned) const noexcept;
-  [[nodiscard]] const ActuatorAnswer& answer() const noexcept { return answer_; }
   void send(const Cycle& cycle, const model::Command& asked, controller::StepResult& result) noexcept;
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
 

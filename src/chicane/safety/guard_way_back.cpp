@@ -354,7 +354,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
 model::VehicleParams Guard::led_vehicle() const noexcept {
   model::VehicleParams vehicle = model_.vehicle();
   const double lock = vehicle.steer_limit;
-  vehicle.steer_limit = std::clamp(answer().gain * lock - std::fabs(answer().offset), 0.1 * lock, lock);
+  vehicle.steer_limit = std::clamp(answer_.gain * lock - std::fabs(answer_.offset), 0.1 * lock, lock);
   return vehicle;
 }
 

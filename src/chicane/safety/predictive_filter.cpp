@@ -23,7 +23,9 @@ constexpr double kTurnReserve = 1.2;    // times the room in which a car that st
 constexpr double kLedShare = 0.5;       // of the margin that turning back leaves at least
 constexpr double kCrawl = 0.5;          // [m/s]
 constexpr double kWalkingPace = 3.0;    // [m/s] below it slip angles say little
-constexpr double kNearer = 0.02;        // [m] that a driven stop may come nearer to an edge that it is beyond
+constexpr double kNearer = 0.02;        // [m] that a stop may come nearer to an edge than the car is
+constexpr double kKeptLoss = 0.95;      // of what stops have lost, when another one begins
+constexpr double kMostLoss = 0.5;       // [m] of it that counts
 constexpr double kMemory = 3.0;         // [s] of residuals
 constexpr double kDeviations = 2.0;     // of residuals that a certificate covers
 constexpr double kMostSlip = 1.2;       // over the slip at the peak: beyond it the car spins
@@ -117,7 +119,8 @@ void PredictiveFilter::forget() noexcept {
   has_stored_ = false;
   residual_ = {};
   residual_at_ = 0.0;
-  refused_at_ = -std::numeric_limits<double>::infinity();
+  refused_at_ = driven_at_ = -std::numeric_limits<double>::infinity();
+  lost_ = 0.0;
   law_ = 0;
 }
 
@@ -183,7 +186,8 @@ bool PredictiveFilter::consider(const road::KnownRoad& road, const StopStart& fr
 /// than it takes to turn.
 double PredictiveFilter::margin_for(const Request& request, const StopStart& next,
                                     double edge_now) const noexcept {
-  if (!request.is_led || !(next.body.vx < 2.0 * kWalkingPace)) return terms_.margin;
+  if (!request.is_led || !(next.body.vx < 2.0 * kWalkingPace))
+    return std::clamp(edge_now - kNearer, terms_.margin, terms_.margin + lost_);
   const double turned = edge_now - kTurnReserve * planner_.turning_room(request.road, request.start);
   const double least = std::min(edge_now, kLedShare * terms_.margin);
   return std::min(terms_.margin, std::max({turned, least, terms_.least_edge}));
@@ -270,13 +274,13 @@ Fit PredictiveFilter::verify_held(const Request& request, double held, GuardRepo
 }
 
 bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start, bool is_open,
-                             bool may_race_on, GuardReport& report) noexcept {
+                             bool is_measured, GuardReport& report) noexcept {
   // Open loop the estimate's model is less accurate than the stop's own: the stored stop goes on by time.
   if (is_open && planner_.has_wheels() && shift_to(start.time)) return true;
   refused_at_ = start.time;
   Candidate best;
   // A refused answer is no reason to stop where the guard can drive the lap itself, and stop later.
-  if (may_race_on && road.is_raced() && !is_open) {
+  if (is_measured && road.is_raced()) {
     const Goal goal{.margin = terms_.margin};
     for (const Law& law : kRaceOn)
       if (consider(road, start, policy_of(law, start.time), goal, best, report)) return true;
@@ -287,13 +291,22 @@ bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start
                   .is_driven = true};
   if (has_stored_) static_cast<void>(consider(road, start, Policy{stored_}, goal, best, report));
   const bool holds = best.fit != Fit::kNone;
+  if (holds && is_measured) {  // eq. 5d: with a true model and state it loses nothing of its edge
+    const double edge = best.check.least_edge;
+    const bool goes_on = start.time - std::exchange(driven_at_, start.time) < kAssumedCycle;
+    promised_ = goes_on ? std::max(promised_, edge) : edge;
+    lost_ = std::max((goes_on ? 1.0 : kKeptLoss) * lost_, std::min(promised_ - edge, kMostLoss));
+  }
   for (int i = 0; i < kDriven && best.fit < Fit::kOpen; ++i) {
     const Law& law = kLaws[i];
     if (is_open && law.braking.share < 1.0) continue;
     const Candidate before = best;
     // One that also holds blindly comes before the stored one, one that is only as good does not.
     if (holds) best.worth = std::numeric_limits<double>::infinity();
-    if (!consider(road, start, policy_of(law, start.time), goal, best, report)) best = before;
+    if (consider(road, start, policy_of(law, start.time), goal, best, report))
+      promised_ = best.check.least_edge;
+    else
+      best = before;
   }
   return is_current_ && stop_->size > 0;
 }

@@ -67,10 +67,12 @@ class PredictiveFilter {
   [[nodiscard]] Fit verify(const Request& request, GuardReport& report) noexcept;
 
   /// Stores the way to standstill from `start` on: the stored policy, or a certified one where the stored one
-  /// holds no more. `is_open`: the car is not measured, `start` comes from the model. `may_race_on`: the car
-  /// may stay on a planned lap for a while, where a certified stop follows. False: there is none.
+  /// holds no more. `is_open`: the car is not measured, `start` comes from the model. `is_measured`: nothing
+  /// is in doubt but the controller's command; then the car may stay on a planned lap for a while, where a
+  /// certified stop follows, and what the policy loses of its edge is added to the margin (eq. 5d). False:
+  /// there is none.
   [[nodiscard]] bool drive(const road::KnownRoad& road, const StopStart& start, bool is_open,
-                           bool may_race_on, GuardReport& report) noexcept;
+                           bool is_measured, GuardReport& report) noexcept;
 
   /// The stored way to standstill, from the moment at which the next command acts. Size 0: none.
   [[nodiscard]] const StopPlan& stop() const noexcept { return is_current_ ? *stop_ : kNoStop; }
@@ -111,8 +113,12 @@ class PredictiveFilter {
   Doubt residual_;                                                ///< root mean squares
   double residual_at_ = 0.0;                                      ///< [s]
   double refused_at_ = -std::numeric_limits<double>::infinity();  ///< the last drive() [s]
-  int law_ = 0;                                                   ///< that was certified last, tried first
-  bool is_current_ = false;                                       ///< stop_ is of this cycle
+  double driven_at_ =
+      -std::numeric_limits<double>::infinity();  ///< a stop, last, and nothing was in doubt [s]
+  double promised_ = 0.0;                        ///< edge of the policy that is driven [m]
+  double lost_ = 0.0;                            ///< of it, by driven policies [m]
+  int law_ = 0;                                  ///< that was certified last, tried first
+  bool is_current_ = false;                      ///< stop_ is of this cycle
   static const StopPlan kNoStop;
 };
 
