@@ -14,7 +14,7 @@
 #include "chicane/live/run_log.hpp"
 #include "chicane/live/run_publisher.hpp"
 #include "chicane/live/what_if.hpp"
-#include "chicane/live/worker.hpp"
+#include "chicane/base/worker.hpp"
 #include "chicane/net/server.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/recording/recorder.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "chicane/lap_time/limit.hpp"
-#include "chicane/live/worker.hpp"
+#include "chicane/base/worker.hpp"
 #include "chicane/road/track.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/frame.hpp"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
-#include "chicane/live/worker.hpp"
+#include "chicane/base/worker.hpp"
 #include "chicane/recording/shadow_run.hpp"
 #include "chicane/run/parallel.hpp"
 #include "chicane/scenario/scenario.hpp"

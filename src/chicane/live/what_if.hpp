@@ -17,7 +17,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/live/run_log.hpp"
-#include "chicane/live/worker.hpp"
+#include "chicane/base/worker.hpp"
 #include "chicane/recording/shadow_run.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/scenario/scenario.hpp"

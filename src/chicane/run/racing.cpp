@@ -3,8 +3,6 @@
 // the thread that plans during a run.
 #include "chicane/run/racing.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -144,11 +142,6 @@ Result<std::shared_ptr<const road::RacingRoad>> plan_wanted_lap(const scenario::
   return plan_on(*learned, scenario, basis, go_on, {});
 }
 
-LapPlanner::~LapPlanner() {
-  is_wanted_ = false;
-  if (thread_.joinable()) thread_.join();
-}
-
 telemetry::Change LapPlanner::lap_change(const road::RacingRoad& lap, std::uint64_t cycle, double time) {
   const road::LapTerms& terms = lap.terms();
   std::string value = number_text(terms.grip);
@@ -161,35 +154,26 @@ std::shared_ptr<const road::RacingRoad> LapPlanner::follow(const controller::Con
                                                            const scenario::Scenario& scenario,
                                                            const road::Track* track, double time) {
   const controller::LapRequest request = controller.wants_lap();
-  is_wanted_ = request.is_wanted;
-  if (thread_.joinable() && has_ended_.load(std::memory_order_acquire)) thread_.join();
   if (!request.is_wanted) {
+    if (wanted_since_ && search_) search_->cancel();
     wanted_since_.reset();
     return {};
   }
   if (!wanted_since_ || time < *wanted_since_) {
-    if (thread_.joinable()) return {};  // its result is no longer awaited
     wanted_since_ = time;
     ready_since_.reset();
     has_answered_ = false;
-    has_ended_ = false;
-    lap_.reset();
-    if (clock_ == Clock::kReal)
-      thread_ = std::thread([this, scenario, track,
-                             points = std::vector(request.waypoints.begin(), request.waypoints.end()),
-                             wanted = controller::LapRequest(request)]() mutable {
-        wanted.waypoints = points;
-        search(scenario, track, wanted);
-      });
+    if (clock_ == Clock::kReal) begin(scenario, track, request);
     return {};
   }
   if (has_answered_) return {};
-  if (clock_ == Clock::kVirtual && !ready_since_) {
-    if (time - *wanted_since_ < kPlanningTime) return {};
-    search(scenario, track, request);
+  if (!ready_since_) {
+    if (clock_ == Clock::kVirtual && time - *wanted_since_ < kPlanningTime) return {};
+    std::optional<Lap> lap = clock_ == Clock::kReal ? search_->take() : planned(scenario, track, request, {});
+    if (!lap) return {};
+    lap_ = std::move(*lap);
+    ready_since_ = time;
   }
-  if (!has_ended_.load(std::memory_order_acquire)) return {};
-  if (!ready_since_) ready_since_ = time;
   const double near = kJoining + kJoiningGrows * (time - *ready_since_);
   if (lap_ && controller.beside(*lap_) > near) return {};
   has_answered_ = true;
@@ -211,16 +195,22 @@ std::optional<telemetry::Change> LapPlanner::advance(ControlCycle& cycle, const 
   return lap_change(*lap, cycle.next(), time);
 }
 
-void LapPlanner::search(const scenario::Scenario& scenario, const road::Track* track,
-                        const controller::LapRequest& request) {
-  if (clock_ == Clock::kReal) {
-    // Nice value behind everything else, yet not starved: on busy cores a tenth of one thread's share.
-    constexpr int kLowPriority = 10;
-    static_cast<void>(setpriority(PRIO_PROCESS, 0, kLowPriority));  // sets this thread only, on Linux
-  }
-  auto lap = plan_wanted_lap(scenario, track, request, [this] { return is_wanted_.load(); });
-  if (lap) lap_ = std::move(*lap);
-  has_ended_.store(true, std::memory_order_release);
+/// In real time a thread looks for the lap, with scenario and waypoints of its own.
+void LapPlanner::begin(const scenario::Scenario& scenario, const road::Track* track,
+                       const controller::LapRequest& request) {
+  if (!search_)
+    search_.emplace([](Search search, const std::function<bool()>& is_wanted) {
+      search.request.waypoints = search.waypoints;
+      return planned(search.scenario, search.track, search.request, is_wanted);
+    });
+  search_->begin({scenario, track, request, {request.waypoints.begin(), request.waypoints.end()}});
+}
+
+LapPlanner::Lap LapPlanner::planned(const scenario::Scenario& scenario, const road::Track* track,
+                                    const controller::LapRequest& request,
+                                    const std::function<bool()>& is_wanted) {
+  Result<Lap> lap = plan_wanted_lap(scenario, track, request, is_wanted);
+  return lap ? std::move(*lap) : Lap{};
 }
 
 namespace {

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 #include "chicane/base/result.hpp"
 #include "chicane/base/vec2.hpp"
+#include "chicane/base/worker.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/lap_time/limit.hpp"
 #include "chicane/road/racing_road.hpp"
@@ -66,17 +65,13 @@ class ControlCycle;
 /// takes effect after kPlanningTime. The plan depends on scenario, road and grip alone; grip and time of
 /// effect are in recordings, as the change lap_change().
 ///
-/// One thread, that of the run.
+/// One thread, that of the run. Its end cancels a search, and waits for one iteration of it.
 class LapPlanner {
  public:
   enum class Clock { kReal, kVirtual };
   static constexpr double kPlanningTime = 5.0;  ///< time of a plan in virtual time [s]
 
   explicit LapPlanner(Clock clock) noexcept : clock_{clock} {}
-  /// Cancels a search, and waits for its thread: for one iteration.
-  ~LapPlanner();
-  LapPlanner(const LapPlanner&) = delete;
-  LapPlanner& operator=(const LapPlanner&) = delete;
 
   /// A lap is taken up where the car is about to drive so near to it [m]; the longer it is ready, the farther
   /// [m/s]. A car at the limit of its tyres has nothing left to come to another line with.
@@ -106,17 +101,25 @@ class LapPlanner {
   static constexpr std::string_view kSlip = ", slip ";
 
  private:
-  void search(const scenario::Scenario& scenario, const road::Track* track,
-              const controller::LapRequest& request);
+  using Lap = std::shared_ptr<const road::RacingRoad>;  ///< null: there is none
+  struct Search {
+    scenario::Scenario scenario;
+    const road::Track* track = nullptr;
+    controller::LapRequest request;
+    std::vector<Vec2> waypoints;  ///< of the request
+  };
+  void begin(const scenario::Scenario& scenario, const road::Track* track,
+             const controller::LapRequest& request);
+  [[nodiscard]] static Lap planned(const scenario::Scenario& scenario, const road::Track* track,
+                                   const controller::LapRequest& request,
+                                   const std::function<bool()>& is_wanted);
 
   Clock clock_;
   std::optional<double> wanted_since_;  ///< [s]
   std::optional<double> ready_since_;   ///< lap_ [s]
   bool has_answered_ = false;           ///< the current request has been answered
-  std::atomic<bool> is_wanted_{false};
-  std::atomic<bool> has_ended_{false};           ///< the thread: lap_ may be read
-  std::shared_ptr<const road::RacingRoad> lap_;  ///< null: there is none
-  std::thread thread_;
+  Lap lap_;
+  std::optional<NewestTask<Search, Lap>> search_;
 };
 
 /// Drives `scenario` again without each thing that keeps its laps from the limit, one at a time: latency with

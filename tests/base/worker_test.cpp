@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/live/worker.hpp"
+#include "chicane/base/worker.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <future>
 #include <thread>
 
-namespace chicane::live {
+namespace chicane {
 namespace {
 
 using namespace std::chrono_literals;
@@ -45,4 +45,4 @@ TEST(Worker, WorksEachPeriodUntilItIsDestroyed) {
 }
 
 }  // namespace
-}  // namespace chicane::live
+}  // namespace chicane

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/live/worker.hpp"
+#include "chicane/base/worker.hpp"
 
 #include <sys/resource.h>
 
 #include <utility>
 
-namespace chicane::live {
+namespace chicane {
 
 Worker::Worker(std::function<void()> work, Period period)
     : work_{std::move(work)}, period_{period}, thread_{[this] { run(); }} {}
@@ -46,4 +46,4 @@ void Worker::run() {
   }
 }
 
-}  // namespace chicane::live
+}  // namespace chicane
