@@ -6,10 +6,8 @@
 
 #include <cmath>
 
-#include "chicane/protocol/library.hpp"
 #include "chicane/recording/detail/ros_message.hpp"
-#include "chicane/recording/recorder.hpp"
-#include "chicane/run/closed_loop.hpp"
+#include "recording/recorded_run.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {
@@ -18,38 +16,9 @@ namespace {
 using telemetry::TemporaryFile;
 using testing::HasSubstr;
 
-/// One lap of the oval, as the program records it; the frames that were recorded.
-std::vector<telemetry::Frame> record_oval(const std::string& path) {
-  const auto scenario =
-      protocol::compose({.scenario_file = {}, .settings = {{"track", "oval"}, {"laps", "1"}}});
-  EXPECT_TRUE(scenario);
-  const auto loop = run::ClosedLoop::create(*scenario);
-  EXPECT_TRUE(loop);
-  RecorderOptions options;
-  options.path = path;
-  options.run.track = "oval";
-  options.run.track_length = (*loop)->track().length();
-  options.run.vehicle = scenario->vehicle;
-  options.run.road = protocol::road_lines((*loop)->track(), 2.0);
-  options.scenario = *scenario;
-  options.may_wait = true;
-  const auto recorder = Recorder::create(options);
-  EXPECT_TRUE(recorder);
-  std::vector<telemetry::Frame> frames;
-  static_cast<void>(run::run_closed_loop(
-      **loop, {.on_frame =
-                   [&](const telemetry::Frame& frame) {
-                     frames.push_back(frame);
-                     (*recorder)->record(frame);
-                   },
-               .on_lap = [&](const telemetry::CompletedLap& lap) { (*recorder)->record(lap); }}));
-  EXPECT_TRUE((*recorder)->finish());
-  return frames;
-}
-
 TEST(DrivenRun, HoldsWhatWasRecorded) {
   const TemporaryFile file;
-  const std::vector<telemetry::Frame> frames = record_oval(file.path());
+  const std::vector<telemetry::Frame> frames = record_run(file.path(), "oval", "1");
   const auto run = read_run(file.path());
   ASSERT_TRUE(run) << run.error().message;
   EXPECT_EQ(run->track, "oval");

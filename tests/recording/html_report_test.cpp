@@ -7,11 +7,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "chicane/protocol/library.hpp"
-#include "chicane/recording/recorder.hpp"
 #include "chicane/recording/replay.hpp"
-#include "chicane/run/closed_loop.hpp"
 #include "chicane/telemetry/mcap.hpp"
+#include "recording/recorded_run.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {
@@ -141,31 +139,8 @@ TEST_F(ReportTest, IsOnePageThatAsksForNothing) {
   }
 }
 
-/// Three laps of lakeside, about 87 s.
-void record_lakeside(const std::string& path) {
-  const auto scenario =
-      protocol::compose({.scenario_file = {}, .settings = {{"track", "lakeside"}, {"laps", "3"}}});
-  ASSERT_TRUE(scenario);
-  const auto loop = run::ClosedLoop::create(*scenario);
-  ASSERT_TRUE(loop);
-  RecorderOptions options;
-  options.path = path;
-  options.run.track = "lakeside";
-  options.run.track_length = (*loop)->track().length();
-  options.run.vehicle = scenario->vehicle;
-  options.run.road = protocol::road_lines((*loop)->track(), 2.0);
-  options.scenario = *scenario;
-  options.may_wait = true;
-  const auto recorder = Recorder::create(options);
-  ASSERT_TRUE(recorder);
-  static_cast<void>(run::run_closed_loop(
-      **loop, {.on_frame = [&](const telemetry::Frame& frame) { (*recorder)->record(frame); },
-               .on_lap = [&](const telemetry::CompletedLap& lap) { (*recorder)->record(lap); }}));
-  ASSERT_TRUE((*recorder)->finish());
-}
-
 TEST_F(ReportTest, OfThreeLapsIsSmallAndHasTheirTimes) {
-  record_lakeside(log_.path());
+  record_run(log_.path(), "lakeside", "3");  // about 87 s
   const auto written = write("run.mcap");
   ASSERT_TRUE(written) << written.error().message;
   // The page's own script and style come to less than 100 kB more: together at most 800 kB.

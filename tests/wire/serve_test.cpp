@@ -27,6 +27,12 @@ using testing::HasSubstr;
 using testing::StartsWith;
 using namespace std::chrono_literals;
 
+/// What the controller answers to a telemetry of the real simulator.
+json driven(RawSocket& simulator) {
+  simulator.send(RawSocket::masked(kRealTelemetry));
+  return steer_of(simulator.frame());
+}
+
 constexpr double kFullLock = 0.4363323129985824;  // 25° in rad
 
 TEST(Serve, AnswersTheOriginalClientWithExactlyOneCompleteReply) {
@@ -34,8 +40,7 @@ TEST(Serve, AnswersTheOriginalClientWithExactlyOneCompleteReply) {
   RawSocket unity = served.connect();
   unity.send(RawSocket::masked("2"));
   for (int i = 0; i < 3; ++i) {
-    unity.send(RawSocket::masked(kRealTelemetry));
-    const json data = steer_of(unity.frame());
+    const json data = driven(unity);
     EXPECT_DOUBLE_EQ(data["steering_angle"].get<double>(), -0.1 / kFullLock);
     EXPECT_DOUBLE_EQ(data["throttle"].get<double>(), 0.5);
   }
@@ -52,8 +57,7 @@ TEST(Serve, SendsAStopPlanToASimulatorThatAsksForItAndToNobodyElse) {
     RawSocket socket(served.port());
     socket.send(handshake);
     ASSERT_THAT(socket.until("\r\n\r\n"), StartsWith("HTTP/1.1 101"));
-    socket.send(RawSocket::masked(kRealTelemetry));
-    const json data = steer_of(socket.frame());
+    const json data = driven(socket);
     ASSERT_EQ(data.contains("stop_plan"), asks) << data;
     EXPECT_EQ(data.size(), asks ? 7U : 6U);
     if (asks) {
@@ -112,15 +116,13 @@ TEST(Serve, TellsTheControllerHowLongItsCommandsTake) {
   options.latency = 20ms;
   Served served(options);
   RawSocket client = served.connect();
-  client.send(RawSocket::masked(kRealTelemetry));
-  steer_of(client.frame());
+  driven(client);
   EXPECT_DOUBLE_EQ(served.controller.last().delay,
                    0.04);  // nothing measured yet: the latency and a typical turn-around
   double last_time = served.controller.last().time;
   for (int i = 0; i < 12; ++i) {
     std::this_thread::sleep_for(15ms);  // the client's turn-around
-    client.send(RawSocket::masked(kRealTelemetry));
-    steer_of(client.frame());
+    driven(client);
     EXPECT_GE(served.controller.last().time, last_time + 0.035);
     last_time = served.controller.last().time;
   }
@@ -145,8 +147,7 @@ TEST(Serve, CountsByTheTimeThatTelemetryCarries) {
   EXPECT_NEAR(served.controller.last().delay, 0.05, 1e-6);
   EXPECT_NEAR(seen_at("3").time, first + 0.15, 1e-6) << "its time went back, the run's goes on";
   EXPECT_TRUE(served.has_logged("the simulator's time jumped"));
-  client.send(RawSocket::masked(kRealTelemetry));
-  EXPECT_LT(steer_of(client.frame())["throttle"].get<double>(), 0.0);
+  EXPECT_LT(driven(client)["throttle"].get<double>(), 0.0);
   EXPECT_TRUE(served.has_logged("broken telemetry: t: "));
 }
 
@@ -158,8 +159,7 @@ TEST(Serve, BeginsAnewAfterASilenceAndOnceMoreWithTheNextTelemetry) {
     RawSocket unity = served.connect();
     int resets = 0;
     for (int i = 0; i < 3; ++i) {
-      unity.send(RawSocket::masked(kRealTelemetry));
-      steer_of(unity.frame());
+      driven(unity);
       if (i == 0) resets = served.controller.resets();
     }
     EXPECT_EQ(served.controller.resets() - resets, is_long ? 2 : 0);
@@ -193,8 +193,7 @@ TEST(Serve, EveryHostileMessageIsSafe) {
 TEST(Serve, BrokenTelemetryStopsTheCarAlongTheRoadThatWasSeen) {
   Served served;
   RawSocket client = served.connect();
-  client.send(RawSocket::masked(kRealTelemetry));
-  const json driving = steer_of(client.frame());
+  const json driving = driven(client);
   client.send(RawSocket::masked(test::with("\"x\":-40.62008", "\"x\":-40,62008")));
   const json braking = steer_of(client.frame());
   EXPECT_NEAR(braking["steering_angle"].get<double>(), driving["steering_angle"].get<double>(), 0.3);
@@ -217,8 +216,7 @@ TEST(Serve, WhateverTheControllerSaysTheAnswerIsFinite) {
   served.controller.answer({.steer = std::numeric_limits<double>::quiet_NaN(),
                             .throttle = std::numeric_limits<double>::infinity()});
   RawSocket client = served.connect();
-  client.send(RawSocket::masked(kRealTelemetry));
-  steer_of(client.frame());
+  driven(client);
   served.stop();
   EXPECT_EQ(served.summary().run.fallbacks, 1U);
 }
@@ -226,15 +224,13 @@ TEST(Serve, WhateverTheControllerSaysTheAnswerIsFinite) {
 TEST(Serve, ASecondSimulatorIsRefusedInWordsWhileTheFirstIsDriven) {
   Served served;
   RawSocket first = served.connect();
-  first.send(RawSocket::masked(kRealTelemetry));
-  steer_of(first.frame());
+  driven(first);
   RawSocket second(served.port());
   second.send(test::unity_handshake(served.port()));
   const std::string answer = second.rest();
   EXPECT_THAT(answer, StartsWith("HTTP/1.1 503"));
   EXPECT_THAT(answer, HasSubstr("another simulator (127.0.0.1:"));
-  first.send(RawSocket::masked(kRealTelemetry));
-  steer_of(first.frame());
+  driven(first);
 }
 
 TEST(Serve, ASecondSimulatorTakesOverWhenTheFirstIsQuiet) {
@@ -242,12 +238,10 @@ TEST(Serve, ASecondSimulatorTakesOverWhenTheFirstIsQuiet) {
   options.quiet_after = 0ns;
   Served served(options);
   RawSocket first = served.connect();
-  first.send(RawSocket::masked(kRealTelemetry));
-  steer_of(first.frame());
+  driven(first);
   EXPECT_EQ(served.controller.resets(), 1);
   RawSocket second = served.connect();
-  second.send(RawSocket::masked(kRealTelemetry));
-  steer_of(second.frame());
+  driven(second);
   EXPECT_EQ(served.controller.resets(), 2);
   const auto goodbye = first.frame();
   ASSERT_TRUE(goodbye);
@@ -274,21 +268,18 @@ TEST(Serve, AGoodbyeMakesRoomBeforeTheConnectionEnds) {
   first.send(RawSocket::masked("41") + RawSocket::masked(R"(42["telemetry",null])"));
   EXPECT_EQ(first.frame()->payload, R"(42["manual",{}])");  // so the goodbye has been heard
   RawSocket second = served.connect();
-  second.send(RawSocket::masked(kRealTelemetry));
-  steer_of(second.frame());
+  driven(second);
 }
 
 TEST(Serve, AfterADisconnectionTheNextSimulatorIsServedAfresh) {
   Served served;
   {
     RawSocket first = served.connect();
-    first.send(RawSocket::masked(kRealTelemetry));
-    steer_of(first.frame());
+    driven(first);
   }
   EXPECT_TRUE(served.has_logged("is gone"));
   RawSocket second = served.connect();
-  second.send(RawSocket::masked(kRealTelemetry));
-  steer_of(second.frame());
+  driven(second);
   EXPECT_EQ(served.controller.resets(), 2);
 }
 
@@ -305,8 +296,7 @@ TEST(Serve, AStockClientThatStaysSilentIsGreeted) {
   EXPECT_THAT(stock.frame()->payload, StartsWith("40{\"sid\":"));
   stock.send(RawSocket::masked("2"));
   EXPECT_EQ(stock.frame()->payload, "3");
-  stock.send(RawSocket::masked(kRealTelemetry));
-  steer_of(stock.frame());
+  driven(stock);
 }
 
 TEST(Serve, AnOldStockClientIsConnectedByTheServer) {
@@ -328,8 +318,7 @@ TEST(Serve, SilenceIsReportedAndItsEndToo) {
   Served served(options);
   RawSocket client = served.connect();
   EXPECT_TRUE(served.has_logged("is connected but sends no telemetry"));
-  client.send(RawSocket::masked(kRealTelemetry));
-  steer_of(client.frame());
+  driven(client);
   EXPECT_TRUE(served.has_logged("again"));
   EXPECT_TRUE(served.has_logged("is it paused"));
 }

@@ -60,9 +60,7 @@ TEST_F(Viewer, IsToldOfTheLapsThatWereBeforeItCame) {
 
 TEST_F(Viewer, IsToldOfTheChangesThatWereBeforeItCame) {
   Store store;
-  ViewerOptions options;
-  options.parameters = &store;
-  start(std::move(options));
+  start({.parameters = &store});
   server.take();
   store.changes = {{.cycle = 3, .time = 0.12, .name = "latency_ms", .value = "80"},
                    {.cycle = 4, .time = 0.16, .name = "manual.steer", .value = "0.5"}};
@@ -97,9 +95,7 @@ std::vector<std::string> changes_known(FakeServer& server, ViewerEndpoint& endpo
 TEST_F(Viewer, KeepsTheChangesOfARunThatBeginsAnewAndNoneOfTheOneBefore) {
   using testing::ElementsAre;
   Store store;
-  ViewerOptions options;
-  options.parameters = &store;
-  start(std::move(options));
+  start({.parameters = &store});
   telemetry::Frame frame = frame_at(40.0);
   frame.cycle = 1000;
   endpoint->publish(frame);
@@ -294,9 +290,7 @@ TEST_F(Viewer, MustSpeakOneOfTheTwoSubprotocols) {
 
 TEST_F(Viewer, IsToldWhatFailedAfterItWasAcceptedWhoeverAsked) {
   Store store;
-  ViewerOptions options;
-  options.parameters = &store;
-  start(std::move(options));
+  start({.parameters = &store});
   connect(2, true);
   server.pass_time();
   server.take();
@@ -334,9 +328,7 @@ TEST_F(Viewer, SeesAnotherRunPausedAndBuildingAsTheOneBeforeWas) {
 
 TEST_F(Viewer, SetsParametersAndOthersSeeIt) {
   Store store;
-  ViewerOptions options;
-  options.parameters = &store;
-  start(std::move(options));
+  start({.parameters = &store});
   connect(2, true);
   endpoint->on_message(2, R"({"op":"subscribeParameterUpdates","parameterNames":["a","no such"]})", false);
   server.take();
@@ -361,9 +353,7 @@ TEST_F(Viewer, TellsOfParametersThatChangeWithoutBeingSet) {
     std::vector<protocol::foxglove::Parameter> news() override { return std::exchange(waiting, {}); }
     std::vector<protocol::foxglove::Parameter> waiting;
   } store;
-  ViewerOptions options;
-  options.parameters = &store;
-  start(std::move(options));
+  start({.parameters = &store});
   connect(2, true);
   say(R"({"op":"subscribeParameterUpdates","parameterNames":["b"]})");
   server.take();
@@ -388,9 +378,7 @@ TEST_F(Viewer, PublishesTheChangesThatTheRunHasTakenUp) {
     std::vector<telemetry::Change> applied() override { return std::exchange(waiting, {}); }
     std::vector<telemetry::Change> waiting;
   } store;
-  ViewerOptions options;
-  options.parameters = &store;
-  start(std::move(options));
+  start({.parameters = &store});
   say(subscribe(9, "/chicane/change"));
   EXPECT_EQ(server.take().size(), 2U);  // the greeting; no change yet
   store.waiting = {{.cycle = 7, .time = 0.28, .name = "latency_ms", .value = "30"},

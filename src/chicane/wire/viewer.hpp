@@ -38,8 +38,8 @@ struct ViewerServices {
 
 struct ViewerOptions {
   double rate_limit = 60.0;  ///< frames per second sent at most [Hz]; (0, 1000]
-  protocol::Run run;
-  ViewerServices services;
+  protocol::Run run{};
+  ViewerServices services{};
   protocol::foxglove::ParameterStore* parameters =
       nullptr;                      ///< outlives the endpoint; null: none are offered
   std::function<double()> clock{};  ///< [s], rising; empty: the machine's steady clock
