@@ -63,7 +63,7 @@ void print_names(const std::vector<ListEntry>& entries) {
   for (const ListEntry& entry : entries) print_entry(fmt::format("{:<18} ", entry.name), entry.meaning, 19);
 }
 
-/// The table of cars in docs/tracks.md.
+/// The table of cars in docs/reference/shipped.md.
 void print_cars(bool is_markdown) {
   if (!is_markdown) return print_names(files<Shelf::kCar>());
   fmt::print(
