@@ -65,8 +65,9 @@ case " $* " in
   *' -h '* | *' --help '*) ;;
   ' bench '*) target=chicane_bench extra=("${bench_packages[@]}") ;;
   ' tune '*) target=chicane_lab extra=("${lab_packages[@]}" "${tune_packages[@]}") ;;
-  ' campaign '* | ' claims '* | ' identify '* | ' import '* | ' lane-change '* | ' league '* | ' merge '* | ' recover '* | ' report '* | ' sweep '* | ' video '*)
+  ' campaign '* | ' claims '* | ' identify '* | ' import '* | ' lane-change '* | ' league '* | ' merge '* | ' recover '* | ' report '* | ' sweep '*)
     target=chicane_lab extra=("${lab_packages[@]}") ;;
+  ' video '*) target=chicane_lab extra=("${lab_packages[@]}" ffmpeg) ;;
   ' ros '*) target=chicane_ros_app extra=("${ros_packages[@]}") ;;
 esac
 mapfile -t node < <(node_packages)

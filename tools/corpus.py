@@ -40,7 +40,7 @@ SOURCES = (
     ("occupancy map", "f1tenth/f1tenth_racetracks", "b95c4eff766f6367d66b310ea20cd2c9563712c0", "*_map.yaml", NO_ROAD),
     ("occupancy map", "f1tenth/f1tenth_gym", "4fdb9c7e6fb7c701290f4dc18377d07c1681724f", "gym/*/maps/*.yaml", NO_ROAD),
     ("occupancy map", "CPS-TUWien/racing_dreamer", "398970bf2b4bf167cf53c0d0b0128a1b63d3377d", "docs/maps/maps/*.yaml", NO_ROAD),
-    ("occupancy map", "ForzaETH/race_stack", "abb40902856947137a89a58d7a03bd2dd7526913", "*/maps/*map*.yaml", NO_ROAD),
+    ("occupancy map", "ForzaETH/race_stack", "abb40902856947137a89a58d7a03bd2dd7526913", "*/maps/*map.yaml", NO_ROAD),
     ("nav2 map", "ROBOTIS-GIT/turtlebot3", "da785b7201d317e6e2a662e41bb3d3fd50ebd503", "*/map/*.yaml", NO_ROAD),
     ("ForzaETH waypoints", "ForzaETH/race_stack", "abb40902856947137a89a58d7a03bd2dd7526913", "*global_waypoints.json", ""),
     ("cones, FSSIM", "AMZ-Driverless/fssim", "cf652d8d3f1e13031dad3fb75eb3d4e6fbaaeff4", "*tracks_yaml/*.yaml", "crosses|narrow|cones"),
@@ -109,7 +109,7 @@ def judge(program, file, text, allowed):
     done = subprocess.run([program, "import", str(file), "--json"], capture_output=True, text=True, timeout=300)
     last = (done.stderr.strip().splitlines() or [""])[-1].replace(str(file.parent) + "/", "")
     if done.returncode != 0:
-        is_right = done.returncode == 2 and re.search(r"got .*, expected ", last) and re.search(f"git-LFS|{allowed}" if allowed else "git-LFS", last)
+        is_right = done.returncode == 2 and re.search(r"got .*[,;] expected ", last) and re.search(f"git-LFS|{allowed}" if allowed else "git-LFS", last)
         return f"refused: {last}", "" if is_right else f"exit code {done.returncode}"
     road = json.loads(done.stdout)
     noise = [float(each) for each in re.findall(r"noise of ([\d.]+) m", " ".join(road["notices"]))]

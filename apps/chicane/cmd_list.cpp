@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `chicane list` and `chicane check`: the names on all shelves, and the faults of files.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -30,10 +29,9 @@ using protocol::Shelf;
 
 /// A meaning behind `begin`: one line for programs, lines of 80 columns on a terminal. `columns`: of `begin`.
 void print_entry(std::string_view begin, std::string_view meaning, std::size_t columns) {
-  const bool is_terminal = isatty(STDOUT_FILENO) == 1;
   constexpr std::size_t kWide = 40;  // columns before a meaning beyond which it moves to the next line
-  const std::size_t indent = columns > kWide ? 4 : columns;
-  fmt::print("{}{}", begin, is_terminal ? wrapped(meaning, indent, columns) : std::string(meaning) + "\n");
+  fmt::print("{}", begin);
+  print_sentence(stdout, meaning, columns > kWide ? 4 : columns, columns);
 }
 
 template <Shelf shelf>
@@ -63,7 +61,7 @@ void print_names(const std::vector<ListEntry>& entries) {
   for (const ListEntry& entry : entries) print_entry(fmt::format("{:<18} ", entry.name), entry.meaning, 19);
 }
 
-/// The table of cars in docs/tracks.md.
+/// The table of cars in docs/reference/shipped.md.
 void print_cars(bool is_markdown) {
   if (!is_markdown) return print_names(files<Shelf::kCar>());
   fmt::print(

@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include "option_row.hpp"
+
 namespace chicane::apps {
 namespace {
 
@@ -71,7 +73,7 @@ Rows options_of(const Command& command, Options& options) {
 }
 
 ExitCode report(const Error& error) {
-  std::fprintf(stderr, "%s\n", error.message.c_str());
+  print_sentence(stderr, error.message);
   return error.code == ErrorCode::kIo ? kEnvironment : kUsage;
 }
 

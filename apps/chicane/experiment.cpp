@@ -16,6 +16,7 @@
 #include "chicane/run/make.hpp"
 #include "chicane/run/plan_cache.hpp"
 #include "chicane/run/roads.hpp"
+#include "option_row.hpp"
 
 namespace chicane::apps {
 
@@ -70,11 +71,11 @@ std::string guard_notice(const safety::GuardOptions& guard) {
 
 void print_guard_notice(const Options& options, const safety::GuardOptions& guard) {
   const std::string notice = guard_notice(guard);
-  if (!options.is_json && !notice.empty()) fmt::print(stderr, "{}\n", notice);
+  if (!options.is_json && !notice.empty()) print_sentence(stderr, notice);
 }
 
 void print_notices(const scenario::Scenario& scenario) {
-  for (const std::string& notice : scenario.notices) fmt::print(stderr, "{}\n", notice);
+  for (const std::string& notice : scenario.notices) print_sentence(stderr, notice);
 }
 
 namespace {
@@ -144,9 +145,9 @@ std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
       fmt::format("bound    {:.3f} s ({:.3f} {:.3f} {:.3f} by thirds), the plant's optimum\n",
                   limit.bound.lap, limit.bound.sectors[0], limit.bound.sectors[1], limit.bound.sectors[2]);
   if (limit.witness)
-    text += fmt::format(
-        "witness  {:.3f} s, the best of {} laps (slowest {:.3f} s), {:.3f} m to the edge at least\n",
-        limit.witness->lap_time, limit.witness->laps, limit.witness->worst, limit.witness->least_edge);
+    text += fmt::format("witness  {:.3f} s, best of {} laps (slowest {:.3f} s), {:.3f} m from the edge\n",
+                        limit.witness->lap_time, limit.witness->laps, limit.witness->worst,
+                        limit.witness->least_edge);
   text += fmt::format("speed    {:.1f} mph at least, {:.1f} at most\n", mps_to_mph(extent.least_speed),
                       mps_to_mph(extent.top_speed));
   text +=

@@ -3,6 +3,7 @@
 #include "option_row.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <type_traits>
@@ -233,6 +234,10 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t begun
     text.remove_prefix(std::min(text.size(), word.size() + 1));
   }
   return lines + '\n';
+}
+
+void print_sentence(std::FILE* file, std::string_view text, std::size_t indent, std::size_t begun) {
+  fmt::print(file, "{}", isatty(fileno(file)) == 1 ? wrapped(text, indent, begun) : std::string(text) + '\n');
 }
 
 std::string notes(const OptionRow& row) {

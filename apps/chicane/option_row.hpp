@@ -103,6 +103,8 @@ using Rows = std::vector<OptionRow>;
 /// Words in lines of 80 columns that begin at column `indent`. The first line continues at column `begun`; if
 /// that is beyond `indent`, on a new line. Ends with a line break.
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t indent, std::size_t begun);
+/// Prints a sentence as one line; on a terminal wrapped().
+void print_sentence(std::FILE* file, std::string_view text, std::size_t indent = 0, std::size_t begun = 0);
 /// The help of a command, at most 80 columns wide.
 [[nodiscard]] std::string command_help(std::string_view name, std::string_view summary, const Rows& rows,
                                        std::string_view example);

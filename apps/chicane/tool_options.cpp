@@ -273,7 +273,7 @@ Rows campaign_rows(Options& o) {
          &campaign.onsets, between(1, 10000)},
         seed_row("--seed", campaign.seed, "Seed of these moments"),
         results_row(o, "fault, duration, track, car and preset"),
-        {"--markdown", "", "Print the table of docs/safety.md on stdout", &o.is_markdown},
+        {"--markdown", "", "Print the table as Markdown on stdout", &o.is_markdown},
         names_row("--preset", campaign.presets,
                   "Controllers and their settings; as --tracks and --cars: all stands for those that ship")},
        where_rows(campaign, o)});

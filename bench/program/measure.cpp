@@ -39,10 +39,15 @@ class DenseReference final : public Reference<DescribedProblem> {
 
 void measure_solves(const Request& request, References& references, const std::atomic<bool>& stop,
                     BenchReport& report) {
+  const double begin = cpu_time(), all = static_cast<double>(families().size() * request.horizons.size());
+  double done = 0.0;
   for (const std::string_view family : families()) {
     for (const int horizon : request.horizons) {
       if (stop) return;
-      fmt::print(stderr, "{}, N = {}, {} instances\n", family, horizon, request.instances);
+      const double left = (cpu_time() - begin) / std::max(done, 1.0) * (all - done);  // [s]
+      fmt::print(stderr, "{}, N = {}, {} instances{}\n", family, horizon, request.instances,
+                 done > 0.0 ? fmt::format(", about {:.0f} s left", left) : "");
+      ++done;
       const SolveRow row = time_solves(family, horizon, request.instances, references, stop);
       if (row.instances > 0) report.solves.push_back(row);
     }

@@ -297,7 +297,7 @@ TEST(Cli, TheReferencePageIsInStepWithTheProgram) {
 }
 
 TEST(Cli, TheListOfFaultsIsInStepWithTheProgram) {
-  const std::string page = read(fs::path(CHICANE_SOURCE_DIR) / "docs/safety.md");
+  const std::string page = read(fs::path(CHICANE_SOURCE_DIR) / "docs/reference/shipped.md");
   EXPECT_THAT(page, HasSubstr(chicane_program("list faults --markdown").out))
       << "the table is what chicane list faults --markdown prints";
 }

@@ -56,11 +56,11 @@ void expect_road(const std::string& file, const Known& known) {
 
 std::string docs_page() {
   std::ostringstream page;
-  page << std::ifstream{kSource + "/docs/tracks.md"}.rdbuf();
+  page << std::ifstream{kSource + "/docs/reference/shipped.md"}.rdbuf();
   return page.str();
 }
 
-/// One row of the table of public tracks in docs/tracks.md.
+/// One row of the table of public tracks in docs/reference/shipped.md.
 std::string public_row(const std::string& name) {
   const Track track = protocol::read_track(kSource + "/circuits/" + name).value();
   double least = 1e9;
@@ -95,7 +95,7 @@ TEST_P(PublicTrack, BecomesASaneRoad) {
   expect_road(file, GetParam());
   const std::string row = public_row(GetParam().file);
   std::fputs(row.c_str(), stdout);
-  EXPECT_NE(docs_page().find(row), std::string::npos) << "docs/tracks.md lacks this row: " << row;
+  EXPECT_NE(docs_page().find(row), std::string::npos) << "docs/reference/shipped.md lacks this row: " << row;
 }
 
 INSTANTIATE_TEST_SUITE_P(Shared, PublicTrack,
@@ -167,7 +167,7 @@ TEST(ShippedTrack, LakesideHasTheSightOfTheOriginal) {
   EXPECT_LT(sharpest_left, 0.055);
 }
 
-/// One row of the table in docs/tracks.md.
+/// One row of the table in docs/reference/shipped.md.
 std::string table_row(const std::string& name) {
   const Track track = protocol::read_track(kSource + "/data/tracks/" + name + ".csv").value();
   const std::vector<TrackPoint>& points = track.raw_points();
@@ -215,7 +215,8 @@ TEST(ShippedTrack, TheTableInTheDocsIsTrue) {
        {"lakeside", "original-lake", "oval", "hairpins", "speedway", "crossover", "stage"}) {
     const std::string row = table_row(name);
     std::fputs(row.c_str(), stdout);
-    EXPECT_NE(docs_page().find(row), std::string::npos) << "docs/tracks.md lacks this row: " << row;
+    EXPECT_NE(docs_page().find(row), std::string::npos)
+        << "docs/reference/shipped.md lacks this row: " << row;
   }
 }
 

@@ -80,11 +80,11 @@ TEST_F(ComparisonTest, NamesTheAxesWhereTheKeyIsNone) {
 }
 
 TEST(ResultTable, ShowsPeopleTitlesAndGivesProgramsKeys) {
-  ResultTable table({"car=car{<6}", "laps=laps{>4}", "for [s]{>7.1}", "edge_m=", "is_clean=clean", "=a=b{}"});
+  ResultTable table({"car=car", "laps=laps{>}", "for [s]{>.1}", "edge_m=", "is_clean=clean", "=a=b{}"});
   table.add({"indy", 3, 2.25, std::nan(""), true, ""});
   table.add({"a,\"b\"", 12, nullptr, 0.5, false, "why"});
   EXPECT_EQ(table.text(),
-            "car    laps for [s] clean a=b\nindy      3     2.2 true\na,\"b\"    12       – false why\n");
+            "car   laps for [s] clean a=b\nindy     3     2.2 true\na,\"b\"   12       – false why\n");
   EXPECT_EQ(table.markdown(),
             "| car | laps | for [s] | clean | a=b |\n|---|--:|--:|---|---|\n"
             "| indy | 3 | 2.2 | true | |\n| a,\"b\" | 12 | – | false | why |\n");

@@ -82,9 +82,9 @@ std::vector<Row> rows_of(const std::vector<CampaignGroup>& groups, const sweep::
 
 sweep::ResultTable table_of(const std::vector<Row>& rows) {
   using protocol::Json;
-  sweep::ResultTable table({"car=car{<10}", "preset=preset{<10}", "fault=fault{<36}", "for{>8}",
-                            "for_s=", "trials=trials{>7}", "off_road=off{>5}", "off_road_anyway=anyway{>7}",
-                            "standing{>11}", "standing=", "least_edge_m=to edge [m]{>11.2}", "worst="});
+  sweep::ResultTable table({"car=car", "preset=preset", "fault=fault", "for{>}", "for_s=", "trials=trials{>}",
+                            "off_road=off{>}", "off_road_anyway=anyway{>}", "standing{>}",
+                            "standing=", "least_edge_m=edge [m]{>.2}", "worst="});
   for (const Row& row : rows)
     table.add({row.car, row.preset, row.fault, row.words(), row.is_lasting() ? Json() : Json(row.duration),
                row.trials, row.off, row.off_anyway, row.standing_text(),

@@ -2,7 +2,6 @@
 // `chicane identify`: estimates a car's parameters from logs, starting from a shipped car, and writes the car
 // file and the page.
 #include <fmt/format.h>
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -28,6 +27,8 @@
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "lab/identify_page.hpp"
+#include "lab/many_runs.hpp"
+#include "option_row.hpp"
 #include "program.hpp"
 #include "progress.hpp"
 
@@ -60,27 +61,24 @@ Result<identify::LogOptions> log_options(const Options::Identify& options) {
   return log;
 }
 
-/// Progress on a terminal: a line that renews itself. Ends at an interrupt and at the end of a time budget.
+/// Progress with the time left. Ends at an interrupt and at the end of a time budget.
 class Share {
  public:
   bool operator()(double done) {
-    if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\ridentify: {:3.0f} %", 100.0 * done);
+    const auto percent = static_cast<std::uint64_t>(100.0 * done);
+    counter_.show(percent, 100, percent);
     return goes_on();
   }
   [[nodiscard]] bool goes_on() const { return !wants_stop_ && !is_late(); }
-  [[nodiscard]] bool is_late() const { return std::chrono::steady_clock::now() > end_; }
-  Share(const std::atomic<bool>& wants_stop, double budget_s)
-      : wants_stop_{wants_stop},
-        end_{std::chrono::steady_clock::now() +
-             std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                 std::chrono::duration<double>(budget_s))} {}
-  void clear() const {
-    if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r               \r");
-  }
+  [[nodiscard]] bool is_late() const { return std::chrono::steady_clock::now() - begin_ > budget_; }
+  Share(const std::atomic<bool>& wants_stop, double budget_s) : wants_stop_{wants_stop}, budget_{budget_s} {}
+  void clear() { counter_.end(); }
 
  private:
   const std::atomic<bool>& wants_stop_;
-  std::chrono::steady_clock::time_point end_;
+  std::chrono::duration<double> budget_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  RunCounter counter_{"percent"};
 };
 
 std::string interval(const Estimate& each) {
@@ -106,17 +104,17 @@ std::string advice(const Identification& found) {
   if (!found.knows_tires())
     text += fmt::format(
         "The tyres reached {:.0f} % (front) and {:.0f} % (rear) of their peak: grip is not known, and race "
-        "refuses\n"
-        "this car. Drive bends nearer to the limit, at least {:.0f} % at one axle, or state the friction "
+        "refuses this car. Drive bends nearer to the limit, at least {:.0f} % at one axle, or state the "
+        "friction "
         "that you know it to have{}.\n",
         100.0 * found.use_front, 100.0 * found.use_rear, 100.0 * identify::kRaceUse,
         found.shown_friction() > 0.1
-            ? fmt::format(":\nthe log shows --set friction_low={}", number_text(found.shown_friction(), 2))
+            ? fmt::format(": the log shows --set friction_low={}", number_text(found.shown_friction(), 2))
             : " (friction_low)");
   if (found.correlation > identify::kWrongModel)
     text += fmt::format(
         "What is left unexplained is not noise ({:.0f} samples tell as much as one that is): the model lacks "
-        "something of\nthis car. The intervals hold for the model, and may miss the car's own numbers.\n",
+        "something of this car. The intervals hold for the model, and may miss the car's own numbers.\n",
         found.correlation);
   for (const Estimate& each : found.estimates) {
     if (each.key == "steer_offset_deg" && each.is_excited && (each.low > 0.1 || each.high < -0.1))
@@ -127,14 +125,13 @@ std::string advice(const Identification& found) {
 }
 
 std::string table_of(const Identification& found, const std::string& logs) {
-  std::string text = fmt::format("{:.0f} s of driving from {}\n\n{:<28} {:>10} {:>22}  {:>10}\n",
-                                 found.driven, logs, "", "found", "95 % interval", "assumed");
+  std::string text = fmt::format("{:.0f} s of driving from {}\n\n{:<26} {:>10} {:>22}  {:>8}\n", found.driven,
+                                 logs, "", "found", "95 % interval", "assumed");
   for (const Estimate& each : found.estimates)
-    text += fmt::format(
-        "{:<28} {:>10} {:>22}  {:>10} {}{}\n", each.key, number_text(each.value, 4), interval(each),
-        number_text(each.assumed, 4), each.unit,
-        each.is_excited ? "" : (each.unit.empty() ? "not excited by the log" : ", not excited by the log"));
+    text += fmt::format("{:<26} {:>9}{} {:>22}  {:>8} {}\n", each.key, number_text(each.value, 4),
+                        each.is_excited ? ' ' : '*', interval(each), number_text(each.assumed, 4), each.unit);
   text += fmt::format(
+      "* not excited: the log hardly narrows what was assumed\n"
       "\ntyres used           {:.0f} % of the peak at the front, {:.0f} % at the rear\n"
       "left unexplained     {:.3f} m, {:.2f} deg, {:.3f} m/s\n",
       100.0 * found.use_front, 100.0 * found.use_rear, found.residual[0], found.residual[1] * 180.0 / kPi,
@@ -142,8 +139,9 @@ std::string table_of(const Identification& found, const std::string& logs) {
   for (const identify::PredictionError& error : found.held_out)
     text += fmt::format("predicted {:.2g} s ahead  {:.2f} m, {:.1f} deg, {:.2f} m/s off (held-out part)\n",
                         error.ahead, error.position, error.yaw * 180.0 / kPi, error.speed);
-  const std::string words = advice(found);
-  return words.empty() ? text : text + "\n" + words;
+  for (std::string words = advice(found); !words.empty(); words.erase(0, words.find('\n') + 1))
+    text += "\n" + wrapped(words.substr(0, words.find('\n')), 0, 0);
+  return text;
 }
 
 std::string json_of(const Identification& found) {

@@ -24,6 +24,7 @@
 #include "chicane/recording/html_report.hpp"
 #include "chicane/road/track.hpp"
 #include "commands.hpp"
+#include "option_row.hpp"
 #include "progress.hpp"
 
 namespace chicane::apps {
@@ -288,7 +289,7 @@ Result<void> import_and_tell(const Options& options) {
         fmt::format("--output: got {}, expected a name that ends in .csv", printable(options.output_file)));
   const Result<Imported> road = read_road(import);
   if (!road) return fail(road.error());
-  for (const std::string& warning : road->content.warnings) fmt::print(stderr, "{}\n", warning);
+  for (const std::string& warning : road->content.warnings) print_sentence(stderr, warning);
   const std::string csv = protocol::write_csv_track(resampled(*road), description_of(*road, import.file));
   // Read the written file back: it must be a road.
   const Result<TrackFile> again = protocol::parse_track(
@@ -307,7 +308,7 @@ Result<void> import_and_tell(const Options& options) {
     fmt::print("{}", in_json(*road));
     return {};
   }
-  fmt::print("{}: {}\n", import.file, in_words(*road));
+  print_sentence(stdout, fmt::format("{}: {}", import.file, in_words(*road)));
   if (!options.output_file.empty())
     fmt::print("{}: chicane drive --track {}{}\n", options.output_file, options.output_file,
                road->is_model() ? " --car f1tenth" : "");

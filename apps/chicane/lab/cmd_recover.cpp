@@ -78,8 +78,8 @@ void add_kind(sweep::ResultTable& table, const CarOnTrack& pair, std::string_vie
 }
 
 void print_table(const Options& options, const std::vector<CarOnTrack>& pairs) {
-  sweep::ResultTable table({"track{<10}", "car{<10}", "start{<10}", "starts{>7}", "back{>5}",
-                            "back [s]{>14.1}", "lapping [s]{>14.1}", "farthest [m]{>12.1}"});
+  sweep::ResultTable table({"track", "car", "start", "starts{>}", "back{>}", "back [s]{>.1}",
+                            "lapping [s]{>.1}", "farthest [m]{>.1}"});
   for (const CarOnTrack& pair : pairs)
     for (const std::string_view kind : run::kStartKindNames) add_kind(table, pair, kind);
   print_table(options, table);
@@ -288,9 +288,8 @@ Result<RunLines> drive(const Options& options, const sweep::Plan& plan, const st
 /// A row for each car and preset.
 sweep::ResultTable table_of(const Options& options, const RunLines& driven) {
   const auto& [cars, presets] = options.lane_change;
-  sweep::ResultTable table({"car=car{<16}", "preset=preset{<14}", "entry_kmph=[km/h]{>7}",
-                            "exit_kmph=exit [km/h]{>11.1}", "room_m=room [m]{>9.2}",
-                            "room_above_m=", "  1 km/h faster"});
+  sweep::ResultTable table({"car=car", "preset=preset", "entry_kmph=[km/h]{>}", "exit_kmph=exit [km/h]{>.1}",
+                            "room_m=room [m]{>.2}", "room_above_m=", "  1 km/h faster"});
   for (std::size_t car = 0; car < cars.size(); ++car) {
     for (std::size_t preset = 0; preset < presets.size(); ++preset) {
       const auto found = driven.lines.find(preset * cars.size() + car);

@@ -159,9 +159,14 @@ ExitCode tune(const Options& options) {
       task.optimizer = static_cast<sweep::Optimizer>(i);
   if (const Result<void> writable = check_writable(options.output_file); !writable)
     return report(writable.error());
-  const auto tuning = sweep::tune(task, stop, [](int evaluation, const sweep::Verdict& verdict) {
-    fmt::print(stderr, "{:6} {}\n", evaluation, words(verdict));
+  RunCounter counter("evaluations");
+  const auto tuning = sweep::tune(task, stop, [&](int evaluation, const sweep::Verdict* better) {
+    counter.show(evaluation, task.evaluations, evaluation);
+    if (better == nullptr) return;
+    counter.end();
+    fmt::print(stderr, "{:6} {}\n", evaluation, words(*better));
   });
+  counter.end();
   if (!tuning) return report(tuning.error());
   fmt::print("{}\n", options.is_json ? json_of(*tuning) : text_of(*tuning));
   if (!tuning->is_better) return kRunFailed;

@@ -177,12 +177,6 @@ void add_slip(ReportDocument& document, const Identification& found) {
 }
 
 /// Joins lines that a terminal's width has broken: a line ends only after a full stop.
-std::string unwrapped(std::string text) {
-  for (std::size_t i = 1; i < text.size(); ++i)
-    if (text[i] == '\n' && text[i - 1] != '.') text[i] = ' ';
-  return text;
-}
-
 }  // namespace
 
 std::string identify_document(const Identification& found, const IdentifyPageWords& words) {
@@ -191,7 +185,7 @@ std::string identify_document(const Identification& found, const IdentifyPageWor
                                 found.driven, found.residual[0], found.residual[1] * 180.0 / kPi,
                                 found.residual[2]));
   if (!words.command.empty()) document.add_text(fmt::format("To drive it: `{}`", words.command));
-  if (!words.advice.empty()) document.add_text(unwrapped(words.advice));
+  if (!words.advice.empty()) document.add_text(words.advice);
   add_numbers(document, found);
   add_predictions(document, found);
   add_residuals(document, found);

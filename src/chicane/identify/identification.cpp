@@ -43,8 +43,9 @@ struct Row {
   double deviation;                       ///< [SI], or of the logarithm
   std::function<void(Car&, double)> put;  ///< a value in SI
   double per_full_size = 1.0;             ///< value for the actual car [SI] over the value in full size
-  /// Root mean square error of the fit with perfect logs, where the model lacks effects of the shipped cars'
-  /// plants (studies/tables/identification.py --noise 0) [as deviation]: samples do not reduce it.
+  /// Root mean square error of the fit that samples do not reduce [as deviation]: of perfect logs, as the
+  /// model lacks effects of the shipped cars' plants, and of logs whose commands answer the sensors' noise
+  /// (studies/tables/identification.py --noise 0 and 1; docs/identification.md, "The method").
   double model_error = 0.0;
 };
 
@@ -88,7 +89,7 @@ void put(Car& car, double value) {
 /// Rows of the numbers that the car has, in the order of its report. `start`: in full size.
 std::vector<Row> rows_for(const model::VehicleParams& start, const Wheels& wheels, bool has_pedal,
                           bool is_centre_of_mass) {
-  std::vector<Row> rows{{"latency_ms", unit::kMillisecond, false, 0.1, 0.1, put<&Car::delay>}};
+  std::vector<Row> rows{{"latency_ms", unit::kMillisecond, false, 0.1, 0.1, put<&Car::delay>, 1.0, 0.012}};
   const auto add = [&](std::string_view name, double deviation, double least = 0.0, double error = 0.0) {
     const Option& option = *std::ranges::find(model::vehicle_options(), name, &Option::name);
     const double mean = std::max(std::get<double>(option.read(&start)), least);
@@ -96,29 +97,29 @@ std::vector<Row> rows_for(const model::VehicleParams& start, const Wheels& wheel
     rows.push_back({option_key("", option), option.unit, true, mean, deviation,
                     [&option](Car& car, double value) { option.write(&car.vehicle, value); }, 1.0, error});
   };
-  add("steer_lag", 1.0, 0.02);
+  add("steer_lag", 1.0, 0.02, 0.3);
   rows.push_back({"steer_offset_deg", unit::kDegree, false, 0.0, 0.035, put<&Car::steer_offset>});
-  rows.push_back({"wheelbase_m", unit::kMetre, true, start.wheelbase(), 0.2, scale_wheelbase, 1.0, 0.007});
-  add("cornering_front", 0.5, 0.0, 0.0075);
-  add("cornering_rear", 0.5, 0.0, 0.014);
+  rows.push_back({"wheelbase_m", unit::kMetre, true, start.wheelbase(), 0.2, scale_wheelbase, 1.0, 0.01});
+  add("cornering_front", 0.5, 0.0, 0.013);
+  add("cornering_rear", 0.5, 0.0, 0.018);
   add("friction", 0.3);
-  add("yaw_inertia", 0.3);
+  add("yaw_inertia", 0.3, 0.0, 0.03);
   if (has_four_wheels(start)) {
-    rows.push_back(
-        {"relaxation_m", unit::kMetre, true, wheels.relaxation, 0.7, put<&Car::wheels, &Wheels::relaxation>});
+    rows.push_back({"relaxation_m", unit::kMetre, true, wheels.relaxation, 0.7,
+                    put<&Car::wheels, &Wheels::relaxation>, 1.0, 0.2});
     rows.push_back({"load_lag_ms", unit::kMillisecond, true, wheels.load_lag, 1.0,
-                    put<&Car::wheels, &Wheels::load_lag>});
+                    put<&Car::wheels, &Wheels::load_lag>, 1.0, 0.35});
     rows.push_back({"rotating", unit::kNone, true, wheels.rotating, 0.03,
                     put<&Car::wheels, &Wheels::rotating>, 1.0, 0.005});
   }
-  add("steer_rate_limit", 1.0);
+  add("steer_rate_limit", 1.0, 0.0, 0.3);
   if (!is_centre_of_mass)
     rows.push_back({"reference_m", unit::kMetre, false, 0.0, 0.5 * start.wheelbase(), put<&Car::reference>});
   if (!has_pedal) return rows;
   add("drive_acceleration", 0.5, 0.0, 0.0025);
   add("drive_power_per_mass", 0.5);
   add("brake_acceleration", 0.5, 0.0, 0.004);
-  add("drive_lag", 1.0, 0.02);
+  add("drive_lag", 1.0, 0.02, 0.3);
   add("drag_constant", 1.0, 0.0, 0.035);
   for (const std::string_view name : {"drag_linear", "drag_quadratic"}) add(name, 1.0);
   return rows;

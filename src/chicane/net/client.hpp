@@ -22,9 +22,9 @@ struct Url {
 [[nodiscard]] Result<Url> parse_url(const std::string& text);
 
 /// WebSocket client with time-outs, blocking, for one thread: the simulator's side of the wire. Sends the
-/// same upgrade request as the original, byte for byte (docs/protocol.md §2): no Origin, no sub-protocol, no
-/// extension. Sends nothing before the server's 101. Answers pings. Frames are masked; a message goes out as
-/// one frame.
+/// same upgrade request as the original, byte for byte (docs/reference/wire.md §1): no Origin, no
+/// sub-protocol, no extension. Sends nothing before the server's 101. Answers pings. Frames are masked; a
+/// message goes out as one frame.
 class Client {
  public:
   /// Connects. kIo with the reason if there is no connection and upgrade within `timeout`.

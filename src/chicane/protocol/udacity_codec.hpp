@@ -14,7 +14,7 @@
 
 /// The dialect of the Udacity Term-2 simulator's MPC scene (v1.45), from both ends. All of its signs and
 /// units live here: on the wire steering is positive to the right, speed is in mph, a steering command is a
-/// share of 25°; inside it is chicane's axes and SI. Byte for byte: docs/protocol.md. No locale, no
+/// share of 25°; inside it is chicane's axes and SI. Byte for byte: docs/reference/wire.md. No locale, no
 /// exception; input of any size and content is safe.
 namespace chicane::protocol {
 

@@ -66,7 +66,7 @@ struct FaultKind {
   std::uint32_t (*deadline_questions)(double strength) noexcept = nullptr;
 };
 
-/// The one list of faults (fault_registry.cpp): scenario files, --fault, dashboard, tests and docs/safety.md
+/// The one list of faults (fault_registry.cpp): scenario files, --fault, dashboard, tests and docs
 /// all read it.
 [[nodiscard]] std::span<const FaultKind> fault_kinds() noexcept;
 [[nodiscard]] inline const FaultKind& kind_of(Fault fault) noexcept {

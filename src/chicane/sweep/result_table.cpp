@@ -131,6 +131,12 @@ Json shown_cell(const Json& cell, const std::string& decimals) {
   return cell.is_object() ? cell : Json(plain_text(cell));
 }
 
+/// Number of letters in a text: continuing bytes of UTF-8 are none.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
 /// Text of a cell for programs.
 std::string csv_text(const Json& cell) {
   if (cell.is_boolean()) return cell.get<bool>() ? "1" : "0";
@@ -155,6 +161,9 @@ ResultTable::ResultTable(const std::vector<std::string>& columns) {
 void ResultTable::add(Cells cells) {
   for (Json& cell : cells)
     if (cell.is_number() && !std::isfinite(cell.get<double>())) cell = Json();
+  for (Column& column : for_people_)
+    if (const Json shown = shown_cell(cells[column.place], column.decimals); shown.is_string())
+      column.width = std::max(column.width, width_of(shown.get<std::string>()));
   rows_.push_back(std::move(cells));
 }
 
@@ -177,7 +186,8 @@ std::string ResultTable::lines(std::string_view begin, std::string_view rule,
 
 std::string ResultTable::text() const {
   return lines("", "", [](const Column& column, const std::string& cell) {
-    return fmt::format(fmt::runtime("{:" + column.alignment + "} "), cell);
+    return fmt::format(fmt::runtime("{:" + column.alignment + "{}} "), cell,
+                       std::max(column.width, width_of(column.title)));
   });
 }
 
@@ -386,16 +396,6 @@ class MapMaker {
   std::vector<Values> values_;
 };
 
-/// Number of letters in a text: continuing bytes of UTF-8 are none.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
-std::string to_the_right(const std::string& text, std::size_t width) {
-  return std::string(width > width_of(text) ? width - width_of(text) : 0, ' ') + text;
-}
-
 }  // namespace
 
 bool ByNumber::operator()(const std::string& a, const std::string& b) const {
@@ -416,16 +416,16 @@ std::string map_text(const HeatMap& map) {
   std::string text = fmt::format("{}{} down, {} across\n", map.title.empty() ? "" : map.title + ": ",
                                  map.row_key, map.column_key);
   text += std::string(head, ' ');
-  for (const std::string& column : map.columns) text += to_the_right(column, width) + " ";
+  for (const std::string& column : map.columns) text += fmt::format("{:>{}} ", column, width);
   for (std::size_t r = 0; r < map.rows.size(); ++r) {
     while (text.back() == ' ') text.pop_back();
-    text += "\n" + to_the_right(map.rows[r], head);
+    text += fmt::format("\n{:>{}}", map.rows[r], head);
     for (const HeatMap::Cell& cell : map.cells[r]) {
       std::string value = cell.runs == 0    ? " "
                           : cell.clean == 0 ? "·"
                                             : fmt::format("{:.0f}", 100.0 * cell.share());
       if (cell.is_marked) value = "[" + value + "]";
-      text += to_the_right(value, cell.is_marked ? width + 1 : width) + (cell.is_marked ? "" : " ");
+      text += fmt::format("{:>{}}{}", value, cell.is_marked ? width + 1 : width, cell.is_marked ? "" : " ");
     }
   }
   while (text.back() == ' ') text.pop_back();

@@ -22,8 +22,8 @@ class ResultTable {
  public:
   using Cells = std::vector<protocol::Json>;
   /// A column is "KEY=TITLE{FORMAT}". The key is for CSV and JSON, the title for people: "TITLE" and "=TITLE"
-  /// are in neither CSV nor JSON, "KEY=" in these alone. FORMAT: > for a column to the right, the width in
-  /// text(), and the decimals of a number that is no integer: "{>11.2}".
+  /// are in neither CSV nor JSON, "KEY=" in these alone. FORMAT: > for a column to the right, and the
+  /// decimals of a number that is no integer: "{>.2}".
   explicit ResultTable(const std::vector<std::string>& columns);
 
   /// Pre: as many cells as columns.
@@ -39,7 +39,7 @@ class ResultTable {
  private:
   struct Column {
     std::string key, title, alignment, decimals;
-    std::size_t place;  ///< index of its cells in a row
+    std::size_t place, width = 0;  ///< index of its cells in a row; width of the widest
   };
   [[nodiscard]] std::string lines(std::string_view begin, std::string_view rule,
                                   std::string (*write)(const Column&, const std::string&)) const;

@@ -163,7 +163,7 @@ Result<Knob> knob_of(const scenario::Scenario& scenario, const std::string& key)
 class Tuner {
  public:
   Tuner(const TuneTask& task, std::vector<Knob> knobs, double latency, detail::TuneLog& log,
-        const std::atomic<bool>& stop, const std::function<void(int, const Verdict&)>& on_better)
+        const std::atomic<bool>& stop, const std::function<void(int, const Verdict*)>& on_evaluation)
       : task_{task},
         knobs_{std::move(knobs)},
         trials_{tune_trials(latency)},
@@ -171,7 +171,7 @@ class Tuner {
         roads_(trials_.size()),
         log_{log},
         stop_{stop},
-        on_better_{on_better} {}
+        on_evaluation_{on_evaluation} {}
 
   /// Drives the tuning by hand, before all others.
   void judge_by_hand() {
@@ -206,13 +206,14 @@ class Tuner {
       tuning_.runs += verdict->driven;
     }
     const double score = score_of(*verdict);
-    if (score < best_) {
+    const bool is_better = score < best_;
+    if (is_better) {
       best_ = score;
       best_point_.assign(shares, shares + knobs_.size());
       tuning_.values = values;
       tuning_.found = *verdict;
-      if (on_better_) on_better_(tuning_.evaluations, *verdict);
     }
+    if (on_evaluation_) on_evaluation_(tuning_.evaluations, is_better ? &*verdict : nullptr);
     return score;
   }
 
@@ -335,7 +336,7 @@ class Tuner {
   std::vector<run::Roads> roads_;  ///< one for each trial: no two of them share one
   detail::TuneLog& log_;
   const std::atomic<bool>& stop_;
-  const std::function<void(int, const Verdict&)>& on_better_;
+  const std::function<void(int, const Verdict*)>& on_evaluation_;
   bool is_by_hand_ = false;
   std::optional<Error> failure_;
   Tuning tuning_;
@@ -418,7 +419,7 @@ std::vector<std::string> default_keys(const scenario::Scenario& scenario) {
 }
 
 Result<Tuning> tune(const TuneTask& task, const std::atomic<bool>& stop,
-                    const std::function<void(int, const Verdict&)>& on_better) {
+                    const std::function<void(int, const Verdict*)>& on_evaluation) {
   const Result<scenario::Scenario> scenario = scenario_of(task.settings);
   if (!scenario) return fail(scenario.error());
   const std::vector<std::string> keys = task.over.empty() ? default_keys(*scenario) : task.over;
@@ -433,7 +434,7 @@ Result<Tuning> tune(const TuneTask& task, const std::atomic<bool>& stop,
                 fmt::format("--over: {} has nothing to tune", scenario->controller));
   Result<detail::TuneLog> log = detail::TuneLog::open(task.log, detail::tune_head(task, *scenario, keys));
   if (!log) return fail(log.error());
-  Tuner tuner(task, knobs, scenario->latency, *log, stop, on_better);
+  Tuner tuner(task, knobs, scenario->latency, *log, stop, on_evaluation);
   tuner.judge_by_hand();
   if (const Result<void> done = search(task, tuner); !done) return fail(done.error());
   return tuner.result();

@@ -84,9 +84,10 @@ struct Tuning {
 /// range. A tuning that passes every trial is better than one that fails, and a later failure is better than
 /// an earlier one. The optimisers need this order alone, so that a losing tuning's remaining trials are not
 /// driven. Deterministic for a seed, also when a log is continued. Ends early with the best so far when
-/// `stop` is set. `on_better` gets each improvement. kInvalidArgument for keys that are no numbers and for a
-/// log of another task or program; kIo where this was built without NLopt or the log cannot be written.
+/// `stop` is set. `on_evaluation` gets each evaluation, and its verdict where it is the best so far.
+/// kInvalidArgument for keys that are no numbers and for a log of another task or program; kIo where this was
+/// built without NLopt or the log cannot be written.
 [[nodiscard]] Result<Tuning> tune(const TuneTask& task, const std::atomic<bool>& stop,
-                                  const std::function<void(int, const Verdict&)>& on_better = {});
+                                  const std::function<void(int, const Verdict*)>& on_evaluation = {});
 
 }  // namespace chicane::sweep

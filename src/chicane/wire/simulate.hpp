@@ -22,9 +22,9 @@
 
 namespace chicane::wire {
 
-/// Receiver at the simulator's end of the connection (docs/protocol.md §5): answers act one telemetry later,
-/// and when they cease the car is stopped (safety/stop_player.hpp) by the stop plan of the last one. All
-/// times are the simulated world's [s]; they do not decrease. One thread.
+/// Receiver at the simulator's end of the connection (docs/protocol.md, "Time"): answers act one telemetry
+/// later, and when they cease the car is stopped (safety/stop_player.hpp) by the stop plan of the last one.
+/// All times are the simulated world's [s]; they do not decrease. One thread.
 ///
 /// Without a stop plan the receiver waits for max(0.25 s, 3 times the median of the last nine cycles): a
 /// controller that is always so slow is not silent.
@@ -98,8 +98,8 @@ struct SimulateReport {
   std::uint64_t late_answers = 0;  ///< answers after the car's stop began: not used
 };
 
-/// `chicane simulate`: our car and track as the original simulator's client, in real time (docs/protocol.md
-/// §5). Physics never waits; each answer takes effect `scenario.turn_around` after it came, when the next
+/// `chicane simulate`: our car and track as the original simulator's client, in real time (docs/protocol.md,
+/// "Time"). Physics never waits; each answer takes effect `scenario.turn_around` after it came, when the next
 /// telemetry is sampled, and acts until the next one. A broken answer is reported and counted, and the
 /// previous command stays. When commands cease `scenario.guard.receiver` stops the car; when they return it
 /// continues.

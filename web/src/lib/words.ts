@@ -68,7 +68,7 @@ export function sightInWords(hasMap: boolean, metres: number): Sentence {
   return { severity: 'good', text: hasMap ? `Track known, uses ${sight} of it` : `Sees ${sight} ahead` };
 }
 
-/** What limits the speed, as charts call it; the sentences are the program's (road/speed_limiter.hpp). */
+/** What limits the speed, as charts call it; the sentences are the program's (road/reference_line.hpp). */
 const LIMITER_NAMES: Readonly<Record<keyof typeof SPEED_LIMITER, string>> = {
   NONE: 'not said',
   ASKED: 'asked for',
