@@ -64,23 +64,6 @@ TEST(StopCar, TurnsAsThePlantWhereItBrakesInABend) {
   }
 }
 
-/// docs/guard.md, eq. 3a: the force of turned front wheels points across the wheels, not across the car.
-TEST(StopCar, TurnsItsFrontForcesWithTheWheels) {
-  const model::VehicleParams params = plain_car();
-  const StopCar car(params);
-  constexpr double kSteer = 0.3, kDt = 1e-4, kSpeed = 20.0, kSlip = 0.02;
-  const double course =
-      std::tan(kSteer - kSlip);  // of the front axle: its slip angle is small, its angle is not
-  StopMotion at{.body = {.vx = kSpeed, .vy = 0.5 * course * kSpeed, .steer = kSteer}};
-  at.body.r = (course * kSpeed - at.body.vy) / params.front_axle;
-  const StopMotion to = car.advance(at, kSteer, 0.0, car.step(kDt));
-  StopMotion ahead = at;  // without a slip at the front: what differs is the front axle's force
-  ahead.body.steer = kSteer - kSlip;
-  const StopMotion rolls = car.advance(ahead, kSteer - kSlip, 0.0, car.step(kDt));
-  const double along = (to.body.vx - rolls.body.vx) / kDt, across = (to.body.vy - rolls.body.vy) / kDt;
-  EXPECT_NEAR(along / across, -std::tan(kSteer), 0.003);
-}
-
 TEST(StopCar, IsTheSameInAMirror) {
   const StopCar car(plain_car());
   StopMotion left{.body = {30.0, -0.8, 0.2, 0.03, -1.0}, .load_along = 0.5, .load_across = 5.0};

@@ -28,8 +28,9 @@ double left_of(double time_constant, double dt) noexcept {
 
 }  // namespace
 
-void StopCar::set_vehicle(const model::VehicleParams& p) noexcept {
-  model_.set_vehicle(p);
+void StopCar::set_vehicle(const model::VehicleParams& vehicle) noexcept {
+  model_.set_vehicle(vehicle);
+  const model::VehicleParams& p = vehicle;
   has_wheels_ = p.friction_coupling > 0.0 && p.tire_shape > 0.0 && !(p.steer_helper > 0.0);
   axles_ = p.axles();
   for (std::size_t i = 0; i < EachWheel::kLanes; ++i) {
@@ -54,6 +55,7 @@ StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
   const model::BodyMotion<double>& m = at.body;
   const double drag = -longitudinal_acceleration(p, 0.0, m.vx);
   const double pedal = m.acceleration + drag;
+  const double rolling = p.drag_constant / p.load_constant;
   const double down = 0.5 * (p.load(m.vx) - p.load_constant);
   const double pitch = 0.5 * p.height / p.wheelbase() * at.load_along;
   const double roll = p.height / p.track_width * at.load_across;
@@ -66,15 +68,10 @@ StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
   const EachWheel load = w.rest + moved + w.down * down;
   const EachWheel most = p.friction * (1.0 - p.load_sensitivity * moved / w.rest) * load;
   const EachWheel forward = max(m.vx - m.r * w.y, EachWheel(0.25 * m.vx));  // of a car that spins, too
-  const EachWheel aside = m.vy + m.r * w.x;
-  const auto [sine, cosine] = sine_cosine(m.steer);
-  const EachWheel turned = w.is_front * sine, straight = 1.0 + w.is_front * (cosine - 1.0);
-  const EachWheel slip = (forward * turned - aside * straight) /
-                         max(forward * straight + aside * turned, EachWheel(0.25 * m.vx));
+  const EachWheel slip = w.is_front * m.steer - (m.vy + m.r * w.x) / forward;
   // The slip along that gives the force asked for beside the slip across, by similarity.
   const EachWheel use =
-      min(max((asked - p.drag_constant / p.load_constant * load) / most, EachWheel(-kMostAlong)),
-          EachWheel(kMostAlong));
+      min(max((asked - rolling * load) / most, EachWheel(-kMostAlong)), EachWheel(kMostAlong));
   const EachWheel z = w.cornering * slip;
   const EachWheel square = use * use;
   const EachWheel first = secant(z * z + square / sqrt(1.0 - square * square));
@@ -82,8 +79,9 @@ StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
   const auto force_of = [&](std::size_t i, const model::Axle&, const model::Planar<double>&) {
     return model::Planar<double>{along[i], across[i]};
   };
-  const auto sum = model::wheel_forces<double>(axles_, {m.vx, m.vy}, m.r, cosine, sine,
-                                               {p.drag_constant - drag, 0.0, 0.0}, force_of);
+  const double air = p.drag_constant - drag;
+  const auto sum =
+      model::wheel_forces<double>(axles_, {m.vx, m.vy}, m.r, 1.0, m.steer, {air, 0.0, 0.0}, force_of);
   return {sum.x + m.r * m.vy, sum.y - m.r * m.vx, p.mass / p.yaw_inertia * sum.moment, sum.x, sum.y};
 }
 
