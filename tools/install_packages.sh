@@ -17,7 +17,7 @@ tune_packages=(libnlopt-dev)
 # For the Python module, on top of the first.
 python_packages=(python3 python3-dev python3-venv python3-pip python3-numpy pybind11-dev)
 # To make packages of all that the program can do, on top of the first.
-package_packages=(dpkg-dev "${lab_packages[@]}" "${tune_packages[@]}" "${ros_packages[@]}" "${python_packages[@]}")
+package_packages=(dpkg-dev file "${lab_packages[@]}" "${tune_packages[@]}" "${ros_packages[@]}" "${python_packages[@]}")
 # To build and run the tests, on top of the first.
 test_packages=("${bench_packages[@]}" "${package_packages[@]}" libgtest-dev libgmock-dev libfastcdr-dev locales python3-pandas python3-numpydoc mypy groff fish parallel libglpk-dev)
 # For a page that drives without a program, on top of the first: 1 GB.

@@ -44,7 +44,8 @@ constexpr Unit kPressure = unit::per("kg/m");
 
 /// The row of a field of model::CarBody, which models have, too.
 const Option& body_row(std::string_view name) noexcept {
-  return *std::ranges::find(model::vehicle_options(), name, &Option::name);
+  const std::span<const Option> rows = model::vehicle_options();
+  return *std::find_if(rows.begin(), rows.end(), [&](const Option& row) { return row.name == name; });
 }
 
 }  // namespace
