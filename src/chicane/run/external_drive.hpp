@@ -88,8 +88,9 @@ class ExternalDrive {
   [[nodiscard]] telemetry::RunSummary summary() const { return roadside_.summary(); }
 
  private:
+  void begin_on_link(double longest);
   void watch_gap(double gap, double delay);
-  void count_time(const Sighting& sighting);
+  [[nodiscard]] bool count_time(const Sighting& sighting);
   void check_road(const Sighting& sighting);
   void take_up_changes(double time);
 

@@ -60,6 +60,7 @@ class PlantClock {
     double plant = 0.0;  ///< displacement over speed [s]
     double way = 0.0;    ///< [m]
     int steps = 0;
+    bool is_from_rest = false;  ///< the car stood at its beginning
   };
   static constexpr std::size_t kLegs = 12;
   /// Sums of legs.

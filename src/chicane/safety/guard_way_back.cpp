@@ -342,7 +342,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
     const bool is_on_arc = std::fabs(car.vx) < kCreep && !rolls_back;
     if (!is_on_arc || !drive_backup(*start, result)) return false;
     result.command.steer = steer;
-    filter_.begin_cycle();  // a receiver that plays the stop from now on would turn the wheels back
+    filter_.withdraw_stop();  // a receiver that plays the stop from now on would turn the wheels back
     return true;
   }
   if (fit == Fit::kNone) filter_.forget();

@@ -90,9 +90,12 @@ constexpr Law kRaceOn[] = {{kHard, 1.0, 0.4, 0.6, 2.0},
                            {kHard, 3.0, 0.8, 0.6, 1.0},
                            {kHard, 2.0, 0.4, 0.6, 0.5}};
 
-Policy policy_of(const Law& law, double time) noexcept {
-  Policy policy{
-      .braking = law.braking, .bandwidth = law.bandwidth, .grip_share = law.grip_share, .room = law.room};
+Policy policy_of(const Law& law, double time, double hold) noexcept {
+  Policy policy{.braking = law.braking,
+                .bandwidth = law.bandwidth,
+                .grip_share = law.grip_share,
+                .room = law.room,
+                .hold = hold};
   if (law.races_on > 0.0) policy.until = time + law.races_on;
   return policy;
 }
@@ -119,6 +122,13 @@ void PredictiveFilter::forget() noexcept {
   residual_at_ = 0.0;
   refused_at_ = -std::numeric_limits<double>::infinity();
   law_ = 0;
+}
+
+/// One late command says nothing of the next ones: the shorter of the last two intervals counts.
+void PredictiveFilter::begin_cycle(double interval) noexcept {
+  is_current_ = false;
+  usual_ = std::min(interval, std::exchange(interval_, interval));
+  hold_ = std::clamp(usual_, Policy{}.hold, kLongestHold);
 }
 
 /// Mean squares that fade. A jump counts by a tenth.
@@ -201,7 +211,8 @@ double PredictiveFilter::slip(const StopStart& at) const noexcept {
 }
 
 /// The next command may come late: a stop that begins after that time comes before one that begins at once,
-/// and none begins sooner than the latest of the last commands came.
+/// and none begins sooner than the latest of the last commands came. Where some come much later than usual,
+/// one that begins as usual has to hold, too: a wheel that is turned for long leads elsewhere.
 Fit PredictiveFilter::verify(const Request& request, GuardReport& report) noexcept {
   const double cycle = request.interval > 0.0 ? request.interval : kAssumedCycle;
   const double longest = std::max(cycle, request.longest);
@@ -210,8 +221,21 @@ Fit PredictiveFilter::verify(const Request& request, GuardReport& report) noexce
   const bool begins = request.is_led && request.start.body.vx < kCrawl;
   const double late = std::min(std::max(cycle + kLateness, longest), kLongestHold);
   const Fit fit = verify_held(request, begins ? std::max(kFirstHold, held) : late, report);
-  if (fit != Fit::kNone || begins) return fit;
-  if (!request.road.is_raced()) return verify_held(request, held, report);
+  if (begins) return fit;
+  if (!request.road.is_raced()) {
+    if (fit == Fit::kNone) return verify_held(request, held, report);
+    if (!(longest > usual_ + kLateness)) return fit;
+    const double usual = std::max(usual_, kShortestHold);
+    double edge = 0.0;
+    const StopStart late_start = planner_.advance(request.road, request.start, request.acting,
+                                                  std::min(longest, kLongestHold) - usual, edge);
+    Request delayed{request.road, late_start, request.command};
+    delayed.is_led = request.is_led;
+    const Fit fit_delayed = verify_held(delayed, usual, report);
+    if (fit_delayed == Fit::kNone) return Fit::kNone;
+    return std::min({fit, fit_delayed, verify_held(request, usual, report)});
+  }
+  if (fit != Fit::kNone) return fit;
   double edge = planner_.edge(request.road, request.start);
   const StopStart next = planner_.advance(request.road, request.start, request.command, held, edge);
   // Without a stored law there is nothing better than the way back to the lap.
@@ -235,7 +259,7 @@ Fit PredictiveFilter::verify_held(const Request& request, double held, GuardRepo
 
   Candidate best;
   const auto try_law = [&](int i) {
-    const Policy policy = policy_of(kLaws[i], next.time);
+    const Policy policy = policy_of(kLaws[i], next.time, hold_);
     if (consider(road, next, policy, goal, best, report)) law_ = i;
   };
   // A controller that is given the car back at the edge of what can be stopped, cycle by cycle, pumps a
@@ -279,7 +303,7 @@ bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start
   if (may_race_on && road.is_raced() && !is_open) {
     const Goal goal{.margin = terms_.margin};
     for (const Law& law : kRaceOn)
-      if (consider(road, start, policy_of(law, start.time), goal, best, report)) return true;
+      if (consider(road, start, policy_of(law, start.time, hold_), goal, best, report)) return true;
   }
   // What was certified with a margin is driven to its end; a fresh policy replaces it where it holds no more.
   const Goal goal{.margin = std::min(terms_.margin, std::max(planner_.edge(road, start) - kNearer, -0.5)),
@@ -293,7 +317,7 @@ bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start
     const Candidate before = best;
     // One that also holds blindly comes before the stored one, one that is only as good does not.
     if (holds) best.worth = std::numeric_limits<double>::infinity();
-    if (!consider(road, start, policy_of(law, start.time), goal, best, report)) best = before;
+    if (!consider(road, start, policy_of(law, start.time, hold_), goal, best, report)) best = before;
   }
   return is_current_ && stop_->size > 0;
 }

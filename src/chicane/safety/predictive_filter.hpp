@@ -61,6 +61,7 @@ class PredictiveFilter {
     double interval = 0.0;  ///< between two commands [s]; <= 0: not known
     bool is_led = false;    ///< the guard's own command, at walking pace
     double longest = 0.0;   ///< interval lately [s]
+    model::Command acting{};  ///< until then
   };
   /// Whether a certified stop exists where `request` leads; the stop is stored. The stored one stays when
   /// none exists. Writes stop_edge and stop_distance.
@@ -74,8 +75,11 @@ class PredictiveFilter {
 
   /// The stored way to standstill, from the moment at which the next command acts. Size 0: none.
   [[nodiscard]] const StopPlan& stop() const noexcept { return is_current_ ? *stop_ : kNoStop; }
-  /// A control cycle begins: the stored stop is of the cycle before until verify() or drive() renew it.
-  void begin_cycle() noexcept { is_current_ = false; }
+  /// A control cycle begins, `interval` [s] after the one before: the stored stop is of that one until
+  /// verify() or drive() renew it.
+  void begin_cycle(double interval) noexcept;
+  /// stop() is not what is sent.
+  void withdraw_stop() noexcept { is_current_ = false; }
   [[nodiscard]] const StopPlanner& planner() const noexcept { return planner_; }
 
  private:
@@ -111,6 +115,9 @@ class PredictiveFilter {
   Doubt residual_;                                                ///< root mean squares
   double residual_at_ = 0.0;                                      ///< [s]
   double refused_at_ = -std::numeric_limits<double>::infinity();  ///< the last drive() [s]
+  double interval_ = 0.0;                                         ///< before this cycle [s]
+  double usual_ = 0.0;                                            ///< shorter of the last two intervals [s]
+  double hold_ = Policy{}.hold;                                   ///< Policy::hold [s]
   int law_ = 0;                                                   ///< that was certified last, tried first
   bool is_current_ = false;                                       ///< stop_ is of this cycle
   static const StopPlan kNoStop;

@@ -122,7 +122,7 @@ constexpr double kSlow = 3.0;      // [m/s] below which its turning is corrected
 constexpr double kDamping = 0.7;
 constexpr double kLapDamping = 1.0;        // the same to a planned lap: no room to overshoot it
 constexpr double kYawBandwidth = 6.0;      // [rad/s] of the feedback to the yaw rate
-constexpr double kPreview = 0.2;           // [s] the car answers the wheel about so late
+constexpr double kPreview = 0.15;          // [s] the car answers the wheel about so late
 constexpr double kGripShare = 0.85;        // of the assumed tyre force of the rear axle, used sideways
 constexpr double kGravity = 9.81;          // [m/s²]
 constexpr double kLeastBraking = 0.15;     // of the useful one, in any curve
@@ -147,6 +147,11 @@ constexpr double kMostOffset = 20.0;       // [m] beside the line the stop is gi
 /// Where the known road ends for a stop from `start` on [m]: a closed road after a lap.
 double end_of(const road::KnownRoad& road, const StopStart& start) noexcept {
   return road.line().is_closed() ? start.s + road.line().length() : road.end();
+}
+
+/// Steps of the simulation in which a command is held. What is certified is driven so, too.
+int held_steps(const Policy& policy) noexcept {
+  return std::max(kStepsPerPoint, static_cast<int>(std::lround(policy.hold / kStep)));
 }
 
 /// Below kSpeedFloor that of the wheels: the model moves a car that stands with its wheels turned aside.
@@ -229,9 +234,10 @@ DoubtCheck StopPlanner::in_doubt(const road::KnownRoad& road, const StopStart& s
 DoubtCheck StopPlanner::plan_in_doubt(const road::KnownRoad& road, const StopStart& start,
                                       const Policy& policy, const Doubt& doubt, double least) const noexcept {
   std::array<model::Command, 2> held;
+  const int steps = held_steps(policy);
   return in_doubt(road, start, doubt, 0.0, least,
                   [&](std::size_t k, int i, const StopStart& at, double, double) {
-                    if (i % kStepsPerPoint == 0) held[k] = command(road, at, policy);
+                    if (i % steps == 0) held[k] = command(road, at, policy);
                     return held[k];
                   });
 }
@@ -346,8 +352,12 @@ model::Command StopPlanner::command(const road::KnownRoad& road, const StopStart
   const double yaw_acceleration = kYawBandwidth * (v * curvatures.wanted - at.body.r);
   const double steer =
       std::clamp(model_.steer_for(at.body, yaw_acceleration), -car.steer_limit, car.steer_limit);
-  if (!(at.time < policy.until) || !road.is_raced())
-    return {steer, throttle_to_rest(car, slowing(road, at, policy.braking, curvatures), at.body.vx)};
+  if (!(at.time < policy.until) || !road.is_raced()) {
+    // Held beyond standstill it would be the reverse gear.
+    const double most = at.body.vx / policy.hold;
+    const double slowing = std::max(this->slowing(road, at, policy.braking, curvatures), -most);
+    return {steer, throttle_to_rest(car, slowing, at.body.vx)};
+  }
   return {steer, std::max(throttle_for(car, raced_slowing(road, at), v), lowest_throttle(car, v))};
 }
 
@@ -357,7 +367,7 @@ StopPlanner::Curvatures StopPlanner::curvatures_of(const road::KnownRoad& road, 
                                                    const Policy& policy) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double v = std::max(at.body.vx, 1.0);
-  const double ahead = road.line().demand(at.s + kPreview * v).curvature;
+  const double ahead = road.line().demand(at.s + (kPreview + 0.5 * policy.hold) * v).curvature;
   const double course = at.e + at.body.vy / v;
   const double beside =
       at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + policy.room);
@@ -476,8 +486,9 @@ StopCheck StopPlanner::plan(const road::KnownRoad& road, const StopStart& start,
   double speed = speed_of(at.body);
   out.size = 0;
   model::Command held;
+  const int steps = held_steps(policy);
   for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity; ++i) {
-    if (i % kStepsPerPoint == 0) held = command(road, at, policy);
+    if (i % steps == 0) held = command(road, at, policy);
     const bool has_ended =
         speed < kStanding || !(std::fabs(at.d) < kMostOffset) || !(at.s < end) || check.least_edge < least;
     if (i % kStepsPerPoint == 0 || has_ended) out.add({at.time, driven, speed, held});

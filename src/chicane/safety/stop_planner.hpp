@@ -114,6 +114,7 @@ struct Policy {
   double bandwidth = 1.0;   ///< of the feedback to the line [rad/s]
   double grip_share = 0.4;  ///< of the grip that the feedback may use
   double room = 0.6;        ///< wanted to the edge along a planned lap [m]
+  double hold = 0.1;        ///< time for which its command is held: a control cycle [s]
 };
 
 /// By how much the state at which a stop begins may differ from the predicted one.
