@@ -127,7 +127,8 @@ void PredictiveFilter::forget() noexcept {
 /// One late command says nothing of the next ones: the shorter of the last two intervals counts.
 void PredictiveFilter::begin_cycle(double interval) noexcept {
   is_current_ = false;
-  usual_ = std::min(interval, std::exchange(interval_, interval));
+  const double before = std::exchange(interval_, interval);
+  usual_ = before > 0.0 ? std::min(interval, before) : interval;
   hold_ = std::clamp(usual_, Policy{}.hold, kLongestHold);
 }
 
@@ -210,9 +211,28 @@ double PredictiveFilter::slip(const StopStart& at) const noexcept {
   return planner_.has_wheels() ? std::max(use.front, use.rear) : use.rear;
 }
 
+/// Where some commands come much later than usual, a wheel that is turned for long leads elsewhere: there has
+/// to be a stop after a command that is held as usual, and after one that begins late.
+bool PredictiveFilter::holds_as_usual(const Request& request, double longest, GuardReport& report) noexcept {
+  if (!(usual_ > 0.0) || !(longest > usual_ + kLateness) || request.road.is_raced()) return true;
+  const Policy before = stored_;
+  const bool had_stored = has_stored_;
+  const double usual = std::max(usual_, kShortestHold);
+  const double late = std::min(longest, kLongestHold) - usual;
+  double edge = 0.0;
+  const StopStart late_start = planner_.advance(request.road, request.start, request.acting, late, edge);
+  const Request delayed{
+      .road = request.road, .start = late_start, .command = request.command, .is_led = request.is_led};
+  if (verify_held(request, usual, report) != Fit::kNone && verify_held(delayed, usual, report) != Fit::kNone)
+    return true;
+  stored_ = before;
+  has_stored_ = had_stored;
+  is_current_ = false;
+  return false;
+}
+
 /// The next command may come late: a stop that begins after that time comes before one that begins at once,
-/// and none begins sooner than the latest of the last commands came. Where some come much later than usual,
-/// one that begins as usual has to hold, too: a wheel that is turned for long leads elsewhere.
+/// and none begins sooner than the latest of the last commands came.
 Fit PredictiveFilter::verify(const Request& request, GuardReport& report) noexcept {
   const double cycle = request.interval > 0.0 ? request.interval : kAssumedCycle;
   const double longest = std::max(cycle, request.longest);
@@ -220,22 +240,10 @@ Fit PredictiveFilter::verify(const Request& request, GuardReport& report) noexce
   // How far a car goes that begins to move shows only once its drive acts.
   const bool begins = request.is_led && request.start.body.vx < kCrawl;
   const double late = std::min(std::max(cycle + kLateness, longest), kLongestHold);
+  if (!begins && !holds_as_usual(request, longest, report)) return Fit::kNone;
   const Fit fit = verify_held(request, begins ? std::max(kFirstHold, held) : late, report);
-  if (begins) return fit;
-  if (!request.road.is_raced()) {
-    if (fit == Fit::kNone) return verify_held(request, held, report);
-    if (!(longest > usual_ + kLateness)) return fit;
-    const double usual = std::max(usual_, kShortestHold);
-    double edge = 0.0;
-    const StopStart late_start = planner_.advance(request.road, request.start, request.acting,
-                                                  std::min(longest, kLongestHold) - usual, edge);
-    Request delayed{request.road, late_start, request.command};
-    delayed.is_led = request.is_led;
-    const Fit fit_delayed = verify_held(delayed, usual, report);
-    if (fit_delayed == Fit::kNone) return Fit::kNone;
-    return std::min({fit, fit_delayed, verify_held(request, usual, report)});
-  }
-  if (fit != Fit::kNone) return fit;
+  if (fit != Fit::kNone || begins) return fit;
+  if (!request.road.is_raced()) return verify_held(request, held, report);
   double edge = planner_.edge(request.road, request.start);
   const StopStart next = planner_.advance(request.road, request.start, request.command, held, edge);
   // Without a stored law there is nothing better than the way back to the lap.

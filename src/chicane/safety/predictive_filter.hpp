@@ -99,6 +99,7 @@ class PredictiveFilter {
                                   const Goal& goal) noexcept;
   [[nodiscard]] bool consider(const road::KnownRoad& road, const StopStart& from, const Policy& policy,
                               const Goal& goal, Candidate& best, GuardReport& report) noexcept;
+  [[nodiscard]] bool holds_as_usual(const Request& request, double longest, GuardReport& report) noexcept;
   [[nodiscard]] Fit verify_held(const Request& request, double held, GuardReport& report) noexcept;
   [[nodiscard]] double margin_for(const Request& request, const StopStart& next,
                                   double edge_now) const noexcept;
