@@ -42,6 +42,7 @@ ExternalDrive::ExternalDrive(ExternalDriveOptions options, std::unique_ptr<contr
 
 void ExternalDrive::begin() {
   clock_.begin();
+  has_clock_news_ = false;
   begin_on_link(kLateAtFirst);
   begins_again_ = false;
 }
@@ -108,10 +109,13 @@ void ExternalDrive::watch_gap(double gap, double delay) {
 bool ExternalDrive::count_time(const Sighting& sighting) {
   const model::Measurement* measured = sighting.measured ? &*sighting.measured : nullptr;
   const bool is_another = clock_.advance(sighting.received, measured, std::exchange(acting_, last_sent_));
-  if (!is_another) return false;
-  begin_on_link(clock_.delay(kLateAtFirst));
-  if (hooks_.on_clock) hooks_.on_clock(clock_.news());
-  return true;
+  if (is_another) begin_on_link(clock_.delay(kLateAtFirst));
+  has_clock_news_ |= is_another;
+  if (has_clock_news_ && clock_.is_settled()) {
+    has_clock_news_ = false;
+    if (hooks_.on_clock) hooks_.on_clock(clock_.news());
+  }
+  return is_another;
 }
 
 /// Drops a configured track that does not match the visible waypoints.
