@@ -190,8 +190,8 @@ bool is_drivable(const Cell& cell) {
   return longest < (cell.is_guarded ? 0.7 : 0.4);
 }
 
-/// The whole matrix counts cells: a car may be slow in its last moment, and one that is shown elsewhere while it
-/// stands drives on with its wheels turned.
+/// The whole matrix counts cells: a car may be slow in its last moment, and one that is shown elsewhere while
+/// it stands drives on with its wheels turned.
 TEST(MovesAgain, WhateverTheSimulatorsClockAndWhereverTheCarIsPut) {
   std::ostringstream bad;
   int driven = 0, count = 0;

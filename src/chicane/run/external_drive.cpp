@@ -12,7 +12,7 @@ namespace chicane::run {
 namespace {
 
 constexpr double kLateAtFirst = 0.42;  // [s] interval on a link that has not been seen for long
-constexpr double kGapInDelays = 2.0;  // gap in delays, if larger than ExternalDriveOptions::forget_after
+constexpr double kGapInDelays = 2.0;   // gap in delays, if larger than ExternalDriveOptions::forget_after
 
 double seconds(ExternalDrive::Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();

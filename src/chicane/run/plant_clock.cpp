@@ -154,7 +154,8 @@ PlantClock::Leg PlantClock::step_of(double wall, const model::Measurement& now,
     asked_ = kept * asked_ + plant * longitudinal_acceleration(vehicle_, acting.throttle, speed);
     gained_ = kept * gained_ + gained;
   }
-  return {.wall = wall, .plant = plant, .way = way, .steps = 1, .is_from_rest = std::fabs(last_.speed) < kRest};
+  return {
+      .wall = wall, .plant = plant, .way = way, .steps = 1, .is_from_rest = std::fabs(last_.speed) < kRest};
 }
 
 /// Adds a step to the running leg. True: a leg is complete.
@@ -214,7 +215,10 @@ bool PlantClock::take_up() {
   const bool was_in_step = step_ > 0.0;
   const bool is_distinct = std::max(by_clock.deviation, by_step.deviation) > kLeastDeviation;
   // Sums of all legs: a late message shortens the next leg, so a busy machine changes them by its last delay.
-  const double late = kLate * std::max(ratio_, 1.0) * (count_ == 1 ? 0.0 : count_ == kLeastLegs ? kLateInFew : 1.0);
+  const double late = kLate * std::max(ratio_, 1.0) *
+                      (count_ == 1            ? 0.0
+                       : count_ == kLeastLegs ? kLateInFew
+                                              : 1.0);
   const bool differs = std::fabs(by_clock.all - ratio_ * by_clock.all_counted) > late &&
                        std::fabs(log(by_clock.all / (ratio_ * by_clock.all_counted))) > log(kLeastChange);
   // In real time with equal steps a busy machine makes the wall's clock look worse; but a step that waited is
@@ -233,7 +237,8 @@ bool PlantClock::take_up() {
   if (!is_another) {
     if (count_ >= kLegs) is_speed_known_ = true;
     // Follow closely if the count is not the wall's anyway.
-    if (was_in_step || ratio_ != 1.0) counted *= exp(std::max(kFollowed, 1.0 / static_cast<double>(count_)) * off);
+    if (was_in_step || ratio_ != 1.0)
+      counted *= exp(std::max(kFollowed, 1.0 / static_cast<double>(count_)) * off);
     return false;
   }
   if (!agrees_with_pedal()) return false;

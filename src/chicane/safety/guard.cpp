@@ -15,8 +15,8 @@ using controller::Answer;
 using controller::GuardReason;
 using controller::Rung;
 
-constexpr int kShown = 64;            // points of a backup that is drawn
-constexpr double kShownStep = 0.1;    // [s]
+constexpr int kShown = 64;          // points of a backup that is drawn
+constexpr double kShownStep = 0.1;  // [s]
 // Braking of a car that is too fast for a silence: gentle, and stable without feedback.
 constexpr Braking kHeldBack{0.8, 1.6, 0.7};
 
@@ -265,7 +265,7 @@ void Guard::note_residual(const model::State& expected, double time) noexcept {
 void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
                    controller::StepResult& result) noexcept {
   sent_from_ = seen.time + seen.delay;
-  filter_.begin_cycle(cycle.interval);
+  filter_.begin_cycle(cycle.interval, cycle.longest);
   const bool has_answer = result.answer != Answer::kNone;
   if (options_.mode == GuardMode::kOff || cycle.manual) {
     filter_.forget();

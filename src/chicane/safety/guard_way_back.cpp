@@ -334,8 +334,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   // Wheels at full lock turn a car more sharply than the model has it: one that would stand for ever finds
   // out, step by step.
   const bool would_stay = act - run_.refused.at > kStuckTime;
-  const double kept =
-      would_stay ? 0.0 : std::min(edge, kKeptShare * options_.margin) - kCreepNearer;
+  const double kept = would_stay ? 0.0 : std::min(edge, kKeptShare * options_.margin) - kCreepNearer;
   const double ahead = would_stay ? kShortestCreep : kLongestCreep;
   if (fit == Fit::kNone && stands && is_on_road && !waits &&
       creeping_edge(filter_.planner(), road_, *start, car.steer, vehicle, ahead) > kept)

@@ -124,12 +124,13 @@ void PredictiveFilter::forget() noexcept {
   law_ = 0;
 }
 
-/// One late command says nothing of the next ones: the shorter of the last two intervals counts.
-void PredictiveFilter::begin_cycle(double interval) noexcept {
+/// A stop is certified with commands that last as long as the latest ones did. One late command does not make
+/// lateness usual: of the last two intervals the shorter counts.
+void PredictiveFilter::begin_cycle(double interval, double longest) noexcept {
   is_current_ = false;
   const double before = std::exchange(interval_, interval);
   usual_ = before > 0.0 ? std::min(interval, before) : interval;
-  hold_ = std::clamp(usual_, Policy{}.hold, kLongestHold);
+  hold_ = std::clamp(longest, Policy{}.hold, kLongestHold);
 }
 
 /// Mean squares that fade. A jump counts by a tenth.

@@ -58,9 +58,9 @@ class PredictiveFilter {
     const road::KnownRoad& road;
     const StopStart& start;
     model::Command command;
-    double interval = 0.0;  ///< between two commands [s]; <= 0: not known
-    bool is_led = false;    ///< the guard's own command, at walking pace
-    double longest = 0.0;   ///< interval lately [s]
+    double interval = 0.0;    ///< between two commands [s]; <= 0: not known
+    bool is_led = false;      ///< the guard's own command, at walking pace
+    double longest = 0.0;     ///< interval lately [s]
     model::Command acting{};  ///< until then
   };
   /// Whether a certified stop exists where `request` leads; the stop is stored. The stored one stays when
@@ -75,9 +75,9 @@ class PredictiveFilter {
 
   /// The stored way to standstill, from the moment at which the next command acts. Size 0: none.
   [[nodiscard]] const StopPlan& stop() const noexcept { return is_current_ ? *stop_ : kNoStop; }
-  /// A control cycle begins, `interval` [s] after the one before: the stored stop is of that one until
-  /// verify() or drive() renew it.
-  void begin_cycle(double interval) noexcept;
+  /// A control cycle begins, `interval` [s] after the one before, `longest` lately: the stored stop is of the
+  /// cycle before until verify() or drive() renew it.
+  void begin_cycle(double interval, double longest) noexcept;
   /// stop() is not what is sent.
   void withdraw_stop() noexcept { is_current_ = false; }
   [[nodiscard]] const StopPlanner& planner() const noexcept { return planner_; }

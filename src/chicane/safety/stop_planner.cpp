@@ -115,8 +115,6 @@ StopMotion StopCar::advance(const StopMotion& from, double steer_command, double
 
 namespace {
 
-constexpr double kStep = 0.05;     // [s] of the simulation
-constexpr int kStepsPerPoint = 2;  // of the simulation, in the plan
 constexpr double kStanding = 0.3;  // [m/s] slower than that the car counts as standing
 constexpr double kSlow = 3.0;      // [m/s] below which its turning is corrected
 constexpr double kDamping = 0.7;
@@ -147,11 +145,6 @@ constexpr double kMostOffset = 20.0;       // [m] beside the line the stop is gi
 /// Where the known road ends for a stop from `start` on [m]: a closed road after a lap.
 double end_of(const road::KnownRoad& road, const StopStart& start) noexcept {
   return road.line().is_closed() ? start.s + road.line().length() : road.end();
-}
-
-/// Steps of the simulation in which a command is held. What is certified is driven so, too.
-int held_steps(const Policy& policy) noexcept {
-  return std::max(kStepsPerPoint, static_cast<int>(std::lround(policy.hold / kStep)));
 }
 
 /// Below kSpeedFloor that of the wheels: the model moves a car that stands with its wheels turned aside.
@@ -234,10 +227,9 @@ DoubtCheck StopPlanner::in_doubt(const road::KnownRoad& road, const StopStart& s
 DoubtCheck StopPlanner::plan_in_doubt(const road::KnownRoad& road, const StopStart& start,
                                       const Policy& policy, const Doubt& doubt, double least) const noexcept {
   std::array<model::Command, 2> held;
-  const int steps = held_steps(policy);
   return in_doubt(road, start, doubt, 0.0, least,
                   [&](std::size_t k, int i, const StopStart& at, double, double) {
-                    if (i % steps == 0) held[k] = command(road, at, policy);
+                    if (i % held_steps(policy) == 0) held[k] = command(road, at, policy);
                     return held[k];
                   });
 }
@@ -353,10 +345,9 @@ model::Command StopPlanner::command(const road::KnownRoad& road, const StopStart
   const double steer =
       std::clamp(model_.steer_for(at.body, yaw_acceleration), -car.steer_limit, car.steer_limit);
   if (!(at.time < policy.until) || !road.is_raced()) {
-    // Held beyond standstill it would be the reverse gear.
-    const double most = at.body.vx / policy.hold;
-    const double slowing = std::max(this->slowing(road, at, policy.braking, curvatures), -most);
-    return {steer, throttle_to_rest(car, slowing, at.body.vx)};
+    const double most = at.body.vx / policy.hold;  // held beyond standstill it would be the reverse gear
+    const double braking = std::max(slowing(road, at, policy.braking, curvatures), -most);
+    return {steer, throttle_to_rest(car, braking, at.body.vx)};
   }
   return {steer, std::max(throttle_for(car, raced_slowing(road, at), v), lowest_throttle(car, v))};
 }
@@ -486,9 +477,8 @@ StopCheck StopPlanner::plan(const road::KnownRoad& road, const StopStart& start,
   double speed = speed_of(at.body);
   out.size = 0;
   model::Command held;
-  const int steps = held_steps(policy);
   for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity; ++i) {
-    if (i % steps == 0) held = command(road, at, policy);
+    if (i % held_steps(policy) == 0) held = command(road, at, policy);
     const bool has_ended =
         speed < kStanding || !(std::fabs(at.d) < kMostOffset) || !(at.s < end) || check.least_edge < least;
     if (i % kStepsPerPoint == 0 || has_ended) out.add({at.time, driven, speed, held});

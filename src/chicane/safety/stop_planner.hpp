@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "chicane/base/pack.hpp"
@@ -182,6 +184,12 @@ class StopPlanner {
   [[nodiscard]] double edge(const road::KnownRoad& road, const StopStart& at) const noexcept;
 
  private:
+  static constexpr double kStep = 0.05;     ///< [s] of the simulation
+  static constexpr int kStepsPerPoint = 2;  ///< of the simulation, in the plan
+  /// Steps of the simulation in which a command is held.
+  [[nodiscard]] static int held_steps(const Policy& policy) noexcept {
+    return std::max(kStepsPerPoint, static_cast<int>(std::lround(policy.hold / kStep)));
+  }
   /// Curvatures at a place of a stop [1/m].
   struct Curvatures {
     double ahead = 0.0;   ///< of the line, a moment later
