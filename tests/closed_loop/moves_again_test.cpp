@@ -190,7 +190,8 @@ bool is_drivable(const Cell& cell) {
   return longest < (cell.is_guarded ? 0.7 : 0.4);
 }
 
-/// The whole matrix counts cells, for the reasons in docs/safety.md, "Where it ends"; the sample has none.
+/// The whole matrix counts cells: a car may be slow in its last moment, and one that is shown elsewhere while
+/// it stands drives on with its wheels turned.
 TEST(MovesAgain, WhateverTheSimulatorsClockAndWhereverTheCarIsPut) {
   std::ostringstream bad;
   int driven = 0, count = 0;
@@ -211,7 +212,7 @@ TEST(MovesAgain, WhateverTheSimulatorsClockAndWhereverTheCarIsPut) {
         << cell << ": stood " << client.stood() << " s, edge " << client.least_edge() << " m, "
         << controller::word_of(client.frame().guard.reason).sentence;
   }
-  EXPECT_LE(count, kDrivesAll ? driven / 50 : 0) << driven << " cells" << bad.str();
+  EXPECT_LE(count, kDrivesAll ? driven / 200 : 0) << driven << " cells" << bad.str();
 }
 
 /// The receiver brakes for one command that does not arrive. The original car keeps that brake below 5 mph.

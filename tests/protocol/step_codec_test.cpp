@@ -21,6 +21,7 @@ TEST(StepCodec, KeepsEveryBit) {
   frame.is_manual = true;
   frame.manual = {.steer = -0.2, .throttle = 0.4};
   frame.gate_interval = 0.040000000001;
+  frame.longest_interval = 0.42;
   frame.deadline_spent_at = 9;
   frame.begins = true;
   frame.has_measurement = false;
@@ -34,6 +35,7 @@ TEST(StepCodec, KeepsEveryBit) {
   ASSERT_TRUE(step->manual);
   EXPECT_EQ(step->manual->steer, -0.2);
   EXPECT_EQ(step->gate_interval, 0.040000000001);
+  EXPECT_EQ(step->longest_interval, 0.42);
   EXPECT_EQ(step->deadline_spent_at, 9U);
   EXPECT_TRUE(step->begins);
   EXPECT_FALSE(step->has_measurement);

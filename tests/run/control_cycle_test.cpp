@@ -51,8 +51,10 @@ TEST(ControlCycle, CountsItsCyclesAndSaysWhereARunBegins) {
   EXPECT_FALSE(frame->begins);
   EXPECT_EQ(frame->cycle, 1U);
   EXPECT_EQ(frame->gate_interval, 0.04);
-  cycle.begin(40);
+  EXPECT_EQ(frame->longest_interval, 0.04);
+  cycle.begin(40, 0.42);
   step();
+  EXPECT_EQ(frame->longest_interval, 0.42) << "of the link";
   EXPECT_TRUE(frame->begins);
   EXPECT_EQ(frame->cycle, 40U);
 }

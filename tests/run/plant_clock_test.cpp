@@ -64,6 +64,16 @@ TEST_F(PlantClockTest, CountsByTheRatioOfASimulatorThatIsSlowOrFast) {
   }
 }
 
+TEST_F(PlantClockTest, FindsAFastClockByOneStepFromRest) {
+  PlantClock clock = estimated();
+  advance(clock, 0.12, 0.0);
+  EXPECT_TRUE(advance(clock, 0.12, 0.6));
+  EXPECT_NEAR(clock.ratio(), 5.0, 0.01);
+  EXPECT_FALSE(clock.is_settled());
+  for (int i = 0; i < 8; ++i) EXPECT_FALSE(advance(clock, 0.12, 0.6));
+  EXPECT_TRUE(clock.is_settled());
+}
+
 TEST_F(PlantClockTest, CountsByTheWallWhateverAMachineDelaysAndASensorErrs) {
   for (const bool is_noisy : {false, true}) {
     PlantClock clock = estimated();

@@ -34,6 +34,7 @@ void step_rows(auto& row, auto& message) {
   row("gated", "the command gate changed it", step.gated);
   row("waypoints", "x and y in turn, world frame [m]", message.waypoints);
   row("gate_interval", "since the command before [s]; 0 skips the rate limit", step.gate_interval);
+  row("longest_interval", "the longest lately [s]", step.longest_interval);
   row("manual_steer", "a person's command, while is_manual [rad], left positive", message.manual.steer);
   row("manual_throttle", "[-1, 1]", message.manual.throttle);
   row("deadline_spent_at", "the solver's first question to the clock that was answered with \"late\"; 0 none",
@@ -65,6 +66,7 @@ std::string encode_step(const telemetry::Frame& frame) {
                                .begins = frame.begins,
                                .has_measurement = frame.has_measurement,
                                .gate_interval = frame.gate_interval,
+                               .longest_interval = frame.longest_interval,
                                .deadline_spent_at = frame.deadline_spent_at},
                       .rung = static_cast<std::int8_t>(frame.guard.rung),
                       .manual = frame.manual,

@@ -26,6 +26,7 @@ struct Step {
   bool has_measurement = true;             ///< false: what came was unusable, the controller was not asked
   std::optional<model::Command> manual{};  ///< a person's command, sent in the controller's place
   double gate_interval = 0.0;              ///< time since the previous command, by the gate's clock [s]
+  double longest_interval = 0.0;           ///< the longest lately [s]
   std::uint32_t deadline_spent_at = 0;     ///< DeadlineLog::spent_at
 };
 

@@ -219,7 +219,7 @@ class Recomputation {
   void add(const protocol::Step& step, ReplayReport& report) {
     ++report.steps;
     if (step.deadline_spent_at > 0) ++report.late;
-    if (step.begins) cycle_.begin(step.cycle);
+    if (step.begins) cycle_.begin(step.cycle, step.longest_interval);
     if (step.cycle != cycle_.next()) {
       ++report.unknown;
       return;

@@ -3,6 +3,7 @@
 // and report back.
 #include "chicane/run/control_cycle.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -14,6 +15,7 @@ namespace chicane::run {
 namespace {
 
 constexpr double kRoadSpacing = 2.0;  // [m] of the road that the guard knows
+constexpr double kLateMemory = 30.0;  // [s] in which a late command is forgotten
 
 }  // namespace
 
@@ -39,8 +41,9 @@ void ControlCycle::use_line(std::shared_ptr<const road::RacingRoad> lap) {
   if (lap) guard_.use_line(std::move(lap));
 }
 
-void ControlCycle::begin(std::uint64_t cycle) noexcept {
+void ControlCycle::begin(std::uint64_t cycle, double longest) noexcept {
   guard_.reset();
+  longest_ = longest;
   stop_.size = 0;
   prediction_check_.reset();
   next_ = cycle;
@@ -95,10 +98,13 @@ void ControlCycle::step(const CycleInput& input, telemetry::Frame& frame) noexce
   frame.cycle = next_++;
   frame.time = frame.measurement.time;
   frame.gate_interval = frame.begins ? 0.0 : input.interval;
+  longest_ = std::max(frame.gate_interval, longest_ * (1.0 - frame.gate_interval / kLateMemory));
+  frame.longest_interval = longest_;
   frame.is_manual = input.manual.has_value();
   if (input.manual) frame.manual = *input.manual;
   const safety::Guard::Cycle cycle{.interval = similarity_.time() * frame.gate_interval,
-                                   .manual = input.manual};
+                                   .manual = input.manual,
+                                   .longest = similarity_.time() * longest_};
   const Deadline deadline = input.deadline.counted_in(questions);
   if (similarity_.is_identity()) {
     frame.asked = guard_.step(frame.measurement, deadline, cycle, frame.result);

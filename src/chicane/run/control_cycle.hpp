@@ -51,9 +51,9 @@ class ControlCycle {
   /// where the controller wants_lap(). Null changes nothing.
   void use_line(std::shared_ptr<const road::RacingRoad> lap);
 
-  /// A new run, or the same car after something unknown: everything learned is forgotten. The next cycle has
-  /// the number `cycle`.
-  void begin(std::uint64_t cycle = 0) noexcept;
+  /// A new run, or the same car after something unknown: everything learned of it is forgotten. The next
+  /// cycle has the number `cycle`. `longest`: interval that commands may be held for on this link [s].
+  void begin(std::uint64_t cycle = 0, double longest = 0.0) noexcept;
   /// Applies settings before the next cycle; learned values stay. One change of the guard takes effect,
   /// GuardRoad::kWaypoints in place of kTrack; it allocates, and so belongs before the car drives.
   void configure(const scenario::Scenario& scenario) noexcept;
@@ -64,6 +64,8 @@ class ControlCycle {
 
   /// Number of the next cycle.
   [[nodiscard]] std::uint64_t next() const noexcept { return next_; }
+  /// The longest interval lately [s].
+  [[nodiscard]] double longest() const noexcept { return longest_; }
   [[nodiscard]] const controller::Controller& controller() const noexcept { return guard_.controller(); }
   /// The stop at hand after step(), for the receiver, which stops the car when commands cease.
   [[nodiscard]] const safety::StopPlan& stop() const noexcept {
@@ -80,6 +82,7 @@ class ControlCycle {
   telemetry::PredictionCheck prediction_check_;
   std::uint64_t next_ = 0;
   bool begins_ = true;
+  double longest_ = 0.0;  ///< [s]
 };
 
 }  // namespace chicane::run

@@ -11,7 +11,8 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kGapInDelays = 2.0;  // gap in delays, if larger than ExternalDriveOptions::forget_after
+constexpr double kLateAtFirst = 0.42;  // [s] interval on a link that has not been seen for long
+constexpr double kGapInDelays = 2.0;   // gap in delays, if larger than ExternalDriveOptions::forget_after
 
 double seconds(ExternalDrive::Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
@@ -36,17 +37,21 @@ ExternalDrive::ExternalDrive(ExternalDriveOptions options, std::unique_ptr<contr
       roadside_{options_.track, options_.scenario, options_.remedy},
       clock_{options_.clock, options_.scenario.vehicle, Clock::now()} {
   cycle_.use_line(options_.lap);
+  begin();
 }
 
 void ExternalDrive::begin() {
-  begin_anew();
   clock_.begin();
+  has_clock_news_ = false;
+  begin_on_link(kLateAtFirst);
   begins_again_ = false;
 }
 
-void ExternalDrive::begin_anew() {
+void ExternalDrive::begin_anew() { begin_on_link(cycle_.longest()); }
+
+void ExternalDrive::begin_on_link(double longest) {
   clock_.pause();
-  cycle_.begin(cycle_.next());
+  cycle_.begin(cycle_.next(), longest);
   last_received_.reset();
   last_time_.reset();
   roadside_.resume();
@@ -59,7 +64,7 @@ std::optional<double> ExternalDrive::gap(Clock::time_point received) const {
 
 const telemetry::Frame& ExternalDrive::step(const Sighting& sighting) {
   if (const auto since = gap(sighting.received)) watch_gap(*since, sighting.usual_delay);
-  count_time(sighting);
+  const bool is_another_clock = count_time(sighting);
   last_received_ = sighting.received;
   const double now = time(sighting.received);
   take_up_changes(now);
@@ -68,6 +73,10 @@ const telemetry::Frame& ExternalDrive::step(const Sighting& sighting) {
   frame_.measurement = frame_.has_measurement ? *sighting.measured : nothing_measured();
   frame_.measurement.time = now;
   frame_.measurement.delay = clock_.delay(sighting.delay);
+  if (is_another_clock) {
+    frame_.measurement.steer = last_sent_.steer;
+    frame_.measurement.throttle = last_sent_.throttle;
+  }
   frame_.applied = last_sent_;
   const Deadline deadline =
       options_.step_budget.count() > 0 ? Deadline::after(options_.step_budget) : Deadline::stopwatch();
@@ -96,13 +105,17 @@ void ExternalDrive::watch_gap(double gap, double delay) {
   begins_again_ = is_long;
 }
 
-/// Counts time; a change of the clock invalidates the plan.
-void ExternalDrive::count_time(const Sighting& sighting) {
+/// Counts time. True: by another clock, so that the plan is invalid.
+bool ExternalDrive::count_time(const Sighting& sighting) {
   const model::Measurement* measured = sighting.measured ? &*sighting.measured : nullptr;
   const bool is_another = clock_.advance(sighting.received, measured, std::exchange(acting_, last_sent_));
-  if (!is_another) return;
-  begin_anew();
-  if (hooks_.on_clock) hooks_.on_clock(clock_.news());
+  if (is_another) begin_on_link(clock_.delay(kLateAtFirst));
+  has_clock_news_ |= is_another;
+  if (has_clock_news_ && clock_.is_settled()) {
+    has_clock_news_ = false;
+    if (hooks_.on_clock) hooks_.on_clock(clock_.news());
+  }
+  return is_another;
 }
 
 /// Drops a configured track that does not match the visible waypoints.

@@ -88,8 +88,9 @@ class ExternalDrive {
   [[nodiscard]] telemetry::RunSummary summary() const { return roadside_.summary(); }
 
  private:
+  void begin_on_link(double longest);
   void watch_gap(double gap, double delay);
-  void count_time(const Sighting& sighting);
+  [[nodiscard]] bool count_time(const Sighting& sighting);
   void check_road(const Sighting& sighting);
   void take_up_changes(double time);
 
@@ -103,6 +104,7 @@ class ExternalDrive {
   std::optional<Clock::time_point> last_received_;
   std::optional<double> last_time_;  ///< time of the last cycle since the run began [s]
   bool begins_again_ = false;
+  bool has_clock_news_ = false;
   bool is_other_road_ = false;  ///< differs from the configured road
   model::Command last_sent_;
   model::Command acting_;  ///< acts between the last two measurements, until the next command does

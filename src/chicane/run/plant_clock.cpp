@@ -19,6 +19,8 @@ constexpr double kLeastSpeed = 0.5;    // [m/s] needed to judge a time, for a ca
 constexpr double kLongestCycle = 1.0;  // [s] between answers; longer ones are silences
 constexpr double kLongestStep = 5.0;   // [s] between measurements that say anything of each other
 constexpr std::size_t kLeastLegs = 2;  // legs needed to judge a clock
+constexpr double kRest = 0.1;          // [m/s] at which a car stands
+constexpr double kFaster = 2.0;        // times the wall's time in which a car that stood cannot have driven
 constexpr double kLate = 0.15;         // [s] by which one late message changes the sum of all legs
 constexpr double kClockAcross = 0.3;   // share of the way that a car may move across its heading
 constexpr double kJump = 0.3;          // [m] allowed in addition
@@ -152,17 +154,20 @@ PlantClock::Leg PlantClock::step_of(double wall, const model::Measurement& now,
     asked_ = kept * asked_ + plant * longitudinal_acceleration(vehicle_, acting.throttle, speed);
     gained_ = kept * gained_ + gained;
   }
-  return {.wall = wall, .plant = plant, .way = way, .steps = 1};
+  return {
+      .wall = wall, .plant = plant, .way = way, .steps = 1, .is_from_rest = std::fabs(last_.speed) < kRest};
 }
 
 /// Adds a step to the running leg. True: a leg is complete.
 bool PlantClock::add(const Leg& step) {
-  leg_ = {leg_.wall + step.wall, leg_.plant + step.plant, leg_.way + step.way, leg_.steps + 1};
+  leg_ = {leg_.wall + step.wall, leg_.plant + step.plant, leg_.way + step.way, leg_.steps + 1,
+          leg_.steps == 0 ? step.is_from_rest : leg_.is_from_rest};
   // One of the simulator's own steps more or less must not make a leg that fit() takes for another clock's.
   if (leg_.way < kLegWay * size_ || leg_.plant < kLegSamples * kSampling) return false;
   if (leg_.plant > kSlowest * leg_.wall) legs_[count_++ % kLegs] = leg_;
+  const bool is_faster = leg_.is_from_rest && leg_.plant > kFaster * leg_.wall;
   leg_ = {};
-  return count_ >= kLeastLegs;
+  return count_ >= kLeastLegs || (count_ == 1 && is_faster);
 }
 
 /// Sums of the legs near the median, and how the running sums deviate from their ratio: of the right clock by
@@ -210,7 +215,10 @@ bool PlantClock::take_up() {
   const bool was_in_step = step_ > 0.0;
   const bool is_distinct = std::max(by_clock.deviation, by_step.deviation) > kLeastDeviation;
   // Sums of all legs: a late message shortens the next leg, so a busy machine changes them by its last delay.
-  const double late = kLate * std::max(ratio_, 1.0) * (count_ == kLeastLegs ? kLateInFew : 1.0);
+  const double late = kLate * std::max(ratio_, 1.0) *
+                      (count_ == 1            ? 0.0
+                       : count_ == kLeastLegs ? kLateInFew
+                                              : 1.0);
   const bool differs = std::fabs(by_clock.all - ratio_ * by_clock.all_counted) > late &&
                        std::fabs(log(by_clock.all / (ratio_ * by_clock.all_counted))) > log(kLeastChange);
   // In real time with equal steps a busy machine makes the wall's clock look worse; but a step that waited is
@@ -229,7 +237,8 @@ bool PlantClock::take_up() {
   if (!is_another) {
     if (count_ >= kLegs) is_speed_known_ = true;
     // Follow closely if the count is not the wall's anyway.
-    if (was_in_step || ratio_ != 1.0) counted *= exp(kFollowed * off);
+    if (was_in_step || ratio_ != 1.0)
+      counted *= exp(std::max(kFollowed, 1.0 / static_cast<double>(count_)) * off);
     return false;
   }
   if (!agrees_with_pedal()) return false;

@@ -50,6 +50,8 @@ class PlantClock {
   [[nodiscard]] double delay(double delay) const { return step_ > 0.0 ? step_ : ratio_ * delay; }
   [[nodiscard]] double ratio() const { return ratio_; }     ///< run time over wall time
   [[nodiscard]] double lock_step() const { return step_; }  ///< [s]; 0: by its own clock
+  /// Enough was measured since the last change to name it: lock step looks like a ratio at first.
+  [[nodiscard]] bool is_settled() const { return options_.is_measured || count_ >= kLegs / 2; }
   /// Sentence for people on how time is counted.
   [[nodiscard]] std::string news() const;
 
@@ -60,6 +62,7 @@ class PlantClock {
     double plant = 0.0;  ///< displacement over speed [s]
     double way = 0.0;    ///< [m]
     int steps = 0;
+    bool is_from_rest = false;  ///< the car stood at its beginning
   };
   static constexpr std::size_t kLegs = 12;
   /// Sums of legs.

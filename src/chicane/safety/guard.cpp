@@ -15,9 +15,8 @@ using controller::Answer;
 using controller::GuardReason;
 using controller::Rung;
 
-constexpr double kLateMemory = 30.0;  // [s] in which a late command is forgotten
-constexpr int kShown = 64;            // points of a backup that is drawn
-constexpr double kShownStep = 0.1;    // [s]
+constexpr int kShown = 64;          // points of a backup that is drawn
+constexpr double kShownStep = 0.1;  // [s]
 // Braking of a car that is too fast for a silence: gentle, and stable without feedback.
 constexpr Braking kHeldBack{0.8, 1.6, 0.7};
 
@@ -85,7 +84,6 @@ void Guard::reset() noexcept {
   direction_.reset();
   filter_.forget();
   run_ = {};
-  longest_ = 0.0;
 }
 
 void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
@@ -114,7 +112,7 @@ void Guard::count_with_actuators() noexcept {
 model::Command Guard::step(const model::Measurement& measured, Deadline deadline, const Cycle& cycle,
                            controller::StepResult& result) noexcept {
   take_up_actuators();
-  longest_ = std::max(cycle.interval, longest_ * (1.0 - cycle.interval / kLateMemory));
+  if (commanded_.is_empty()) begin_with({measured.steer, measured.throttle}, measured.time);
   model::Measurement now = measured;
   now.delay = std::max(now.delay + learned_.answer().delay, 0.0);
   const bool is_off = options_.mode == GuardMode::kOff;
@@ -141,6 +139,15 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   }
   send(cycle, asked, result);
   return asked;
+}
+
+/// The first command of a run acts later: until then the car has another one, by its telemetry.
+void Guard::begin_with(const model::Command& acting, double time) noexcept {
+  const bool is_plausible =
+      std::fabs(acting.steer) <= vehicle_.steer_limit && std::fabs(acting.throttle) <= 1.0;
+  if (!is_plausible || !std::isfinite(time)) return;
+  commanded_.add(time, acting);
+  sent_.add(time, answer_.effect_of(acting));
 }
 
 /// The last word: the command for the actuators, in range and rate.
@@ -257,7 +264,7 @@ void Guard::note_residual(const model::State& expected, double time) noexcept {
 void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
                    controller::StepResult& result) noexcept {
   sent_from_ = seen.time + seen.delay;
-  filter_.begin_cycle();
+  filter_.begin_cycle(cycle.interval, cycle.longest);
   const bool has_answer = result.answer != Answer::kNone;
   if (options_.mode == GuardMode::kOff || cycle.manual) {
     filter_.forget();
@@ -315,7 +322,8 @@ Fit Guard::verify(const StopStart& start, const Cycle& cycle, const model::Comma
                          .command = limited(command, cycle.interval),
                          .interval = cycle.interval,
                          .is_led = is_led,
-                         .longest = longest_},
+                         .longest = cycle.longest,
+                         .acting = sent_.at(start.time)},
                         report_);
 }
 
@@ -343,8 +351,10 @@ model::Command Guard::limited(const model::Command& command, double interval) co
   }
   if (car.latches_brakes() && inside.throttle == car.brake_release_throttle) return inside;
   if (run_.rests && car.reverse_speed > 0.0) inside.throttle = std::max(inside.throttle, 0.0);
-  if (v < car.reverse_speed && inside.throttle < 0.0)
-    inside.throttle = std::max(inside.throttle, throttle_to_rest(car, -car.reverse_acceleration, v));
+  if (v < car.reverse_speed && inside.throttle < 0.0) {
+    const double most = std::min(car.reverse_acceleration, v / std::max(interval, model::kRestTime));
+    inside.throttle = std::max(inside.throttle, throttle_to_rest(car, -most, v));
+  }
   return inside;
 }
 

@@ -62,6 +62,7 @@ class Guard {
   struct Cycle {
     double interval = 0.0;  ///< since the command before [s], for the rate limit; <= 0: not limited
     std::optional<model::Command> manual{};  ///< a person's command, sent in the controller's place
+    double longest = 0.0;                    ///< interval lately [s]: commands are held for so long
   };
   /// One control cycle. Writes into `result` what the controller answered with the command that is sent, and
   /// returns the command as it was asked for, before the gate.
@@ -134,6 +135,7 @@ class Guard {
   void take_up_actuators() noexcept;
   void count_with_answer() noexcept;
   void report_learned(controller::LearnedCar& learned) const noexcept;
+  void begin_with(const model::Command& acting, double time) noexcept;
   void send(const Cycle& cycle, const model::Command& asked, controller::StepResult& result) noexcept;
   [[nodiscard]] std::optional<StopStart> place_on_road(double act_time) noexcept;
 
@@ -196,7 +198,6 @@ class Guard {
     Since released;                 ///< its brake, or began to be stuck
   };
   Run run_;
-  double longest_ = 0.0;     ///< interval between two commands lately [s]
   double act_speed_ = 0.0;   ///< estimated where the command acts [m/s]
   double most_drive_ = 0.0;  ///< acceleration that the tyres can give then [m/s²]
   double sent_from_ = 0.0;   ///< from which the command of this cycle acts [s]

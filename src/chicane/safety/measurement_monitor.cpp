@@ -66,14 +66,16 @@ void MeasurementMonitor::judge(const model::Measurement& now, const model::State
   const Findings before = std::exchange(own_, {});
   const double speed = hypot(expected.vx, expected.vy);
   const double step = std::min(elapsed, kLongestGap);
-  own_.speed_mismatch = std::fabs(now.speed - speed) > kSpeedJump + kAcceleration * step + other_drift_ ||
-                        contradicts_displacement(now, elapsed) ||
-                        // A speed that was wrong is right again when it says so of a car that moves.
-                        (before.speed_mismatch && now.speed < kMoving);
   // A place that jumped is right again when it jumps back, not when the estimate has drifted up to it.
   own_.position_jump =
       hypot(now.x - expected.x, now.y - expected.y) > kJump + kAcceleration * step * step + place_drift_ ||
       (before.position_jump && !jumps(now, elapsed));
+  // A displacement to a place that jumped, or back, says nothing of the speed.
+  if (own_.position_jump || before.position_jump) sample_count_ = 0;
+  own_.speed_mismatch = std::fabs(now.speed - speed) > kSpeedJump + kAcceleration * step + other_drift_ ||
+                        contradicts_displacement(now, elapsed) ||
+                        // A speed that was wrong is right again when it says so of a car that moves.
+                        (before.speed_mismatch && now.speed < kMoving);
   // Where place and speed are both wrong, the heading comes from the same wrong sensor.
   own_.heading_jump = std::fabs(angle_difference(now.psi, expected.psi)) >
                           kHeadingJump + kYawAcceleration * step * step + 0.1 * other_drift_ ||

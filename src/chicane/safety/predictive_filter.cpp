@@ -92,9 +92,12 @@ constexpr Law kRaceOn[] = {{kHard, 1.0, 0.4, 0.6, 2.0},
                            {kHard, 3.0, 0.8, 0.6, 1.0},
                            {kHard, 2.0, 0.4, 0.6, 0.5}};
 
-Policy policy_of(const Law& law, double time) noexcept {
-  Policy policy{
-      .braking = law.braking, .bandwidth = law.bandwidth, .grip_share = law.grip_share, .room = law.room};
+Policy policy_of(const Law& law, double time, double hold) noexcept {
+  Policy policy{.braking = law.braking,
+                .bandwidth = law.bandwidth,
+                .grip_share = law.grip_share,
+                .room = law.room,
+                .hold = hold};
   if (law.races_on > 0.0) policy.until = time + law.races_on;
   return policy;
 }
@@ -122,6 +125,15 @@ void PredictiveFilter::forget() noexcept {
   refused_at_ = driven_at_ = -std::numeric_limits<double>::infinity();
   lost_ = 0.0;
   law_ = 0;
+}
+
+/// A stop is certified with commands that last as long as the latest ones did. One late command does not make
+/// lateness usual: of the last two intervals the shorter counts.
+void PredictiveFilter::begin_cycle(double interval, double longest) noexcept {
+  is_current_ = false;
+  const double before = std::exchange(interval_, interval);
+  usual_ = before > 0.0 ? std::min(interval, before) : interval;
+  hold_ = std::clamp(longest, Policy{}.hold, kLongestHold);
 }
 
 /// Mean squares that fade. A jump counts by a tenth.
@@ -204,6 +216,26 @@ double PredictiveFilter::slip(const StopStart& at) const noexcept {
   return planner_.has_wheels() ? std::max(use.front, use.rear) : use.rear;
 }
 
+/// Where some commands come much later than usual, a wheel that is turned for long leads elsewhere: there has
+/// to be a stop after a command that is held as usual, and after one that begins late.
+bool PredictiveFilter::holds_as_usual(const Request& request, double longest, GuardReport& report) noexcept {
+  if (!(usual_ > 0.0) || !(longest > usual_ + kLateness) || request.road.is_raced()) return true;
+  const Policy before = stored_;
+  const bool had_stored = has_stored_;
+  const double usual = std::max(usual_, kShortestHold);
+  const double late = std::min(longest, kLongestHold) - usual;
+  double edge = 0.0;
+  const StopStart late_start = planner_.advance(request.road, request.start, request.acting, late, edge);
+  const Request delayed{
+      .road = request.road, .start = late_start, .command = request.command, .is_led = request.is_led};
+  if (verify_held(request, usual, report) != Fit::kNone && verify_held(delayed, usual, report) != Fit::kNone)
+    return true;
+  stored_ = before;
+  has_stored_ = had_stored;
+  is_current_ = false;
+  return false;
+}
+
 /// The next command may come late: a stop that begins after that time comes before one that begins at once,
 /// and none begins sooner than the latest of the last commands came.
 Fit PredictiveFilter::verify(const Request& request, GuardReport& report) noexcept {
@@ -213,6 +245,7 @@ Fit PredictiveFilter::verify(const Request& request, GuardReport& report) noexce
   // How far a car goes that begins to move shows only once its drive acts.
   const bool begins = request.is_led && request.start.body.vx < kCrawl;
   const double late = std::min(std::max(cycle + kLateness, longest), kLongestHold);
+  if (!begins && !holds_as_usual(request, longest, report)) return Fit::kNone;
   const Fit fit = verify_held(request, begins ? std::max(kFirstHold, held) : late, report);
   if (fit != Fit::kNone || begins) return fit;
   if (!request.road.is_raced()) return verify_held(request, held, report);
@@ -239,7 +272,7 @@ Fit PredictiveFilter::verify_held(const Request& request, double held, GuardRepo
 
   Candidate best;
   const auto try_law = [&](int i) {
-    const Policy policy = policy_of(kLaws[i], next.time);
+    const Policy policy = policy_of(kLaws[i], next.time, hold_);
     if (consider(road, next, policy, goal, best, report)) law_ = i;
   };
   // A controller that is given the car back at the edge of what can be stopped, cycle by cycle, pumps a
@@ -283,7 +316,7 @@ bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start
   if (is_measured && road.is_raced()) {
     const Goal goal{.margin = terms_.margin};
     for (const Law& law : kRaceOn)
-      if (consider(road, start, policy_of(law, start.time), goal, best, report)) return true;
+      if (consider(road, start, policy_of(law, start.time, hold_), goal, best, report)) return true;
   }
   // What was certified with a margin is driven to its end; a fresh policy replaces it where it holds no more.
   const Goal goal{.margin = std::min(terms_.margin, std::max(planner_.edge(road, start) - kNearer, -0.5)),
@@ -303,7 +336,7 @@ bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start
     const Candidate before = best;
     // One that also holds blindly comes before the stored one, one that is only as good does not.
     if (holds) best.worth = std::numeric_limits<double>::infinity();
-    if (consider(road, start, policy_of(law, start.time), goal, best, report))
+    if (consider(road, start, policy_of(law, start.time, hold_), goal, best, report))
       promised_ = best.check.least_edge;
     else
       best = before;

@@ -58,9 +58,10 @@ class PredictiveFilter {
     const road::KnownRoad& road;
     const StopStart& start;
     model::Command command;
-    double interval = 0.0;  ///< between two commands [s]; <= 0: not known
-    bool is_led = false;    ///< the guard's own command, at walking pace
-    double longest = 0.0;   ///< interval lately [s]
+    double interval = 0.0;    ///< between two commands [s]; <= 0: not known
+    bool is_led = false;      ///< the guard's own command, at walking pace
+    double longest = 0.0;     ///< interval lately [s]
+    model::Command acting{};  ///< until then
   };
   /// Whether a certified stop exists where `request` leads; the stop is stored. The stored one stays when
   /// none exists. Writes stop_edge and stop_distance.
@@ -76,8 +77,11 @@ class PredictiveFilter {
 
   /// The stored way to standstill, from the moment at which the next command acts. Size 0: none.
   [[nodiscard]] const StopPlan& stop() const noexcept { return is_current_ ? *stop_ : kNoStop; }
-  /// A control cycle begins: the stored stop is of the cycle before until verify() or drive() renew it.
-  void begin_cycle() noexcept { is_current_ = false; }
+  /// A control cycle begins, `interval` [s] after the one before, `longest` lately: the stored stop is of the
+  /// cycle before until verify() or drive() renew it.
+  void begin_cycle(double interval, double longest) noexcept;
+  /// stop() is not what is sent.
+  void withdraw_stop() noexcept { is_current_ = false; }
   [[nodiscard]] const StopPlanner& planner() const noexcept { return planner_; }
 
  private:
@@ -97,6 +101,7 @@ class PredictiveFilter {
                                   const Goal& goal) noexcept;
   [[nodiscard]] bool consider(const road::KnownRoad& road, const StopStart& from, const Policy& policy,
                               const Goal& goal, Candidate& best, GuardReport& report) noexcept;
+  [[nodiscard]] bool holds_as_usual(const Request& request, double longest, GuardReport& report) noexcept;
   [[nodiscard]] Fit verify_held(const Request& request, double held, GuardReport& report) noexcept;
   [[nodiscard]] double margin_for(const Request& request, const StopStart& next,
                                   double edge_now) const noexcept;
@@ -113,12 +118,14 @@ class PredictiveFilter {
   Doubt residual_;                                                ///< root mean squares
   double residual_at_ = 0.0;                                      ///< [s]
   double refused_at_ = -std::numeric_limits<double>::infinity();  ///< the last drive() [s]
-  double driven_at_ =
-      -std::numeric_limits<double>::infinity();  ///< a stop, last, and nothing was in doubt [s]
-  double promised_ = 0.0;                        ///< edge of the policy that is driven [m]
-  double lost_ = 0.0;                            ///< of it, by driven policies [m]
-  int law_ = 0;                                  ///< that was certified last, tried first
-  bool is_current_ = false;                      ///< stop_ is of this cycle
+  double driven_at_ = -std::numeric_limits<double>::infinity();   ///< a stop, last, with nothing in doubt [s]
+  double promised_ = 0.0;                                         ///< edge of the policy that is driven [m]
+  double lost_ = 0.0;                                             ///< of it, by driven policies [m]
+  double interval_ = 0.0;                                         ///< before this cycle [s]
+  double usual_ = 0.0;                                            ///< shorter of the last two intervals [s]
+  double hold_ = Policy{}.hold;                                   ///< Policy::hold [s]
+  int law_ = 0;                                                   ///< that was certified last, tried first
+  bool is_current_ = false;                                       ///< stop_ is of this cycle
   static const StopPlan kNoStop;
 };
 

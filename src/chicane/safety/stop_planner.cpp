@@ -115,14 +115,12 @@ StopMotion StopCar::advance(const StopMotion& from, double steer_command, double
 
 namespace {
 
-constexpr double kStep = 0.05;     // [s] of the simulation
-constexpr int kStepsPerPoint = 2;  // of the simulation, in the plan
 constexpr double kStanding = 0.3;  // [m/s] slower than that the car counts as standing
 constexpr double kSlow = 3.0;      // [m/s] below which its turning is corrected
 constexpr double kDamping = 0.7;
 constexpr double kLapDamping = 1.0;        // the same to a planned lap: no room to overshoot it
 constexpr double kYawBandwidth = 6.0;      // [rad/s] of the feedback to the yaw rate
-constexpr double kPreview = 0.2;           // [s] the car answers the wheel about so late
+constexpr double kPreview = 0.15;          // [s] the car answers the wheel about so late
 constexpr double kGripShare = 0.85;        // of the assumed tyre force of the rear axle, used sideways
 constexpr double kGravity = 9.81;          // [m/s²]
 constexpr double kLeastBraking = 0.15;     // of the useful one, in any curve
@@ -231,7 +229,7 @@ DoubtCheck StopPlanner::plan_in_doubt(const road::KnownRoad& road, const StopSta
   std::array<model::Command, 2> held;
   return in_doubt(road, start, doubt, 0.0, least,
                   [&](std::size_t k, int i, const StopStart& at, double, double) {
-                    if (i % kStepsPerPoint == 0) held[k] = command(road, at, policy);
+                    if (i % held_steps(policy) == 0) held[k] = command(road, at, policy);
                     return held[k];
                   });
 }
@@ -346,8 +344,11 @@ model::Command StopPlanner::command(const road::KnownRoad& road, const StopStart
   const double yaw_acceleration = kYawBandwidth * (v * curvatures.wanted - at.body.r);
   const double steer =
       std::clamp(model_.steer_for(at.body, yaw_acceleration), -car.steer_limit, car.steer_limit);
-  if (!(at.time < policy.until) || !road.is_raced())
-    return {steer, throttle_to_rest(car, slowing(road, at, policy.braking, curvatures), at.body.vx)};
+  if (!(at.time < policy.until) || !road.is_raced()) {
+    const double most = at.body.vx / policy.hold;  // held beyond standstill it would be the reverse gear
+    const double braking = std::max(slowing(road, at, policy.braking, curvatures), -most);
+    return {steer, throttle_to_rest(car, braking, at.body.vx)};
+  }
   return {steer, std::max(throttle_for(car, raced_slowing(road, at), v), lowest_throttle(car, v))};
 }
 
@@ -357,7 +358,7 @@ StopPlanner::Curvatures StopPlanner::curvatures_of(const road::KnownRoad& road, 
                                                    const Policy& policy) const noexcept {
   const model::VehicleParams& car = model_.vehicle();
   const double v = std::max(at.body.vx, 1.0);
-  const double ahead = road.line().demand(at.s + kPreview * v).curvature;
+  const double ahead = road.line().demand(at.s + (kPreview + 0.5 * policy.hold) * v).curvature;
   const double course = at.e + at.body.vy / v;
   const double beside =
       at.d - road.target(road.edges(at.s), 0.5 * (car.track_width + car.tire_width) + policy.room);
@@ -477,7 +478,7 @@ StopCheck StopPlanner::plan(const road::KnownRoad& road, const StopStart& start,
   out.size = 0;
   model::Command held;
   for (int i = 0; i < kStepsPerPoint * StopPlan::kCapacity; ++i) {
-    if (i % kStepsPerPoint == 0) held = command(road, at, policy);
+    if (i % held_steps(policy) == 0) held = command(road, at, policy);
     const bool has_ended =
         speed < kStanding || !(std::fabs(at.d) < kMostOffset) || !(at.s < end) || check.least_edge < least;
     if (i % kStepsPerPoint == 0 || has_ended) out.add({at.time, driven, speed, held});

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "chicane/base/pack.hpp"
@@ -114,6 +116,7 @@ struct Policy {
   double bandwidth = 1.0;   ///< of the feedback to the line [rad/s]
   double grip_share = 0.4;  ///< of the grip that the feedback may use
   double room = 0.6;        ///< wanted to the edge along a planned lap [m]
+  double hold = 0.1;        ///< time for which its command is held: a control cycle [s]
 };
 
 /// By how much the state at which a stop begins may differ from the predicted one.
@@ -181,6 +184,12 @@ class StopPlanner {
   [[nodiscard]] double edge(const road::KnownRoad& road, const StopStart& at) const noexcept;
 
  private:
+  static constexpr double kStep = 0.05;     ///< [s] of the simulation
+  static constexpr int kStepsPerPoint = 2;  ///< of the simulation, in the plan
+  /// Steps of the simulation in which a command is held.
+  [[nodiscard]] static int held_steps(const Policy& policy) noexcept {
+    return std::max(kStepsPerPoint, static_cast<int>(std::lround(policy.hold / kStep)));
+  }
   /// Curvatures at a place of a stop [1/m].
   struct Curvatures {
     double ahead = 0.0;   ///< of the line, a moment later

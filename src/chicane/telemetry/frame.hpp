@@ -158,6 +158,7 @@ struct Frame {
   bool has_measurement = true;          ///< false: what came was unusable, the controller was not asked
   model::Command manual;                ///< a person's command, while is_manual
   double gate_interval = 0.0;           ///< time since the previous command, by the gate's clock [s]
+  double longest_interval = 0.0;        ///< the longest lately [s]
   std::uint32_t deadline_spent_at = 0;  ///< DeadlineLog::spent_at of the control step
 };
 

@@ -16,6 +16,7 @@ namespace chicane::tracking {
 class CommandHistory {
  public:
   void clear() noexcept { count_ = 0; }
+  [[nodiscard]] bool is_empty() const noexcept { return count_ == 0; }
   /// `command` acts from `time` [s] on; later commands replace earlier ones that would act later.
   void add(double time, const model::Command& command) noexcept;
   /// A copy whose commands are changed by `change`, at the same times.
