@@ -73,6 +73,7 @@ class Client {
                std::move(*make_controller(scenario_)),
                hooks_} {
     world_.place(track_.start_s(), track_.start_d());
+    drive_.begin();
   }
 
   /// Telemetry, its answer, and the simulator's time until the next one.

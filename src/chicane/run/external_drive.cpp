@@ -37,7 +37,6 @@ ExternalDrive::ExternalDrive(ExternalDriveOptions options, std::unique_ptr<contr
       roadside_{options_.track, options_.scenario, options_.remedy},
       clock_{options_.clock, options_.scenario.vehicle, Clock::now()} {
   cycle_.use_line(options_.lap);
-  begin();
 }
 
 void ExternalDrive::begin() {
