@@ -104,6 +104,20 @@ class OcpSolver {
   /// Slacks of hard constraints to penalties that have changed.
   void update_penalties(const P& problem) noexcept { barrier_.update_penalties(problem, t_.horizon); }
 
+  /// Value of soft constraint c of stage k at the last linearisation.
+  [[nodiscard]] double constraint_value(int k, std::size_t c) const noexcept {
+    return barrier_.value(c, static_cast<std::size_t>(k));
+  }
+  /// Solves end where full steps fail: the primal-dual method comes before them.
+  void take_only_full_steps() noexcept { only_full_steps_ = true; }
+  /// Keeps the present point for take_point().
+  void keep_point() noexcept {
+    kept_ = t_;
+    barrier_.save(kept_slacks_, t_.horizon);
+  }
+  /// That point, its inputs inside their bounds, as an answer with its report.
+  SolveReport take_point(const P& problem, Trajectory& trajectory) noexcept;
+
   /// Multiplier of state i of x_{k+1} after a solve, i.e. d(cost)/dx of the stages after it; k < horizon.
   [[nodiscard]] double adjoint(int k, int i) const noexcept { return now_.adjoint[i][k]; }
   /// The multiplier of the bounds of input m of stage k: d(cost)/d(bound), 0 between them.
@@ -331,6 +345,7 @@ class OcpSolver {
   /// Recovery when full steps fail. False if nothing helps.
   bool recover(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept {
     if constexpr (kCanFilter) {
+      if (only_full_steps_) return false;
       if (options_.may_start_short) return begin_filter(problem, trajectory, report);
     }
     return may_grow() ? start_short(problem, trajectory) : go_back(problem);
@@ -434,9 +449,12 @@ class OcpSolver {
   bool has_filtered_ = false;  ///< filter method was used in this solve
   bool stands_still_ = false;  ///< the start could not be simulated
   bool is_again_ = false;      ///< the start is near the solution
+  bool only_full_steps_ = false;  ///< a solve ends where full steps fail
   bool is_fresh_ = true;       ///< slacks and working set must be guessed
   std::size_t target_ = 0;     ///< horizon asked for
   double work_ = 0.0;          ///< iterations so far, weighted by share of horizon
+  std::conditional_t<kHasHardRows<P>, Iterate<kNx, kNu, kSize>, NoFilter> kept_;
+  std::conditional_t<kHasHardRows<P>, typename Slacks::Memory, NoFilter> kept_slacks_;
   std::conditional_t<kCanFilter, typename Slacks::Memory, NoFilter> best_slacks_;  ///< of the best iterate
 };
 

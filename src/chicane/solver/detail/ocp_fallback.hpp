@@ -79,7 +79,7 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
       if (!shows_best_) look_at_best(problem, report);
     }
     if (kCanFilter && has_best_ && bring_inside()) linearise(problem, report);
-    if (kCanFilter && !(has_best_ && is_close(report))) take_cheapest(problem, trajectory, report);
+    if (kCanFilter && !only_full_steps_ && !(has_best_ && is_close(report))) take_cheapest(problem, trajectory, report);
     if (is_growing() || !has_best_) {
       while (is_growing()) grow(problem);
       linearise(problem, report);
@@ -99,6 +99,24 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
   }
   tell_violation(problem, barrier_, t_.horizon, report);
   report.status = status;
+  return report;
+}
+
+template <OcpProblem P, int Capacity, class Arch>
+SolveReport OcpSolver<P, Capacity, Arch>::take_point(const P& problem, Trajectory& trajectory) noexcept {
+  SolveReport report;
+  t_ = kept_;
+  barrier_.restore(kept_slacks_, t_.horizon);
+  if (bring_inside()) roll_out(problem);
+  full_steps_ = true;
+  is_fresh_ = is_exact_ = false;
+  linearise(problem, report);
+  const bool is_optimal = residual(report) <= options_.tolerance && now_.defect_excess <= 0.0;
+  report.status = is_optimal                                      ? SolveStatus::kOptimal
+                  : residual(report) <= options_.loose_tolerance ? SolveStatus::kBudgetSpent
+                                                                 : SolveStatus::kStalled;
+  t_.write(trajectory);
+  tell_violation(problem, barrier_, t_.horizon, report);
   return report;
 }
 
@@ -185,7 +203,8 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, T
                                                   const Deadline& deadline, int most, bool is_near,
                                                   SolveReport& report) noexcept {
   using Outcome = typename Filter::Outcome;
-  const int patience = problem.violation_penalty > 0.0 ? most : 6;  // short steps in succession
+  constexpr int kPatience = 20;  // short steps in succession; restoration takes any number
+  const int patience = problem.violation_penalty > 0.0 ? most : kPatience;
   filter_.take_rows(&problem);
   SolveReport unused;
   bool is_solved = false;
@@ -203,13 +222,13 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, T
   filter_.take_rows(nullptr);
   is_filtering_ = false;
   if (now_.hard.is_elastic()) {  // slopes of the violation alone, by an exact adjoint
-    is_solved = is_solved && !bring_inside();
+    is_solved = !bring_inside() && is_solved;
     problem.cost_root = 0.0;
     now_.template linearise<1>(problem, t_, false, 1.0, barrier_, lq_.lq, unused);
   }
   now_.hard.end(problem, t_.horizon);
-  if (!is_solved) return false;
   t_.write(trajectory);
+  if (!is_solved) return false;
   filter_.hand_over(now_, lq_);
   barrier_.set_mu(std::max(barrier_.mu(), final_barrier(problem)));
   return true;
