@@ -445,14 +445,14 @@ class OcpSolver {
   bool full_steps_ = true;
   bool is_exact_ = false;  ///< Hessians of the next linearisation
   bool has_grown_ = false;
-  bool is_filtering_ = false;  ///< steps are the filter method's
-  bool has_filtered_ = false;  ///< filter method was used in this solve
-  bool stands_still_ = false;  ///< the start could not be simulated
-  bool is_again_ = false;      ///< the start is near the solution
+  bool is_filtering_ = false;     ///< steps are the filter method's
+  bool has_filtered_ = false;     ///< filter method was used in this solve
+  bool stands_still_ = false;     ///< the start could not be simulated
+  bool is_again_ = false;         ///< the start is near the solution
   bool only_full_steps_ = false;  ///< a solve ends where full steps fail
-  bool is_fresh_ = true;       ///< slacks and working set must be guessed
-  std::size_t target_ = 0;     ///< horizon asked for
-  double work_ = 0.0;          ///< iterations so far, weighted by share of horizon
+  bool is_fresh_ = true;          ///< slacks and working set must be guessed
+  std::size_t target_ = 0;        ///< horizon asked for
+  double work_ = 0.0;             ///< iterations so far, weighted by share of horizon
   std::conditional_t<kHasHardRows<P>, Iterate<kNx, kNu, kSize>, NoFilter> kept_;
   std::conditional_t<kHasHardRows<P>, typename Slacks::Memory, NoFilter> kept_slacks_;
   std::conditional_t<kCanFilter, typename Slacks::Memory, NoFilter> best_slacks_;  ///< of the best iterate

@@ -66,7 +66,6 @@ class Augmented {
   static constexpr int kNr = P::kNr + kEqualities;
   static constexpr int kNe = P::kNe + kEndEqualities + kEndConstraints;
   static constexpr bool kGaussNewton = !has_hessians<P>();
-  static constexpr bool kRealTime = !has_filter_method<P>();
   static constexpr bool kHasSparseRows = solver::kHasSparseRows<P>;
 
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();

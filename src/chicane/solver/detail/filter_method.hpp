@@ -132,7 +132,8 @@ class FilterMethod {
   Outcome iterate(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, Point& t,
                   const Deadline& deadline, SolveReport& report) noexcept {
     if constexpr (kHasHardRows<P>) {
-      if (rows_ != nullptr && rows_lag_) now.hard.raise(*rows_, kRise, kMostRowWeight * unit_, mu_, t.horizon);
+      if (rows_ != nullptr && rows_lag_)
+        now.hard.raise(*rows_, kRise, kMostRowWeight * unit_, mu_, t.horizon);
     }
     linearise(problem, now, lq, slacks, t, report);
     if (!std::isfinite(report.cost + report.defect + report.complementarity)) return Outcome::kStuck;
@@ -179,11 +180,11 @@ class FilterMethod {
   static constexpr double kShort = 0.1;  ///< length of a short step
   static constexpr int kShortInSuccession = 3, kMostLeaps = 4;
   static constexpr double kRowWeight = 1e6;  ///< ρ of rows that must hold, and the penalty of hard limits, in
-  static constexpr double kHardPenalty = 1e6;  ///< the unit of costs
+  static constexpr double kHardPenalty = 1e6;                   ///< the unit of costs
   static constexpr double kRise = 10.0, kMostRowWeight = 1e10;  ///< a weight rises where multipliers lag
   static constexpr double kSolvedAt = 10.0;  ///< a barrier's problem is solved at this many times the barrier
   static constexpr double kLooseFloor = 1e-2;  ///< the same at the last barrier of rows that must hold
-  static constexpr double kFloor = 1e-5;     ///< most that rounding may leave, in the unit of costs
+  static constexpr double kFloor = 1e-5;       ///< most that rounding may leave, in the unit of costs
 
   static constexpr std::size_t z(std::size_t i) noexcept { return i < kNx ? i : i + 1; }
 

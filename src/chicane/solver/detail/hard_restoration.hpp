@@ -50,22 +50,21 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
                                                   const Deadline& deadline, int& left,
                                                   HardReport& report) noexcept {
   constexpr int kMostIterations = 200;
-  constexpr double kShare = 1e-8, kTolerance = 1e-8, kFirstUnit = 0.1;
+  constexpr double kShare = 1e-8, kTolerance = 1e-8, kFirstUnit = 0.1, kNoDefect = 1e-9;
   constexpr double kMuch = 0.1, kLeastShare = 1e-3;  // over the unit: repeat below it, least next unit
   if (left <= 0) return false;
-  const auto factors = problem_.penalty_factor;
-  for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
-  problem_.terminal_shift.fill(0.0);
+  forget_multipliers();
   inner_.ask_for(kTolerance);
   Misses misses = measure(problem, trajectory, nullptr);
   double unit = std::max(kFirstUnit, misses.worst());  // states of a guess may miss nothing but the dynamics
-  bool is_less = true, is_near = false;
+  SolveReport seen;
+  bool converged = false, is_less = true, is_near = false;
   for (; is_less && left > 0; is_near = true) {
     const double cost = std::isfinite(misses.cost) ? std::max(unit_, misses.cost) : unit_;
     weigh_misses(kShare / (cost * std::max(1.0, unit)), unit);
-    SolveReport seen;
+    seen = {};
     const int most = std::max(1, std::min(left, kMostIterations));
-    const bool converged = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, is_near, seen);
+    converged = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, is_near, seen);
     inner_.start_from_states(true);
     report.iterations += seen.iterations;
     report.sweeps += seen.sweeps;
@@ -78,6 +77,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   }
   keep_multipliers(trajectory.horizon);
   const bool is_certified = !is_possible_ && misses.worst() > options_.tolerance &&
+                            (converged || (seen.iterations > 0 && seen.defect <= kNoDefect)) &&
                             is_proven(problem, trajectory, misses.total / unit);
   problem_.violation_penalty = 0.0;
   inner_.ask_for(round_tolerance());
@@ -88,19 +88,17 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
     return is_certified_ = true;
   }
   report.status = SolveStatus::kStalled;  // converged, but not with the whole cost
-  can_go_on_ = false;
-  problem_.cost_root = 1.0;
-  problem_.penalty_factor = factors;
+  forget_multipliers();
   return false;
 }
 /// Whether no inputs within their bounds are free of violation, by slopes and multipliers at the inputs of
-/// the least: all slopes together, each times the distance to the bound that it points to, gain little of the
-/// violation that the multipliers show (docs/solver.md, eq. 55a). `violation`: the sum of all misses in their
-/// unit. Infinite bounds count as kFarthest times the input away.
+/// the least: all slopes together, each times the distance to the bound that it points to, gain a
+/// thousandth at most of the violation, and multipliers show all but that of it (docs/solver.md, eq. 55a).
+/// `violation`: the sum of all misses in their unit. Infinite bounds count as kFarthest times the input away.
 template <HardProblem P, int Capacity, class Arch>
-bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const Trajectory& least,
-                                              double violation) const noexcept {
-  constexpr double kFarthest = 1e3, kLittle = 0.1;
+bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const Trajectory& least, double violation,
+                                              double little) const noexcept {
+  constexpr double kFarthest = 1e3;
   double gain = 0.0, proven = 0.0;
   for (std::size_t n = 0; n < kEnd; ++n) proven += multipliers_.terminal[n] * terminal_[n];
   for (int k = 0; k < least.horizon; ++k) {

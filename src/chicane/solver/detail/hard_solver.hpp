@@ -116,6 +116,7 @@ class HardSolver {
   HardReport run(const P& problem, const State& x0, Trajectory& trajectory,
                  const Deadline& deadline) noexcept {
     HardReport report;
+    report.status = SolveStatus::kStalled;
     guess_ = trajectory;
     is_certified_ = is_possible_ = false;
     start(problem, x0, trajectory);
@@ -133,16 +134,24 @@ class HardSolver {
     if (is_certified_ && !is_possible_) return tell_infeasible(problem, x0, trajectory, report);
     return stall(problem, x0, trajectory, report);
   }
-  /// The answer without a solution: the last point, or the guess if that is better.
+  /// The answer without a solution: the last point, or the simulated guess if that violates less and costs
+  /// less.
   HardReport stall(const P& problem, const State& x0, Trajectory& trajectory, HardReport report) noexcept {
     forget_multipliers();
-    if (!take_guess(problem, x0, trajectory, report)) {
-      copy_ = trajectory;
-      assess(x0, copy_, true, report);
-      if (report.status == SolveStatus::kNotFinite) trajectory = copy_;
+    copy_ = trajectory;
+    bool is_guess = roll_out(problem, x0, guess_);
+    if (is_guess && roll_out(problem, x0, copy_)) {
+      const Misses guess = measure(problem, guess_, nullptr), own = measure(problem, copy_, nullptr);
+      is_guess = guess.worst() < own.worst() && guess.cost < own.cost;
     }
-    if (report.status == SolveStatus::kNotFinite) return report;
-    return finish(SolveStatus::kStalled, measure(problem, trajectory, &report), report);
+    if (is_guess) trajectory = guess_;
+    clamp_inputs(problem, trajectory);
+    copy_ = trajectory;
+    assess(x0, copy_, !is_guess, report);
+    if (report.status != SolveStatus::kNotFinite)
+      return finish(SolveStatus::kStalled, measure(problem, trajectory, &report), report);
+    trajectory = copy_;
+    return report;
   }
   bool follow(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
               HardReport& report) noexcept;
@@ -203,19 +212,6 @@ class HardSolver {
     report = finish(seen.status, now, seen);
     return true;
   }
-  /// Takes the simulated guess if its inputs violate less than `trajectory`'s and cost less; true then.
-  bool take_guess(const P& problem, const State& x0, Trajectory& trajectory, HardReport& report) noexcept {
-    if (!roll_out(problem, x0, guess_)) return false;
-    const Misses guess = measure(problem, guess_, nullptr);
-    copy_ = trajectory;
-    if (roll_out(problem, x0, copy_)) {
-      const Misses own = measure(problem, copy_, nullptr);
-      if (!(guess.worst() < own.worst() && guess.cost < own.cost)) return false;
-    }
-    copy_ = trajectory = guess_;
-    assess(x0, copy_, false, report);
-    return true;
-  }
   /// `report` becomes one of `trajectory`, simulated or with its states; its status and its counts stay.
   void assess(const State& x0, Trajectory& trajectory, bool with_states, HardReport& report) noexcept {
     inner_.allow_iterations(0);
@@ -272,7 +268,6 @@ class HardSolver {
   }
   /// y ← y + ρ h (eq. 57); distances of active inequalities count as misses.
   Misses update(Misses now, int horizon) noexcept {
-    constexpr double kRise = 10.0;
     for (std::size_t n = 0; n < kNh; ++n) {
       for (std::size_t k = 0; k < static_cast<std::size_t>(horizon); ++k)
         problem_.equality_shift[n][k] += equality_[n][k];
@@ -283,11 +278,6 @@ class HardSolver {
       if (n < kNeh) continue;
       shift = std::max(0.0, shift);
       count_distance(now, n);
-    }
-    for (std::size_t c = 0; c < kNc; ++c) {
-      if (now.constraint[c] <= options_.tolerance) continue;
-      problem_.penalty_factor[c] *= kRise;
-      can_go_on_ = false;
     }
     keep_multipliers(horizon);
     return now;

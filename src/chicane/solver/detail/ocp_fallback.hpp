@@ -79,7 +79,8 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
       if (!shows_best_) look_at_best(problem, report);
     }
     if (kCanFilter && has_best_ && bring_inside()) linearise(problem, report);
-    if (kCanFilter && !only_full_steps_ && !(has_best_ && is_close(report))) take_cheapest(problem, trajectory, report);
+    if (kCanFilter && !only_full_steps_ && !(has_best_ && is_close(report)))
+      take_cheapest(problem, trajectory, report);
     if (is_growing() || !has_best_) {
       while (is_growing()) grow(problem);
       linearise(problem, report);
@@ -112,7 +113,7 @@ SolveReport OcpSolver<P, Capacity, Arch>::take_point(const P& problem, Trajector
   is_fresh_ = is_exact_ = false;
   linearise(problem, report);
   const bool is_optimal = residual(report) <= options_.tolerance && now_.defect_excess <= 0.0;
-  report.status = is_optimal                                      ? SolveStatus::kOptimal
+  report.status = is_optimal                                     ? SolveStatus::kOptimal
                   : residual(report) <= options_.loose_tolerance ? SolveStatus::kBudgetSpent
                                                                  : SolveStatus::kStalled;
   t_.write(trajectory);
@@ -206,25 +207,26 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, T
   constexpr int kPatience = 20;  // short steps in succession; restoration takes any number
   const int patience = problem.violation_penalty > 0.0 ? most : kPatience;
   filter_.take_rows(&problem);
-  SolveReport unused;
+  SolveReport last;
   bool is_solved = false;
   const bool is_good = start(problem, x0, trajectory);
   is_again_ = is_near;
-  if (is_good && begin_filter(problem, trajectory, unused)) {
-    for (; report.iterations < most && !is_solved; ++report.iterations) {
-      const Outcome outcome = filter_.iterate(problem, now_, lq_, barrier_, t_, deadline, report);
-      record_filter_iteration(report);
-      if (outcome == Outcome::kGoing && filter_.short_steps() < patience) continue;
-      is_solved = outcome == Outcome::kSolved;
-      break;
-    }
+  const bool has_begun = is_good && begin_filter(problem, trajectory, last);
+  for (; has_begun && report.iterations < most && !is_solved; ++report.iterations) {
+    const Outcome outcome = filter_.iterate(problem, now_, lq_, barrier_, t_, deadline, report);
+    record_filter_iteration(report);
+    if (outcome == Outcome::kGoing && filter_.short_steps() < patience) continue;
+    is_solved = outcome == Outcome::kSolved;
+    break;
   }
   filter_.take_rows(nullptr);
   is_filtering_ = false;
+  if (!has_begun) return false;
   if (now_.hard.is_elastic()) {  // slopes of the violation alone, by an exact adjoint
     is_solved = !bring_inside() && is_solved;
     problem.cost_root = 0.0;
-    now_.template linearise<1>(problem, t_, false, 1.0, barrier_, lq_.lq, unused);
+    now_.template linearise<1>(problem, t_, false, 1.0, barrier_, lq_.lq, last);
+    report.defect = last.defect;
   }
   now_.hard.end(problem, t_.horizon);
   t_.write(trajectory);
