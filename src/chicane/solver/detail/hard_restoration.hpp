@@ -76,16 +76,16 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
     if (is_less) unit = std::max(worst, kLeastShare * unit);
   }
   keep_multipliers(trajectory.horizon);
-  const bool is_certified = !is_possible_ && misses.worst() > options_.tolerance &&
-                            (converged || (seen.iterations > 0 && seen.defect <= kNoDefect)) &&
-                            is_proven(problem, trajectory, misses.total / unit);
+  is_certified_ = !is_possible_ && misses.worst() > options_.tolerance &&
+                  (converged || (seen.iterations > 0 && seen.defect <= kNoDefect)) &&
+                  is_proven(problem, trajectory, misses.total / unit);
   problem_.violation_penalty = 0.0;
   inner_.ask_for(round_tolerance());
-  if (is_certified) {
+  if (is_certified_) {
     least_ = trajectory;
     least_multipliers_ = multipliers_;
     least_unit_ = unit;
-    return is_certified_ = true;
+    return true;
   }
   report.status = SolveStatus::kStalled;  // converged, but not with the whole cost
   forget_multipliers();
@@ -96,9 +96,9 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
 /// thousandth at most of the violation, and multipliers show all but that of it (docs/solver.md, eq. 55a).
 /// `violation`: the sum of all misses in their unit. Infinite bounds count as kFarthest times the input away.
 template <HardProblem P, int Capacity, class Arch>
-bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const Trajectory& least, double violation,
-                                              double little) const noexcept {
-  constexpr double kFarthest = 1e3;
+bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const Trajectory& least,
+                                              double violation) const noexcept {
+  constexpr double kFarthest = 1e3, kLittle = 1e-3;
   double gain = 0.0, proven = 0.0;
   for (std::size_t n = 0; n < kEnd; ++n) proven += multipliers_.terminal[n] * terminal_[n];
   for (int k = 0; k < least.horizon; ++k) {

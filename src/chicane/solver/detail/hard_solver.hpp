@@ -131,7 +131,7 @@ class HardSolver {
       if (finish_steps(problem, x0, trajectory, deadline, left, report)) return report;
       if (take_point(problem, trajectory, report)) return report;
     }
-    if (is_certified_ && !is_possible_) return tell_infeasible(problem, x0, trajectory, report);
+    if (is_certified_) return tell_infeasible(problem, x0, trajectory, report);
     return stall(problem, x0, trajectory, report);
   }
   /// The answer without a solution: the last point, or the simulated guess if that violates less and costs
