@@ -78,7 +78,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   keep_multipliers(trajectory.horizon);
   is_certified_ = !is_possible_ && misses.worst() > options_.tolerance &&
                   (converged || (seen.iterations > 0 && seen.defect <= kNoDefect)) &&
-                  is_proven(problem, trajectory, misses.total / unit);
+                  is_proven(problem, trajectory, misses.total / unit, converged ? 1e-2 : 1e-3);
   problem_.violation_penalty = 0.0;
   inner_.ask_for(round_tolerance());
   if (is_certified_) {
@@ -92,13 +92,13 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   return false;
 }
 /// Whether no inputs within their bounds are free of violation, by slopes and multipliers at the inputs of
-/// the least: all slopes together, each times the distance to the bound that it points to, gain a
-/// thousandth at most of the violation, and multipliers show all but that of it (docs/solver.md, eq. 55a).
+/// the least: all slopes together, each times the distance to the bound that it points to, gain
+/// `little` of the violation at most, and multipliers show all but that of it (docs/solver.md, eq. 55a).
 /// `violation`: the sum of all misses in their unit. Infinite bounds count as kFarthest times the input away.
 template <HardProblem P, int Capacity, class Arch>
-bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const Trajectory& least,
-                                              double violation) const noexcept {
-  constexpr double kFarthest = 1e3, kLittle = 1e-3;
+bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const Trajectory& least, double violation,
+                                              double little) const noexcept {
+  constexpr double kFarthest = 1e3;
   double gain = 0.0, proven = 0.0;
   for (std::size_t n = 0; n < kEnd; ++n) proven += multipliers_.terminal[n] * terminal_[n];
   for (int k = 0; k < least.horizon; ++k) {
@@ -116,7 +116,7 @@ bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const Trajectory
       gain += std::fabs(slope) * (std::isfinite(room) ? room : kFarthest * (1.0 + std::fabs(u)));
     }
   }
-  return gain <= kLittle * violation && proven >= (1.0 - kLittle) * violation;
+  return gain <= little * violation && proven >= (1.0 - little) * violation;
 }
 /// The answer is the point of least violation, with the multipliers of the violation alone: its certificate.
 template <HardProblem P, int Capacity, class Arch>

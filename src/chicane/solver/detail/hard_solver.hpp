@@ -203,8 +203,7 @@ class HardSolver {
     inner_.ask_for(options_.tolerance);
     HardReport seen = report;
     static_cast<SolveReport&>(seen) = inner_.take_point(problem_, trajectory);
-    seen.iterations = report.iterations;
-    seen.sweeps = report.sweeps;
+    seen.iterations = report.iterations, seen.sweeps = report.sweeps;
     const Misses now = measure(problem, trajectory, &seen);
     multipliers_ = point_multipliers_;
     if (!usable(seen.status) || now.worst() > options_.tolerance) return false;
@@ -235,8 +234,7 @@ class HardSolver {
     const int iterations = report.iterations + now.iterations;
     const int sweeps = report.sweeps + now.sweeps;
     static_cast<SolveReport&>(report) = now;
-    report.iterations = iterations;
-    report.sweeps = sweeps;
+    report.iterations = iterations, report.sweeps = sweeps;
     ++report.rounds;
     left -= std::max(1, now.iterations);
     const double residual = std::max({now.stationarity, now.defect, now.complementarity});
@@ -317,7 +315,7 @@ class HardSolver {
                      int& left, HardReport& report) noexcept;
   HardReport tell_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                              HardReport report) noexcept;
-  bool is_proven(const P& problem, const Trajectory& least, double violation) const noexcept;
+  bool is_proven(const P& problem, const Trajectory& least, double violation, double little) const noexcept;
   void weigh_misses(double share, double unit) noexcept;
 
   // ---- values
