@@ -1,4 +1,4 @@
-# The dashboard as one generated source file: target chicane_web_assets, header chicane/live/description.hpp.
+# The dashboard as one generated source file: target chicane_web_assets, header chicane/live/pages.hpp.
 #
 #   include(EmbedWeb)
 #   target_link_libraries(my_program PRIVATE chicane_web_assets)

@@ -3,21 +3,18 @@
 include(${CMAKE_CURRENT_LIST_DIR}/NpmCi.cmake)
 
 # The dashboard, and in one script and one style the page of `chicane report`.
-set(bundles document)
 function(build_pages)
   execute_process(COMMAND ${NODE} build.mjs ${BUILD}/dist ${BUILD}/document WORKING_DIRECTORY ${SOURCE}
                   RESULT_VARIABLE failed)
-  foreach(bundle ${bundles})
-    file(GLOB scripts ${BUILD}/${bundle}/assets/*.js)
-    file(GLOB styles ${BUILD}/${bundle}/assets/*.css)
-    list(LENGTH scripts script_count)
-    list(LENGTH styles style_count)
-    if(failed OR NOT script_count EQUAL 1 OR NOT style_count EQUAL 1)
-      message(FATAL_ERROR "Vite could not build the pages in ${SOURCE}: expected one script and one style of the ${bundle}")
-    endif()
-    set(${bundle}_script ${scripts} PARENT_SCOPE)
-    set(${bundle}_style ${styles} PARENT_SCOPE)
-  endforeach()
+  file(GLOB scripts ${BUILD}/document/assets/*.js)
+  file(GLOB styles ${BUILD}/document/assets/*.css)
+  list(LENGTH scripts script_count)
+  list(LENGTH styles style_count)
+  if(failed OR NOT script_count EQUAL 1 OR NOT style_count EQUAL 1)
+    message(FATAL_ERROR "Vite could not build the pages in ${SOURCE}: expected one script and one style of the document")
+  endif()
+  set(script ${scripts} PARENT_SCOPE)
+  set(style ${styles} PARENT_SCOPE)
 endfunction()
 
 # C++ that defines constexpr array `name` with the compressed bytes of a file.
@@ -76,19 +73,15 @@ function(write_source)
     string(APPEND table "      {\"/${file}\", \"${type}\", view(kFile${index}), true},\n")
     math(EXPR index "${index} + 1")
   endforeach()
-  set(functions "")
-  foreach(bundle ${bundles})
-    set(views "")
-    if(${bundle}_script)
-      compressed_array(k_${bundle}_script ${${bundle}_script} script)
-      compressed_array(k_${bundle}_style ${${bundle}_style} style)
-      string(APPEND arrays "${script}${style}")
-      set(views "view(k_${bundle}_script), view(k_${bundle}_style)")
-    endif()
-    string(APPEND functions "recording::ReportBundle ${bundle}_bundle() { return {${views}}; }\n\n")
-  endforeach()
+  set(views "")
+  if(script)
+    compressed_array(kDocumentScript ${script} script_array)
+    compressed_array(kDocumentStyle ${style} style_array)
+    string(APPEND arrays "${script_array}${style_array}")
+    set(views "view(kDocumentScript), view(kDocumentStyle)")
+  endif()
   file(WRITE ${BUILD}/web_assets.cpp "// Generated from web/ by cmake/EmbedWebFiles.cmake: do not edit.
-#include \"chicane/live/description.hpp\"
+#include \"chicane/live/pages.hpp\"
 
 namespace chicane::live {
 namespace {
@@ -106,7 +99,9 @@ std::vector<net::Asset> embedded_assets() {
 ${table}  };
 }
 
-${functions}}  // namespace chicane::live
+recording::ReportBundle document_bundle() { return {${views}}; }
+
+}  // namespace chicane::live
 ")
 endfunction()
 

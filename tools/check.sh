@@ -18,7 +18,7 @@ source tools/install_packages.sh
 
 check_format() { tools/check_format.sh; }
 check_web() { tools/check_web.sh; }
-check_layers() { tools/check_layers.py && tools/check_sources.py && tools/check_header_tests.py; }
+check_layers() { tools/check_layers.py && tools/check_sources.py; }
 check_tidy() {
   cmake --preset dev >/dev/null &&
     find src apps -name '*.cpp' -print0 | xargs -0 -n 1 -P "$(nproc)" clang-tidy --quiet -p build/dev

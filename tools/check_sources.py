@@ -39,7 +39,7 @@ RULES = (
     Rule(r"\bMatrixXd\b|\bVectorXd\b|\bEigen::Dynamic\b", ("base", "model", "solver", "controller", "safety", "sim"), (),
          "fixed sizes only: dynamic ones allocate in the loop"),
     Rule(r"\b(static|thread_local)\s+(?!const\b|constexpr\b)[\w:<>,*& ]+?\w+\s*(\{|=|;)", ("",),
-         ("base/instruction_set.cpp", "recording/log_files.cpp", "protocol/schema.cpp"),
+         ("base/instruction_set.cpp", "recording/replay.cpp", "protocol/schema.cpp"),
          "objects share nothing (docs/library.md): no variable that outlives a call"),
     Rule(r"\bconst_cast\b|\breinterpret_cast\b", ("",), ("net", "protocol"), "bytes are handled in net and protocol"),
 )

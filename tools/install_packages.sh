@@ -7,7 +7,7 @@ run_packages=(
   libexpected-dev libboost-dev nlohmann-json3-dev libyaml-cpp-dev libcli11-dev libfmt-dev libzstd-dev libpng-dev libpugixml-dev
 )
 # To compare with Ipopt in `chicane bench`, on top of those.
-bench_packages=(coinor-libipopt-dev liblapack-dev libblas-dev)
+bench_packages=(libeigen3-dev coinor-libipopt-dev liblapack-dev libblas-dev)
 # For `chicane ros`, on top of the first.
 ros_packages=(cyclonedds-dev)
 # For chicane-lab, the program of many runs, logs and reports, on top of the first.

@@ -9,21 +9,19 @@
 #include <optional>
 #include <utility>
 
-#include "access.hpp"
 #include "chicane/base/file.hpp"
-#include "chicane/live/description.hpp"
 #include "chicane/live/live_run.hpp"
+#include "chicane/live/pages.hpp"
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/laps_without.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/plan_cache.hpp"
+#include "chicane/run/racing.hpp"
 #include "chicane/run/run_steps.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 #include "program.hpp"
 #include "progress.hpp"
-#include "record.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -75,19 +73,23 @@ Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop
 }
 
 constexpr const char* kNotAsked = "not asked for (--limit)";
+constexpr const char* kModelCar = "it is computed for cars in full size";
 /// Reason in a recording whose reader can no longer give options to this run.
 constexpr const char* kNotLookedFor = "this run was driven without looking for it";
 
 lap_time::LimitAnswer answer_of(const road::Track& track, const lap_time::PlantLimit& limit) {
   if (!limit.is_whole())
-    return {.why_not = "its search has used up its budget; `chicane limit` has one to set"};
+    return {.why_not = limit.is_cut_short
+                           ? "its search has used up its budget; `chicane limit` has one to set"
+                           : lap_time::kNoOptimum};
   return {.found = std::make_shared<const lap_time::Limit>(lap_time::bound_from_start(track, limit))};
 }
 
 /// The limit that was asked for, and the laps that explain the gap to it where these were.
 Result<lap_time::LimitAnswer> asked_limit(const Options& options, const run::ClosedLoop& loop,
                                           const run::RunControls& controls) {
-  if (!options.wants_limit) return lap_time::LimitAnswer{.why_not = kNotAsked};
+  const bool is_model = loop.scenario().vehicle.scale != 1.0;
+  if (!options.wants_limit) return lap_time::LimitAnswer{.why_not = is_model ? kModelCar : kNotAsked};
   double wall_time = 0.0;
   const auto found =
       limit_of(loop.scenario(), loop.track(), {.wants_witness = false}, controls.wants_stop, wall_time);

@@ -36,19 +36,36 @@ void print_entry(std::string_view begin, std::string_view meaning, std::size_t c
   fmt::print("{}{}", begin, is_terminal ? wrapped(meaning, indent, columns) : std::string(meaning) + "\n");
 }
 
-/// Files of a kind, kinds of controllers, and so on: each with a sentence.
-void print_entry(std::string_view name, std::string_view meaning) {
-  print_entry(fmt::format("{:<18} ", name), meaning, 19);
+template <Shelf shelf>
+std::vector<ListEntry> files() {
+  std::vector<ListEntry> found;
+  for (const protocol::Entry& entry : protocol::entries(shelf))
+    found.push_back({entry.name, entry.description});
+  return found;
 }
 
-template <Shelf shelf>
-void print_shelf(bool /*is_markdown*/) {
-  for (const protocol::Entry& entry : protocol::entries(shelf)) print_entry(entry.name, entry.description);
+/// Kinds that have a name and a meaning.
+template <class Kinds>
+std::vector<ListEntry> named(const Kinds& kinds) {
+  std::vector<ListEntry> found;
+  for (const auto& kind : kinds) found.push_back({std::string(kind.name), std::string(kind.meaning)});
+  return found;
+}
+
+std::vector<ListEntry> parameters() {
+  std::vector<ListEntry> found;
+  for (const Parameter& parameter : protocol::list())
+    found.push_back({std::string(parameter.key), std::string(parameter.option.meaning)});
+  return found;
+}
+
+void print_names(const std::vector<ListEntry>& entries) {
+  for (const ListEntry& entry : entries) print_entry(fmt::format("{:<18} ", entry.name), entry.meaning, 19);
 }
 
 /// The table of cars in docs/tracks.md.
 void print_cars(bool is_markdown) {
-  if (!is_markdown) return print_shelf<Shelf::kCar>(false);
+  if (!is_markdown) return print_names(files<Shelf::kCar>());
   fmt::print(
       "| car | mass [kg] | length × width [m] | wheelbase [m] | smallest radius [m] | grip [m/s²] | "
       "downforce "
@@ -68,14 +85,6 @@ void print_cars(bool is_markdown) {
         std::min(car.brake_acceleration, car.cornering_friction() * car.load_constant),
         radians_to_degrees(car.steer_rate_limit), 1e3 * car.steer_lag);
   }
-}
-
-void print_controllers(bool /*is_markdown*/) {
-  for (const auto& kind : controller::Registry::kinds()) print_entry(kind.name, kind.meaning);
-}
-
-void print_plants(bool /*is_markdown*/) {
-  for (const sim::PlantKind& kind : sim::plants()) print_entry(kind.name, kind.meaning);
 }
 
 std::string default_of(const Parameter& parameter) {
@@ -157,25 +166,28 @@ void print_parameters(bool is_markdown) { is_markdown ? print_page() : print_row
 
 struct List {
   std::string_view name;
-  void (*print)(bool is_markdown);
+  std::vector<ListEntry> (*entries)();
+  void (*print)(bool is_markdown) = nullptr;  ///< null: names and meanings
   bool is_in_overview = true;
   Result<void> (*check)() = [] { return Result<void>(); };
+
+  void show(bool is_markdown) const { print != nullptr ? print(is_markdown) : print_names(entries()); }
 };
 
 template <Shelf shelf>
-constexpr List list_of(std::string_view name, void (*print)(bool)) {
-  return {name, print, true, [] { return protocol::check_shelf(shelf); }};
+constexpr List list_of(std::string_view name, void (*print)(bool) = nullptr) {
+  return {name, files<shelf>, print, true, [] { return protocol::check_shelf(shelf); }};
 }
 
 constexpr std::array kLists{
-    list_of<Shelf::kPreset>("presets", print_shelf<Shelf::kPreset>),
-    list_of<Shelf::kTrack>("tracks", print_shelf<Shelf::kTrack>),
+    list_of<Shelf::kPreset>("presets"),
+    list_of<Shelf::kTrack>("tracks"),
     list_of<Shelf::kCar>("cars", print_cars),
-    list_of<Shelf::kScenario>("scenarios", print_shelf<Shelf::kScenario>),
-    List{"controllers", print_controllers},
-    List{"plants", print_plants},
-    List{"faults", print_faults, false},
-    List{"parameters", print_parameters, false},
+    list_of<Shelf::kScenario>("scenarios"),
+    List{"controllers", [] { return named(controller::Registry::kinds()); }},
+    List{"plants", [] { return named(sim::plants()); }},
+    List{"faults", [] { return named(sim::fault_kinds()); }, print_faults, false},
+    List{"parameters", parameters, print_parameters, false},
 };
 
 }  // namespace
@@ -186,15 +198,21 @@ std::vector<std::string> list_names() {
   return names;
 }
 
+std::vector<ListEntry> list_entries(std::string_view shelf) {
+  for (const List& list : kLists)
+    if (list.name == shelf) return list.entries();
+  return {};
+}
+
 ExitCode list(const Options& options) {
   bool is_first = true;
   for (const List& list : kLists) {
     if (const auto there = list.check(); !there && (options.shelf.empty() || list.name == options.shelf))
       return report(there.error());
-    if (!options.shelf.empty() && list.name == options.shelf) list.print(options.is_markdown);
+    if (!options.shelf.empty() && list.name == options.shelf) list.show(options.is_markdown);
     if (!options.shelf.empty() || !list.is_in_overview) continue;
     fmt::print("{}{}\n", std::exchange(is_first, false) ? "" : "\n", list.name);
-    list.print(false);
+    list.show(false);
   }
   return kSuccess;
 }

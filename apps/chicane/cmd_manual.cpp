@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `chicane manual` and `chicane completion`: the manual page and the completion scripts of three shells,
-// written from the same rows of options that the command line is read by.
+// `chicane manual` and `chicane completion`: the manual page, and the words that may follow on a
+// command line, from the same rows of options that the command line is read by.
 #include <fmt/format.h>
 
 #include <string>
@@ -104,188 +104,94 @@ ExitCode manual(const Options&) {
 
 namespace {
 
-/// Completions for the value of an option, in any of the three shells.
-struct Value {
-  std::string words;           ///< fixed words, separated by blanks
-  std::string shelf;           ///< argument of `chicane list`, which prints names; empty: none
-  bool is_file = false;        ///< names of files
-  bool is_assignment = false;  ///< KEY=VALUE: no blank after the completed key
-};
+/// Line of a word that may follow, and its meaning.
+std::string candidate(std::string_view word, std::string_view meaning) {
+  return fmt::format("{}\t{}\n", word, meaning);
+}
 
-Value value_of(const OptionRow& option) {
-  Value value;
-  value.words = fmt::format("{}", fmt::join(option.rule.words, " "));
-  value.shelf = option.rule.shelf;
+std::string values_of(const OptionRow& row) {
+  std::string lines;
+  for (const std::string& word : row.rule.words) lines += candidate(word, "");
+  const bool is_assignment = row.value.find('=') != std::string_view::npos;
+  if (!row.rule.shelf.empty())
+    for (const ListEntry& entry : list_entries(row.rule.shelf))
+      lines += candidate(entry.name + (is_assignment ? "=" : ""), entry.meaning);
   for (const char* kind : {"FILE", "LOG", "FOLDER", "SCENARIO", "PLAN", "LEAGUE"})
-    value.is_file = value.is_file || option.value.find(kind) != std::string_view::npos;
-  value.is_assignment = option.value.find('=') != std::string_view::npos;
-  return value;
+    if (row.value.find(kind) != std::string_view::npos) return lines + candidate("/", "");
+  return lines;
 }
 
-/// Text in single quotes; `quote` replaces each single quote inside.
-std::string quoted(std::string_view text, std::string_view quote) {
-  std::string result;
-  for (const char c : text) result += c == '\'' ? std::string(quote) : std::string(1, c);
-  return "'" + result + "'";
-}
-
-std::string option_names(const Command& command) {
-  Options scratch;
-  std::string names = "--help";
-  for (const OptionRow& option : options_of(command, scratch)) {
-    if (option.is_positional()) continue;
-    for (const std::string& name : option.typed_names()) names += " " + name;
+/// Lines of the words that may follow a command line. A word that ends with "=" wants more, "/" stands for
+/// the names of files.
+std::string candidates(const std::vector<std::string>& line) {
+  std::string lines = candidate("--help", "Print this help and end");
+  if (line.size() == 1) {
+    for (const Command& command : commands()) lines += candidate(command.name, command.summary);
+    return lines + candidate("--version", "Print the version and end");
   }
-  return names;
+  Options scratch;
+  for (const Command& command : commands()) {
+    if (command.name != line[1]) continue;
+    for (const OptionRow& row : options_of(command, scratch)) {
+      for (const std::string& name : row.typed_names()) {
+        if (name == line.back() && !row.is_flag()) return values_of(row);
+        lines += candidate(name, row.meaning);
+      }
+      if (row.is_positional()) lines += values_of(row);
+    }
+  }
+  return lines;
 }
 
-// bash ----------------------------------------------------------------------------------------------------
-
-constexpr std::string_view kBashHead = R"(# bash completion for chicane, made by `chicane completion bash`.
-_chicane_names() { "${COMP_WORDS[0]}" list "$1" 2>/dev/null | cut -d' ' -f1; }
-_chicane_words() { mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W "$1" -- "$current"); }
-_chicane_files() { compopt -o filenames 2>/dev/null; mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -- "$current"); }
+constexpr std::string_view kBash = R"(# bash completion for chicane, made by `chicane completion bash`.
 _chicane() {
-  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
+  local word meaning current=${COMP_WORDS[COMP_CWORD]}
   COMPREPLY=()
+  while IFS=$'\t' read -r word meaning; do
+    case $word in
+      /) compopt -o filenames 2>/dev/null; mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -- "$current") ;;
+      -*) [[ $current == -* && $word == "$current"* ]] && COMPREPLY+=("$word") ;;
+      "$current"*=) compopt -o nospace 2>/dev/null; COMPREPLY+=("$word") ;;
+      "$current"*) COMPREPLY+=("$word") ;;
+    esac
+  done < <("${COMP_WORDS[0]}" completion bash -- "${COMP_WORDS[@]:0:COMP_CWORD}" 2>/dev/null)
+}
+complete -F _chicane chicane
 )";
 
-std::string bash_action(const Value& value) {
-  std::string action;
-  if (!value.words.empty()) action += fmt::format("_chicane_words '{}'; ", value.words);
-  if (!value.shelf.empty()) action += fmt::format("_chicane_words \"$(_chicane_names {})\"; ", value.shelf);
-  if (value.is_assignment) action += "compopt -o nospace 2>/dev/null; COMPREPLY=(\"${COMPREPLY[@]/%/=}\"); ";
-  if (value.is_file) action += "_chicane_files; ";
-  return action;
+constexpr std::string_view kZsh = R"(#compdef chicane
+# zsh completion for chicane, made by `chicane completion zsh`.
+_chicane() {
+  local line word
+  local -a found keys
+  for line in "${(@f)$(_call_program candidates chicane completion zsh -- ${(q)words[1,CURRENT-1]})}"; do
+    word=${line%%$'\t'*}
+    case $word in
+      /) _files ;;
+      -*) [[ $PREFIX == -* ]] && found+="$word:${line#*$'\t'}" ;;
+      *=) keys+=$word ;;
+      *) found+="${word//:/\\:}:${line#*$'\t'}" ;;
+    esac
+  done
+  compadd -S '' -a keys
+  _describe value found
 }
+if [[ $funcstack[1] == _chicane ]]; then _chicane "$@"; else compdef _chicane chicane; fi
+)";
 
-std::string bash_script() {
-  Options scratch;
-  std::string script(kBashHead);
-  std::string names = "--help --version";
-  for (const Command& command : commands()) names += fmt::format(" {}", command.name);
-  script += fmt::format("  if ((COMP_CWORD == 1)); then _chicane_words '{}'; return; fi\n", names);
-  script += "  case ${COMP_WORDS[1]} in\n";
-  for (const Command& command : commands()) {
-    std::string positional;
-    script += fmt::format("    {})\n      case $previous in\n", command.name);
-    for (const OptionRow& option : options_of(command, scratch)) {
-      if (option.is_positional()) positional += bash_action(value_of(option));
-      if (option.is_positional() || option.value.empty()) continue;
-      script += fmt::format("        {}) {}return ;;\n", fmt::join(option.typed_names(), " | "),
-                            bash_action(value_of(option)));
-    }
-    script += fmt::format("      esac\n      if [[ $current == -* ]]; then _chicane_words '{}'; return; fi\n",
-                          option_names(command));
-    script += fmt::format("      {};;\n", positional);
-  }
-  return script + "  esac\n}\ncomplete -F _chicane chicane\n";
-}
-
-// zsh -----------------------------------------------------------------------------------------------------
-
-std::string zsh_action(const Value& value) {
-  std::string action;
-  if (value.is_assignment) return fmt::format("{{_chicane_names {} -S =}}", value.shelf);
-  if (!value.words.empty()) return fmt::format("({})", value.words);
-  if (!value.shelf.empty()) action = fmt::format("_chicane_names {}", value.shelf);
-  if (value.is_file) action += action.empty() ? "_files" : "; _files";
-  return action.empty() ? " " : "{" + action + "}";
-}
-
-/// Text quoted for zsh's _arguments, where brackets and colons mean something.
-std::string zsh_text(std::string_view text) {
-  std::string result;
-  for (const char c : text) result += (c == '[' || c == ']' || c == ':' ? "\\" : "") + std::string(1, c);
-  return result;
-}
-
-std::string zsh_script() {
-  Options scratch;
-  const std::string_view quote = R"('\'')";
-  std::string script =
-      "#compdef chicane\n# zsh completion for chicane, made by `chicane completion zsh`.\n"
-      "_chicane_names() { local shelf=$1; shift; "
-      "compadd \"$@\" -- ${(f)\"$(chicane list $shelf 2>/dev/null | cut -d' ' -f1)\"} }\n"
-      "_chicane() {\n  if (( CURRENT == 2 )); then\n    local -a commands=(\n";
-  for (const Command& command : commands())
-    script += fmt::format("      {}\n",
-                          quoted(fmt::format("{}:{}", command.name, zsh_text(command.summary)), quote));
-  script +=
-      "    )\n    _describe command commands\n    return\n  fi\n"
-      "  shift words; (( CURRENT-- ))\n  case $words[1] in\n";
-  for (const Command& command : commands()) {
-    script +=
-        fmt::format("    {})\n      _arguments '--help[Print this help message and exit]'", command.name);
-    for (const OptionRow& option : options_of(command, scratch)) {
-      const std::string action = zsh_action(value_of(option));
-      const std::string value = ":" + zsh_text(option.value) + ":" + action;
-      if (option.is_positional()) {
-        script += " \\\n        " + quoted("*" + value, quote);
-        continue;
-      }
-      for (const std::string& name : option.typed_names()) {
-        script += " \\\n        " + quoted(fmt::format("*{}[{}]{}", name, zsh_text(option.meaning),
-                                                       option.value.empty() ? "" : value),
-                                           quote);
-      }
-    }
-    script += " ;;\n";
-  }
-  return script +
-         "  esac\n}\n"
-         "if [[ $funcstack[1] == _chicane ]]; then _chicane \"$@\"; else compdef _chicane chicane; fi\n";
-}
-
-// fish ----------------------------------------------------------------------------------------------------
-
-std::string fish_values(const Value& value) {
-  std::string words = value.words;
-  if (!value.shelf.empty()) {
-    words += fmt::format("(chicane list {} 2>/dev/null | string split -f1 \" \"{})", value.shelf,
-                         value.is_assignment ? " | string replace -r '$' =" : "");
-  }
-  return words.empty() ? "" : " -a " + quoted(words, R"(\')");
-}
-
-std::string fish_script() {
-  Options scratch;
-  const std::string_view quote = R"(\')";
-  std::string script =
-      "# fish completion for chicane, made by `chicane completion fish`.\ncomplete -c chicane -f\n"
-      "complete -c chicane -n __fish_use_subcommand -l help\ncomplete -c chicane -n __fish_use_subcommand -l "
-      "version\n";
-  for (const Command& command : commands()) {
-    script += fmt::format("complete -c chicane -n __fish_use_subcommand -a {} -d {}\n", command.name,
-                          quoted(command.summary, quote));
-    const std::string line =
-        fmt::format("complete -c chicane -n '__fish_seen_subcommand_from {}'", command.name);
-    for (const OptionRow& option : options_of(command, scratch)) {
-      const Value value = value_of(option);
-      script += line;
-      if (!option.is_positional()) {
-        for (const std::string& name : option.typed_names())
-          script += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-        if (!option.value.empty()) script += " -r";
-      }
-      script += fmt::format(" {}{} -d {}\n", value.is_file ? "-F" : "-f", fish_values(value),
-                            quoted(option.meaning, quote));
-    }
-    script += line + " -l help\n";
-  }
-  return script;
-}
+constexpr std::string_view kFish = R"(# fish completion for chicane, made by `chicane completion fish`.
+function _chicane
+    chicane completion fish -- (commandline -opc) 2>/dev/null
+end
+complete -c chicane -f -a '(_chicane | string match -v -r "^/")'
+complete -c chicane -F -n '_chicane | string match -q -r "^/"'
+)";
 
 }  // namespace
 
-std::string completion_script(std::string_view shell) {
-  if (shell == "zsh") return zsh_script();
-  if (shell == "fish") return fish_script();
-  return bash_script();
-}
-
 ExitCode completion(const Options& options) {
-  fmt::print("{}", completion_script(options.shell));
+  const std::string_view script = options.shell == "zsh" ? kZsh : options.shell == "fish" ? kFish : kBash;
+  fmt::print("{}", options.line.empty() ? std::string(script) : candidates(options.line));
   return kSuccess;
 }
 

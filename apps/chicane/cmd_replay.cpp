@@ -15,13 +15,10 @@
 #include <utility>
 #include <vector>
 
-#include "access.hpp"
-#include "chicane/live/description.hpp"
 #include "chicane/live/pages.hpp"
 #include "chicane/live/what_if.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/schema_json.hpp"
-#include "chicane/recording/log_files.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/recording/replay.hpp"
 #include "chicane/recording/shadow_run.hpp"
@@ -29,7 +26,7 @@
 #include "chicane/wire/viewer.hpp"
 #include "commands.hpp"
 #include "program.hpp"
-#include "record.hpp"
+#include "progress.hpp"
 
 // The keys of what `chicane replay --json` says are a contract (docs/viewer.md#recordings).
 

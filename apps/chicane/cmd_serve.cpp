@@ -9,8 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "access.hpp"
-#include "chicane/live/description.hpp"
+#include "chicane/live/pages.hpp"
 #include "chicane/live/run_limit.hpp"
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/run/make.hpp"
@@ -20,7 +19,6 @@
 #include "experiment.hpp"
 #include "program.hpp"
 #include "progress.hpp"
-#include "record.hpp"
 
 namespace chicane::apps {
 namespace {

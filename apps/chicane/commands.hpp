@@ -5,7 +5,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "chicane/base/result.hpp"
@@ -38,6 +37,11 @@ struct Command {
 [[nodiscard]] ExitCode list(const Options& options);
 /// Shelves that `chicane list` accepts.
 [[nodiscard]] std::vector<std::string> list_names();
+/// Name on a shelf, and its meaning.
+struct ListEntry {
+  std::string name, meaning;
+};
+[[nodiscard]] std::vector<ListEntry> list_entries(std::string_view shelf);
 [[nodiscard]] ExitCode completion(const Options& options);
 [[nodiscard]] ExitCode manual(const Options& options);
 
@@ -48,6 +52,12 @@ using LogConverter = Result<void> (*)(const std::string& file, const Options& op
 [[nodiscard]] ExitCode replay(const Options& options);
 /// The same with logs of other programs, which `convert` reads; null: there are none.
 [[nodiscard]] ExitCode replay_logs(const Options& options, LogConverter convert);
+/// A LogConverter of chicane-lab: positions, speeds and commands of the car. --track gives the road for laps
+/// and progress; without it a lap ends where the car has been before. Values that the log lacks are NaN. One
+/// sentence on stderr sums up the findings. kParse for a file that is neither a ROS 2 bag with odometry nor a
+/// CSV table of a car.
+[[nodiscard]] Result<void> convert_foreign_log(const std::string& file, const Options& options,
+                                               const std::string& output);
 
 /// Becomes the program chicane-ros (ros/main.cpp); kUsage where that is not installed.
 [[nodiscard]] ExitCode ros(const Options& options);

@@ -128,11 +128,13 @@ std::string to_table(const LimitRun& run, const lap_time::PlantLimit& limit) {
   const LineExtent extent = extent_of(limit.line);
   if (limit.line.is_best_so_far)
     return fmt::format(
-        "{} on {}: {:.3f} s is the best lap so far, no bound: the budget ended the search (--budget-s)\n"
+        "{} on {}: {:.3f} s is the best lap so far, no bound: {}\n"
         "speed    {:.1f} mph at least, {:.1f} at most\n"
         "searched {:.1f} s: {} nodes, {} iterations; stationarity {:.1e}, violation {:.1e}\n",
-        run.car, run.track, limit.bound.lap, mps_to_mph(extent.least_speed), mps_to_mph(extent.top_speed),
-        run.wall_time, limit.nodes, limit.effort.iterations, limit.stationarity, limit.violation);
+        run.car, run.track, limit.bound.lap,
+        limit.is_cut_short ? "the budget ended the search (--budget-s)" : lap_time::kNoOptimum,
+        mps_to_mph(extent.least_speed), mps_to_mph(extent.top_speed), run.wall_time, limit.nodes,
+        limit.effort.iterations, limit.stationarity, limit.violation);
   std::string text = fmt::format("{} on {}: between {:.3f} s and ", run.car, run.track, limit.bound.lap);
   text += limit.witness
               ? fmt::format("{:.3f} s ({:+.2f} %)\n", limit.witness->lap_time, 100.0 * limit.bracket())

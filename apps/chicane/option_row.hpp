@@ -111,7 +111,5 @@ using Rows = std::vector<OptionRow>;
 
 /// The manual page, for man(7).
 [[nodiscard]] std::string manual_page();
-/// A script that completes command lines; shell is bash, zsh or fish.
-[[nodiscard]] std::string completion_script(std::string_view shell);
 
 }  // namespace chicane::apps

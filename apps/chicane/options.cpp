@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <string_view>
-#include <utility>
 
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/text.hpp"

@@ -69,6 +69,7 @@ struct Options {
   std::string shelf;                   ///< list; empty: an overview
   bool is_markdown = false;            ///< list parameters, list faults, campaign
   std::string shell;                   ///< completion
+  std::vector<std::string> line{};     ///< completion: words before the cursor; empty: the script
 
   /// league, claims, campaign, recover, lane-change: a line for each run; empty: none
   std::string results_file;

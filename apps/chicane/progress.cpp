@@ -3,17 +3,29 @@
 // plan, with a page at the dashboard's address meanwhile.
 #include "progress.hpp"
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <utility>
 
-#include "access.hpp"
+#include "chicane/base/file.hpp"
 #include "chicane/base/math.hpp"
+#include "chicane/base/text.hpp"
+#include "chicane/live/pages.hpp"
+#include "chicane/net/http_response.hpp"
+#include "chicane/recording/html_report.hpp"
+#include "chicane/recording/replay.hpp"
 #include "chicane/run/make.hpp"
 
 namespace chicane::apps {
@@ -82,9 +94,10 @@ std::string line(const telemetry::Frame& frame) {
   const double error = frame.has_truth ? frame.lateral_error : frame.result.report.lateral_error;
   const std::string place =
       frame.has_truth ? fmt::format("lap {:<2} {:5.0f} m ", frame.lap + 1, frame.s) : "";
-  const std::string beside = std::isfinite(error) ? fmt::format("error {:+6.2f} m", error) : "error unknown";
-  return fmt::format("{:6.1f} s  {}{:5.1f} mph  {}  {}", frame.time, place,
-                     mps_to_mph(frame.measurement.speed), beside, sentence_of(frame.situation));
+  const std::string off = std::isfinite(error) ? fmt::format("error {:+6.2f} m", error) : "error unknown";
+  const double speed = mps_to_mph(frame.measurement.speed);
+  const std::string fast = std::isfinite(speed) ? fmt::format("{:5.1f} mph", speed) : "speed unknown";
+  return fmt::format("{:6.1f} s  {}{}  {}  {}", frame.time, place, fast, off, sentence_of(frame.situation));
 }
 
 }  // namespace
@@ -265,6 +278,146 @@ void PlanWait::show(const lap_time::PlanProgress& now) {
 
 void PlanWait::clear_line() {
   if (std::exchange(has_line_, false)) fmt::print(stderr, "\r\x1b[K");
+}
+
+namespace {
+
+/// Checks before the run that its recording can become a report.
+Result<void> can_be_reported(const std::string& file) {
+  if (live::document_bundle().script.empty()) {
+    return fail(ErrorCode::kNotFound,
+                "--report: this program has no dashboard: install Node.js and npm, remove the build folder, "
+                "and build again");
+  }
+  return check_writable(file);
+}
+
+}  // namespace
+
+Result<void> check_page_name(std::string_view option, const std::string& file) {
+  const std::filesystem::path extension = std::filesystem::path(file).extension();
+  std::error_code error;
+  const bool is_device =
+      std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error);
+  if (file.empty() || extension == ".html" || extension == ".htm" || is_device) return {};
+  return fail(refusal(option, file, "a name that ends in .html"));
+}
+
+Result<std::unique_ptr<KeptRun>> KeptRun::start(const Options& options, protocol::Run run,
+                                                const scenario::Scenario& scenario, double step_budget) {
+  std::unique_ptr<KeptRun> kept(new KeptRun(options));
+  if (options.record_file.empty() && options.report_file.empty()) return kept;
+  if (std::filesystem::weakly_canonical(options.record_file) ==
+      std::filesystem::weakly_canonical(options.report_file)) {
+    return fail(refusal("--report", options.report_file, "another file than --record"));
+  }
+  if (const Result<void> named = check_page_name("--report", options.report_file); !named)
+    return fail(named.error());
+  if (options.is_bag) {
+    if (const Result<void> possible = recording::can_be_bag(options.record_file); !possible)
+      return fail(possible.error());
+  }
+  if (!options.report_file.empty()) {
+    if (const Result<void> possible = can_be_reported(options.report_file); !possible)
+      return fail(possible.error());
+    if (options.record_file.empty()) kept->temporary_.emplace(".mcap");
+  }
+  auto recorder =
+      recording::Recorder::create({.path = kept->temporary_ ? kept->temporary_->path() : options.record_file,
+                                   .run = std::move(run),
+                                   .scenario = scenario,
+                                   .is_compressed = options.is_compressed,
+                                   .step_budget = step_budget,
+                                   .may_wait = options.is_fast,
+                                   .say = [](std::string_view line) { fmt::print(stderr, "\n{}\n", line); }});
+  if (!recorder) return fail(recorder.error());
+  kept->recorder_ = std::move(*recorder);
+  return kept;
+}
+
+Result<void> KeptRun::finish() {
+  if (!recorder_) return {};
+  const Result<recording::RecorderReport> report = recorder_->finish();
+  if (!report) return fail(report.error());
+  const std::string& main_file = temporary_ ? report_file_ : record_file_;
+  if (!temporary_)
+    fmt::print(stderr, "{}: recorded {} steps, {:.1f} MB\n", main_file, report->frames,
+               1e-6 * static_cast<double>(report->bytes));
+  if (report->left_out > 0)
+    fmt::print(stderr, "{}: the disk was too slow for {} steps\n", main_file, report->left_out);
+  if (report->missing > 0)
+    fmt::print(stderr, "{}: {} steps are missing: the disk did not take them\n", main_file, report->missing);
+  if (is_bag_) {
+    if (const Result<void> written = recording::write_bag_metadata(record_file_); !written)
+      return fail(written.error());
+  }
+  if (report_file_.empty()) return {};
+  if (report->frames > 0) return write_report();
+  return fail(
+      ErrorCode::kInvalidArgument,
+      fmt::format("--report: got a run without a control step, expected one at least; {} is not written",
+                  report_file_));
+}
+
+Result<void> KeptRun::write_report() const {
+  const std::string& log = temporary_ ? temporary_->path() : record_file_;
+  const std::string name = std::filesystem::path(temporary_ ? report_file_ : record_file_).filename();
+  const Result<recording::ReportSummary> written = recording::write_report(
+      {.output = report_file_, .logs = {{name, log}}, .bundle = live::document_bundle()});
+  if (!written) return fail(written.error());
+  fmt::print(stderr, "{}: {:.1f} MB, {:g} control steps a second; open it in a browser\n", report_file_,
+             1e-6 * static_cast<double>(written->bytes), written->rate);
+  return {};
+}
+
+namespace {
+
+/// Address of this machine that others may reach; empty if it has none.
+std::string own_address() {
+  ifaddrs* all = nullptr;
+  if (::getifaddrs(&all) != 0) return {};
+  std::string found;
+  for (const ifaddrs* each = all; each != nullptr && found.empty(); each = each->ifa_next) {
+    const bool is_ours = each->ifa_addr != nullptr && each->ifa_addr->sa_family == AF_INET &&
+                         (each->ifa_flags & IFF_UP) != 0U && (each->ifa_flags & IFF_LOOPBACK) == 0U;
+    if (!is_ours) continue;
+    std::array<char, INET_ADDRSTRLEN> text{};
+    const auto* address = reinterpret_cast<const sockaddr_in*>(each->ifa_addr);
+    if (::inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size()) != nullptr) found = text.data();
+  }
+  ::freeifaddrs(all);
+  return found;
+}
+
+/// Host that a browser asks for.
+std::string host_of(const std::string& address) {
+  if (address == "127.0.0.1") return "localhost";
+  if (address == "0.0.0.0" || address == "::") {
+    const std::string own = own_address();
+    return own.empty() ? "localhost" : own;
+  }
+  return address.find(':') == std::string::npos ? address : "[" + address + "]";
+}
+
+}  // namespace
+
+Result<net::ServerOptions> server_options(const Options& options) {
+  net::ServerOptions server;
+  server.address = options.address;
+  server.port = options.port;
+  server.allowed_origins = options.allowed_origins;
+  server.allowed_hosts = options.allowed_hosts;
+  server.goodbye = std::chrono::seconds{4};  // a page on a busy machine may be behind
+  if (!options.needs_token) return server;
+  Result<std::string> token = net::make_token();
+  if (!token) return fail(token.error());
+  server.token = std::move(*token);
+  return server;
+}
+
+std::string link(const net::ServerOptions& server, std::uint16_t port) {
+  const std::string page = fmt::format("http://{}:{}/", host_of(server.address), port);
+  return server.token.empty() ? page : page + "?token=" + server.token;
 }
 
 }  // namespace chicane::apps

@@ -115,7 +115,8 @@ Rows list_rows(Options& o) {
 }
 
 Rows completion_rows(Options& o) {
-  return {{"shell", "SHELL", "Shell", &o.shell, one_of({"bash", "zsh", "fish"}) | kRequired}};
+  return {{"shell", "SHELL", "Shell", &o.shell, one_of({"bash", "zsh", "fish"}) | kRequired},
+          {"line", "WORD", "Word before the cursor: prints the words that may follow", &o.line}};
 }
 
 namespace {

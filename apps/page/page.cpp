@@ -9,7 +9,20 @@
 
 #include "chicane/live/worker_run.hpp"
 #include "chicane/protocol/library.hpp"
+#include "chicane/protocol/track_codec.hpp"
+#include "chicane/protocol/yaml_tree.hpp"
 #include "chicane/run/closed_loop.hpp"
+
+namespace chicane::protocol {
+
+// Replace protocol/foreign_tracks.cpp and yaml_tree.cpp: the page reads its own files only, and has no
+// library for images, XML and YAML.
+std::span<const TrackFormat> foreign_tracks() noexcept { return {}; }
+Result<YamlTree> parse_yaml(std::string_view text, const std::string& file) {
+  return parse_plain_yaml(text, file);
+}
+
+}  // namespace chicane::protocol
 
 using namespace chicane;
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "chicane/live/description.hpp"
+#include "chicane/live/pages.hpp"
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/ros_messages.hpp"

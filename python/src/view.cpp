@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <string>
 
-#include "chicane/live/description.hpp"
+#include "chicane/live/pages.hpp"
 #include "chicane/recording/html_report.hpp"
 #include "conversion.hpp"
 #include "faces.hpp"

@@ -51,12 +51,6 @@ TEST(Cli, ARunPrintsOneJsonObjectOnStdoutAndNothingElse) {
   EXPECT_EQ(outcome.code, kept ? 0 : 1);
 }
 
-TEST(Cli, ARunThatCannotFinishEndsWithExitCodeOne) {
-  const Outcome outcome = chicane_program("drive --fast --json --laps 1 --set time_limit_s=2");
-  EXPECT_EQ(outcome.code, 1);
-  EXPECT_EQ(Json::parse(outcome.out)["completed"], false);
-}
-
 TEST(Cli, TheLimitIsPrintedAndItsLineIsATrack) {
   const fs::path line = fs::path(::testing::TempDir()) / "chicane_limit_line.csv";
   const Outcome outcome =
@@ -287,14 +281,6 @@ TEST(Cli, ACampaignTellsWhereTheCarLeavesTheRoadAndHowToRepeatIt) {
       unguarded.out.substr(command + 8, unguarded.out.find('\n', command) - command - 8);
   const Outcome repeated = chicane_program(again + " --json");
   EXPECT_GT(Json::parse(repeated.out)["off_track_events"], 0) << again;
-}
-
-TEST(Cli, ACampaignRefusesWhatIsNoFault) {
-  const Outcome outcome = chicane_program("campaign --faults link_lots --tracks oval --cars udacity");
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("did you mean link_lost?"));
-  EXPECT_EQ(chicane_program("campaign --for-s 0").code, 2);
-  EXPECT_EQ(chicane_program("campaign --tracks nowhere").code, 2);
 }
 
 TEST(Cli, FindsAFileByItsPathOfTheLastVersion) {

@@ -12,7 +12,7 @@ from pathlib import Path
 PROGRAM = sys.argv.pop(1)
 ROOT = Path(__file__).resolve().parent.parent.parent
 TRACKS, MAPS = ROOT / "tests/data/tracks", ROOT / "tests/data/maps"
-LENGTH = 245.664  # of the stadium that tests/data/make_foreign_tracks.py writes [m]
+LENGTH = 245.664  # of the stadium: two straights of 60 m and two half circles of 20 m radius [m]
 FILES = {"tum_centre_line.csv": 0.02, "cones.sdf": 0.01, "course.osm": 0.005, "course.xodr": 0.005}  # all: protocol/foreign_tracks_test.cpp
 
 

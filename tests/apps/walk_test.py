@@ -186,7 +186,7 @@ class Walk(unittest.TestCase):
         self.assertIn("\nfriction_low: 0 ", (self.at / "mine.yaml").read_text())
         code, out, err = program("drive", "--fast", "--preset", "race", "--car", "mine.yaml", folder=self.at)
         self.assertEqual((code, out), (2, ""))
-        self.assertRegex(err, r"^mine\.yaml:\d+: friction_low: got 0, .* \(--set friction_low=0\.5\)\n$")
+        self.assertRegex(err, r"^mine\.yaml:\d+: friction_low: got 0, .* \(--set friction_low=NUMBER\)\n$")
         code, out, err = program("drive", "--fast", "--preset", "race", "--car", "mine.yaml", "--track", "oval", "--laps", "1",
                                  "--set", "friction_low=0.7", folder=self.at)
         self.assertEqual(code, 0, err)

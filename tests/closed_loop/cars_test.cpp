@@ -117,6 +117,16 @@ TEST(Cars, ThatBrakingMakesUnstableAreBrakedIntoBendsWithoutSpinning) {
   EXPECT_EQ(run.off_track_events, 0);
 }
 
+TEST(Cars, ThatAreOrdinaryBrakeFromTopSpeedWithoutSpinning) {
+  const auto run = drive({{"car", "road-car"},
+                          {"track", "speedway"},
+                          {"laps", kDrivesAll ? "2" : "1"},
+                          {"latency_ms", "300"},
+                          {"time_limit_s", "300"}});
+  EXPECT_TRUE(run.completed);
+  EXPECT_EQ(run.off_track_events, 0);
+}
+
 TEST(Cars, ThatCannotTurnSoTightlyAreRefusedWithPlaceAndRadius) {
   const auto scenario = protocol::compose({"", {{"car", "indy"}, {"track", "hairpins"}}});
   const auto loop = ClosedLoop::create(*scenario);

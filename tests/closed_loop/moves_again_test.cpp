@@ -22,7 +22,7 @@
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/external_drive.hpp"
 #include "chicane/run/make.hpp"
-#include "chicane/run/observe.hpp"
+#include "chicane/run/simulated_car.hpp"
 #include "chicane/sim/fault.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
@@ -98,27 +98,24 @@ class Client {
     for (const double end = time_ + time; time_ < end;) turn();
   }
   void happen(Event event) {
-    switch (event) {
-      case Event::kNone:
-        return;
-      case Event::kHandedBack:  // by a person who kept to the road
-        drive_.begin_anew();
-        wall_ += 3.0;
-        simulated_ = time_ += 3.0 * cell_.ratio;
-        return move(70.0, speed());
-      case Event::kReset:
-        return move(track_.start_s() - world_.state().s, 0.0);
-      case Event::kPutElsewhere:
-        return move(200.0, 10.0);
-      case Event::kMoved1:
-        return move(1.0, speed());
-      case Event::kMoved3:
-        return move(3.0, speed());
-      case Event::kMoved10:
-        return move(10.0, speed());
-      case Event::kMoved70:
-        return move(70.0, speed());
+    constexpr double kAhead[] = {0.0, 70.0, 0.0, 200.0, 1.0, 3.0, 10.0, 70.0};  // [m]
+    if (event == Event::kNone) return;
+    const bool is_reset = event == Event::kReset, is_handed_back = event == Event::kHandedBack;
+    if (is_handed_back) {
+      drive_.begin_anew();
+      wall_ += 3.0;
+      simulated_ = time_ += 3.0 * cell_.ratio;
     }
+    const double s = world_.state().s;
+    const double ahead = is_reset ? track_.start_s() - s : kAhead[static_cast<std::size_t>(event)];
+    move(ahead, is_reset ? 0.0 : event == Event::kPutElsewhere ? 10.0 : speed());
+    if (!is_handed_back) return;
+    // By a person who kept to the road: who lets go of the wheel in a bend leaves it before the first answer.
+    model::State car = plant_->state();
+    const double curvature = track_.centre().at(s + ahead).curvature;
+    car.r = car.vx * curvature;
+    world_.reset(car);
+    acting_ = {atan(scenario_.vehicle.wheelbase() * curvature), 0.0};
   }
   [[nodiscard]] double speed() const { return plant_->output().speed; }
   void forget_standing() { stood_ = longest_ = 0.0; }
@@ -214,7 +211,7 @@ TEST(MovesAgain, WhateverTheSimulatorsClockAndWhereverTheCarIsPut) {
         << cell << ": stood " << client.stood() << " s, edge " << client.least_edge() << " m, "
         << controller::word_of(client.frame().guard.reason).sentence;
   }
-  EXPECT_LE(count, kDrivesAll ? driven / 20 : 0) << driven << " cells" << bad.str();
+  EXPECT_LE(count, kDrivesAll ? driven / 50 : 0) << driven << " cells" << bad.str();
 }
 
 /// The receiver brakes for one command that does not arrive. The original car keeps that brake below 5 mph.
@@ -226,12 +223,13 @@ TEST(MovesAgain, WithABrakeThatStaysOnWhileItDrives) {
   EXPECT_GT(loop->frame().truth.vx, 10.0) << "without a release it rolls at 2.3 to 0.4 m/s for 8 s";
 }
 
-/// A short run of a car that is configured right, with a fault that ends.
+/// A short run of a car that is configured right, with faults that end.
 struct FaultRun {
   std::string preset, car, track;
   double mass_scale;
   std::string_view fault;
-  double at, lasts;  // [s]
+  double at, lasts;            // [s]
+  std::string_view also = "";  // another fault at the same time
 };
 
 struct Standing {
@@ -244,8 +242,9 @@ Standing stands_after(const FaultRun& run) {
       {.scenario_file = "",
        .settings = {{"preset", run.preset}, {"car", run.car}, {"track", run.track}, {"laps", "0"}}});
   scenario.vehicle.mass *= run.mass_scale;
-  scenario.faults = {sim::default_event(*sim::fault_named(run.fault), run.at)};
-  scenario.faults[0].duration = run.lasts;
+  for (const std::string_view name : {run.fault, run.also})
+    if (const auto one = sim::fault_named(name)) scenario.faults.push_back(sim::default_event(*one, run.at));
+  for (sim::FaultEvent& event : scenario.faults) event.duration = run.lasts;
   const auto loop = std::move(*ClosedLoop::create(scenario));
   const double ended = run.at + run.lasts;
   Standing longest;
@@ -264,14 +263,17 @@ Standing stands_after(const FaultRun& run) {
 
 /// Causes of standing for ever: late beside a place in doubt; across its road after a slide; in wait for a
 /// lock that its wheels do not reach; between a way back and a stop that turn its wheels in turn; across a
-/// hairpin, nearer to the edge than it takes to turn by the tangent of its lock, without any fault.
+/// hairpin, nearer to the edge than it takes to turn by the tangent of its lock, without any fault. Wheels
+/// that a stop has locked on ice get grip again, those of the original with the brake that it keeps.
 TEST(MovesAgain, FromWhereItStood) {
   for (const FaultRun& run : {FaultRun{"pid", "vw-vanagon", "oval", 0.902734, "gps_noise", 4.350844, 1.0},
                               {"sixty-mph", "vw-vanagon", "hairpins", 1.144555, "half_grip", 8.07, 5.0},
                               {"pid", "bmw-320i", "oval", 0.892637, "steering_stuck", 5.112047, 5.0},
                               {"sixty-mph", "bmw-320i", "hairpins", 1.080957, "throttle_stuck", 20.5398, 2.0},
                               {"sixty-mph", "vw-vanagon", "hairpins", 0.983686, "slow_solver", 4.0, 0.3},
-                              {"sixty-mph", "bmw-320i", "hairpins", 0.839345, "slow_solver", 4.0, 0.3}}) {
+                              {"sixty-mph", "bmw-320i", "hairpins", 0.839345, "slow_solver", 4.0, 0.3},
+                              {"default", "udacity", "lakeside", 1.0, "ice_patch", 8.0, 5.0, "link_lost"},
+                              {"default", "road-car", "oval", 1.0, "ice_patch", 8.0, 5.0, "link_lost"}}) {
     const Standing standing = stands_after(run);
     EXPECT_LT(standing.time, kAgain) << run.car << " on " << run.track << ", " << run.fault << ": "
                                      << standing.why;

@@ -132,7 +132,7 @@ describe('chicane report', () => {
   it('writes one page that holds its recordings', async () => {
     const page = join(folder, 'run.html');
     const written = await chicane('report', log, '-o', page);
-    if (/without its dashboard/.test(written.stderr)) return;
+    if (/has no dashboard/.test(written.stderr)) return;
     assert.equal(written.code, 0, written.stderr);
     const [, json] = /<script type="application\/json" id="chicane-report">(.*?)<\/script>/s.exec(
       readFileSync(page, 'utf8'),

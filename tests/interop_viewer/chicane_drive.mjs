@@ -66,15 +66,15 @@ export async function change(url, name, value) {
   );
 }
 
-/** Frames by cycle, the newest 2000 of them, all changes, and the throttle that is full braking. */
+/** Frames by cycle, the newest 2000 of them, and all changes. */
 export async function watch(url) {
   const socket = new WebSocket(url.replace('http', 'ws'), ['foxglove.sdk.v1']);
   const client = new foxglove.FoxgloveClient({ ws: socket });
   const readers = new Map();
-  const seen = { frames: new Map(), changes: [], newest: null, run: null };
+  const seen = { frames: new Map(), changes: [], newest: null };
   client.on('advertise', (channels) => {
     for (const { id, topic, schema } of channels) {
-      if (!['/chicane/frame', '/chicane/change', '/chicane/run'].includes(topic)) continue;
+      if (!['/chicane/frame', '/chicane/change'].includes(topic)) continue;
       readers.set(client.subscribe(id), { topic, reader: new cdr.MessageReader(rosmsg.parse(schema, { ros2: true })) });
     }
   });
@@ -82,10 +82,6 @@ export async function watch(url) {
     const { topic, reader } = readers.get(subscriptionId);
     const message = reader.readMessage(data);
     if (topic === '/chicane/change') return seen.changes.push(message);
-    if (topic === '/chicane/run') {
-      seen.run = message;
-      return undefined;
-    }
     seen.newest = message;
     seen.frames.set(message.cycle, message);
     if (seen.frames.size > 2000) seen.frames.delete(seen.frames.keys().next().value);
@@ -96,7 +92,6 @@ export async function watch(url) {
     get newest() {
       return seen.newest;
     },
-    fullBrake: () => seen.run.brake_throttle_limit,
     close: () => socket.terminate(),
   };
 }

@@ -12,7 +12,6 @@
 #include <string_view>
 #include <thread>
 
-#include "chicane/live/description.hpp"
 #include "chicane/live/pages.hpp"
 #include "chicane/wire/viewer.hpp"
 #include "interop_viewer/demo_drive.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every view that the dashboard has, and how to come to it: for pictures of all of them (look.mjs).
+// Every view that the dashboard has, and how to come to it.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -38,6 +38,37 @@ class Numbers {
   std::uint64_t state_ = 2026;
 };
 
+/// The slip of driven rear wheels has a flat optimum beyond the peak, where a search without a cap gets
+/// stuck.
+TEST(LimitOfADriftingCar, IsFoundFromSlipCappedAtThePeak) {
+  sim::DoubleTrackParams car;
+  car.mass = 1093.3;
+  car.yaw_inertia = 1791.6;
+  car.height = 0.575;
+  car.track_width = 1.375;
+  car.friction = 1.05;
+  car.shape = 1.35;
+  car.stiffness_front = 14.0;
+  car.stiffness_rear = 15.5;
+  car.drive_force = car.brake_force = 12573.0;
+  car.drive_power = 92020.0;
+  car.drive_share_front = 0.0;
+  car.traction_slip_start = 0.1;
+  car.traction_slip_end = 0.18;
+  car.steer_limit = 1.07;
+  car.steer_rate_limit = 0.4;
+  car.steer_lag = 0.0;
+  const auto radius = [](double angle) {
+    return 2.5 * (75.0 + 25.0 * std::cos(2.0 * angle) + 12.0 * std::sin(3.0 * angle));
+  };
+  const road::Track track =
+      *road::Track::create("bean", test::with_widths(test::points_round(140, radius), 4.0, 5.0), true);
+  const Result<PlantLimit> limit =
+      find_plant_limit(track, "double-track", {}, {.time_step = 0.1, .wants_witness = false}, car);
+  ASSERT_TRUE(limit) << limit.error().message;
+  EXPECT_FALSE(limit->line.is_best_so_far);
+}
+
 class Adversary : public testing::TestWithParam<const char*> {};
 
 TEST_P(Adversary, BeatsNoBoundWithWhateverItAssumesAndRisks) {

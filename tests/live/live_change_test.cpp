@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Settings that change while a run goes on: what the car and its controller make of them.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include "chicane/live/live_settings.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/run_steps.hpp"
@@ -66,14 +61,6 @@ TEST(LiveChange, HoldsFromTheNextControlStepOn) {
   EXPECT_EQ(drive(*loop, 1).pace, 0.5);
   loop->apply({.name = "laps", .value = "17"});
   EXPECT_EQ(loop->summary().laps_wanted, 17);
-}
-
-TEST(LiveChange, IsRefusedWhereSetWouldRefuseIt) {
-  const auto loop = loop_of({{"track", "oval"}});
-  for (const auto& [name, value] : Settings{{"latency_ms", "900"}, {"track", "lakeside"}, {"nonsense", "1"}})
-    loop->apply({.name = name, .value = value});
-  EXPECT_EQ(loop->scenario().latency, 0.1);
-  EXPECT_EQ(loop->scenario().track, "oval");
 }
 
 TEST(LiveChange, OfWeightsHorizonAndSpeedKeepsTheMapAndTheCarOnTheRoad) {
@@ -236,37 +223,6 @@ TEST(ManualDriving, ReplacesTheControllersCommandThroughGateAndDelay) {
   EXPECT_DOUBLE_EQ(later.applied.steer, first.result.command.steer);
 }
 
-TEST(ManualDriving, BrakesGentlyToAStandWithoutAWordForASecond) {
-  const auto loop = loop_of({{"track", "oval"}});
-  drive(*loop, 150);
-  const double speed = loop->frame().truth.vx;
-  loop->apply({.name = "manual.is_on", .value = "true"});
-  loop->apply({.name = "manual.throttle", .value = "1"});
-  drive(*loop, 24);
-  EXPECT_DOUBLE_EQ(loop->frame().result.command.throttle, 1.0);
-  EXPECT_GT(loop->frame().truth.vx, speed);
-  drive(*loop, 3);
-  EXPECT_LT(loop->frame().result.command.throttle, 0.0);
-  EXPECT_GE(loop->frame().result.command.throttle, -loop->scenario().vehicle.brake_throttle_limit);
-  loop->apply({.name = "manual.throttle", .value = "1"});  // a word, the same one
-  EXPECT_DOUBLE_EQ(drive(*loop, 1).result.command.throttle, 1.0);
-  drive(*loop, 25 * 40);
-  EXPECT_NEAR(loop->frame().truth.vx, 0.0, 0.3);  // stands, and does not reverse
-}
-
-TEST(ManualDriving, BrakesNoHarderThanIsUsefulAndReversesNearStandstill) {
-  const auto loop = loop_of({{"track", "oval"}});
-  drive(*loop, 150);
-  loop->apply({.name = "manual.is_on", .value = "true"});
-  loop->apply({.name = "manual.throttle", .value = "-1"});
-  EXPECT_DOUBLE_EQ(drive(*loop, 1).result.command.throttle, -loop->scenario().vehicle.brake_throttle_limit);
-  for (int i = 0; i < 400; ++i) {
-    loop->apply({.name = "manual.throttle", .value = "-1"});
-    drive(*loop, 1);
-  }
-  EXPECT_LT(loop->frame().truth.vx, -1.0);
-}
-
 TEST(ManualDriving, HandsBackToAControllerThatKnowsWhereItIs) {
   const auto loop = loop_of({{"track", "oval"}});
   drive_to_map(*loop);
@@ -308,38 +264,6 @@ TEST(RealtimeLoop, GoesAtThePaceThatIsAskedFor) {
   RunControls controls;
   // Slow motion can only take longer than asked for; an upper bound would test the machine.
   EXPECT_GE(run_realtime(*loop, {}, controls).wall_time, 0.39);
-}
-
-/// For the thread sanitizer: settings on one thread, the run on another.
-TEST(LiveSettings, MayBeSetWhileTheRunGoesOn) {
-  const auto loop = loop_of({{"track", "oval"}});
-  RunControls controls;
-  live::LiveSettings settings({.scenario = loop->scenario()}, controls.settings);
-  std::atomic<int> applied{0};
-  std::thread control([&] {
-    static_cast<void>(run_realtime(*loop, {}, controls, {.on_change = [&](const Change& change) {
-      settings.tell(change);
-      ++applied;
-    }}));
-  });
-  EXPECT_TRUE(settings.set({"run.pace", 20.0}));
-  int accepted = 1;
-  std::size_t told = 0;
-  for (int i = 0; i < 200; ++i) {
-    accepted += settings.set({"tracking_mpc.weight_lateral", 1.0 + 0.01 * i}) ? 1 : 0;
-    accepted += settings.set({"manual.steer", 0.001 * i}) ? 1 : 0;
-    told += settings.applied().size();
-    static_cast<void>(settings.news());
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  const int sent = accepted - 1;  // weight 1 holds already: nothing to send
-  while (applied < sent) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  controls.wants_stop = true;
-  control.join();
-  told += settings.applied().size();
-  EXPECT_EQ(static_cast<int>(told), sent);
-  EXPECT_DOUBLE_EQ(std::get<controller::TrackingMpcOptions>(loop->scenario().controllers).weight_lateral,
-                   std::get<controller::TrackingMpcOptions>(settings.scenario().controllers).weight_lateral);
 }
 
 }  // namespace

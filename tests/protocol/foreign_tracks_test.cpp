@@ -34,7 +34,7 @@ double turned(const road::Track& track) {
 }
 
 /// One file of tests/data/tracks and what it has to become. The road is a stadium 245.66 m long and 6 m wide,
-/// for model cars a tenth of that (tests/data/make_foreign_tracks.py).
+/// for model cars a tenth of that.
 struct Kind {
   std::string file;
   double length, length_tolerance;  ///< [m]

@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
+
 #include <sstream>
 #include <string>
 
@@ -205,6 +205,16 @@ TEST(JsonReport, OtherTextIsNoRun) {
                            R"({"laps": [], "total": {}, "completed": 1})"})
     EXPECT_FALSE(read_run(text)) << text;
   EXPECT_TRUE(read_run(R"({"laps": [1, {"sector_times_s": [null]}], "total": 7, "completed": false})"));
+}
+
+TEST(GuardFacts, NameModeRoadAndVersion) {
+  const GuardFacts on = guard_facts({});
+  EXPECT_EQ(on, (GuardFacts{.mode = "on", .road = "track", .version = safety::kGuardVersion}));
+  EXPECT_GE(on.version, 2) << "1: the guard of runs that name no version";
+  const GuardFacts off =
+      guard_facts({.mode = safety::GuardMode::kOff, .road = safety::GuardRoad::kWaypoints});
+  EXPECT_EQ(off.mode, "off");
+  EXPECT_EQ(off.road, "waypoints");
 }
 
 }  // namespace

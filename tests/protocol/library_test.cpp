@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -65,7 +66,7 @@ TEST_F(Library, RefusesToRaceACarWhoseGripIsNotKnown) {
   EXPECT_EQ(error_of({.scenario_file = {}, .settings = {{"car", car}}}), "");
   const std::string error = error_of({.scenario_file = {}, .settings = {{"car", car}, {"preset", "race"}}});
   EXPECT_THAT(error, HasSubstr("mine.yaml:3: friction_low: got 0"));
-  EXPECT_THAT(error, HasSubstr("--set friction_low=0.5"));
+  EXPECT_THAT(error, HasSubstr("--set friction_low=NUMBER"));
   EXPECT_EQ(error.find('\n'), std::string::npos);
   const auto stated =
       compose({.scenario_file = {}, .settings = {{"car", car}, {"preset", "race"}, {"friction_low", "0.7"}}});
@@ -217,6 +218,60 @@ TEST_F(Library, AFolderIsNotAFile) {
   EXPECT_EQ(error.code, ErrorCode::kNotFound);
   EXPECT_THAT(error.message, HasSubstr("got a folder, expected a file"));
   EXPECT_FALSE(compose({(folder_ / "presets").string(), {}}));
+}
+
+namespace fs = std::filesystem;
+
+std::string all_of(const scenario::Scenario& scenario) {
+  std::string text;
+  for (const Parameter& parameter : list()) text += get_text(scenario, parameter) + "\n";
+  return text;
+}
+
+TEST(RememberedFiles, ComposeTheSameAsFiles) {
+  RememberedFiles files;
+  for (int round = 0; round < 2; ++round) {
+    for (const char* preset : {"default", "weighted", "pid"}) {
+      for (const char* car : {"udacity", "road-car"}) {
+        const Request request{.scenario_file = "noisy-sensor",
+                              .settings = {{"preset", preset}, {"car", car}, {"laps", "3"}},
+                              .speed_mps = "20"};
+        const auto once = compose(request);
+        const auto remembered = compose(request, files);
+        ASSERT_TRUE(once && remembered);
+        EXPECT_EQ(all_of(*once), all_of(*remembered));
+      }
+    }
+  }
+}
+
+TEST(RememberedFiles, AreReadOnceAndFailuresAgain) {
+  const fs::path file =
+      fs::path(::testing::TempDir()) / ("remembered_" + std::to_string(::getpid()) + ".yaml");
+  const Request request{.scenario_file = {}, .settings = {{"preset", file.string()}}};
+  RememberedFiles files;
+  EXPECT_FALSE(compose(request, files)) << "there is none yet";
+  std::ofstream(file) << "laps: 4\n";
+  EXPECT_EQ(compose(request, files)->laps, 4);
+  std::ofstream(file, std::ios::trunc) << "laps: 5\n";
+  EXPECT_EQ(compose(request, files)->laps, 4);
+  EXPECT_EQ(compose(request)->laps, 5);
+  fs::remove(file);
+  EXPECT_EQ(compose(request, files)->laps, 4);
+}
+
+TEST(RememberedFiles, AreBoundedInNumber) {
+  RememberedFiles files;
+  std::size_t reads = 0;
+  const auto read = [&]() -> Result<Document> {
+    ++reads;
+    return Document{};
+  };
+  for (std::size_t i = 0; i < 3 * RememberedFiles::kMost; ++i)
+    ASSERT_TRUE(files.document(Shelf::kPreset, std::to_string(i), read));
+  EXPECT_EQ(reads, 3 * RememberedFiles::kMost);
+  ASSERT_TRUE(files.document(Shelf::kPreset, std::to_string(3 * RememberedFiles::kMost - 1), read));
+  EXPECT_EQ(reads, 3 * RememberedFiles::kMost);
 }
 
 }  // namespace

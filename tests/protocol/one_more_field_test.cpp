@@ -3,9 +3,6 @@
 // the library's own: what a new signal touches is this table, and nothing else.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <fstream>
-
 #include "protocol/decoded_frame.hpp"
 #include "protocol/typescript.hpp"
 #include "protocol/viewer_samples.hpp"
@@ -33,8 +30,6 @@ TEST(OneMoreField, IsInTheTypeOfTheDashboardItsUnknownFrameAndItsColumns) {
        {"\n  /** for a test */\n  half_pace: number;\n", "\n  half_pace: NaN,\n", "\n  'half_pace',\n"}) {
     EXPECT_NE(text.find(line), std::string::npos) << line;
   }
-  // For the test that builds a dashboard with them (tests/registry).
-  if (const char* file = std::getenv("CHICANE_WRITE_TYPES")) std::ofstream(file) << text;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/recording/log_files.hpp"
+#include "chicane/recording/replay.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

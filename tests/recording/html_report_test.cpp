@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "chicane/protocol/library.hpp"
-#include "chicane/recording/log_files.hpp"
 #include "chicane/recording/recorder.hpp"
+#include "chicane/recording/replay.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/telemetry/mcap.hpp"
 #include "telemetry/sample_mcap.hpp"
@@ -216,7 +216,7 @@ TEST_F(ReportTest, SaysWhatIsMissing) {
   EXPECT_EQ(unreadable.error().code, ErrorCode::kIo);
   const auto without = write_report({.output = page_, .logs = {}, .bundle = {}});
   ASSERT_FALSE(without);
-  EXPECT_THAT(without.error().message, HasSubstr("without its dashboard"));
+  EXPECT_THAT(without.error().message, HasSubstr("has no dashboard"));
   write_log(log_.path());
   page_ = "/no/such/folder/page.html";
   EXPECT_FALSE(write("run.mcap"));

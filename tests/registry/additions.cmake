@@ -1,12 +1,5 @@
-# What adding a controller, a plant, a fault and a track format takes: their own files, below added/, and here for each the one line in a
+# What adding a plant, a fault and a track format takes: their own files, below added/, and here for each the one line in a
 # list, with the header that it needs.
-set(additions controller plant fault track)
-
-set(controller_list src/chicane/controller/registry.hpp)
-set(controller_header chicane/controller/steady.hpp)
-set(controller_after "                                PurePursuitEntry,  //\n")
-set(controller_line "                                SteadyEntry,       //\n")
-
 set(plant_list src/chicane/sim/plant_registry.cpp)
 set(plant_header chicane/sim/cart.hpp)
 set(plant_after "    kDoubleTrack,\n")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/ros/car_sight.hpp"
+#include "chicane/ros/car_topics.hpp"
 
 #include <gtest/gtest.h>
 

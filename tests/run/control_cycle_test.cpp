@@ -10,7 +10,6 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "support/alloc_guard.hpp"
 
 namespace chicane::run {
 namespace {
@@ -116,21 +115,6 @@ TEST(ControlCycle, SendsWhatAPersonWants) {
   EXPECT_TRUE(frame->is_manual);
   EXPECT_EQ(frame->result.command.steer, 0.1);
   EXPECT_EQ(frame->manual.throttle, 0.3);
-}
-
-TEST(ControlCycle, AllocatesNothing) {
-  const scenario::Scenario scenario = scenario_of("default");
-  ControlCycle cycle(std::move(*make_controller(scenario)), scenario, nullptr);
-  const auto frame = std::make_unique<telemetry::Frame>();
-  frame->measurement.waypoint_count = 6;
-  for (int i = 0; i < 6; ++i) frame->measurement.waypoints[static_cast<std::size_t>(i)] = {12.0 * i, 0.0};
-  cycle.step({}, *frame);
-  const test::AllocationGuard guard;
-  for (int i = 0; i < 50; ++i) {
-    frame->measurement.time += 0.04;
-    cycle.step({.interval = 0.04}, *frame);
-  }
-  EXPECT_EQ(guard.count(), 0);
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/parallel.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <map>
 #include <vector>
 
 namespace chicane::run {
@@ -26,6 +28,68 @@ TEST(Parallel, EndsWhenAWorkSaysSo) {
   EXPECT_EQ(done, 5);
   EXPECT_GE(threads_for(0), 1);
   EXPECT_EQ(threads_for(3), 3);
+}
+
+using Environment = std::map<std::string, std::string>;
+
+Result<Shard> shard_in(const Environment& environment) {
+  return environment_shard([&](const char* name) -> const char* {
+    const auto found = environment.find(name);
+    return found == environment.end() ? nullptr : found->second.c_str();
+  });
+}
+
+Environment array(const char* id, const char* count, const char* first, const char* last, const char* step) {
+  return {{"SLURM_ARRAY_TASK_ID", id},
+          {"SLURM_ARRAY_TASK_COUNT", count},
+          {"SLURM_ARRAY_TASK_MIN", first},
+          {"SLURM_ARRAY_TASK_MAX", last},
+          {"SLURM_ARRAY_TASK_STEP", step}};
+}
+
+TEST(Shard, PartsCoverAllRunsOnce) {
+  for (const std::uint64_t runs : {0U, 1U, 6U, 7U, 100U}) {
+    std::uint64_t sum = 0;
+    for (std::uint64_t i = 0; i < 7; ++i) sum += Shard{i, 7}.size(runs);
+    EXPECT_EQ(sum, runs);
+  }
+  EXPECT_TRUE((Shard{2, 7}.has(9)));
+  EXPECT_FALSE((Shard{2, 7}.has(8)));
+}
+
+TEST(Shard, IsReadAndNamesItsFile) {
+  const auto shard = parse_shard("3/7");
+  ASSERT_TRUE(shard);
+  EXPECT_EQ(shard->index, 2U);
+  EXPECT_EQ(shard->count, 7U);
+  EXPECT_EQ(shard->file_of("out/results.jsonl"), "out/results.3-of-7.jsonl");
+  EXPECT_EQ(Shard{}.file_of("out/results.jsonl"), "out/results.jsonl");
+  for (const char* text : {"", "3", "0/7", "8/7", "3/7/1", "-1/7", "a/b", "1/99999999999999999999"})
+    EXPECT_FALSE(parse_shard(text)) << text;
+}
+
+TEST(Shard, IsReadFromSlurmArraysAndMpiRanks) {
+  EXPECT_TRUE(shard_in({})->from.empty());
+  EXPECT_EQ(shard_in(array("5", "10", "1", "10", "1"))->index, 4U);
+  EXPECT_EQ(shard_in(array("5", "10", "1", "10", "1"))->count, 10U);
+  EXPECT_EQ(shard_in(array("8", "3", "4", "12", "4"))->index, 1U);
+  EXPECT_EQ(shard_in({{"OMPI_COMM_WORLD_RANK", "2"}, {"OMPI_COMM_WORLD_SIZE", "4"}})->index, 2U);
+  EXPECT_EQ(shard_in({{"PMI_RANK", "3"}, {"PMI_SIZE", "4"}})->index, 3U);
+  EXPECT_EQ(shard_in({{"SLURM_PROCID", "1"}, {"SLURM_STEP_NUM_TASKS", "2"}})->index, 1U);
+  EXPECT_TRUE(shard_in({{"SLURM_PROCID", "0"}, {"SLURM_NTASKS", "8"}})->from.empty())
+      << "a batch script's own";
+  Environment both = array("2", "3", "1", "3", "1");
+  both["OMPI_COMM_WORLD_RANK"] = "1";
+  both["OMPI_COMM_WORLD_SIZE"] = "4";
+  EXPECT_EQ(shard_in(both)->index, 5U);
+  EXPECT_EQ(shard_in(both)->count, 12U);
+}
+
+TEST(Shard, RefusesArraysWithHolesAndNumbersThatMakeNoSense) {
+  EXPECT_THAT(shard_in(array("7", "3", "1", "7", "1")).error().message, testing::HasSubstr("without holes"));
+  EXPECT_FALSE(shard_in(array("7", "", "1", "7", "1")));
+  EXPECT_FALSE(shard_in({{"OMPI_COMM_WORLD_RANK", "4"}, {"OMPI_COMM_WORLD_SIZE", "4"}}));
+  EXPECT_FALSE(shard_in({{"PMI_RANK", "x"}, {"PMI_SIZE", "4"}}));
 }
 
 }  // namespace

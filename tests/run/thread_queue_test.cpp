@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/run/thread_queue.hpp"
+#include "chicane/run/parallel.hpp"
 
 #include <gtest/gtest.h>
 

@@ -43,13 +43,14 @@ class CampaignTest : public testing::Test {
   }
   [[nodiscard]] Result<std::vector<CampaignGroup>> groups_of(const char* file) const {
     std::vector<CampaignGroup> groups;
-    const auto add = [&](const LinePlace&, const std::string& line) -> Result<void> {
-      Result<CampaignGroup> group = group_of(protocol::parse_json(line));
+    const auto add = [&](std::uint64_t, const protocol::Json& line) -> Result<void> {
+      Result<CampaignGroup> group = group_of(line);
       if (!group) return fail(group.error());
       groups.push_back(std::move(*group));
       return {};
     };
-    if (const auto read = read_lines(path(file), add); !read) return fail(read.error());
+    const auto accept = [](const Header&) { return Result<void>{}; };
+    if (const auto read = read_runs(path(file), accept, add); !read) return fail(read.error());
     return groups;
   }
 

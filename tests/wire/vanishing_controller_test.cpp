@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A controller that vanishes at speed: our controller and our car at both ends of the messages, in simulated
-// time. tools/kill_campaign.py does it with the programs.
+// time.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -13,6 +13,7 @@
 
 #include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/data_folders.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/sweep/claim.hpp"
@@ -77,12 +78,17 @@ const std::array<Lake, kLakes>& lakes() {
   return kAll;
 }
 
-/// Claims of all files in the folder, sorted by file name; `wanted`: ids to keep, empty: all.
+/// Claims of all files in the folder, sorted by file name; `wanted`: ids to keep, empty: all. Where the
+/// default folder is not there, the one of the installation.
 Result<std::vector<Claim>> read_claims(const std::string& folder, const std::vector<std::string>& wanted) {
-  std::vector<std::string> files;
+  std::vector<std::string> folders, files;
+  if (folder == Options::Claims{}.folder)
+    folders = protocol::data_folders(protocol::data_origins(), "claims");
+  folders.insert(folders.begin(), folder);
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-    if (entry.path().extension() == ".yaml") files.push_back(entry.path().string());
+  for (std::size_t i = 0; i < folders.size() && files.empty(); ++i)
+    for (const auto& entry : std::filesystem::directory_iterator(folders[i], error))
+      if (entry.path().extension() == ".yaml") files.push_back(entry.path().string());
   if (files.empty())
     return fail(ErrorCode::kNotFound,
                 fmt::format("{}: got no claims, expected a folder with *.yaml", folder));

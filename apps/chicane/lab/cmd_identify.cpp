@@ -18,7 +18,7 @@
 #include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/identify/identification.hpp"
-#include "chicane/live/description.hpp"
+#include "chicane/live/pages.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/origin.hpp"
@@ -29,7 +29,7 @@
 #include "experiment.hpp"
 #include "lab/identify_page.hpp"
 #include "program.hpp"
-#include "record.hpp"
+#include "progress.hpp"
 
 namespace chicane::apps {
 namespace {
@@ -193,9 +193,10 @@ std::string to_car(const Identification& found, scenario::Scenario scenario, con
   std::string text =
       fmt::format("# {}, identified from {:.0f} s of {}\n", scenario.vehicle.name, found.driven, logs);
   if (!found.knows_tires())
-    text +=
-        "# Grip is not known: the tyres were used too little. Race by it only with a friction_low of "
-        "yours.\n";
+    text += fmt::format(
+        "# Grip is not known: the tyres were used too little. Race by it only with --set "
+        "friction_low=NUMBER; the log shows {}.\n",
+        number_text(found.shown_friction(), 2));
   if (!found.predicts()) text += "# Written by --force: " + doubt(found) + "\n";
   text +=
       "# [log] 95 % interval in brackets; [assumed] as the car it began with, because the log does not "

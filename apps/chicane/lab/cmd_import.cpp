@@ -15,7 +15,7 @@
 #include "chicane/base/file.hpp"
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
-#include "chicane/live/description.hpp"
+#include "chicane/live/pages.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/occupancy_map.hpp"
@@ -24,7 +24,7 @@
 #include "chicane/recording/html_report.hpp"
 #include "chicane/road/track.hpp"
 #include "commands.hpp"
-#include "record.hpp"
+#include "progress.hpp"
 
 namespace chicane::apps {
 

@@ -20,7 +20,7 @@
 
 #include "chicane/base/file.hpp"
 #include "chicane/base/result.hpp"
-#include "chicane/live/description.hpp"
+#include "chicane/live/pages.hpp"
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/html_report.hpp"

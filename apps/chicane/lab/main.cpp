@@ -4,7 +4,6 @@
 #include <string_view>
 
 #include "commands.hpp"
-#include "lab/foreign_log.hpp"
 #include "program.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 
 #include "chicane/base/file.hpp"
 #include "chicane/protocol/library.hpp"
-#include "chicane/recording/log_files.hpp"
+#include "chicane/recording/replay.hpp"
 #include "chicane/run/parallel.hpp"
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/trial.hpp"

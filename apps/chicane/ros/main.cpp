@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <atomic>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,6 +22,9 @@ namespace chicane::apps {
 namespace {
 
 std::atomic<bool> ros_stop{false};  // set by signals, whose handler outlives each run
+
+/// Remedy for a stopped car of ROS 2 (telemetry::SituationTerms).
+constexpr std::string_view kPoseRemedy = "Send the pose on /initialpose, or drive there by hand";
 
 ros::NodeOptions node_of(const Options& options) {
   const Options::Ros& given = options.ros;
@@ -84,11 +86,9 @@ Result<wire::ServeSummary> drive_until_stopped(const Options& options, const ros
         return fmt::format("{} in DDS domain {}", node.topics.odom, node.network.domain);
       },
       ros_stop,
-      [&node](const wire::ServeOptions& serving, std::unique_ptr<controller::Controller> driver,
-              wire::ServeHooks hooks, wire::Endpoint* viewer, std::vector<net::Asset> assets,
-              const std::atomic<bool>& stop) {
-        return ros::drive(node, serving, std::move(driver), std::move(hooks), viewer, std::move(assets),
-                          stop);
+      [&node](wire::ServeOptions serving, auto&&... rest) {
+        serving.remedy = kPoseRemedy;
+        return ros::drive(node, serving, std::forward<decltype(rest)>(rest)...);
       });
 }
 

@@ -42,6 +42,7 @@ class Finder {
         search_{track,
                 model,
                 {.time_step = options.time_step,
+                 .slip_caps = model.slip_caps(),
                  .budget = options.budget,
                  .go_on =
                      [this](int iteration, double time) {
@@ -62,7 +63,7 @@ class Finder {
     limit.violation = search_.violation();
     limit.of_optimum = effort();
     if (options_.wants_witness && !search_.is_out_of_budget()) {
-      if (Result<void> driven = drive(*optimum, limit); !driven) return fail(driven.error());
+      if (Result<void> driven = drive(search_.calm(), limit); !driven) return fail(driven.error());
     }
     limit.is_cut_short = search_.is_out_of_budget();
     limit.effort = effort();
@@ -72,9 +73,8 @@ class Finder {
  private:
   [[nodiscard]] SearchEffort effort() const { return {search_.iterations(), search_.work()}; }
   /// Plans with more and more in reserve, until one can be driven.
-  Result<void> drive(const NodePlan& optimum, PlantLimit& limit) {
+  Result<void> drive(NodePlan from, PlantLimit& limit) {
     stage_ = "witness";
-    NodePlan from = optimum;
     for (const Reserve& reserve : model_.reserves()) {
       Result<NodePlan> plan = search_.near(from, reserve);
       if (search_.is_stopped()) return fail(plan.error());

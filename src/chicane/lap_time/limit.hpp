@@ -25,7 +25,7 @@ struct LapTimes {
   std::vector<double> corners{};  ///< times of corners, each with half of the straights beside it
 };
 
-/// Best lap of a run that was repeated without one cause of lost time (run/laps_without.hpp).
+/// Best lap of a run that was repeated without one cause of lost time (run/racing.hpp).
 struct LapWithout {
   std::string cause;                                           ///< name of the cause: "latency"
   double lap_time = std::numeric_limits<double>::quiet_NaN();  ///< [s]; not-a-number: no lap was completed
@@ -57,6 +57,9 @@ struct Witness {
   road::RacingLine line;    ///< line that was driven; its margin is the planned gap
 };
 
+/// Reason of a lap that is the best so far though no budget ended its search.
+inline constexpr const char* kNoOptimum = "with more slip of the tyres the search finds no optimum";
+
 /// Effort of a search; work as in PlanProgress.
 struct SearchEffort {
   int iterations = 0;
@@ -77,7 +80,7 @@ struct PlantLimit {
   double stationarity = 0.0;  ///< at the optimum: largest slope of the Lagrangian, scaled
   double violation = 0.0;     ///< largest violated equation or inequality, scaled
 
-  /// Whether no budget ended a search: the answer is the same without one.
+  /// Whether the bound is one and no budget ended a search: the answer is the same without one.
   [[nodiscard]] bool is_whole() const noexcept { return !line.is_best_so_far && !is_cut_short; }
   /// Excess of the witness over the bound, relative; not-a-number without a bound.
   [[nodiscard]] double bracket() const noexcept;

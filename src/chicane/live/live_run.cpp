@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "chicane/live/description.hpp"
 #include "chicane/live/pages.hpp"
 #include "chicane/protocol/schema_json.hpp"
 

@@ -56,7 +56,9 @@ lap_time::LimitAnswer RunLimit::found(const Request& request, const std::functio
   if (!limit)
     answer.why_not = limit.error().message;
   else if (!limit->is_whole())
-    answer.why_not = "its search takes longer than beside a run; `chicane limit` finds it";
+    answer.why_not = limit->is_cut_short
+                         ? "its search takes longer than beside a run; `chicane limit` finds it"
+                         : lap_time::kNoOptimum;
   else
     answer.found = std::make_shared<const lap_time::Limit>(lap_time::bound_from_start(request.track, *limit));
   return answer;

@@ -16,7 +16,7 @@
 #include "chicane/base/result.hpp"
 #include "chicane/live/worker.hpp"
 #include "chicane/recording/shadow_run.hpp"
-#include "chicane/run/thread_queue.hpp"
+#include "chicane/run/parallel.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"

@@ -11,7 +11,6 @@
 #include <variant>
 
 #include "chicane/base/math.hpp"
-#include "chicane/live/description.hpp"
 #include "chicane/live/live_settings.hpp"
 #include "chicane/live/pages.hpp"
 #include "chicane/live/run_limit.hpp"

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "chicane/base/instruction_set.hpp"
-#include "chicane/live/description.hpp"
 #include "chicane/live/pages.hpp"
 #include "chicane/protocol/schema_json.hpp"
 #include "chicane/wire/endpoint.hpp"

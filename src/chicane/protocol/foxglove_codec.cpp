@@ -8,9 +8,12 @@
 #include <limits>
 
 #include "chicane/protocol/json.hpp"
+#include "chicane/telemetry/mcap.hpp"
 
 namespace chicane::protocol::foxglove {
 namespace {
+
+using telemetry::mcap::Fields;
 
 constexpr char kMessageData = 1;
 constexpr char kTime = 2;
@@ -151,30 +154,19 @@ Result<ClientMessage> parse_text(std::string_view bytes) {
   return fail(ErrorCode::kParse, fmt::format("op: {} is not offered by this server", shown(op)));
 }
 
-std::uint32_t read_u32(std::string_view bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8U * i);
-  }
-  return value;
-}
-
-template <class T>
-void append(std::string& bytes, T value) {
-  for (std::size_t i = 0; i < sizeof(T); ++i) bytes.push_back(static_cast<char>((value >> (8U * i)) & 0xFFU));
-}
-
 Result<ClientMessage> parse_binary(std::string_view bytes) {
-  constexpr std::size_t kHead = 13;  // opcode, service, call, length of the encoding's name
   if (bytes.empty() || bytes[0] != kServiceRequest) {
     return fail(ErrorCode::kParse, "a binary message must be a service call (opcode 2)");
   }
-  if (bytes.size() < kHead || read_u32(bytes, 9) > bytes.size() - kHead) {
+  telemetry::mcap::FieldReader fields(bytes.substr(1));
+  CallService call;
+  call.service = fields.number<std::uint32_t>();
+  call.call = fields.number<std::uint32_t>();
+  call.encoding = fields.text();
+  call.payload = fields.rest();
+  if (fields.is_short())
     return fail(ErrorCode::kParse, fmt::format("service call: {} bytes are too few", bytes.size()));
-  }
-  const std::size_t encoding_size = read_u32(bytes, 9);
-  return CallService{read_u32(bytes, 1), read_u32(bytes, 5), std::string{bytes.substr(kHead, encoding_size)},
-                     std::string{bytes.substr(kHead + encoding_size)}};
+  return call;
 }
 
 Json to_json(const Parameter& parameter) {
@@ -274,23 +266,20 @@ std::string message_data(std::uint32_t subscription, std::uint64_t time, std::st
   std::string bytes;
   bytes.reserve(13 + payload.size());
   bytes.push_back(kMessageData);
-  append(bytes, subscription);
-  append(bytes, time);
+  Fields(bytes).number(subscription).number(time);
   return bytes.append(payload);
 }
 
 std::string time_message(std::uint64_t time) {
   std::string bytes(1, kTime);
-  append(bytes, time);
+  Fields(bytes).number(time);
   return bytes;
 }
 
 std::string service_response(const CallService& call, std::string_view payload) {
   std::string bytes(1, kServiceResponse);
-  append(bytes, call.service);
-  append(bytes, call.call);
-  append(bytes, static_cast<std::uint32_t>(call.encoding.size()));
-  return bytes.append(call.encoding).append(payload);
+  Fields(bytes).number(call.service).number(call.call).text(call.encoding);
+  return bytes.append(payload);
 }
 
 }  // namespace chicane::protocol::foxglove

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <deque>
 #include <functional>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "chicane/base/text.hpp"

@@ -11,77 +11,32 @@
 #include <span>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 #include "chicane/protocol/car_messages.hpp"
-#include "chicane/protocol/detail/cdr_archive.hpp"
 #include "chicane/protocol/detail/own_messages.hpp"
 #include "chicane/protocol/frame_fields.hpp"
+#include "chicane/protocol/step_codec.hpp"
 
 namespace chicane::protocol {
+
+DefinedRows::DefinedRows(std::string_view about, int width) : width_{width} {
+  if (!about.empty()) text_ = fmt::format("# {}\n", about);
+}
+
+void DefinedRows::title(std::string_view text) {
+  text_ += text.empty() ? "\n" : fmt::format("\n# {}\n", text);
+}
+
+void DefinedRows::line(const std::string& declaration, std::string_view meaning) {
+  text_ += meaning.empty() ? declaration : fmt::format("{:<{}} # {}", declaration, width_, meaning);
+  text_ += '\n';
+}
+
 namespace {
 
-using Numbers = std::vector<double>;
-using Texts = std::vector<std::string>;
 using telemetry::Frame;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-/// Rows as bytes.
-class WrittenRows {
- public:
-  void title(std::string_view /*text*/) {}
-  void operator()(std::string_view /*name*/, std::string_view /*meaning*/, const auto& value) { to_(value); }
-  [[nodiscard]] std::string bytes() { return to_.bytes(); }
-
- private:
-  WritingArchive to_;
-};
-
-/// Rows that another program wrote.
-class ReadRows {
- public:
-  explicit ReadRows(std::string_view bytes) : from_{bytes} {}
-  void operator()(std::string_view /*name*/, std::string_view /*meaning*/, auto& value) { from_(value); }
-  void operator()(std::string_view /*name*/, std::string_view /*meaning*/, StampNs& stamp) {
-    from_.time(stamp.nanoseconds);
-  }
-  [[nodiscard]] bool ok() const { return from_.ok(); }
-
- private:
-  ReadingArchive from_;
-};
-
-/// Rows as the definition of the message: meanings in one column.
-class DefinedRows {
- public:
-  explicit DefinedRows(std::string_view about) {
-    if (!about.empty()) text_ = fmt::format("# {}\n", about);
-  }
-  void title(std::string_view text) { text_ += text.empty() ? "\n" : fmt::format("\n# {}\n", text); }
-  template <class Value>
-  void operator()(std::string_view name, std::string_view meaning, const Value& value) {
-    line(fmt::format("{} {}", type_of(value), name), meaning);
-  }
-  void line(const std::string& declaration, std::string_view meaning) {
-    text_ += meaning.empty() ? declaration : fmt::format("{:<39} # {}", declaration, meaning);
-    text_ += '\n';
-  }
-  [[nodiscard]] const std::string& text() const { return text_; }
-
- private:
-  static std::string_view type_of(Stamp) { return "builtin_interfaces/Time"; }
-  static std::string_view type_of(std::string_view) { return "string"; }
-  static std::string_view type_of(const Texts&) { return "string[]"; }
-  static std::string_view type_of(const Numbers&) { return "float64[]"; }
-  static std::string_view type_of(const std::array<double, 3>&) { return "float64[3]"; }
-  static std::string_view type_of(bool) { return "bool"; }
-  static std::string_view type_of(std::uint32_t) { return "uint32"; }
-  static std::string_view type_of(std::uint64_t) { return "uint64"; }
-  static std::string_view type_of(double) { return "float64"; }
-
-  std::string text_;
-};
 
 template <class List, class ValueOf>
 Numbers column(const List& list, ValueOf value_of) {
@@ -246,8 +201,8 @@ constexpr auto kLimit = [](auto& row, const Frame& /*frame*/, const Run& run) {
       corner_times);
 };
 
-void change_rows(auto& row, double time, std::uint64_t cycle, std::string_view name, std::string_view value) {
-  row("stamp", "", Stamp{time});
+void change_rows(auto& row, auto&& stamp, auto&& cycle, auto&& name, auto&& value) {
+  row("stamp", "", stamp);
   row("cycle", "", cycle);
   row("name", "key as in YAML and --set: \"latency_ms\"", name);
   row("value", "as --set takes it", value);
@@ -286,12 +241,6 @@ std::string frame_definition() {
   return rows.text();
 }
 
-std::string written(auto rows_of) {
-  WrittenRows rows;
-  rows_of(rows);
-  return rows.bytes();
-}
-
 OwnMessage defined(std::string_view name, std::string_view about, auto rows_of) {
   DefinedRows rows(about);
   rows_of(rows);
@@ -318,7 +267,23 @@ std::string encode_frame(const Frame& frame, const Run& /*run*/) {
 }  // namespace
 
 std::string encode_change(double time, std::uint64_t cycle, std::string_view name, std::string_view value) {
-  return written([&](auto& row) { change_rows(row, time, cycle, name, value); });
+  return written([&](auto& row) { change_rows(row, Stamp{time}, cycle, name, value); });
+}
+
+std::optional<telemetry::Change> decode_change(std::string_view bytes) {
+  ReadRows rows(bytes);
+  telemetry::Change change;
+  StampNs stamp;
+  std::string name, value;
+  change_rows(rows, stamp, change.cycle, name, value);
+  if (!rows.ok() || !decltype(change.name)::fits(name) || !decltype(change.value)::fits(value))
+    return std::nullopt;
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  change.time = static_cast<double>(stamp.nanoseconds / kSecond);
+  change.time += 1e-9 * static_cast<double>(stamp.nanoseconds % kSecond);
+  change.name = name;
+  change.value = value;
+  return change;
 }
 
 template <>
@@ -374,7 +339,9 @@ const std::vector<OwnMessage>& own_messages() {
           "# in docs/limit.md and its line, arrays of the same length by rising time from the start\n"
           "# line, the last point the first one again."),
       defined("chicane_msgs/Change", "A setting that changed during the run, before this control cycle.",
-              [](auto& row) { change_rows(row, 0.0, 0, "", ""); }),
+              [](auto& row) {
+                change_rows(row, Stamp{}, std::uint64_t{}, std::string_view{}, std::string_view{});
+              }),
       defined("chicane_msgs/StopPlan",
               "How the car comes to rest when no further command arrives. Sent before the\n"
               "# command that it belongs to; columns have the same length.",

@@ -267,8 +267,8 @@ std::vector<Contradiction> contradictions(const Scenario& scenario) {
   if (scenario.races() && !(scenario.friction_low > 0.0)) {
     found.push_back(
         {"friction_low",
-         "got 0, the grip of this car is not known, expected more to race by: log bends nearer to "
-         "the limit, or state the least friction (--set friction_low=0.5)"});
+         "got 0, the grip of this car is not known, expected more to race by: log bends nearer to the limit, "
+         "or state the least friction that you know it to have (--set friction_low=NUMBER)"});
   }
   const auto* driver = controller::Registry::find(scenario.controller);
   if (driver == nullptr) return found;

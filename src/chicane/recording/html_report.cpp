@@ -240,9 +240,9 @@ Result<std::string> document_of(const ReportOptions& options, double rate) {
 Result<std::size_t> write_document(const std::string& file, std::string document,
                                    const ReportBundle& bundle) {
   if (bundle.script.empty())
-    return fail(
-        ErrorCode::kNotFound,
-        "report: this program was built without its dashboard: install Node.js and npm, and build again");
+    return fail(ErrorCode::kNotFound,
+                "report: this program has no dashboard: install Node.js and npm, remove the build folder, "
+                "and build again");
   // The one way out of a script element, or into a comment that hides its end, begins with this character.
   for (std::size_t at = 0; (at = document.find('<', at)) != std::string::npos; at += 6)
     document.replace(at, 1, "\\u003c");

@@ -13,7 +13,7 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/protocol/ros_messages.hpp"
-#include "chicane/run/thread_queue.hpp"
+#include "chicane/run/parallel.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/mcap.hpp"

@@ -38,7 +38,7 @@ struct RacingLine {
   std::string track{};                    ///< name of the road
   double length = 0.0;                    ///< length of the road's centre line [m]
   double margin = 0.0;                    ///< gap of each contact patch to edge and kerb [m]
-  bool is_best_so_far = false;            ///< the search ended by its budget, before the optimum
+  bool is_best_so_far = false;            ///< the search ended before the optimum
   std::vector<RacingLinePoint> points{};  ///< points by rising s from 0 to length; the last repeats the first
 
   [[nodiscard]] double lap_time() const noexcept { return points.empty() ? 0.0 : points.back().time; }

@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "chicane/protocol/car_messages.hpp"
-#include "chicane/ros/car_sight.hpp"
 #include "chicane/ros/car_topics.hpp"
 #include "chicane/ros/node_clock.hpp"
 #include "chicane/ros/run_publisher.hpp"

@@ -10,7 +10,7 @@
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/model/vehicle.hpp"
-#include "chicane/run/observe.hpp"
+#include "chicane/run/simulated_car.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::run {
@@ -249,12 +249,12 @@ void LapLearner::count_lap(double crossing) noexcept {
 
 namespace {
 
-AccountTerms terms(const road::Track* track, const scenario::Scenario& scenario) {
+AccountTerms terms(const road::Track* track, const scenario::Scenario& scenario, std::string_view remedy) {
   AccountTerms terms = terms_of(scenario, track);
   terms.car = scenario.vehicle.name;
   terms.laps = 0;
   terms.time_limit = 0.0;
-  terms.remedy = telemetry::kSimulatorRemedy;
+  terms.remedy = remedy;
   return terms;
 }
 
@@ -269,8 +269,8 @@ sim::Sighting sighting_of(const model::Measurement& seen, const model::VehiclePa
 
 }  // namespace
 
-Roadside::Roadside(const road::Track* track, const scenario::Scenario& scenario)
-    : scenario_{scenario}, account_{terms(track, scenario)} {
+Roadside::Roadside(const road::Track* track, const scenario::Scenario& scenario, std::string_view remedy)
+    : scenario_{scenario}, remedy_{remedy}, account_{terms(track, scenario, remedy)} {
   if (track != nullptr) judge_.emplace(*track);
 }
 
@@ -283,7 +283,7 @@ void Roadside::resume() noexcept {
 
 void Roadside::forget_track() {
   judge_.reset();
-  account_ = Account(terms(nullptr, scenario_));
+  account_ = Account(terms(nullptr, scenario_, remedy_));
   events_before_ = 0;
   has_seen_ = false;
 }

@@ -149,8 +149,10 @@ class LapLearner {
 /// milliseconds on one machine. One thread.
 class Roadside {
  public:
-  /// `track` may be null: then laps are timed, and nothing is judged. It outlives this.
-  Roadside(const road::Track* track, const scenario::Scenario& scenario);
+  /// `track` may be null: then laps are timed, and nothing is judged. It outlives this. `remedy`:
+  /// SituationTerms::remedy.
+  Roadside(const road::Track* track, const scenario::Scenario& scenario,
+           std::string_view remedy = telemetry::kSimulatorRemedy);
 
   /// Continues with another car, or the same one from another place: the running lap does not count, the rest
   /// stays.
@@ -168,6 +170,7 @@ class Roadside {
   void learn(telemetry::Frame& frame) noexcept;
 
   scenario::Scenario scenario_;
+  std::string_view remedy_;          ///< SituationTerms::remedy
   std::optional<sim::Judge> judge_;  ///< none where the road is not known
   LapLearner learner_;               ///< laps without a known road
   Account account_;

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "chicane/protocol/schema.hpp"
-#include "chicane/run/observe.hpp"
 #include "chicane/run/racing.hpp"
+#include "chicane/run/simulated_car.hpp"
 
 namespace chicane::run {
 

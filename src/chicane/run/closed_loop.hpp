@@ -13,7 +13,6 @@
 #include "chicane/road/track.hpp"
 #include "chicane/run/control_cycle.hpp"
 #include "chicane/run/make.hpp"
-#include "chicane/run/manual_drive.hpp"
 #include "chicane/run/roads.hpp"
 #include "chicane/run/setting.hpp"
 #include "chicane/run/simulated_car.hpp"

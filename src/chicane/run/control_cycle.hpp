@@ -14,7 +14,7 @@
 #include "chicane/safety/guard.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/frame.hpp"
-#include "chicane/telemetry/prediction_check.hpp"
+#include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::run {
 

@@ -20,12 +20,9 @@ double seconds(ExternalDrive::Clock::duration duration) {
 /// A cycle without a measurement says only that time has passed.
 model::Measurement nothing_measured() {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  return {.x = kUnknown,
-          .y = kUnknown,
-          .psi = kUnknown,
-          .speed = kUnknown,
-          .steer = kUnknown,
-          .throttle = kUnknown};
+  model::Measurement none;
+  none.x = none.y = none.psi = none.speed = none.steer = none.throttle = kUnknown;
+  return none;
 }
 
 }  // namespace
@@ -36,7 +33,7 @@ ExternalDrive::ExternalDrive(ExternalDriveOptions options, std::unique_ptr<contr
       hooks_{hooks},
       scenario_{options_.scenario},
       cycle_{std::move(controller), options_.scenario, options_.track},
-      roadside_{options_.track, options_.scenario},
+      roadside_{options_.track, options_.scenario, options_.remedy},
       clock_{options_.clock, options_.scenario.vehicle, Clock::now()} {
   cycle_.use_line(options_.lap);
 }
@@ -48,6 +45,7 @@ void ExternalDrive::begin() {
 }
 
 void ExternalDrive::begin_anew() {
+  clock_.pause();
   cycle_.begin(cycle_.next());
   last_received_.reset();
   last_time_.reset();

@@ -33,7 +33,8 @@ struct ExternalDriveOptions {
   std::chrono::nanoseconds step_budget{0};        ///< deadline of a control step; 0 = none
   /// Gap between cycles, in addition to twice the delay, after which learned values are dropped.
   std::chrono::nanoseconds forget_after = std::chrono::milliseconds{500};
-  PlantClockOptions clock{};  ///< options of the run's clock
+  PlantClockOptions clock{};                              ///< options of the run's clock
+  std::string_view remedy = telemetry::kSimulatorRemedy;  ///< SituationTerms::remedy
 };
 
 /// Callbacks of an ExternalDrive; empty functions are not called.

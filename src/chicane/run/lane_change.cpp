@@ -125,8 +125,7 @@ double LaneChangeCourse::way(double x) const noexcept {
 }
 
 double LaneChangeCourse::room(const model::Pose& car, double length, double width) const noexcept {
-  const double cosine = cos(car.psi);
-  const double sine = sin(car.psi);
+  const double cosine = cos(car.psi), sine = sin(car.psi);
   double least = std::numeric_limits<double>::infinity();
   const int count = std::max(2, static_cast<int>(std::ceil(length / kOutline)));
   for (int i = 0; i <= count; ++i) {

@@ -1,25 +1,35 @@
 // SPDX-License-Identifier: MIT
-// Cache of plans and limits: their names by hash, their bytes, and the searches that fill it.
+// Cache of plans and limits: their names by hash, their bytes, the searches that fill it, and its files with
+// names, checksums, and removal of the oldest.
 #include "chicane/run/plan_cache.hpp"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <mutex>
 #include <utility>
+#include <vector>
 
-#include <fmt/format.h>
-
+#include "chicane/base/file.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "chicane/protocol/car_messages.hpp"
 #include "chicane/protocol/data_folders.hpp"
 #include "chicane/sim/double_track.hpp"
 
 namespace chicane::run {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "the cache's files would need another name");
 
 std::mutex mutex_of_cache;
 std::shared_ptr<const DiskCache> the_cache;
@@ -90,66 +100,6 @@ class Name {
   bool has_build_ = false;
 };
 
-class Writer {
- public:
-  void put(double value) {
-    const auto bytes = std::bit_cast<std::array<char, sizeof value>>(value);
-    bytes_.append(bytes.data(), bytes.size());
-  }
-  void put(std::string_view text) {
-    put(static_cast<double>(text.size()));
-    bytes_ += text;
-  }
-  [[nodiscard]] std::string take() { return std::move(bytes_); }
-
- private:
-  std::string bytes_;
-};
-
-class Reader {
- public:
-  explicit Reader(std::string_view bytes) : rest_{bytes} {}
-  void get(double& value) {
-    if (rest_.size() < sizeof value) return give_up();
-    std::memcpy(&value, rest_.data(), sizeof value);
-    rest_.remove_prefix(sizeof value);
-  }
-  void get(std::string& text) {
-    const std::size_t size = count(1);
-    text = rest_.substr(0, size);
-    rest_.remove_prefix(size);
-  }
-  void get(int& value) {
-    double number = 0.0;
-    get(number);
-    if (!(std::fabs(number) < 1e9)) return give_up();
-    value = static_cast<int>(number);
-  }
-  void get(bool& value) {
-    double number = 0.0;
-    get(number);
-    value = number != 0.0;
-  }
-  /// Reads a count of things with at least `size` bytes each; 0 if so many cannot follow.
-  [[nodiscard]] std::size_t count(std::size_t size) {
-    double number = 0.0;
-    get(number);
-    if (number >= 0.0 && number * static_cast<double>(size) <= static_cast<double>(rest_.size()))
-      return static_cast<std::size_t>(number);
-    give_up();
-    return 0;
-  }
-  [[nodiscard]] bool is_at_end() const { return is_good_ && rest_.empty(); }
-
- private:
-  void give_up() {
-    is_good_ = false;
-    rest_ = {};
-  }
-  std::string_view rest_;
-  bool is_good_ = true;
-};
-
 constexpr std::array kFields{&road::RacingLinePoint::s,
                              &road::RacingLinePoint::time,
                              &road::RacingLinePoint::offset,
@@ -163,26 +113,23 @@ constexpr std::array kFields{&road::RacingLinePoint::s,
                              &road::RacingLinePoint::throttle};
 static_assert(sizeof(road::RacingLinePoint) == kFields.size() * sizeof(double), "a field is missing here");
 
-void put(Writer& to, const road::RacingLine& line) {
-  to.put(std::string_view(line.car));
-  to.put(std::string_view(line.track));
-  to.put(line.length);
-  to.put(line.margin);
-  to.put(line.is_best_so_far ? 1.0 : 0.0);
-  to.put(static_cast<double>(line.points.size()));
-  for (const road::RacingLinePoint& point : line.points)
-    for (const auto field : kFields) to.put(point.*field);
+void line_fields(auto& archive, auto& line) {
+  archive(line.car, line.track, line.length, line.margin, line.is_best_so_far);
+  archive.list(line.points, sizeof(road::RacingLinePoint), 1'000'000, [&](auto& point) {
+    for (const auto field : kFields) archive(point.*field);
+  });
 }
 
-void get(Reader& from, road::RacingLine& line) {
-  from.get(line.car);
-  from.get(line.track);
-  from.get(line.length);
-  from.get(line.margin);
-  from.get(line.is_best_so_far);
-  line.points.resize(from.count(sizeof(road::RacingLinePoint)));
-  for (road::RacingLinePoint& point : line.points)
-    for (const auto field : kFields) from.get(point.*field);
+void limit_fields(auto& archive, auto& limit) {
+  archive(limit.bound.lap);
+  for (auto& sector : limit.bound.sectors) archive(sector);
+  line_fields(archive, limit.line);
+  archive(limit.nodes, limit.effort.iterations, limit.effort.work, limit.of_optimum.iterations,
+          limit.of_optimum.work, limit.stationarity, limit.violation, limit.is_cut_short);
+  archive.optional(limit.witness, [&](auto& witness) {
+    archive(witness.lap_time, witness.worst, witness.laps, witness.least_edge);
+    line_fields(archive, witness.line);
+  });
 }
 
 /// The result of that name in the cache, if it is there and whole.
@@ -288,7 +235,7 @@ Result<lap_time::PlantLimit> cached_limit(const road::Track& track, std::string_
   if (name.empty() || !found) return found;
   lap_time::PlantLimitOptions unlimited = options;
   unlimited.budget = lap_time::PlantLimitOptions{}.budget;
-  cache->keep(found->is_whole() ? name_of_limit(track, plant, deviation, unlimited, params) : name,
+  cache->keep(!found->is_cut_short ? name_of_limit(track, plant, deviation, unlimited, params) : name,
               to_bytes(*found));
   return found;
 }
@@ -326,65 +273,145 @@ Result<void> cached_room(const road::Track& track, const model::VehicleParams& c
 }
 
 std::string to_bytes(const road::RacingLine& line) {
-  Writer writer;
-  put(writer, line);
-  return writer.take();
+  protocol::WritingArchive archive;
+  line_fields(archive, line);
+  return archive.bytes();
 }
 
 std::optional<road::RacingLine> line_from_bytes(std::string_view bytes) {
-  Reader reader(bytes);
+  protocol::ReadingArchive archive(bytes);
   road::RacingLine line;
-  get(reader, line);
-  if (!reader.is_at_end() || line.is_empty()) return {};
+  line_fields(archive, line);
+  if (!archive.is_at_end() || line.is_empty()) return {};
   return line;
 }
 
 std::string to_bytes(const lap_time::PlantLimit& limit) {
-  Writer writer;
-  writer.put(limit.bound.lap);
-  for (const double sector : limit.bound.sectors) writer.put(sector);
-  put(writer, limit.line);
-  for (const double value :
-       {static_cast<double>(limit.nodes), static_cast<double>(limit.effort.iterations), limit.effort.work,
-        static_cast<double>(limit.of_optimum.iterations), limit.of_optimum.work, limit.stationarity,
-        limit.violation, limit.is_cut_short ? 1.0 : 0.0, limit.witness ? 1.0 : 0.0})
-    writer.put(value);
-  if (limit.witness) {
-    writer.put(limit.witness->lap_time);
-    writer.put(limit.witness->worst);
-    writer.put(static_cast<double>(limit.witness->laps));
-    writer.put(limit.witness->least_edge);
-    put(writer, limit.witness->line);
-  }
-  return writer.take();
+  protocol::WritingArchive archive;
+  limit_fields(archive, limit);
+  return archive.bytes();
 }
 
 std::optional<lap_time::PlantLimit> limit_from_bytes(std::string_view bytes) {
-  Reader reader(bytes);
+  protocol::ReadingArchive archive(bytes);
   lap_time::PlantLimit limit;
-  reader.get(limit.bound.lap);
-  for (double& sector : limit.bound.sectors) reader.get(sector);
-  get(reader, limit.line);
-  reader.get(limit.nodes);
-  reader.get(limit.effort.iterations);
-  reader.get(limit.effort.work);
-  reader.get(limit.of_optimum.iterations);
-  reader.get(limit.of_optimum.work);
-  reader.get(limit.stationarity);
-  reader.get(limit.violation);
-  reader.get(limit.is_cut_short);
-  bool has_witness = false;
-  reader.get(has_witness);
-  if (has_witness) {
-    limit.witness.emplace();
-    reader.get(limit.witness->lap_time);
-    reader.get(limit.witness->worst);
-    reader.get(limit.witness->laps);
-    reader.get(limit.witness->least_edge);
-    get(reader, limit.witness->line);
-  }
-  if (!reader.is_at_end() || limit.line.is_empty()) return {};
+  limit_fields(archive, limit);
+  if (!archive.is_at_end() || limit.line.is_empty()) return {};
   return limit;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kMagic = "chicane cache 1\n";  // the number: of this layout
+constexpr std::string_view kExtension = ".cache";
+constexpr std::string_view kUnfinished = ".part";  // suffix of base/file.hpp
+constexpr std::size_t kHeader = kMagic.size() + 2 * sizeof(std::uint64_t);
+constexpr auto kAbandoned = std::chrono::hours(1);  // a file that a killed process left
+
+std::uint64_t checksum(std::string_view bytes) {
+  Fnv hash;
+  for (std::size_t at = 0; at < bytes.size(); at += sizeof(std::uint64_t)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + at, std::min(sizeof word, bytes.size() - at));
+    hash.add(word);
+  }
+  return hash.value();
+}
+
+void append(std::string& to, std::uint64_t value) {
+  const auto bytes = std::bit_cast<std::array<char, sizeof value>>(value);
+  to.append(bytes.data(), bytes.size());
+}
+
+std::uint64_t number_at(std::string_view bytes, std::size_t at) {
+  std::uint64_t value = 0;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+bool is_whole(std::string_view file) {
+  return file.size() >= kHeader && file.starts_with(kMagic) &&
+         number_at(file, kMagic.size()) == file.size() - kHeader &&
+         number_at(file, kMagic.size() + sizeof(std::uint64_t)) == checksum(file.substr(kHeader));
+}
+
+}  // namespace
+
+std::string DiskCache::default_folder() {
+  // An empty or relative path counts as unset, by the XDG base directory specification.
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache == '/')
+    return std::string(cache) + "/chicane";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
+    return std::string(home) + "/.cache/chicane";
+  return {};
+}
+
+std::string DiskCache::path_of(std::string_view name) const {
+  return folder_ + "/" + std::string(name) + std::string(kExtension);
+}
+
+std::optional<std::string> DiskCache::find(std::string_view name) const {
+  const std::string path = path_of(name);
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return {};
+  std::string file{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!is_whole(file)) {
+    report_damage(name);
+    return {};
+  }
+  ::utimensat(AT_FDCWD, path.c_str(), nullptr, 0);  // used now
+  file.erase(0, kHeader);
+  return file;
+}
+
+void DiskCache::report_damage(std::string_view name) const {
+  if (say_) say_("cache: " + path_of(name) + " is damaged and ignored");
+}
+
+void DiskCache::keep(std::string_view name, std::string_view bytes) const {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error) return;
+  std::string file(kMagic);
+  append(file, bytes.size());
+  append(file, checksum(bytes));
+  file += bytes;
+  if (write_file(path_of(name), file, 0600)) make_room();
+}
+
+void DiskCache::make_room() const {
+  struct File {
+    fs::path path;
+    fs::file_time_type used;
+    std::uint64_t size;
+  };
+  std::vector<File> files;
+  std::uint64_t all = 0;
+  std::error_code error;
+  // Other processes may remove files meanwhile: what cannot be asked is passed over.
+  for (fs::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
+    std::error_code gone;
+    const fs::path& path = at->path();
+    const fs::file_time_type used = fs::last_write_time(path, gone);
+    const std::uint64_t size = gone ? 0 : fs::file_size(path, gone);
+    if (gone) continue;
+    if (path.extension() == kUnfinished && fs::file_time_type::clock::now() - used > kAbandoned)
+      fs::remove(path, gone);
+    if (path.extension() != kExtension) continue;
+    files.push_back({path, used, size});
+    all += size;
+  }
+  std::sort(files.begin(), files.end(), [](const File& a, const File& b) { return a.used < b.used; });
+  std::size_t left = files.size();
+  for (const File& file : files) {
+    if (all <= most_bytes_ && left <= kMostFiles) return;
+    std::error_code gone;
+    fs::remove(file.path, gone);
+    all -= file.size;
+    --left;
+  }
 }
 
 }  // namespace chicane::run

@@ -13,36 +13,37 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kFullSize = 4.5;         // [m] length of a car
-constexpr double kLegWay = 0.5;           // [m] of one leg, for a car in full size
-constexpr double kLeastSpeed = 0.5;       // [m/s] needed to judge a time, for a car in full size
-constexpr double kLongestCycle = 1.0;     // [s] between answers; longer ones are silences
-constexpr double kLongestStep = 5.0;      // [s] between measurements that say anything of each other
-constexpr std::size_t kLeastLegs = 5;     // legs needed to judge a clock
-constexpr double kLeastWallTime = 0.6;    // least wall time of these legs [s]
-constexpr double kClockAcross = 0.3;      // share of the way that a car may move across its heading
-constexpr double kJump = 0.3;             // [m] allowed in addition
-constexpr double kSpeedJump = 2.0;        // [m/s] allowed in addition
-constexpr double kMostBraking = 20.0;     // [m/s²] by which a speed changes
-constexpr double kDrives = 0.1;           // pedal that drives
-constexpr double kPedalMemory = 3.0;      // [s]
-constexpr double kLeastAsked = 1.0;       // [m/s] change by the pedal that distinguishes a clock from a speed
-constexpr double kSteadier = 0.5;         // deviation over the other's below which one explanation is better
-constexpr double kLeastDeviation = 0.02;  // deviation below which both clocks fit
-constexpr double kFollowed = 0.1;         // share of a difference that is made up for with each leg
-constexpr double kBurst = 0.5;            // share by which a step in lock step differs that had to wait
-constexpr double kOfStep = 0.15;          // share by which its time differs from the others
-constexpr double kSampling = 0.02;   // [s] by which a state may be younger or older: a usual physics step
-constexpr double kLegSamples = 5.0;  // of which a leg consists at least
-constexpr double kOtherClock = 0.5;  // logarithm of a leg's ratio to the median, from another clock
-constexpr double kSame = 0.03;       // logarithm of a ratio that counts as 1
+constexpr double kFullSize = 4.5;      // [m] length of a car
+constexpr double kLegWay = 0.5;        // [m] of one leg, for a car in full size
+constexpr double kLeastSpeed = 0.5;    // [m/s] needed to judge a time, for a car in full size
+constexpr double kLongestCycle = 1.0;  // [s] between answers; longer ones are silences
+constexpr double kLongestStep = 5.0;   // [s] between measurements that say anything of each other
+constexpr std::size_t kLeastLegs = 2;  // legs needed to judge a clock
+constexpr double kLate = 0.15;         // [s] by which one late message changes the sum of all legs
+constexpr double kClockAcross = 0.3;   // share of the way that a car may move across its heading
+constexpr double kJump = 0.3;          // [m] allowed in addition
+constexpr double kSpeedJump = 2.0;     // [m/s] allowed in addition
+constexpr double kMostBraking = 20.0;  // [m/s²] by which a speed changes
+constexpr double kDrives = 0.1;        // pedal that drives
+constexpr double kPedalMemory = 3.0;   // [s]
+constexpr double kLeastAsked = 1.0;    // [m/s] change by the pedal that distinguishes a clock from a speed
+constexpr double kSteadier = 0.5;      // deviation over the other's below which one explanation is better
+constexpr double kLeastDeviation = 0.002;  // [s] of the running sums, below which both clocks fit
+constexpr double kLateInFew = 4.0;         // times kLate, while there are only kLeastLegs legs
+constexpr double kErrors = 4.0;        // times the deviation of the running sums, from which a ratio differs
+constexpr double kFollowed = 0.1;      // share of a difference that is made up for with each leg
+constexpr double kBurst = 0.5;         // share by which a step in lock step differs that had to wait
+constexpr double kOfStep = 0.15;       // share by which its time differs from the others
+constexpr double kSampling = 0.02;     // [s] by which a state may be younger or older: a usual physics step
+constexpr double kLegSamples = 5.0;    // least length of a leg, in kSampling
+constexpr double kSampledSpeed = 4.0;  // [m/s] from which a displacement shows that
+constexpr double kLeastCounted = 0.1;  // share of the expected time that passes in any case
+constexpr double kSampledLeft = 0.95;  // share of what sampling has added that is left after an answer
+constexpr double kOtherClock = 0.5;    // logarithm of a leg's ratio to the median, from another clock
+constexpr double kSame = 0.03;         // logarithm of a ratio that counts as 1
 
 double in_seconds(PlantClock::Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
-}
-
-bool is_finite(const model::Measurement& each) {
-  return std::isfinite(each.x + each.y + each.psi + each.speed);
 }
 
 }  // namespace
@@ -81,7 +82,8 @@ bool PlantClock::advance(Clock::time_point received, const model::Measurement* m
   wall_ = received;
   if (options_.is_measured) return follow(measured);
   Leg step;
-  const bool is_whole = measured != nullptr && is_finite(*measured);
+  const bool is_whole =
+      measured != nullptr && std::isfinite(measured->x + measured->y + measured->psi + measured->speed);
   if (is_whole && has_last_ && options_.is_estimated && wall > 0.0 && wall < kLongestStep)
     step = step_of(wall, *measured, acting);
   time_ += time_of(wall, step);
@@ -114,13 +116,15 @@ bool PlantClock::follow(const model::Measurement* measured) {
 double PlantClock::time_of(double wall, const Leg& step) {
   if (step_ > 0.0) return step_;
   const double expected = ratio_ * wall;
-  if (step.way < kLegWay * size_ || count_ < kLeastLegs) return expected;
+  if (step.steps == 0 || std::fabs(last_.speed) < kSampledSpeed * std::sqrt(size_) || count_ < kLeastLegs)
+    return expected;
   const double usual = fit([](const Leg& leg) { return leg.steps; }).value;
   const bool has_waited = std::fabs(step.plant - expected) > kBurst * expected;
   if (has_waited && std::fabs(step.plant - usual) < kOfStep * usual) return step.plant;
+  const double most = expected - sampled_ + kSampling;
   const double counted =
-      std::clamp(step.plant, expected - sampled_ - kSampling, expected - sampled_ + kSampling);
-  sampled_ += counted - expected;
+      std::clamp(step.plant, std::max(most - 2.0 * kSampling, kLeastCounted * expected), most);
+  sampled_ = kSampledLeft * (sampled_ + counted - expected);
   return counted;
 }
 
@@ -129,8 +133,7 @@ PlantClock::Leg PlantClock::step_of(double wall, const model::Measurement& now,
                                     const model::Command& acting) {
   const double speed = 0.5 * (std::fabs(now.speed) + std::fabs(last_.speed));
   const double heading = last_.psi + 0.5 * angle_difference(now.psi, last_.psi);
-  const double dx = now.x - last_.x;
-  const double dy = now.y - last_.y;
+  const double dx = now.x - last_.x, dy = now.y - last_.y;
   const double way = dx * cos(heading) + dy * sin(heading);
   const double across = std::fabs(dy * cos(heading) - dx * sin(heading));
   const double gained = std::fabs(now.speed) - std::fabs(last_.speed);
@@ -162,36 +165,34 @@ bool PlantClock::add(const Leg& step) {
   return count_ >= kLeastLegs;
 }
 
+/// Sums of the legs near the median, and how the running sums deviate from their ratio: of the right clock by
+/// the noise of a place and a step of the simulator, however long, of a wrong one by more with each leg.
 template <class Base>
 PlantClock::Fit PlantClock::fit(const Base& base) const {
   const std::size_t size = std::min(count_, kLegs);
+  const auto leg = [&](std::size_t i) -> const Leg& { return legs_[(count_ - size + i) % kLegs]; };
+  const auto value_of = [&](std::size_t i) { return log(leg(i).plant / base(leg(i))); };
   std::array<double, kLegs> values{};
-  const auto value_of = [&](std::size_t i) { return log(legs_[i].plant / base(legs_[i])); };
   for (std::size_t i = 0; i < size; ++i) values[i] = value_of(i);
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(size / 2);
   std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(size));
   Fit fit;
-  double plant = 0.0, counted = 0.0;
+  double counted = 0.0, sum = 0.0, mean = 0.0, square = 0.0;
+  const auto is_near = [&](std::size_t i) { return std::fabs(value_of(i) - *middle) < kOtherClock; };
   for (std::size_t i = 0; i < size; ++i) {
-    const double off = std::fabs(value_of(i) - *middle);
-    fit.deviation += off / static_cast<double>(size);
-    if (!(off < kOtherClock)) continue;
-    plant += legs_[i].plant;
-    counted += base(legs_[i]);
+    fit.all += leg(i).plant;
+    fit.all_counted += base(leg(i));
+    fit.near += is_near(i) ? leg(i).plant : 0.0;
+    counted += is_near(i) ? base(leg(i)) : 0.0;
   }
-  fit.value = plant / counted;
+  fit.value = fit.near / counted;
+  for (std::size_t i = 0; i < size; ++i) {
+    sum += is_near(i) ? leg(i).plant - fit.value * base(leg(i)) : 0.0;
+    mean += sum / static_cast<double>(size);
+    square += sum * sum / static_cast<double>(size);
+  }
+  fit.deviation = std::sqrt(std::max(square - mean * mean, 0.0));
   return fit;
-}
-
-/// Whether all legs together show another ratio. What delays one message shortens the next stretch, so that
-/// a busy machine changes their sum by its last delay only.
-bool PlantClock::differs(double ratio) const {
-  Leg sum;
-  for (std::size_t i = 0; i < std::min(count_, kLegs); ++i) {
-    sum.wall += legs_[i].wall;
-    sum.plant += legs_[i].plant;
-  }
-  return sum.wall > kLeastWallTime && std::fabs(log(sum.plant / (ratio * sum.wall))) > log(kLeastChange);
 }
 
 /// Whether the pedals gain speed as in the time that the displacement shows: with a speed in another unit
@@ -207,26 +208,28 @@ bool PlantClock::take_up() {
   const Fit by_clock = fit([](const Leg& leg) { return leg.wall; });
   const Fit by_step = fit([](const Leg& leg) { return leg.steps; });
   const bool was_in_step = step_ > 0.0;
-  const double worse = std::max(by_clock.deviation, by_step.deviation);
-  const bool is_distinct = worse > kLeastDeviation;
+  const bool is_distinct = std::max(by_clock.deviation, by_step.deviation) > kLeastDeviation;
+  // Sums of all legs: a late message shortens the next leg, so a busy machine changes them by its last delay.
+  const double late = kLate * std::max(ratio_, 1.0) * (count_ == kLeastLegs ? kLateInFew : 1.0);
+  const bool differs = std::fabs(by_clock.all - ratio_ * by_clock.all_counted) > late &&
+                       std::fabs(log(by_clock.all / (ratio_ * by_clock.all_counted))) > log(kLeastChange);
   // In real time with equal steps a busy machine makes the wall's clock look worse; but a step that waited is
   // longer by the wait.
-  const bool is_real_time = !was_in_step && ratio_ == 1.0 && !differs(ratio_);
-  const bool is_in_step =
-      was_in_step ? !(is_distinct && by_clock.deviation < kSteadier * by_step.deviation)
-                  : is_distinct && !is_real_time && by_step.deviation < kSteadier * by_clock.deviation;
-  const double counted = was_in_step ? step_ : ratio_;
-  const double found = is_in_step ? by_step.value : by_clock.value;
-  const double deviation = is_in_step ? by_step.deviation : by_clock.deviation;
-  const double size = static_cast<double>(std::min(count_, kLegs));
-  const double off = log(found / counted);
-  const bool is_another =
-      is_in_step != was_in_step || (std::fabs(off) > log(kLeastChange) + 2.0 * deviation / std::sqrt(size) &&
-                                    (was_in_step || differs(ratio_)));
+  const bool is_real_time = ratio_ == 1.0 && !differs;
+  const bool is_in_step = was_in_step ? !(is_distinct && by_clock.deviation < kSteadier * by_step.deviation)
+                                      : is_distinct && !is_real_time && count_ >= kLegs / 2 &&
+                                            by_step.near == by_step.all &&
+                                            by_step.deviation < kSteadier * by_clock.deviation;
+  const Fit& found = is_in_step ? by_step : by_clock;
+  double& counted = was_in_step ? step_ : ratio_;
+  const double off = log(found.value / counted);
+  const bool is_another = is_in_step != was_in_step ||
+                          (std::fabs(off) > log(kLeastChange) + kErrors * found.deviation / found.near &&
+                           (was_in_step || differs));
   if (!is_another) {
     if (count_ >= kLegs) is_speed_known_ = true;
     // Follow closely if the count is not the wall's anyway.
-    if (was_in_step || ratio_ != 1.0) (was_in_step ? step_ : ratio_) *= exp(kFollowed * off);
+    if (was_in_step || ratio_ != 1.0) counted *= exp(kFollowed * off);
     return false;
   }
   if (!agrees_with_pedal()) return false;

@@ -38,6 +38,8 @@ class PlantClock {
 
   /// Resets for another car, with an unknown clock. The run's time continues.
   void begin();
+  /// The next measurement says nothing of the time since the last: a person drove, or nothing came.
+  void pause() { has_last_ &= options_.is_measured; }
   /// Takes a message that came at `received`, with `measured` (null: nothing usable), while `acting` acted on
   /// the car. True: the clock has changed, and results by the earlier time are void.
   bool advance(Clock::time_point received, const model::Measurement* measured, const model::Command& acting);
@@ -60,9 +62,12 @@ class PlantClock {
     int steps = 0;
   };
   static constexpr std::size_t kLegs = 12;
-  /// Ratio of the sums of the legs near the median, and the mean deviation of their logarithms from it.
+  /// Sums of legs.
   struct Fit {
-    double value = 0.0, deviation = 0.0;
+    double value = 0.0;            ///< ratio of the sums, over legs near the median
+    double near = 0.0, all = 0.0;  ///< plant's time: legs near the median, all legs [s]
+    double all_counted = 0.0;      ///< time that all legs are compared with [s]
+    double deviation = 0.0;        ///< root mean square of the running sums' error [s]
   };
 
   void forget();
@@ -70,7 +75,6 @@ class PlantClock {
   [[nodiscard]] Leg step_of(double wall, const model::Measurement& now, const model::Command& acting);
   [[nodiscard]] bool add(const Leg& step);
   [[nodiscard]] bool take_up();
-  [[nodiscard]] bool differs(double ratio) const;
   [[nodiscard]] bool agrees_with_pedal() const;
   template <class Base>
   [[nodiscard]] Fit fit(const Base& base) const;

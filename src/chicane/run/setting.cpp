@@ -2,9 +2,12 @@
 // Settings of a run from their text, and fields of a scenario from settings.
 #include "chicane/run/setting.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/schema_json.hpp"
@@ -93,6 +96,47 @@ Result<Setting> read_setting(const telemetry::Change& change) {
 void write(scenario::Scenario& scenario, const FieldValue& field) noexcept {
   const OptionValue value = std::visit([](auto each) { return OptionValue(each); }, field.value);
   field.row->option.write(field.row->owner(scenario), value);
+}
+
+namespace {
+
+constexpr double kGentleBraking = 0.4;  // share of the useful braking, as in controller/fallback.hpp
+constexpr double kFadeSpeed = 2.5;      // [m/s] below, braking fades and a negative pedal is the reverse gear
+
+}  // namespace
+
+void ManualDrive::set(const ManualSetting& setting) noexcept {
+  switch (setting.what) {
+    case ManualSetting::What::kIsOn:
+      is_on_ = setting.value != 0.0;
+      break;
+    case ManualSetting::What::kSteer:
+      steer_ = setting.value;
+      break;
+    case ManualSetting::What::kThrottle:
+      throttle_ = setting.value;
+      break;
+  }
+  has_news_ = true;
+}
+
+model::Command ManualDrive::command(const model::Measurement& now,
+                                    const model::VehicleParams& vehicle) noexcept {
+  if (std::exchange(has_news_, false)) last_set_ = now.time;
+  const double speed = std::isfinite(now.speed) ? std::fabs(now.speed) : kFadeSpeed;
+  const double useful = vehicle.brake_throttle_limit;
+  double throttle = throttle_;
+  if (now.time - last_set_ > kSilenceLimit) {
+    throttle = -kGentleBraking * useful * std::min(1.0, speed / kFadeSpeed);
+  } else if (throttle < 0.0 && speed >= kFadeSpeed) {
+    throttle *= useful;
+  }
+  return {.steer = steer_ * vehicle.steer_limit, .throttle = throttle};
+}
+
+void ManualDrive::restart() noexcept {
+  has_news_ = false;
+  last_set_ = 0.0;
 }
 
 }  // namespace chicane::run

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "chicane/run/make.hpp"
-#include "chicane/run/observe.hpp"
 
 namespace chicane::run {
 

@@ -15,8 +15,9 @@ using controller::Answer;
 using controller::GuardReason;
 using controller::Rung;
 
-constexpr int kShown = 64;          // points of a backup that is drawn
-constexpr double kShownStep = 0.1;  // [s]
+constexpr double kLateMemory = 30.0;  // [s] in which a late command is forgotten
+constexpr int kShown = 64;            // points of a backup that is drawn
+constexpr double kShownStep = 0.1;    // [s]
 // Braking of a car that is too fast for a silence: gentle, and stable without feedback.
 constexpr Braking kHeldBack{0.8, 1.6, 0.7};
 
@@ -84,6 +85,7 @@ void Guard::reset() noexcept {
   direction_.reset();
   filter_.forget();
   run_ = {};
+  longest_ = 0.0;
 }
 
 void Guard::set_vehicle(const model::VehicleParams& vehicle) noexcept {
@@ -112,6 +114,7 @@ void Guard::count_with_actuators() noexcept {
 model::Command Guard::step(const model::Measurement& measured, Deadline deadline, const Cycle& cycle,
                            controller::StepResult& result) noexcept {
   take_up_actuators();
+  longest_ = std::max(cycle.interval, longest_ * (1.0 - cycle.interval / kLateMemory));
   model::Measurement now = measured;
   now.delay = std::max(now.delay + learned_.answer().delay, 0.0);
   const bool is_off = options_.mode == GuardMode::kOff;
@@ -279,7 +282,7 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   const bool is_kept = run_.refused.lasts(seen.time) > kStuckTime || run_.is_led;
   if (may_send && !run_.is_astray && !(run_.is_idle && is_kept)) {
     // One accepted command does not move a car that stands.
-    if (!run_.is_idle && std::fabs(estimator_.state().vx) >= kStandingSpeed) {
+    if (!run_.is_idle && !stands()) {
       run_.is_led = false;
       run_.refused.at = seen.time;
     }
@@ -312,7 +315,8 @@ Fit Guard::verify(const StopStart& start, const Cycle& cycle, const model::Comma
                          .start = start,
                          .command = limited(command, cycle.interval),
                          .interval = cycle.interval,
-                         .is_led = is_led},
+                         .is_led = is_led,
+                         .longest = longest_},
                         report_);
 }
 

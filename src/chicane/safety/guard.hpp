@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -109,6 +110,8 @@ class Guard {
   [[nodiscard]] bool drive_backup(const StopStart& start, controller::StepResult& result) noexcept;
   void show_backup(const StopStart& start, controller::Plan& plan) const noexcept;
   void watch_course(const std::optional<StopStart>& start) noexcept;
+  /// By the estimate.
+  [[nodiscard]] bool stands() const noexcept { return std::fabs(estimator_.state().vx) < kStandingSpeed; }
   [[nodiscard]] bool idles(const controller::StepResult& result) const noexcept;
   [[nodiscard]] bool should_lead_back(double time, bool has_answer) noexcept;
   [[nodiscard]] bool lead_back(double act, const Cycle& cycle, controller::StepResult& result) noexcept;
@@ -194,6 +197,7 @@ class Guard {
     Since released;                 ///< its brake, or began to be stuck
   };
   Run run_;
+  double longest_ = 0.0;     ///< interval between two commands lately [s]
   double act_speed_ = 0.0;   ///< estimated where the command acts [m/s]
   double most_drive_ = 0.0;  ///< acceleration that the tyres can give then [m/s²]
   double sent_from_ = 0.0;   ///< from which the command of this cycle acts [s]

@@ -147,7 +147,7 @@ constexpr double kGain = 0.1;          // [m/s] by which a car gains speed that 
 constexpr double kMostAgainstRolling = 0.7;  // pedal against rolling back
 constexpr double kStillTime = 1.0;   // [s] a car stands before it is tried whether it was put elsewhere
 constexpr double kTrialWay = 0.5;    // share of the car's length that is driven for that
-constexpr double kTrialRoom = 1.0;   // to the edge [m], where no stop fits
+constexpr double kTrialRoom = 1.0;   // to the edge [m], where no stop fits; half of it during the trial
 constexpr double kTrialSpeed = 1.0;  // [m/s]
 constexpr double kTrialPedal = 0.3;
 constexpr double kCreep = 1.0;             // [m/s] of a car that turns at the edge
@@ -200,8 +200,7 @@ void Guard::watch_for_reset(const model::Measurement& measured) noexcept {
     run_.ask_pause = std::min(2.0 * run_.ask_pause, kLongestAskPause);
   }
   if (!reset_watch_.is_waiting()) run_.tried = 0.0;
-  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed || run_.tried > 0.0;
-  if (!reset_watch_.is_waiting() || !stands) run_.still.at = measured.time;
+  if (!reset_watch_.is_waiting() || !(stands() || run_.tried > 0.0)) run_.still.at = measured.time;
   if (reset_watch_.has_answered()) begin_here();
 }
 
@@ -210,8 +209,8 @@ void Guard::watch_for_reset(const model::Measurement& measured) noexcept {
 bool Guard::may_ask(const model::Measurement& measured) const noexcept {
   const Findings& found = monitor_.findings();
   const bool is_doubted = Supervisor::wants_trial(found) && !found.unmeasured && !found.frozen && !found.late;
-  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed && reset_watch_.rests();
-  if (!is_doubted || !stands || reset_watch_.is_waiting() || !(measured.time >= run_.ask_at)) return false;
+  const bool rests = stands() && reset_watch_.rests();
+  if (!is_doubted || !rests || reset_watch_.is_waiting() || !(measured.time >= run_.ask_at)) return false;
   return !run_.has_jumped_aside || agrees_with_road(measured);
 }
 
@@ -225,8 +224,7 @@ bool Guard::agrees_with_road(const model::Measurement& measured) const noexcept 
   }
   const auto size = static_cast<std::size_t>(std::max(measured.waypoint_count, 0));
   for (std::size_t i = 0; i + 1 < size; ++i) {
-    const Vec2 way = measured.waypoints[i + 1] - measured.waypoints[i];
-    const Vec2 from = place - measured.waypoints[i];
+    const Vec2 way = measured.waypoints[i + 1] - measured.waypoints[i], from = place - measured.waypoints[i];
     const double length = way.norm();
     const double along = length > 0.0 ? (from.x() * way.x() + from.y() * way.y()) / length : -1.0;
     if (along < 0.0 || along > length) continue;
@@ -269,10 +267,10 @@ bool Guard::try_reset(const std::optional<StopStart>& start, const Cycle& cycle,
   }
   const double speed = std::fabs(estimator_.state().vx);
   const model::Command command{0.0, speed < kTrialSpeed ? kTrialPedal : 0.0};
-  // A car that stopped where the known road ends has no stop ahead of it, nor one that is off the road; the
-  // way of the trial does without there, and well inside the edges and along the road.
+  // A car that stopped where the known road ends has no stop ahead of it, nor one that is across the road or
+  // off it; the way of the trial does without there, and as far inside the edges as walking pace needs.
   const double edge = start ? filter_.planner().edge(road_, *start) : -kFarFromRoad;
-  const bool has_room = edge < 0.0 || (edge >= kTrialRoom && std::fabs(start->e) < kAlong);
+  const bool has_room = edge < 0.0 || edge >= (run_.tried > 0.0 ? 0.5 : 1.0) * kTrialRoom;
   const bool has_stop = start && verify(*start, cycle, command, true) != Fit::kNone;
   if (!has_room && !has_stop) return false;
   if (run_.tried == 0.0) reset_watch_.ask();  // a car that still rolled has turned round since it was asked
@@ -284,8 +282,7 @@ bool Guard::try_reset(const std::optional<StopStart>& start, const Cycle& cycle,
 /// A car off the road or across it is astray until it is along the road again.
 void Guard::watch_course(const std::optional<StopStart>& start) noexcept {
   const double least = options_.road == GuardRoad::kWaypoints ? -kGuessedWidth : 0.0;
-  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed;
-  run_.has_stood_astray = run_.is_astray && (run_.has_stood_astray || stands);
+  run_.has_stood_astray = run_.is_astray && (run_.has_stood_astray || stands());
   if (!start) {
     run_.is_astray = run_.is_far;
     return;
@@ -298,16 +295,14 @@ void Guard::watch_course(const std::optional<StopStart>& start) noexcept {
 
 /// A car that is astray, or that stands while its controller's commands are refused.
 bool Guard::should_lead_back(double time, bool has_answer) noexcept {
-  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed;
-  if (!has_answer || !(stands || run_.is_led)) run_.refused.at = time;
+  if (!has_answer || !(stands() || run_.is_led)) run_.refused.at = time;
   if (run_.refused.lasts(time) > kRefusedTime) run_.is_led = true;
   return run_.is_astray || (run_.is_led && has_answer);
 }
 
 /// The car stands, or is led on, and its controller does not drive it although it aims at a speed.
 bool Guard::idles(const controller::StepResult& result) const noexcept {
-  const bool stands = std::fabs(estimator_.state().vx) < kStandingSpeed;
-  return (stands || run_.is_led) && result.report.speed_reference > kTrialSpeed &&
+  return (stands() || run_.is_led) && result.report.speed_reference > kTrialSpeed &&
          !(result.command.throttle > kDrives);
 }
 

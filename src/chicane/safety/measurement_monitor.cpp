@@ -143,8 +143,7 @@ bool MeasurementMonitor::is_stuck(const model::Measurement& now, const model::St
 bool MeasurementMonitor::jumps(const model::Measurement& now, double elapsed) const noexcept {
   if (!has_last_ || !(elapsed < kLongestGap)) return true;
   const double driven = 0.5 * elapsed * (now.speed + last_.speed);
-  const double x = now.x - last_.x - driven * cos(now.psi);
-  const double y = now.y - last_.y - driven * sin(now.psi);
+  const double x = now.x - last_.x - driven * cos(now.psi), y = now.y - last_.y - driven * sin(now.psi);
   return hypot(x, y) > kJumpBack + kMismatchShare * driven;
 }
 

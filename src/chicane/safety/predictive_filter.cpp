@@ -15,7 +15,8 @@ namespace {
 constexpr double kAssumedCycle = 0.25;  // [s] between commands where that is not known: after the first one
 constexpr double kLateness = 0.06;      // [s] by which the next command may come late, before a stop begins
 constexpr double kShortestHold = 0.09;  // [s] a command is held where the next one comes at once
-constexpr double kLongestHold = 0.5;    // [s] a command is held
+constexpr double kLongestHold = 0.75;   // [s] a command is held, at most
+constexpr double kFirstHold = 0.5;      // [s] the command by which a led car begins to move is held
 constexpr double kRecovery = 0.5;       // [s] after a silence until the car is controlled again
 constexpr double kDrivenOpen = 2.0;     // [s] of silence for which a stop that is being driven is certified
 constexpr double kTurnReserve = 1.2;    // times the room in which a car that stood turns back to the road
@@ -199,14 +200,16 @@ double PredictiveFilter::slip(const StopStart& at) const noexcept {
   return planner_.has_wheels() ? std::max(use.front, use.rear) : use.rear;
 }
 
-/// The next command may come late: a stop that begins after that time comes before one that begins at once.
+/// The next command may come late: a stop that begins after that time comes before one that begins at once,
+/// and none begins sooner than the latest of the last commands came.
 Fit PredictiveFilter::verify(const Request& request, GuardReport& report) noexcept {
   const double cycle = request.interval > 0.0 ? request.interval : kAssumedCycle;
-  const double held = std::clamp(cycle, kShortestHold, kLongestHold);
+  const double longest = std::max(cycle, request.longest);
+  const double held = std::clamp(longest, kShortestHold, kLongestHold);
   // How far a car goes that begins to move shows only once its drive acts.
   const bool begins = request.is_led && request.start.body.vx < kCrawl;
-  const Fit fit =
-      verify_held(request, begins ? kLongestHold : std::min(cycle + kLateness, kLongestHold), report);
+  const double late = std::min(std::max(cycle + kLateness, longest), kLongestHold);
+  const Fit fit = verify_held(request, begins ? std::max(kFirstHold, held) : late, report);
   if (fit != Fit::kNone || begins) return fit;
   if (!request.road.is_raced()) return verify_held(request, held, report);
   double edge = planner_.edge(request.road, request.start);

@@ -60,6 +60,7 @@ class PredictiveFilter {
     model::Command command;
     double interval = 0.0;  ///< between two commands [s]; <= 0: not known
     bool is_led = false;    ///< the guard's own command, at walking pace
+    double longest = 0.0;   ///< interval lately [s]
   };
   /// Whether a certified stop exists where `request` leads; the stop is stored. The stored one stays when
   /// none exists. Writes stop_edge and stop_distance.

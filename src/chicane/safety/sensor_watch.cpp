@@ -91,8 +91,7 @@ const SensorDoubts& SensorWatch::see(const model::Measurement& now, const model:
     if (!has_doubts()) calm_ = 0.0;
     clean_from_ = now.time;
   }
-  const double x = doubts_.place ? x_ : expected.x;
-  const double y = doubts_.place ? y_ : expected.y;
+  const double x = doubts_.place ? x_ : expected.x, y = doubts_.place ? y_ : expected.y;
   const Innovation seen{.place = hypot(now.x - x, now.y - y),
                         .heading = std::fabs(angle_difference(now.psi, expected.psi)),
                         .speed = std::fabs(std::fabs(now.speed) - hypot(expected.vx, expected.vy))};
@@ -157,8 +156,7 @@ void SensorWatch::count_on(double elapsed, const model::Measurement& now,
   const double turn = angle_difference(now.psi, last_.psi);
   const double course = last_.psi + 0.5 * turn + slip;
   const double way = 0.5 * elapsed * (std::fabs(now.speed) + std::fabs(last_.speed));
-  const double dx = way * cos(course);
-  const double dy = way * sin(course);
+  const double dx = way * cos(course), dy = way * sin(course);
   moved_ = hypot(now.x - last_.x - dx, now.y - last_.y - dy);
   longer_ = hypot(now.x - last_.x, now.y - last_.y) - way;
   driven_ += way;
@@ -250,8 +248,7 @@ bool SensorWatch::is_earlier(const model::Measurement& now, const Innovation& mo
   for (std::size_t i = 0; i + 1 < have && now.time - back(i).time < kLatest; ++i) {
     const model::State& later = back(i).estimated;
     const model::State& earlier = back(i + 1).estimated;
-    const double dx = later.x - earlier.x;
-    const double dy = later.y - earlier.y;
+    const double dx = later.x - earlier.x, dy = later.y - earlier.y;
     const double square = dx * dx + dy * dy;
     const double along = (now.x - earlier.x) * dx + (now.y - earlier.y) * dy;
     const double share = square > 0.0 ? std::clamp(along / square, 0.0, 1.0) : 0.0;
@@ -275,19 +272,15 @@ void SensorWatch::judge_sums(const model::Measurement& now) noexcept {
     const Sample& from = back(i);
     const double elapsed = now.time - from.time;
     if (elapsed < 0.9 * kWindows[k]) return;
-    const double dx = now.x - from.x - (way_x_ - from.way_x);
-    const double dy = now.y - from.y - (way_y_ - from.way_y);
+    const double dx = now.x - from.x - (way_x_ - from.way_x), dy = now.y - from.y - (way_y_ - from.way_y);
     // A car that is measured elsewhere than at its centre of mass slips otherwise there.
-    const double slip_x = slip_x_ - from.slip_x;
-    const double slip_y = slip_y_ - from.slip_y;
+    const double slip_x = slip_x_ - from.slip_x, slip_y = slip_y_ - from.slip_y;
     const double slip = slip_x * slip_x + slip_y * slip_y;
     const double share = slip > 0.0 ? std::clamp(-(dx * slip_x + dy * slip_y) / slip, 0.0, kMostSlip) : 0.0;
     // Wind turns the course off the heading: that leaves the length of the way.
-    const double way_x = way_x_ - from.way_x;
-    const double way_y = way_y_ - from.way_y;
+    const double way_x = way_x_ - from.way_x, way_y = way_y_ - from.way_y;
     const double way = hypot(way_x, way_y);
-    const double left_x = dx + share * slip_x;
-    const double left_y = dy + share * slip_y;
+    const double left_x = dx + share * slip_x, left_y = dy + share * slip_y;
     const double length = hypot(way_x + left_x, way_y + left_y) - way;
     const double aside = way > 0.0 ? std::fabs(left_y * way_x - left_x * way_y) / way : 0.0;
     const double sum = hypot(length, std::max(aside - kCrab * way, 0.0));

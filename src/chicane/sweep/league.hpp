@@ -131,7 +131,7 @@ class BesideFile {
   std::vector<std::string> keys_{};  ///< keys of the limits and trials in the file
 };
 
-/// Reads both files. Fails as read_lines() does.
+/// Reads both files. Fails as read_runs() does.
 [[nodiscard]] Result<LeagueResults> read_results(const League& league, const std::string& results,
                                                  const std::string& beside);
 

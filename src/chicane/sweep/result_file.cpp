@@ -54,6 +54,15 @@ OnLine of_runs(const OnLine& on_line) {
   };
 }
 
+/// Reads the lines about runs; `on_first` gets an empty text where no first line is whole.
+Result<void> read_results(const std::string& file,
+                          const std::function<Result<void>(const std::string&)>& on_first,
+                          const OnLine& on_run) {
+  const auto contents = read_text_lines(file, on_first, of_runs(on_run));
+  if (contents && contents->header.empty()) return on_first("");
+  return contents ? Result<void>{} : fail(contents.error());
+}
+
 }  // namespace
 
 Json json_of(const Settings& settings) {
@@ -158,13 +167,6 @@ Result<FileContents> read_text_lines(
   return contents;
 }
 
-Result<FileContents> read_lines(
-    const std::string& file,
-    const std::function<Result<void>(const LinePlace&, const std::string&)>& on_line) {
-  return read_text_lines(
-      file, [](const std::string&) { return Result<void>{}; }, of_runs(on_line));
-}
-
 Result<void> read_runs(const std::string& file, const std::function<Result<void>(const Header&)>& on_header,
                        const std::function<Result<void>(std::uint64_t, const Json&)>& on_run) {
   const auto take_header = [&](const std::string& first) -> Result<void> {
@@ -175,9 +177,7 @@ Result<void> read_runs(const std::string& file, const std::function<Result<void>
     const Json run = protocol::parse_json(line);
     return run.is_object() ? on_run(place.run, run) : fail(ErrorCode::kParse, "got no JSON object");
   };
-  const auto contents = read_text_lines(file, take_header, of_runs(take_run));
-  if (contents && contents->header.empty()) return take_header("");
-  return contents ? Result<void>{} : fail(contents.error());
+  return read_results(file, take_header, take_run);
 }
 
 LineFile::LineFile(LineFile&& other) noexcept { *this = std::move(other); }
@@ -290,21 +290,24 @@ class Merger {
   Result<void> read(std::uint32_t index) {
     const std::string& file = files_[index];
     if (!streams_[index]) return fail(refusal(file + ": file", "none", "a file"));
-    std::string first;
-    std::getline(streams_[index], first);
-    const Result<Header> header = parse_header(first, file);
-    if (!header) return fail(header.error());
-    if (index == 0) {
-      header_ = first;
-      found_.resize(header->runs);
-    } else if (first != header_) {
-      return fail(ErrorCode::kInvalidArgument,
-                  fmt::format("{}: got {} as in {}", file,
-                              difference_text(*header, parse_header(header_, files_[0]).value()), files_[0]));
-    }
-    const auto contents = read_lines(
-        file, [&](const LinePlace& place, const std::string& text) { return take(place, text, index); });
-    return contents ? Result<void>{} : fail(contents.error());
+    const auto begin = [&](const std::string& first) -> Result<void> {
+      const Result<Header> header = parse_header(first, file);
+      if (!header) return fail(header.error());
+      if (index == 0) {
+        header_ = first;
+        found_.resize(header->runs);
+      } else if (first != header_) {
+        return fail(
+            ErrorCode::kInvalidArgument,
+            fmt::format("{}: got {} as in {}", file,
+                        difference_text(*header, parse_header(header_, files_[0]).value()), files_[0]));
+      }
+      return {};
+    };
+    const auto add = [&](const LinePlace& place, const std::string& text) {
+      return take(place, text, index);
+    };
+    return read_results(file, begin, add);
   }
 
   Result<void> take(const LinePlace& place, const std::string& text, std::uint32_t index) {

@@ -64,13 +64,8 @@ struct FileContents {
 [[nodiscard]] Result<FileContents> read_text_lines(
     const std::string& file, const std::function<Result<void>(const std::string&)>& on_first,
     const std::function<Result<void>(const LinePlace&, const std::string&)>& on_line);
-/// Reads the lines about runs. kParse "FILE:LINE: …" for a line that is none; otherwise as read_text_lines().
-[[nodiscard]] Result<FileContents> read_lines(
-    const std::string& file,
-    const std::function<Result<void>(const LinePlace&, const std::string&)>& on_line);
-
-/// Reads the lines about runs as JSON objects, after the header. kParse for a line that is no object;
-/// otherwise fails as read_lines() does.
+/// Reads the lines about runs as JSON objects, after the header. kParse "FILE:LINE: …" for a line that is
+/// none; otherwise fails as read_text_lines() does.
 [[nodiscard]] Result<void> read_runs(
     const std::string& file, const std::function<Result<void>(const Header&)>& on_header,
     const std::function<Result<void>(std::uint64_t run, const protocol::Json&)>& on_run);

@@ -67,7 +67,7 @@ struct Comparison {
 /// reasons. A run is worse where it leaves the road or does not complete its laps and the other one does
 /// neither, or where its laps take kSlower longer in the mean. Needs the columns completed, off_track_events
 /// and lap_times_s; guard_reasons is shown where it is kept. kInvalidArgument for a key that is no axis;
-/// otherwise fails as read_lines() does.
+/// otherwise fails as read_runs() does.
 [[nodiscard]] Result<Comparison> compare(const std::vector<std::string>& results, const std::string& key,
                                          const std::string& value);
 
@@ -79,7 +79,7 @@ struct SummaryDocument {
 
 /// Sums up the results of a sweep, one file or the files of its parts: the driven runs, one table for each
 /// axis, heat maps of pairs of axes, distributions, and the runs with the command that drives each (the first
-/// kMostListed). Runs that are missing are left out, and counted. Fails as read_lines() does.
+/// kMostListed). Runs that are missing are left out, and counted. Fails as read_runs() does.
 inline constexpr std::size_t kMostListed = 2000;
 [[nodiscard]] Result<SummaryDocument> summary_document(const std::vector<std::string>& results);
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
 
@@ -80,27 +79,23 @@ class Page {
   Result<void> read(const std::vector<std::string>& files) {
     std::vector<bool> seen;
     for (const std::string& file : files) {
-      std::ifstream stream(file, std::ios::binary);
-      std::string first;
-      std::getline(stream, first);
-      Result<Header> header = parse_header(first, file);
-      if (!header) return fail(header.error());
-      if (seen.empty()) {
-        header_ = *header;
-        seen.resize(header->runs);
-      } else if (header->plan != header_.plan) {
-        return fail(ErrorCode::kInvalidArgument,
-                    fmt::format("{}: got another plan than {}", file, files.front()));
-      }
-      const auto contents =
-          read_lines(file, [&](const LinePlace& place, const std::string& text) -> Result<void> {
-            if (place.run >= seen.size())
-              return fail(ErrorCode::kParse, "got a run that is none of the plan's");
-            if (!seen[place.run]) add(place.run, protocol::parse_json(text));
-            seen[place.run] = true;
-            return {};
-          });
-      if (!contents) return fail(contents.error());
+      const auto begin = [&](const Header& header) -> Result<void> {
+        if (seen.empty()) {
+          header_ = header;
+          seen.resize(header.runs);
+        } else if (header.plan != header_.plan) {
+          return fail(ErrorCode::kInvalidArgument,
+                      fmt::format("{}: got another plan than {}", file, files.front()));
+        }
+        return {};
+      };
+      const auto take = [&](std::uint64_t run, const json& line) -> Result<void> {
+        if (run >= seen.size()) return fail(ErrorCode::kParse, "got a run that is none of the plan's");
+        if (!seen[run]) add(run, line);
+        seen[run] = true;
+        return {};
+      };
+      if (Result<void> read = read_runs(file, begin, take); !read) return read;
     }
     std::sort(runs_.begin(), runs_.end(), [](const Run& a, const Run& b) { return a.number < b.number; });
     return {};
@@ -154,14 +149,14 @@ class Page {
   void add(std::uint64_t number, const json& line) {
     Run run;
     run.number = number;
-    const json settings = line.is_object() ? line.value("settings", json::object()) : json::object();
+    const json settings = line.value("settings", json::object());
     for (const std::string& key : header_.keys) run.values.push_back(plain_text(settings.value(key, json())));
     for (std::size_t i = 0; i < kShown.size(); ++i) {
-      const json value = line.is_object() ? line.value(kShown[i].column, json()) : json();
+      const json value = line.value(kShown[i].column, json());
       run.numbers[i] = value.is_number() ? value.get<double>() : std::nan("");
     }
-    run.error = line.is_object() ? line.value("error", "") : "not readable";
-    const bool is_done = !wants_laps(run) || (line.is_object() && line.value("completed", true));
+    run.error = line.value("error", "");
+    const bool is_done = !wants_laps(run) || line.value("completed", true);
     run.is_clean = run.error.empty() && is_done && line.value("off_track_events", 0) == 0;
     runs_.push_back(std::move(run));
   }

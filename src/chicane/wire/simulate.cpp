@@ -9,10 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <future>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -91,8 +89,7 @@ std::string with_stop_plan(const std::string& url) {
 
 /// The lines of a reply, from the car's frame to W.
 void place_lines(const protocol::UdacitySteer& reply, const model::State& car, controller::Plan& plan) {
-  const double c = cos(car.psi);
-  const double s = sin(car.psi);
+  const double c = cos(car.psi), s = sin(car.psi);
   const auto to_world = [&](const Vec2& p) {
     return Vec2{car.x + c * p.x() - s * p.y(), car.y + s * p.x() + c * p.y()};
   };

@@ -143,6 +143,12 @@ class DoubleTrackLimit final : public WithModel<DoubleTrackModel> {
                                             {.margin = 0.2, .grip_share = 0.98, .slip_share = 0.8}};
     return kReserves;
   }
+  /// Caps from the peak on: beyond it a tyre gives less force, and laps of most cars use less than twice its
+  /// slip.
+  [[nodiscard]] std::span<const double> slip_caps() const override {
+    static constexpr double kCaps[] = {1.0, 1.1, 1.25, 1.5, 2.0, 10.0};
+    return kCaps;
+  }
   [[nodiscard]] GuessCar guess_car() const override {
     return {.grip = 0.68 * model_.car.friction * kGravity,
             .drive = 0.5 * model_.car.drive_force / model_.car.mass,

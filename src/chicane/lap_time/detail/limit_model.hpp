@@ -28,6 +28,9 @@ class LimitModel : public PlanModel {
   /// Reserves for plans to be driven, in order: the first plan that can be driven is taken.
   [[nodiscard]] virtual std::span<const Reserve> reserves() const = 0;
 
+  /// PlanSearch::Options::slip_caps; empty: the search converges without.
+  [[nodiscard]] virtual std::span<const double> slip_caps() const { return {}; }
+
   /// Feedback along a plan: the first `driven` states, and two inputs from variable `input` on. Weights of
   /// errors and inputs, over each of them squared and second.
   [[nodiscard]] virtual int driven() const = 0;

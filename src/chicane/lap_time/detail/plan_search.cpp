@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "chicane/base/math.hpp"
@@ -128,18 +129,17 @@ bool PlanSearch::goes_on(double lap_time, std::size_t nodes) {
   return !is_stopped_ && !is_out_of_budget_;
 }
 
-Result<NodePlan> PlanSearch::find() {
+/// On coarse nodes, the best of kEnough optima.
+Result<NodePlan> PlanSearch::find_coarse() {
   struct Start {
     double barrier, share;
   };
   constexpr Start kStarts[] = {{0.01, 1.0}, {0.003, 1.0}, {0.03, 0.7}, {0.001, 0.7}, {0.1, 0.5}};
-  constexpr int kEnough = 2;  // coarse solutions; the best of them is refined
+  constexpr int kEnough = 2;
   const RoadNodes coarse = lay_nodes(track_, model_.guess_car(), kCoarse * options_.time_step);
-  const RoadNodes nodes = lay_nodes(track_, model_.guess_car(), options_.time_step);
-  expected_ = work_ + (kEnough * kIterationsOfStart * static_cast<double>(coarse.s.size()) +
-                       kIterationsOfFine * static_cast<double>(nodes.s.size())) /
-                          PlanProgress::kNodesPerSecond;
-  // Coarse nodes: the best of kEnough optima.
+  const double iterations = kEnough * kIterationsOfStart + kIterationsOfFine * kCoarse +
+                            kIterationsOfFine * static_cast<double>(options_.slip_caps.size());
+  expected_ = work_ + iterations * static_cast<double>(coarse.s.size()) / PlanProgress::kNodesPerSecond;
   NodePlan best;
   int found = 0;
   for (const Start& start : kStarts) {
@@ -150,25 +150,53 @@ Result<NodePlan> PlanSearch::find() {
         solve(plan, start.barrier, kCoarseIterations, std::max(kCoarseTolerance, options_.tolerance));
     if (is_stopped_) return fail(ErrorCode::kInvalidArgument, kStopped);
     const bool is_usable = is_out_of_budget_ && found == 0 && violation_ <= kUsable;
-    if (is_usable) return best_so_far(std::move(plan));
+    if (is_usable) return plan;
     if (is_out_of_budget_) break;
     if (!is_solved) continue;
     if (++found == 1 || plan.lap_time < best.lap_time) best = std::move(plan);
     if (found == kEnough) break;
   }
-  if (found == 0)
-    return fail(ErrorCode::kNotFound,
-                is_out_of_budget_ ? kNoBudget : "limit: no optimum from any first guess");
-  if (is_out_of_budget_) return best_so_far(std::move(best));
-  const auto variables = static_cast<std::size_t>(model_.functions().variables);
-  // Fine nodes: from the best coarse plan.
-  for (const double barrier : {kWarmBarrier, 1e-2, 1e-3}) {  // after the warm start two colder ones
-    NodePlan fine;
-    fine.road = nodes;
-    fine.z = moved(best, fine.road, variables);
-    if (solve(fine, barrier, kFineIterations, options_.tolerance)) return fine;
-    if (is_stopped_) return fail(ErrorCode::kInvalidArgument, kStopped);
-    if (is_out_of_budget_) return best_so_far(violation_ <= kUsable ? std::move(fine) : std::move(best));
+  if (found > 0) return best;
+  return fail(ErrorCode::kNotFound, is_out_of_budget_ ? kNoBudget : "limit: no optimum from any first guess");
+}
+
+/// A search without a cap on slip converges near its optimum only: from cap to cap, as long as there is one.
+std::vector<NodePlan> PlanSearch::release_slip(NodePlan first) {
+  std::vector<NodePlan> plans{std::move(first)};
+  for (std::size_t i = 1; i < options_.slip_caps.size() && !is_out_of_budget_; ++i) {
+    model_.set_reserve({.slip_share = options_.slip_caps[i]});
+    NodePlan next = plans.back();
+    if (!solve(next, kWarmBarrier, kCoarseIterations, kCoarseTolerance)) break;
+    plans.push_back(std::move(next));
+  }
+  return plans;
+}
+
+Result<NodePlan> PlanSearch::find() {
+  const std::span<const double> caps = options_.slip_caps;
+  if (!caps.empty()) model_.set_reserve({.slip_share = caps.front()});
+  Result<NodePlan> found = find_coarse();
+  if (!found) return found;
+  std::vector<NodePlan> coarse = release_slip(std::move(*found));
+  const RoadNodes nodes = lay_nodes(track_, model_.guess_car(), options_.time_step);
+  const auto on_fine_nodes = [&](const NodePlan& from) {
+    const auto variables = static_cast<std::size_t>(model_.functions().variables);
+    return NodePlan{.road = nodes, .z = moved(from, nodes, variables), .lap_time = from.lap_time};
+  };
+  calm_ = on_fine_nodes(coarse.front());
+  const auto is_whole = [&] { return coarse.size() >= caps.size(); };
+  for (; !coarse.empty(); coarse.pop_back()) {
+    if (is_out_of_budget_) return best_so_far(std::move(coarse.back()));
+    if (!caps.empty()) model_.set_reserve({.slip_share = caps[coarse.size() - 1]});
+    for (const double barrier : {kWarmBarrier, 1e-2, 1e-3}) {  // after the warm start two colder ones
+      NodePlan fine = on_fine_nodes(coarse.back());
+      if (solve(fine, barrier, kFineIterations, options_.tolerance))
+        return is_whole() ? fine : best_so_far(std::move(fine));
+      if (is_stopped_) return fail(ErrorCode::kInvalidArgument, kStopped);
+      if (is_out_of_budget_)
+        return best_so_far(violation_ <= kUsable ? std::move(fine) : std::move(coarse.back()));
+      if (!is_whole()) break;  // a plan with a smaller cap is nearer
+    }
   }
   return fail(ErrorCode::kNotFound, "limit: an optimum on coarse nodes only");
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct NodePlan {
   RoadNodes road;
   std::vector<double> z;
   double lap_time = 0.0;
-  bool is_best_so_far = false;  ///< no optimum: the budget ended the search
+  bool is_best_so_far = false;  ///< no optimum: the budget or a slip cap ended the search
 };
 
 /// Lap time by the trapezoidal rule [s].
@@ -39,6 +40,9 @@ class PlanSearch {
   struct Options {
     double time_step = 0.05;  ///< time between nodes [s]
     double tolerance = 1e-6;  ///< stationarity at an optimum (Collocation::Options)
+    /// Rising caps on the slip over the slip of peak force: find() solves with each in turn on coarse nodes.
+    /// Empty: one search, with the reserve that the model has.
+    std::span<const double> slip_caps{};
     double budget = std::numeric_limits<double>::infinity();  ///< limit of find()'s work [s]
     /// Progress callback: count of iterations and lap time [s]; false ends the search. May be empty.
     std::function<bool(int iteration, double lap_time)> go_on{};
@@ -47,9 +51,11 @@ class PlanSearch {
   PlanSearch(const road::Track& track, PlanModel& model, const Options& options)
       : track_{track}, model_{model}, options_{options} {}
 
-  /// Best plan so far if the budget ends the search. kNotFound if there is none: no optimum from any first
-  /// guess, or no budget left to reach one.
+  /// Best plan so far if the budget, or a slip cap without an optimum, ends the search. kNotFound if there is
+  /// none: no optimum from any first guess, or no budget left to reach one.
   [[nodiscard]] Result<NodePlan> find();
+  /// Plan on fine nodes near the one with the first slip cap. Pre: find() has found a plan.
+  [[nodiscard]] const NodePlan& calm() const noexcept { return calm_; }
   /// Plan with `reserve`, searched from a neighbouring plan.
   [[nodiscard]] Result<NodePlan> near(const NodePlan& plan, const Reserve& reserve);
 
@@ -63,12 +69,16 @@ class PlanSearch {
 
  private:
   [[nodiscard]] std::vector<double> first_guess(const RoadNodes& road, double share) const;
+  [[nodiscard]] Result<NodePlan> find_coarse();
+  /// `first`, and plans with further slip caps.
+  [[nodiscard]] std::vector<NodePlan> release_slip(NodePlan first);
   [[nodiscard]] bool solve(NodePlan& plan, double barrier, int most_iterations, double tolerance);
   [[nodiscard]] bool goes_on(double lap_time, std::size_t nodes);
 
   const road::Track& track_;
   PlanModel& model_;
   Options options_;
+  NodePlan calm_;
   int iterations_ = 0;
   double stationarity_ = 0.0, violation_ = 0.0;
   double work_ = 0.0;

@@ -33,6 +33,7 @@ class CdrSource {
 
   /// Whether every read so far succeeded.
   [[nodiscard]] bool ok() const { return ok_; }
+  [[nodiscard]] bool is_at_end() const { return ok_ && at_ == bytes_.size(); }
 
   template <class T>
   T get() {
@@ -191,6 +192,11 @@ class WritingArchive {
     to_.count(items.size());
     for (const Item& item : items) each(item);
   }
+  template <class Item, class Each>
+  void optional(const std::optional<Item>& item, Each each) {
+    to_.put(item.has_value());
+    if (item) each(*item);
+  }
   [[nodiscard]] std::string bytes() { return to_.bytes(); }
 
  private:
@@ -241,7 +247,13 @@ class ReadingArchive {
     fits_ = fits_ && count <= capacity;
     for (std::uint32_t i = 0; i < count && ok(); ++i) each(items.emplace_back());
   }
+  template <class Item, class Each>
+  void optional(std::optional<Item>& item, Each each) {
+    if (from_.flag()) each(item.emplace());
+  }
   [[nodiscard]] bool ok() const { return fits_ && from_.ok(); }
+  /// Whether every read succeeded and nothing is left.
+  [[nodiscard]] bool is_at_end() const { return fits_ && from_.is_at_end(); }
 
  private:
   void get(std::string& text) { text = from_.text(); }

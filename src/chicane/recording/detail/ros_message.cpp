@@ -6,15 +6,16 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <cstring>
 #include <sstream>
 #include <utility>
+
+#include "chicane/protocol/car_messages.hpp"
 
 namespace chicane::recording {
 namespace {
 
 constexpr int kMostDepth = 8;                     // limit of nested messages
-constexpr std::size_t kMostElements = 1U << 20U;  // limit of a list's elements and a text's bytes
+constexpr std::size_t kMostElements = 1U << 20U;  // limit of a list's elements
 
 }  // namespace
 
@@ -33,47 +34,6 @@ const std::vector<double>& RosContent::list(std::string_view name) const {
   const auto found = numbers.find(name);
   return found == numbers.end() ? kNone : found->second;
 }
-
-/// Read position in the bytes of a message. A read beyond their end fails, and so do all later ones.
-class RosReader::Cursor {
- public:
-  explicit Cursor(std::string_view bytes) : bytes_{bytes} {}
-
-  template <class T>
-  bool get(double& value) {
-    T raw{};
-    if (!take(&raw, sizeof raw)) return false;
-    value = static_cast<double>(raw);
-    return true;
-  }
-  bool count(std::size_t& value) {
-    std::uint32_t raw = 0;
-    if (!take(&raw, sizeof raw) || raw > kMostElements) return false;
-    value = raw;
-    return true;
-  }
-  bool text(std::string& value) {
-    std::size_t size = 0;
-    if (!count(size) || size > bytes_.size() - at_) return false;
-    value = std::string(bytes_.substr(at_, size > 0 ? size - 1 : 0));
-    at_ += size;
-    return true;
-  }
-
- private:
-  static constexpr std::size_t kHeader = 4;  ///< encapsulation header [byte]
-
-  bool take(void* to, std::size_t size) {
-    at_ = kHeader + (at_ - kHeader + size - 1) / size * size;
-    if (at_ > bytes_.size() || size > bytes_.size() - at_) return false;
-    std::memcpy(to, bytes_.data() + at_, size);
-    at_ += size;
-    return true;
-  }
-
-  std::string_view bytes_;
-  std::size_t at_ = kHeader;
-};
 
 Result<RosReader> RosReader::create(std::string_view definition) {
   RosReader reader;
@@ -119,53 +79,48 @@ Result<RosReader> RosReader::create(std::string_view definition) {
   return reader;
 }
 
-bool RosReader::read_type(const std::string& type, const std::string& name, Cursor& cursor, int depth,
-                          RosContent& content) const {
+bool RosReader::read_type(const std::string& type, const std::string& name, protocol::CdrSource& source,
+                          int depth, RosContent& content) const {
   if (type == "string") {
-    std::string text;
-    if (!cursor.text(text)) return false;
-    content.texts[name].push_back(std::move(text));
-    return true;
+    content.texts[name].emplace_back(source.text());
+    return source.ok();
   }
-  double value = 0.0;
-  const auto keep = [&](bool is_there) {
-    if (is_there) content.numbers[name].push_back(value);
-    return is_there;
+  const auto keep = [&](auto value) {
+    content.numbers[name].push_back(static_cast<double>(value));
+    return source.ok();
   };
   if (type == "builtin_interfaces/Time" || type == "builtin_interfaces/Duration") {
-    double nanoseconds = 0.0;
-    if (!cursor.get<std::int32_t>(value) || !cursor.get<std::uint32_t>(nanoseconds)) return false;
-    value += 1e-9 * nanoseconds;
-    return keep(true);
+    const double seconds = source.get<std::int32_t>();
+    return keep(seconds + 1e-9 * source.get<std::uint32_t>());
   }
-  if (type == "float64") return keep(cursor.get<double>(value));
-  if (type == "float32") return keep(cursor.get<float>(value));
-  if (type == "bool" || type == "uint8" || type == "byte") return keep(cursor.get<std::uint8_t>(value));
-  if (type == "int8") return keep(cursor.get<std::int8_t>(value));
-  if (type == "uint16") return keep(cursor.get<std::uint16_t>(value));
-  if (type == "int16") return keep(cursor.get<std::int16_t>(value));
-  if (type == "uint32") return keep(cursor.get<std::uint32_t>(value));
-  if (type == "int32") return keep(cursor.get<std::int32_t>(value));
-  if (type == "uint64") return keep(cursor.get<std::uint64_t>(value));
-  if (type == "int64") return keep(cursor.get<std::int64_t>(value));
+  if (type == "float64") return keep(source.get<double>());
+  if (type == "float32") return keep(source.get<float>());
+  if (type == "bool" || type == "uint8" || type == "byte") return keep(source.get<std::uint8_t>());
+  if (type == "int8") return keep(source.get<std::int8_t>());
+  if (type == "uint16") return keep(source.get<std::uint16_t>());
+  if (type == "int16") return keep(source.get<std::int16_t>());
+  if (type == "uint32") return keep(source.get<std::uint32_t>());
+  if (type == "int32") return keep(source.get<std::int32_t>());
+  if (type == "uint64") return keep(source.get<std::uint64_t>());
+  if (type == "int64") return keep(source.get<std::int64_t>());
   // A message: its fields in turn.
   const auto fields = types_.find(type);
   if (fields == types_.end() || depth > kMostDepth) return false;
   for (const Field& field : fields->second) {
-    std::size_t count = field.count;
-    if (field.many == Field::Many::kCounted && !cursor.count(count)) return false;
+    const std::size_t count = field.many == Field::Many::kCounted ? source.count(1) : field.count;
+    if (count > kMostElements) return false;
     const std::string path = name.empty() ? field.name : name + "." + field.name;
     for (std::size_t i = 0; i < count; ++i)
-      if (!read_type(field.type, path, cursor, depth + 1, content)) return false;
+      if (!read_type(field.type, path, source, depth + 1, content)) return false;
   }
-  return true;
+  return source.ok();
 }
 
 Result<RosContent> RosReader::read(std::string_view bytes) const {
   RosContent content;
-  Cursor cursor(bytes);
-  if (!read_type("", "", cursor, 0, content))
-    return fail(ErrorCode::kParse, "got a message that ends too early");
+  protocol::CdrSource source(bytes);
+  if (!read_type("", "", source, 0, content))
+    return fail(ErrorCode::kParse, "got a message that is cut short, or not in plain CDR");
   return content;
 }
 

@@ -10,6 +10,10 @@
 #include "chicane/base/result.hpp"
 #include "chicane/telemetry/mcap.hpp"
 
+namespace chicane::protocol {
+class CdrSource;
+}
+
 namespace chicane::recording {
 
 /// The content of a message: all elements of each field, in their order. Fields of nested messages have their
@@ -25,7 +29,7 @@ struct RosContent {
   [[nodiscard]] const std::vector<double>& list(std::string_view name) const;
 };
 
-/// Reads CDR messages (XCDR1, little endian) by the definition that their recording holds: one reader for all
+/// Reads CDR messages (XCDR1) by the definition that their recording holds: one reader for all
 /// versions of a message.
 class RosReader {
  public:
@@ -42,10 +46,8 @@ class RosReader {
     enum class Many { kOne, kFixed, kCounted } many = Many::kOne;
     std::size_t count = 1;
   };
-  class Cursor;
-
-  [[nodiscard]] bool read_type(const std::string& type, const std::string& name, Cursor& cursor, int depth,
-                               RosContent& content) const;
+  [[nodiscard]] bool read_type(const std::string& type, const std::string& name, protocol::CdrSource& source,
+                               int depth, RosContent& content) const;
 
   std::map<std::string, std::vector<Field>, std::less<>> types_{};  ///< by type; "" is the message
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Samples and commands from bags of ROS 2, in MCAP files or SQLite.
-#include "chicane/identify/detail/ros_rows.hpp"
+#include "chicane/identify/detail/log_rows.hpp"
 
 #include <fmt/format.h>
 #include <sqlite3.h>
