@@ -99,8 +99,9 @@ class OcpSolver {
   /// Follows the barrier from a guess, low where it `is_near`, in at most `most` iterations, counted in
   /// `report`. True if it gets there: solve_again() continues with full steps. Rows that must hold are
   /// equations then (detail/hard_rows.hpp), and `problem` gets their multipliers.
+  enum class Begin { kGuess, kNear, kHere };
   bool follow_barrier(P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline, int most,
-                      bool is_near, SolveReport& report) noexcept;
+                      Begin begin, SolveReport& report) noexcept;
   /// Slacks of hard constraints to penalties that have changed.
   void update_penalties(const P& problem) noexcept { barrier_.update_penalties(problem, t_.horizon); }
 
@@ -336,7 +337,7 @@ class OcpSolver {
   /// whatever the units of the inputs.
   [[nodiscard]] bool is_crawling() const noexcept {
     constexpr double kIterations = 20.0;
-    return kCanFilter && (has_filtered_ ||
+    return kCanFilter && (has_filtered_ || only_full_steps_ ||
                           (barrier_.is_final() && progress_.is_slow(0.1 * options_.tolerance, kIterations)));
   }
 

@@ -108,7 +108,7 @@ class FilterMethod {
       std::copy(now.adjoint[i], now.adjoint[i] + candidate_.horizon, multipliers_[i]);
   }
   /// Goes on with a lower barrier from where it left off. False when there is none.
-  bool resume(Linearised& now, Slacks& slacks, Point& t) noexcept {
+  bool resume(Linearised& now, Slacks& slacks, Point& t, bool is_fresh) noexcept {
     constexpr double kLeast = 1e-13;  // least barrier, in units of costs
     if (final_mu_ <= kLeast * unit_) return false;
     final_mu_ = std::max(kLeast * unit_, 1e-2 * final_mu_);
@@ -117,7 +117,8 @@ class FilterMethod {
     for (std::size_t i = 0; i < kNx; ++i)
       std::copy(multipliers_[i], multipliers_[i] + t.horizon, now.adjoint[i]);
     slacks.set_mu(mu_);
-    is_fresh_ = is_new_barrier_ = true;
+    is_fresh_ = is_fresh;
+    is_new_barrier_ = true;
     is_here_known_ = false;
     return true;
   }

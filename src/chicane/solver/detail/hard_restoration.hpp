@@ -18,17 +18,19 @@ namespace chicane::solver {
 /// are then those of its point, and full steps may continue from there.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajectory, const Deadline& deadline,
-                                           int& left, HardReport& report) noexcept {
+                                           int& left, HardReport& report, bool goes_on) noexcept {
+  using Begin = typename decltype(inner_)::Begin;
   constexpr int kMostIterations = 200;
   constexpr double kDearer = 4.0;  // factor over the highest multiplier: the constraint is kept
   SolveReport seen;
   const int most = std::max(1, std::min(left, kMostIterations));
   inner_.ask_for(round_tolerance());
-  const bool is_solved = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, false, seen);
+  const bool is_solved = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, goes_on ? Begin::kHere : Begin::kGuess, seen);
   report.iterations += seen.iterations;
   report.sweeps += seen.sweeps;
   left -= seen.iterations;
   if (!is_solved) return false;
+  inner_.keep_point();
   for (std::size_t c = 0; c < kNc; ++c) {
     double highest = 0.0;
     for (int k = 0; is_hard(*problem_.problem, c) && k < trajectory.horizon; ++k)
@@ -39,32 +41,33 @@ bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajecto
   inner_.update_penalties(problem_);
   keep_multipliers(trajectory.horizon);
   point_multipliers_ = multipliers_;
-  inner_.keep_point();
   return can_go_on_ = true;
 }
-/// Restoration: the primal-dual method with elastic rows and almost no cost (docs/solver.md, eq. 55),
-/// repeated as long as a small share of the violation is left. True if a minimum above zero is proven:
-/// `trajectory` is there. Else weights and multipliers are those of the point found.
+/// Restoration: the primal-dual method with elastic rows and `share` of the cost, less and less of it down
+/// to almost none (docs/solver.md, eq. 55); that is repeated as long as a small share of the violation is left.
+/// True if a minimum above zero is proven: `trajectory` is there. Else it is the point found.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
-                                                  const Deadline& deadline, int& left,
+                                                  double share, const Deadline& deadline, int& left,
                                                   HardReport& report) noexcept {
+  using Begin = typename decltype(inner_)::Begin;
   constexpr int kMostIterations = 200;
-  constexpr double kShare = 1e-8, kTolerance = 1e-8, kFirstUnit = 0.1, kNoDefect = 1e-9;
-  constexpr double kMuch = 0.1, kLeastShare = 1e-3;  // over the unit: repeat below it, least next unit
+  constexpr double kTolerance = 1e-8, kFirstUnit = 0.1, kNoDefect = 1e-9;
+  constexpr double kFall = 1e-2;                     // of the share, once it is less
+  constexpr double kMuch = 0.1, kLeastUnit = 1e-3;  // over the unit: repeat below it, least next unit
   if (left <= 0) return false;
   forget_multipliers();
   inner_.ask_for(kTolerance);
   Misses misses = measure(problem, trajectory, nullptr);
   double unit = std::max(kFirstUnit, misses.worst());  // states of a guess may miss nothing but the dynamics
   SolveReport seen;
-  bool converged = false, is_less = true, is_near = false;
-  for (; is_less && left > 0; is_near = true) {
+  bool converged = false, is_over = false;
+  for (Begin begin = Begin::kGuess; !is_over && left > 0 && !deadline.spent(); begin = Begin::kNear) {
     const double cost = std::isfinite(misses.cost) ? std::max(unit_, misses.cost) : unit_;
-    weigh_misses(kShare / (cost * std::max(1.0, unit)), unit);
+    weigh_misses(share / ((share > kLeastShare ? unit_ : cost) * std::max(1.0, unit)), unit);
     seen = {};
     const int most = std::max(1, std::min(left, kMostIterations));
-    converged = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, is_near, seen);
+    converged = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, begin, seen);
     inner_.start_from_states(true);
     report.iterations += seen.iterations;
     report.sweeps += seen.sweeps;
@@ -72,11 +75,14 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
     misses = measure(problem, trajectory, &report);
     const double worst = misses.worst();
     is_possible_ = is_possible_ || (converged && worst <= options_.tolerance);
-    is_less = converged && !is_possible_ && worst < kMuch * unit;
-    if (is_less) unit = std::max(worst, kLeastShare * unit);
+    const bool was_least = share <= kLeastShare;
+    is_over = is_possible_ || (was_least && !(converged && worst < kMuch * unit));
+    if (is_over) break;
+    unit = was_least ? std::max(worst, kLeastUnit * unit) : std::max(kFirstUnit, worst);
+    share = share > kFall ? kFall * share : kLeastShare;
   }
   keep_multipliers(trajectory.horizon);
-  is_certified_ = !is_possible_ && misses.worst() > options_.tolerance &&
+  is_certified_ = share <= kLeastShare && !is_possible_ && misses.worst() > options_.tolerance &&
                   (converged || (seen.iterations > 0 && seen.defect <= kNoDefect)) &&
                   is_proven(problem, trajectory, misses.total / unit, converged ? 1e-2 : 1e-3);
   problem_.violation_penalty = 0.0;

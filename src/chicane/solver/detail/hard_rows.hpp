@@ -85,6 +85,11 @@ class HardRows {
     end_ = {};
     is_ready_ = false;
   }
+  /// Rows of the primal-dual method again, where end() has left them.
+  void resume(P& problem, double mu, std::size_t horizon) noexcept {
+    problem.is_primal_dual = true;
+    set_rows(problem, mu, horizon);
+  }
   [[nodiscard]] bool is_ready() const noexcept { return is_ready_; }
   /// Sets weights of at most `rho` from now on; rows give way at `penalty`, if that is above zero.
   void weigh(double rho, double penalty) noexcept {

@@ -91,6 +91,8 @@ class HardSolver {
   static constexpr std::size_t kNeh = Problem::kEndEqualities;
   static constexpr std::size_t kEnd = kNeh + Problem::kEndConstraints;
   static constexpr int kMostFullSteps = 15;  ///< limit in one round
+  static constexpr int kMostBarriers = 2;    ///< lower ones, where full steps fail
+  static constexpr double kLeastShare = 1e-8;  ///< of the cost in restoration
   static constexpr double kLight = 1e-9;     ///< weight of rows, negligible beside their multipliers
 
   /// Violations of a trajectory by row: the largest of each.
@@ -124,11 +126,14 @@ class HardSolver {
     if (multipliers_.is_known && finish_steps(problem, x0, trajectory, deadline, left, report)) return report;
     // The method from the guess; from what restoration finds near its last point; from what it finds near the
     // guess.
-    for (int attempt = 0; attempt < 3 && left > 0 && !deadline.spent(); ++attempt) {
+    constexpr std::array kShares{0.0, kLeastShare, 100.0, 1.0};
+    for (std::size_t attempt = 0; attempt < kShares.size() && left > 0 && !deadline.spent(); ++attempt) {
       attempt == 1 ? inner_.start_from_states(true) : begin_again(trajectory);
-      if (attempt > 0 && is_infeasible(problem, x0, trajectory, deadline, left, report)) continue;
+      if (attempt > 0 && is_infeasible(problem, x0, trajectory, kShares[attempt], deadline, left, report)) continue;
       if (!follow(x0, trajectory, deadline, left, report)) continue;
-      if (finish_steps(problem, x0, trajectory, deadline, left, report)) return report;
+      for (int n = 0; n == 0 || (n <= kMostBarriers && go_on(x0, trajectory, deadline, left, report)); ++n) {
+        if (finish_steps(problem, x0, trajectory, deadline, left, report)) return report;
+      }
       if (take_point(problem, trajectory, report)) return report;
     }
     if (is_certified_) return tell_infeasible(problem, x0, trajectory, report);
@@ -154,7 +159,9 @@ class HardSolver {
     return report;
   }
   bool follow(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
-              HardReport& report) noexcept;
+              HardReport& report, bool goes_on = false) noexcept;
+  bool go_on(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
+              HardReport& report) noexcept { return left > 0 && follow(x0, trajectory, deadline, left, report, true); }
   /// The guess again, without multipliers.
   void begin_again(Trajectory& trajectory) noexcept {
     trajectory = guess_;
@@ -311,8 +318,8 @@ class HardSolver {
   }
 
   // ---- what cannot hold (detail/hard_restoration.hpp)
-  bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
-                     int& left, HardReport& report) noexcept;
+  bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, double share,
+                     const Deadline& deadline, int& left, HardReport& report) noexcept;
   HardReport tell_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                              HardReport report) noexcept;
   bool is_proven(const P& problem, const Trajectory& least, double violation, double little) const noexcept;

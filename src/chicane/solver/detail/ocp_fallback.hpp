@@ -108,6 +108,7 @@ SolveReport OcpSolver<P, Capacity, Arch>::take_point(const P& problem, Trajector
   SolveReport report;
   t_ = kept_;
   barrier_.restore(kept_slacks_, t_.horizon);
+  update_penalties(problem);
   if (bring_inside()) roll_out(problem);
   full_steps_ = true;
   is_fresh_ = is_exact_ = false;
@@ -144,7 +145,7 @@ template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::begin_filter(const P& problem, const Trajectory& trajectory,
                                                 SolveReport& report) noexcept {
   is_filtering_ = true;
-  if (has_filtered_) return filter_.resume(now_, barrier_, t_);
+  if (has_filtered_) return filter_.resume(now_, barrier_, t_, true);
   full_steps_ = is_fresh_ = has_filtered_ = true;
   is_exact_ = shows_best_ = false;
   if (!take_guess(problem, trajectory)) return false;
@@ -201,7 +202,7 @@ bool OcpSolver<P, Capacity, Arch>::filter_iteration(const P& problem, const Dead
 
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, Trajectory& trajectory,
-                                                  const Deadline& deadline, int most, bool is_near,
+                                                  const Deadline& deadline, int most, Begin begin,
                                                   SolveReport& report) noexcept {
   using Outcome = typename Filter::Outcome;
   constexpr int kPatience = 20;  // short steps in succession; restoration takes any number
@@ -209,9 +210,17 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, T
   filter_.take_rows(&problem);
   SolveReport last;
   bool is_solved = false;
-  const bool is_good = start(problem, x0, trajectory);
-  is_again_ = is_near;
-  const bool has_begun = is_good && begin_filter(problem, trajectory, last);
+  bool has_begun = begin == Begin::kHere;
+  if (has_begun) {
+    is_filtering_ = true;
+    barrier_.restore(kept_slacks_, t_.horizon);
+    has_begun = filter_.resume(now_, barrier_, t_, false);
+    now_.hard.resume(problem, filter_.mu(), t_.horizon);
+  } else {
+    has_begun = start(problem, x0, trajectory);
+    is_again_ = begin == Begin::kNear;
+    has_begun = has_begun && begin_filter(problem, trajectory, last);
+  }
   for (; has_begun && report.iterations < most && !is_solved; ++report.iterations) {
     const Outcome outcome = filter_.iterate(problem, now_, lq_, barrier_, t_, deadline, report);
     record_filter_iteration(report);
