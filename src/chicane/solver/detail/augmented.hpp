@@ -87,6 +87,7 @@ class Augmented {
   std::array<double, kEndEqualities + kEndConstraints> terminal_shift{};
   std::array<double, kNc> penalty_factor{};  ///< factors of soft constraints, hard ones among them
   double violation_penalty = 0.0;            ///< penalty on the violation of rows that must hold, if any
+  double limit_share = 1.0;
   double hard_penalty = 0.0;    ///< replaces the hard ones' penalties, if any: so high that none is violated
   bool is_primal_dual = false;  ///< rows in the form of the primal-dual method (detail/hard_rows.hpp)
 
@@ -141,7 +142,7 @@ class Augmented {
       if (problem->is_hard(c)) {
         penalty.cap = 1e30;
         if (is_primal_dual) penalty = {hard_penalty, 0.0, SoftConstraint<>::kMustHold};
-        if (violation_penalty > 0.0) penalty = {violation_penalty, 0.0, 1e30};
+        if (violation_penalty > 0.0) penalty = {limit_share * violation_penalty, 0.0, 1e30};
       }
     }
     return penalty;

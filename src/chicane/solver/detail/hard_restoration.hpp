@@ -53,7 +53,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   using Begin = typename decltype(inner_)::Begin;
   constexpr int kMostIterations = 200;
   constexpr double kTolerance = 1e-8, kFirstUnit = 0.1, kNoDefect = 1e-9;
-  constexpr double kFall = 1e-2;                     // of the share, once it is less
+  constexpr double kFall = 1e-2, kLimitShare = 0.1;  // of the share; penalty of inequalities of the stages meanwhile
   constexpr double kMuch = 0.1, kLeastUnit = 1e-3;  // over the unit: repeat below it, least next unit
   if (left <= 0) return false;
   forget_multipliers();
@@ -65,6 +65,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   for (Begin begin = Begin::kGuess; !is_over && left > 0 && !deadline.spent(); begin = Begin::kNear) {
     const double cost = std::isfinite(misses.cost) ? std::max(unit_, misses.cost) : unit_;
     weigh_misses(share / ((share > kLeastShare ? unit_ : cost) * std::max(1.0, unit)), unit);
+    problem_.limit_share = share <= kLeastShare ? 1.0 : kLimitShare;
     seen = {};
     const int most = std::max(1, std::min(left, kMostIterations));
     converged = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, begin, seen);
