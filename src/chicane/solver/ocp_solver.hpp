@@ -105,10 +105,6 @@ class OcpSolver {
   /// Slacks of hard constraints to penalties that have changed.
   void update_penalties(const P& problem) noexcept { barrier_.update_penalties(problem, t_.horizon); }
 
-  /// Value of soft constraint c of stage k at the last linearisation.
-  [[nodiscard]] double constraint_value(int k, std::size_t c) const noexcept {
-    return barrier_.value(c, static_cast<std::size_t>(k));
-  }
   /// Solves end where full steps fail: the primal-dual method comes before them.
   void take_only_full_steps() noexcept { only_full_steps_ = true; }
   /// Keeps the present point for take_point().
@@ -313,7 +309,7 @@ class OcpSolver {
   bool full_step(const P& problem, const Trajectory& trajectory, const Deadline& deadline,
                  SolveReport& report) noexcept {
     using Outcome = typename WorkingSetQp<Lq>::Outcome;
-    const bool may_circle = kCanFilter && options_.may_start_short && !has_filtered_;
+    const bool may_circle = kCanFilter && options_.may_start_short && !has_filtered_ && !only_full_steps_;
     const Outcome outcome = qp_.solve(
         lq_, t_.horizon, is_exact_, [&] { take_gauss_newton(problem); }, deadline, may_circle, report.sweeps);
     if (outcome != Outcome::kSolved)

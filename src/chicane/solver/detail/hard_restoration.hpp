@@ -75,9 +75,9 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
     left -= seen.iterations;
     misses = measure(problem, trajectory, &report);
     const double worst = misses.worst();
-    is_possible_ = is_possible_ || (converged && worst <= options_.tolerance);
-    const bool was_least = share <= kLeastShare;
-    is_over = is_possible_ || (was_least && !(converged && worst < kMuch * unit));
+    const bool was_least = share <= kLeastShare, holds = converged && worst <= options_.tolerance;
+    is_possible_ = is_possible_ || holds;
+    is_over = holds || (was_least && !(converged && worst < kMuch * unit));
     if (is_over) break;
     unit = was_least ? std::max(worst, kLeastUnit * unit) : std::max(kFirstUnit, worst);
     share = share > kFall ? kFall * share : kLeastShare;
@@ -85,7 +85,7 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   keep_multipliers(trajectory.horizon);
   is_certified_ = share <= kLeastShare && !is_possible_ && misses.worst() > options_.tolerance &&
                   (converged || (seen.iterations > 0 && seen.defect <= kNoDefect)) &&
-                  is_proven(problem, trajectory, misses.total / unit, converged ? 1e-2 : 1e-3);
+                  is_proven(problem, x0, trajectory, misses.total / unit, converged);
   problem_.violation_penalty = 0.0;
   inner_.ask_for(round_tolerance());
   if (is_certified_) {
@@ -99,31 +99,37 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   return false;
 }
 /// Whether no inputs within their bounds are free of violation, by slopes and multipliers at the inputs of
-/// the least: all slopes together, each times the distance to the bound that it points to, gain
-/// `little` of the violation at most, and multipliers show all but that of it (docs/solver.md, eq. 55a).
-/// `violation`: the sum of all misses in their unit. Infinite bounds count as kFarthest times the input away.
+/// the least, whose misses are `violation` of their unit (docs/solver.md, eq. 55a): all slopes together, each
+/// times the distance to the bound that it points to, and what multipliers do not show, are a small share.
+/// Infinite bounds count as kFarthest times the input away. is_linear_: another point has the rows that the
+/// slopes foretell, so that this holds for all inputs, not for those nearby alone.
 template <HardProblem P, int Capacity, class Arch>
-bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const Trajectory& least, double violation,
-                                              double little) const noexcept {
-  constexpr double kFarthest = 1e3;
-  double gain = 0.0, proven = 0.0;
-  for (std::size_t n = 0; n < kEnd; ++n) proven += multipliers_.terminal[n] * terminal_[n];
+bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const State& x0, const Trajectory& least,
+                                              double violation, bool converged) noexcept {
+  constexpr double kFarthest = 1e3, kRounding = 1e-6, kLittle = 1e-1, kNextToNothing = 1e-3;
+  double gain = 0.0, change = 0.0, size = 0.0;
+  copy_ = guess_;
+  clamp_inputs(problem, copy_);
   for (int k = 0; k < least.horizon; ++k) {
     const auto stage = static_cast<std::size_t>(k);
-    for (std::size_t n = 0; n < kNh; ++n) proven += multipliers_.equality[n].at(k) * equality_[n][stage];
-    for (std::size_t c = 0; c < kNc; ++c) {
-      if (is_hard(problem, c))
-        proven += inner_.constraint_multiplier(k, static_cast<int>(c)) * inner_.constraint_value(k, c);
-    }
     const auto low = problem.input_lower(k), high = problem.input_upper(k);
     for (std::size_t m = 0; m < low.size(); ++m) {
       const double u = least.u[stage][m];
       const double slope = inner_.bound_multiplier(k, static_cast<int>(m));
       const double room = slope > 0.0 ? u - low[m] : high[m] - u;
       gain += std::fabs(slope) * (std::isfinite(room) ? room : kFarthest * (1.0 + std::fabs(u)));
+      double& other = copy_.u[stage][m];
+      other = std::min(std::max(other + ((stage + m) % 2 == 0 ? 0.5 : -0.5) * (1.0 + std::fabs(other)), low[m]), high[m]);
+      change += slope * (other - u);
+      size += std::fabs(slope * (other - u));
     }
   }
-  return gain <= little * violation && proven >= (1.0 - little) * violation;
+  const double here = measure(problem, least, nullptr).weighted;
+  const bool is_there = roll_out(problem, x0, copy_);
+  const double there = is_there ? measure(problem, copy_, nullptr).weighted : std::numeric_limits<double>::infinity();
+  is_linear_ = std::fabs(there - here - change) <= kRounding * (std::fabs(here) + size);
+  const double little = is_linear_ ? kLittle : (converged ? kNextToNothing : 0.0);
+  return gain <= little * violation && here >= (1.0 - little) * violation;
 }
 /// The answer is the point of least violation, with the multipliers of the violation alone: its certificate.
 template <HardProblem P, int Capacity, class Arch>

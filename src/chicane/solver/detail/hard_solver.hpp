@@ -102,6 +102,7 @@ class HardSolver {
     std::array<double, kNc> constraint{};
     double cost = 0.0;   ///< the problem's own, with its first penalties
     double total = 0.0;  ///< sum over all rows of all stages
+    double weighted = 0.0;  ///< sum of the rows, each times its multiplier
 
     [[nodiscard]] double worst() const noexcept {
       double worst = 0.0;
@@ -126,10 +127,13 @@ class HardSolver {
     if (multipliers_.is_known && finish_steps(problem, x0, trajectory, deadline, left, report)) return report;
     // The method from the guess; from what restoration finds near its last point; from what it finds near the
     // guess.
-    constexpr std::array kShares{0.0, kLeastShare, 100.0, 1.0};
+    constexpr std::array kShares{0.0, kLeastShare, 100.0, 1.0, 10.0};
     for (std::size_t attempt = 0; attempt < kShares.size() && left > 0 && !deadline.spent(); ++attempt) {
       attempt == 1 ? inner_.start_from_states(true) : begin_again(trajectory);
-      if (attempt > 0 && is_infeasible(problem, x0, trajectory, kShares[attempt], deadline, left, report)) continue;
+      if (attempt > 0 && is_infeasible(problem, x0, trajectory, kShares[attempt], deadline, left, report)) {
+        if (is_linear_) break;
+        continue;
+      }
       if (!follow(x0, trajectory, deadline, left, report)) continue;
       for (int n = 0; n == 0 || (n <= kMostBarriers && go_on(x0, trajectory, deadline, left, report)); ++n) {
         if (finish_steps(problem, x0, trajectory, deadline, left, report)) return report;
@@ -322,7 +326,8 @@ class HardSolver {
                      const Deadline& deadline, int& left, HardReport& report) noexcept;
   HardReport tell_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                              HardReport report) noexcept;
-  bool is_proven(const P& problem, const Trajectory& least, double violation, double little) const noexcept;
+  bool is_proven(const P& problem, const State& x0, const Trajectory& least, double violation,
+                 bool converged) noexcept;
   void weigh_misses(double share, double unit) noexcept;
 
   // ---- values
@@ -358,6 +363,7 @@ class HardSolver {
         const auto h = to_array<One>(problem.equality(k, x, u));
         for (std::size_t n = 0; n < kNh; ++n) {
           equality_[n][stage] = Evaluate::number(h[n]);
+          misses.weighted += multipliers_.equality[n].at(k) * equality_[n][stage];
           note(misses.equality[n], std::fabs(equality_[n][stage]), Kind::kEquality, k, n);
         }
       }
@@ -366,6 +372,7 @@ class HardSolver {
         for (std::size_t n = 0; n < kNc; ++n) {
           const double beyond = std::max(0.0, Evaluate::number(c[n]));
           if (is_hard(problem, n)) {
+            misses.weighted += inner_.constraint_multiplier(k, static_cast<int>(n)) * Evaluate::number(c[n]);
             note(misses.constraint[n], beyond, Kind::kConstraint, k, n);
           } else {
             const SoftPenalty penalty = penalty_of(problem, n);
@@ -380,6 +387,7 @@ class HardSolver {
       const auto h = to_array<One>(problem.terminal_equality(x));
       for (std::size_t n = 0; n < kNeh; ++n) {
         terminal_[n] = Evaluate::number(h[n]);
+        misses.weighted += multipliers_.terminal[n] * terminal_[n];
         note(misses.terminal[n], std::fabs(terminal_[n]), Kind::kTerminalEquality, t.horizon, n);
       }
     }
@@ -387,6 +395,7 @@ class HardSolver {
       const auto g = to_array<One>(problem.terminal_constraint(x));
       for (std::size_t n = 0; n < kEnd - kNeh; ++n) {
         terminal_[kNeh + n] = Evaluate::number(g[n]);
+        misses.weighted += multipliers_.terminal[kNeh + n] * terminal_[kNeh + n];
         note(misses.terminal[kNeh + n], std::max(0.0, terminal_[kNeh + n]), Kind::kTerminalConstraint,
              t.horizon, n);
       }
@@ -417,6 +426,7 @@ class HardSolver {
   Multipliers least_multipliers_;  ///< multipliers of the violation alone there
   double least_unit_ = 1.0;        ///< unit of the misses there
   bool is_certified_ = false;
+  bool is_linear_ = false;  ///< rows are linear in the inputs
   bool is_possible_ = false;  ///< a point without misses has been found
   bool can_go_on_ = false;    ///< the next round differs little from the last one
   std::array<std::array<double, Capacity>, kNh> equality_{};  ///< values at the last measure()
