@@ -96,10 +96,14 @@ class OcpSolver {
 
   // ---- the filter method alone, for HardSolver
 
-  /// Follows the barrier from a guess, low where it `is_near`, in at most `most` iterations, counted in
-  /// `report`. True if it gets there: solve_again() continues with full steps. Rows that must hold are
-  /// equations then (detail/hard_rows.hpp), and `problem` gets their multipliers.
-  enum class Begin { kGuess, kNear, kHere };
+  enum class Begin {
+    kGuess,  ///< at the guess
+    kNear,   ///< there, with a low barrier: it is near the solution
+    kHere    ///< where the last call ended, with a lower barrier
+  };
+  /// Follows the barrier in at most `most` iterations, counted in `report`. True if it gets there:
+  /// solve_again() continues with full steps. Rows that must hold are equations then (detail/hard_rows.hpp),
+  /// and `problem` gets their multipliers.
   bool follow_barrier(P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline, int most,
                       Begin begin, SolveReport& report) noexcept;
   /// Slacks of hard constraints to penalties that have changed.

@@ -87,7 +87,7 @@ class Augmented {
   std::array<double, kEndEqualities + kEndConstraints> terminal_shift{};
   std::array<double, kNc> penalty_factor{};  ///< factors of soft constraints, hard ones among them
   double violation_penalty = 0.0;            ///< penalty on the violation of rows that must hold, if any
-  double limit_share = 1.0;
+  double limit_share = 1.0;                  ///< share of it that counts for limits of the stages
   double hard_penalty = 0.0;    ///< replaces the hard ones' penalties, if any: so high that none is violated
   bool is_primal_dual = false;  ///< rows in the form of the primal-dual method (detail/hard_rows.hpp)
 

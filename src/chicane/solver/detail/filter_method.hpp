@@ -429,7 +429,7 @@ class FilterMethod {
   // ---- when no step is good
 
   /// Recovers: first by a larger shift, then by new multipliers and slacks, then by a simulation, which has
-  /// no defects.
+  /// no defects. Rows that must hold need restoration in its place.
   Outcome recover(const P& problem, const Lq& lq, Point& t) noexcept {
     constexpr int kMostSimulations = 8;  // limit in one solve
     candidate_ = t;
@@ -442,6 +442,9 @@ class FilterMethod {
     has_multipliers_ = false;
     if (failures_ == 2) return Outcome::kGoing;
     failures_ = 1;
+    if constexpr (kHasHardRows<P>) {
+      if (rows_ != nullptr && rows_->violation_penalty == 0.0) return Outcome::kStuck;
+    }
     if (++simulations_ > kMostSimulations) return Outcome::kStuck;
     if (!simulate(problem, lq, t, 1.0, 0.0) && !simulate(problem, lq, t, 0.0, 0.0)) {
       candidate_ = t;

@@ -17,15 +17,14 @@ namespace chicane::solver {
 /// The primal-dual method (eq. 50–54). True if it reached the end of its barrier: multipliers and penalties
 /// are then those of its point, and full steps may continue from there.
 template <HardProblem P, int Capacity, class Arch>
-bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajectory, const Deadline& deadline,
-                                           int& left, HardReport& report, bool goes_on) noexcept {
-  using Begin = typename decltype(inner_)::Begin;
+bool HardSolver<P, Capacity, Arch>::follow(Begin begin, const State& x0, Trajectory& trajectory,
+                                           const Deadline& deadline, int& left, HardReport& report) noexcept {
   constexpr int kMostIterations = 200;
   constexpr double kDearer = 4.0;  // factor over the highest multiplier: the constraint is kept
   SolveReport seen;
   const int most = std::max(1, std::min(left, kMostIterations));
   inner_.ask_for(round_tolerance());
-  const bool is_solved = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, goes_on ? Begin::kHere : Begin::kGuess, seen);
+  const bool is_solved = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, begin, seen);
   report.iterations += seen.iterations;
   report.sweeps += seen.sweeps;
   left -= seen.iterations;
@@ -44,16 +43,17 @@ bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajecto
   return can_go_on_ = true;
 }
 /// Restoration: the primal-dual method with elastic rows and `share` of the cost, less and less of it down
-/// to almost none (docs/solver.md, eq. 55); that is repeated as long as a small share of the violation is left.
-/// True if a minimum above zero is proven: `trajectory` is there. Else it is the point found.
+/// to almost none (docs/solver.md, eq. 55); that is repeated as long as a small share of the violation is
+/// left. True if a minimum above zero is proven: `trajectory` is there. Else it is the point found.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                                                   double share, const Deadline& deadline, int& left,
                                                   HardReport& report) noexcept {
-  using Begin = typename decltype(inner_)::Begin;
   constexpr int kMostIterations = 200;
   constexpr double kTolerance = 1e-8, kFirstUnit = 0.1, kNoDefect = 1e-9;
-  constexpr double kFall = 1e-2, kLimitShare = 0.1;  // of the share; penalty of inequalities of the stages meanwhile
+  constexpr double kFall = 1e-2;        // of the share
+  constexpr double kLimitShare = 1e-1;  // penalty of the stages' limits over others while the cost counts
+  constexpr double kSame = 1e-3;        // difference of two violations of one point, relative
   constexpr double kMuch = 0.1, kLeastUnit = 1e-3;  // over the unit: repeat below it, least next unit
   if (left <= 0) return false;
   forget_multipliers();
@@ -89,6 +89,8 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
   problem_.violation_penalty = 0.0;
   inner_.ask_for(round_tolerance());
   if (is_certified_) {
+    is_final_ = is_final_ || std::fabs(misses.total - least_total_) <= kSame * misses.total;
+    least_total_ = misses.total;
     least_ = trajectory;
     least_multipliers_ = multipliers_;
     least_unit_ = unit;
@@ -101,8 +103,8 @@ bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State&
 /// Whether no inputs within their bounds are free of violation, by slopes and multipliers at the inputs of
 /// the least, whose misses are `violation` of their unit (docs/solver.md, eq. 55a): all slopes together, each
 /// times the distance to the bound that it points to, and what multipliers do not show, are a small share.
-/// Infinite bounds count as kFarthest times the input away. is_linear_: another point has the rows that the
-/// slopes foretell, so that this holds for all inputs, not for those nearby alone.
+/// Infinite bounds count as kFarthest times the input away. Final where other inputs have the rows that the
+/// slopes foretell: rows that are linear.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const State& x0, const Trajectory& least,
                                               double violation, bool converged) noexcept {
@@ -119,16 +121,18 @@ bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const State& x0,
       const double room = slope > 0.0 ? u - low[m] : high[m] - u;
       gain += std::fabs(slope) * (std::isfinite(room) ? room : kFarthest * (1.0 + std::fabs(u)));
       double& other = copy_.u[stage][m];
-      other = std::min(std::max(other + ((stage + m) % 2 == 0 ? 0.5 : -0.5) * (1.0 + std::fabs(other)), low[m]), high[m]);
+      other = std::min(
+          std::max(other + ((stage + m) % 2 == 0 ? 0.5 : -0.5) * (1.0 + std::fabs(other)), low[m]), high[m]);
       change += slope * (other - u);
       size += std::fabs(slope * (other - u));
     }
   }
   const double here = measure(problem, least, nullptr).weighted;
   const bool is_there = roll_out(problem, x0, copy_);
-  const double there = is_there ? measure(problem, copy_, nullptr).weighted : std::numeric_limits<double>::infinity();
-  is_linear_ = std::fabs(there - here - change) <= kRounding * (std::fabs(here) + size);
-  const double little = is_linear_ ? kLittle : (converged ? kNextToNothing : 0.0);
+  const double there =
+      is_there ? measure(problem, copy_, nullptr).weighted : std::numeric_limits<double>::infinity();
+  is_final_ = std::fabs(there - here - change) <= kRounding * (std::fabs(here) + size);
+  const double little = is_final_ ? kLittle : (converged ? kNextToNothing : 0.0);
   return gain <= little * violation && here >= (1.0 - little) * violation;
 }
 /// The answer is the point of least violation, with the multipliers of the violation alone: its certificate.

@@ -90,18 +90,18 @@ class HardSolver {
   static constexpr std::size_t kNh = Problem::kEqualities, kNc = P::kNc;
   static constexpr std::size_t kNeh = Problem::kEndEqualities;
   static constexpr std::size_t kEnd = kNeh + Problem::kEndConstraints;
-  static constexpr int kMostFullSteps = 15;  ///< limit in one round
-  static constexpr int kMostBarriers = 2;    ///< lower ones, where full steps fail
+  static constexpr int kMostFullSteps = 15;    ///< limit in one round
+  static constexpr int kMostBarriers = 2;      ///< lower ones, where full steps fail
   static constexpr double kLeastShare = 1e-8;  ///< of the cost in restoration
-  static constexpr double kLight = 1e-9;     ///< weight of rows, negligible beside their multipliers
+  static constexpr double kLight = 1e-9;       ///< weight of rows, negligible beside their multipliers
 
   /// Violations of a trajectory by row: the largest of each.
   struct Misses {
     std::array<double, kNh> equality{};
     std::array<double, kEnd> terminal{};
     std::array<double, kNc> constraint{};
-    double cost = 0.0;   ///< the problem's own, with its first penalties
-    double total = 0.0;  ///< sum over all rows of all stages
+    double cost = 0.0;      ///< the problem's own, with its first penalties
+    double total = 0.0;     ///< sum over all rows of all stages
     double weighted = 0.0;  ///< sum of the rows, each times its multiplier
 
     [[nodiscard]] double worst() const noexcept {
@@ -122,23 +122,26 @@ class HardSolver {
     report.status = SolveStatus::kStalled;
     guess_ = trajectory;
     is_certified_ = is_possible_ = false;
+    least_total_ = 0.0;
     start(problem, x0, trajectory);
     int left = options_.max_iterations;
     if (multipliers_.is_known && finish_steps(problem, x0, trajectory, deadline, left, report)) return report;
     // The method from the guess; from what restoration finds near its last point; from what it finds near the
-    // guess.
+    // guess, from where less and less of the cost counts.
     constexpr std::array kShares{0.0, kLeastShare, 100.0, 1.0, 10.0};
     for (std::size_t attempt = 0; attempt < kShares.size() && left > 0 && !deadline.spent(); ++attempt) {
       attempt == 1 ? inner_.start_from_states(true) : begin_again(trajectory);
       if (attempt > 0 && is_infeasible(problem, x0, trajectory, kShares[attempt], deadline, left, report)) {
-        if (is_linear_) break;
-        continue;
+        if (is_final_) break;
+      } else if (follow(Begin::kGuess, x0, trajectory, deadline, left, report)) {
+        for (int n = 0;; ++n) {
+          if (finish_steps(problem, x0, trajectory, deadline, left, report)) return report;
+          if (n >= kMostBarriers || left <= 0 ||
+              !follow(Begin::kHere, x0, trajectory, deadline, left, report))
+            break;
+        }
+        if (take_point(problem, trajectory, report)) return report;
       }
-      if (!follow(x0, trajectory, deadline, left, report)) continue;
-      for (int n = 0; n == 0 || (n <= kMostBarriers && go_on(x0, trajectory, deadline, left, report)); ++n) {
-        if (finish_steps(problem, x0, trajectory, deadline, left, report)) return report;
-      }
-      if (take_point(problem, trajectory, report)) return report;
     }
     if (is_certified_) return tell_infeasible(problem, x0, trajectory, report);
     return stall(problem, x0, trajectory, report);
@@ -162,10 +165,9 @@ class HardSolver {
     trajectory = copy_;
     return report;
   }
-  bool follow(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
-              HardReport& report, bool goes_on = false) noexcept;
-  bool go_on(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
-              HardReport& report) noexcept { return left > 0 && follow(x0, trajectory, deadline, left, report, true); }
+  using Begin = typename OcpSolver<Augmented<P, Capacity>, Capacity, Arch>::Begin;
+  bool follow(Begin begin, const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
+              HardReport& report) noexcept;
   /// The guess again, without multipliers.
   void begin_again(Trajectory& trajectory) noexcept {
     trajectory = guess_;
@@ -424,9 +426,10 @@ class HardSolver {
   Multipliers point_multipliers_;  ///< multipliers at the end of the barrier
   Trajectory least_;               ///< local minimum of the violation above zero, if is_certified_
   Multipliers least_multipliers_;  ///< multipliers of the violation alone there
+  double least_total_ = 0.0;       ///< sum of the misses there
   double least_unit_ = 1.0;        ///< unit of the misses there
   bool is_certified_ = false;
-  bool is_linear_ = false;  ///< rows are linear in the inputs
+  bool is_final_ = false;     ///< no other start would end elsewhere
   bool is_possible_ = false;  ///< a point without misses has been found
   bool can_go_on_ = false;    ///< the next round differs little from the last one
   std::array<std::array<double, Capacity>, kNh> equality_{};  ///< values at the last measure()
