@@ -215,7 +215,7 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, T
     is_filtering_ = true;
     barrier_.restore(kept_slacks_, t_.horizon);
     has_begun = filter_.resume(now_, barrier_, t_, false);
-    now_.hard.resume(problem, filter_.mu(), t_.horizon);
+    if (has_begun) now_.hard.resume(problem, filter_.mu(), t_.horizon);
   } else {
     has_begun = start(problem, x0, trajectory);
     is_again_ = begin == Begin::kNear;
