@@ -96,13 +96,24 @@ class OcpSolver {
 
   // ---- the filter method alone, for HardSolver
 
-  /// Follows the barrier from a guess, low where it `is_near`, in at most `most` iterations, counted in
-  /// `report`. True if it gets there: solve_again() continues with full steps. Rows that must hold are
-  /// equations then (detail/hard_rows.hpp), and `problem` gets their multipliers.
+  /// Where follow_barrier() begins: at the guess; there, with a low barrier, near the solution; where the
+  /// last call ended, with a lower barrier.
+  enum class Begin { kGuess, kNear, kHere };
+  /// Follows the barrier in at most `most` iterations, counted in `report`. True if it gets there:
+  /// solve_again() continues with full steps. Rows that must hold are equations then (detail/hard_rows.hpp),
+  /// and `problem` gets their multipliers.
   bool follow_barrier(P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline, int most,
-                      bool is_near, SolveReport& report) noexcept;
+                      Begin begin, SolveReport& report) noexcept;
   /// Slacks of hard constraints to penalties that have changed.
   void update_penalties(const P& problem) noexcept { barrier_.update_penalties(problem, t_.horizon); }
+
+  /// Keeps the present point for take_point().
+  void keep_point() noexcept {
+    kept_ = t_;
+    barrier_.save(kept_slacks_, t_.horizon);
+  }
+  /// That point, its inputs inside their bounds, as an answer with its report.
+  SolveReport take_point(const P& problem, Trajectory& trajectory) noexcept;
 
   /// Multiplier of state i of x_{k+1} after a solve, i.e. d(cost)/dx of the stages after it; k < horizon.
   [[nodiscard]] double adjoint(int k, int i) const noexcept { return now_.adjoint[i][k]; }
@@ -126,6 +137,8 @@ class OcpSolver {
   static constexpr double kRounding = 2.2e-16;    ///< rounding of doubles
   static constexpr double kFloorResidual = 1e-6;  ///< most that kAtFloor may have
   static constexpr bool kCanFilter = has_filter_method<P>();
+  /// With rows that must hold, solves end where full steps fail: the primal-dual method comes before them.
+  static constexpr bool kOnlyFullSteps = kHasHardRows<P>;
   /// Steps this short: exact curvature from here on. Dense problems pay for it.
   static constexpr double kNear = has_cheap_curvature<P>() ? 1e-1 : 1e-2;
 
@@ -137,7 +150,7 @@ class OcpSolver {
   CHICANE_INLINE SolveReport run(const P& problem, const State& x0, Trajectory& trajectory,
                                  const Deadline& deadline, SolveReport report) noexcept {
     for (;; ++report.iterations, work_ += share_of_horizon()) {
-      if constexpr (kCanFilter) {
+      if constexpr (kCanFilter && !kOnlyFullSteps) {
         if (is_filtering_ && !filter_iteration(problem, deadline, report)) break;
         if (is_filtering_) continue;
       }
@@ -298,7 +311,7 @@ class OcpSolver {
   bool full_step(const P& problem, const Trajectory& trajectory, const Deadline& deadline,
                  SolveReport& report) noexcept {
     using Outcome = typename WorkingSetQp<Lq>::Outcome;
-    const bool may_circle = kCanFilter && options_.may_start_short && !has_filtered_;
+    const bool may_circle = kCanFilter && options_.may_start_short && !has_filtered_ && !kOnlyFullSteps;
     const Outcome outcome = qp_.solve(
         lq_, t_.horizon, is_exact_, [&] { take_gauss_newton(problem); }, deadline, may_circle, report.sweeps);
     if (outcome != Outcome::kSolved)
@@ -322,7 +335,7 @@ class OcpSolver {
   /// whatever the units of the inputs.
   [[nodiscard]] bool is_crawling() const noexcept {
     constexpr double kIterations = 20.0;
-    return kCanFilter && (has_filtered_ ||
+    return kCanFilter && (has_filtered_ || kOnlyFullSteps ||
                           (barrier_.is_final() && progress_.is_slow(0.1 * options_.tolerance, kIterations)));
   }
 
@@ -330,6 +343,7 @@ class OcpSolver {
 
   /// Recovery when full steps fail. False if nothing helps.
   bool recover(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept {
+    if constexpr (kOnlyFullSteps) return false;
     if constexpr (kCanFilter) {
       if (options_.may_start_short) return begin_filter(problem, trajectory, report);
     }
@@ -437,6 +451,8 @@ class OcpSolver {
   bool is_fresh_ = true;       ///< slacks and working set must be guessed
   std::size_t target_ = 0;     ///< horizon asked for
   double work_ = 0.0;          ///< iterations so far, weighted by share of horizon
+  std::conditional_t<kOnlyFullSteps, Iterate<kNx, kNu, kSize>, NoFilter> kept_;
+  std::conditional_t<kOnlyFullSteps, typename Slacks::Memory, NoFilter> kept_slacks_;
   std::conditional_t<kCanFilter, typename Slacks::Memory, NoFilter> best_slacks_;  ///< of the best iterate
 };
 

@@ -65,10 +65,8 @@ class FilterMethod {
     mu_ = kFirstBarrier;
     slacks.set_mu(kFirstBarrier);
     if constexpr (kHasHardRows<P>) {
-      if (rows_ != nullptr) {
-        rows_->hard_penalty = kHardPenalty;
-        now.hard.begin(*rows_);
-      }
+      rows_->hard_penalty = kHardPenalty;
+      now.hard.begin(*rows_);
     }
     linearise<1>(problem, now, lq, slacks, t, report);
     double steepest = 0.0;
@@ -83,20 +81,19 @@ class FilterMethod {
     slacks.set_mu(mu_);
     is_fresh_ = true;
     if constexpr (kHasHardRows<P>) {
-      if (rows_ != nullptr) {
-        rows_->hard_penalty = kHardPenalty * unit_;
-        now.hard.weigh(kRowWeight * unit_, rows_->violation_penalty);
-      }
+      rows_->hard_penalty = kHardPenalty * unit_;
+      now.hard.weigh(kRowWeight * unit_, rows_->violation_penalty);
     }
     last_shift_ = forced_shift_ = 0.0;
     failures_ = simulations_ = 0;
     candidate_ = t;
     short_steps_ = leaps_ = 0;
     floor_ = {};
+    rows_lag_ = false;
+    last_missed_ = 0.0;
   }
   /// Hands rows that must hold to the method; call it before start(). They become equations of unknowns with
-  /// slacks and multipliers of their own, kept by the problem itself, `rows`. Null: they are residuals like
-  /// others.
+  /// slacks and multipliers of their own, kept by the problem itself, `rows`.
   void take_rows(P* rows) noexcept { rows_ = rows; }
   [[nodiscard]] double mu() const noexcept { return mu_; }
   /// Hands over the working set of the present point, and keeps the data to go on if that is not enough.
@@ -106,7 +103,7 @@ class FilterMethod {
       std::copy(now.adjoint[i], now.adjoint[i] + candidate_.horizon, multipliers_[i]);
   }
   /// Goes on with a lower barrier from where it left off. False when there is none.
-  bool resume(Linearised& now, Slacks& slacks, Point& t) noexcept {
+  bool resume(Linearised& now, Slacks& slacks, Point& t, bool is_fresh) noexcept {
     constexpr double kLeast = 1e-13;  // least barrier, in units of costs
     if (final_mu_ <= kLeast * unit_) return false;
     final_mu_ = std::max(kLeast * unit_, 1e-2 * final_mu_);
@@ -115,7 +112,8 @@ class FilterMethod {
     for (std::size_t i = 0; i < kNx; ++i)
       std::copy(multipliers_[i], multipliers_[i] + t.horizon, now.adjoint[i]);
     slacks.set_mu(mu_);
-    is_fresh_ = is_new_barrier_ = true;
+    is_fresh_ = is_fresh;
+    is_new_barrier_ = true;
     is_here_known_ = false;
     return true;
   }
@@ -129,15 +127,21 @@ class FilterMethod {
   /// One linearisation and one step from t. Pre: `t` is as the last call left it.
   Outcome iterate(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, Point& t,
                   const Deadline& deadline, SolveReport& report) noexcept {
+    if constexpr (kHasHardRows<P>) {
+      if (rows_lag_) now.hard.raise(*rows_, kRise, kMostRowWeight * unit_, mu_, t.horizon);
+    }
     linearise(problem, now, lq, slacks, t, report);
     if (!std::isfinite(report.cost + report.defect + report.complementarity)) return Outcome::kStuck;
     if (are_sides_new_) bounds_.start(lq, t.horizon, mu_);
     are_sides_new_ = false;
     const double error = residual(now, lq, t, report);
     const bool is_solved = error <= kSolvedAt * mu_;
-    if (is_solved || floor_.is_reached(error, kFloor * unit_)) {
+    rows_lag_ = !is_solved && missed_ >= error && missed_ > 0.5 * last_missed_ && length_ > 0.9;
+    last_missed_ = missed_;
+    const double floor = std::max(kFloor * unit_, kHasHardRows<P> && mu_ <= final_mu_ ? kLooseFloor : 0.0);
+    if (is_solved || floor_.is_reached(error, floor)) {
       candidate_ = t;
-      if (mu_ <= final_mu_) return is_solved || error <= kFloor * unit_ ? Outcome::kSolved : Outcome::kStuck;
+      if (mu_ <= final_mu_) return is_solved || error <= floor ? Outcome::kSolved : Outcome::kStuck;
       const double last = mu_;
       lower_barrier(slacks);
       follow_barrier(problem, last, now, lq, slacks, t.horizon);
@@ -171,9 +175,11 @@ class FilterMethod {
   static constexpr double kShort = 0.1;  ///< length of a short step
   static constexpr int kShortInSuccession = 3, kMostLeaps = 4;
   static constexpr double kRowWeight = 1e6;  ///< ρ of rows that must hold, and the penalty of hard limits, in
-  static constexpr double kHardPenalty = 1e6;  ///< the unit of costs
+  static constexpr double kHardPenalty = 1e6;                   ///< the unit of costs
+  static constexpr double kRise = 10.0, kMostRowWeight = 1e10;  ///< a weight rises where multipliers lag
   static constexpr double kSolvedAt = 10.0;  ///< a barrier's problem is solved at this many times the barrier
-  static constexpr double kFloor = 1e-5;     ///< most that rounding may leave, in the unit of costs
+  static constexpr double kLooseFloor = 1e-2;  ///< the same at the last barrier of rows that must hold
+  static constexpr double kFloor = 1e-5;       ///< most that rounding may leave, in the unit of costs
 
   static constexpr std::size_t z(std::size_t i) noexcept { return i < kNx ? i : i + 1; }
 
@@ -183,7 +189,7 @@ class FilterMethod {
   void linearise(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, const Point& t,
                  SolveReport& report) noexcept {
     if constexpr (kHasHardRows<P>) {
-      if (rows_ != nullptr && is_fresh_ && now.hard.is_ready()) centre_rows(problem, now, t);
+      if (is_fresh_ && now.hard.is_ready()) centre_rows(problem, now, t);
     }
     now.state_residual = has_multipliers_ ? residual_ : nullptr;
     now.template linearise<Order>(problem, t, is_fresh_, 1.0, slacks, lq.lq, report);
@@ -202,8 +208,7 @@ class FilterMethod {
   }
 
   /// Distance from solving the barrier problem (eq. 34).
-  double residual(const Linearised& now, const Lq& lq, const Point& t,
-                  const SolveReport& report) const noexcept {
+  double residual(const Linearised& now, const Lq& lq, const Point& t, const SolveReport& report) noexcept {
     if (!has_multipliers_) return std::numeric_limits<double>::infinity();
     double dual = 0.0;
     double dynamics_multipliers = 0.0;
@@ -213,7 +218,7 @@ class FilterMethod {
         dynamics_multipliers += std::fabs(now.adjoint[i][k]);
       }
       double end = lq.lq.terminal[kNx][i] - now.adjoint[i][t.horizon - 1];
-      if constexpr (kHasHardRows<P>) end -= rows_ != nullptr ? now.hard.excess(*rows_, i) : 0.0;
+      if constexpr (kHasHardRows<P>) end -= now.hard.excess(*rows_, i);
       dual = std::max(dual, std::fabs(end));
     }
     for (std::size_t m = 0; m < kNu; ++m) {
@@ -228,7 +233,8 @@ class FilterMethod {
         std::max(kSteep, (dynamics_multipliers + sides.multipliers) / count / unit_) / kSteep;
     double missed = report.defect * unit_;
     if constexpr (kHasHardRows<P>) {
-      if (rows_ != nullptr) missed = std::max(missed, now.hard.residual(*rows_, mu_, unit_, t.horizon));
+      missed_ = now.hard.residual(*rows_, mu_, unit_, t.horizon);
+      missed = std::max(missed, missed_);
     }
     return std::max(std::max({dual, sides.product, report.complementarity}) / scale, missed);
   }
@@ -249,7 +255,6 @@ class FilterMethod {
       lq.lq.set_cost(k, z(j), Layout::kOne, lq.lq.cost(k, z(j), Layout::kOne) + pull);
     });
     if constexpr (kHasHardRows<P>) {
-      if (rows_ == nullptr) return;
       now.hard.set_rows(*rows_, mu_, horizon, lq.lq.terminal[kNx],
                         [&](std::size_t k, std::size_t j, double pull) {
                           lq.lq.set_cost(k, z(j), Layout::kOne, lq.lq.cost(k, z(j), Layout::kOne) + pull);
@@ -310,12 +315,10 @@ class FilterMethod {
     double length = std::min(own.primal, soft.primal);
     double slope = slope_along(lq, t.horizon);
     if constexpr (kHasHardRows<P>) {
-      if (rows_ != nullptr) {
-        const StepLengths hard = now.hard.find(problem, step_, mu_, fraction);
-        dual = std::min(dual, hard.dual);
-        length = std::min(length, hard.primal);
-        slope += now.hard.slope();
-      }
+      const StepLengths hard = now.hard.find(problem, step_, mu_, fraction);
+      dual = std::min(dual, hard.dual);
+      length = std::min(length, hard.primal);
+      slope += now.hard.slope();
     }
     const double least = least_length(here, slope);
     // Short steps in succession: the filter hinders what would converge (Maratos). One whole step without it.
@@ -340,6 +343,7 @@ class FilterMethod {
       if (!is_good) continue;
       if (length >= 0.05 || there.miss <= 0.9 * here.miss) failures_ = 0;
       short_steps_ = length < kShort ? short_steps_ + 1 : 0;
+      length_ = length;
       moved_ = longest_move(t, candidate_);
       floor_.note_step(stays<Arch>(t, candidate_) && !(there.miss < 0.9 * here.miss));
       t = candidate_;
@@ -348,9 +352,7 @@ class FilterMethod {
       bounds_.move(dual, mu_);
       soft_.move(slacks, t.horizon, dual);
       const double share = has_multipliers_ ? length : 1.0;
-      if constexpr (kHasHardRows<P>) {
-        if (rows_ != nullptr) now.hard.move(*rows_, share, dual, mu_, t.horizon);
-      }
+      if constexpr (kHasHardRows<P>) now.hard.move(*rows_, share, dual, mu_, t.horizon);
       take_multipliers(lq, now, t.horizon, share);
       has_multipliers_ = true;
       return Outcome::kGoing;
@@ -416,7 +418,7 @@ class FilterMethod {
   // ---- when no step is good
 
   /// Recovers: first by a larger shift, then by new multipliers and slacks, then by a simulation, which has
-  /// no defects.
+  /// no defects. Rows that must hold need restoration in its place.
   Outcome recover(const P& problem, const Lq& lq, Point& t) noexcept {
     constexpr int kMostSimulations = 8;  // limit in one solve
     candidate_ = t;
@@ -429,6 +431,9 @@ class FilterMethod {
     has_multipliers_ = false;
     if (failures_ == 2) return Outcome::kGoing;
     failures_ = 1;
+    if constexpr (kHasHardRows<P>) {
+      if (rows_->violation_penalty == 0.0) return Outcome::kStuck;
+    }
     if (++simulations_ > kMostSimulations) return Outcome::kStuck;
     if (!simulate(problem, lq, t, 1.0, 0.0) && !simulate(problem, lq, t, 0.0, 0.0)) {
       candidate_ = t;
@@ -470,8 +475,9 @@ class FilterMethod {
   int short_steps_ = 0;           ///< count in succession
   int leaps_ = 0;                 ///< whole steps that the filter had refused
   FloorWatch floor_;
-  P* rows_ = nullptr;  ///< the problem, where its rows that must hold are unknowns' equations
-  double moved_ = 0.0;
+  P* rows_ = nullptr;  ///< the problem, if it has rows that must hold
+  double moved_ = 0.0, length_ = 0.0, missed_ = 0.0, last_missed_ = 0.0;
+  bool rows_lag_ = false;
   Merit here_{};                ///< merit of the present point
   bool is_here_known_ = false;  ///< here_ was set by the line search that found the point
   int failures_ = 0;

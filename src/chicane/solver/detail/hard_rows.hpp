@@ -94,6 +94,13 @@ class HardRows {
     equality_ = {-most, most, penalty > 0.0 ? 0.0 : 1.0 / rho};
     inequality_ = {0.0, most, 0.0};
   }
+  /// Weights `factor` times as large, at most `most`: multipliers that lag behind reach their values sooner.
+  void raise(P& problem, double factor, double most, double mu, std::size_t horizon) noexcept {
+    if (is_elastic() || rho_ >= most) return;
+    rho_ *= factor;
+    equality_.soft = 1.0 / rho_;
+    set_rows(problem, mu, horizon);
+  }
   [[nodiscard]] bool is_elastic() const noexcept { return equality_.has_p(); }
   /// p, n and multipliers of the rows of eight stages from k on, whose values are `h`, on the central path.
   void centre(std::size_t n, std::size_t k, const V& h, double mu) noexcept {
@@ -116,6 +123,7 @@ class HardRows {
   /// Updates weights and shifts after a change of rows or μ: their residuals have the force of the eliminated
   /// p and n.
   void set_rows(P& problem, double mu, std::size_t horizon) noexcept {
+    problem.is_primal_dual = true;
     for (std::size_t n = 0; n < kStageRows; ++n) {
       for (std::size_t k = 0; k < horizon; k += 8) {
         const auto [root, shift] = stage_[n].load(k).residual(equality_, mu);
