@@ -14,12 +14,12 @@
 #include "chicane/live/run_log.hpp"
 #include "chicane/live/run_publisher.hpp"
 #include "chicane/live/what_if.hpp"
-#include "chicane/base/worker.hpp"
 #include "chicane/net/server.hpp"
 #include "chicane/protocol/ros_messages.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/run_steps.hpp"
+#include "chicane/run/worker.hpp"
 #include "chicane/telemetry/metrics.hpp"
 #include "chicane/wire/endpoint.hpp"
 #include "chicane/wire/viewer.hpp"
@@ -85,7 +85,7 @@ class LiveRun {
   recording::Recorder* recorder_ = nullptr;
   std::mutex mutex_;
   std::deque<std::unique_ptr<BuiltRun>> built_;  ///< one for each change that starts a new run
-  NewestTask<ChosenRun, Result<std::unique_ptr<BuiltRun>>> builder_;  ///< the network thread's
+  run::NewestTask<ChosenRun, Result<std::unique_ptr<BuiltRun>>> builder_;  ///< the network thread's
   LiveHooks hooks_;
   RunLog log_{true};
   WhatIf what_if_;

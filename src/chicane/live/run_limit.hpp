@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "chicane/lap_time/limit.hpp"
-#include "chicane/base/worker.hpp"
 #include "chicane/road/track.hpp"
+#include "chicane/run/worker.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
@@ -81,7 +81,7 @@ class RunLimit {
   scenario::Scenario scenario_;                 ///< scenario with the grip and mass of the newest search
   int first_lap_ = 1;                           ///< LimitAnswer::first_lap
   std::optional<Clock::time_point> begins_at_;  ///< the next search, when nothing changes until then
-  NewestTask<Request, lap_time::LimitAnswer> search_;  // last: calls back on its thread
+  run::NewestTask<Request, lap_time::LimitAnswer> search_;  // last: calls back on its thread
 };
 
 }  // namespace chicane::live

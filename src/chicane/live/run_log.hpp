@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "chicane/base/result.hpp"
-#include "chicane/base/worker.hpp"
 #include "chicane/recording/shadow_run.hpp"
 #include "chicane/run/parallel.hpp"
+#include "chicane/run/worker.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
@@ -133,7 +133,7 @@ class RunLog {
   std::deque<Event> events_;
   Place first_;                          ///< place before the first of events_
   std::vector<Checkpoint> checkpoints_;  ///< by rising time; written by the worker
-  Worker worker_;                        // last
+  run::Worker worker_;                   // last
 };
 
 }  // namespace chicane::live

@@ -17,9 +17,9 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/live/run_log.hpp"
-#include "chicane/base/worker.hpp"
 #include "chicane/recording/shadow_run.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "chicane/run/worker.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/frame.hpp"
 
@@ -65,7 +65,7 @@ class WhatIf {
   std::uint64_t newest_ = 0;        ///< number of the last question
   std::atomic<double> share_{0.0};  ///< share of the current question that is computed
   std::string answer_ = R"({"id":0,"state":"none"})";
-  NewestTask<Request, std::string> task_;  // last
+  run::NewestTask<Request, std::string> task_;  // last
 };
 
 /// A second car on the stage of a live run: a shadow run on the same track, with the same car, seed and
@@ -127,7 +127,7 @@ class Rival {
   std::vector<std::pair<std::string, std::string>> settings_;
   std::vector<telemetry::CompletedLap> laps_of_run_, laps_;
   std::deque<std::array<double, kColumns.size()>> trace_;
-  Worker worker_;  // last
+  run::Worker worker_;  // last
 };
 
 }  // namespace chicane::live

@@ -9,11 +9,11 @@
 
 #include "chicane/base/result.hpp"
 #include "chicane/base/vec2.hpp"
-#include "chicane/base/worker.hpp"
 #include "chicane/controller/controller.hpp"
 #include "chicane/lap_time/limit.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/road/track.hpp"
+#include "chicane/run/worker.hpp"
 #include "chicane/scenario/scenario.hpp"
 #include "chicane/telemetry/metrics.hpp"
 

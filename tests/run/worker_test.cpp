@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/base/worker.hpp"
+#include "chicane/run/worker.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <future>
 #include <thread>
 
-namespace chicane {
+namespace chicane::run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -45,4 +45,4 @@ TEST(Worker, WorksEachPeriodUntilItIsDestroyed) {
 }
 
 }  // namespace
-}  // namespace chicane
+}  // namespace chicane::run

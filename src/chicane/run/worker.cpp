@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/base/worker.hpp"
+#include "chicane/run/worker.hpp"
 
 #include <sys/resource.h>
 
 #include <utility>
 
-namespace chicane {
+namespace chicane::run {
 
 Worker::Worker(std::function<void()> work, Period period)
     : work_{std::move(work)}, period_{period}, thread_{[this] { run(); }} {}
@@ -46,4 +46,4 @@ void Worker::run() {
   }
 }
 
-}  // namespace chicane
+}  // namespace chicane::run

@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-namespace chicane {
+namespace chicane::run {
 
 /// A thread beside a run that does one kind of work again and again, behind everything else: control and
 /// network never wait for it.
@@ -113,4 +113,4 @@ class NewestTask {
   Worker worker_;  // last
 };
 
-}  // namespace chicane
+}  // namespace chicane::run
