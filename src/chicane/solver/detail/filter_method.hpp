@@ -65,8 +65,10 @@ class FilterMethod {
     mu_ = kFirstBarrier;
     slacks.set_mu(kFirstBarrier);
     if constexpr (kHasHardRows<P>) {
-      rows_->hard_penalty = kHardPenalty;
-      now.hard.begin(*rows_);
+      if (rows_ != nullptr) {
+        rows_->hard_penalty = kHardPenalty;
+        now.hard.begin(*rows_);
+      }
     }
     linearise<1>(problem, now, lq, slacks, t, report);
     double steepest = 0.0;
@@ -81,8 +83,10 @@ class FilterMethod {
     slacks.set_mu(mu_);
     is_fresh_ = true;
     if constexpr (kHasHardRows<P>) {
-      rows_->hard_penalty = kHardPenalty * unit_;
-      now.hard.weigh(kRowWeight * unit_, rows_->violation_penalty);
+      if (rows_ != nullptr) {
+        rows_->hard_penalty = kHardPenalty * unit_;
+        now.hard.weigh(kRowWeight * unit_, rows_->violation_penalty);
+      }
     }
     last_shift_ = forced_shift_ = 0.0;
     failures_ = simulations_ = 0;
@@ -93,7 +97,8 @@ class FilterMethod {
     last_missed_ = 0.0;
   }
   /// Hands rows that must hold to the method; call it before start(). They become equations of unknowns with
-  /// slacks and multipliers of their own, kept by the problem itself, `rows`.
+  /// slacks and multipliers of their own, kept by the problem itself, `rows`. Null: they are residuals like
+  /// others.
   void take_rows(P* rows) noexcept { rows_ = rows; }
   [[nodiscard]] double mu() const noexcept { return mu_; }
   /// Hands over the working set of the present point, and keeps the data to go on if that is not enough.
@@ -128,7 +133,8 @@ class FilterMethod {
   Outcome iterate(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, Point& t,
                   const Deadline& deadline, SolveReport& report) noexcept {
     if constexpr (kHasHardRows<P>) {
-      if (rows_lag_) now.hard.raise(*rows_, kRise, kMostRowWeight * unit_, mu_, t.horizon);
+      if (rows_ != nullptr && rows_lag_)
+        now.hard.raise(*rows_, kRise, kMostRowWeight * unit_, mu_, t.horizon);
     }
     linearise(problem, now, lq, slacks, t, report);
     if (!std::isfinite(report.cost + report.defect + report.complementarity)) return Outcome::kStuck;
@@ -189,7 +195,7 @@ class FilterMethod {
   void linearise(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, const Point& t,
                  SolveReport& report) noexcept {
     if constexpr (kHasHardRows<P>) {
-      if (is_fresh_ && now.hard.is_ready()) centre_rows(problem, now, t);
+      if (rows_ != nullptr && is_fresh_ && now.hard.is_ready()) centre_rows(problem, now, t);
     }
     now.state_residual = has_multipliers_ ? residual_ : nullptr;
     now.template linearise<Order>(problem, t, is_fresh_, 1.0, slacks, lq.lq, report);
@@ -218,7 +224,7 @@ class FilterMethod {
         dynamics_multipliers += std::fabs(now.adjoint[i][k]);
       }
       double end = lq.lq.terminal[kNx][i] - now.adjoint[i][t.horizon - 1];
-      if constexpr (kHasHardRows<P>) end -= now.hard.excess(*rows_, i);
+      if constexpr (kHasHardRows<P>) end -= rows_ != nullptr ? now.hard.excess(*rows_, i) : 0.0;
       dual = std::max(dual, std::fabs(end));
     }
     for (std::size_t m = 0; m < kNu; ++m) {
@@ -233,8 +239,8 @@ class FilterMethod {
         std::max(kSteep, (dynamics_multipliers + sides.multipliers) / count / unit_) / kSteep;
     double missed = report.defect * unit_;
     if constexpr (kHasHardRows<P>) {
-      missed_ = now.hard.residual(*rows_, mu_, unit_, t.horizon);
-      missed = std::max(missed, missed_);
+      if (rows_ != nullptr) missed_ = now.hard.residual(*rows_, mu_, unit_, t.horizon);
+      if (rows_ != nullptr) missed = std::max(missed, missed_);
     }
     return std::max(std::max({dual, sides.product, report.complementarity}) / scale, missed);
   }
@@ -255,6 +261,7 @@ class FilterMethod {
       lq.lq.set_cost(k, z(j), Layout::kOne, lq.lq.cost(k, z(j), Layout::kOne) + pull);
     });
     if constexpr (kHasHardRows<P>) {
+      if (rows_ == nullptr) return;
       now.hard.set_rows(*rows_, mu_, horizon, lq.lq.terminal[kNx],
                         [&](std::size_t k, std::size_t j, double pull) {
                           lq.lq.set_cost(k, z(j), Layout::kOne, lq.lq.cost(k, z(j), Layout::kOne) + pull);
@@ -315,10 +322,12 @@ class FilterMethod {
     double length = std::min(own.primal, soft.primal);
     double slope = slope_along(lq, t.horizon);
     if constexpr (kHasHardRows<P>) {
-      const StepLengths hard = now.hard.find(problem, step_, mu_, fraction);
-      dual = std::min(dual, hard.dual);
-      length = std::min(length, hard.primal);
-      slope += now.hard.slope();
+      if (rows_ != nullptr) {
+        const StepLengths hard = now.hard.find(problem, step_, mu_, fraction);
+        dual = std::min(dual, hard.dual);
+        length = std::min(length, hard.primal);
+        slope += now.hard.slope();
+      }
     }
     const double least = least_length(here, slope);
     // Short steps in succession: the filter hinders what would converge (Maratos). One whole step without it.
@@ -352,7 +361,9 @@ class FilterMethod {
       bounds_.move(dual, mu_);
       soft_.move(slacks, t.horizon, dual);
       const double share = has_multipliers_ ? length : 1.0;
-      if constexpr (kHasHardRows<P>) now.hard.move(*rows_, share, dual, mu_, t.horizon);
+      if constexpr (kHasHardRows<P>) {
+        if (rows_ != nullptr) now.hard.move(*rows_, share, dual, mu_, t.horizon);
+      }
       take_multipliers(lq, now, t.horizon, share);
       has_multipliers_ = true;
       return Outcome::kGoing;
@@ -432,7 +443,7 @@ class FilterMethod {
     if (failures_ == 2) return Outcome::kGoing;
     failures_ = 1;
     if constexpr (kHasHardRows<P>) {
-      if (rows_->violation_penalty == 0.0) return Outcome::kStuck;
+      if (rows_ != nullptr && rows_->violation_penalty == 0.0) return Outcome::kStuck;
     }
     if (++simulations_ > kMostSimulations) return Outcome::kStuck;
     if (!simulate(problem, lq, t, 1.0, 0.0) && !simulate(problem, lq, t, 0.0, 0.0)) {
@@ -475,7 +486,7 @@ class FilterMethod {
   int short_steps_ = 0;           ///< count in succession
   int leaps_ = 0;                 ///< whole steps that the filter had refused
   FloorWatch floor_;
-  P* rows_ = nullptr;  ///< the problem, if it has rows that must hold
+  P* rows_ = nullptr;  ///< the problem, where its rows that must hold are unknowns' equations
   double moved_ = 0.0, length_ = 0.0, missed_ = 0.0, last_missed_ = 0.0;
   bool rows_lag_ = false;
   Merit here_{};                ///< merit of the present point

@@ -28,15 +28,24 @@ Merit FilterMethod<P, Capacity, Arch>::measure(const P& problem, [[maybe_unused]
     for (std::size_t i = 0; i < kNx; ++i)
       miss += select(live, abs(values.next[i] - V::load_unaligned(point.x[i] + k + 1)), V(0.0));
     if constexpr (Evaluate::kHardRows > 0) {
-      for (std::size_t n = 0; n < Evaluate::kHardRows; ++n)
-        now.hard.measure(problem, n, k, values.hard[n], length, live, miss, cost, logs);
+      for (std::size_t n = 0; n < Evaluate::kHardRows; ++n) {
+        if (rows_ != nullptr) {
+          now.hard.measure(problem, n, k, values.hard[n], length, live, miss, cost, logs);
+        } else {
+          cost += select(live, 0.5 * values.hard[n] * values.hard[n], V(0.0));
+        }
+      }
     }
   }
   Merit merit{sum(miss), sum(cost), sum(logs)};
   if constexpr (kHasHardRows<P>) {
-    double ends[P::kNe + 1];
-    merit.cost += Evaluate::end_cost(problem, point, ends);
-    now.hard.measure_end(unshifted(problem, ends), length, merit);
+    if (rows_ != nullptr) {
+      double ends[P::kNe + 1];
+      merit.cost += Evaluate::end_cost(problem, point, ends);
+      now.hard.measure_end(unshifted(problem, ends), length, merit);
+    } else {
+      merit.cost += Evaluate::end_cost(problem, point);
+    }
   } else {
     merit.cost += Evaluate::end_cost(problem, point);
   }

@@ -85,6 +85,11 @@ class HardRows {
     end_ = {};
     is_ready_ = false;
   }
+  /// Rows of the primal-dual method again, where end() has left them.
+  void resume(P& problem, double mu, std::size_t horizon) noexcept {
+    problem.is_primal_dual = true;
+    set_rows(problem, mu, horizon);
+  }
   [[nodiscard]] bool is_ready() const noexcept { return is_ready_; }
   /// Sets weights of at most `rho` from now on; rows give way at `penalty`, if that is above zero.
   void weigh(double rho, double penalty) noexcept {
@@ -123,7 +128,6 @@ class HardRows {
   /// Updates weights and shifts after a change of rows or μ: their residuals have the force of the eliminated
   /// p and n.
   void set_rows(P& problem, double mu, std::size_t horizon) noexcept {
-    problem.is_primal_dual = true;
     for (std::size_t n = 0; n < kStageRows; ++n) {
       for (std::size_t k = 0; k < horizon; k += 8) {
         const auto [root, shift] = stage_[n].load(k).residual(equality_, mu);

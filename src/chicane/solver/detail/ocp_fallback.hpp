@@ -79,7 +79,7 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
       if (!shows_best_) look_at_best(problem, report);
     }
     if (kCanFilter && has_best_ && bring_inside()) linearise(problem, report);
-    if (kCanFilter && !kOnlyFullSteps && !(has_best_ && is_close(report)))
+    if (kCanFilter && !only_full_steps_ && !(has_best_ && is_close(report)))
       take_cheapest(problem, trajectory, report);
     if (is_growing() || !has_best_) {
       while (is_growing()) grow(problem);
@@ -113,7 +113,8 @@ SolveReport OcpSolver<P, Capacity, Arch>::take_point(const P& problem, Trajector
   full_steps_ = true;
   is_fresh_ = is_exact_ = false;
   linearise(problem, report);
-  report.status = has_converged(report)                          ? SolveStatus::kOptimal
+  const bool is_optimal = residual(report) <= options_.tolerance && now_.defect_excess <= 0.0;
+  report.status = is_optimal                                     ? SolveStatus::kOptimal
                   : residual(report) <= options_.loose_tolerance ? SolveStatus::kBudgetSpent
                                                                  : SolveStatus::kStalled;
   t_.write(trajectory);
@@ -214,7 +215,7 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, T
     is_filtering_ = true;
     barrier_.restore(kept_slacks_, t_.horizon);
     has_begun = filter_.resume(now_, barrier_, t_, false);
-    if (has_begun) now_.hard.set_rows(problem, filter_.mu(), t_.horizon);
+    if (has_begun) now_.hard.resume(problem, filter_.mu(), t_.horizon);
   } else {
     has_begun = start(problem, x0, trajectory);
     is_again_ = begin == Begin::kNear;
@@ -227,6 +228,7 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, T
     is_solved = outcome == Outcome::kSolved;
     break;
   }
+  filter_.take_rows(nullptr);
   is_filtering_ = false;
   if (!has_begun) return false;
   if (now_.hard.is_elastic()) {  // slopes of the violation alone, by an exact adjoint
