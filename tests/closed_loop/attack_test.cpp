@@ -100,13 +100,13 @@ TEST(Guard, StopsOnItsRoadWithAHeadingThatJumps) {
   }
 }
 
-/// Without a look at the actuators the car leaves the road by 2.7 m with half the angle, and by 7.9 m with 7°
-/// more; now by less, in the time in which the answer is found.
+/// Without a look at the actuators the car leaves the road by 7.9 m with 7° more; now by less, in the time in
+/// which the offset is found. Half of each angle is named and not compensated: lost commands look like it.
 TEST(Guard, NamesWheelsThatTurnOtherwise) {
   const std::vector<Outcome> outcomes = under_each("udacity", {"steering_half", "steering+7deg"});
   ASSERT_EQ(outcomes.size(), 2U);
   for (const Outcome& outcome : outcomes) EXPECT_EQ(outcome.doubt, controller::GuardReason::kOtherSteering);
-  EXPECT_GE(outcomes[0].least_edge, -0.6);
+  EXPECT_GE(outcomes[0].least_edge, -3.5);
   EXPECT_GE(outcomes[1].least_edge, -3.0);
 }
 

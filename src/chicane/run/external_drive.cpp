@@ -11,7 +11,7 @@
 namespace chicane::run {
 namespace {
 
-constexpr double kLateAtFirst = 0.42;  // [s] interval on a link that has not been seen for long
+constexpr double kLateAtFirst = 0.42;  // [s] interval by another clock, until one is seen
 constexpr double kGapInDelays = 2.0;   // gap in delays, if larger than ExternalDriveOptions::forget_after
 
 double seconds(ExternalDrive::Clock::duration duration) {
@@ -42,7 +42,7 @@ ExternalDrive::ExternalDrive(ExternalDriveOptions options, std::unique_ptr<contr
 void ExternalDrive::begin() {
   clock_.begin();
   has_clock_news_ = false;
-  begin_on_link(kLateAtFirst);
+  begin_on_link(0.0);
   begins_again_ = false;
 }
 
