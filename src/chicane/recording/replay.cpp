@@ -282,7 +282,7 @@ Result<ReplayReport> verify_recording(const std::string& path, const run::Factor
   if (report.steps == 0) {
     return fail(ErrorCode::kParse,
                 path + ": steps: got none" +
-                    (read->damaged > 0 ? " and " + std::to_string(read->damaged) + " damaged parts"
+                    (read->damaged > 0 ? " and " + std::to_string(read->damaged) + " unreadable parts"
                                        : std::string(read->is_complete ? "" : " before the file's end")) +
                     ", expected a recording with control steps to compute again");
   }

@@ -195,7 +195,7 @@ std::optional<telemetry::Change> LapPlanner::advance(ControlCycle& cycle, const 
   return lap_change(*lap, cycle.next(), time);
 }
 
-/// In real time a thread looks for the lap, with scenario and waypoints of its own.
+/// Begins the search of the thread, with copies of scenario and waypoints.
 void LapPlanner::begin(const scenario::Scenario& scenario, const road::Track* track,
                        const controller::LapRequest& request) {
   if (!search_)

@@ -106,7 +106,7 @@ class LapPlanner {
     scenario::Scenario scenario;
     const road::Track* track = nullptr;
     controller::LapRequest request;
-    std::vector<Vec2> waypoints;  ///< of the request
+    std::vector<Vec2> waypoints;  ///< copy that `request` points to on the thread
   };
   void begin(const scenario::Scenario& scenario, const road::Track* track,
              const controller::LapRequest& request);

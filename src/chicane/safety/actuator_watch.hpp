@@ -40,7 +40,7 @@ struct ActuatorAnswer {
   }
 };
 
-/// The same car without a name: copies do not allocate.
+/// A car without a name, of which copies do not allocate.
 [[nodiscard]] model::VehicleParams without_name(model::VehicleParams vehicle) noexcept;
 
 /// Compares how the car turns and brakes with what was sent to it, by its model (docs/guard.md,

@@ -154,7 +154,6 @@ constexpr double kCreep = 1.0;             // [m/s] of a car that turns at the e
 constexpr double kCreepDrive = 2.5;        // [1/s] of its drive: turned wheels resist
 constexpr double kCreepStep = 0.1;         // [s] of creeping that are simulated at once
 constexpr double kLongestCreep = 6.0;      // [s]
-constexpr double kShortestCreep = 0.5;     // [s] of a car that would stay otherwise
 constexpr double kKeptShare = 0.25;        // of the margin that creeping leaves at least
 constexpr double kCreepNearer = 5e-3;      // [m] by which a car that has less may come nearer
 constexpr double kSeenTurn = 0.06;         // [rad] of turning after which a car that is led is judged by it
@@ -171,12 +170,12 @@ model::Command creep(double steer, double vx, const model::VehicleParams& car) n
   return {steer, throttle_for(car, kCreepDrive * std::max(kCreep - vx, 0.0), vx)};
 }
 
-/// The least distance to the edge of a car that creeps from `at` on for `time` [s] with its wheels turned,
-/// until it is along the road or as far from the edge as before (docs/guard.md, eq. 6c). It comes to rest on
-/// this arc wherever it is stopped.
+/// The least distance to the edge of a car that creeps from `at` on with its wheels turned, until it is along
+/// the road or as far from the edge as before (docs/guard.md, eq. 6c). It comes to rest on this arc wherever
+/// it is stopped.
 double creeping_edge(const StopPlanner& planner, const road::KnownRoad& road, StopStart at, double steer,
-                     const model::VehicleParams& car, double time) noexcept {
-  const double edge = planner.edge(road, at), ends = at.time + time;
+                     const model::VehicleParams& car) noexcept {
+  const double edge = planner.edge(road, at), ends = at.time + kLongestCreep;
   double least = edge;
   do {
     at = planner.advance(road, at, creep(steer, at.body.vx, car), kCreepStep, least);
@@ -331,13 +330,9 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const bool waits = stands && is_on_road && !(turns_as_asked(act, car) && has_turned);
   if (stands && result.command.throttle > 0.0) result.command = creep(result.command.steer, car.vx, vehicle);
   Fit fit = start && !waits ? verify(*start, cycle, result.command, true) : Fit::kNone;
-  // Wheels at full lock turn a car more sharply than the model has it: one that would stand for ever finds
-  // out, step by step.
-  const bool would_stay = act - run_.refused.at > kStuckTime;
-  const double kept = would_stay ? 0.0 : std::min(edge, kKeptShare * options_.margin) - kCreepNearer;
-  const double ahead = would_stay ? kShortestCreep : kLongestCreep;
+  const double kept = std::min(edge, kKeptShare * options_.margin) - kCreepNearer;
   if (fit == Fit::kNone && stands && is_on_road && !waits &&
-      creeping_edge(filter_.planner(), road_, *start, car.steer, vehicle, ahead) > kept)
+      creeping_edge(filter_.planner(), road_, *start, car.steer, vehicle) > kept)
     fit = Fit::kSeen;
   // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there,
   // and once it stands. Otherwise a car that creeps or stands turns its wheels: it needs less room then.

@@ -24,7 +24,7 @@ constexpr double kLedShare = 0.5;       // of the margin that turning back leave
 constexpr double kCrawl = 0.5;          // [m/s]
 constexpr double kWalkingPace = 3.0;    // [m/s] below it slip angles say little
 constexpr double kNearer = 0.02;        // [m] that a stop may come nearer to an edge than the car is
-constexpr double kKeptLoss = 0.95;      // of what stops have lost, when another one begins
+constexpr double kKeptLoss = 0.95;      // share of earlier losses that counts when a stop begins
 constexpr double kMostLoss = 0.5;       // [m] of it that counts
 constexpr double kMemory = 3.0;         // [s] of residuals
 constexpr double kDeviations = 2.0;     // of residuals that a certificate covers
@@ -216,8 +216,8 @@ double PredictiveFilter::slip(const StopStart& at) const noexcept {
   return planner_.has_wheels() ? std::max(use.front, use.rear) : use.rear;
 }
 
-/// Where some commands come much later than usual, a wheel that is turned for long leads elsewhere: there has
-/// to be a stop after a command that is held as usual, and after one that begins late.
+/// Whether there is a stop after the command also if it is held as usual, and if it begins late: on a link
+/// whose commands are sometimes much later than usual, wheels that stay turned lead elsewhere. Stores none.
 bool PredictiveFilter::holds_as_usual(const Request& request, double longest, GuardReport& report) noexcept {
   if (!(usual_ > 0.0) || !(longest > usual_ + kLateness) || request.road.is_raced()) return true;
   const Policy before = stored_;
@@ -228,12 +228,12 @@ bool PredictiveFilter::holds_as_usual(const Request& request, double longest, Gu
   const StopStart late_start = planner_.advance(request.road, request.start, request.acting, late, edge);
   const Request delayed{
       .road = request.road, .start = late_start, .command = request.command, .is_led = request.is_led};
-  if (verify_held(request, usual, report) != Fit::kNone && verify_held(delayed, usual, report) != Fit::kNone)
-    return true;
+  const bool holds =
+      verify_held(request, usual, report) != Fit::kNone && verify_held(delayed, usual, report) != Fit::kNone;
   stored_ = before;
   has_stored_ = had_stored;
   is_current_ = false;
-  return false;
+  return holds;
 }
 
 /// The next command may come late: a stop that begins after that time comes before one that begins at once,

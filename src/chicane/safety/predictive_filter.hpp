@@ -61,7 +61,7 @@ class PredictiveFilter {
     double interval = 0.0;    ///< between two commands [s]; <= 0: not known
     bool is_led = false;      ///< the guard's own command, at walking pace
     double longest = 0.0;     ///< interval lately [s]
-    model::Command acting{};  ///< until then
+    model::Command acting{};  ///< command that acts before `command` does
   };
   /// Whether a certified stop exists where `request` leads; the stop is stored. The stored one stays when
   /// none exists. Writes stop_edge and stop_distance.
@@ -120,7 +120,7 @@ class PredictiveFilter {
   double refused_at_ = -std::numeric_limits<double>::infinity();  ///< the last drive() [s]
   double driven_at_ = -std::numeric_limits<double>::infinity();   ///< a stop, last, with nothing in doubt [s]
   double promised_ = 0.0;                                         ///< edge of the policy that is driven [m]
-  double lost_ = 0.0;                                             ///< of it, by driven policies [m]
+  double lost_ = 0.0;                                             ///< edge that driven policies have lost [m]
   double interval_ = 0.0;                                         ///< before this cycle [s]
   double usual_ = 0.0;                                            ///< shorter of the last two intervals [s]
   double hold_ = Policy{}.hold;                                   ///< Policy::hold [s]
