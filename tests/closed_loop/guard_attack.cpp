@@ -113,10 +113,11 @@ void print_trace(const telemetry::Frame& frame) {
   fmt::print(
       "{:7.2f} s  v {:6.2f} ({:6.2f})  edge {:6.2f}  off line {:6.2f}  place error {:6.2f}  asked {:+.3f} "
       "{:+.3f}  "
-      "sent {:+.3f} {:+.3f}  rung {}  {}\n",
+      "sent {:+.3f} {:+.3f}  stop edge {:6.3f}  rung {}  {}\n",
       frame.time, frame.truth.vx, seen.speed, frame.edge_distance, frame.lateral_error,
       std::hypot(seen.x - frame.truth.x, seen.y - frame.truth.y), frame.asked.steer, frame.asked.throttle,
-      frame.result.command.steer, frame.result.command.throttle, static_cast<int>(report.rung),
+      frame.result.command.steer, frame.result.command.throttle, report.stop_edge,
+      static_cast<int>(report.rung),
       controller::kGuardReasonWords[static_cast<std::size_t>(report.reason)].name);
 }
 

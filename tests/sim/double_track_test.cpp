@@ -132,8 +132,7 @@ TEST(DoubleTrack, ThePlantOfAModelHasThatModel) {
     EXPECT_NEAR(a, b, 1e-12 * std::fabs(a)) << option.name;
   }
   EXPECT_EQ(made.wheel_inertia, plant.wheel_inertia);
-  EXPECT_NEAR(made.downforce_front / made.downforce_rear, plant.downforce_front / plant.downforce_rear,
-              1e-12);
+  EXPECT_NEAR(found.load_balance, 0.4 - plant.rear_axle / plant.wheelbase(), 1e-12);
 }
 
 TEST(DoubleTrack, DownforceLetsItCornerFaster) {

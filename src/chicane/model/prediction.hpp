@@ -213,8 +213,15 @@ class PredictionModel {
     // Load transfer depends on the weight alone, not on downforce.
     const T rest = p.load_quadratic > 0.0 ? T(p.load_constant / load_now) : T(1.0);
     const T transfer = (p.height / kGravity) * rest * m.acceleration;
-    const T part_front = least<kSmooth>(1.0 - (1.0 / p.rear_axle) * transfer);  // of its load at rest
-    const T part_rear = least<kSmooth>(1.0 + (1.0 / p.front_axle) * transfer);
+    T part_front = 1.0 - (1.0 / p.rear_axle) * transfer;  // of its load at rest
+    T part_rear = 1.0 + (1.0 / p.front_axle) * transfer;
+    if (p.load_balance != 0.0) {
+      const T pressed = p.load_balance * (1.0 - rest);
+      part_front = part_front + (1.0 / rest_front) * pressed;
+      part_rear = part_rear - (1.0 / rest_rear) * pressed;
+    }
+    part_front = least<kSmooth>(part_front);
+    part_rear = least<kSmooth>(part_rear);
     const T load_front = rest_front * load_now * part_front;
     const T load_rear = rest_rear * load_now * part_rear;
     const T grip_front = 1.0 + p.load_sensitivity * (1.0 - part_front);  // friction over that at rest

@@ -47,6 +47,8 @@ constexpr std::array kOptions{
                                "Growth of the normal acceleration with speed: downforce."),
     option<&P::load_quadratic>("load_quadratic", unit::per("1/m"), 0, 1,
                                "Growth of the normal acceleration with the square of the speed."),
+    option<&P::load_balance>("load_balance", unit::kNone, -1, 1,
+                             "Share of the front axle in that growth, less its share at rest."),
     option<&P::steer_helper>("steer_helper", unit::kNone, 0, 0.99,
                              "Share of each yaw change by which the velocity turns along; 0 for a real car."),
     option<&P::helper_gap>(

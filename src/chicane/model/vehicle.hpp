@@ -99,6 +99,7 @@ struct VehicleParams : CarBody {
   double load_constant = 12.22;    ///< normal acceleration at rest [m/s²]
   double load_per_speed = 0.0923;  ///< growth of the load with speed (downforce) [1/s]
   double load_quadratic = 0.0;     ///< growth of the load with squared speed [1/m]
+  double load_balance = 0.0;       ///< share of the front axle in that growth, less its share at rest
   double steer_helper =
       0.768;  ///< share of each yaw change by which the car turns its velocity along; 0 = a real car
   double helper_gap = 0.0;  ///< gap of the helper when the heading passes +y [s] (actuator.hpp)

@@ -22,6 +22,9 @@ struct StopMotion {
   /// Acceleration that the wheels' loads have followed, along and across [m/s²].
   double load_along = 0.0;
   double load_across = 0.0;
+  /// By which the slip angles of the axles' tyres follow the wheels' [rad].
+  double behind_front = 0.0;
+  double behind_rear = 0.0;
 };
 
 /// The car that a stop is simulated with (docs/guard.md, eq. 3a). Nobody corrects what it has
@@ -60,8 +63,10 @@ class StopCar {
     double along, across;  ///< of the body [m/s²]
   };
   [[nodiscard]] Change change(const StopMotion& at) const noexcept;
+  /// Slip angles of the axles, front and rear [rad].
+  [[nodiscard]] std::array<double, 2> slips(const model::BodyMotion<double>& m) const noexcept;
 
-  static constexpr double kSlowest = 12.0;  ///< [m/s] stiff tyres would need shorter steps
+  static constexpr double kSlowest = 8.0;  ///< [m/s] stiff tyres would need shorter steps
 
   using EachWheel = Pack<arch::Baseline, 4>;  ///< front left, front right, rear left, rear right
   /// Constants of the wheels.
@@ -89,7 +94,8 @@ struct StopStart {
   double d = 0.0;     ///< beside it, left positive [m]
   double e = 0.0;     ///< yaw minus the line's heading [rad]
   model::BodyMotion<double> body{};
-  double load_along = 0.0, load_across = 0.0;  ///< as in StopMotion [m/s²]
+  double load_along = 0.0, load_across = 0.0;    ///< as in StopMotion [m/s²]
+  double behind_front = 0.0, behind_rear = 0.0;  ///< as in StopMotion [rad]
 };
 
 /// The result of a simulated stop.

@@ -122,7 +122,9 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
   m.load_constant = DoubleTrackParams::kGravity;
   m.load_per_speed = 0.0;
   // The tyres lose friction under it as under any load.
-  m.load_quadratic = (1.0 - p.load_sensitivity) * (p.downforce_front + p.downforce_rear) / p.mass;
+  const double downforce = p.downforce_front + p.downforce_rear;
+  m.load_quadratic = (1.0 - p.load_sensitivity) * downforce / p.mass;
+  m.load_balance = downforce > 0.0 ? p.downforce_front / downforce - p.rear_axle / p.wheelbase() : 0.0;
   m.steer_helper = 0.0;
   m.helper_gap = 0.0;
   // Inertia of the car and its wheels: a force along speeds up both.
@@ -132,7 +134,7 @@ model::VehicleParams model_of(const DoubleTrackParams& p, model::VehicleParams b
   m.drag_constant =
       (p.rolling_resistance * DoubleTrackParams::kGravity * p.mass + p.drive_friction) / inertia;
   m.drag_linear = 0.0;
-  m.drag_quadratic = (p.drag + p.rolling_resistance * (p.downforce_front + p.downforce_rear)) / inertia;
+  m.drag_quadratic = (p.drag + p.rolling_resistance * downforce) / inertia;
   m.brake_acceleration = p.brake_force / inertia;
   // Anti-lock limits braking to the tyres' friction.
   m.brake_throttle_limit = std::min(1.0, p.friction * DoubleTrackParams::kGravity / m.brake_acceleration);
@@ -149,8 +151,7 @@ DoubleTrackParams plant_of(const model::VehicleParams& m, DoubleTrackParams like
   p.stiffness_front = m.cornering_front / slope;
   p.stiffness_rear = m.cornering_rear / slope;
   const double downforce = m.load_quadratic * p.mass / (1.0 - p.load_sensitivity);
-  const double like_downforce = like.downforce_front + like.downforce_rear;
-  const double share_front = like_downforce > 0.0 ? like.downforce_front / like_downforce : 0.5;
+  const double share_front = m.rear_axle / m.wheelbase() + m.load_balance;
   p.downforce_front = share_front * downforce;
   p.downforce_rear = (1.0 - share_front) * downforce;
   const double inertia = p.mass + 4.0 * p.wheel_inertia / (p.wheel_radius * p.wheel_radius);

@@ -100,8 +100,10 @@ void FourWheels::advance(Motion& motion, double steer, double steer_middle, doub
     const double slip = motion.slip[i] - damping * w.y;
 
     const double side = i % 2 == 0 ? -1.0 : 1.0;  // right wheels carry more in a left bend
+    const double pressed_more = (is_front ? 0.5 : -0.5) * vehicle_.load_balance * (1.0 - rest) / axle.rest;
     const double part = std::max(
-        kLeastLoad, 1.0 + rest * (tire.per_along * motion.along + side * tire.per_across * motion.across));
+        kLeastLoad,
+        1.0 + pressed_more + rest * (tire.per_along * motion.along + side * tire.per_across * motion.across));
     const double load = axle.rest * pressed * part * (1.0 + vehicle_.load_sensitivity * (1.0 - part));
     const double most = vehicle_.friction * load;
     // Slip along the tyre from the balance of torque, tyre force and the wheel's inertia, in two steps of
