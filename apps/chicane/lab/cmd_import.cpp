@@ -139,7 +139,8 @@ namespace {
 using protocol::TrackFile;
 using protocol::TrackReadOptions;
 
-constexpr double kModelRoad = 3.0;     // narrower roads are for model cars [m]
+constexpr double kModelRoad = 3.0;     // narrower roads, on average, are for model cars [m]
+constexpr double kModelNarrow = 2.5;   // or those with a narrower place [m]
 constexpr double kWideRoad = 30.0;     // wider roads may be in another unit [m]
 constexpr double kModelScale = 0.1;    // scale of a model road's assumed noise and spacing
 constexpr double kPointsAcross = 5.0;  // width over the spacing of the points
@@ -155,7 +156,7 @@ struct Imported {
   double narrowest = 1e9, widest = 0.0;  ///< least and largest width [m]
   double sharpest = 0.0;                 ///< largest curvature [1/m]
 
-  [[nodiscard]] bool is_model() const noexcept { return mean_width < kModelRoad; }
+  [[nodiscard]] bool is_model() const noexcept { return mean_width < kModelRoad || narrowest < kModelNarrow; }
 };
 
 TrackReadOptions read_options(const Options::Import& import, double scale) {
