@@ -84,13 +84,15 @@ StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
   const EachWheel after = use / secant(across_square + next * next);
   const EachWheel step = next - alone;
   const EachWheel shrinks = min((after - next) * step / (step * step + kLeastSquare), EachWheel(0.9));
+  EachWheel z_along = alone + step / (1.0 - shrinks);
   // Or that at which anti-lock holds a wheel that locks: between both slips the brake falls to nothing.
   const EachWheel from = kLocks[0] * w.cornering, to = kLocks[1] * w.cornering;
   const EachWheel over = -wanted - from * secant(from * from + across_square);
-  const EachWheel held = to * secant(to * to + across_square);
   const auto locks = over > 0.0;
-  const EachWheel z_along =
-      select(locks, -(from + (to - from) * over / (over + held)), alone + step / (1.0 - shrinks));
+  if (any(locks)) {
+    const EachWheel held = to * secant(to * to + across_square);
+    z_along = select(locks, -(from + (to - from) * over / (over + held)), z_along);
+  }
   const EachWheel stiffness = most * secant(across_square + z_along * z_along);
   const EachWheel along = select(locks, stiffness * z_along, most * use), across = stiffness * z;
   const auto force_of = [&](std::size_t i, const model::Axle&, const model::Planar<double>&) {
