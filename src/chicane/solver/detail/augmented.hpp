@@ -66,7 +66,6 @@ class Augmented {
   static constexpr int kNr = P::kNr + kEqualities;
   static constexpr int kNe = P::kNe + kEndEqualities + kEndConstraints;
   static constexpr bool kGaussNewton = !has_hessians<P>();
-  static constexpr bool kRealTime = !has_filter_method<P>();
   static constexpr bool kHasSparseRows = solver::kHasSparseRows<P>;
 
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -88,6 +87,7 @@ class Augmented {
   std::array<double, kEndEqualities + kEndConstraints> terminal_shift{};
   std::array<double, kNc> penalty_factor{};  ///< factors of soft constraints, hard ones among them
   double violation_penalty = 0.0;            ///< penalty on the violation of rows that must hold, if any
+  double limit_share = 1.0;                  ///< share of it that counts for limits of the stages
   double hard_penalty = 0.0;    ///< replaces the hard ones' penalties, if any: so high that none is violated
   bool is_primal_dual = false;  ///< rows in the form of the primal-dual method (detail/hard_rows.hpp)
 
@@ -142,7 +142,7 @@ class Augmented {
       if (problem->is_hard(c)) {
         penalty.cap = 1e30;
         if (is_primal_dual) penalty = {hard_penalty, 0.0, SoftConstraint<>::kMustHold};
-        if (violation_penalty > 0.0) penalty = {violation_penalty, 0.0, 1e30};
+        if (violation_penalty > 0.0) penalty = {limit_share * violation_penalty, 0.0, 1e30};
       }
     }
     return penalty;

@@ -85,6 +85,11 @@ class HardRows {
     end_ = {};
     is_ready_ = false;
   }
+  /// Rows of the primal-dual method again, where end() has left them.
+  void resume(P& problem, double mu, std::size_t horizon) noexcept {
+    problem.is_primal_dual = true;
+    set_rows(problem, mu, horizon);
+  }
   [[nodiscard]] bool is_ready() const noexcept { return is_ready_; }
   /// Sets weights of at most `rho` from now on; rows give way at `penalty`, if that is above zero.
   void weigh(double rho, double penalty) noexcept {
@@ -93,6 +98,13 @@ class HardRows {
     const double most = penalty > 0.0 ? penalty : kInfinity;
     equality_ = {-most, most, penalty > 0.0 ? 0.0 : 1.0 / rho};
     inequality_ = {0.0, most, 0.0};
+  }
+  /// Weights `factor` times as large, at most `most`: multipliers that lag behind reach their values sooner.
+  void raise(P& problem, double factor, double most, double mu, std::size_t horizon) noexcept {
+    if (is_elastic() || rho_ >= most) return;
+    rho_ *= factor;
+    equality_.soft = 1.0 / rho_;
+    set_rows(problem, mu, horizon);
   }
   [[nodiscard]] bool is_elastic() const noexcept { return equality_.has_p(); }
   /// p, n and multipliers of the rows of eight stages from k on, whose values are `h`, on the central path.
