@@ -85,7 +85,7 @@ class FilterMethod {
     if constexpr (kHasHardRows<P>) {
       if (rows_ != nullptr) {
         rows_->hard_penalty = kHardPenalty * unit_;
-        now.hard.weigh(kRowWeight * unit_, rows_->violation_penalty);
+        now.hard.weigh(kRowWeight * unit_, rows_->violation_penalty, t.horizon);
       }
     }
     last_shift_ = forced_shift_ = 0.0;
