@@ -236,12 +236,13 @@ class OcpSolver {
         t_.u[m][k] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
     }
     if ((options_.start_from_states && take_states(trajectory)) || roll_out(problem)) return true;
-    fill_inputs(0);
+    fill_inputs();
     if (roll_out(problem)) return true;
     if (kCanFilter) hold_states();
     return kCanFilter;
   }
   void hold_states() noexcept {
+    fill_inputs();
     stands_still_ = true;
     for (std::size_t i = 0; i < kNx; ++i) std::fill(t_.x[i] + 1, t_.x[i] + t_.horizon + 1, t_.x[i][0]);
   }
@@ -263,10 +264,18 @@ class OcpSolver {
     return std::min(std::max(std::isfinite(value) ? value : 0.0, low), high);
   }
   bool bring_inside() noexcept;
-  /// Inputs of zero, or their bounds, from stage k on.
-  void fill_inputs(std::size_t from) noexcept {
+  /// Writes an iterate, its inputs inside their bounds: u + (bound − u) may miss the bound by one rounding.
+  void write(const Iterate<kNx, kNu, kSize>& from, Trajectory& trajectory) const noexcept {
+    from.write(trajectory);
+    for (std::size_t k = 0; k < from.horizon; ++k) {
+      for (std::size_t m = 0; m < kNu; ++m)
+        trajectory.u[k][m] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
+    }
+  }
+  /// Inputs of zero, or their bounds.
+  void fill_inputs() noexcept {
     for (std::size_t m = 0; m < kNu; ++m) {
-      for (std::size_t k = from; k < t_.horizon; ++k)
+      for (std::size_t k = 0; k < t_.horizon; ++k)
         t_.u[m][k] = nearest(0.0, now_.lower[m][k], now_.upper[m][k]);
     }
   }
@@ -435,7 +444,7 @@ class OcpSolver {
   Progress progress_;
   Course course_;
   using Filter = FilterMethod<P, kSize, Arch>;
-  std::conditional_t<kCanFilter, Filter, NoFilter> filter_;
+  std::conditional_t<kCanFilter, Filter, Nothing> filter_;
   Iterate<kNx, kNu, kSize> t_;     ///< the present iterate
   Iterate<kNx, kNu, kSize> step_;  ///< step to the next iterate
   Iterate<kNx, kNu, kSize> best_;
@@ -454,9 +463,9 @@ class OcpSolver {
   bool is_fresh_ = true;          ///< slacks and working set must be guessed
   std::size_t target_ = 0;        ///< horizon asked for
   double work_ = 0.0;             ///< iterations so far, weighted by share of horizon
-  std::conditional_t<kHasHardRows<P>, Iterate<kNx, kNu, kSize>, NoFilter> kept_;
-  std::conditional_t<kHasHardRows<P>, typename Slacks::Memory, NoFilter> kept_slacks_;
-  std::conditional_t<kCanFilter, typename Slacks::Memory, NoFilter> best_slacks_;  ///< of the best iterate
+  std::conditional_t<kHasHardRows<P>, Iterate<kNx, kNu, kSize>, Nothing> kept_;
+  std::conditional_t<kHasHardRows<P>, typename Slacks::Memory, Nothing> kept_slacks_;
+  std::conditional_t<kCanFilter, typename Slacks::Memory, Nothing> best_slacks_;  ///< of the best iterate
 };
 
 }  // namespace chicane::solver

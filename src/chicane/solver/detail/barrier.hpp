@@ -102,18 +102,8 @@ class Barrier {
   /// Keeps its derivatives, for soft_change().
   template <class J>
   CHICANE_INLINE void store_row(std::size_t c, std::size_t k, const J& constraint) noexcept {
-    if constexpr (AnyLooseJet<J>) {
-      for (std::size_t j = 0; j < kNz; ++j) constraint.slopes[j].store(row_[c][j] + k);
-    } else if constexpr (AnySparseRow<J>) {
-      constraint.each_slope([&](std::size_t j, const V& slope) { slope.store(row_[c][j] + k); });
-    } else if constexpr (AnyJet<J>) {
-      jet::repeat<size_of(J::kFirst)>([&](auto n) CHICANE_INLINE {
-        constexpr int j = member_of(J::kFirst, n);
-        jet::number<V>(jet::slope<j>(constraint)).store(row_[c][j] + k);
-      });
-    } else {
-      for (std::size_t j = 0; j < kNz; ++j) constraint.slopes[j].store(row_[c][j] + k);
-    }
+    each_slope<V>(constraint,
+                  [&](std::size_t j, const V& slope) CHICANE_INLINE { slope.store(row_[c][j] + k); });
   }
 
   /// First-order change of constraint c of the eight stages from k on under a step.

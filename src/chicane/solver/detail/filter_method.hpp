@@ -495,9 +495,6 @@ class FilterMethod {
   int simulations_ = 0;
 };
 
-/// Placeholder for problems without the filter method.
-struct NoFilter {};
-
 }  // namespace chicane::solver
 
 #include "chicane/solver/detail/filter_trials.hpp"

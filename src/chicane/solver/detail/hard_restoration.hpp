@@ -19,15 +19,12 @@ namespace chicane::solver {
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::follow(Begin begin, const State& x0, Trajectory& trajectory,
                                            const Deadline& deadline, int& left, HardReport& report) noexcept {
-  constexpr int kMostIterations = 200;
   constexpr double kDearer = 4.0;  // factor over the highest multiplier: the constraint is kept
   SolveReport seen;
-  const int most = std::max(1, std::min(left, kMostIterations));
   inner_.ask_for(round_tolerance());
-  const bool is_solved = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, begin, seen);
-  report.iterations += seen.iterations;
-  report.sweeps += seen.sweeps;
-  left -= seen.iterations;
+  const bool is_solved =
+      inner_.follow_barrier(problem_, x0, trajectory, deadline, std::min(left, kMostIterations), begin, seen);
+  count(seen, left, report);
   if (!is_solved) return false;
   inner_.keep_point();
   for (std::size_t c = 0; c < kNc; ++c) {
@@ -49,56 +46,47 @@ template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                                                   double share, const Deadline& deadline, int& left,
                                                   HardReport& report) noexcept {
-  constexpr int kMostIterations = 200;
   constexpr double kTolerance = 1e-8, kFirstUnit = 0.1, kNoDefect = 1e-9;
   constexpr double kFall = 1e-2;        // of the share
   constexpr double kLimitShare = 1e-1;  // penalty of the stages' limits over others while the cost counts
   constexpr double kSame = 1e-3;        // difference of two violations of one point, relative
   constexpr double kMuch = 0.1, kLeastUnit = 1e-3;  // over the unit: repeat below it, least next unit
-  if (left <= 0) return false;
   forget_multipliers();
   inner_.ask_for(kTolerance);
   Misses misses = measure(problem, trajectory, nullptr);
-  double unit = std::max(kFirstUnit, misses.worst());  // states of a guess may miss nothing but the dynamics
+  double unit = std::max(kFirstUnit, misses.worst);  // states of a guess may miss nothing but the dynamics
   SolveReport seen;
-  bool converged = false, is_over = false;
-  for (Begin begin = Begin::kGuess; !is_over && left > 0 && !deadline.spent(); begin = Begin::kNear) {
+  bool converged = false;
+  for (Begin begin = Begin::kGuess; left > 0 && !deadline.spent(); begin = Begin::kNear) {
     const double cost = std::isfinite(misses.cost) ? std::max(unit_, misses.cost) : unit_;
     weigh_misses(share / ((share > kLeastShare ? unit_ : cost) * std::max(1.0, unit)), unit);
     problem_.limit_share = share <= kLeastShare ? 1.0 : kLimitShare;
     seen = {};
-    const int most = std::max(1, std::min(left, kMostIterations));
-    converged = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, begin, seen);
+    converged = inner_.follow_barrier(problem_, x0, trajectory, deadline, std::min(left, kMostIterations),
+                                      begin, seen);
     inner_.start_from_states(true);
-    report.iterations += seen.iterations;
-    report.sweeps += seen.sweeps;
-    left -= seen.iterations;
+    count(seen, left, report);
     misses = measure(problem, trajectory, &report);
-    const double worst = misses.worst();
-    const bool was_least = share <= kLeastShare, holds = converged && worst <= options_.tolerance;
+    const bool was_least = share <= kLeastShare, holds = converged && misses.worst <= options_.tolerance;
     is_possible_ = is_possible_ || holds;
-    is_over = holds || (was_least && !(converged && worst < kMuch * unit));
-    if (is_over) break;
-    unit = was_least ? std::max(worst, kLeastUnit * unit) : std::max(kFirstUnit, worst);
+    if (holds || (was_least && !(converged && misses.worst < kMuch * unit))) break;
+    unit = was_least ? std::max(misses.worst, kLeastUnit * unit) : std::max(kFirstUnit, misses.worst);
     share = share > kFall ? kFall * share : kLeastShare;
   }
   keep_multipliers(trajectory.horizon);
-  is_certified_ = share <= kLeastShare && !is_possible_ && misses.worst() > options_.tolerance &&
+  is_certified_ = share <= kLeastShare && !is_possible_ && misses.worst > options_.tolerance &&
                   (converged || (seen.iterations > 0 && seen.defect <= kNoDefect)) &&
                   is_proven(problem, x0, trajectory, misses.total / unit, converged);
   problem_.violation_penalty = 0.0;
-  inner_.ask_for(round_tolerance());
   if (is_certified_) {
     is_final_ = is_final_ || std::fabs(misses.total - least_total_) <= kSame * misses.total;
     least_total_ = misses.total;
     least_ = trajectory;
     least_multipliers_ = multipliers_;
     least_unit_ = unit;
-    return true;
   }
-  report.status = SolveStatus::kStalled;  // converged, but not with the whole cost
   forget_multipliers();
-  return false;
+  return is_certified_;
 }
 /// Whether no inputs within their bounds are free of violation, by slopes and multipliers at the inputs of
 /// the least, whose misses are `violation` of their unit (docs/solver.md, eq. 55a): all slopes together, each
@@ -109,7 +97,7 @@ template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const State& x0, const Trajectory& least,
                                               double violation, bool converged) noexcept {
   constexpr double kFarthest = 1e3, kRounding = 1e-6, kLittle = 1e-1, kNextToNothing = 1e-3;
-  double gain = 0.0, change = 0.0, size = 0.0;
+  double gain = 0.0, change = 0.0;
   copy_ = guess_;
   clamp_inputs(problem, copy_);
   for (int k = 0; k < least.horizon; ++k) {
@@ -120,18 +108,17 @@ bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const State& x0,
       const double slope = inner_.bound_multiplier(k, static_cast<int>(m));
       const double room = slope > 0.0 ? u - low[m] : high[m] - u;
       gain += std::fabs(slope) * (std::isfinite(room) ? room : kFarthest * (1.0 + std::fabs(u)));
-      double& other = copy_.u[stage][m];
-      other = std::min(
-          std::max(other + ((stage + m) % 2 == 0 ? 0.5 : -0.5) * (1.0 + std::fabs(other)), low[m]), high[m]);
+      const double guess = copy_.u[stage][m],
+                   by = ((stage + m) % 2 == 0 ? 0.5 : -0.5) * (1.0 + std::fabs(guess));
+      const double other = copy_.u[stage][m] = std::clamp(guess + by, low[m], high[m]);
       change += slope * (other - u);
-      size += std::fabs(slope * (other - u));
     }
   }
   const double here = measure(problem, least, nullptr).weighted;
-  const bool is_there = roll_out(problem, x0, copy_);
-  const double there =
-      is_there ? measure(problem, copy_, nullptr).weighted : std::numeric_limits<double>::infinity();
-  is_final_ = std::fabs(there - here - change) <= kRounding * (std::fabs(here) + size);
+  roll_out(problem, x0, copy_);
+  const double there = measure(problem, copy_, nullptr).weighted;
+  is_final_ = std::fabs(there - here - change) <=
+              kRounding * (std::fabs(here) + std::fabs(there) + std::fabs(change));
   const double little = is_final_ ? kLittle : (converged ? kNextToNothing : 0.0);
   return gain <= little * violation && here >= (1.0 - little) * violation;
 }
@@ -140,10 +127,7 @@ template <HardProblem P, int Capacity, class Arch>
 HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, const State& x0,
                                                           Trajectory& trajectory,
                                                           HardReport report) noexcept {
-  multipliers_ = least_multipliers_;
-  multipliers_.equality_weight.fill(kLight);
-  multipliers_.terminal_weight.fill(kLight);
-  put_multipliers(trajectory.horizon);
+  put_light(least_multipliers_, trajectory.horizon);
   weigh_misses(0.0, least_unit_);
   trajectory = least_;
   HardReport seen;

@@ -50,15 +50,8 @@ class HardRows {
     r.v.store(value_[n] + k);
     if constexpr (AnySparseRow<Row>) {
       for (auto& slope : row_[n]) V(0.0).store(slope + k);
-      r.each_slope([&](std::size_t j, const V& slope) { slope.store(row_[n][j] + k); });
-    } else if constexpr (AnyJet<Row>) {
-      jet::repeat<size_of(Row::kFirst)>([&](auto i) CHICANE_INLINE {
-        constexpr int j = member_of(Row::kFirst, i);
-        jet::number<V>(jet::slope<j>(r)).store(row_[n][j] + k);
-      });
-    } else {
-      for (std::size_t j = 0; j < kNz; ++j) r.slopes[j].store(row_[n][j] + k);
     }
+    each_slope<V>(r, [&](std::size_t j, const V& slope) { slope.store(row_[n][j] + k); });
   }
   void store_end(std::size_t n, double value) noexcept {
     end_value_[n] = value;
@@ -455,7 +448,7 @@ class HardRows {
   Of<Rows, kStageRows> stage_{}, stage_step_{}, stage_at_{};
   double end_value_[kEndRows + 1]{}, end_row_[kEndRows + 1][kNx]{};
   std::array<Row<double>, kEndRows + 1> end_{}, end_step_{}, end_at_{};
-  bool is_there_[kEndRows + 1]{};  ///< sparse rows may be absent: rows that the problem does not have
+  bool is_there_[kEndRows + 1]{};         ///< sparse rows may be absent: rows that the problem does not have
   Of<double, kStageRows> stage_share_{};  ///< of rho_, by row
   Of<double, kEndRows> end_share_{};
   double most_ = kInfinity;  ///< limit of multipliers
@@ -464,17 +457,7 @@ class HardRows {
   bool is_ready_ = false;  ///< weigh() has been called
 };
 
-/// Placeholder for problems without hard rows.
-struct NoHardRows {};
-
-template <class P, std::size_t Capacity, class Arch>
-struct HardRowsOf {
-  using Type = NoHardRows;
-};
-template <class P, std::size_t Capacity, class Arch>
-requires kHasHardRows<P>
-struct HardRowsOf<P, Capacity, Arch> {
-  using Type = HardRows<P, Capacity, Arch>;
-};
+/// Member of problems without some part of the solver.
+struct Nothing {};
 
 }  // namespace chicane::solver

@@ -90,30 +90,18 @@ class HardSolver {
   static constexpr std::size_t kNh = Problem::kEqualities, kNc = P::kNc;
   static constexpr std::size_t kNeh = Problem::kEndEqualities;
   static constexpr std::size_t kEnd = kNeh + Problem::kEndConstraints;
+  static constexpr int kMostIterations = 200;  ///< limit from one start
   static constexpr int kMostFullSteps = 15;    ///< limit in one round
   static constexpr int kMostBarriers = 2;      ///< lower ones, where full steps fail
   static constexpr double kLeastShare = 1e-8;  ///< of the cost in restoration
   static constexpr double kLight = 1e-9;       ///< weight of rows, negligible beside their multipliers
 
-  /// Violations of a trajectory by row: the largest of each.
+  /// Violations of a trajectory.
   struct Misses {
-    std::array<double, kNh> equality{};
-    std::array<double, kEnd> terminal{};
-    std::array<double, kNc> constraint{};
+    double worst = 0.0;
     double cost = 0.0;      ///< the problem's own, with its first penalties
     double total = 0.0;     ///< sum over all rows of all stages
     double weighted = 0.0;  ///< sum of the rows, each times its multiplier
-
-    [[nodiscard]] double worst() const noexcept {
-      double worst = 0.0;
-      const auto add = [&](const auto& rows) {
-        for (const double miss : rows) worst = std::max(worst, miss);
-      };
-      add(equality);
-      add(terminal);
-      add(constraint);
-      return worst;
-    }
   };
 
   HardReport run(const P& problem, const State& x0, Trajectory& trajectory,
@@ -134,12 +122,11 @@ class HardSolver {
       if (attempt > 0 && is_infeasible(problem, x0, trajectory, kShares[attempt], deadline, left, report)) {
         if (is_final_) break;
       } else if (follow(Begin::kGuess, x0, trajectory, deadline, left, report)) {
-        for (int n = 0;; ++n) {
+        int barriers = 0;
+        do {
           if (finish_steps(problem, x0, trajectory, deadline, left, report)) return report;
-          if (n >= kMostBarriers || left <= 0 ||
-              !follow(Begin::kHere, x0, trajectory, deadline, left, report))
-            break;
-        }
+        } while (++barriers <= kMostBarriers && left > 0 &&
+                 follow(Begin::kHere, x0, trajectory, deadline, left, report));
         if (take_point(problem, trajectory, report)) return report;
       }
     }
@@ -154,7 +141,7 @@ class HardSolver {
     bool is_guess = roll_out(problem, x0, guess_);
     if (is_guess && roll_out(problem, x0, copy_)) {
       const Misses guess = measure(problem, guess_, nullptr), own = measure(problem, copy_, nullptr);
-      is_guess = guess.worst() < own.worst() && guess.cost < own.cost;
+      is_guess = guess.worst < own.worst && guess.cost < own.cost;
     }
     if (is_guess) trajectory = guess_;
     clamp_inputs(problem, trajectory);
@@ -195,31 +182,27 @@ class HardSolver {
     for (int n = 0; n < kMostRounds && left > 0; ++n) {
       const bool converged = round(x0, trajectory, deadline, left, report);
       const Misses now = update(measure(problem, trajectory, &report), trajectory.horizon);
-      const bool holds = now.worst() <= options_.tolerance;
+      const bool holds = now.worst <= options_.tolerance;
       const bool is_last = left <= 0 || deadline.spent();
       if (holds && (converged || (is_last && usable(report.status)))) {
         report = finish(report.status, now, report);
         return true;
       }
-      if (!converged || !(now.worst() <= kEnough * last)) return false;
-      last = now.worst();
+      if (!converged || !(now.worst <= kEnough * last)) return false;
+      last = now.worst;
     }
     return false;
   }
   /// The point at the end of the barrier as the answer, where full steps do not converge. True if it is
   /// usable.
   bool take_point(const P& problem, Trajectory& trajectory, HardReport& report) noexcept {
-    multipliers_ = point_multipliers_;
-    multipliers_.equality_weight.fill(kLight);
-    multipliers_.terminal_weight.fill(kLight);
-    put_multipliers(trajectory.horizon);
+    put_light(point_multipliers_, trajectory.horizon);
     inner_.ask_for(options_.tolerance);
     HardReport seen = report;
-    static_cast<SolveReport&>(seen) = inner_.take_point(problem_, trajectory);
-    seen.iterations = report.iterations, seen.sweeps = report.sweeps;
+    take(inner_.take_point(problem_, trajectory), seen);
     const Misses now = measure(problem, trajectory, &seen);
     multipliers_ = point_multipliers_;
-    if (!usable(seen.status) || now.worst() > options_.tolerance) return false;
+    if (!usable(seen.status) || now.worst > options_.tolerance) return false;
     if (exceeds_a_cap(seen)) seen.status = SolveStatus::kInfeasible;
     report = finish(seen.status, now, seen);
     return true;
@@ -231,8 +214,13 @@ class HardSolver {
     const SolveReport kept = report;
     static_cast<SolveReport&>(report) = inner_.solve(problem_, x0, trajectory);
     if (report.status != SolveStatus::kNotFinite) report.status = kept.status;
-    report.iterations = kept.iterations;
-    report.sweeps = kept.sweeps;
+    report.iterations = kept.iterations, report.sweeps = kept.sweeps;
+  }
+  /// `report` of one more solve, with the counts of all.
+  static void take(const SolveReport& now, HardReport& report) noexcept {
+    const int iterations = report.iterations + now.iterations, sweeps = report.sweeps + now.sweeps;
+    static_cast<SolveReport&>(report) = now;
+    report.iterations = iterations, report.sweeps = sweeps;
   }
 
   /// One solve. True when it converged.
@@ -244,10 +232,7 @@ class HardSolver {
                                        : inner_.solve(problem_, x0, trajectory, deadline);
     inner_.start_from_states(true);
     can_go_on_ = usable(now.status);
-    const int iterations = report.iterations + now.iterations;
-    const int sweeps = report.sweeps + now.sweeps;
-    static_cast<SolveReport&>(report) = now;
-    report.iterations = iterations, report.sweeps = sweeps;
+    take(now, report);
     ++report.rounds;
     left -= std::max(1, now.iterations);
     const double residual = std::max({now.stationarity, now.defect, now.complementarity});
@@ -277,7 +262,8 @@ class HardSolver {
     inner_.start_from_states(options_.start_from_states);
     put_multipliers(trajectory.horizon);
   }
-  /// y ← y + ρ h (eq. 57); distances of active inequalities count as misses.
+  /// y ← y + ρ h (eq. 57). An inequality whose multiplier is not zero has to hold with equality: its distance
+  /// counts as a miss.
   Misses update(Misses now, int horizon) noexcept {
     for (std::size_t n = 0; n < kNh; ++n) {
       for (std::size_t k = 0; k < static_cast<std::size_t>(horizon); ++k)
@@ -288,14 +274,10 @@ class HardSolver {
       shift += terminal_[n];
       if (n < kNeh) continue;
       shift = std::max(0.0, shift);
-      count_distance(now, n);
+      if (shift > 0.0) now.worst = std::max(now.worst, std::fabs(terminal_[n]));
     }
     keep_multipliers(horizon);
     return now;
-  }
-  /// An inequality whose multiplier is not zero has to hold with equality: its distance counts as a miss.
-  void count_distance(Misses& misses, std::size_t n) const noexcept {
-    if (problem_.terminal_shift[n] > 0.0) misses.terminal[n] = std::fabs(terminal_[n]);
   }
   void keep_multipliers(int horizon) noexcept {
     multipliers_.is_known = true;
@@ -309,6 +291,13 @@ class HardSolver {
       multipliers_.terminal[n] = problem_.terminal_weight[n].rho * problem_.terminal_shift[n];
     }
     multipliers_.penalty_factor = problem_.penalty_factor;
+  }
+  /// `multipliers` with hardly any weight beside them.
+  void put_light(const Multipliers& multipliers, int horizon) noexcept {
+    multipliers_ = multipliers;
+    multipliers_.equality_weight.fill(kLight);
+    multipliers_.terminal_weight.fill(kLight);
+    put_multipliers(horizon);
   }
   void put_multipliers(int horizon) noexcept {
     for (std::size_t n = 0; n < kNh; ++n) {
@@ -331,6 +320,11 @@ class HardSolver {
   bool is_proven(const P& problem, const State& x0, const Trajectory& least, double violation,
                  bool converged) noexcept;
   void weigh_misses(double share, double unit) noexcept;
+  static void count(const SolveReport& seen, int& left, HardReport& report) noexcept {
+    report.iterations += seen.iterations;
+    report.sweeps += seen.sweeps;
+    left -= seen.iterations;
+  }
 
   // ---- values
   static bool is_hard([[maybe_unused]] const P& problem, [[maybe_unused]] std::size_t c) noexcept {
@@ -340,12 +334,11 @@ class HardSolver {
   /// Computes cost and misses of a trajectory; keeps the values of rows, and reports the worst.
   Misses measure(const P& problem, const Trajectory& t, HardReport* report) noexcept {
     Misses misses;
-    double worst = 0.0;
-    const auto note = [&](double& miss, double value, Kind kind, int stage, std::size_t row) {
+    const auto note = [&](double value, Kind kind, int stage, std::size_t row) {
       misses.total += value;
-      miss = value > miss ? value : miss;
-      if (report == nullptr || !(value > worst)) return;
-      worst = value;
+      if (!(value > misses.worst)) return;
+      misses.worst = value;
+      if (report == nullptr) return;
       report->miss = value;
       report->kind = kind;
       report->miss_stage = stage;
@@ -366,7 +359,7 @@ class HardSolver {
         for (std::size_t n = 0; n < kNh; ++n) {
           equality_[n][stage] = Evaluate::number(h[n]);
           misses.weighted += multipliers_.equality[n].at(k) * equality_[n][stage];
-          note(misses.equality[n], std::fabs(equality_[n][stage]), Kind::kEquality, k, n);
+          note(std::fabs(equality_[n][stage]), Kind::kEquality, k, n);
         }
       }
       if constexpr (kNc > 0) {
@@ -375,7 +368,7 @@ class HardSolver {
           const double beyond = std::max(0.0, Evaluate::number(c[n]));
           if (is_hard(problem, n)) {
             misses.weighted += inner_.constraint_multiplier(k, static_cast<int>(n)) * Evaluate::number(c[n]);
-            note(misses.constraint[n], beyond, Kind::kConstraint, k, n);
+            note(beyond, Kind::kConstraint, k, n);
           } else {
             const SoftPenalty penalty = penalty_of(problem, n);
             misses.cost += beyond * (penalty.linear + 0.5 * penalty.quadratic * beyond);
@@ -390,7 +383,7 @@ class HardSolver {
       for (std::size_t n = 0; n < kNeh; ++n) {
         terminal_[n] = Evaluate::number(h[n]);
         misses.weighted += multipliers_.terminal[n] * terminal_[n];
-        note(misses.terminal[n], std::fabs(terminal_[n]), Kind::kTerminalEquality, t.horizon, n);
+        note(std::fabs(terminal_[n]), Kind::kTerminalEquality, t.horizon, n);
       }
     }
     if constexpr (kEnd > kNeh) {
@@ -398,8 +391,7 @@ class HardSolver {
       for (std::size_t n = 0; n < kEnd - kNeh; ++n) {
         terminal_[kNeh + n] = Evaluate::number(g[n]);
         misses.weighted += multipliers_.terminal[kNeh + n] * terminal_[kNeh + n];
-        note(misses.terminal[kNeh + n], std::max(0.0, terminal_[kNeh + n]), Kind::kTerminalConstraint,
-             t.horizon, n);
+        note(std::max(0.0, terminal_[kNeh + n]), Kind::kTerminalConstraint, t.horizon, n);
       }
     }
     return misses;

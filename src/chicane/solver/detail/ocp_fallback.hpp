@@ -93,11 +93,7 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
   } else if (barrier_.exceeds_a_cap(problem, t_.horizon)) {
     status = SolveStatus::kInfeasible;
   }
-  t_.write(trajectory);
-  for (std::size_t k = 0; k < t_.horizon; ++k) {  // u + (bound − u) may miss the bound by one rounding
-    for (std::size_t m = 0; m < kNu; ++m)
-      trajectory.u[k][m] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
-  }
+  write(t_, trajectory);
   tell_violation(problem, barrier_, t_.horizon, report);
   report.status = status;
   return report;
@@ -149,10 +145,7 @@ bool OcpSolver<P, Capacity, Arch>::begin_filter(const P& problem, const Trajecto
   full_steps_ = is_fresh_ = has_filtered_ = true;
   is_exact_ = shows_best_ = false;
   if (!take_guess(problem, trajectory)) return false;
-  if (stands_still_) {
-    fill_inputs(0);
-    hold_states();
-  }
+  if (stands_still_) hold_states();
   if (!is_again_) break_symmetry();
   filter_.start(problem, final_barrier(problem), options_.second_order, is_again_, now_, lq_, barrier_, t_,
                 report);
@@ -277,7 +270,6 @@ bool OcpSolver<P, Capacity, Arch>::restart(const P& problem) noexcept {
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::stand_still(const P& problem, const SolveReport& report) noexcept {
   if (!kCanFilter || stands_still_ || report.iterations > 0) return false;
-  fill_inputs(0);
   hold_states();
   is_fresh_ = true;
   barrier_.start(problem, final_barrier(problem), Evaluate::violation(problem, t_));
@@ -391,11 +383,7 @@ FeedbackReport OcpSolver<P, Capacity, Arch>::feedback(const State& x0, Trajector
   collect_step<Arch, true>(lq_, t_.horizon, step_);
   std::fill(lq_.dx[0], lq_.dx[0] + kNx, 0.0);
   add_step<Arch>(t_, 1.0, step_, best_);
-  best_.write(trajectory);
-  for (std::size_t k = 0; k < t_.horizon; ++k) {  // u + (bound − u) may miss the bound by one rounding
-    for (std::size_t m = 0; m < kNu; ++m)
-      trajectory.u[k][m] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
-  }
+  write(best_, trajectory);
   return done;
 }
 
