@@ -132,8 +132,8 @@ class Linearisation {
   template <class R>
   double keep_end_row(const P& problem, std::size_t n, const R& r, double value) noexcept {
     hard.store_end(n, value);
-    each_slope<typename Evaluate::EndValue>(r, [&](std::size_t i, const auto& slope) {
-      if (i < kNx) hard.store_end_slope(n, i, Evaluate::number(slope));
+    each_slope<typename Evaluate::EndValue>(r, [&](std::size_t i, const auto& by) {
+      if (i < kNx) hard.store_end_slope(n, i, Evaluate::number(by));
     });
     return problem.is_primal_dual ? hard.end_weight(problem, n) : value;
   }
@@ -162,11 +162,11 @@ class Linearisation {
   CHICANE_INLINE static void add_end_row(const R& r, double value, [[maybe_unused]] double weight,
                                          Lq& lq) noexcept {
     using EndValue = typename Evaluate::EndValue;
-    each_slope<EndValue>(r, [&](std::size_t i, const auto& slope) CHICANE_INLINE {
+    each_slope<EndValue>(r, [&](std::size_t i, const auto& by) CHICANE_INLINE {
       if (i >= kNx) return;
-      lq.terminal[kNx][i] += value * Evaluate::number(slope);
+      lq.terminal[kNx][i] += value * Evaluate::number(by);
       each_slope<EndValue>(r, [&](std::size_t j, const auto& other) CHICANE_INLINE {
-        if (j < kNx) lq.terminal[i][j] += Evaluate::number(slope) * Evaluate::number(other);
+        if (j < kNx) lq.terminal[i][j] += Evaluate::number(by) * Evaluate::number(other);
       });
     });
     const auto add = [&](std::size_t i, std::size_t j, double curvature) CHICANE_INLINE {
