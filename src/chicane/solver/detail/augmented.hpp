@@ -128,11 +128,11 @@ class Augmented {
     return problem->constraint(k, x, u);
   }
 
-  [[nodiscard]] bool keeps(std::size_t c) const noexcept {
-    if constexpr (detail::SaysWhatIsHard<P>)
-      return violation_penalty == 0.0 && problem->is_hard(static_cast<int>(c));
+  [[nodiscard]] bool must_hold(std::size_t c) const noexcept {
+    if constexpr (detail::SaysWhatIsHard<P>) return problem->is_hard(static_cast<int>(c));
     return false;
   }
+  [[nodiscard]] bool keeps(std::size_t c) const noexcept { return violation_penalty == 0.0 && must_hold(c); }
   [[nodiscard]] std::size_t constraint_count() const noexcept { return solver::constraint_count(*problem); }
   [[nodiscard]] SoftPenalty soft_penalty(int c) const requires(kNc > 0) {
     SoftPenalty penalty = problem->soft_penalty(c);

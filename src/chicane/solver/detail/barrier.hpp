@@ -87,6 +87,13 @@ class Barrier {
     }
   }
 
+  /// Constraints that need not hold lose their multipliers.
+  void forget_soft(const P& problem) noexcept {
+    for (std::size_t c = 0; c < count(); ++c) {
+      if (!problem.must_hold(c)) std::fill(std::begin(z_[c]), std::end(z_[c]), 0.0);
+    }
+  }
+
   // ---- constraint c of the eight stages from k on
   [[nodiscard]] CHICANE_INLINE SoftConstraint<V> load(std::size_t c, std::size_t k) const noexcept {
     return {V::load(value_[c] + k), V::load(s_[c] + k), V::load(t_[c] + k), V::load(n_[c] + k),

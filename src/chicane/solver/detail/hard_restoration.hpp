@@ -29,7 +29,7 @@ bool HardSolver<P, Capacity, Arch>::follow(Begin begin, const State& x0, Traject
   inner_.keep_point();
   for (std::size_t c = 0; c < kNc; ++c) {
     double highest = 0.0;
-    for (int k = 0; is_hard(*problem_.problem, c) && k < trajectory.horizon; ++k)
+    for (int k = 0; problem_.must_hold(c) && k < trajectory.horizon; ++k)
       highest = std::max(highest, inner_.constraint_multiplier(k, static_cast<int>(c)));
     const double penalty = std::max(1e-12, penalty_of(problem_, c).linear);
     problem_.penalty_factor[c] *= std::max(1.0, kDearer * highest / penalty);

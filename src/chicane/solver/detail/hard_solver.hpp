@@ -327,10 +327,6 @@ class HardSolver {
   }
 
   // ---- values
-  static bool is_hard([[maybe_unused]] const P& problem, [[maybe_unused]] std::size_t c) noexcept {
-    if constexpr (detail::SaysWhatIsHard<P>) return problem.is_hard(static_cast<int>(c));
-    return false;
-  }
   /// Computes cost and misses of a trajectory; keeps the values of rows, and reports the worst.
   Misses measure(const P& problem, const Trajectory& t, HardReport* report) noexcept {
     Misses misses;
@@ -366,7 +362,7 @@ class HardSolver {
         const auto c = to_array<One>(problem.constraint(k, x, u));
         for (std::size_t n = 0; n < kNc; ++n) {
           const double beyond = std::max(0.0, Evaluate::number(c[n]));
-          if (is_hard(problem, n)) {
+          if (problem_.must_hold(n)) {
             misses.weighted += inner_.constraint_multiplier(k, static_cast<int>(n)) * Evaluate::number(c[n]);
             note(beyond, Kind::kConstraint, k, n);
           } else {

@@ -227,6 +227,7 @@ bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, T
   if (now_.hard.is_elastic()) {  // slopes of the violation alone, by an exact adjoint
     is_solved = !bring_inside() && is_solved;
     problem.cost_root = 0.0;
+    barrier_.forget_soft(problem);
     now_.template linearise<1>(problem, t_, false, 1.0, barrier_, lq_.lq, last);
     report.defect = last.defect;
   }
