@@ -193,27 +193,17 @@ CHICANE_C chicane_error chicane_feedbackf(chicane_solver* solver, const float* x
 }
 
 CHICANE_C const char* chicane_error_text(chicane_error error) {
-  switch (error) {
-    case CHICANE_DONE:
-      return "done";
-    case CHICANE_NULL:
-      return "got a null pointer, expected a handle or an array";
-    case CHICANE_MEMORY:
-      return "got less memory than chicane_sizes.bytes";
-    case CHICANE_COUNT:
-      return "got an array of another length, expected chicane_count() numbers";
-    case CHICANE_NOT_FINITE:
-      return "got a number that is not finite";
-    case CHICANE_RANGE:
-      return "got an option outside of its range";
-    case CHICANE_READ_ONLY:
-      return "got an array to write that only a solve writes";
-    case CHICANE_NOT_PREPARED:
-      return "got no preparation, expected chicane_solve() with a finite answer, then chicane_prepare()";
-    case CHICANE_VERSION:
-      return "got a problem compiled with another version of chicane/solver.h";
-  }
-  return "unknown error";
+  static constexpr const char* kTexts[] = {
+      "done",
+      "got a null pointer, expected a handle or an array",
+      "got less memory than chicane_sizes.bytes",
+      "got an array of another length, expected chicane_count() numbers",
+      "got a number that is not finite",
+      "got an option outside of its range",
+      "got an array to write that only a solve writes",
+      "got no preparation, expected chicane_solve() with a finite answer, then chicane_prepare()",
+      "got a problem compiled with another version of chicane/solver.h"};
+  return error >= CHICANE_DONE && error <= CHICANE_VERSION ? kTexts[error] : "unknown error";
 }
 CHICANE_C const char* chicane_status_text(int status) {
   for (const auto& word : chicane::solver::kSolveStatusWords) {

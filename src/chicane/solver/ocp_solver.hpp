@@ -96,13 +96,28 @@ class OcpSolver {
 
   // ---- the filter method alone, for HardSolver
 
-  /// Follows the barrier from a guess, low where it `is_near`, in at most `most` iterations, counted in
-  /// `report`. True if it gets there: solve_again() continues with full steps. Rows that must hold are
-  /// equations then (detail/hard_rows.hpp), and `problem` gets their multipliers.
+  enum class Begin {
+    kGuess,  ///< at the guess
+    kNear,   ///< there, with a low barrier: it is near the solution
+    kHere    ///< where the last call ended, with a lower barrier
+  };
+  /// Follows the barrier in at most `most` iterations, counted in `report`. True if it gets there:
+  /// solve_again() continues with full steps. Rows that must hold are equations then (detail/hard_rows.hpp),
+  /// and `problem` gets their multipliers.
   bool follow_barrier(P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline, int most,
-                      bool is_near, SolveReport& report) noexcept;
+                      Begin begin, SolveReport& report) noexcept;
   /// Slacks of hard constraints to penalties that have changed.
   void update_penalties(const P& problem) noexcept { barrier_.update_penalties(problem, t_.horizon); }
+
+  /// Solves end where full steps fail: the primal-dual method comes before them.
+  void take_only_full_steps() noexcept { only_full_steps_ = true; }
+  /// Keeps the present point for take_point().
+  void keep_point() noexcept {
+    kept_ = t_;
+    barrier_.save(kept_slacks_, t_.horizon);
+  }
+  /// That point, its inputs inside their bounds, as an answer with its report.
+  SolveReport take_point(const P& problem, Trajectory& trajectory) noexcept;
 
   /// Multiplier of state i of x_{k+1} after a solve, i.e. d(cost)/dx of the stages after it; k < horizon.
   [[nodiscard]] double adjoint(int k, int i) const noexcept { return now_.adjoint[i][k]; }
@@ -221,12 +236,13 @@ class OcpSolver {
         t_.u[m][k] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
     }
     if ((options_.start_from_states && take_states(trajectory)) || roll_out(problem)) return true;
-    fill_inputs(0);
+    fill_inputs();
     if (roll_out(problem)) return true;
     if (kCanFilter) hold_states();
     return kCanFilter;
   }
   void hold_states() noexcept {
+    fill_inputs();
     stands_still_ = true;
     for (std::size_t i = 0; i < kNx; ++i) std::fill(t_.x[i] + 1, t_.x[i] + t_.horizon + 1, t_.x[i][0]);
   }
@@ -248,10 +264,18 @@ class OcpSolver {
     return std::min(std::max(std::isfinite(value) ? value : 0.0, low), high);
   }
   bool bring_inside() noexcept;
-  /// Inputs of zero, or their bounds, from stage k on.
-  void fill_inputs(std::size_t from) noexcept {
+  /// Writes an iterate, its inputs inside their bounds: u + (bound − u) may miss the bound by one rounding.
+  void write(const Iterate<kNx, kNu, kSize>& from, Trajectory& trajectory) const noexcept {
+    from.write(trajectory);
+    for (std::size_t k = 0; k < from.horizon; ++k) {
+      for (std::size_t m = 0; m < kNu; ++m)
+        trajectory.u[k][m] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
+    }
+  }
+  /// Inputs of zero, or their bounds.
+  void fill_inputs() noexcept {
     for (std::size_t m = 0; m < kNu; ++m) {
-      for (std::size_t k = from; k < t_.horizon; ++k)
+      for (std::size_t k = 0; k < t_.horizon; ++k)
         t_.u[m][k] = nearest(0.0, now_.lower[m][k], now_.upper[m][k]);
     }
   }
@@ -298,7 +322,7 @@ class OcpSolver {
   bool full_step(const P& problem, const Trajectory& trajectory, const Deadline& deadline,
                  SolveReport& report) noexcept {
     using Outcome = typename WorkingSetQp<Lq>::Outcome;
-    const bool may_circle = kCanFilter && options_.may_start_short && !has_filtered_;
+    const bool may_circle = kCanFilter && options_.may_start_short && !has_filtered_ && !only_full_steps_;
     const Outcome outcome = qp_.solve(
         lq_, t_.horizon, is_exact_, [&] { take_gauss_newton(problem); }, deadline, may_circle, report.sweeps);
     if (outcome != Outcome::kSolved)
@@ -322,7 +346,7 @@ class OcpSolver {
   /// whatever the units of the inputs.
   [[nodiscard]] bool is_crawling() const noexcept {
     constexpr double kIterations = 20.0;
-    return kCanFilter && (has_filtered_ ||
+    return kCanFilter && (has_filtered_ || only_full_steps_ ||
                           (barrier_.is_final() && progress_.is_slow(0.1 * options_.tolerance, kIterations)));
   }
 
@@ -331,6 +355,7 @@ class OcpSolver {
   /// Recovery when full steps fail. False if nothing helps.
   bool recover(const P& problem, const Trajectory& trajectory, SolveReport& report) noexcept {
     if constexpr (kCanFilter) {
+      if (only_full_steps_) return false;
       if (options_.may_start_short) return begin_filter(problem, trajectory, report);
     }
     return may_grow() ? start_short(problem, trajectory) : go_back(problem);
@@ -419,7 +444,7 @@ class OcpSolver {
   Progress progress_;
   Course course_;
   using Filter = FilterMethod<P, kSize, Arch>;
-  std::conditional_t<kCanFilter, Filter, NoFilter> filter_;
+  std::conditional_t<kCanFilter, Filter, Nothing> filter_;
   Iterate<kNx, kNu, kSize> t_;     ///< the present iterate
   Iterate<kNx, kNu, kSize> step_;  ///< step to the next iterate
   Iterate<kNx, kNu, kSize> best_;
@@ -430,14 +455,17 @@ class OcpSolver {
   bool full_steps_ = true;
   bool is_exact_ = false;  ///< Hessians of the next linearisation
   bool has_grown_ = false;
-  bool is_filtering_ = false;  ///< steps are the filter method's
-  bool has_filtered_ = false;  ///< filter method was used in this solve
-  bool stands_still_ = false;  ///< the start could not be simulated
-  bool is_again_ = false;      ///< the start is near the solution
-  bool is_fresh_ = true;       ///< slacks and working set must be guessed
-  std::size_t target_ = 0;     ///< horizon asked for
-  double work_ = 0.0;          ///< iterations so far, weighted by share of horizon
-  std::conditional_t<kCanFilter, typename Slacks::Memory, NoFilter> best_slacks_;  ///< of the best iterate
+  bool is_filtering_ = false;     ///< steps are the filter method's
+  bool has_filtered_ = false;     ///< filter method was used in this solve
+  bool stands_still_ = false;     ///< the start could not be simulated
+  bool is_again_ = false;         ///< the start is near the solution
+  bool only_full_steps_ = false;  ///< a solve ends where full steps fail
+  bool is_fresh_ = true;          ///< slacks and working set must be guessed
+  std::size_t target_ = 0;        ///< horizon asked for
+  double work_ = 0.0;             ///< iterations so far, weighted by share of horizon
+  std::conditional_t<kHasHardRows<P>, Iterate<kNx, kNu, kSize>, Nothing> kept_;
+  std::conditional_t<kHasHardRows<P>, typename Slacks::Memory, Nothing> kept_slacks_;
+  std::conditional_t<kCanFilter, typename Slacks::Memory, Nothing> best_slacks_;  ///< of the best iterate
 };
 
 }  // namespace chicane::solver

@@ -66,7 +66,6 @@ class Augmented {
   static constexpr int kNr = P::kNr + kEqualities;
   static constexpr int kNe = P::kNe + kEndEqualities + kEndConstraints;
   static constexpr bool kGaussNewton = !has_hessians<P>();
-  static constexpr bool kRealTime = !has_filter_method<P>();
   static constexpr bool kHasSparseRows = solver::kHasSparseRows<P>;
 
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -88,6 +87,7 @@ class Augmented {
   std::array<double, kEndEqualities + kEndConstraints> terminal_shift{};
   std::array<double, kNc> penalty_factor{};  ///< factors of soft constraints, hard ones among them
   double violation_penalty = 0.0;            ///< penalty on the violation of rows that must hold, if any
+  double limit_share = 1.0;                  ///< share of it that counts for limits of the stages
   double hard_penalty = 0.0;    ///< replaces the hard ones' penalties, if any: so high that none is violated
   bool is_primal_dual = false;  ///< rows in the form of the primal-dual method (detail/hard_rows.hpp)
 
@@ -128,11 +128,11 @@ class Augmented {
     return problem->constraint(k, x, u);
   }
 
-  [[nodiscard]] bool keeps(std::size_t c) const noexcept {
-    if constexpr (detail::SaysWhatIsHard<P>)
-      return violation_penalty == 0.0 && problem->is_hard(static_cast<int>(c));
+  [[nodiscard]] bool must_hold(std::size_t c) const noexcept {
+    if constexpr (detail::SaysWhatIsHard<P>) return problem->is_hard(static_cast<int>(c));
     return false;
   }
+  [[nodiscard]] bool keeps(std::size_t c) const noexcept { return violation_penalty == 0.0 && must_hold(c); }
   [[nodiscard]] std::size_t constraint_count() const noexcept { return solver::constraint_count(*problem); }
   [[nodiscard]] SoftPenalty soft_penalty(int c) const requires(kNc > 0) {
     SoftPenalty penalty = problem->soft_penalty(c);
@@ -142,7 +142,7 @@ class Augmented {
       if (problem->is_hard(c)) {
         penalty.cap = 1e30;
         if (is_primal_dual) penalty = {hard_penalty, 0.0, SoftConstraint<>::kMustHold};
-        if (violation_penalty > 0.0) penalty = {violation_penalty, 0.0, 1e30};
+        if (violation_penalty > 0.0) penalty = {limit_share * violation_penalty, 0.0, 1e30};
       }
     }
     return penalty;

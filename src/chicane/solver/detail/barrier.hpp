@@ -87,6 +87,13 @@ class Barrier {
     }
   }
 
+  /// Constraints that need not hold lose their multipliers.
+  void forget_soft(const P& problem) noexcept {
+    for (std::size_t c = 0; c < count(); ++c) {
+      if (!problem.must_hold(c)) std::fill(std::begin(z_[c]), std::end(z_[c]), 0.0);
+    }
+  }
+
   // ---- constraint c of the eight stages from k on
   [[nodiscard]] CHICANE_INLINE SoftConstraint<V> load(std::size_t c, std::size_t k) const noexcept {
     return {V::load(value_[c] + k), V::load(s_[c] + k), V::load(t_[c] + k), V::load(n_[c] + k),
@@ -102,18 +109,8 @@ class Barrier {
   /// Keeps its derivatives, for soft_change().
   template <class J>
   CHICANE_INLINE void store_row(std::size_t c, std::size_t k, const J& constraint) noexcept {
-    if constexpr (AnyLooseJet<J>) {
-      for (std::size_t j = 0; j < kNz; ++j) constraint.slopes[j].store(row_[c][j] + k);
-    } else if constexpr (AnySparseRow<J>) {
-      constraint.each_slope([&](std::size_t j, const V& slope) { slope.store(row_[c][j] + k); });
-    } else if constexpr (AnyJet<J>) {
-      jet::repeat<size_of(J::kFirst)>([&](auto n) CHICANE_INLINE {
-        constexpr int j = member_of(J::kFirst, n);
-        jet::number<V>(jet::slope<j>(constraint)).store(row_[c][j] + k);
-      });
-    } else {
-      for (std::size_t j = 0; j < kNz; ++j) constraint.slopes[j].store(row_[c][j] + k);
-    }
+    each_slope<V>(constraint,
+                  [&](std::size_t j, const V& slope) CHICANE_INLINE { slope.store(row_[c][j] + k); });
   }
 
   /// First-order change of constraint c of the eight stages from k on under a step.

@@ -147,7 +147,7 @@ class Evaluation {
     return worst;
   }
 
-  /// Terminal residuals; their values through number() and slope_number().
+  /// Terminal residuals; their values through number().
   template <int Order, class Point>
   static auto end(const P& problem, const Point& t) noexcept {
     if constexpr (kIsSparse) {
@@ -171,10 +171,6 @@ class Evaluation {
   template <std::size_t N>
   CHICANE_INLINE static double number(const Pack<Arch, N>& x) noexcept {
     return x[0];
-  }
-  template <class S>
-  CHICANE_INLINE static double slope_number(const S& s) noexcept {
-    return number(jet::number<EndValue>(s));
   }
 
  private:

@@ -85,7 +85,7 @@ class FilterMethod {
     if constexpr (kHasHardRows<P>) {
       if (rows_ != nullptr) {
         rows_->hard_penalty = kHardPenalty * unit_;
-        now.hard.weigh(kRowWeight * unit_, rows_->violation_penalty);
+        now.hard.weigh(kRowWeight * unit_, rows_->violation_penalty, t.horizon);
       }
     }
     last_shift_ = forced_shift_ = 0.0;
@@ -93,6 +93,8 @@ class FilterMethod {
     candidate_ = t;
     short_steps_ = leaps_ = 0;
     floor_ = {};
+    rows_lag_ = false;
+    last_missed_ = 0.0;
   }
   /// Hands rows that must hold to the method; call it before start(). They become equations of unknowns with
   /// slacks and multipliers of their own, kept by the problem itself, `rows`. Null: they are residuals like
@@ -106,7 +108,7 @@ class FilterMethod {
       std::copy(now.adjoint[i], now.adjoint[i] + candidate_.horizon, multipliers_[i]);
   }
   /// Goes on with a lower barrier from where it left off. False when there is none.
-  bool resume(Linearised& now, Slacks& slacks, Point& t) noexcept {
+  bool resume(Linearised& now, Slacks& slacks, Point& t, bool is_fresh) noexcept {
     constexpr double kLeast = 1e-13;  // least barrier, in units of costs
     if (final_mu_ <= kLeast * unit_) return false;
     final_mu_ = std::max(kLeast * unit_, 1e-2 * final_mu_);
@@ -115,7 +117,8 @@ class FilterMethod {
     for (std::size_t i = 0; i < kNx; ++i)
       std::copy(multipliers_[i], multipliers_[i] + t.horizon, now.adjoint[i]);
     slacks.set_mu(mu_);
-    is_fresh_ = is_new_barrier_ = true;
+    is_fresh_ = is_fresh;
+    is_new_barrier_ = true;
     is_here_known_ = false;
     return true;
   }
@@ -129,15 +132,22 @@ class FilterMethod {
   /// One linearisation and one step from t. Pre: `t` is as the last call left it.
   Outcome iterate(const P& problem, Linearised& now, Lq& lq, Slacks& slacks, Point& t,
                   const Deadline& deadline, SolveReport& report) noexcept {
+    if constexpr (kHasHardRows<P>) {
+      if (rows_ != nullptr && rows_lag_)
+        now.hard.raise(*rows_, kRise, kMostRowWeight * unit_, mu_, t.horizon);
+    }
     linearise(problem, now, lq, slacks, t, report);
     if (!std::isfinite(report.cost + report.defect + report.complementarity)) return Outcome::kStuck;
     if (are_sides_new_) bounds_.start(lq, t.horizon, mu_);
     are_sides_new_ = false;
     const double error = residual(now, lq, t, report);
     const bool is_solved = error <= kSolvedAt * mu_;
-    if (is_solved || floor_.is_reached(error, kFloor * unit_)) {
+    rows_lag_ = !is_solved && missed_ >= error && missed_ > 0.5 * last_missed_ && length_ > 0.9;
+    last_missed_ = missed_;
+    const double floor = std::max(kFloor * unit_, kHasHardRows<P> && mu_ <= final_mu_ ? kLooseFloor : 0.0);
+    if (is_solved || floor_.is_reached(error, floor)) {
       candidate_ = t;
-      if (mu_ <= final_mu_) return is_solved || error <= kFloor * unit_ ? Outcome::kSolved : Outcome::kStuck;
+      if (mu_ <= final_mu_) return is_solved || error <= floor ? Outcome::kSolved : Outcome::kStuck;
       const double last = mu_;
       lower_barrier(slacks);
       follow_barrier(problem, last, now, lq, slacks, t.horizon);
@@ -171,9 +181,11 @@ class FilterMethod {
   static constexpr double kShort = 0.1;  ///< length of a short step
   static constexpr int kShortInSuccession = 3, kMostLeaps = 4;
   static constexpr double kRowWeight = 1e6;  ///< ρ of rows that must hold, and the penalty of hard limits, in
-  static constexpr double kHardPenalty = 1e6;  ///< the unit of costs
+  static constexpr double kHardPenalty = 1e6;                   ///< the unit of costs
+  static constexpr double kRise = 10.0, kMostRowWeight = 1e10;  ///< a weight rises where multipliers lag
   static constexpr double kSolvedAt = 10.0;  ///< a barrier's problem is solved at this many times the barrier
-  static constexpr double kFloor = 1e-5;     ///< most that rounding may leave, in the unit of costs
+  static constexpr double kLooseFloor = 1e-2;  ///< the same at the last barrier of rows that must hold
+  static constexpr double kFloor = 1e-5;       ///< most that rounding may leave, in the unit of costs
 
   static constexpr std::size_t z(std::size_t i) noexcept { return i < kNx ? i : i + 1; }
 
@@ -202,8 +214,7 @@ class FilterMethod {
   }
 
   /// Distance from solving the barrier problem (eq. 34).
-  double residual(const Linearised& now, const Lq& lq, const Point& t,
-                  const SolveReport& report) const noexcept {
+  double residual(const Linearised& now, const Lq& lq, const Point& t, const SolveReport& report) noexcept {
     if (!has_multipliers_) return std::numeric_limits<double>::infinity();
     double dual = 0.0;
     double dynamics_multipliers = 0.0;
@@ -228,7 +239,8 @@ class FilterMethod {
         std::max(kSteep, (dynamics_multipliers + sides.multipliers) / count / unit_) / kSteep;
     double missed = report.defect * unit_;
     if constexpr (kHasHardRows<P>) {
-      if (rows_ != nullptr) missed = std::max(missed, now.hard.residual(*rows_, mu_, unit_, t.horizon));
+      if (rows_ != nullptr) missed_ = now.hard.residual(*rows_, mu_, unit_, t.horizon);
+      if (rows_ != nullptr) missed = std::max(missed, missed_);
     }
     return std::max(std::max({dual, sides.product, report.complementarity}) / scale, missed);
   }
@@ -340,6 +352,7 @@ class FilterMethod {
       if (!is_good) continue;
       if (length >= 0.05 || there.miss <= 0.9 * here.miss) failures_ = 0;
       short_steps_ = length < kShort ? short_steps_ + 1 : 0;
+      length_ = length;
       moved_ = longest_move(t, candidate_);
       floor_.note_step(stays<Arch>(t, candidate_) && !(there.miss < 0.9 * here.miss));
       t = candidate_;
@@ -416,7 +429,7 @@ class FilterMethod {
   // ---- when no step is good
 
   /// Recovers: first by a larger shift, then by new multipliers and slacks, then by a simulation, which has
-  /// no defects.
+  /// no defects. Rows that must hold need restoration in its place.
   Outcome recover(const P& problem, const Lq& lq, Point& t) noexcept {
     constexpr int kMostSimulations = 8;  // limit in one solve
     candidate_ = t;
@@ -429,6 +442,9 @@ class FilterMethod {
     has_multipliers_ = false;
     if (failures_ == 2) return Outcome::kGoing;
     failures_ = 1;
+    if constexpr (kHasHardRows<P>) {
+      if (rows_ != nullptr && rows_->violation_penalty == 0.0) return Outcome::kStuck;
+    }
     if (++simulations_ > kMostSimulations) return Outcome::kStuck;
     if (!simulate(problem, lq, t, 1.0, 0.0) && !simulate(problem, lq, t, 0.0, 0.0)) {
       candidate_ = t;
@@ -471,15 +487,13 @@ class FilterMethod {
   int leaps_ = 0;                 ///< whole steps that the filter had refused
   FloorWatch floor_;
   P* rows_ = nullptr;  ///< the problem, where its rows that must hold are unknowns' equations
-  double moved_ = 0.0;
+  double moved_ = 0.0, length_ = 0.0, missed_ = 0.0, last_missed_ = 0.0;
+  bool rows_lag_ = false;
   Merit here_{};                ///< merit of the present point
   bool is_here_known_ = false;  ///< here_ was set by the line search that found the point
   int failures_ = 0;
   int simulations_ = 0;
 };
-
-/// Placeholder for problems without the filter method.
-struct NoFilter {};
 
 }  // namespace chicane::solver
 

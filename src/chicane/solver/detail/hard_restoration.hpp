@@ -12,128 +12,122 @@
 
 namespace chicane::solver {
 
-// Start of the solver of HardProblems, and its restoration when the primal-dual method fails.
+// The primal-dual method of the solver of HardProblems, and restoration where that fails.
 
-/// First round: the primal-dual method; if it fails, restoration and the method again from there. A proof
-/// that no solution is nearby is the answer unless rounds from the guess find a solution.
-template <HardProblem P, int Capacity, class Arch>
-bool HardSolver<P, Capacity, Arch>::first_round(const State& x0, Trajectory& trajectory,
-                                                const Deadline& deadline, int& left,
-                                                HardReport& report) noexcept {
-  if constexpr (has_filter_method<P>()) {
-    if (!options_.may_start_short || follow(x0, trajectory, deadline, left, report))
-      return round(x0, trajectory, deadline, left, report);
-    begin_again(trajectory, 1.0);
-    if (is_infeasible(*problem_.problem, x0, trajectory, deadline, left, report) ||
-        !follow(x0, trajectory, deadline, left, report)) {
-      begin_again(trajectory, 1.0);
-      trial_ = most_of_a_trial();
-    }
-  }
-  return round(x0, trajectory, deadline, left, report);
-}
 /// The primal-dual method (eq. 50–54). True if it reached the end of its barrier: multipliers and penalties
 /// are then those of its point, and full steps may continue from there.
 template <HardProblem P, int Capacity, class Arch>
-bool HardSolver<P, Capacity, Arch>::follow(const State& x0, Trajectory& trajectory, const Deadline& deadline,
-                                           int& left, HardReport& report) noexcept {
-  constexpr int kMostIterations = 60;
+bool HardSolver<P, Capacity, Arch>::follow(Begin begin, const State& x0, Trajectory& trajectory,
+                                           const Deadline& deadline, int& left, HardReport& report) noexcept {
   constexpr double kDearer = 4.0;  // factor over the highest multiplier: the constraint is kept
   SolveReport seen;
-  const int most = std::max(1, std::min({left, kMostIterations, options_.max_iterations / 4}));
-  const bool is_solved = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, false, seen);
-  report.iterations += seen.iterations;
-  report.sweeps += seen.sweeps;
-  left -= seen.iterations;
+  inner_.ask_for(round_tolerance());
+  const bool is_solved =
+      inner_.follow_barrier(problem_, x0, trajectory, deadline, std::min(left, kMostIterations), begin, seen);
+  count(seen, left, report);
   if (!is_solved) return false;
+  inner_.keep_point();
   for (std::size_t c = 0; c < kNc; ++c) {
     double highest = 0.0;
-    for (int k = 0; is_hard(*problem_.problem, c) && k < trajectory.horizon; ++k)
+    for (int k = 0; problem_.must_hold(c) && k < trajectory.horizon; ++k)
       highest = std::max(highest, inner_.constraint_multiplier(k, static_cast<int>(c)));
     const double penalty = std::max(1e-12, penalty_of(problem_, c).linear);
     problem_.penalty_factor[c] *= std::max(1.0, kDearer * highest / penalty);
   }
   inner_.update_penalties(problem_);
   keep_multipliers(trajectory.horizon);
+  point_multipliers_ = multipliers_;
   return can_go_on_ = true;
 }
-/// Restoration: the primal-dual method with elastic rows and almost no cost (docs/solver.md, eq. 55),
-/// repeated as long as a small share of the violation is left. True if a minimum above zero is proven:
-/// `trajectory` is there. Else weights and multipliers are those of the point found.
+/// Restoration: the primal-dual method with elastic rows and `share` of the cost, less and less of it down
+/// to almost none (docs/solver.md, eq. 55); that is repeated as long as a small share of the violation is
+/// left. True if a minimum above zero is proven: `trajectory` is there. Else it is the point found.
 template <HardProblem P, int Capacity, class Arch>
 bool HardSolver<P, Capacity, Arch>::is_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
-                                                  const Deadline& deadline, int& left,
+                                                  double share, const Deadline& deadline, int& left,
                                                   HardReport& report) noexcept {
-  constexpr double kShare = 1e-8, kTolerance = 1e-8, kFirstUnit = 0.1;
-  constexpr double kMuch = 0.1, kLeastShare = 1e-3;  // over the unit: repeat below it, least next unit
-  if (left <= 0) return false;
-  has_restored_ = true;
-  const auto factors = problem_.penalty_factor;
-  for (auto& shift : problem_.equality_shift) shift.values.fill(0.0);
-  problem_.terminal_shift.fill(0.0);
+  constexpr double kTolerance = 1e-8, kFirstUnit = 0.1, kNoDefect = 1e-9;
+  constexpr double kFall = 1e-2;        // of the share
+  constexpr double kLimitShare = 1e-1;  // penalty of the stages' limits over others while the cost counts
+  constexpr double kSame = 1e-3;        // difference of two violations of one point, relative
+  constexpr double kMuch = 0.1, kLeastUnit = 1e-3;  // over the unit: repeat below it, least next unit
+  forget_multipliers();
   inner_.ask_for(kTolerance);
   Misses misses = measure(problem, trajectory, nullptr);
-  least_unit_ = std::max(kFirstUnit, misses.worst());  // states of a guess may miss nothing but the dynamics
-  bool converged = true, is_less = true, is_near = false;
-  for (; converged && is_less && left > 0; is_near = true) {
+  double unit = std::max(kFirstUnit, misses.worst);  // states of a guess may miss nothing but the dynamics
+  SolveReport seen;
+  bool converged = false;
+  for (Begin begin = Begin::kGuess; left > 0 && !deadline.spent(); begin = Begin::kNear) {
     const double cost = std::isfinite(misses.cost) ? std::max(unit_, misses.cost) : unit_;
-    weigh_misses(kShare / (cost * std::max(1.0, least_unit_)), least_unit_);
-    SolveReport seen;
-    const int most = std::max(1, std::min(left, most_of_a_trial()));
-    converged = inner_.follow_barrier(problem_, x0, trajectory, deadline, most, is_near, seen);
+    weigh_misses(share / ((share > kLeastShare ? unit_ : cost) * std::max(1.0, unit)), unit);
+    problem_.limit_share = share <= kLeastShare ? 1.0 : kLimitShare;
+    seen = {};
+    converged = inner_.follow_barrier(problem_, x0, trajectory, deadline, std::min(left, kMostIterations),
+                                      begin, seen);
     inner_.start_from_states(true);
-    report.iterations += seen.iterations;
-    report.sweeps += seen.sweeps;
-    left -= seen.iterations;
+    count(seen, left, report);
     misses = measure(problem, trajectory, &report);
-    const double worst = misses.worst();
-    is_possible_ = is_possible_ || (converged && worst <= options_.tolerance);
-    is_less = !is_possible_ && worst < kMuch * least_unit_;
-    if (is_less) least_unit_ = std::max(worst, kLeastShare * least_unit_);
+    const bool was_least = share <= kLeastShare, holds = converged && misses.worst <= options_.tolerance;
+    is_possible_ = is_possible_ || holds;
+    if (holds || (was_least && !(converged && misses.worst < kMuch * unit))) break;
+    unit = was_least ? std::max(misses.worst, kLeastUnit * unit) : std::max(kFirstUnit, misses.worst);
+    share = share > kFall ? kFall * share : kLeastShare;
   }
-  is_certified_ =
-      converged && !is_less && !is_possible_ && is_proven(problem, trajectory, misses.total / least_unit_);
-  least_ = trajectory;
-  problem_.violation_penalty = 0.0;
-  inner_.ask_for(round_tolerance());
   keep_multipliers(trajectory.horizon);
-  least_multipliers_ = multipliers_;
-  if (is_certified_) return true;
-  report.status = SolveStatus::kStalled;  // converged, but not with the whole cost
-  can_go_on_ = false;
-  problem_.cost_root = 1.0;
-  problem_.penalty_factor = factors;
-  return false;
+  is_certified_ = share <= kLeastShare && !is_possible_ && misses.worst > options_.tolerance &&
+                  (converged || (seen.iterations > 0 && seen.defect <= kNoDefect)) &&
+                  is_proven(problem, x0, trajectory, misses.total / unit, converged);
+  problem_.violation_penalty = 0.0;
+  if (is_certified_) {
+    is_final_ = is_final_ || std::fabs(misses.total - least_total_) <= kSame * misses.total;
+    least_total_ = misses.total;
+    least_ = trajectory;
+    least_multipliers_ = multipliers_;
+    least_unit_ = unit;
+  }
+  forget_multipliers();
+  return is_certified_;
 }
-/// Whether no inputs within their bounds are free of violation, by the slopes at the inputs of the least: all
-/// slopes together, each times the distance to the bound that it points to, are next to nothing beside
-/// `violation` (docs/solver.md, eq. 55a). Infinite bounds count as kFarthest times the input away.
+/// Whether no inputs within their bounds are free of violation, by slopes and multipliers at the inputs of
+/// the least, whose misses are `violation` of their unit (docs/solver.md, eq. 55a): all slopes together, each
+/// times the distance to the bound that it points to, and what multipliers do not show, are a small share.
+/// Infinite bounds count as kFarthest times the input away. Final where other inputs have the rows that the
+/// slopes foretell: rows that are linear.
 template <HardProblem P, int Capacity, class Arch>
-bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const Trajectory& least,
-                                              double violation) const noexcept {
-  constexpr double kFarthest = 1e3, kNextToNothing = 1e-3;
-  double gain = 0.0;
+bool HardSolver<P, Capacity, Arch>::is_proven(const P& problem, const State& x0, const Trajectory& least,
+                                              double violation, bool converged) noexcept {
+  constexpr double kFarthest = 1e3, kRounding = 1e-6, kLittle = 1e-1, kNextToNothing = 1e-3;
+  double gain = 0.0, change = 0.0;
+  copy_ = guess_;
+  clamp_inputs(problem, copy_);
   for (int k = 0; k < least.horizon; ++k) {
+    const auto stage = static_cast<std::size_t>(k);
     const auto low = problem.input_lower(k), high = problem.input_upper(k);
     for (std::size_t m = 0; m < low.size(); ++m) {
-      const double u = least.u[static_cast<std::size_t>(k)][m];
+      const double u = least.u[stage][m];
       const double slope = inner_.bound_multiplier(k, static_cast<int>(m));
       const double room = slope > 0.0 ? u - low[m] : high[m] - u;
       gain += std::fabs(slope) * (std::isfinite(room) ? room : kFarthest * (1.0 + std::fabs(u)));
+      const double guess = copy_.u[stage][m],
+                   by = ((stage + m) % 2 == 0 ? 0.5 : -0.5) * (1.0 + std::fabs(guess));
+      const double other = copy_.u[stage][m] = std::clamp(guess + by, low[m], high[m]);
+      change += slope * (other - u);
     }
   }
-  return gain <= kNextToNothing * violation;
+  const double here = measure(problem, least, nullptr).weighted;
+  roll_out(problem, x0, copy_);
+  const double there = measure(problem, copy_, nullptr).weighted;
+  is_final_ = std::fabs(there - here - change) <=
+              kRounding * (std::fabs(here) + std::fabs(there) + std::fabs(change));
+  const double little = is_final_ ? kLittle : (converged ? kNextToNothing : 0.0);
+  return gain <= little * violation && here >= (1.0 - little) * violation;
 }
 /// The answer is the point of least violation, with the multipliers of the violation alone: its certificate.
 template <HardProblem P, int Capacity, class Arch>
 HardReport HardSolver<P, Capacity, Arch>::tell_infeasible(const P& problem, const State& x0,
                                                           Trajectory& trajectory,
                                                           HardReport report) noexcept {
-  constexpr double kLight = 1e-9;  // weight of rows, negligible beside their multipliers
-  multipliers_ = least_multipliers_;
-  multipliers_.equality_weight.fill(kLight);
-  multipliers_.terminal_weight.fill(kLight);
-  put_multipliers(trajectory.horizon);
+  put_light(least_multipliers_, trajectory.horizon);
   weigh_misses(0.0, least_unit_);
   trajectory = least_;
   HardReport seen;

@@ -50,15 +50,8 @@ class HardRows {
     r.v.store(value_[n] + k);
     if constexpr (AnySparseRow<Row>) {
       for (auto& slope : row_[n]) V(0.0).store(slope + k);
-      r.each_slope([&](std::size_t j, const V& slope) { slope.store(row_[n][j] + k); });
-    } else if constexpr (AnyJet<Row>) {
-      jet::repeat<size_of(Row::kFirst)>([&](auto i) CHICANE_INLINE {
-        constexpr int j = member_of(Row::kFirst, i);
-        jet::number<V>(jet::slope<j>(r)).store(row_[n][j] + k);
-      });
-    } else {
-      for (std::size_t j = 0; j < kNz; ++j) r.slopes[j].store(row_[n][j] + k);
     }
+    each_slope<V>(r, [&](std::size_t j, const V& slope) { slope.store(row_[n][j] + k); });
   }
   void store_end(std::size_t n, double value) noexcept {
     end_value_[n] = value;
@@ -85,22 +78,45 @@ class HardRows {
     end_ = {};
     is_ready_ = false;
   }
+  /// Rows of the primal-dual method again, where end() has left them.
+  void resume(P& problem, double mu, std::size_t horizon) noexcept {
+    problem.is_primal_dual = true;
+    set_rows(problem, mu, horizon);
+  }
   [[nodiscard]] bool is_ready() const noexcept { return is_ready_; }
-  /// Sets weights of at most `rho` from now on; rows give way at `penalty`, if that is above zero.
-  void weigh(double rho, double penalty) noexcept {
+  /// Sets weights of at most `rho` from now on, over the square of the steepest slope of each row where that
+  /// is above 1; rows give way at `penalty`, if that is above zero. Pre: begin(), then one linearisation.
+  void weigh(double rho, double penalty, std::size_t horizon) noexcept {
     rho_ = rho;
     is_ready_ = true;
-    const double most = penalty > 0.0 ? penalty : kInfinity;
-    equality_ = {-most, most, penalty > 0.0 ? 0.0 : 1.0 / rho};
-    inequality_ = {0.0, most, 0.0};
+    most_ = penalty > 0.0 ? penalty : kInfinity;
+    const auto share = [](double steepest) { return 1.0 / std::max(1.0, steepest * steepest / kNearlyNone); };
+    for (std::size_t n = 0; n < kStageRows; ++n) {
+      double steepest = 0.0;
+      for (const Line& slope : row_[n]) {
+        for (std::size_t k = 0; k < horizon; ++k) steepest = std::max(steepest, std::fabs(slope.values[k]));
+      }
+      stage_share_[n] = share(steepest);
+    }
+    for (std::size_t n = 0; n < kEndRows; ++n) {
+      double steepest = 0.0;
+      for (const double slope : end_row_[n]) steepest = std::max(steepest, std::fabs(slope));
+      end_share_[n] = share(steepest);
+    }
   }
-  [[nodiscard]] bool is_elastic() const noexcept { return equality_.has_p(); }
+  /// Weights `factor` times as large, at most `most`: multipliers that lag behind reach their values sooner.
+  void raise(P& problem, double factor, double most, double mu, std::size_t horizon) noexcept {
+    if (is_elastic() || rho_ >= most) return;
+    rho_ *= factor;
+    set_rows(problem, mu, horizon);
+  }
+  [[nodiscard]] bool is_elastic() const noexcept { return most_ < kInfinity; }
   /// p, n and multipliers of the rows of eight stages from k on, whose values are `h`, on the central path.
   void centre(std::size_t n, std::size_t k, const V& h, double mu) noexcept {
     alignas(64) double values[8];
     h.store(values);
     for (std::size_t lane = 0; lane < 8; ++lane) {
-      const Row<double> row = centred(equality_, values[lane], 0.0, mu);
+      const Row<double> row = centred(stage_limits(n), values[lane], 0.0, mu);
       Rows& rows = stage_[n];
       rows.y[k + lane] = row.y;
       rows.p[k + lane] = row.p, rows.n[k + lane] = row.n;
@@ -118,7 +134,7 @@ class HardRows {
   void set_rows(P& problem, double mu, std::size_t horizon) noexcept {
     for (std::size_t n = 0; n < kStageRows; ++n) {
       for (std::size_t k = 0; k < horizon; k += 8) {
-        const auto [root, shift] = stage_[n].load(k).residual(equality_, mu);
+        const auto [root, shift] = stage_[n].load(k).residual(stage_limits(n), mu);
         root.store(problem.equality_root[n].values.data() + k);
         shift.store(problem.equality_shift[n].values.data() + k);
       }
@@ -159,6 +175,7 @@ class HardRows {
     V primal(0.0), dual(0.0);
     for (std::size_t n = 0; n < kStageRows; ++n) {
       V slope(0.0);
+      const Limits limits = stage_limits(n);
       for (std::size_t k = 0; k < step.horizon; k += 8) {
         V change(0.0);
         for (std::size_t i = 0; i < kNx; ++i) change += V::load(row_[n][i] + k) * V::load(step.x[i] + k);
@@ -169,10 +186,10 @@ class HardRows {
         const auto live =
             stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(step.horizon));
         const Row<V> row = stage_[n].load(k);
-        const Row<V> d = row.step(equality_, root * (value + change), mu);
+        const Row<V> d = row.step(limits, root * (value + change), mu);
         stage_step_[n].store(k, d);
-        slope += select(live, row.slope(equality_, d, mu) - value * change, V(0.0));
-        const auto [by_primal, by_dual] = row.shares(equality_, d);
+        slope += select(live, row.slope(limits, d, mu) - value * change, V(0.0));
+        const auto [by_primal, by_dual] = row.shares(limits, d);
         primal = max(primal, select(live, by_primal, V(0.0)));
         dual = max(dual, select(live, by_dual, V(0.0)));
       }
@@ -210,7 +227,7 @@ class HardRows {
     if (length > 0.0) at.go(length, stage_step_[n].load(k));
     at.p.store(stage_at_[n].p + k);
     at.n.store(stage_at_[n].n + k);
-    at.measure(equality_, h, [&](const V& missed, const V& costs, const V& logarithms) {
+    at.measure(stage_limits(n), h, [&](const V& missed, const V& costs, const V& logarithms) {
       miss += select(live, missed, V(0.0));
       cost += select(live, costs, V(0.0));
       logs += select(live, logarithms, V(0.0));
@@ -242,7 +259,7 @@ class HardRows {
       for (std::size_t k = 0; k < horizon; k += 8) {
         const auto live = stage_number(StageLanes<V>{static_cast<int>(k)}) < V(static_cast<double>(horizon));
         const V h = row_value(problem, n, k, V::load(value_[n] + k));
-        all = max(all, select(live, stage_[n].load(k).worst(equality_, h, mu, unit), V(0.0)));
+        all = max(all, select(live, stage_[n].load(k).worst(stage_limits(n), h, mu, unit), V(0.0)));
       }
     }
     double worst = largest(all);
@@ -293,12 +310,14 @@ class HardRows {
   void end(P& problem, std::size_t horizon) noexcept {
     problem.is_primal_dual = false;
     for (std::size_t n = 0; n < kStageRows; ++n) {
-      problem.set_weight(n, rho_);
-      for (std::size_t k = 0; k < horizon; ++k) problem.equality_shift[n].values[k] = stage_[n].y[k] / rho_;
+      const double rho = rho_ * stage_share_[n];
+      problem.set_weight(n, rho);
+      for (std::size_t k = 0; k < horizon; ++k) problem.equality_shift[n].values[k] = stage_[n].y[k] / rho;
     }
     for (std::size_t n = 0; n < kEndRows; ++n) {
-      problem.terminal_weight[n].set(rho_);
-      problem.terminal_shift[n] = is_there_[n] ? end_[n].y / rho_ : 0.0;
+      const double rho = rho_ * end_share_[n];
+      problem.terminal_weight[n].set(rho);
+      problem.terminal_shift[n] = is_there_[n] ? end_[n].y / rho : 0.0;
     }
   }
 
@@ -314,9 +333,9 @@ class HardRows {
     operator double*() noexcept { return values; }
     operator const double*() const noexcept { return values; }
   };
-  /// Range of a multiplier; `soft`: share of its row that a multiplier leaves.
+  /// Range of a multiplier; `soft`: share of its row that a multiplier leaves; `scale`: of the row.
   struct Limits {
-    double low = 0.0, high = 0.0, soft = 0.0;
+    double low = 0.0, high = 0.0, soft = 0.0, scale = 1.0;
     [[nodiscard]] bool has_p() const noexcept { return high < kInfinity; }
     [[nodiscard]] bool has_n() const noexcept { return low > -kInfinity; }
   };
@@ -370,10 +389,10 @@ class HardRows {
       T cost(0.0), logs(0.0);
       if (limits.has_p()) cost += limits.high * p, logs += log(p);
       if (limits.has_n()) cost -= limits.low * n, logs += log(n);
-      add(magnitude(h - p + n), cost, logs);
+      add(limits.scale * magnitude(h - p + n), cost, logs);
     }
     [[nodiscard]] T worst(const Limits& limits, const T& h, double mu, double unit) const noexcept {
-      T result = unit * magnitude(h - p + n);
+      T result = unit * limits.scale * magnitude(h - p + n);
       if (limits.has_p()) result = larger(result, magnitude(p * above - mu));
       if (limits.has_n()) result = larger(result, magnitude(n * below - mu));
       return result;
@@ -395,8 +414,13 @@ class HardRows {
       row.below.store(below + k);
     }
   };
-  [[nodiscard]] const Limits& limits(std::size_t n) const noexcept {
-    return n < kEqualities ? equality_ : inequality_;
+  [[nodiscard]] Limits stage_limits(std::size_t n) const noexcept { return equality(stage_share_[n]); }
+  [[nodiscard]] Limits limits(std::size_t n) const noexcept {
+    return n < kEqualities ? equality(end_share_[n]) : Limits{0.0, most_, 0.0};
+  }
+  [[nodiscard]] Limits equality(double share) const noexcept {
+    if (is_elastic()) return {-most_, most_, 0.0, 1.0};
+    return {-most_, most_, 1.0 / (rho_ * share), std::sqrt(share)};
   }
   /// A row of value h: elastic ones on the central path, h = μ/(high − y) − μ/(y − low); slacks of others
   /// with some room, and multiplier `y` of equalities.
@@ -424,24 +448,16 @@ class HardRows {
   Of<Rows, kStageRows> stage_{}, stage_step_{}, stage_at_{};
   double end_value_[kEndRows + 1]{}, end_row_[kEndRows + 1][kNx]{};
   std::array<Row<double>, kEndRows + 1> end_{}, end_step_{}, end_at_{};
-  bool is_there_[kEndRows + 1]{};  ///< sparse rows may be absent: rows that the problem does not have
-  Limits equality_{}, inequality_{};
+  bool is_there_[kEndRows + 1]{};         ///< sparse rows may be absent: rows that the problem does not have
+  Of<double, kStageRows> stage_share_{};  ///< of rho_, by row
+  Of<double, kEndRows> end_share_{};
+  double most_ = kInfinity;  ///< limit of multipliers
   double slope_ = 0.0;
   double rho_ = 1.0;
   bool is_ready_ = false;  ///< weigh() has been called
 };
 
-/// Placeholder for problems without hard rows.
-struct NoHardRows {};
-
-template <class P, std::size_t Capacity, class Arch>
-struct HardRowsOf {
-  using Type = NoHardRows;
-};
-template <class P, std::size_t Capacity, class Arch>
-requires kHasHardRows<P>
-struct HardRowsOf<P, Capacity, Arch> {
-  using Type = HardRows<P, Capacity, Arch>;
-};
+/// Member of problems without some part of the solver.
+struct Nothing {};
 
 }  // namespace chicane::solver

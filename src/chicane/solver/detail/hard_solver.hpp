@@ -18,9 +18,8 @@ namespace chicane::solver {
 
 /// OcpSolver for problems with something that must hold beside dynamics and bounds (hard_constraints.hpp):
 /// the primal-dual method of detail/hard_rows.hpp, then full steps from its multipliers (docs/solver.md).
-/// Where that gets nowhere, restoration (detail/hard_restoration.hpp) proves that no point nearby holds, or
-/// finds one, from where the method begins again. Else rounds of an augmented Lagrangian: each is one solve
-/// and an update of multipliers, weights and penalties.
+/// Where that fails, restoration (detail/hard_restoration.hpp) proves that no point nearby holds, or finds
+/// one, from where the method begins again.
 template <HardProblem P, int Capacity, class Arch>
 class HardSolver {
  public:
@@ -28,7 +27,9 @@ class HardSolver {
   using Trajectory = solver::Trajectory<P::kNx, P::kNu, Capacity>;
   using Multipliers = HardMultipliers<P, Capacity>;
 
-  explicit HardSolver(const SolverOptions& options = {}) noexcept : options_{options}, inner_{options} {}
+  explicit HardSolver(const SolverOptions& options = {}) noexcept : options_{options}, inner_{options} {
+    inner_.take_only_full_steps();
+  }
 
   void set_options(const SolverOptions& options) noexcept {
     options_ = options;
@@ -89,101 +90,121 @@ class HardSolver {
   static constexpr std::size_t kNh = Problem::kEqualities, kNc = P::kNc;
   static constexpr std::size_t kNeh = Problem::kEndEqualities;
   static constexpr std::size_t kEnd = kNeh + Problem::kEndConstraints;
-  static constexpr int kMostRounds = 40;  ///< limit of rounds
-  static constexpr int kTrialSpent = -1;
-  static constexpr double kFirstShare = 10.0;  ///< weighted violation of the guess over its cost
-  static constexpr double kLeastWeight = 1e-2, kMostFirstWeight = 10.0, kMostWeight = 1e9;
-  static constexpr std::array kHeavier{10.0, 1e3};  ///< factors of the first weights, if those fail
+  static constexpr int kMostIterations = 200;  ///< limit from one start
+  static constexpr int kMostFullSteps = 15;    ///< limit in one round
+  static constexpr int kMostBarriers = 2;      ///< lower ones, where full steps fail
+  static constexpr double kLeastShare = 1e-8;  ///< of the cost in restoration
+  static constexpr double kLight = 1e-9;       ///< weight of rows, negligible beside their multipliers
 
-  /// Violations of a trajectory by row: the largest of each.
+  /// Violations of a trajectory.
   struct Misses {
-    std::array<double, kNh> equality{};
-    std::array<double, kEnd> terminal{};
-    std::array<double, kNc> constraint{};
-    double cost = 0.0;   ///< the problem's own, with its first penalties
-    double total = 0.0;  ///< sum over all rows of all stages
-
-    [[nodiscard]] double worst() const noexcept {
-      double worst = 0.0;
-      const auto add = [&](const auto& rows) {
-        for (const double miss : rows) worst = std::max(worst, miss);
-      };
-      add(equality);
-      add(terminal);
-      add(constraint);
-      return worst;
-    }
+    double worst = 0.0;
+    double cost = 0.0;      ///< the problem's own, with its first penalties
+    double total = 0.0;     ///< sum over all rows of all stages
+    double weighted = 0.0;  ///< sum of the rows, each times its multiplier
   };
 
   HardReport run(const P& problem, const State& x0, Trajectory& trajectory,
                  const Deadline& deadline) noexcept {
     HardReport report;
+    report.status = SolveStatus::kStalled;
     guess_ = trajectory;
-    trial_ = 0;
-    is_certified_ = is_possible_ = has_restored_ = false;
+    is_certified_ = is_possible_ = false;
+    least_total_ = 0.0;
     start(problem, x0, trajectory);
     int left = options_.max_iterations;
-    bool has_begun = multipliers_.is_known;
-    std::size_t restarts = has_begun ? kHeavier.size() : 0;
-    RoundProgress progress;
-    Misses before;
-    for (;;) {
-      const bool converged = has_begun ? round(x0, trajectory, deadline, left, report)
-                                       : first_round(x0, trajectory, deadline, left, report);
-      has_begun = true;
-      Misses now = measure(problem, trajectory, &report);
-      if (report.status == SolveStatus::kNotFinite) return report;
-      update(now, progress.is_first() ? nullptr : &before, trajectory.horizon);
-      if (converged && now.worst() <= options_.tolerance) return finish(report.status, now, report);
-      if (left <= 0 || deadline.spent() || report.rounds >= kMostRounds) break;
-      progress.note(now.worst(), converged, last_iterations_);
-      before = now;
-      const bool is_trial_over = trial_ == kTrialSpent;
-      if (is_trial_over) trial_ = 0;
-      const bool is_lost = progress.is_lost(now.worst(), first_.worst(), last_iterations_);
-      if (is_trial_over ? progress.is_good() : converged && !is_lost) continue;
-      if (has_restored_ && restarts < kHeavier.size()) {  // misses count from the start
-        begin_again(trajectory, kHeavier[restarts++]);
-        trial_ = is_certified_ ? most_of_a_trial() : 0;
-      } else if (is_certified_ || (!converged && has_restored_) ||
-                 is_infeasible(problem, x0, trajectory, deadline, left, report)) {
-        break;
+    if (multipliers_.is_known && finish_steps(problem, x0, trajectory, deadline, left, report)) return report;
+    // The method from the guess; from what restoration finds near its last point; from what it finds near the
+    // guess, from where less and less of the cost counts.
+    constexpr std::array kShares{0.0, kLeastShare, 100.0, 1.0, 10.0};
+    for (std::size_t attempt = 0; attempt < kShares.size() && left > 0 && !deadline.spent(); ++attempt) {
+      attempt == 1 ? inner_.start_from_states(true) : begin_again(trajectory);
+      if (attempt > 0 && is_infeasible(problem, x0, trajectory, kShares[attempt], deadline, left, report)) {
+        if (is_final_) break;
+      } else if (follow(Begin::kGuess, x0, trajectory, deadline, left, report)) {
+        int barriers = 0;
+        do {
+          if (finish_steps(problem, x0, trajectory, deadline, left, report)) return report;
+        } while (++barriers <= kMostBarriers && left > 0 &&
+                 follow(Begin::kHere, x0, trajectory, deadline, left, report));
+        if (take_point(problem, trajectory, report)) return report;
       }
-      progress = {};
     }
-    Misses now = measure(problem, trajectory, &report);
-    for (std::size_t n = kNeh; n < kEnd; ++n) count_distance(now, n);
-    const bool is_close = usable(report.status) && now.worst() <= options_.tolerance;
-    if (is_close) return finish(SolveStatus::kBudgetSpent, now, report);
     if (is_certified_) return tell_infeasible(problem, x0, trajectory, report);
-    if (take_guess(problem, x0, trajectory, report)) now = measure(problem, trajectory, &report);
-    return finish(SolveStatus::kStalled, now, report);
+    return stall(problem, x0, trajectory, report);
   }
-
-  /// Iteration limit of one start: min(100, max_iterations / 5), so that other starts get their turn.
-  [[nodiscard]] int most_of_a_trial() const noexcept {
-    return std::max(1, std::min(100, options_.max_iterations / 5));
-  }
-  bool first_round(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
-                   HardReport& report) noexcept;
-  bool follow(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
-              HardReport& report) noexcept;
-  /// Restarts from the guess, with the first weights times `factor`.
-  void begin_again(Trajectory& trajectory, double factor) noexcept {
-    trajectory = guess_;
-    start_with_weights(trajectory.horizon, factor);
-  }
-  /// Takes the simulated guess if its inputs violate less than `trajectory`'s and cost less; true then.
-  bool take_guess(const P& problem, const State& x0, Trajectory& trajectory, HardReport& report) noexcept {
-    if (!roll_out(problem, x0, guess_)) return false;
-    const Misses guess = measure(problem, guess_, nullptr);
+  /// The answer without a solution: the last point, or the simulated guess if that violates less and costs
+  /// less.
+  HardReport stall(const P& problem, const State& x0, Trajectory& trajectory, HardReport report) noexcept {
+    forget_multipliers();
     copy_ = trajectory;
-    if (roll_out(problem, x0, copy_)) {
-      const Misses own = measure(problem, copy_, nullptr);
-      if (!(guess.worst() < own.worst() && guess.cost < own.cost)) return false;
+    bool is_guess = roll_out(problem, x0, guess_);
+    if (is_guess && roll_out(problem, x0, copy_)) {
+      const Misses guess = measure(problem, guess_, nullptr), own = measure(problem, copy_, nullptr);
+      is_guess = guess.worst < own.worst && guess.cost < own.cost;
     }
-    copy_ = trajectory = guess_;
-    assess(x0, copy_, false, report);
+    if (is_guess) trajectory = guess_;
+    clamp_inputs(problem, trajectory);
+    copy_ = trajectory;
+    assess(x0, copy_, !is_guess, report);
+    if (report.status != SolveStatus::kNotFinite)
+      return finish(SolveStatus::kStalled, measure(problem, trajectory, &report), report);
+    trajectory = copy_;
+    return report;
+  }
+  using Begin = typename OcpSolver<Augmented<P, Capacity>, Capacity, Arch>::Begin;
+  bool follow(Begin begin, const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
+              HardReport& report) noexcept;
+  /// The guess again, without multipliers.
+  void begin_again(Trajectory& trajectory) noexcept {
+    trajectory = guess_;
+    inner_.start_from_states(options_.start_from_states);
+    forget_multipliers();
+  }
+  void forget_multipliers() noexcept {
+    can_go_on_ = false;
+    problem_.cost_root = 1.0;
+    problem_.penalty_factor.fill(1.0);
+    for (std::size_t n = 0; n < kNh; ++n) {
+      problem_.equality_shift[n].values.fill(0.0);
+      problem_.set_weight(n, 1.0);
+    }
+    for (auto& weight : problem_.terminal_weight) weight.set(1.0);
+    problem_.terminal_shift.fill(0.0);
+  }
+  /// Full steps with the known multipliers, in rounds that improve these (eq. 57). True at a solution, or at
+  /// a usable point where the budget ends.
+  bool finish_steps(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
+                    int& left, HardReport& report) noexcept {
+    constexpr int kMostRounds = 10;
+    constexpr double kEnough = 0.5;  // share of the misses that a round may leave
+    double last = std::numeric_limits<double>::infinity();
+    for (int n = 0; n < kMostRounds && left > 0; ++n) {
+      const bool converged = round(x0, trajectory, deadline, left, report);
+      const Misses now = update(measure(problem, trajectory, &report), trajectory.horizon);
+      const bool holds = now.worst <= options_.tolerance;
+      const bool is_last = left <= 0 || deadline.spent();
+      if (holds && (converged || (is_last && usable(report.status)))) {
+        report = finish(report.status, now, report);
+        return true;
+      }
+      if (!converged || !(now.worst <= kEnough * last)) return false;
+      last = now.worst;
+    }
+    return false;
+  }
+  /// The point at the end of the barrier as the answer, where full steps do not converge. True if it is
+  /// usable.
+  bool take_point(const P& problem, Trajectory& trajectory, HardReport& report) noexcept {
+    put_light(point_multipliers_, trajectory.horizon);
+    inner_.ask_for(options_.tolerance);
+    HardReport seen = report;
+    take(inner_.take_point(problem_, trajectory), seen);
+    const Misses now = measure(problem, trajectory, &seen);
+    multipliers_ = point_multipliers_;
+    if (!usable(seen.status) || now.worst > options_.tolerance) return false;
+    if (exceeds_a_cap(seen)) seen.status = SolveStatus::kInfeasible;
+    report = finish(seen.status, now, seen);
     return true;
   }
   /// `report` becomes one of `trajectory`, simulated or with its states; its status and its counts stay.
@@ -192,29 +213,28 @@ class HardSolver {
     inner_.start_from_states(with_states);
     const SolveReport kept = report;
     static_cast<SolveReport&>(report) = inner_.solve(problem_, x0, trajectory);
-    report.status = kept.status;
-    report.iterations = kept.iterations;
-    report.sweeps = kept.sweeps;
+    if (report.status != SolveStatus::kNotFinite) report.status = kept.status;
+    report.iterations = kept.iterations, report.sweeps = kept.sweeps;
+  }
+  /// `report` of one more solve, with the counts of all.
+  static void take(const SolveReport& now, HardReport& report) noexcept {
+    const int iterations = report.iterations + now.iterations, sweeps = report.sweeps + now.sweeps;
+    static_cast<SolveReport&>(report) = now;
+    report.iterations = iterations, report.sweeps = sweeps;
   }
 
   /// One solve. True when it converged.
   bool round(const State& x0, Trajectory& trajectory, const Deadline& deadline, int& left,
              HardReport& report) noexcept {
-    inner_.allow_iterations(trial_ > 0 ? std::min(left, trial_) : left);
+    inner_.allow_iterations(std::min(left, kMostFullSteps));
     if (log_ != nullptr) log_->begin_round();
     const SolveReport now = can_go_on_ ? inner_.solve_again(problem_, x0, trajectory, deadline)
                                        : inner_.solve(problem_, x0, trajectory, deadline);
     inner_.start_from_states(true);
     can_go_on_ = usable(now.status);
-    const int iterations = report.iterations + now.iterations;
-    const int sweeps = report.sweeps + now.sweeps;
-    static_cast<SolveReport&>(report) = now;
-    report.iterations = iterations;
-    report.sweeps = sweeps;
+    take(now, report);
     ++report.rounds;
-    last_iterations_ = now.iterations;
     left -= std::max(1, now.iterations);
-    if (trial_ != 0) trial_ = trial_ > now.iterations ? trial_ - now.iterations : kTrialSpent;
     const double residual = std::max({now.stationarity, now.defect, now.complementarity});
     if (now.status == SolveStatus::kAtFloor && residual <= options_.tolerance)
       report.status = exceeds_a_cap(now) ? SolveStatus::kInfeasible : SolveStatus::kOptimal;
@@ -236,71 +256,28 @@ class HardSolver {
     can_go_on_ = false;
     inner_.ask_for(round_tolerance());
     if (!options_.start_from_states) roll_out(problem, x0, trajectory);
-    first_ = measure(problem, trajectory, nullptr);
-    unit_ = std::isfinite(first_.cost) ? std::max(1.0, first_.cost) : 1.0;
-    if (!multipliers_.is_known) return start_with_weights(trajectory.horizon, 1.0);
+    const double cost = measure(problem, trajectory, nullptr).cost;
+    unit_ = std::isfinite(cost) ? std::max(1.0, cost) : 1.0;
+    if (!multipliers_.is_known) return;
     inner_.start_from_states(options_.start_from_states);
     put_multipliers(trajectory.horizon);
   }
-  /// No multipliers, and the first weights of the guess, times `factor` (eq. 58).
-  void start_with_weights(int horizon, double factor) noexcept {
-    can_go_on_ = false;
-    inner_.ask_for(round_tolerance());
-    inner_.start_from_states(options_.start_from_states);
-    problem_.cost_root = 1.0;
-    problem_.penalty_factor.fill(1.0);
+  /// y ← y + ρ h (eq. 57). An inequality whose multiplier is not zero has to hold with equality: its distance
+  /// counts as a miss.
+  Misses update(Misses now, int horizon) noexcept {
     for (std::size_t n = 0; n < kNh; ++n) {
-      problem_.equality_shift[n].values.fill(0.0);
-      problem_.set_weight(n, factor * first_weight(first_.equality[n] * horizon));
-    }
-    for (std::size_t n = 0; n < kEnd; ++n) {
-      problem_.terminal_shift[n] = 0.0;
-      problem_.terminal_weight[n].set(factor * first_weight(first_.terminal[n]));
-    }
-  }
-  [[nodiscard]] double first_weight(double miss) const noexcept {
-    const double weight = kFirstShare * unit_ / std::max(1e-12, 0.5 * miss * miss);
-    return std::isfinite(weight) ? std::min(std::max(weight, kLeastWeight), kMostFirstWeight) : 1.0;
-  }
-
-  /// y ← y + ρ h; a weight or penalty whose row has not come down enough rises (eq. 57).
-  void update(Misses& now, const Misses* before, int horizon) noexcept {
-    constexpr double kEnough = 0.1, kRise = 10.0;
-    const auto rises = [&](double miss, double last) {
-      return before != nullptr && miss > options_.tolerance && miss > kEnough * last;
-    };
-    const auto raise = [&](auto& weight, double miss, double last) {
-      const double old = weight.rho;
-      if (rises(miss, last)) weight.set(std::min(kRise * old, std::max(old, kMostWeight * unit_)));
-      return old / weight.rho;
-    };
-    for (std::size_t n = 0; n < kNh; ++n) {
-      const double share =
-          raise(problem_.equality_weight[n], now.equality[n], before != nullptr ? before->equality[n] : 0.0);
-      problem_.set_weight(n, problem_.equality_weight[n].rho);
-      for (int k = 0; k < horizon; ++k) {
-        const auto stage = static_cast<std::size_t>(k);
-        problem_.equality_shift[n][stage] = share * (problem_.equality_shift[n][stage] + equality_[n][stage]);
-      }
+      for (std::size_t k = 0; k < static_cast<std::size_t>(horizon); ++k)
+        problem_.equality_shift[n][k] += equality_[n][k];
     }
     for (std::size_t n = 0; n < kEnd; ++n) {
       double& shift = problem_.terminal_shift[n];
       shift += terminal_[n];
-      if (n >= kNeh) shift = std::max(0.0, shift);
-      count_distance(now, n);
-      shift *=
-          raise(problem_.terminal_weight[n], now.terminal[n], before != nullptr ? before->terminal[n] : 0.0);
-    }
-    for (std::size_t c = 0; c < kNc; ++c) {
-      if (now.constraint[c] <= options_.tolerance) continue;
-      problem_.penalty_factor[c] *= kRise;
-      can_go_on_ = false;
+      if (n < kNeh) continue;
+      shift = std::max(0.0, shift);
+      if (shift > 0.0) now.worst = std::max(now.worst, std::fabs(terminal_[n]));
     }
     keep_multipliers(horizon);
-  }
-  /// An inequality whose multiplier is not zero has to hold with equality: its distance counts as a miss.
-  void count_distance(Misses& misses, std::size_t n) const noexcept {
-    if (problem_.terminal_shift[n] > 0.0) misses.terminal[n] = std::fabs(terminal_[n]);
+    return now;
   }
   void keep_multipliers(int horizon) noexcept {
     multipliers_.is_known = true;
@@ -314,6 +291,13 @@ class HardSolver {
       multipliers_.terminal[n] = problem_.terminal_weight[n].rho * problem_.terminal_shift[n];
     }
     multipliers_.penalty_factor = problem_.penalty_factor;
+  }
+  /// `multipliers` with hardly any weight beside them.
+  void put_light(const Multipliers& multipliers, int horizon) noexcept {
+    multipliers_ = multipliers;
+    multipliers_.equality_weight.fill(kLight);
+    multipliers_.terminal_weight.fill(kLight);
+    put_multipliers(horizon);
   }
   void put_multipliers(int horizon) noexcept {
     for (std::size_t n = 0; n < kNh; ++n) {
@@ -329,27 +313,28 @@ class HardSolver {
   }
 
   // ---- what cannot hold (detail/hard_restoration.hpp)
-  bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, const Deadline& deadline,
-                     int& left, HardReport& report) noexcept;
+  bool is_infeasible(const P& problem, const State& x0, Trajectory& trajectory, double share,
+                     const Deadline& deadline, int& left, HardReport& report) noexcept;
   HardReport tell_infeasible(const P& problem, const State& x0, Trajectory& trajectory,
                              HardReport report) noexcept;
-  bool is_proven(const P& problem, const Trajectory& least, double violation) const noexcept;
+  bool is_proven(const P& problem, const State& x0, const Trajectory& least, double violation,
+                 bool converged) noexcept;
   void weigh_misses(double share, double unit) noexcept;
+  static void count(const SolveReport& seen, int& left, HardReport& report) noexcept {
+    report.iterations += seen.iterations;
+    report.sweeps += seen.sweeps;
+    left -= seen.iterations;
+  }
 
   // ---- values
-  static bool is_hard([[maybe_unused]] const P& problem, [[maybe_unused]] std::size_t c) noexcept {
-    if constexpr (detail::SaysWhatIsHard<P>) return problem.is_hard(static_cast<int>(c));
-    return false;
-  }
   /// Computes cost and misses of a trajectory; keeps the values of rows, and reports the worst.
   Misses measure(const P& problem, const Trajectory& t, HardReport* report) noexcept {
     Misses misses;
-    double worst = 0.0;
-    const auto note = [&](double& miss, double value, Kind kind, int stage, std::size_t row) {
+    const auto note = [&](double value, Kind kind, int stage, std::size_t row) {
       misses.total += value;
-      miss = value > miss ? value : miss;
-      if (report == nullptr || !(value > worst)) return;
-      worst = value;
+      if (!(value > misses.worst)) return;
+      misses.worst = value;
+      if (report == nullptr) return;
       report->miss = value;
       report->kind = kind;
       report->miss_stage = stage;
@@ -369,15 +354,17 @@ class HardSolver {
         const auto h = to_array<One>(problem.equality(k, x, u));
         for (std::size_t n = 0; n < kNh; ++n) {
           equality_[n][stage] = Evaluate::number(h[n]);
-          note(misses.equality[n], std::fabs(equality_[n][stage]), Kind::kEquality, k, n);
+          misses.weighted += multipliers_.equality[n].at(k) * equality_[n][stage];
+          note(std::fabs(equality_[n][stage]), Kind::kEquality, k, n);
         }
       }
       if constexpr (kNc > 0) {
         const auto c = to_array<One>(problem.constraint(k, x, u));
         for (std::size_t n = 0; n < kNc; ++n) {
           const double beyond = std::max(0.0, Evaluate::number(c[n]));
-          if (is_hard(problem, n)) {
-            note(misses.constraint[n], beyond, Kind::kConstraint, k, n);
+          if (problem_.must_hold(n)) {
+            misses.weighted += inner_.constraint_multiplier(k, static_cast<int>(n)) * Evaluate::number(c[n]);
+            note(beyond, Kind::kConstraint, k, n);
           } else {
             const SoftPenalty penalty = penalty_of(problem, n);
             misses.cost += beyond * (penalty.linear + 0.5 * penalty.quadratic * beyond);
@@ -391,15 +378,16 @@ class HardSolver {
       const auto h = to_array<One>(problem.terminal_equality(x));
       for (std::size_t n = 0; n < kNeh; ++n) {
         terminal_[n] = Evaluate::number(h[n]);
-        note(misses.terminal[n], std::fabs(terminal_[n]), Kind::kTerminalEquality, t.horizon, n);
+        misses.weighted += multipliers_.terminal[n] * terminal_[n];
+        note(std::fabs(terminal_[n]), Kind::kTerminalEquality, t.horizon, n);
       }
     }
     if constexpr (kEnd > kNeh) {
       const auto g = to_array<One>(problem.terminal_constraint(x));
       for (std::size_t n = 0; n < kEnd - kNeh; ++n) {
         terminal_[kNeh + n] = Evaluate::number(g[n]);
-        note(misses.terminal[kNeh + n], std::max(0.0, terminal_[kNeh + n]), Kind::kTerminalConstraint,
-             t.horizon, n);
+        misses.weighted += multipliers_.terminal[kNeh + n] * terminal_[kNeh + n];
+        note(std::max(0.0, terminal_[kNeh + n]), Kind::kTerminalConstraint, t.horizon, n);
       }
     }
     return misses;
@@ -420,19 +408,18 @@ class HardSolver {
   Problem problem_;
   Multipliers multipliers_;
   double unit_ = 1.0;  ///< unit of costs
-  Misses first_;       ///< violations of the guess
   IterationLog* log_ = nullptr;
   Trajectory guess_;
   Trajectory copy_;                ///< copy for reports, which may change it
+  Multipliers point_multipliers_;  ///< multipliers at the end of the barrier
   Trajectory least_;               ///< local minimum of the violation above zero, if is_certified_
-  int last_iterations_ = 0;        ///< iterations of the last round
-  Multipliers least_multipliers_;  ///< multipliers of the violation alone at least_
+  Multipliers least_multipliers_;  ///< multipliers of the violation alone there
+  double least_total_ = 0.0;       ///< sum of the misses there
   double least_unit_ = 1.0;        ///< unit of the misses there
   bool is_certified_ = false;
-  bool has_restored_ = false;  ///< restoration has been tried
-  bool is_possible_ = false;   ///< a point without misses has been found
-  int trial_ = 0;           ///< iterations that are left for the first weights, kTrialSpent; 0: all of them
-  bool can_go_on_ = false;  ///< the next round differs little from the last one
+  bool is_final_ = false;     ///< no other start would end elsewhere
+  bool is_possible_ = false;  ///< a point without misses has been found
+  bool can_go_on_ = false;    ///< the next round differs little from the last one
   std::array<std::array<double, Capacity>, kNh> equality_{};  ///< values at the last measure()
   std::array<double, kEnd> terminal_{};
 };

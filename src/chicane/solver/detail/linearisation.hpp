@@ -42,7 +42,7 @@ class Linearisation {
   alignas(64) double adjoint[kNx][kStageStride<Capacity>]{};  ///< adjoint[i][k]: multiplier of x_{k+1}
   alignas(64) double lower[kNu][kStageStride<Capacity>]{};    ///< bounds of the inputs
   alignas(64) double upper[kNu][kStageStride<Capacity>]{};
-  using Hard = typename HardRowsOf<P, Capacity, Arch>::Type;
+  using Hard = std::conditional_t<kHasHardRows<P>, HardRows<P, Capacity, Arch>, Nothing>;
   Hard hard;                   ///< rows that must hold, for the primal-dual method
   double merit = 0.0;          ///< cost with the barrier's smoothed penalties; when slacks were centred
   double defect_excess = 0.0;  ///< largest defect beyond its tolerance; <= 0: all are small enough
@@ -61,7 +61,7 @@ class Linearisation {
     sums.end_cost = look_at_end<Order>(problem, t, lq, lambda);
     for (std::size_t k = (t.horizon - 1) / 8 * 8 + 8; k > 0; k -= 8)
       linearise_stages<kHasOneLinearisation ? 2 : Order>(
-          problem, t, k - 8, {centre, defect_share, exactness<Order>()}, slacks, lambda, lq, sums);
+          problem, t, k - 8, {centre, defect_share, Order == 2}, slacks, lambda, lq, sums);
     sums.finish(*this, report);
   }
 
@@ -76,18 +76,10 @@ class Linearisation {
   /// curvature costs little.
   static constexpr bool kHasOneLinearisation =
       StructuredProblem<P> && has_hessians<P>() && has_filter_method<P>();
-  template <int Order>
-  using IsExact = std::conditional_t<kHasOneLinearisation, bool, std::bool_constant<Order == 2>>;
-  template <int Order>
-  static constexpr IsExact<Order> exactness() noexcept {
-    if constexpr (kHasOneLinearisation) return Order == 2;
-    return {};
-  }
-  template <int Order>
   struct How {
     bool centre;
     double defect_share;
-    IsExact<Order> is_exact;
+    bool is_exact;
   };
 
   /// Sums over the horizon, eight stages side by side.
@@ -127,13 +119,7 @@ class Linearisation {
           weight = keep_end_row(problem, n - std::size_t{P::kOwnEnd}, r, value);
       }
       cost += 0.5 * value * value;
-      if constexpr (AnySparseRow<std::remove_cvref_t<decltype(r)>>) {
-        add_sparse_end_row<Order>(r, value, weight, lq);
-      } else if constexpr (Layout::is_large()) {
-        add_large_end_row(r, value, lq);
-      } else {
-        add_end_row(r, value, weight, lq);
-      }
+      add_end_row<Order>(r, value, weight, lq);
     });
     for (std::size_t i = 0; i < kNx; ++i) {
       lambda[i] = lq.terminal[kNx][i];
@@ -146,15 +132,9 @@ class Linearisation {
   template <class R>
   double keep_end_row(const P& problem, std::size_t n, const R& r, double value) noexcept {
     hard.store_end(n, value);
-    if constexpr (AnySparseRow<R>) {
-      r.each_slope([&](std::size_t i, double share) { hard.store_end_slope(n, i, share); });
-    } else if constexpr (Layout::is_large()) {
-      for (std::size_t i = 0; i < kNx; ++i) hard.store_end_slope(n, i, r.slopes[i]);
-    } else {
-      each_state<R>([&](auto i) CHICANE_INLINE {
-        hard.store_end_slope(n, i, Evaluate::slope_number(jet::slope<i>(r)));
-      });
-    }
+    each_slope<typename Evaluate::EndValue>(r, [&](std::size_t i, const auto& by) {
+      if (i < kNx) hard.store_end_slope(n, i, Evaluate::number(by));
+    });
     return problem.is_primal_dual ? hard.end_weight(problem, n) : value;
   }
   /// The same of the stages, whose residuals count in `gradient` with their multipliers alone.
@@ -178,57 +158,36 @@ class Linearisation {
   }
 
   /// The share of one terminal residual: its gradient, Gauss–Newton's Hessian, and with Order 2 the rest.
-  template <class R>
-  CHICANE_INLINE static void add_end_row(const R& r, double value, double weight, Lq& lq) noexcept {
-    each_state<R>([&](auto i) CHICANE_INLINE {
-      const double slope_i = Evaluate::slope_number(jet::slope<i>(r));
-      lq.terminal[kNx][i] += value * slope_i;
-      each_state<R>([&](auto j) CHICANE_INLINE {
-        lq.terminal[i][j] += slope_i * Evaluate::slope_number(jet::slope<j>(r));
-      });
-    });
-    jet::repeat<R::kSecond.size()>([&](auto n) CHICANE_INLINE {
-      constexpr Pair p = members<R::kSecond>()[n];
-      if constexpr (p.i < P::kNx && p.j < P::kNx) {
-        const double share = weight * Evaluate::number(r.curvatures[n]);
-        lq.terminal[p.i][p.j] += share;
-        if constexpr (p.i != p.j) lq.terminal[p.j][p.i] += share;
-      }
-    });
-  }
   template <int Order, class R>
-  static void add_sparse_end_row(const R& r, double value, [[maybe_unused]] double weight, Lq& lq) noexcept {
-    r.each_slope([&](std::size_t i, double by_state) {
-      lq.terminal[kNx][i] += value * by_state;
-      r.each_slope([&](std::size_t j, double other) { lq.terminal[i][j] += by_state * other; });
+  CHICANE_INLINE static void add_end_row(const R& r, double value, [[maybe_unused]] double weight,
+                                         Lq& lq) noexcept {
+    using EndValue = typename Evaluate::EndValue;
+    each_slope<EndValue>(r, [&](std::size_t i, const auto& by) CHICANE_INLINE {
+      if (i >= kNx) return;
+      lq.terminal[kNx][i] += value * Evaluate::number(by);
+      each_slope<EndValue>(r, [&](std::size_t j, const auto& other) CHICANE_INLINE {
+        if (j < kNx) lq.terminal[i][j] += Evaluate::number(by) * Evaluate::number(other);
+      });
     });
-    if constexpr (Order == 2) {
-      r.each_curvature([&](std::size_t i, std::size_t j, double curvature) {
-        lq.terminal[i][j] += weight * curvature;
-        if (i != j) lq.terminal[j][i] += weight * curvature;
+    const auto add = [&](std::size_t i, std::size_t j, double curvature) CHICANE_INLINE {
+      if (i >= kNx || j >= kNx) return;
+      lq.terminal[i][j] += weight * curvature;
+      if (i != j) lq.terminal[j][i] += weight * curvature;
+    };
+    if constexpr (AnySparseRow<R>) {
+      if constexpr (Order == 2) r.each_curvature(add);
+    } else if constexpr (AnyJet<R>) {
+      jet::repeat<R::kSecond.size()>([&](auto n) CHICANE_INLINE {
+        constexpr Pair p = members<R::kSecond>()[n];
+        add(p.i, p.j, Evaluate::number(r.curvatures[n]));
       });
     }
-  }
-  template <class R>
-  static void add_large_end_row(const R& r, double value, Lq& lq) noexcept {
-    for (std::size_t i = 0; i < kNx; ++i) {
-      lq.terminal[kNx][i] += value * r.slopes[i];
-      for (std::size_t j = 0; j < kNx; ++j) lq.terminal[i][j] += r.slopes[i] * r.slopes[j];
-    }
-  }
-  /// Calls visit(i) for every state that a row depends on.
-  template <class R, class Visit>
-  CHICANE_INLINE static void each_state(const Visit& visit) noexcept {
-    jet::repeat<size_of(R::kFirst)>([&](auto n) CHICANE_INLINE {
-      constexpr int i = member_of(R::kFirst, n);
-      if constexpr (i < P::kNx) visit(std::integral_constant<int, i>{});
-    });
   }
 
   /// The eight stages from k0 on; those beyond the horizon count for nothing.
   template <int Order>
-  void linearise_stages(const P& problem, const Point& t, std::size_t k0, const How<Order>& how,
-                        Slacks& slacks, double (&lambda)[kNx], Lq& lq, Sums& sums) noexcept {
+  void linearise_stages(const P& problem, const Point& t, std::size_t k0, const How& how, Slacks& slacks,
+                        double (&lambda)[kNx], Lq& lq, Sums& sums) noexcept {
     const auto rows = [&]() CHICANE_INLINE {
       if constexpr (is_compact<Pattern>()) return evaluate<Order>(problem, t, k0);
       if constexpr (!is_compact<Pattern>()) return Evaluate::template stages<Order>(problem, t, k0);

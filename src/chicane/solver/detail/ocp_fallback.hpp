@@ -79,7 +79,8 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
       if (!shows_best_) look_at_best(problem, report);
     }
     if (kCanFilter && has_best_ && bring_inside()) linearise(problem, report);
-    if (kCanFilter && !(has_best_ && is_close(report))) take_cheapest(problem, trajectory, report);
+    if (kCanFilter && !only_full_steps_ && !(has_best_ && is_close(report)))
+      take_cheapest(problem, trajectory, report);
     if (is_growing() || !has_best_) {
       while (is_growing()) grow(problem);
       linearise(problem, report);
@@ -92,13 +93,28 @@ SolveReport OcpSolver<P, Capacity, Arch>::finish(SolveStatus status, const P& pr
   } else if (barrier_.exceeds_a_cap(problem, t_.horizon)) {
     status = SolveStatus::kInfeasible;
   }
-  t_.write(trajectory);
-  for (std::size_t k = 0; k < t_.horizon; ++k) {  // u + (bound − u) may miss the bound by one rounding
-    for (std::size_t m = 0; m < kNu; ++m)
-      trajectory.u[k][m] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
-  }
+  write(t_, trajectory);
   tell_violation(problem, barrier_, t_.horizon, report);
   report.status = status;
+  return report;
+}
+
+template <OcpProblem P, int Capacity, class Arch>
+SolveReport OcpSolver<P, Capacity, Arch>::take_point(const P& problem, Trajectory& trajectory) noexcept {
+  SolveReport report;
+  t_ = kept_;
+  barrier_.restore(kept_slacks_, t_.horizon);
+  update_penalties(problem);
+  if (bring_inside()) roll_out(problem);
+  full_steps_ = true;
+  is_fresh_ = is_exact_ = false;
+  linearise(problem, report);
+  const bool is_optimal = residual(report) <= options_.tolerance && now_.defect_excess <= 0.0;
+  report.status = is_optimal                                     ? SolveStatus::kOptimal
+                  : residual(report) <= options_.loose_tolerance ? SolveStatus::kBudgetSpent
+                                                                 : SolveStatus::kStalled;
+  t_.write(trajectory);
+  tell_violation(problem, barrier_, t_.horizon, report);
   return report;
 }
 
@@ -125,14 +141,11 @@ template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::begin_filter(const P& problem, const Trajectory& trajectory,
                                                 SolveReport& report) noexcept {
   is_filtering_ = true;
-  if (has_filtered_) return filter_.resume(now_, barrier_, t_);
+  if (has_filtered_) return filter_.resume(now_, barrier_, t_, true);
   full_steps_ = is_fresh_ = has_filtered_ = true;
   is_exact_ = shows_best_ = false;
   if (!take_guess(problem, trajectory)) return false;
-  if (stands_still_) {
-    fill_inputs(0);
-    hold_states();
-  }
+  if (stands_still_) hold_states();
   if (!is_again_) break_symmetry();
   filter_.start(problem, final_barrier(problem), options_.second_order, is_again_, now_, lq_, barrier_, t_,
                 report);
@@ -182,34 +195,45 @@ bool OcpSolver<P, Capacity, Arch>::filter_iteration(const P& problem, const Dead
 
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::follow_barrier(P& problem, const State& x0, Trajectory& trajectory,
-                                                  const Deadline& deadline, int most, bool is_near,
+                                                  const Deadline& deadline, int most, Begin begin,
                                                   SolveReport& report) noexcept {
   using Outcome = typename Filter::Outcome;
-  const int patience = problem.violation_penalty > 0.0 ? most : 6;  // short steps in succession
+  constexpr int kPatience = 20;  // short steps in succession; restoration takes any number
+  const int patience = problem.violation_penalty > 0.0 ? most : kPatience;
   filter_.take_rows(&problem);
-  SolveReport unused;
+  SolveReport last;
   bool is_solved = false;
-  const bool is_good = start(problem, x0, trajectory);
-  is_again_ = is_near;
-  if (is_good && begin_filter(problem, trajectory, unused)) {
-    for (; report.iterations < most && !is_solved; ++report.iterations) {
-      const Outcome outcome = filter_.iterate(problem, now_, lq_, barrier_, t_, deadline, report);
-      record_filter_iteration(report);
-      if (outcome == Outcome::kGoing && filter_.short_steps() < patience) continue;
-      is_solved = outcome == Outcome::kSolved;
-      break;
-    }
+  bool has_begun = begin == Begin::kHere;
+  if (has_begun) {
+    is_filtering_ = true;
+    barrier_.restore(kept_slacks_, t_.horizon);
+    has_begun = filter_.resume(now_, barrier_, t_, false);
+    if (has_begun) now_.hard.resume(problem, filter_.mu(), t_.horizon);
+  } else {
+    has_begun = start(problem, x0, trajectory);
+    is_again_ = begin == Begin::kNear;
+    has_begun = has_begun && begin_filter(problem, trajectory, last);
+  }
+  for (; has_begun && report.iterations < most && !is_solved; ++report.iterations) {
+    const Outcome outcome = filter_.iterate(problem, now_, lq_, barrier_, t_, deadline, report);
+    record_filter_iteration(report);
+    if (outcome == Outcome::kGoing && filter_.short_steps() < patience) continue;
+    is_solved = outcome == Outcome::kSolved;
+    break;
   }
   filter_.take_rows(nullptr);
   is_filtering_ = false;
+  if (!has_begun) return false;
   if (now_.hard.is_elastic()) {  // slopes of the violation alone, by an exact adjoint
-    is_solved = is_solved && !bring_inside();
+    is_solved = !bring_inside() && is_solved;
     problem.cost_root = 0.0;
-    now_.template linearise<1>(problem, t_, false, 1.0, barrier_, lq_.lq, unused);
+    barrier_.forget_soft(problem);
+    now_.template linearise<1>(problem, t_, false, 1.0, barrier_, lq_.lq, last);
+    report.defect = last.defect;
   }
   now_.hard.end(problem, t_.horizon);
-  if (!is_solved) return false;
   t_.write(trajectory);
+  if (!is_solved) return false;
   filter_.hand_over(now_, lq_);
   barrier_.set_mu(std::max(barrier_.mu(), final_barrier(problem)));
   return true;
@@ -247,7 +271,6 @@ bool OcpSolver<P, Capacity, Arch>::restart(const P& problem) noexcept {
 template <OcpProblem P, int Capacity, class Arch>
 bool OcpSolver<P, Capacity, Arch>::stand_still(const P& problem, const SolveReport& report) noexcept {
   if (!kCanFilter || stands_still_ || report.iterations > 0) return false;
-  fill_inputs(0);
   hold_states();
   is_fresh_ = true;
   barrier_.start(problem, final_barrier(problem), Evaluate::violation(problem, t_));
@@ -361,11 +384,7 @@ FeedbackReport OcpSolver<P, Capacity, Arch>::feedback(const State& x0, Trajector
   collect_step<Arch, true>(lq_, t_.horizon, step_);
   std::fill(lq_.dx[0], lq_.dx[0] + kNx, 0.0);
   add_step<Arch>(t_, 1.0, step_, best_);
-  best_.write(trajectory);
-  for (std::size_t k = 0; k < t_.horizon; ++k) {  // u + (bound − u) may miss the bound by one rounding
-    for (std::size_t m = 0; m < kNu; ++m)
-      trajectory.u[k][m] = nearest(trajectory.u[k][m], now_.lower[m][k], now_.upper[m][k]);
-  }
+  write(best_, trajectory);
   return done;
 }
 

@@ -150,37 +150,45 @@ consteval bool check_sizes() {
 }
 
 // One function after the other: what one of them lacks is no reason for messages about the others.
-template <class P>
-consteval bool check_dynamics() {
-  constexpr int kRows = rows_of<Call_dynamics, P>();
-  static_assert(
-      kRows != kNotCallable,
-      "write `template <class K, class X, class U> auto dynamics(K k, const X& x, const U& u) const`");
-  static_assert(
-      kRows == kNotCallable || kRows == P::kNx,
-      "dynamics() has to return kNx rows: std::make_tuple(...), or std::array<T, kNx> of arrays of T");
-  return kRows == P::kNx;
-}
-template <class P>
-consteval bool check_residual() {
-  constexpr int kRows = rows_of<Call_residual, P>();
-  static_assert(
-      kRows != kNotCallable,
-      "write `template <class K, class X, class U> auto residual(K k, const X& x, const U& u) const`");
-  static_assert(
-      kRows == kNotCallable || kRows == P::kNr,
-      "residual() has to return kNr rows: std::make_tuple(...), or std::array<T, kNr> of arrays of T");
-  return kRows == P::kNr;
-}
-template <class P>
-consteval bool check_terminal_residual() {
-  constexpr int kRows = rows_of<Call_terminal_residual, P>();
-  static_assert(kRows != kNotCallable, "write `template <class X> auto terminal_residual(const X& x) const`");
-  static_assert(kRows == kNotCallable || kRows == P::kNe,
-                "terminal_residual() has to return kNe rows: std::make_tuple(...), or std::array<T, kNe> of "
-                "arrays of T");
-  return kRows == P::kNe;
-}
+#define CHICANE_CHECK_FUNCTION(name, count, write)                                                         \
+  template <class P>                                                                                       \
+  consteval bool check_##name() {                                                                          \
+    constexpr int kRows = rows_of<Call_##name, P>();                                                       \
+    static_assert(kRows != kNotCallable, write);                                                           \
+    static_assert(kRows == kNotCallable || kRows == P::count,                                              \
+                  #name "() has to return " #count " rows: std::make_tuple(...), or std::array<T, " #count \
+                        "> of arrays of T");                                                               \
+    return kRows == P::count;                                                                              \
+  }
+#define CHICANE_STAGE(name) \
+  "write `template <class K, class X, class U> auto " #name "(K k, const X& x, const U& u) const`"
+#define CHICANE_END(name) "write `template <class X> auto " #name "(const X& x) const`"
+CHICANE_CHECK_FUNCTION(dynamics, kNx, CHICANE_STAGE(dynamics))
+CHICANE_CHECK_FUNCTION(residual, kNr, CHICANE_STAGE(residual))
+CHICANE_CHECK_FUNCTION(terminal_residual, kNe, CHICANE_END(terminal_residual))
+CHICANE_CHECK_FUNCTION(constraint, kNc, "kNc > 0: " CHICANE_STAGE(constraint))
+// A count of 0 says that the function, which may be another class's, is left out: it is not called then.
+#define CHICANE_CHECK_OPTIONAL(name, count, write)                                         \
+  CHICANE_CHECK_FUNCTION(name, count, #count " > 0: " write)                               \
+  template <class P>                                                                       \
+  consteval bool check_whether_##name() {                                                  \
+    if constexpr (!requires { P::count; }) {                                               \
+      static_assert(!HasMember_##name<P>::value,                                           \
+                    #name "() needs its count: `static constexpr int " #count " = ...;`"); \
+      return !HasMember_##name<P>::value;                                                  \
+    } else if constexpr (P::count > 0) {                                                   \
+      return check_##name<P>();                                                            \
+    } else {                                                                               \
+      return true;                                                                         \
+    }                                                                                      \
+  }
+CHICANE_CHECK_OPTIONAL(equality, kNh, CHICANE_STAGE(equality))
+CHICANE_CHECK_OPTIONAL(terminal_equality, kNeh, CHICANE_END(terminal_equality))
+CHICANE_CHECK_OPTIONAL(terminal_constraint, kNec, CHICANE_END(terminal_constraint))
+#undef CHICANE_CHECK_OPTIONAL
+#undef CHICANE_END
+#undef CHICANE_STAGE
+#undef CHICANE_CHECK_FUNCTION
 
 template <class P>
 consteval bool check_bounds() {
@@ -217,21 +225,16 @@ consteval bool has_constraints() {
     return true;
   }
 }
-// A count of 0 says that the function, which may be another class's, is left out: it is not called then.
 template <class P>
 consteval bool check_constraints() {
   bool is_good = true;
   if constexpr (P::kNc > 0) {
-    constexpr int kRows = rows_of<Call_constraint, P>();
-    static_assert(
-        kRows == P::kNc,
-        "constraint() has to return kNc rows: std::make_tuple(...), or std::array<T, kNc> of arrays of T");
     constexpr bool kHasPenalty = requires(const P& p) {
       { p.soft_penalty(0) } -> std::same_as<SoftPenalty>;
     };
     static_assert(kHasPenalty,
                   "kNc > 0: write `chicane::solver::SoftPenalty soft_penalty(int constraint) const`");
-    is_good = kRows == P::kNc && kHasPenalty;
+    is_good = check_constraint<P>() && kHasPenalty;
   }
   constexpr bool kSaysHard = requires(const P& p) {
     { p.is_hard(0) } -> std::same_as<bool>;
@@ -239,62 +242,6 @@ consteval bool check_constraints() {
   static_assert(kSaysHard || !HasMember_is_hard<P>::value, "write `bool is_hard(int constraint) const`");
   return is_good && (kSaysHard || !HasMember_is_hard<P>::value);
 }
-template <class P>
-consteval bool check_equalities() {
-  if constexpr (!requires { P::kNh; }) {
-    static_assert(!HasMember_equality<P>::value,
-                  "equality() needs its count: `static constexpr int kNh = ...;`");
-    return !HasMember_equality<P>::value;
-  } else if constexpr (P::kNh > 0) {
-    constexpr int kRows = rows_of<Call_equality, P>();
-    static_assert(kRows != kNotCallable,
-                  "kNh > 0: write `template <class K, class X, class U> auto equality(K k, const X& x, const "
-                  "U& u) const`");
-    static_assert(
-        kRows == kNotCallable || kRows == P::kNh,
-        "equality() has to return kNh rows: std::make_tuple(...), or std::array<T, kNh> of arrays of T");
-    return kRows == P::kNh;
-  } else {
-    return true;
-  }
-}
-template <class P>
-consteval bool check_terminal_equalities() {
-  if constexpr (!requires { P::kNeh; }) {
-    static_assert(!HasMember_terminal_equality<P>::value,
-                  "terminal_equality() needs its count: `static constexpr int kNeh = ...;`");
-    return !HasMember_terminal_equality<P>::value;
-  } else if constexpr (P::kNeh > 0) {
-    constexpr int kRows = rows_of<Call_terminal_equality, P>();
-    static_assert(kRows != kNotCallable,
-                  "kNeh > 0: write `template <class X> auto terminal_equality(const X& x) const`");
-    static_assert(kRows == kNotCallable || kRows == P::kNeh,
-                  "terminal_equality() has to return kNeh rows: std::make_tuple(...), or std::array<T, kNeh> "
-                  "of arrays of T");
-    return kRows == P::kNeh;
-  } else {
-    return true;
-  }
-}
-template <class P>
-consteval bool check_terminal_constraints() {
-  if constexpr (!requires { P::kNec; }) {
-    static_assert(!HasMember_terminal_constraint<P>::value,
-                  "terminal_constraint() needs its count: `static constexpr int kNec = ...;`");
-    return !HasMember_terminal_constraint<P>::value;
-  } else if constexpr (P::kNec > 0) {
-    constexpr int kRows = rows_of<Call_terminal_constraint, P>();
-    static_assert(kRows != kNotCallable,
-                  "kNec > 0: write `template <class X> auto terminal_constraint(const X& x) const`");
-    static_assert(kRows == kNotCallable || kRows == P::kNec,
-                  "terminal_constraint() has to return kNec rows: std::make_tuple(...), or std::array<T, "
-                  "kNec> of arrays of T");
-    return kRows == P::kNec;
-  } else {
-    return true;
-  }
-}
-
 /// Names and switches that would be left out in silence where their form is another one.
 template <class P>
 consteval bool check_details() {
@@ -323,22 +270,21 @@ consteval bool check_details() {
 /// Whether P is a problem. What is wrong is said by the compiler, in one sentence that says what to write.
 template <class P>
 consteval bool is_problem() {
-  if constexpr (!check_sizes<P>()) {
+  if constexpr (!check_sizes<P>())
     return false;
-  } else if constexpr (!has_constraints<P>()) {
+  else if constexpr (!has_constraints<P>())
     return false;
-  } else if constexpr (!check_dynamics<P>()) {
+  else if constexpr (!check_dynamics<P>())
     return false;
-  } else if constexpr (!check_residual<P>()) {
+  else if constexpr (!check_residual<P>())
     return false;
-  } else if constexpr (!check_terminal_residual<P>()) {
+  else if constexpr (!check_terminal_residual<P>())
     return false;
-  } else if constexpr (!check_bounds<P>()) {
+  else if constexpr (!check_bounds<P>())
     return false;
-  } else {
-    return check_constraints<P>() && check_equalities<P>() && check_terminal_equalities<P>() &&
-           check_terminal_constraints<P>() && check_details<P>();
-  }
+  else
+    return check_constraints<P>() && check_whether_equality<P>() && check_whether_terminal_equality<P>() &&
+           check_whether_terminal_constraint<P>() && check_details<P>();
 }
 
 }  // namespace detail

@@ -21,6 +21,7 @@ enum class Hold : std::int8_t { kLow = -1, kFree = 0, kHigh = 1 };
 [[nodiscard]] CHICANE_INLINE inline Hold next_hold(Hold hold, double u, double slope, double low, double high,
                                                    double curvature) noexcept {
   constexpr double kTolerance = 1e-10;  // [unit of the input]
+  constexpr double kRounding = 1e-3;    // of a slope, over curvature times that
   if (!(high > low)) return Hold::kLow;
   if (hold == Hold::kFree) {
     if (u > high + kTolerance) return Hold::kHigh;
@@ -28,7 +29,7 @@ enum class Hold : std::int8_t { kLow = -1, kFree = 0, kHigh = 1 };
   }
   const double inward =
       hold == Hold::kLow ? -slope : slope;  // > 0: the cost falls when the input leaves the bound
-  return inward > kTolerance * (1.0 + std::fabs(curvature)) ? Hold::kFree : hold;
+  return inward > kTolerance * (1.0 + kRounding * std::fabs(curvature)) ? Hold::kFree : hold;
 }
 
 /// min ½ uᵀ H u + gᵀ u s.t. low <= u <= high for a handful of inputs: the box problem of one stage. `Arch`

@@ -169,6 +169,8 @@ class StageAlgebra {
       const auto column = [&](auto t) CHICANE_INLINE { return P.column[kValues.index[t]]; };
       if constexpr (J == kNx) {
         return combine<kValues.count>(P.column[kNx], factor, column);
+      } else if constexpr (kOnes.count + kValues.count == 0) {
+        return Vector::zero();
       } else if constexpr (kOnes.count > 0) {
         Vector start = P.column[kOnes.index[0]];
         unroll<kOnes.count - 1>([&](auto t) CHICANE_INLINE { start.add(P.column[kOnes.index[t + 1]]); });

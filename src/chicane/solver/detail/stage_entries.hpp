@@ -196,6 +196,21 @@ CHICANE_INLINE inline void each_row(const Row& row, const Visit& visit) noexcept
   }
 }
 
+/// Calls visit(j, slope) for each variable that a result depends on, or for all where its type does not say.
+template <class V, class J, class Visit>
+CHICANE_INLINE inline void each_slope(const J& row, const Visit& visit) noexcept {
+  if constexpr (AnySparseRow<J>) {
+    row.each_slope(visit);
+  } else if constexpr (AnyJet<J> && !AnyLooseJet<J>) {
+    jet::repeat<size_of(J::kFirst)>([&](auto n) CHICANE_INLINE {
+      constexpr int j = member_of(J::kFirst, n);
+      visit(static_cast<std::size_t>(j), jet::number<V>(jet::slope<j>(row)));
+    });
+  } else {
+    for (std::size_t j = 0; j < row.slopes.size(); ++j) visit(j, row.slopes[j]);
+  }
+}
+
 /// The entries of eight stages of the quadratic program while they are added up, as packs over the stages:
 /// for problems whose every entry counts.
 template <OcpProblem P, class V>
@@ -212,14 +227,8 @@ struct StageEntries {
   template <class J>
   static void set_jacobian(std::size_t i, const J& row, const V& defect, Jacobians& f) noexcept {
     V* const to = f.data() + i * Layout::kNz;
-    if constexpr (AnySparseRow<J>) {
-      for (std::size_t j = 0; j < Layout::kNz; ++j) to[j] = V(0.0);
-      row.each_slope([&](std::size_t j, const V& slope) CHICANE_INLINE { to[z(j)] = slope; });
-    } else if constexpr (Layout::is_large()) {
-      for (std::size_t j = 0; j < kVariables; ++j) to[z(j)] = row.slopes[j];
-    } else {
-      unroll<kVariables>([&](auto j) CHICANE_INLINE { to[z(j)] = row.slopes[j]; });
-    }
+    if constexpr (AnySparseRow<J>) std::fill(to, to + Layout::kNz, V(0.0));
+    each_slope<V>(row, [&](std::size_t j, const V& slope) CHICANE_INLINE { to[z(j)] = slope; });
     to[Layout::kOne] = defect;
   }
   template <class Rows>
@@ -230,13 +239,7 @@ struct StageEntries {
   /// gradient += weight · dr
   template <class Rows, class J>
   static void add_gradient(std::size_t, const J& r, const V& weight, Gradient& gradient) noexcept {
-    if constexpr (AnySparseRow<J>) {
-      r.each_slope([&](std::size_t i, const V& slope) CHICANE_INLINE { gradient[i] += weight * slope; });
-    } else if constexpr (Layout::is_large()) {
-      for (std::size_t i = 0; i < kVariables; ++i) gradient[i] += weight * r.slopes[i];
-    } else {
-      unroll<kVariables>([&](auto i) CHICANE_INLINE { gradient[i] += weight * r.slopes[i]; });
-    }
+    each_slope<V>(r, [&](std::size_t i, const V& slope) CHICANE_INLINE { gradient[i] += weight * slope; });
   }
   /// l += weight · drᵀ dr, over the variables that the row depends on in any of the eight stages.
   template <class Rows, class J>
@@ -265,20 +268,12 @@ struct StageEntries {
     }
   }
   static void set_gradient(const Gradient& gradient, Costs& l) noexcept {
-    if constexpr (Layout::is_large()) {
-      for (std::size_t i = 0; i < kVariables; ++i) l[Layout::kL[z(i)][Layout::kOne]] = gradient[i];
-    } else {
-      unroll<kVariables>([&](auto i) CHICANE_INLINE { l[Layout::kL[z(i)][Layout::kOne]] = gradient[i]; });
-    }
+    for (std::size_t i = 0; i < kVariables; ++i) l[Layout::kL[z(i)][Layout::kOne]] = gradient[i];
   }
   template <class J>
   static void add_to_gradient(const J& r, const V& weight, Costs& l) noexcept {
-    if constexpr (AnySparseRow<J>) {
-      r.each_slope([&](std::size_t i, const V& slope)
-                       CHICANE_INLINE { l[Layout::kL[z(i)][Layout::kOne]] += weight * slope; });
-    } else {
-      for (std::size_t i = 0; i < kVariables; ++i) l[Layout::kL[z(i)][Layout::kOne]] += weight * r.slopes[i];
-    }
+    each_slope<V>(r, [&](std::size_t i, const V& slope)
+                         CHICANE_INLINE { l[Layout::kL[z(i)][Layout::kOne]] += weight * slope; });
   }
   /// l += weight · ddr
   template <class J>
