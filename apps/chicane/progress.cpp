@@ -62,7 +62,7 @@ std::vector<std::string> RunNotices::look_at(const telemetry::Frame& frame) {
   if (is_replaced(now)) ++replaced_;
   // One sentence for a new event, and another one when it changes.
   const bool is_held = now.kind == telemetry::SituationKind::kGuardHolds;
-  if (is_held && !is_stuck(now, frame.time) && !begins) return {};  // a known stop that has ended
+  if (is_held && !is_stuck(now, frame.time) && !begins) return {};  // a stored stop that has ended
   std::string text = sentence_of(now);
   if (const auto reason = reason_of(now); !reason.empty() && (begins || !is_held))
     text.append(": ").append(reason);
