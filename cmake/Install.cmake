@@ -140,7 +140,7 @@ write_basic_package_version_file(chicaneConfigVersion.cmake COMPATIBILITY SameMi
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/chicaneConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/chicaneConfigVersion.cmake
         cmake/InstructionSets.cmake tools/check_symbols.py tools/usage.py DESTINATION ${config_dir})
 
-# What the program can be told by name, and views for others' viewers. Programs in the build tree find the files by links that lie where
+# What the program finds by name, and views for others' viewers. Programs in the build tree find the files by links that lie where
 # an installed program looks or one folder further up (protocol/data_folders.hpp): no binary knows the source tree.
 if(TARGET chicane_protocol)
   install(DIRECTORY data/ studies/plans studies/leagues studies/claims DESTINATION ${data_dir} COMPONENT program)

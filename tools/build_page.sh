@@ -6,7 +6,8 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/usage.sh"
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
-folder=${1:?the folder to write}
+mkdir -p "${1:?the folder to write}"
+folder=$(realpath "$1")
 build=$root/build/page
 source "$root/tools/build.sh"
 
@@ -20,5 +21,4 @@ ninja -C "$build" -j "$(build_jobs)" >&2
 cd "$root/web"
 cmake "-DFOLDER=$PWD" -DNPM=npm -P "$root/cmake/NpmCi.cmake" >&2
 CHICANE_PAGE=1 node node_modules/vite/bin/vite.js build --outDir "$build/dist" --emptyOutDir --logLevel warn >&2
-mkdir -p "$folder"
 node "$root/tools/join_page.mjs" "$build/dist" "$build/page.js" "$folder/index.html"

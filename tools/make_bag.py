@@ -100,7 +100,7 @@ class Cdr:
 
 
 def read(path, noise, rng):
-    """[(time [ns], topic, CDR)]: what the car measured and what it was told."""
+    """[(time [ns], topic, CDR)]: what the car measured and its commands."""
     found = []
     for topic, _, data in messages(path):
         cdr = Cdr(data)

@@ -61,7 +61,7 @@ Result<Outcome> run_live(const Options& options, std::unique_ptr<run::ClosedLoop
   if (!live) return fail(live.error());
   const auto kept = KeptRun::start(options, (*live)->description(), scenario, (*live)->step_budget());
   if (!kept) return fail(kept.error());
-  fmt::print(stderr, "dashboard at {} (Ctrl-C ends)\n", link(living.server, (*live)->port()));
+  print_sentence(stderr, fmt::format("dashboard at {} (Ctrl-C ends)", link(living.server, (*live)->port())));
   telemetry::RunSummary summary;
   {
     Progress progress;

@@ -81,7 +81,7 @@ std::string to_text(const recording::ReplayReport& report) {
   // Never rounded up to 100.
   const std::string percent = report.is_verified() ? "100" : fmt::format("{:.3f}", std::min(share, 99.999));
   std::string text =
-      fmt::format("{} on {}, recorded by {}: {} of {} commands came out identical, bit for bit ({} %)\n",
+      fmt::format("{} on {}, recorded by {}:\n{} of {} commands came out identical, bit for bit ({} %)\n",
                   report.controller, report.track.empty() ? "an external simulator's track" : report.track,
                   report.recorded_by, report.identical, report.steps, percent);
   if (report.first_difference) {
@@ -213,7 +213,7 @@ Result<void> show(const Options& options, const Shown& shown, double start) {
   const auto server =
       net::Server::create(*serving, router.handlers(std::move(pages)), live::embedded_assets());
   if (!server) return fail(server.error());
-  fmt::print(stderr, "recordings at {} (Ctrl-C ends)\n", link(*serving, (*server)->port()));
+  print_sentence(stderr, fmt::format("recordings at {} (Ctrl-C ends)", link(*serving, (*server)->port())));
   while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds{20});
   return {};
 }

@@ -107,15 +107,15 @@ Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario, const 
   lap_time::PlantLimitOptions options{.wants_witness = question.wants_witness, .budget = question.budget};
   lap_time::PlanProgress progress;
   options.on_progress = [&](const lap_time::PlanProgress& come) { progress = come; };
-  options.go_on = [&](std::string_view stage, int turn, double lap_time) {
+  options.go_on = [&](std::string_view stage, int iteration, double lap_time) {
     const double now = seconds();
     if (now - shown_at >= (is_terminal ? 0.1 : 10.0)) {
       shown_at = now;
       const bool is_far = progress.work >= progress.expected;
       const std::string left =
           is_far ? "" : fmt::format(", about {:.0f} s left", now * (progress.expected / progress.work - 1.0));
-      fmt::print(stderr, "{}limit: {}, turn {}, {:.3f} s{}{}", is_terminal ? "\r" : "", stage, turn, lap_time,
-                 left, is_terminal ? "\x1b[K" : "\n");
+      fmt::print(stderr, "{}limit: {}, iteration {}, {:.3f} s{}{}", is_terminal ? "\r" : "", stage, iteration,
+                 lap_time, left, is_terminal ? "\x1b[K" : "\n");
     }
     return !wants_stop.load();
   };

@@ -142,7 +142,8 @@ std::string take_words(const Rows& rows, const Words& words, Options& options) {
 }
 
 Done refuse(std::string_view name, std::string_view fault) {
-  fmt::print(stderr, "{}: {}\nSee `{} --help`.\n", name, fault, name);
+  print_sentence(stderr, fmt::format("{}: {}", name, fault));
+  fmt::print(stderr, "See `{} --help`.\n", name);
   return {kUsage};
 }
 

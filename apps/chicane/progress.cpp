@@ -62,7 +62,7 @@ std::vector<std::string> RunNotices::look_at(const telemetry::Frame& frame) {
   if (is_replaced(now)) ++replaced_;
   // One sentence for a new event, and another one when it changes.
   const bool is_held = now.kind == telemetry::SituationKind::kGuardHolds;
-  if (is_held && !is_stuck(now, frame.time) && !begins) return {};  // a known stop that has ended
+  if (is_held && !is_stuck(now, frame.time) && !begins) return {};  // a stored stop that has ended
   std::string text = sentence_of(now);
   if (const auto reason = reason_of(now); !reason.empty() && (begins || !is_held))
     text.append(": ").append(reason);
@@ -132,7 +132,8 @@ void Progress::show(const telemetry::Frame& frame) {
 }
 
 void Progress::say(std::string_view line) {
-  fmt::print(stderr, "{}{}\n", has_line_.exchange(false) ? "\n" : "", line);
+  if (has_line_.exchange(false)) fmt::print(stderr, "\n");
+  print_sentence(stderr, line);
 }
 
 namespace {
@@ -215,11 +216,7 @@ PlanWait::~PlanWait() {
 
 run::PlanHooks PlanWait::hooks() {
   return {.on_progress = [this](const lap_time::PlanProgress& now) { show(now); },
-          .say =
-              [this](std::string_view line) {
-                clear_line();
-                fmt::print(stderr, "{}\n", line);
-              }};
+          .say = [this](std::string_view line) { clear_line(), print_sentence(stderr, line); }};
 }
 
 void PlanWait::open() {
@@ -249,8 +246,9 @@ void PlanWait::open() {
     return;
   }
   page_->server = std::move(*server);
-  fmt::print(stderr, "the lap is planned first; then the dashboard will be at {} (Ctrl-C ends)\n",
-             link(options, page_->server->port()));
+  print_sentence(stderr,
+                 fmt::format("the lap is planned first; then the dashboard will be at {} (Ctrl-C ends)",
+                             link(options, page_->server->port())));
 }
 
 void PlanWait::show(const lap_time::PlanProgress& now) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A run inside a browser's worker, without a server program: functions that worker.js calls.
 #include <emscripten.h>
+#include <link.h>
 
 #include <memory>
 #include <optional>
@@ -18,11 +19,28 @@ namespace chicane::protocol {
 // Replace protocol/foreign_tracks.cpp and yaml_tree.cpp: the page reads its own files only, and has no
 // library for images, XML and YAML.
 std::span<const TrackFormat> foreign_tracks() noexcept { return {}; }
+std::string_view road_kind(std::string_view) noexcept { return "table of points"; }
 Result<YamlTree> parse_yaml(std::string_view text, const std::string& file) {
   return parse_plain_yaml(text, file);
 }
 
 }  // namespace chicane::protocol
+
+namespace chicane {
+
+// Replace recording/recorder.cpp, live/run_log.cpp and live/run_limit.cpp: a page has none of these
+// listeners, so nothing calls them.
+void recording::Recorder::record(const telemetry::Frame&) noexcept {}
+void recording::Recorder::record(const telemetry::CompletedLap&) noexcept {}
+void recording::Recorder::record(const telemetry::Change&) noexcept {}
+void recording::Recorder::record(std::shared_ptr<const lap_time::LimitAnswer>) noexcept {}
+void live::RunLog::note(const telemetry::Frame&) noexcept {}
+std::shared_ptr<const lap_time::LimitAnswer> live::RunLimit::news() noexcept { return nullptr; }
+
+}  // namespace chicane
+
+/// A page is one file: there are no loaded ones whose build ids could be listed.
+extern "C" int dl_iterate_phdr(int (*)(dl_phdr_info*, std::size_t, void*), void*) { return 0; }
 
 using namespace chicane;
 

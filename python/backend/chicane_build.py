@@ -23,7 +23,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("presets", "cars", "tracks", "scenarios")
-"""Of the data that a program is told by name; the package carries them in share/chicane."""
+"""Of the data that a program finds by name; the package carries them in share/chicane."""
 
 
 def version() -> str:
@@ -143,4 +143,4 @@ def build_wheel(wheel_directory: str, config_settings: dict[str, Any] | None = N
 
 def build_sdist(sdist_directory: str, config_settings: dict[str, Any] | None = None) -> str:
     """PEP 517: none is made, the clone is the source."""
-    raise RuntimeError("chicane: got a wish for a source distribution, expected --wheel: the clone is the source")
+    raise RuntimeError("chicane: got a request for a source distribution, expected --wheel: the clone is the source")

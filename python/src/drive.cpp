@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kStandingSpeed = 0.1;  // [m/s] at which a run ends whose controller has failed
 constexpr double kTimeToStop = 30.0;    // [s] after which it ends anyway
-constexpr double kRoadSpacing = 2.0;    // [m] between the points of the road that is told
+constexpr double kRoadSpacing = 2.0;    // [m] between the points of the returned road
 
 /// What was raised in Python while a run was under way.
 struct Failures {
@@ -174,15 +174,15 @@ py::dict drive(const protocol::Request& request, const py::object& controller, c
   }));
   signals.raise();
   failures.raise();
-  py::dict told;
-  told["report"] = protocol::to_json(driven.summary);
-  told["table"] = protocol::to_table(driven.summary);
-  told["road"] = to_dict(driven.road);
-  told["frames"] = wants_frames ? driven.frames.take() : py::dict();
-  told["situations"] = to_list(driven.situations);
-  told["error"] = failure->text.empty() ? py::object(py::none()) : py::str(failure->text);
-  told["error_time"] = failure->time;
-  return told;
+  py::dict result;
+  result["report"] = protocol::to_json(driven.summary);
+  result["table"] = protocol::to_table(driven.summary);
+  result["road"] = to_dict(driven.road);
+  result["frames"] = wants_frames ? driven.frames.take() : py::dict();
+  result["situations"] = to_list(driven.situations);
+  result["error"] = failure->text.empty() ? py::object(py::none()) : py::str(failure->text);
+  result["error_time"] = failure->time;
+  return result;
 }
 
 /// Computes every command of a recording again.
@@ -192,14 +192,14 @@ py::dict verify(const std::string& file, const py::object& controller, double st
   const recording::ReplayReport report =
       value_of(unlocked([&] { return recording::verify_recording(file, make); }));
   if (failure->interrupt) throw py::error_already_set(*failure->interrupt);
-  py::dict told;
-  told["steps"] = report.steps;
-  told["identical"] = report.identical;
-  told["different"] = report.different;
-  told["first_difference"] = report.first_difference;
-  told["is_verified"] = report.is_verified();
-  told["error"] = failure->text.empty() ? py::object(py::none()) : py::str(failure->text);
-  return told;
+  py::dict result;
+  result["steps"] = report.steps;
+  result["identical"] = report.identical;
+  result["different"] = report.different;
+  result["first_difference"] = report.first_difference;
+  result["is_verified"] = report.is_verified();
+  result["error"] = failure->text.empty() ? py::object(py::none()) : py::str(failure->text);
+  return result;
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ Numbers observation_of(const Environment& environment) {
 /// A key that is made once; keys of each step cost as much as the values.
 py::handle key(const char* name) { return PyUnicode_InternFromString(name); }
 
-/// The truth, which an agent is not told.
+/// The truth, which an agent does not get.
 py::dict info_of(const Environment& environment) {
   static const std::array keys{key("time_s"),    key("s_m"), key("lateral_error_m"), key("edge_distance_m"),
                                key("speed_mps"), key("lap"), key("is_off_track")};
@@ -173,11 +173,11 @@ class Batch {
     const bool has_ended = std::any_of(outcomes.begin(), outcomes.end(), [](const StepOutcome& outcome) {
       return outcome.terminated || outcome.truncated;
     });
-    if (!has_ended) return told(last, outcomes, last, truths);
+    if (!has_ended) return result_of(last, outcomes, last, truths);
     begin_anew(outcomes);
     Numbers observations = make_observations();
     write(observations);
-    return told(observations, outcomes, last, truths);
+    return result_of(observations, outcomes, last, truths);
   }
 
  private:
@@ -194,8 +194,8 @@ class Batch {
     for (std::size_t i = 0; i < size(); ++i)
       environments_[i]->observe({to.mutable_data() + i * width, width});
   }
-  static py::tuple told(const Numbers& observations, const std::vector<StepOutcome>& outcomes,
-                        const Numbers& last, const py::list& truths) {
+  static py::tuple result_of(const Numbers& observations, const std::vector<StepOutcome>& outcomes,
+                             const Numbers& last, const py::list& truths) {
     const auto count = static_cast<py::ssize_t>(outcomes.size());
     py::array_t<double> rewards(count);
     py::array_t<bool> terminated(count), truncated(count);

@@ -80,18 +80,18 @@ py::dict limit(const protocol::Request& request, bool wants_witness) {
   signals.raise();
   const auto [limit, points] = value_of(std::move(found));
   using Point = road::RacingLinePoint;
-  py::dict told;
-  told["bound_s"] = limit.bound.lap;
-  told["sector_times_s"] = list_of(limit.bound.sectors);
-  told["witness_s"] =
+  py::dict result;
+  result["bound_s"] = limit.bound.lap;
+  result["sector_times_s"] = list_of(limit.bound.sectors);
+  result["witness_s"] =
       limit.witness ? py::object(py::float_(limit.witness->lap_time)) : py::object(py::none());
-  told["iterations"] = limit.effort.iterations;
-  told["violation"] = limit.violation;
+  result["iterations"] = limit.effort.iterations;
+  result["violation"] = limit.violation;
   py::dict line = line_of(limit.line.points, std::pair("s_m", [](const Point& p) { return p.s; }),
                           std::pair("speed_mps", [](const Point& p) { return std::hypot(p.vx, p.vy); }));
   line["xy_m"] = to_array(points);
-  told["line"] = line;
-  return told;
+  result["line"] = line;
+  return result;
 }
 
 }  // namespace

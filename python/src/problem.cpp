@@ -180,20 +180,20 @@ class Interpreter {
     unlocked([&] {
       seconds = main_->solve(*this, x0.data(), parameters.data(), goes_on, iterations > 0 ? &log : nullptr);
     });
-    py::dict told = report_of(answer.report, seconds);
+    py::dict result = report_of(answer.report, seconds);
     const auto nx = static_cast<py::ssize_t>(problem_.nx);
     const auto nu = static_cast<py::ssize_t>(problem_.nu);
-    add_trajectory(told);
-    if (iterations > 0) told["log"] = table_of(log);
-    told["dynamics"] = shaped(answer.adjoint, horizon_, nx);
-    told["bounds"] = shaped(answer.bound, horizon_, nu);
-    told["constraints"] = shaped(answer.constraint, horizon_, problem_.rows(Function::kConstraint));
-    told["equalities"] = shaped(answer.equality, horizon_, problem_.rows(Function::kEquality));
-    told["terminal_equality"] = py::array_t<double>(static_cast<py::ssize_t>(answer.terminal_equality.size()),
-                                                    answer.terminal_equality.data());
-    told["terminal_constraint"] = py::array_t<double>(
+    add_trajectory(result);
+    if (iterations > 0) result["log"] = table_of(log);
+    result["dynamics"] = shaped(answer.adjoint, horizon_, nx);
+    result["bounds"] = shaped(answer.bound, horizon_, nu);
+    result["constraints"] = shaped(answer.constraint, horizon_, problem_.rows(Function::kConstraint));
+    result["equalities"] = shaped(answer.equality, horizon_, problem_.rows(Function::kEquality));
+    result["terminal_equality"] = py::array_t<double>(
+        static_cast<py::ssize_t>(answer.terminal_equality.size()), answer.terminal_equality.data());
+    result["terminal_constraint"] = py::array_t<double>(
         static_cast<py::ssize_t>(answer.terminal_constraint.size()), answer.terminal_constraint.data());
-    return told;
+    return result;
   }
 
   bool prepare() {
@@ -206,11 +206,11 @@ class Interpreter {
     if (main_ == nullptr || x0.size() != problem_.nx) throw py::value_error("feedback: got no preparation");
     const auto begin = std::chrono::steady_clock::now();
     const bool is_solved = main_->solver->feedback(x0.data(), main_->answer);
-    py::dict told;
-    told["time"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    told["is_solved"] = is_solved;
-    add_trajectory(told);
-    return told;
+    py::dict result;
+    result["time"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result["is_solved"] = is_solved;
+    add_trajectory(result);
+    return result;
   }
 
   /// Each row of x0 from the guess u, with parameters (problems, stages, np) or (1, stages, np).
@@ -253,15 +253,15 @@ class Interpreter {
       for (int n = 1; n < threads; ++n) others.emplace_back(work);
       work();
     });
-    py::dict told;
-    told["x"] = x;
-    told["u"] = u;
-    told["cost"] = cost;
-    told["violation"] = violation;
-    told["status"] = status;
-    told["iterations"] = iterations;
-    told["time"] = seconds;
-    return told;
+    py::dict result;
+    result["x"] = x;
+    result["u"] = u;
+    result["cost"] = cost;
+    result["violation"] = violation;
+    result["status"] = status;
+    result["iterations"] = iterations;
+    result["time"] = seconds;
+    return result;
   }
 
   /// Values (n, rows), Jacobians (n, rows, variables) and Σ weights · second derivatives (n, variables,
@@ -358,9 +358,9 @@ class Interpreter {
     TracedAnswer answer;
   };
 
-  void add_trajectory(py::dict& told) const {
-    told["x"] = shaped(main_->answer.x, horizon_ + 1, problem_.nx);
-    told["u"] = shaped(main_->answer.u, horizon_, problem_.nu);
+  void add_trajectory(py::dict& result) const {
+    result["x"] = shaped(main_->answer.x, horizon_ + 1, problem_.nx);
+    result["u"] = shaped(main_->answer.u, horizon_, problem_.nu);
   }
   /// A column for each number of an iteration.
   static py::dict table_of(const solver::IterationLog& log) {
@@ -383,24 +383,24 @@ class Interpreter {
     return table;
   }
   static py::dict report_of(const solver::HardReport& report, double seconds) {
-    py::dict told;
-    told["status"] = static_cast<int>(report.status);
-    told["iterations"] = report.iterations;
-    told["rounds"] = report.rounds;
-    told["cost"] = report.cost;
-    told["stationarity"] = report.stationarity;
-    told["defect"] = report.defect;
-    told["complementarity"] = report.complementarity;
-    told["gap"] = report.gap;
-    told["violation"] = report.violation;
-    told["worst_stage"] = report.worst_stage;
-    told["worst_constraint"] = report.worst_constraint;
-    told["miss"] = report.miss;
-    told["miss_kind"] = static_cast<int>(report.kind);
-    told["miss_stage"] = report.miss_stage;
-    told["miss_row"] = report.miss_row;
-    told["time"] = seconds;
-    return told;
+    py::dict result;
+    result["status"] = static_cast<int>(report.status);
+    result["iterations"] = report.iterations;
+    result["rounds"] = report.rounds;
+    result["cost"] = report.cost;
+    result["stationarity"] = report.stationarity;
+    result["defect"] = report.defect;
+    result["complementarity"] = report.complementarity;
+    result["gap"] = report.gap;
+    result["violation"] = report.violation;
+    result["worst_stage"] = report.worst_stage;
+    result["worst_constraint"] = report.worst_constraint;
+    result["miss"] = report.miss;
+    result["miss_kind"] = static_cast<int>(report.kind);
+    result["miss_stage"] = report.miss_stage;
+    result["miss_row"] = report.miss_row;
+    result["time"] = seconds;
+    return result;
   }
   [[nodiscard]] std::string too_large() const {
     const auto& most = kSizeClasses.back();

@@ -43,15 +43,15 @@ class RecordingReader {
   [[nodiscard]] bool has_frames() const noexcept { return !columns_.empty(); }
   /// With the interpreter's lock; gives everything away.
   [[nodiscard]] py::dict take() {
-    py::dict frames, road, told;
+    py::dict frames, road, result;
     for (auto& [name, values] : columns_) frames[py::str(name)] = to_array(std::move(values));
     for (auto& [name, points] : road_) road[py::str(name)] = to_array(points);
     if (!controller_.empty()) head_["controller"] = controller_;  // also one that is none of the library's
-    told["head"] = head_;
-    told["frames"] = frames;
-    told["laps"] = laps_;
-    told["road"] = road;
-    return told;
+    result["head"] = head_;
+    result["frames"] = frames;
+    result["laps"] = laps_;
+    result["road"] = road;
+    return result;
   }
 
  private:

@@ -23,13 +23,13 @@ py::dict sweep(const std::string& plan_text, const std::string& name, const std:
     progress = sweep::drive_plan(plan, {}, {.jobs = run::threads_for(jobs), .file = file}, stop);
   });
   const sweep::Progress done = value_of(std::move(*progress));
-  py::dict told;
-  told["runs"] = done.runs;
-  told["found"] = done.found;
-  told["driven"] = done.driven;
-  told["failed"] = done.failed;
-  told["why"] = done.why;
-  return told;
+  py::dict result;
+  result["runs"] = done.runs;
+  result["found"] = done.found;
+  result["driven"] = done.driven;
+  result["failed"] = done.failed;
+  result["why"] = done.why;
+  return result;
 }
 
 }  // namespace

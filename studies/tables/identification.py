@@ -94,10 +94,10 @@ class Campaign:
             noise = self.options.noise
             words = [f"sensor.position_noise_m={0.05 * scale * noise:.6g}", f"sensor.heading_noise_deg={0.3 * noise:.6g}",
                      f"sensor.speed_noise_mps={0.1 * math.sqrt(scale) * noise:.6g}", *(["tracking_mpc.grip_share=1"] if seed % 2 == 0 else [])]
-            told = run(self.chicane, "drive", "--fast", "--json", "--car", file, "--track", track, "--laps", self.options.laps, "--seed", seed,
+            driven = run(self.chicane, "drive", "--fast", "--json", "--car", file, "--track", track, "--laps", self.options.laps, "--seed", seed,
                        "--latency-ms", f"{delay:.1f}", "--record", part, *(word for each in words for word in ("--set", each)))
-            if not told.stdout.startswith("{"):
-                return {"refused": told.stderr.strip().splitlines()[-1] if told.stderr.strip() else "not driven"}
+            if not driven.stdout.startswith("{"):
+                return {"refused": driven.stderr.strip().splitlines()[-1] if driven.stderr.strip() else "not driven"}
             part.rename(log)
         self.learn_truth(name.split("-" + track)[0], log)
         off = [f"vehicle.{key}={numbers[key] * by:.8g}" for key, by in OFF.items() if numbers.get(key, 0.0) > 0.0]

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Processor time until `race` has its plan, for each car on each track, as a table for docs/measured/racing.md.
 
-Every plan is computed anew, on one core, for the grip that the car was told; a run that has it ends after one cycle.
+Every plan is computed again, on one core, for the configured grip; a run that has it ends after one cycle.
 Prints Markdown. `--maps` plans the car f1tenth on the maps of tests/data/maps, `--circuits FOLDER` two cars on real
 circuits, too.
 """

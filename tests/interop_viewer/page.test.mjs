@@ -35,8 +35,8 @@ describe('the page that needs no program', () => {
   });
 
   it('takes another track and other settings, and gives that run', async () => {
-    const dashboard = await DashboardPage.open(here.browser, `${url}`);
-    await dashboard.page.getByLabel('Track', { exact: true }).selectOption('oval');
+    const dashboard = await DashboardPage.open(here.browser, url, { mode: 'try' });
+    await dashboard.page.locator('.choices').getByLabel('Track', { exact: true }).selectOption('oval');
     await dashboard.button('Restart').click();
     await type(dashboard, 'run.pace', 20);
     await dashboard.show('watch');

@@ -230,7 +230,7 @@ TEST(PredictiveFilter, ForgetsWhenItRefused) {
   EXPECT_EQ(answer(1.0), first);
 }
 
-/// docs/guard.md, eq. 5d: a stop that comes nearer to the edge than it was certified for asks for that room.
+/// docs/guard.md, eq. 5d: a stop that comes nearer to the edge than it was verified for asks for that room.
 TEST(PredictiveFilter, AsksForTheRoomThatADrivenStopHasLost) {
   for (const double side : {1.0, -1.0}) {
     const road::KnownRoad road = round_road(side);

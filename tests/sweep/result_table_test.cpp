@@ -94,5 +94,12 @@ TEST(ResultTable, ShowsPeopleTitlesAndGivesProgramsKeys) {
             R"({"car":"a,\"b\"","laps":12,"edge_m":0.5,"is_clean":false}])");
 }
 
+TEST(ResultTableTest, PutsColumnsThatDoNotFitAboveTheirRows) {
+  ResultTable table({"car=car", "faults=faults"});
+  const std::string wide(76, 'x');
+  for (const std::string car : {"indy", "indy", "kart"}) table.add({car, wide});
+  EXPECT_EQ(table.text(), "faults\nindy\n" + wide + "\n" + wide + "\nkart\n" + wide + "\n");
+}
+
 }  // namespace
 }  // namespace chicane::sweep

@@ -62,16 +62,16 @@ function tellPastLeft(messages: number): void {
 
 /** Opens the connection to the program, or to the worker of a page that needs none. */
 function opener(): () => Socket {
-  const told = { age: (seconds: number) => (ageAtArrival.value = seconds), pastLeft: tellPastLeft };
+  const handlers = { age: (seconds: number) => (ageAtArrival.value = seconds), pastLeft: tellPastLeft };
   if (__PAGE__) {
     const worker = new WorkerLink((sentence) => (notice.value = sentence));
     answerBy((path) => worker.get(`/${path}`));
-    return () => new ReadingSocket(worker.open(), told, { acknowledges: false });
+    return () => new ReadingSocket(worker.open(), handlers, { acknowledges: false });
   }
   const url = new URL('viewer', location.href);
   url.search = '?past&paced'; // the frames of the last minutes, behind the newest; no more than arrives in time
   url.protocol = location.protocol === 'https:' ? 'wss:' : 'ws:';
-  return () => new ReadingSocket(new WebSocket(url, SUBPROTOCOLS), told);
+  return () => new ReadingSocket(new WebSocket(url, SUBPROTOCOLS), handlers);
 }
 
 function live(): Source {

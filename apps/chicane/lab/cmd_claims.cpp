@@ -266,12 +266,12 @@ std::string rows_of(const std::vector<Claim>& claims, const Trials& trials, cons
   std::vector<std::string> columns{"", "statement", "verdict"};
   for (const Lake& lake : lakes()) columns.emplace_back(lake.name);
   columns.emplace_back("figures, or where to see");
-  std::map<char, sweep::ResultTable> tables;
+  std::map<std::string, sweep::ResultTable> tables;
   for (const Claim& claim : claims)
-    tables.try_emplace(claim.id[0], columns).first->second.add(row_of(claim, trials, older));
+    tables.try_emplace(fmt::format("{}: `{}`", claim.id[0], claim.settings.at(0).second), columns)
+        .first->second.add(row_of(claim, trials, older));
   std::string text;
-  for (const auto& [group, table] : tables)
-    text += fmt::format("\n## Write-up {}\n\n{}", group, table.markdown());
+  for (const auto& [group, table] : tables) text += fmt::format("\n## {}\n\n{}", group, table.markdown());
   return text;
 }
 

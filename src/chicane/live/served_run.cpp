@@ -168,7 +168,7 @@ Result<recording::BranchReport> ServedFutures::branch(const recording::BranchOpt
 
 namespace {
 
-constexpr const char* kUnknownRoad = "the simulator's road is not known: --track FILE tells it";
+constexpr const char* kUnknownRoad = "the road is unknown: --track FILE sets it";
 constexpr const char* kOtherRoad = "the simulator drives on another road than --track";
 
 protocol::Run describe_served(const scenario::Scenario& scenario, const controller::Controller& controller,

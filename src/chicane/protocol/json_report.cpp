@@ -345,10 +345,10 @@ std::string to_table(const RunSummary& run) {
   std::string text = fmt::format("{} on {}, {} ({}){}, {:g} ms latency, seed {}\n", run.car,
                                  run.track.empty() ? "an unknown road" : run.track, run.preset,
                                  run.controller, guard, 1e3 * run.latency, run.seed);
-  text += fmt::format("{:>4} {:>8} {:>6} {:>6} {:>7} {:>7} {:>7} {:>7} {:>20}\n", "lap", "time", "mean",
-                      "top", "e rms", "e max", "to edge", "lateral", "sectors");
-  text += fmt::format("{:>4} {:>8} {:>6} {:>6} {:>7} {:>7} {:>7} {:>7} {:>20}\n", "", "s", "mph", "mph", "m",
-                      "m", "m", "m/s²", "s");
+  if (const std::size_t at = text.find(" guard "); text.size() > 81 && at < text.size()) text[at] = '\n';
+  text +=
+      " lap     time   mean    top   e rms   e max to edge lateral              sectors\n"
+      "            s    mph    mph       m       m       m    m/s²                    s\n";
   int lap = 0;
   for (const LapSummary& summary : run.laps) text += row(fmt::format("{}", ++lap), summary);
   text += row("all", run.total);

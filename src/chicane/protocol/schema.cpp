@@ -156,7 +156,7 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
     const bool unit_forgotten = candidate.starts_with(word) && candidate.size() > word.size() &&
                                 (candidate[word.size()] == '_' || candidate[word.size()] == '-');
     const bool is_swapped = std::is_permutation(word.begin(), word.end(), candidate.begin(), candidate.end());
-    const int distance = unit_forgotten || is_swapped ? 1 : edit_distance(word, candidate);
+    const int distance = unit_forgotten ? 0 : is_swapped ? 1 : edit_distance(word, candidate);
     if (distance < best_distance) std::tie(best, best_distance) = std::pair{candidate, distance};
   }
   return best;

@@ -249,7 +249,7 @@ const model::Measurement& Guard::look(const model::Measurement& measured) noexce
   return options_.mode == GuardMode::kOn ? seen : measured;
 }
 
-/// How far the estimate moved from its prediction for this measurement: a certificate has to cover that.
+/// How far the estimate moved from its prediction for this measurement: a verified stop has to cover that.
 void Guard::note_residual(const model::State& expected, double time) noexcept {
   const model::State& now = estimator_.state();
   const auto [sine, cosine] = sine_cosine(now.psi);

@@ -15,7 +15,7 @@
 
 namespace chicane::safety {
 
-/// What a certificate covers, weakest first.
+/// What a verified stop withstands, weakest first.
 enum class Fit : std::uint8_t {
   kNone,  ///< nothing: no stop keeps the margin
   kSeen,  ///< a stop in closed loop, while the car is measured
@@ -24,8 +24,8 @@ enum class Fit : std::uint8_t {
 
 /// The predictive safety filter (docs/safety.md, section 2). A command may be sent if a stop exists after it:
 /// a policy with its own feedback that brings the car to standstill on the known road, in the model and in
-/// two cars that differ from it. One function, certify(), judges every policy; who proposes it does not
-/// count. The last certified policy is stored, and driven when a command is refused.
+/// two cars that differ from it. One function, verify(), judges every policy; who proposes it does not
+/// count. The last verified policy is stored, and driven when a command is refused.
 ///
 /// Deterministic; no allocation after construction; one thread.
 class PredictiveFilter {
@@ -34,7 +34,7 @@ class PredictiveFilter {
   struct Terms {
     double margin = 0.2;      ///< of the tyres from the edge in a stop [m]
     double least_edge = 0.0;  ///< the same of a slow car that is nearer to the edge already [m]
-    double open_time = 30.0;  ///< length of a silence for which stops are certified open loop [s]; 0: none
+    double open_time = 30.0;  ///< length of a silence for which stops are verified open loop [s]; 0: none
   };
 
   PredictiveFilter(const model::VehicleParams& vehicle, const Terms& terms)
@@ -63,14 +63,14 @@ class PredictiveFilter {
     double longest = 0.0;     ///< interval lately [s]
     model::Command acting{};  ///< command that acts before `command` does
   };
-  /// Whether a certified stop exists where `request` leads; the stop is stored. The stored one stays when
+  /// Whether a verified stop exists where `request` leads; the stop is stored. The stored one stays when
   /// none exists. Writes stop_edge and stop_distance.
   [[nodiscard]] Fit verify(const Request& request, GuardReport& report) noexcept;
 
-  /// Stores the way to standstill from `start` on: the stored policy, or a certified one where the stored one
+  /// Stores the way to standstill from `start` on: the stored policy, or a verified one where the stored one
   /// holds no more. `is_open`: the car is not measured, `start` comes from the model. `is_measured`: nothing
   /// is in doubt but the controller's command; then the car may stay on a planned lap for a while, where a
-  /// certified stop follows, and what the policy loses of its edge is added to the margin (eq. 5d). False:
+  /// verified stop follows, and what the policy loses of its edge is added to the margin (eq. 5d). False:
   /// there is none.
   [[nodiscard]] bool drive(const road::KnownRoad& road, const StopStart& start, bool is_open,
                            bool is_measured, GuardReport& report) noexcept;
@@ -85,7 +85,7 @@ class PredictiveFilter {
   [[nodiscard]] const StopPlanner& planner() const noexcept { return planner_; }
 
  private:
-  /// What a certificate has to keep.
+  /// What a verified stop has to keep.
   struct Goal {
     double margin = 0.0;      ///< of the car as modelled [m]
     double open_time = 0.0;   ///< [s]
@@ -97,8 +97,8 @@ class PredictiveFilter {
     Fit fit = Fit::kNone;
     double worth = -std::numeric_limits<double>::infinity();  ///< orders candidates of one fit [m]
   };
-  [[nodiscard]] Candidate certify(const road::KnownRoad& road, const StopStart& from, const Policy& policy,
-                                  const Goal& goal) noexcept;
+  [[nodiscard]] Candidate verify(const road::KnownRoad& road, const StopStart& from, const Policy& policy,
+                                 const Goal& goal) noexcept;
   [[nodiscard]] bool consider(const road::KnownRoad& road, const StopStart& from, const Policy& policy,
                               const Goal& goal, Candidate& best, GuardReport& report) noexcept;
   [[nodiscard]] bool holds_as_usual(const Request& request, double longest, GuardReport& report) noexcept;
@@ -124,7 +124,7 @@ class PredictiveFilter {
   double interval_ = 0.0;                                         ///< before this cycle [s]
   double usual_ = 0.0;                                            ///< shorter of the last two intervals [s]
   double hold_ = Policy{}.hold;                                   ///< Policy::hold [s]
-  int law_ = 0;                                                   ///< that was certified last, tried first
+  int law_ = 0;                                                   ///< that was verified last, tried first
   bool is_current_ = false;                                       ///< stop_ is of this cycle
   static const StopPlan kNoStop;
 };

@@ -219,19 +219,11 @@ namespace {
 
 using protocol::Json;
 
-std::string bound_key(const std::string& track, const std::string& car) {
-  return protocol::json_text(Json{{"track", track}, {"car", car}});
-}
 std::string trial_key(const ExternalTrial& trial) {
   return protocol::json_text(Json{{"command", trial.command},
                                   {"track", trial.track},
                                   {"car", trial.car},
                                   {kDisturbanceKey, trial.disturbance}});
-}
-
-/// First line of the file, by the plan alone: each trial names its command.
-Json first_line(const League& league) {
-  return {{"league", league.name}, {"plan", fmt::format("{:016x}", league.plan.hash())}};
 }
 
 Error refusal_of(const std::string& path, const std::string& line, const Json& wanted) {
@@ -276,7 +268,8 @@ double LeagueCell::number(std::string_view column) const {
 
 Result<BesideFile> BesideFile::open(const std::string& path, const League& league) {
   BesideFile beside;
-  const Json wanted = first_line(league);
+  // First line of the file, by the plan alone: each trial names its command.
+  const Json wanted{{"league", league.name}, {"plan", fmt::format("{:016x}", league.plan.hash())}};
   const auto refuse = [&](const std::string& first) { return refusal_of(path, first, wanted); };
   const auto note = [&](const LinePlace&, const std::string& line) -> Result<void> {
     const Json json = protocol::parse_json(line);
@@ -291,7 +284,8 @@ Result<BesideFile> BesideFile::open(const std::string& path, const League& leagu
 }
 
 bool BesideFile::has_bound(const std::string& track, const std::string& car) const {
-  return std::find(keys_.begin(), keys_.end(), bound_key(track, car)) != keys_.end();
+  const std::string key = protocol::json_text(Json{{"track", track}, {"car", car}});
+  return std::find(keys_.begin(), keys_.end(), key) != keys_.end();
 }
 bool BesideFile::has_trial(const ExternalTrial& trial) const {
   return std::find(keys_.begin(), keys_.end(), trial_key(trial)) != keys_.end();

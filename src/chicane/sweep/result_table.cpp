@@ -11,6 +11,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <span>
 
 #include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
@@ -151,8 +152,9 @@ ResultTable::ResultTable(const std::vector<std::string>& columns) {
     const std::size_t equals = text.find('='), brace = std::min(text.rfind('{'), text.size());
     const std::string format = brace < text.size() ? text.substr(brace + 1, text.size() - brace - 2) : "";
     const std::size_t title = equals + 1, point = std::min(format.find('.'), format.size());  // npos + 1 is 0
-    const Column column{text.substr(0, title == 0 ? 0 : equals), text.substr(title, brace - title),
-                        format.substr(0, point), format.substr(point), place};
+    Column column{text.substr(0, title == 0 ? 0 : equals), text.substr(title, brace - title),
+                  format.substr(0, point), format.substr(point), place};
+    column.width = width_of(column.title);
     if (column.key.empty() || !column.title.empty()) for_people_.push_back(column);
     if (!column.key.empty()) for_programs_.push_back(column);
   }
@@ -167,34 +169,40 @@ void ResultTable::add(Cells cells) {
   rows_.push_back(std::move(cells));
 }
 
-/// A line of titles, `rule` and a line for each row.
-std::string ResultTable::lines(std::string_view begin, std::string_view rule,
+/// A line of titles, `rule` and a line for each row, without the first `shared` columns: these are a line
+/// above the rows that share them.
+std::string ResultTable::lines(std::size_t shared, std::string_view begin, std::string_view rule,
                                std::string (*write)(const Column&, const std::string&)) const {
-  std::string text;
-  const auto add_line = [&](const auto& cell_of) {
-    text += begin;
-    for (const Column& column : for_people_) text += write(column, cell_of(column));
-    text.resize(text.find_last_not_of(' ') + 1);
-    text += '\n';
+  const auto line = [&](std::span<const Column> columns, const auto& cell_of) {
+    std::string cells(begin);
+    for (const Column& column : columns) cells += write(column, cell_of(column));
+    return cells.substr(0, cells.find_last_not_of(' ') + 1) + '\n';
   };
-  add_line([](const Column& column) { return column.title; });
-  text += rule;
-  for (const Cells& row : rows_)
-    add_line([&](const Column& column) { return shown_cell(row[column.place], column.decimals); });
+  const std::span columns(for_people_);
+  const auto title_of = [](const Column& column) { return column.title; };
+  std::string above, text = line(columns.subspan(shared), title_of).append(rule);
+  for (const Cells& row : rows_) {
+    const auto cell_of = [&](const Column& column) { return shown_cell(row[column.place], column.decimals); };
+    if (shared > 0 && line(columns.first(shared), cell_of) != above)
+      text += above = line(columns.first(shared), cell_of);
+    text += line(columns.subspan(shared), cell_of);
+  }
   return text;
 }
 
 std::string ResultTable::text() const {
-  return lines("", "", [](const Column& column, const std::string& cell) {
-    return fmt::format(fmt::runtime("{:" + column.alignment + "{}} "), cell,
-                       std::max(column.width, width_of(column.title)));
+  std::size_t wide = 0, shared = 0;
+  for (const Column& column : for_people_) wide += column.width + 1;
+  for (; wide > 81 && shared + 1 < for_people_.size(); ++shared) wide -= for_people_[shared].width + 1;
+  return lines(shared, "", "", [](const Column& column, const std::string& cell) {
+    return fmt::format(fmt::runtime("{:" + column.alignment + "{}} "), cell, column.width);
   });
 }
 
 std::string ResultTable::markdown() const {
   std::string rule = "|";
   for (const Column& column : for_people_) rule += column.alignment.starts_with('>') ? "--:|" : "---|";
-  return lines("|", rule + "\n", [](const Column&, const std::string& cell) {
+  return lines(0, "|", rule + "\n", [](const Column&, const std::string& cell) {
     return cell.empty() ? " |" : " " + cell + " |";
   });
 }
@@ -294,18 +302,13 @@ std::size_t place_in(const std::vector<std::string>& values, const std::string& 
 /// The nearest of `values` where all are numbers; the same text otherwise. values.size(): none.
 std::size_t nearest_place(const std::vector<std::string>& values, const std::string& wanted) {
   const std::optional<double> number = number_in(wanted);
-  std::size_t best = values.size();
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::optional<double> value = number_in(values[i]);
-    if (!number || !value) continue;
-    const double distance = std::fabs(*value - *number);
-    if (distance < least) {
-      least = distance;
-      best = i;
-    }
-  }
-  return best < values.size() ? best : place_in(values, wanted);
+  const auto distance = [&](const std::string& value) {
+    const std::optional<double> there = number_in(value);
+    return number && there ? std::fabs(*there - *number) : std::numeric_limits<double>::infinity();
+  };
+  const auto best = std::min_element(values.begin(), values.end(),
+                                     [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  return place_in(values, best != values.end() && std::isfinite(distance(*best)) ? *best : wanted);
 }
 
 class MapMaker {
@@ -355,18 +358,17 @@ class MapMaker {
 
   [[nodiscard]] HeatMap map_of(std::size_t a, std::size_t b, const std::vector<std::size_t>& group_axes,
                                const std::vector<std::string>& group) const {
-    HeatMap map;
-    map.title = fmt::format("{}", fmt::join(group, ", "));
-    map.row_key = keys_[a];
-    map.column_key = keys_[b];
-    map.rows.assign(values_[a].begin(), values_[a].end());
-    map.columns.assign(values_[b].begin(), values_[b].end());
+    HeatMap map{.title = fmt::format("{}", fmt::join(group, ", ")),
+                .row_key = keys_[a],
+                .column_key = keys_[b],
+                .rows = {values_[a].begin(), values_[a].end()},
+                .columns = {values_[b].begin(), values_[b].end()}};
     map.cells.assign(map.rows.size(), std::vector<HeatMap::Cell>(map.columns.size()));
     for (const MapRun& run : runs_) {
-      bool is_here = true;
-      for (std::size_t i = 0; i < group.size(); ++i)
-        is_here = is_here && run.values[group_axes[i]] == group[i];
-      if (!is_here) continue;
+      const auto has_value = [&](std::size_t axis, const std::string& value) {
+        return run.values[axis] == value;
+      };
+      if (!std::equal(group_axes.begin(), group_axes.end(), group.begin(), group.end(), has_value)) continue;
       HeatMap::Cell& cell =
           map.cells[place_in(map.rows, run.values[a])][place_in(map.columns, run.values[b])];
       ++cell.runs;
@@ -413,9 +415,8 @@ std::string map_text(const HeatMap& map) {
   std::size_t head = 0, width = 5;
   for (const std::string& row : map.rows) head = std::max(head, width_of(row));
   for (const std::string& column : map.columns) width = std::max(width, width_of(column) + 1);
-  std::string text = fmt::format("{}{} down, {} across\n", map.title.empty() ? "" : map.title + ": ",
-                                 map.row_key, map.column_key);
-  text += std::string(head, ' ');
+  std::string text = fmt::format("{}{} down, {} across\n{:{}}", map.title.empty() ? "" : map.title + ": ",
+                                 map.row_key, map.column_key, "", head);
   for (const std::string& column : map.columns) text += fmt::format("{:>{}} ", column, width);
   for (std::size_t r = 0; r < map.rows.size(); ++r) {
     while (text.back() == ' ') text.pop_back();

@@ -29,6 +29,7 @@ class ResultTable {
   /// Pre: as many cells as columns.
   void add(Cells cells);
 
+  /// At most 80 columns: first cells that do not fit are a line above the rows that share them.
   [[nodiscard]] std::string text() const;
   [[nodiscard]] std::string markdown() const;
   [[nodiscard]] std::string csv() const;      ///< RFC 4180, true is 1
@@ -41,7 +42,7 @@ class ResultTable {
     std::string key, title, alignment, decimals;
     std::size_t place, width = 0;  ///< index of its cells in a row; width of the widest
   };
-  [[nodiscard]] std::string lines(std::string_view begin, std::string_view rule,
+  [[nodiscard]] std::string lines(std::size_t shared, std::string_view begin, std::string_view rule,
                                   std::string (*write)(const Column&, const std::string&)) const;
 
   std::vector<Column> for_people_{}, for_programs_{};

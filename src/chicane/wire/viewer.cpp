@@ -57,11 +57,6 @@ std::vector<foxglove::Channel> channels(bool with_past) {
   return list;
 }
 
-/// Manual driving changes thirty times a second, which is of no interest later.
-bool is_worth_keeping(const telemetry::Change& change) {
-  return change.name.view() != "manual.steer" && change.name.view() != "manual.throttle";
-}
-
 std::function<Result<std::string>(std::string_view)> trigger(std::function<Result<void>()> action,
                                                              std::string done) {
   return [action = std::move(action), done = std::move(done)](std::string_view) -> Result<std::string> {
@@ -262,7 +257,8 @@ void ViewerEndpoint::tell_changes(bool begins) {
     ledger_.add(change);
     const std::string payload =
         protocol::encode_change(change.time, change.cycle, change.name.view(), change.value.view());
-    if (is_worth_keeping(change)) {
+    // Manual driving changes thirty times a second, which is of no interest later.
+    if (change.name.view() != "manual.steer" && change.name.view() != "manual.throttle") {
       memory_.add_change(change.time, payload);
       continue;  // send_kept() sends it
     }

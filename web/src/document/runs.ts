@@ -21,11 +21,11 @@ export interface RunsDocument {
   readonly logs: readonly {
     readonly name: string;
     readonly settings: string; // the scenario as YAML; empty where the recording has none
-    readonly runs: readonly ToldRun[];
+    readonly runs: readonly DrivenRun[];
   }[];
 }
 
-interface ToldRun {
+interface DrivenRun {
   readonly run: Lists | null;
   readonly limit: Lists | null;
   readonly laps: readonly Lists[];
@@ -63,10 +63,10 @@ function framesOf(columns: Lists): Frame[] {
 }
 
 /** `name`: of the recording, with a number where it holds several runs. */
-function readRun(told: ToldRun, name: string, recording: string, settings: string) {
-  const run = messageOf(UNKNOWN_RUN, told.run ?? {});
-  const laps = told.laps.map((each) => messageOf(UNKNOWN_LAP, each));
-  const frames = framesOf(told.frames);
+function readRun(driven: DrivenRun, name: string, recording: string, settings: string) {
+  const run = messageOf(UNKNOWN_RUN, driven.run ?? {});
+  const laps = driven.laps.map((each) => messageOf(UNKNOWN_LAP, each));
+  const frames = framesOf(driven.frames);
   const samples = new LapSamples();
   samples.setLength(run.track_length_m);
   const faults: string[] = [];
@@ -82,18 +82,18 @@ function readRun(told: ToldRun, name: string, recording: string, settings: strin
     before = frame;
   }
   for (const { lap, lap_time_s: time } of laps) samples.complete(lap - 1, time);
-  const changes = told.changes.flatMap((each) => {
+  const changes = driven.changes.flatMap((each) => {
     const { name: key, value }: Change = messageOf({ ...UNKNOWN_CHANGE }, each);
     const seconds = Number(each['stamp.sec']?.[0] ?? NaN) + Number(each['stamp.nanosec']?.[0] ?? 0) / 1e9;
     return /^(manual|fault)\./.test(key) ? [] : [`${key} = ${shortly(value)} at ${fixed(seconds, 1)} s`];
   });
-  const [xs, ys] = [told.centre?.x_m ?? [], told.centre?.y_m ?? []];
+  const [xs, ys] = [driven.centre?.x_m ?? [], driven.centre?.y_m ?? []];
   return {
     name,
     recording,
     run,
     laps,
-    limit: told.limit && messageOf(UNKNOWN_LIMIT, told.limit),
+    limit: driven.limit && messageOf(UNKNOWN_LIMIT, driven.limit),
     samples,
     corners: cornersOf(xs.map((x, i) => ({ x: Number(x), y: Number(ys[i]) }))),
     duration: before?.time_s ?? 0, // [s]
@@ -103,7 +103,7 @@ function readRun(told: ToldRun, name: string, recording: string, settings: strin
     leastEdge: Math.min(...laps.map(({ min_edge_distance_m: edge }) => edge)), // of all laps [m]
     faults, // "blind at 12.5 s"
     changes, // "latency_ms = 60 at 3.0 s"
-    steps: told.steps,
+    steps: driven.steps,
     settings,
   };
 }

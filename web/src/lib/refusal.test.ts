@@ -12,7 +12,7 @@ it('says in a sentence what was refused and what is possible', () => {
     'track: got "ovel", expected one of lakeside, oval; did you mean oval?':
       'Track cannot be ovel: choose one of lakeside, oval; did you mean oval?',
   };
-  for (const [told, sentence] of Object.entries(cases)) expect(refusalInWords(told)).toBe(sentence);
+  for (const [message, sentence] of Object.entries(cases)) expect(refusalInWords(message)).toBe(sentence);
 });
 
 it('leaves sentences alone', () => {

@@ -60,19 +60,19 @@ test('each question gets its own answer', async () => {
   expect(await Promise.all(answers)).toEqual(['[]', null]);
 });
 
-test('a run that cannot begin, and a worker that cannot, are told', async () => {
-  const told: string[] = [];
+test('reports a run that cannot begin, and a worker that cannot', async () => {
+  const sentences: string[] = [];
   const { port, say } = fakeWorker();
   new WorkerLink(
-    (sentence) => told.push(sentence),
+    (sentence) => sentences.push(sentence),
     async () => port,
   );
   await settle();
   say({ kind: 'problem', text: 'no track' });
   new WorkerLink(
-    (sentence) => told.push(sentence),
+    (sentence) => sentences.push(sentence),
     () => Promise.reject(new Error('no worker')),
   );
   await settle();
-  expect(told).toEqual(['no track', 'Error: no worker']);
+  expect(sentences).toEqual(['no track', 'Error: no worker']);
 });

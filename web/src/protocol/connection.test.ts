@@ -151,7 +151,7 @@ describe('connection', () => {
       .map((each) => JSON.parse(each as string) as { op: string; id?: string })
       .filter((each) => each.op === op);
 
-  it('asks for all parameters and to be told of changes, where there are any', () => {
+  it('asks for all parameters and their changes, where there are any', () => {
     const { events, connection, last } = start();
     last().introduce();
     expect(saidAs(last(), 'getParameters')).toEqual([]);

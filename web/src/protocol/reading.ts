@@ -4,7 +4,7 @@ import type { Socket } from './foxglove';
 // arrives in time, and measures how old the newest frame is when it arrives (docs/viewer.md).
 
 /** What the program says in these additions. */
-type Told =
+type Notice =
   | { readonly op: 'heard'; readonly at: number; readonly held: number }
   | { readonly op: 'pastLeft'; readonly messages: number };
 
@@ -26,9 +26,9 @@ const EVERY_BYTES = 4096;
 const EVERY_MS = 40;
 
 /** What our own server says; null for messages of the protocol. */
-function told(text: string): Told | null {
+function noticeIn(text: string): Notice | null {
   if (!/^\{[^{}]*"op":"(heard|pastLeft)"[^{}]*\}$/.test(text)) return null;
-  return JSON.parse(text) as Told;
+  return JSON.parse(text) as Notice;
 }
 
 /**
@@ -56,7 +56,7 @@ export class ReadingSocket implements Socket {
       const { data } = event;
       // First: whatever a reader makes of a message, it has come.
       if (acknowledges && data instanceof ArrayBuffer) this.#count(data.byteLength);
-      const said = typeof data === 'string' ? told(data) : null;
+      const said = typeof data === 'string' ? noticeIn(data) : null;
       if (said?.op === 'heard') events.age(Math.max(0, (now() - said.at) / 1000 - said.held));
       else if (said) events.pastLeft(said.messages);
       else this.onmessage?.(event);

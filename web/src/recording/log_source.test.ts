@@ -47,7 +47,7 @@ describe('the runs of a recording', () => {
   });
   const lap = (number: number, time: number) => message('/chicane/lap', time, { lap: number, lap_time_s: 3 });
 
-  it('begin where another one is told, and where laps are counted anew', () => {
+  it('begin where another one is reported, and where laps are counted again', () => {
     expect(runStarts([message('/chicane/run', 0), lap(1, 5), lap(2, 8)])).toEqual([0]);
     expect(runStarts([message('/chicane/run', 0), lap(1, 5), message('/chicane/run', 6), lap(1, 9)])).toEqual([0, 6]);
     expect(runStarts([message('/chicane/run', 0), lap(1, 5), lap(1, 9), lap(2, 12)])).toEqual([0, 6]);

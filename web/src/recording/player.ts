@@ -98,8 +98,8 @@ export async function showBeside(which: number, log = logs.value[played.value]):
 
 async function trackOf(log: McapLog): Promise<string> {
   const [first] = await log.read(['/chicane/run'], 0, log.duration);
-  const told = complete('/chicane/run', (first?.message ?? {}) as Run);
-  return `${told.track} ${told.track_length_m.toFixed(1)}`;
+  const run = complete('/chicane/run', (first?.message ?? {}) as Run);
+  return `${run.track} ${run.track_length_m.toFixed(1)}`;
 }
 
 export async function playMode(mode: Extract<Mode, { name: 'replay' }>): Promise<LogSource> {

@@ -6,7 +6,7 @@ import { canSet, set } from './operate';
 import { run } from './run';
 import { settingsFound } from './setting_search';
 import { entryOf, isControl, schema, settingChanges, settings, startSettings } from './settings';
-import { askedLog, loggedSchema, offered, valueInForce, type Wish, wishes } from './what_if';
+import { askedLog, type ChosenSetting, chosenSettings, loggedSchema, offered, valueInForce } from './what_if';
 
 // The settings of Try: which ones are shown, and which car they belong to.
 
@@ -26,14 +26,14 @@ export function aimAt(next: Target): void {
 /** What is searched for; empty: the ten settings that matter. */
 export const settingWords = store.signal('page', '');
 
-const wishOf = (key: string): Setting | undefined => wishes.value.find((each) => each.key === key)?.value;
+const chosenOf = (key: string): Setting | undefined => chosenSettings.value.find((each) => each.key === key)?.value;
 const offeredOf = (key: string): SchemaEntry | undefined => offered().find((each) => each.key === key);
 
 /** The value that a row shows. */
 export function valueShown(key: string): Setting | undefined {
   if (target.value === 'run') return settings.value.get(key);
   const entry = offeredOf(key);
-  return wishOf(key) ?? (entry && valueInForce(entry));
+  return chosenOf(key) ?? (entry && valueInForce(entry));
 }
 
 /** The value that a row goes back to: of the start of the run, or of the run for the second car. */
@@ -45,27 +45,27 @@ export function firstValueOf(entry: SchemaEntry): Setting | undefined {
 export const canChange = (key: string): boolean =>
   target.value === 'run' ? canSet(key) : offeredOf(key) !== undefined;
 
-const MOST_WISHES = 8;
+const MOST_CHOSEN = 8;
 /** Why the last change of the second car was not taken; empty when it was. */
-export const wishRefusal = store.signal('page', '');
+export const choiceRefusal = store.signal('page', '');
 
 export function change(key: string, value: Setting): void {
   if (target.value === 'run') {
     set(key, value);
     return;
   }
-  const others = wishes.value.filter((each) => each.key !== key);
+  const others = chosenSettings.value.filter((each) => each.key !== key);
   const entry = offeredOf(key);
   const isAsNow = entry !== undefined && Object.is(valueInForce(entry), value);
-  wishRefusal.value = !isAsNow && others.length >= MOST_WISHES ? 'No more than eight changes at a time.' : '';
-  if (wishRefusal.value === '') wishes.value = isAsNow ? others : [...others, { key, value }];
+  choiceRefusal.value = !isAsNow && others.length >= MOST_CHOSEN ? 'No more than eight changes at a time.' : '';
+  if (choiceRefusal.value === '') chosenSettings.value = isAsNow ? others : [...others, { key, value }];
 }
 
 /** What *Drive both* compares the run with: the second car, else the run as it was at its start. */
-export const toAsk = computed<readonly Wish[]>(() => {
-  if (wishes.value.length > 0) return wishes.value;
+export const toAsk = computed<readonly ChosenSetting[]>(() => {
+  if (chosenSettings.value.length > 0) return chosenSettings.value;
   const changes = settingChanges.value.filter(({ key }) => offeredOf(key) !== undefined);
-  return changes.slice(0, MOST_WISHES).map(({ key, from: value }) => ({ key, value }));
+  return changes.slice(0, MOST_CHOSEN).map(({ key, from: value }) => ({ key, value }));
 });
 
 /** The ten that matter: what each is called, and its key by the controller that has it. `*`: of the one that drives. */

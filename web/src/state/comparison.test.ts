@@ -193,7 +193,7 @@ describe('the headline', () => {
   });
 });
 
-it('causes are told one by one, as they do not add up', () => {
+it('causes are shown one by one, as they do not add up', () => {
   const limit: Limit = {
     ...UNKNOWN_LIMIT,
     is_known: true,

@@ -27,9 +27,9 @@ export function noteFaultChange(change: Change): void {
   const { name, value } = change;
   if (!name.startsWith('fault.')) return;
   const own = entryOf(name)?.fault?.duration_s ?? NaN;
-  const told = /^\+([\d.e-]+)/.exec(value)?.[1];
+  const seconds = /^\+([\d.e-]+)/.exec(value)?.[1];
   if (value === 'false') untils.delete(name);
-  else untils.set(name, timeOf(change) + (told === undefined ? own : Number(told)));
+  else untils.set(name, timeOf(change) + (seconds === undefined ? own : Number(seconds)));
 }
 
 export function noteFaultMarks({ active_faults, x_m: x, y_m: y }: Frame, before: Frame | null): void {

@@ -35,7 +35,7 @@ describe('with what a lap was driven', () => {
 });
 
 describe('what differed between two laps', () => {
-  it('is told from the one to the other, and back', () => {
+  it('is handed from the one to the other, and back', () => {
     expect(differences(lap({}), changed, START)).toEqual([{ what: 'latency_ms', a: '100', b: '60' }]);
     expect(differences(changed, lap({ by_hand_share: 1, faults: ['half_grip'] }), START)).toEqual([
       { what: 'driver', a: 'controller', b: 'by hand' },

@@ -15,10 +15,10 @@ function learned(
   digits: number,
   value: number,
   deviation: number,
-  told: number,
+  configured: number,
 ): Learned[] {
   if (!Number.isFinite(value)) return [];
-  const sign = told === 0 && value > 0 ? '+' : '';
+  const sign = configured === 0 && value > 0 ? '+' : '';
   return [{ label, text: `${sign}${fixed(value, digits)} ± ${fixed(2 * deviation, digits)}${unit}` }];
 }
 

@@ -15,7 +15,7 @@ import { programPage } from './program_page';
 import { type Race, type RacePoses, readRace, sampleRace } from './rival_answer';
 import { run } from './run';
 import { entryOf } from './settings';
-import type { Wish } from './what_if';
+import type { ChosenSetting } from './what_if';
 
 // A race of two settings on one stage: the program drives a second car beside the run's own, the page draws it as the
 // ghost, and asks for its laps.
@@ -23,7 +23,7 @@ import type { Wish } from './what_if';
 /** State of the race; null without one. */
 export const race = store.signal<Race | null>('page', null);
 /** The settings of B. */
-export const raced = store.signal<readonly Wish[]>('page', []);
+export const raced = store.signal<readonly ChosenSetting[]>('page', []);
 export const raceProblem = store.signal('page', '');
 
 export const canRace = (): boolean => can('/rival');
@@ -104,15 +104,15 @@ effect(() => {
 restartListeners.add(() => void look());
 
 /** Both cars begin at the line, B with these settings. */
-export async function startRace(wishes: readonly Wish[]): Promise<void> {
+export async function startRace(chosenSettings: readonly ChosenSetting[]): Promise<void> {
   raceProblem.value = '';
-  const settings = Object.fromEntries(wishes.map(({ key, value }) => [key, value]));
+  const settings = Object.fromEntries(chosenSettings.map(({ key, value }) => [key, value]));
   const answer = await ask('/rival', JSON.stringify({ settings }));
   if (!answer.isTaken) {
     raceProblem.value = answer.message;
     return;
   }
-  raced.value = wishes;
+  raced.value = chosenSettings;
   await look();
 }
 

@@ -3,13 +3,13 @@ import { receive } from './demultiplexer';
 import { attach } from './operate';
 import { cursorTime } from './plot_view';
 import { frameWith as frame } from './test_messages';
-import { answer, ask, askedLog, forgetAnswer, from, problem, question, span, wishes } from './what_if';
+import { answer, ask, askedLog, chosenSettings, forgetAnswer, from, problem, question, span } from './what_if';
 
-const told = (state: object) => ({ ok: true, text: () => Promise.resolve(JSON.stringify(state)) });
+const answered = (state: object) => ({ ok: true, text: () => Promise.resolve(JSON.stringify(state)) });
 
 beforeEach(() => {
   attach({ close: () => undefined, ask: () => Promise.resolve({ isTaken: true, message: '4' }) });
-  wishes.value = [{ key: 'latency_ms', value: 60 }];
+  chosenSettings.value = [{ key: 'latency_ms', value: 60 }];
 });
 afterEach(() => {
   forgetAnswer();
@@ -42,17 +42,17 @@ describe('an answer', () => {
 
   it('is waited for', async () => {
     const replies = [{ id: 4, state: 'computing', share: 0.5 }, done];
-    vi.stubGlobal('fetch', () => Promise.resolve(told(replies.shift() ?? {})));
+    vi.stubGlobal('fetch', () => Promise.resolve(answered(replies.shift() ?? {})));
     await ask();
     expect(answer.value?.at).toBe(1);
     expect(problem.value).toBe('');
   });
 
   it('that cannot be given is said, and so is that another question took its place', async () => {
-    vi.stubGlobal('fetch', () => Promise.resolve(told({ id: 4, state: 'failed', why: 'the run has not begun' })));
+    vi.stubGlobal('fetch', () => Promise.resolve(answered({ id: 4, state: 'failed', why: 'the run has not begun' })));
     await ask();
     expect(problem.value).toBe('the run has not begun');
-    vi.stubGlobal('fetch', () => Promise.resolve(told({ ...done, id: 5 })));
+    vi.stubGlobal('fetch', () => Promise.resolve(answered({ ...done, id: 5 })));
     await ask();
     expect(problem.value).toMatch(/another question/);
     attach({ close: () => undefined, ask: () => Promise.resolve({ isTaken: false, message: 'watch only' }) });
@@ -62,7 +62,7 @@ describe('an answer', () => {
   });
 
   it('is forgotten when the run begins anew', async () => {
-    vi.stubGlobal('fetch', () => Promise.resolve(told(done)));
+    vi.stubGlobal('fetch', () => Promise.resolve(answered(done)));
     receive('/chicane/frame', frame({ time_s: 60 }), 0);
     await ask();
     expect(answer.value).not.toBeNull();

@@ -22,18 +22,18 @@ export type From = 'now' | 'cursor' | 'line';
 export type Span = '10' | '30' | 'lap';
 
 /** A setting that is changed in the question; the text as typed. */
-export interface Wish {
+export interface ChosenSetting {
   readonly key: string;
   readonly value: Setting;
 }
 
 export const from = store.signal<From>('page', 'now');
 export const span = store.signal<Span>('page', 'lap');
-export const wishes = store.signal<readonly Wish[]>('page', []);
+export const chosenSettings = store.signal<readonly ChosenSetting[]>('page', []);
 
 /** The newest answer, and what it was asked. */
 export const answer = store.signal<WhatIfAnswer | null>('page', null);
-export const asked = store.signal<readonly Wish[]>('page', []);
+export const asked = store.signal<readonly ChosenSetting[]>('page', []);
 /** The share that is computed; null when nothing is. */
 export const progress = store.signal<number | null>('page', null);
 /** Why there is no answer; empty when nothing is wrong. */
@@ -82,7 +82,7 @@ export function question(): string {
     // From within a lap its rest comes first, then a whole one.
     ...(span.value === 'lap' ? { laps: from.value === 'line' ? 1 : 2 } : { for_s: Number(span.value) }),
     log: askedLog.value?.which() ?? 0,
-    settings: Object.fromEntries(wishes.value.map(({ key, value }) => [key, value])),
+    settings: Object.fromEntries(chosenSettings.value.map(({ key, value }) => [key, value])),
   });
 }
 
@@ -110,7 +110,7 @@ async function waitFor(id: number, mine: number): Promise<void> {
 /** Asks; the answer appears in `answer`. */
 export async function ask(): Promise<void> {
   const mine = ++asking.newest;
-  const sent = wishes.value;
+  const sent = chosenSettings.value;
   problem.value = '';
   progress.value = 0;
   try {

@@ -39,18 +39,18 @@ function steady(speed: number, seconds: number, more: object = {}): object {
 }
 
 function answerOf(was: object, branch: object): WhatIfAnswer {
-  const told = { id: 3, state: 'done', at_s: 10, is_exact: true, end_reason: null, was, branch };
-  const state = readWhatIf(told);
+  const message = { id: 3, state: 'done', at_s: 10, is_exact: true, end_reason: null, was, branch };
+  const state = readWhatIf(message);
   if (state?.kind !== 'done') throw new Error('no answer');
   return state.answer;
 }
 
 describe('an answer', () => {
   it('says whose car drove where another program simulates the car, and how far it is to be trusted', () => {
-    const told = (more: object) =>
+    const message = (more: object) =>
       readWhatIf({ id: 1, state: 'done', at_s: 10, was: steady(10, 5), branch: steady(10, 5), ...more });
     const standIn = (more: object) => {
-      const state = told(more);
+      const state = message(more);
       return state?.kind === 'done' ? state.answer.standIn : undefined;
     };
     expect(standIn({})).toBeNull();

@@ -16,7 +16,9 @@ import {
   ask,
   asked,
   askedLog,
+  type ChosenSetting,
   canAsk,
+  chosenSettings,
   type From,
   forgetAnswer,
   from,
@@ -25,14 +27,12 @@ import {
   progress,
   type Span,
   span,
-  type Wish,
-  wishes,
 } from '../state/what_if';
 import { trustOf, verdictOf } from '../state/what_if_answer';
 
 // *Drive both*: another future of the run, from a moment on, beside the one that is.
 
-const kept = store.signal<readonly Wish[] | null>('page', null);
+const kept = store.signal<readonly ChosenSetting[] | null>('page', null);
 
 export const canDriveBoth = (): boolean => offered().length > 0 && canAsk();
 
@@ -65,7 +65,7 @@ export function WhenView() {
 
 function driveBoth(): void {
   kept.value = null;
-  wishes.value = toAsk.value;
+  chosenSettings.value = toAsk.value;
   void ask();
 }
 
@@ -97,7 +97,7 @@ function keep(): void {
   kept.value = asked.value;
 }
 
-const changesInWords = (all: readonly Wish[]): string =>
+const changesInWords = (all: readonly ChosenSetting[]): string =>
   all.map(({ key, value }) => `${labelOf({ key, unit: entryOf(key)?.unit ?? '' })} ${value}`).join(', ');
 
 /** The answer as a sentence, and what can be done with it. */

@@ -2,7 +2,7 @@ import { valueInWords } from '../lib/scale';
 import { Button, Refusal } from '../parts/controls';
 import { canRace, endRace, keepWinner, race, raced, raceProblem, startRace } from '../state/rival';
 import { standingOf } from '../state/rival_answer';
-import { wishes } from '../state/what_if';
+import { chosenSettings } from '../state/what_if';
 
 function Standing() {
   const now = race.value;
@@ -40,9 +40,9 @@ export function RaceView() {
     <>
       <div class="row">
         <Button
-          disabled={wishes.value.length === 0}
+          disabled={chosenSettings.value.length === 0}
           title="The run begins anew with two cars: yours as it is, and a second one with the changes"
-          act={() => startRace(wishes.value)}
+          act={() => startRace(chosenSettings.value)}
         >
           Race A against B
         </Button>

@@ -7,12 +7,12 @@ import {
   aimAt,
   canChange,
   choiceOf,
+  choiceRefusal,
   countOfSettings,
   found,
   settingWords,
   target,
   tenSettings,
-  wishRefusal,
 } from '../state/chosen_settings';
 import { link } from '../state/link';
 import { canSet, set } from '../state/operate';
@@ -181,7 +181,7 @@ function Settings() {
           <SettingRow key={entry.key} entry={entry} {...(name === undefined ? {} : { name })} />
         ))}
         {shown.length === 0 && words !== '' && <p class="soft">Nothing matches.</p>}
-        <Refusal text={wishRefusal.value} />
+        <Refusal text={choiceRefusal.value} />
       </div>
       {target.value === 'run' && <Changes />}
       {shown.some(({ entry }) => !canChange(entry.key)) && target.value === 'second' && (
