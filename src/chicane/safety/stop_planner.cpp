@@ -19,7 +19,7 @@ namespace {
 constexpr double kLoadLag = 0.06;          // [s] of the loads behind the accelerations: springs and dampers
 constexpr double kLeastLoad = 0.05;        // of a wheel's load at rest
 constexpr double kMostAlong = 0.95;        // of a tyre's peak, of a wheel that does not lock
-constexpr double kLocks[] = {0.10, 0.18};  // slips between which anti-lock takes the brake away
+constexpr double kLocks[] = {0.10, 0.18};  // slips between which anti-lock takes the torque away
 constexpr double kLeastSquare = 1e-8;      // of a slip: the curve's secant has a kink at 0
 constexpr double kShortestLag = 1e-4;      // [s]
 constexpr double kRelaxation = 0.4;  // [m] rolled while a tyre's slip angle follows: about a wheel's radius
@@ -85,13 +85,14 @@ StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
   const EachWheel step = next - alone;
   const EachWheel shrinks = min((after - next) * step / (step * step + kLeastSquare), EachWheel(0.9));
   EachWheel z_along = alone + step / (1.0 - shrinks);
-  // Or that at which anti-lock holds a wheel that locks: between both slips the brake falls to nothing.
+  // Or that at which anti-lock or traction control holds a wheel that locks or spins: between both slips the
+  // torque falls to nothing.
   const EachWheel from = kLocks[0] * w.cornering, to = kLocks[1] * w.cornering;
-  const EachWheel over = -wanted - from * secant(from * from + across_square);
+  const EachWheel over = abs(wanted) - from * secant(from * from + across_square);
   const auto locks = over > 0.0;
   if (any(locks)) {
     const EachWheel held = to * secant(to * to + across_square);
-    z_along = select(locks, -(from + (to - from) * over / (over + held)), z_along);
+    z_along = select(locks, copysign(from + (to - from) * over / (over + held), wanted), z_along);
   }
   const EachWheel stiffness = most * secant(across_square + z_along * z_along);
   const EachWheel along = select(locks, stiffness * z_along, most * use), across = stiffness * z;
