@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/safety/stop_planner.hpp"
+#include "chicane/safety/stop_car.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "chicane/sim/double_track.hpp"
 #include "support/alloc_guard.hpp"
@@ -16,7 +17,7 @@ model::VehicleParams plain_car() { return model::road_car_params(); }
 
 /// The plant after two seconds in a bend at about `speed`, a little drive on, and the same as a StopMotion.
 struct InABend {
-  InABend(double speed, double steer) {
+  InABend(double speed, double steer, const sim::DoubleTrackParams& params = {}) : plant{params} {
     plant.reset({}, speed);
     for (int i = 0; i < 2000; ++i) drive({steer, 0.03 * (speed - plant.state().vx) + 0.25});
     const model::State s = plant.state();
@@ -25,9 +26,33 @@ struct InABend {
               .load_across = plant.output().ay};
   }
   void drive(const model::Command& command) { plant.advance(command); }
-  sim::DoubleTrack plant{sim::DoubleTrackParams{}};
+  sim::DoubleTrack plant;
   StopMotion motion;
 };
+
+/// Stiff tyres whose wheels lock, and downforce that presses the rear more than the weight does.
+TEST(StopCar, KnowsLockingWheelsAndTheBalanceOfDownforce) {
+  sim::DoubleTrackParams stiff, pressed;
+  stiff.friction = 0.63;
+  stiff.stiffness_front = 7.0;
+  stiff.stiffness_rear = 19.5;
+  pressed.downforce_front = 0.4;
+  pressed.downforce_rear = 1.6;
+  for (const auto& [params, throttle] : {std::pair{stiff, -0.55}, std::pair{pressed, -0.1}}) {
+    InABend bend(params.downforce_rear > 0.0 ? 45.0 : 25.0, 0.025, params);
+    const StopCar car(sim::model_of(params));
+    StopMotion at = bend.motion;
+    for (int i = 0; i < 20; ++i) {
+      at = car.advance(at, 0.025, longitudinal_acceleration(car.vehicle(), throttle, at.body.vx),
+                       car.step(0.05));
+      for (int k = 0; k < 50; ++k) bend.drive({0.025, throttle});
+    }
+    const model::State& plant = bend.plant.state();
+    EXPECT_NEAR(at.body.vx, plant.vx, 0.2);
+    EXPECT_NEAR(at.body.r, plant.r, 0.003);
+    EXPECT_NEAR(at.body.vy, plant.vy, 0.05);
+  }
+}
 
 /// What nobody corrects has to be right: braked in a bend by the same commands, the car turns as the plant.
 /// The controllers' model is wrong by several times as much after a second.
