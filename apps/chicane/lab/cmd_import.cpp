@@ -140,7 +140,7 @@ using protocol::TrackFile;
 using protocol::TrackReadOptions;
 
 constexpr double kModelRoad = 3.0;     // narrower roads, on average, are for model cars [m]
-constexpr double kModelNarrow = 2.5;   // or those with a narrower place [m]
+constexpr double kModelNarrow = 2.5;   // roads with a narrower place are, too [m]
 constexpr double kWideRoad = 30.0;     // wider roads may be in another unit [m]
 constexpr double kModelScale = 0.1;    // scale of a model road's assumed noise and spacing
 constexpr double kPointsAcross = 5.0;  // width over the spacing of the points

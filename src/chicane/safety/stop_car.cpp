@@ -81,8 +81,8 @@ StopCar::Change StopCar::change(const StopMotion& at) const noexcept {
   const EachWheel step = next - alone;
   const EachWheel shrinks = min((after - next) * step / (step * step + kLeastSquare), EachWheel(0.9));
   EachWheel z_along = alone + step / (1.0 - shrinks);
-  // Or that at which anti-lock or traction control holds a wheel that locks or spins: between both slips the
-  // torque falls to nothing.
+  // Anti-lock or traction control holds a wheel that locks or spins at a larger slip (3b): between `from` and
+  // `to` the torque falls to nothing.
   const EachWheel from = kLocks[0] * w.cornering, to = kLocks[1] * w.cornering;
   const EachWheel over = abs(wanted) - from * secant(from * from + across_square);
   const auto locks = over > 0.0;
