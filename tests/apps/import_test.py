@@ -39,9 +39,9 @@ class Import(unittest.TestCase):
 
     def test_a_map_becomes_a_picture_and_a_road_that_is_driven(self):
         road, page = self.out / "bean.csv", self.out / "bean.html"
-        code, told, err = run("import", MAPS / "bean.yaml", "-o", road, "--preview", page)
+        code, printed, err = run("import", MAPS / "bean.yaml", "-o", road, "--preview", page)
         self.assertEqual(code, 0, err)
-        self.assertTrue(told.endswith(f"chicane drive --track {road} --car f1tenth\n"), told)
+        self.assertTrue(printed.endswith(f"chicane drive --track {road} --car f1tenth\n"), printed)
         document = json.loads(re.search(r'id="chicane-report">(.*?)</script>', page.read_text())[1])
         self.assertIn("closed road", document["sections"][0]["parts"][0]["text"])
         names = [series["name"] for series in document["sections"][0]["parts"][-1]["series"] if series["values"]]

@@ -68,7 +68,7 @@ double BrakingStability::slope(const Axle& axle, double use, double force_over_l
 
 double BrakingStability::pole(double v, double use, double force) const noexcept {
   const double load = car_.load(v);
-  const double more = car_.load_balance * (1.0 - car_.load_constant / load);  // of the load, in front
+  const double more = car_.load_balance * (1.0 - car_.load_constant / load);  // share of the load, in front
   const double front = load * (1.0 + more / front_.share) * slope(front_, use, force / load);
   const double rear = load * (1.0 - more / rear_.share) * slope(rear_, use, force / load);
   if (!(rear > 0.0)) return std::numeric_limits<double>::infinity();

@@ -27,7 +27,7 @@ constexpr double kNearer = 0.02;        // [m] that a stop may come nearer to an
 constexpr double kKeptLoss = 0.95;      // share of earlier losses that counts when a stop begins
 constexpr double kMostLoss = 0.5;       // [m] of it that counts
 constexpr double kMemory = 3.0;         // [s] of residuals
-constexpr double kDeviations = 2.0;     // of residuals that a verified stop withstands
+constexpr double kDeviations = 2.0;     // standard deviations of residuals, withstood by a verified stop
 constexpr double kMostSlip = 1.2;       // over the slip at the peak: beyond it the car spins
 constexpr double kMostSlipOfSlides = 1.6;  // the same on a lap that slides
 constexpr double kDwell = 0.5;     // [s] after a stop was driven, in which only a calm car is given back
@@ -152,8 +152,8 @@ void PredictiveFilter::note_residual(const Doubt& residual, double time) noexcep
 
 /// The one judge. As modelled, the car keeps the margin, stands and can turn back; two cars that begin to
 /// either side of it, with other tyres, stay on the road under the same feedback.
-PredictiveFilter::Candidate PredictiveFilter::verify(const road::KnownRoad& road, const StopStart& from,
-                                                     const Policy& policy, const Goal& goal) noexcept {
+PredictiveFilter::Candidate PredictiveFilter::judge(const road::KnownRoad& road, const StopStart& from,
+                                                    const Policy& policy, const Goal& goal) noexcept {
   const double least = goal.is_driven ? StopPlanner::kToTheEnd : goal.margin;
   Candidate candidate{.check = planner_.plan(road, from, policy, *tried_, least)};
   const StopCheck& check = candidate.check;
@@ -181,7 +181,7 @@ PredictiveFilter::Candidate PredictiveFilter::verify(const road::KnownRoad& road
 /// Stores `policy` where it is better than `best`.
 bool PredictiveFilter::consider(const road::KnownRoad& road, const StopStart& from, const Policy& policy,
                                 const Goal& goal, Candidate& best, GuardReport& report) noexcept {
-  const Candidate candidate = verify(road, from, policy, goal);
+  const Candidate candidate = judge(road, from, policy, goal);
   const bool is_better = candidate.fit > best.fit ||
                          (goal.is_driven && candidate.fit == best.fit && candidate.worth > best.worth);
   if (!is_better) return false;
@@ -318,7 +318,7 @@ bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start
     for (const Law& law : kRaceOn)
       if (consider(road, start, policy_of(law, start.time, hold_), goal, best, report)) return true;
   }
-  // What was verified with a margin is driven to its end; a fresh policy replaces it where it holds no more.
+  // A stop verified with a margin is driven to its end; a fresh policy replaces it where it holds no more.
   const Goal goal{.margin = std::min(terms_.margin, std::max(planner_.edge(road, start) - kNearer, -0.5)),
                   .open_time = std::min(kDrivenOpen, terms_.open_time),
                   .is_driven = true};

@@ -15,7 +15,7 @@
 
 namespace chicane::safety {
 
-/// What a verified stop withstands, weakest first.
+/// Conditions that a verified stop withstands, weakest first.
 enum class Fit : std::uint8_t {
   kNone,  ///< nothing: no stop keeps the margin
   kSeen,  ///< a stop in closed loop, while the car is measured
@@ -85,7 +85,7 @@ class PredictiveFilter {
   [[nodiscard]] const StopPlanner& planner() const noexcept { return planner_; }
 
  private:
-  /// What a verified stop has to keep.
+  /// Limits that a verified stop has to keep.
   struct Goal {
     double margin = 0.0;      ///< of the car as modelled [m]
     double open_time = 0.0;   ///< [s]
@@ -97,8 +97,8 @@ class PredictiveFilter {
     Fit fit = Fit::kNone;
     double worth = -std::numeric_limits<double>::infinity();  ///< orders candidates of one fit [m]
   };
-  [[nodiscard]] Candidate verify(const road::KnownRoad& road, const StopStart& from, const Policy& policy,
-                                 const Goal& goal) noexcept;
+  [[nodiscard]] Candidate judge(const road::KnownRoad& road, const StopStart& from, const Policy& policy,
+                                const Goal& goal) noexcept;
   [[nodiscard]] bool consider(const road::KnownRoad& road, const StopStart& from, const Policy& policy,
                               const Goal& goal, Candidate& best, GuardReport& report) noexcept;
   [[nodiscard]] bool holds_as_usual(const Request& request, double longest, GuardReport& report) noexcept;
@@ -124,7 +124,7 @@ class PredictiveFilter {
   double interval_ = 0.0;                                         ///< before this cycle [s]
   double usual_ = 0.0;                                            ///< shorter of the last two intervals [s]
   double hold_ = Policy{}.hold;                                   ///< Policy::hold [s]
-  int law_ = 0;                                                   ///< that was verified last, tried first
+  int law_ = 0;                                                   ///< law verified last, tried first
   bool is_current_ = false;                                       ///< stop_ is of this cycle
   static const StopPlan kNoStop;
 };

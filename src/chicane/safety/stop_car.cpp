@@ -13,8 +13,8 @@ namespace chicane::safety {
 namespace {
 
 constexpr double kLoadLag = 0.06;          // [s] of the loads behind the accelerations: springs and dampers
-constexpr double kLeastLoad = 0.05;        // of a wheel's load at rest
-constexpr double kMostAlong = 0.95;        // of a tyre's peak, of a wheel that does not lock
+constexpr double kLeastLoad = 0.05;        // share of a wheel's load at rest
+constexpr double kMostAlong = 0.95;        // share of a tyre's peak, for a wheel that does not lock
 constexpr double kLocks[] = {0.10, 0.18};  // slips between which anti-lock takes the torque away
 constexpr double kLeastSquare = 1e-8;      // of a slip: the curve's secant has a kink at 0
 constexpr double kShortestLag = 1e-4;      // [s]

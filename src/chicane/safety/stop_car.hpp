@@ -21,7 +21,7 @@ struct StopMotion {
   double behind_rear = 0.0;
 };
 
-/// The car that a stop is simulated with (docs/guard.md, eq. 3a). Nobody corrects what it has
+/// The car that a stop is simulated with (docs/guard.md, eq. 3a, 3b). Nobody corrects what it has
 /// wrong when the stop is played blindly, so it is closer to a car than PredictionModel: four wheels with
 /// their own loads, which follow the body's accelerations with a lag, and the yaw moment of forces that
 /// differ from left to right; second order in the step. Slower than kSlowest, and for cars whose tyres do not

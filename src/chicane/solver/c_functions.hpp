@@ -203,6 +203,7 @@ CHICANE_C const char* chicane_error_text(chicane_error error) {
       "got an array to write that only a solve writes",
       "got no preparation, expected chicane_solve() with a finite answer, then chicane_prepare()",
       "got a problem compiled with another version of chicane/solver.h"};
+  static_assert(sizeof kTexts / sizeof *kTexts == CHICANE_VERSION + 1);
   return error >= CHICANE_DONE && error <= CHICANE_VERSION ? kTexts[error] : "unknown error";
 }
 CHICANE_C const char* chicane_status_text(int status) {
