@@ -148,6 +148,32 @@ TEST(PredictionModel, SharesForceBetweenTheDirectionsWhereTyresDo) {
             0.0);
 }
 
+// Too little slip along lets a rear-driven car press its throttle in a bend until it spins.
+TEST(PredictionModel, LosesTheForceAcrossThatDriveTakes) {
+  VehicleParams car = road_car_params();
+  car.drive_share_front = 0.0;
+  car.height = 0.0;  // no load is moved
+  const PredictionModel model(car);
+  constexpr double kSpeed = 30.0;
+  const double rear = car.front_axle / car.wheelbase();
+  const double grip = car.friction * rear * car.load(kSpeed);
+  const auto secant = [&](double square) { return magic_secant(car.tire_shape, square + 1e-12); };
+  for (const double share : {0.6, 0.95}) {
+    const double z = share * car.tire_shape * std::tan(0.5 * kPi / car.tire_shape);
+    const double slip = z * car.friction / car.cornering_rear;
+    for (const double along : {0.2, 0.4, 0.6}) {
+      double z_along = along;  // equation 4b, until it holds
+      for (int i = 0; i < 200; ++i) z_along = along / secant(z * z + z_along * z_along);
+      const auto change =
+          model.change(BodyMotion<double>{.vx = kSpeed, .vy = -slip * kSpeed, .acceleration = along * grip});
+      const double moment = change.r * car.yaw_inertia / car.mass;
+      const double force = (car.front_axle * change.vy - moment) / car.wheelbase();
+      const double expected = grip * z * secant(z * z + z_along * z_along);
+      EXPECT_NEAR(force, expected, 0.035 * expected) << share << ' ' << along;
+    }
+  }
+}
+
 TEST(PredictionModel, ItsChangeByTimeIsTheLimitOfItsSteps) {
   for (int i = 0; i < 2; ++i) {
     const PredictionModel model(car_number(i));

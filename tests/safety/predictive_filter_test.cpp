@@ -146,19 +146,19 @@ TEST(PredictiveFilter, GoesOnWithTheBackupByTimeWhereNothingIsMeasured) {
   EXPECT_EQ(filter.stop().size, before.size - 3);
 }
 
-/// The same circle by a line that is 2 m outside of its middle.
-road::KnownRoad round_road_by_another_line() {
+/// The same circle by a line that is `outside` [m] of its middle.
+road::KnownRoad round_road_by_another_line(double outside = 2.0) {
   std::vector<road::LinePoint> lap;
-  constexpr double kRadius = 102.0;
+  const double radius = 100.0 + outside;
   for (int i = 0; i <= 400; ++i) {
     const double angle = kTwoPi * (i / 400.0 - 0.3);  // and begins elsewhere
     road::LinePoint point;
-    point.position = {kRadius * std::sin(angle), 100.0 - kRadius * std::cos(angle)};
+    point.position = {radius * std::sin(angle), 100.0 - radius * std::cos(angle)};
     point.heading = angle;
-    point.curvature = 1.0 / kRadius;
+    point.curvature = 1.0 / radius;
     point.speed = 25.0;
-    point.left = 7.0;
-    point.right = 3.0;
+    point.left = 5.0 + outside;
+    point.right = 5.0 - outside;
     lap.push_back(point);
   }
   const road::RacingRoad planned(lap);
@@ -187,6 +187,22 @@ TEST(PredictiveFilter, DrivesTheStoredPolicyAlongAnotherLineOfTheRoad) {
     const auto k = static_cast<std::size_t>(i);
     EXPECT_NEAR(filter.stop().points[k].command.throttle, before.points[k].command.throttle, 0.1) << i;
   }
+}
+
+/// A car that races may cross its lap's line for a moment; one that is led stops on the road.
+TEST(PredictiveFilter, LeadsACarAcrossALapAsOnAnyRoad) {
+  const road::KnownRoad raced = round_road_by_another_line(3.6);
+  int led = 0, unled = 0;
+  for (double course = -0.05; course > -0.5; course -= 0.05) {
+    PredictiveFilter filter(model::road_car_params(), {.margin = 0.05, .open_time = 0.0});
+    GuardReport report;
+    const StopStart start{.time = 2.0, .s = 50.0, .e = course, .body = {.vx = 4.0}};
+    const model::Command command{-0.1, 0.0};
+    led += filter.verify({raced, start, command, 0.1, true}, report) != Fit::kNone ? 1 : 0;
+    unled += filter.verify({raced, start, command, 0.1}, report) != Fit::kNone ? 1 : 0;
+  }
+  EXPECT_GT(led, 0) << "one that is nearly along the road";
+  EXPECT_GT(unled, led);
 }
 
 /// A stop that ends across the road beside its edge leaves no way on but over the edge.

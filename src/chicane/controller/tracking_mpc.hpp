@@ -17,7 +17,7 @@ namespace chicane::controller {
 /// The default controller: arc-length reference from remembered waypoints, single-track model with the car's
 /// yaw lag, commands in flight replayed through it, speed planned for curvature and sight.
 struct TrackingMpcOptions {
-  static constexpr int kMostIterations = 8;
+  static constexpr int kMostIterations = 12;
   int horizon_steps = 40;           ///< N
   double step_length = 0.05;        ///< dt [s]
   double speed_limit = 60.0;        ///< never planned above [m/s]

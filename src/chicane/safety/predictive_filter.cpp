@@ -248,7 +248,7 @@ Fit PredictiveFilter::verify(const Request& request, GuardReport& report) noexce
   if (!begins && !holds_as_usual(request, longest, report)) return Fit::kNone;
   const Fit fit = verify_held(request, begins ? std::max(kFirstHold, held) : late, report);
   if (fit != Fit::kNone || begins) return fit;
-  if (!request.road.is_raced()) return verify_held(request, held, report);
+  if (!request.road.is_raced() || request.is_led) return verify_held(request, held, report);
   double edge = planner_.edge(request.road, request.start);
   const StopStart next = planner_.advance(request.road, request.start, request.command, held, edge);
   // Without a stored law there is nothing better than the way back to the lap.
@@ -284,7 +284,8 @@ Fit PredictiveFilter::verify_held(const Request& request, double held, GuardRepo
   const Policy before = stored_;
   const bool has_before = has_stored_;
   // The lap itself is a way to drive on: a cycle tries few laws, and the next one others.
-  if (!(goal.open_time > 0.0) && road.is_raced() && drives_lap(road, next, width_of(road))) {
+  if (!(goal.open_time > 0.0) && road.is_raced() && !request.is_led &&
+      drives_lap(road, next, width_of(road))) {
     for (int n = 0; n < kInTurn && best.fit == Fit::kNone; ++n) {
       const int law = law_;
       try_law(law);
