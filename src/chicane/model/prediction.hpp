@@ -250,33 +250,32 @@ class PredictionModel {
     // the same: v_x r differs from it while the slip angle of the car changes.
     const T pulls[2] = {T(p.drive_share_front * drive + p.brake_share_front * brake),
                         T((1.0 - p.drive_share_front) * drive + (1.0 - p.brake_share_front) * brake)};
-    const T z_front = (p.cornering_front * per_friction) * slip_front;
-    const T z_rear = (p.cornering_rear * per_friction) * slip_rear;
-    const T across[2] = {secant(T(z_front * z_front)), secant(T(z_rear * z_rear))};
+    const T slips[2] = {(p.cornering_front * per_friction) * slip_front,
+                        (p.cornering_rear * per_friction) * slip_rear};
+    const T squares[2] = {slips[0] * slips[0], slips[1] * slips[1]};
+    const T across[2] = {secant(squares[0]), secant(squares[1])};
     const auto lateral = [&](const T& z, const T& secant, const T& load, const T& pull) CHICANE_INLINE {
       const T use_along = per_friction * pull / load;
       return p.friction * load * z * secant * sqrt(least<kSmooth>(T(1.0 - use_along * use_along)));
     };
-    const T sideways = rest * (lateral(z_front, across[0], T(grip_front * load_front), pulls[0]) +
-                               lateral(z_rear, across[1], T(grip_rear * load_rear), pulls[1]));
+    const T sideways = rest * (lateral(slips[0], across[0], T(grip_front * load_front), pulls[0]) +
+                               lateral(slips[1], across[1], T(grip_rear * load_rear), pulls[1]));
     const T side = 2.0 * positive<kSmooth>(sideways, kBlend) - sideways;
     // 1 while driving, when the inner wheel spins; 0 while braking, when anti-lock prevents it.
     const T driving = (drive + kLeastSide) / (drive + brake + kLeastSide);
     struct LoadedAxle {
       double cornering, unloading, rest;
-      T z, across, part, grip, pull;
+      T z2, across2, part, grip, pull;
       T along{}, square{}, stiffness{};
     };
-    LoadedAxle axles[2] = {
-        {p.cornering_front, unloading_front_, rest_front, z_front, across[0], part_front, grip_front,
-         pulls[0]},
-        {p.cornering_rear, unloading_rear_, rest_rear, z_rear, across[1], part_rear, grip_rear, pulls[1]}};
+    LoadedAxle axles[2] = {{p.cornering_front, unloading_front_, rest_front, squares[0],
+                            across[0] * across[0], part_front, grip_front, pulls[0]},
+                           {p.cornering_rear, unloading_rear_, rest_rear, squares[1], across[1] * across[1],
+                            part_rear, grip_rear, pulls[1]}};
     T lost[2] = {T(0.0), T(0.0)};
     // Not unrolled: a quarter of the code to compile.
 #pragma GCC unroll 1
     for (LoadedAxle& axle : axles) {
-      const T z2 = axle.z * axle.z;
-      const T across2 = axle.across * axle.across;
       const T shift = axle.unloading * side;
       const T parts[2] = {least<kSmooth>(axle.part - shift),
                           axle.part + shift};  // of the inner and of the outer wheel
@@ -291,8 +290,8 @@ class PredictionModel {
         // Longitudinal slip that gives this force together with the slip across (similarity).
         const T kept = use[i] - over;
         const T u2 = kept * kept;
-        const T first = secant(z2 + u2 / (across2 * sqrt(1.0 - u2 * u2)));
-        square[i] = z2 + u2 / (first * first);
+        const T first = secant(axle.z2 + u2 / (axle.across2 * sqrt(1.0 - u2 * u2)));
+        square[i] = axle.z2 + u2 / (first * first);
         stiffness[i] = axle.cornering * load * secant(square[i]);
       }
       const T mean = (parts[0] * square[0] + parts[1] * square[1]) / (parts[0] + parts[1]);
