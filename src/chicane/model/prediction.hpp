@@ -262,7 +262,7 @@ class PredictionModel {
                                lateral(slips[1], across[1], T(grip_rear * load_rear), pulls[1]));
     const T side = 2.0 * positive<kSmooth>(sideways, kBlend) - sideways;
     // 1 while driving, when the inner wheel spins; 0 while braking, when anti-lock prevents it.
-    const T driving = (drive + kLeastSide) / (drive + brake + kLeastSide);
+    const T driving = 0.5 + 0.5 * m.acceleration / sqrt(m.acceleration * m.acceleration + kBlend * kBlend);
     struct LoadedAxle {
       double cornering, unloading, rest;
       T z2, across2, part, grip, pull;
