@@ -111,10 +111,9 @@ TEST(LearnedGrip, KeepsTheConfiguredGripUntilThen) {
 }
 
 /// The share of slip for a lap after 20 s of weaving at 30 m/s, measured with noise of this heading [rad].
-double slip_share(double heading_noise, double rate_limit = 1.5, double planned = 1.0, double lag = 0.05) {
+double slip_share(double heading_noise, double rate_limit = 1.5, double planned = 1.0) {
   model::VehicleParams car = model::road_car_params();
   car.steer_rate_limit = rate_limit;
-  car.steer_lag = lag;
   const model::PredictionModel model{car};
   tracking::StateEstimator truth{model}, seen{model};
   seen.estimate_disturbance(true);
@@ -145,7 +144,6 @@ TEST(SlipReserve, GrowsWithTheNoiseOfTheSensorsAndWithASlowSteering) {
   EXPECT_GT(usual, 0.5);
   EXPECT_LT(slip_share(0.004), usual);
   EXPECT_LT(slip_share(0.002, 0.4), usual);
-  EXPECT_LT(slip_share(0.001, 1.5, 1.0, 0.2), slip_share(0.001)) << "the wheels follow later";
   EXPECT_GE(slip_share(0.1), 1.0 - SlipReserve::kMost - 1e-9) << "no lap stands";
 }
 

@@ -127,8 +127,8 @@ struct Absence {
 };
 
 /// Slip of the rear tyres that a planned lap keeps in reserve for the error of the estimated slip
-/// (docs/racing.md, eq. 9). The controller steers by that error until delay, lag and rate of the steering
-/// allow a correction. One thread; allocates nothing.
+/// (docs/racing.md, eq. 9). The controller steers by that error until delay and steering rate allow a
+/// correction. One thread; allocates nothing.
 class SlipReserve {
  public:
   static constexpr double kPerSecond = 67.0;  ///< deviations in reserve for each second of lateness [1/s]
@@ -147,9 +147,9 @@ class SlipReserve {
     if (!(elapsed > 0.0 && elapsed < kLongestGap)) return;
     const model::PredictionModel& model = car.model();
     const double peak = model.peak_slip_rear();
-    const model::VehicleParams& vehicle = model.vehicle();
-    const double late = delay + elapsed + vehicle.steer_lag + 0.5 * peak / vehicle.steer_rate_limit;
-    const double deviation = std::sqrt(car.errors().slide_variance(vehicle.rear_axle)) / (now.vx * peak);
+    const double late = delay + elapsed + 0.5 * peak / model.vehicle().steer_rate_limit;
+    const double deviation =
+        std::sqrt(car.errors().slide_variance(model.vehicle().rear_axle)) / (now.vx * peak);
     const double kept = kPerSecond * late * std::min(now.vx / kFast, 1.0) * deviation;
     if (!std::isfinite(kept)) return;
     seen_ = std::min(seen_ + elapsed, kMemory);
