@@ -199,10 +199,7 @@ void Guard::report_learned(controller::LearnedCar& learned) const noexcept {
 
 /// How the actuators answer, by a measurement that nothing is wrong with; the guard drives with that.
 void Guard::watch_actuators(const model::Measurement& seen) noexcept {
-  const Findings& found = monitor_.findings();
-  const bool is_doubted = found.late || found.unmeasured || found.frozen || found.speed_mismatch ||
-                          found.heading_jump || found.position_jump || direction_.rolls_back();
-  if (is_doubted) return actuators_.skip();
+  if (monitor_.findings() != Findings{} || direction_.rolls_back()) return actuators_.skip();
   const ActuatorAnswer before = actuators_.answer();
   if (options_.mode == GuardMode::kOn) learned_.see(seen, commanded_);
   ActuatorWatch::AxleUse use;
@@ -214,9 +211,8 @@ void Guard::watch_actuators(const model::Measurement& seen) noexcept {
   actuators_.see(
       seen, commanded_.changed([&](const auto& command) { return learned_.answer().effect_of(command); }),
       use);
-  const ActuatorAnswer& after = actuators_.answer();
-  if (after.offset != before.offset || after.braking != before.braking) count_with_answer();
-  if (after.braking != before.braking) count_with_actuators();
+  if (actuators_.answer() != before) count_with_answer();
+  if (actuators_.answer().braking != before.braking) count_with_actuators();
 }
 
 /// The plausible part of a measurement; estimate and road take it in.
@@ -386,8 +382,7 @@ void Guard::take_over(const model::Command& command, Rung rung, controller::Step
 
 /// The stored backup goes on; false where there is none.
 bool Guard::drive_backup(const StopStart& start, controller::StepResult& result) noexcept {
-  const Findings& findings = monitor_.findings();
-  const bool is_open = findings.unmeasured || findings.frozen || findings.late;
+  const bool is_open = monitor_.findings().is_blind();
   const bool is_measured = !is_open && report_.reason == GuardReason::kNoWayToStop;
   if (!filter_.drive(road_, start, is_open, is_measured, report_)) return false;
   take_over(filter_.stop().points[0].command, Rung::kGuardStop, result);

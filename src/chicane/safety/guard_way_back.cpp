@@ -208,9 +208,8 @@ void Guard::watch_for_reset(const model::Measurement& measured) noexcept {
 /// that has jumped aside is left to a person: the car would be led off the road by it.
 bool Guard::may_ask(const model::Measurement& measured) const noexcept {
   const Findings& found = monitor_.findings();
-  const bool is_doubted = Supervisor::wants_trial(found) && !found.unmeasured && !found.frozen && !found.late;
-  const bool rests = stands() && reset_watch_.rests();
-  if (!is_doubted || !rests || reset_watch_.is_waiting() || !(measured.time >= run_.ask_at)) return false;
+  if (!Supervisor::wants_trial(found) || found.is_blind() || !stands() || !reset_watch_.rests()) return false;
+  if (reset_watch_.is_waiting() || !(measured.time >= run_.ask_at)) return false;
   return !run_.has_jumped_aside || agrees_with_road(measured);
 }
 

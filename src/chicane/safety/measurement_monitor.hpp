@@ -16,6 +16,10 @@ struct Findings {
   bool speed_mismatch = false;  ///< its speed contradicts its displacement, or what the car can do
   bool heading_jump = false;    ///< its yaw is not where the car can have turned to
   bool position_jump = false;   ///< its place is not where the car can have moved to
+
+  /// Nothing of it says where the car is now.
+  [[nodiscard]] bool is_blind() const noexcept { return late || unmeasured || frozen; }
+  [[nodiscard]] bool operator==(const Findings&) const = default;
 };
 
 /// Checks whether measurements are plausible (docs/guard.md, eq. 7 and 8). What is not plausible
