@@ -159,11 +159,6 @@ bool ActuatorWatch::measure(Window& window, double length, double elapsed) const
   return window.calm_for > kCalmFor * pace_;
 }
 
-/// What the angle may be wrong by because the car slides otherwise than these sums have it [rad].
-double ActuatorWatch::unsure_slide(const Window& window) const noexcept {
-  return use_.sideslip ? std::fabs(window.slide / back(0).speed - *use_.sideslip) : 0.0;
-}
-
 void ActuatorWatch::judge_steering(Window& window, double length, double elapsed) noexcept {
   if (!measure(window, length, elapsed)) {
     window.differs_for = 0.0;
@@ -171,10 +166,12 @@ void ActuatorWatch::judge_steering(Window& window, double length, double elapsed
   }
   const double before = window.difference;
   window.difference = window.angle - window.asked - answer_.offset;
+  // The car may slide otherwise than these sums have it.
+  const double unsure_slide = use_.sideslip ? std::fabs(window.slide / back(0).speed - *use_.sideslip) : 0.0;
   const double slip_share = window.use > kSpareUse ? kSlipShareUsed : kSlipShare;
   const double band = kBand + kBandShare * std::fabs(window.asked) +
                       slip_share * std::max(std::fabs(window.slip), std::fabs(window.rear_slip)) +
-                      window.changed + unsure_slide(window) + kDeviations * std::sqrt(window.noise);
+                      window.changed + unsure_slide + kDeviations * std::sqrt(window.noise);
   // Wheels that turn the car less than asked for may as well lack grip.
   const bool may_lack_grip = window.use > kSpareUse && window.difference * window.slip < 0.0;
   const bool differs =

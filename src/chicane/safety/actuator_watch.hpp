@@ -121,7 +121,6 @@ class ActuatorWatch {
   };
   [[nodiscard]] bool slides(const Sample& from, double sideslip) const noexcept;
   [[nodiscard]] bool measure(Window& window, double length, double elapsed) const noexcept;
-  [[nodiscard]] double unsure_slide(const Window& window) const noexcept;
   void judge_steering(Window& window, double length, double elapsed) noexcept;
   void fit_steering(const Window& window, double length, double elapsed) noexcept;
   void judge_braking(double elapsed) noexcept;

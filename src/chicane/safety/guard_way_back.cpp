@@ -151,7 +151,6 @@ constexpr double kTrialRoom = 1.0;   // to the edge [m], where no stop fits; hal
 constexpr double kTrialSpeed = 1.0;  // [m/s]
 constexpr double kTrialPedal = 0.3;
 constexpr double kCreep = 1.0;             // [m/s] of a car that turns at the edge
-constexpr double kMostCreep = 1.2;         // [m/s] up to which it counts as one
 constexpr double kCreepDrive = 2.5;        // [1/s] of its drive: turned wheels resist
 constexpr double kCreepStep = 0.1;         // [s] of creeping that are simulated at once
 constexpr double kLongestCreep = 6.0;      // [s]
@@ -330,7 +329,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const double edge = start ? filter_.planner().edge(road_, *start) : 0.0;
   const bool stands = std::fabs(car.vx) < kStandingSpeed && !rolls_back;
   const bool is_on_road = start && edge >= 0.0;
-  const bool creeps = stands || (std::fabs(car.vx) < kMostCreep && !rolls_back);
+  const bool creeps = stands || (std::fabs(car.vx) < 1.2 * kCreep && !rolls_back);
   const double kept = std::min(edge, kKeptShare * options_.margin) - kCreepNearer;
   const auto stays = [&](double steer) {
     return creeping_edge(filter_.planner(), road_, *start, steer, vehicle) > kept;
@@ -353,8 +352,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const bool may_leave = run_.has_stood_astray && !waits && result.answer != Answer::kDrive;
   if (is_on_road && fit == Fit::kNone && !may_leave) {
     const double turned_to = steer;
-    const bool is_on_arc = std::fabs(car.vx) < kCreep && !rolls_back;
-    if (!is_on_arc || !drive_backup(*start, result)) return false;
+    if (!creeps || !drive_backup(*start, result)) return false;
     steer = turned_to;
     filter_.withdraw_stop();  // a receiver that plays the stop from now on would turn the wheels back
     return true;
