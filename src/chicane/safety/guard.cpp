@@ -273,8 +273,7 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   report_.reason = verdict.reason;
   if (!verdict.must_stop && actuators_.has_other_steering()) report_.reason = GuardReason::kOtherSteering;
   if (!verdict.must_stop && actuators_.has_weak_brakes()) report_.reason = GuardReason::kWeakBrakes;
-  if (!has_answer && !verdict.must_stop)
-    report_.reason = run_.is_far ? GuardReason::kFarFromRoad : GuardReason::kNoAnswer;
+  if (!has_answer && !verdict.must_stop) report_.reason = GuardReason::kNoAnswer;
 
   bool may_send = has_answer && !verdict.must_stop;
   if (may_send && start) may_send = filter(*start, cycle, result);
@@ -293,6 +292,7 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   if (verdict.must_stop && (start || run_.is_far) && try_reset(start, cycle, seen.time, result)) return;
   if (!verdict.must_stop && should_lead_back(seen.time, has_answer) && lead_back(sent_from_, cycle, result))
     return;
+  if (run_.is_far && !verdict.must_stop) report_.reason = GuardReason::kFarFromRoad;
   if (!start || !drive_backup(*start, result)) fall_back(seen, result);
   // What brakes a car that goes forward may be the reverse gear of one that rolls back.
   if (direction_.rolls_back() && result.command.throttle < 0.0)
