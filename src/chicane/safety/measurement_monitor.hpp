@@ -135,10 +135,11 @@ class ResetWatch {
   [[nodiscard]] bool jumps(const model::Measurement& now) const noexcept;
 
   model::Measurement last_;
-  model::Measurement origin_;  ///< where the car seems to have been put
+  model::Measurement origin_;    ///< where the car seems to have been put
+  model::Measurement asked_at_;  ///< where it was asked to answer
   bool has_last_ = false;
   model::Measurement rests_since_;
-  model::Measurement silent_{.time = -kLongest};  ///< where the car did not answer
+  model::Measurement silent_{.time = -kLongest};  ///< where it was, if it did not
   bool has_jumped_ = false;
   bool is_waiting_ = false;
   bool has_answered_ = false;
