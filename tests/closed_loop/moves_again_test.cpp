@@ -270,10 +270,10 @@ Standing stands_after(const FaultRun& run) {
 
 /// Causes of standing for ever: late beside a place in doubt; across its road after a slide; in wait for a
 /// lock that its wheels do not reach; between a way back and a stop that turn its wheels in turn; across a
-/// hairpin, nearer to the edge than it takes to turn by the tangent of its lock, without any fault; beside the
-/// edge of a bend, where the gentle way to the line leads over it; after a trial in which its speed was not
-/// measured. Wheels that a stop has locked on ice get grip again, those of the original with the brake that
-/// it keeps.
+/// hairpin, nearer to the edge than it takes to turn by the tangent of its lock, without any fault; beside
+/// the edge of a bend, where the gentle way to the line leads over it; after a trial in which its speed was
+/// not measured. Wheels that a stop has locked on ice get grip again, those of the original with the brake
+/// that it keeps.
 TEST(MovesAgain, FromWhereItStood) {
   for (const FaultRun& run :
        {FaultRun{"pid", "vw-vanagon", "oval", 0.902734, "gps_noise", 4.350844, 1.0},
