@@ -169,10 +169,11 @@ TEST(Presets, WeightedSlowsInCurvesAndDelayInModelForThem) {
       drive({{"guard.mode", "off"}, {"preset", "weighted"}, {"track", "lakeside"}, {"laps", "2"}});
   ASSERT_EQ(weighted.laps.size(), 2U);
   EXPECT_LT(weighted.laps[1].mean_speed, 0.95 * weighted.laps[1].top_speed);
-  const auto delayed =
-      drive({{"guard.mode", "off"}, {"preset", "delay-in-model"}, {"track", "lakeside"}, {"laps", "2"}});
-  ASSERT_EQ(delayed.laps.size(), 2U);
+  const auto delayed = drive({{"preset", "delay-in-model"}, {"track", "lakeside"}, {"laps", "3"}});
+  ASSERT_EQ(delayed.laps.size(), 3U);
   EXPECT_LT(delayed.laps[1].mean_speed, 0.9 * delayed.laps[1].top_speed);
+  for (std::size_t reason = 1; reason < delayed.guard_reasons.size(); ++reason)
+    EXPECT_EQ(delayed.guard_reasons[reason], 0U) << "18 steps where its braked wheels spun up: " << reason;
 }
 
 }  // namespace

@@ -105,10 +105,14 @@ TEST(WayBack, IsFoundFromAnywhere) {
 
 /// The dashboard, the terminal and the recording show what the frame says.
 TEST(WayBack, FrameSaysThatTheRoadIsTooFarAwayAndHowFar) {
-  for (const char* controller_road : {"track", "waypoints"}) {
-    auto scenario = scenario_of("oval", "udacity");
+  for (const char* preset : {"default", "weighted", "waypoints"}) {  // weighted answers from there
+    const bool is_shown = std::string_view(preset) == "waypoints";
+    auto scenario =
+        protocol::compose(
+            {.scenario_file = {}, .settings = {{"track", "oval"}, {"preset", is_shown ? "default" : preset}}})
+            .value();
     scenario.laps = 0;
-    if (std::string_view(controller_road) == "waypoints") scenario.guard.road = safety::GuardRoad::kWaypoints;
+    if (is_shown) scenario.guard.road = safety::GuardRoad::kWaypoints;
     const auto loop = std::move(*ClosedLoop::create(scenario));
     const road::PathPoint at = loop->track().centre().at(0.0);
     // Outside of the lap, whichever side that is.
@@ -119,8 +123,8 @@ TEST(WayBack, FrameSaysThatTheRoadIsTooFarAwayAndHowFar) {
     while (loop->time() < 30.0) loop->advance();
     const telemetry::Frame& frame = loop->frame();
     EXPECT_LT(std::hypot(frame.truth.vx, frame.truth.vy), 0.1) << "it stands, its braking fades";
-    EXPECT_EQ(frame.guard.reason, controller::GuardReason::kFarFromRoad) << controller_road;
-    EXPECT_GT(std::fabs(frame.result.report.lateral_error), 250.0) << controller_road;
+    EXPECT_EQ(frame.guard.reason, controller::GuardReason::kFarFromRoad) << preset;
+    EXPECT_GT(std::fabs(frame.result.report.lateral_error), 250.0) << preset;
   }
 }
 

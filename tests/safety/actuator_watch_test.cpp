@@ -22,6 +22,7 @@ struct Drive {
   std::function<model::Command(const model::Command&)> effect = [](const model::Command& c) { return c; };
   double ends = 1e9;             ///< the actuators are usual again [s]
   double heading_noise = 0.0;    ///< [rad]
+  double speed_noise = 0.0;      ///< [m/s]
   double throttle_after = 0.05;  ///< from kOnset on
   double steer = 0.05;           ///< amplitude [rad]
   double cycle = kCycle;         ///< [s]
@@ -49,6 +50,7 @@ struct Drive {
       now.y = place.y();
       now.psi = psi + heading_noise * random.normal();
       now.speed = std::hypot(body.vx, body.vy);
+      if (speed_noise > 0.0) now.speed += speed_noise * random.normal();
       watch.see(now, sent, use);
       if (first != nullptr && !(*first > 0.0) && !watch.answer().is_usual()) *first = time;
       const bool is_late = time >= kOnset && time < ends;
@@ -176,6 +178,19 @@ TEST(ActuatorWatch, FindsWeakBrakes) {
   EXPECT_NEAR(watch.answer().braking, 0.5, 0.05);
   drive.effect = [](const model::Command& c) { return c; };
   EXPECT_FALSE(drive.after(kOnset + 1.5).has_weak_brakes());
+}
+
+/// Locked wheels of `udacity` brake by four fifths of its model: noise of the speed passed for the rest.
+TEST(ActuatorWatch, DoesNotTakeNoiseForWeakBrakes) {
+  for (double speed = 30.0; speed < 60.0; speed += 1.0) {
+    Drive drive{.speed_noise = 0.15, .throttle_after = -0.5, .steer = 0.0, .cycle = 0.12, .speed = speed};
+    for (const double share : {0.85, 0.4}) {
+      drive.effect = [share](const model::Command& c) { return model::Command{c.steer, share * c.throttle}; };
+      double first = 0.0;
+      (void)drive.after(kOnset + 2.5, &first);
+      EXPECT_EQ(first > 0.0, share < 0.5) << speed;
+    }
+  }
 }
 
 TEST(ActuatorWatch, FindsTheSameInMeasurementsThatComeOftenOrSeldom) {

@@ -33,7 +33,7 @@
   ROW(kHeadingJump, "heading_jump", kError, "the measured yaw changed faster than a car can turn")               \
   ROW(kPositionJump, "position_jump", kError, "the measured position changed faster than a car can move")        \
   ROW(kNoWayToStop, "no_way_to_stop", kError, "the controller's command would leave no way to stop on the road")  \
-  ROW(kFarFromRoad, "far_from_road", kError, "the controller has no answer and the known road is far away")      \
+  ROW(kFarFromRoad, "far_from_road", kError, "the known road is far away")                                       \
   ROW(kTooFastForSilence, "too_fast_for_silence", kWarning,                                                      \
       "a receiver left alone could not stop the car on the road")                                                \
   ROW(kLate, "late", kError, "the measurements are of an earlier moment")                                        \

@@ -121,8 +121,8 @@ double PlantClock::time_of(double wall, const Leg& step) {
   if (step.steps == 0 || std::fabs(last_.speed) < kSampledSpeed * std::sqrt(size_) || count_ < kLeastLegs)
     return expected;
   const double usual = fit([](const Leg& leg) { return leg.steps; }).value;
-  const bool has_waited = std::fabs(step.plant - expected) > kBurst * expected;
-  if (has_waited && std::fabs(step.plant - usual) < kOfStep * usual) return step.plant;
+  if (std::fabs(step.plant - expected) > kBurst * expected && std::fabs(step.plant - usual) < kOfStep * usual)
+    return step.plant;
   const double most = expected - sampled_ + kSampling;
   const double counted =
       std::clamp(step.plant, std::max(most - 2.0 * kSampling, kLeastCounted * expected), most);
@@ -200,14 +200,6 @@ PlantClock::Fit PlantClock::fit(const Base& base) const {
   return fit;
 }
 
-/// Whether the pedals gain speed as in the time that the displacement shows: with a speed in another unit
-/// they gain the square of its share.
-bool PlantClock::agrees_with_pedal() const {
-  if (is_speed_known_) return true;
-  if (!(asked_ > kLeastAsked * std::sqrt(size_)) || !(gained_ > 0.0)) return false;
-  return std::fabs(log(gained_ / asked_)) < log(kPedalError);
-}
-
 bool PlantClock::take_up() {
   if (options_.lock_step > 0.0) return false;
   const Fit by_clock = fit([](const Leg& leg) { return leg.wall; });
@@ -215,10 +207,7 @@ bool PlantClock::take_up() {
   const bool was_in_step = step_ > 0.0;
   const bool is_distinct = std::max(by_clock.deviation, by_step.deviation) > kLeastDeviation;
   // Sums of all legs: a late message shortens the next leg, so a busy machine changes them by its last delay.
-  const double late = kLate * std::max(ratio_, 1.0) *
-                      (count_ == 1            ? 0.0
-                       : count_ == kLeastLegs ? kLateInFew
-                                              : 1.0);
+  const double late = (count_ == kLeastLegs ? kLateInFew : 1.0) * kLate * std::max(ratio_, 1.0);
   const bool differs = std::fabs(by_clock.all - ratio_ * by_clock.all_counted) > late &&
                        std::fabs(log(by_clock.all / (ratio_ * by_clock.all_counted))) > log(kLeastChange);
   // In real time with equal steps a busy machine makes the wall's clock look worse; but a step that waited is
@@ -241,8 +230,10 @@ bool PlantClock::take_up() {
       counted *= exp(std::max(kFollowed, 1.0 / static_cast<double>(count_)) * off);
     return false;
   }
-  if (!agrees_with_pedal()) return false;
-  is_speed_known_ = true;
+  // With a speed in another unit the pedals gain the square of its share in the time that displacement shows.
+  const bool shows_speed = asked_ > kLeastAsked * std::sqrt(size_) && gained_ > 0.0;
+  is_speed_known_ |= shows_speed && std::fabs(log(gained_ / asked_)) < log(kPedalError);
+  if (!is_speed_known_) return false;
   step_ = is_in_step ? by_step.value : 0.0;
   ratio_ = std::fabs(log(by_clock.value)) < kSame ? 1.0 : by_clock.value;
   count_ = 0;

@@ -78,7 +78,6 @@ class PlantClock {
   [[nodiscard]] Leg step_of(double wall, const model::Measurement& now, const model::Command& acting);
   [[nodiscard]] bool add(const Leg& step);
   [[nodiscard]] bool take_up();
-  [[nodiscard]] bool agrees_with_pedal() const;
   template <class Base>
   [[nodiscard]] Fit fit(const Base& base) const;
   [[nodiscard]] double time_of(double wall, const Leg& step);

@@ -15,9 +15,8 @@ constexpr double kShort = 0.12;        // [s] over which the car's motion is ave
 constexpr double kLong = 0.4;          // [s] the same for noisy sensors, and of braking
 constexpr double kSpacing = 0.0095;    // [s] at least between samples: they reach half a second back
 constexpr double kLongestStep = 0.25;  // [s] between measurements that are compared
-constexpr double kMostUse = 0.75;      // of the tyres' peak slip: beyond it grip is in question, too
-constexpr double kSliding = 0.75;  // of the tyres' peak slip as estimated: the car may slide or counter-steer
-constexpr double kSpareUse = 0.35;      // of it, up to which grip is not in question
+constexpr double kMostUse = 0.75;   // of the tyres' peak slip: beyond it grip is in question, or they slide
+constexpr double kSpareUse = 0.35;  // of it, up to which grip is not in question
 constexpr double kMostSideslip = 0.12;  // [rad]
 constexpr double kSlides = 0.08;        // [rad] of a course that is another one than a car that grips has
 constexpr double kCalmFor = 0.5;        // [s] after a slide, until the steering is judged again
@@ -90,6 +89,8 @@ void ActuatorWatch::add_sample(const model::Measurement& now, const tracking::Co
     next.braking = last.braking;
     const double part = (now.time - last.time) / kParts;
     const double kept = car.steer_lag > 0.0 ? exp(-part / car.steer_lag) : 0.0;
+    const double coasting = longitudinal_acceleration(car, 0.0, next.speed);
+    double gained = next.speed - last.speed;  // otherwise than by the pedals
     for (int i = 0; i < kParts; ++i) {
       const model::Command command = sent.at(last.time + (i + 0.5) * part);
       const double before = angle_;
@@ -97,9 +98,11 @@ void ActuatorWatch::add_sample(const model::Measurement& now, const tracking::Co
       next.angle += 0.5 * part * (before + angle_);
       next.swung += std::fabs(angle_ - before);
       next.pedal += command.throttle / kParts;
-      next.braking += part * (longitudinal_acceleration(car, 0.0, next.speed) -
-                              longitudinal_acceleration(car, std::min(command.throttle, 0.0), next.speed));
+      const double pushed = longitudinal_acceleration(car, command.throttle, next.speed);
+      next.braking += part * std::max(coasting - pushed, 0.0);
+      gained -= part * pushed;
     }
+    if (next.pedal >= 0.0) speed_noise_ += (0.5 * gained * gained - speed_noise_) * kParts * part / kLearned;
   }
   last_psi_ = now.psi;
   samples_[count_ % kSamples] = next;
@@ -150,15 +153,10 @@ bool ActuatorWatch::measure(Window& window, double length, double elapsed) const
   const double sideslip = std::fabs(window.slide) / car.vx;
   if (sideslip > 2.0 * kMostSideslip) window.slide = 0.0;
   window.use = std::max(tires.front, tires.rear);
-  const bool is_calm = window.use < kMostUse && use_.rear < kSliding && sideslip < kMostSideslip &&
+  const bool is_calm = window.use < kMostUse && use_.rear < kMostUse && sideslip < kMostSideslip &&
                        !slides(from, window.slide / car.vx);
   window.calm_for = is_calm ? window.calm_for + elapsed : 0.0;
   return window.calm_for > kCalmFor * pace_;
-}
-
-/// What the angle may be wrong by because the car slides otherwise than these sums have it [rad].
-double ActuatorWatch::unsure_slide(const Window& window) const noexcept {
-  return use_.sideslip ? std::fabs(window.slide / back(0).speed - *use_.sideslip) : 0.0;
 }
 
 void ActuatorWatch::judge_steering(Window& window, double length, double elapsed) noexcept {
@@ -168,10 +166,12 @@ void ActuatorWatch::judge_steering(Window& window, double length, double elapsed
   }
   const double before = window.difference;
   window.difference = window.angle - window.asked - answer_.offset;
+  // The car may slide otherwise than these sums have it.
+  const double unsure_slide = use_.sideslip ? std::fabs(window.slide / back(0).speed - *use_.sideslip) : 0.0;
   const double slip_share = window.use > kSpareUse ? kSlipShareUsed : kSlipShare;
   const double band = kBand + kBandShare * std::fabs(window.asked) +
                       slip_share * std::max(std::fabs(window.slip), std::fabs(window.rear_slip)) +
-                      window.changed + unsure_slide(window) + kDeviations * std::sqrt(window.noise);
+                      window.changed + unsure_slide + kDeviations * std::sqrt(window.noise);
   // Wheels that turn the car less than asked for may as well lack grip.
   const bool may_lack_grip = window.use > kSpareUse && window.difference * window.slip < 0.0;
   const bool differs =
@@ -228,15 +228,15 @@ void ActuatorWatch::judge_braking(double elapsed) noexcept {
   const Sample& from = back(size);
   double gentlest = -1.0;
   for (std::size_t i = 0; i <= size; ++i) gentlest = std::max(gentlest, back(i).pedal);
-  if (gentlest > -kBraked * car.brake_throttle_limit || std::max(use_.front, use_.rear) > kSliding) {
+  if (gentlest > -kBraked * car.brake_throttle_limit || std::max(use_.front, use_.rear) > kMostUse) {
     weak_for_ = 0.0;
     return;
   }
-  const double time = now.time - from.time;
-  const double drag = -longitudinal_acceleration(car, 0.0, 0.5 * (now.speed + from.speed));
-  const double braked = (from.speed - now.speed) - drag * time;
-  const double share = std::clamp(braked / (now.braking - from.braking), kLeastShare, 1.0);
-  weak_for_ = share < kWeak ? weak_for_ + elapsed : 0.0;
+  const double coasting = longitudinal_acceleration(car, 0.0, 0.5 * (now.speed + from.speed));
+  const double braked = (from.speed - now.speed) + coasting * (now.time - from.time);
+  const double asked = now.braking - from.braking;
+  const double share = std::clamp(braked / asked, kLeastShare, 1.0);
+  weak_for_ = braked + 3.0 * std::sqrt(2.0 * speed_noise_) < kWeak * asked ? weak_for_ + elapsed : 0.0;
   if (weak_for_ == 0.0 || weak_for_ == elapsed) share_ = share;
   share_ += (share - share_) * std::min(elapsed / (kBrakingTime * pace_), 1.0);
   if (weak_for_ > kWeakFor * pace_ || has_weak_brakes()) answer_.braking = share_ > kStrong ? 1.0 : share_;

@@ -121,7 +121,6 @@ class ActuatorWatch {
   };
   [[nodiscard]] bool slides(const Sample& from, double sideslip) const noexcept;
   [[nodiscard]] bool measure(Window& window, double length, double elapsed) const noexcept;
-  [[nodiscard]] double unsure_slide(const Window& window) const noexcept;
   void judge_steering(Window& window, double length, double elapsed) noexcept;
   void fit_steering(const Window& window, double length, double elapsed) noexcept;
   void judge_braking(double elapsed) noexcept;
@@ -140,8 +139,9 @@ class ActuatorWatch {
   bool is_steered_ = false;          ///< the offset is estimated
   // Normal equations of (gain - 1, offset), and the time that they remember [s].
   double gg_ = 0.0, go_ = 0.0, oo_ = 0.0, g_ = 0.0, o_ = 0.0, memory_ = 0.0;
-  double weak_for_ = 0.0;  ///< [s]
-  double share_ = 1.0;     ///< of the braking, lately
+  double weak_for_ = 0.0;     ///< [s]
+  double share_ = 1.0;        ///< of the braking, lately
+  double speed_noise_ = 0.0;  ///< mean square of the measured speed's noise [m²/s²]
 };
 
 }  // namespace chicane::safety

@@ -199,10 +199,7 @@ void Guard::report_learned(controller::LearnedCar& learned) const noexcept {
 
 /// How the actuators answer, by a measurement that nothing is wrong with; the guard drives with that.
 void Guard::watch_actuators(const model::Measurement& seen) noexcept {
-  const Findings& found = monitor_.findings();
-  const bool is_doubted = found.late || found.unmeasured || found.frozen || found.speed_mismatch ||
-                          found.heading_jump || found.position_jump || direction_.rolls_back();
-  if (is_doubted) return actuators_.skip();
+  if (monitor_.findings() != Findings{} || direction_.rolls_back()) return actuators_.skip();
   const ActuatorAnswer before = actuators_.answer();
   if (options_.mode == GuardMode::kOn) learned_.see(seen, commanded_);
   ActuatorWatch::AxleUse use;
@@ -214,9 +211,8 @@ void Guard::watch_actuators(const model::Measurement& seen) noexcept {
   actuators_.see(
       seen, commanded_.changed([&](const auto& command) { return learned_.answer().effect_of(command); }),
       use);
-  const ActuatorAnswer& after = actuators_.answer();
-  if (after.offset != before.offset || after.braking != before.braking) count_with_answer();
-  if (after.braking != before.braking) count_with_actuators();
+  if (actuators_.answer() != before) count_with_answer();
+  if (actuators_.answer().braking != before.braking) count_with_actuators();
 }
 
 /// The plausible part of a measurement; estimate and road take it in.
@@ -277,8 +273,7 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   report_.reason = verdict.reason;
   if (!verdict.must_stop && actuators_.has_other_steering()) report_.reason = GuardReason::kOtherSteering;
   if (!verdict.must_stop && actuators_.has_weak_brakes()) report_.reason = GuardReason::kWeakBrakes;
-  if (!has_answer && !verdict.must_stop)
-    report_.reason = run_.is_far ? GuardReason::kFarFromRoad : GuardReason::kNoAnswer;
+  if (!has_answer && !verdict.must_stop) report_.reason = GuardReason::kNoAnswer;
 
   bool may_send = has_answer && !verdict.must_stop;
   if (may_send && start) may_send = filter(*start, cycle, result);
@@ -297,6 +292,7 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   if (verdict.must_stop && (start || run_.is_far) && try_reset(start, cycle, seen.time, result)) return;
   if (!verdict.must_stop && should_lead_back(seen.time, has_answer) && lead_back(sent_from_, cycle, result))
     return;
+  if (run_.is_far && !verdict.must_stop) report_.reason = GuardReason::kFarFromRoad;
   if (!start || !drive_backup(*start, result)) fall_back(seen, result);
   // What brakes a car that goes forward may be the reverse gear of one that rolls back.
   if (direction_.rolls_back() && result.command.throttle < 0.0)
@@ -386,8 +382,7 @@ void Guard::take_over(const model::Command& command, Rung rung, controller::Step
 
 /// The stored backup goes on; false where there is none.
 bool Guard::drive_backup(const StopStart& start, controller::StepResult& result) noexcept {
-  const Findings& findings = monitor_.findings();
-  const bool is_open = findings.unmeasured || findings.frozen || findings.late;
+  const bool is_open = monitor_.findings().is_blind();
   const bool is_measured = !is_open && report_.reason == GuardReason::kNoWayToStop;
   if (!filter_.drive(road_, start, is_open, is_measured, report_)) return false;
   take_over(filter_.stop().points[0].command, Rung::kGuardStop, result);

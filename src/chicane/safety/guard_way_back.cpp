@@ -175,6 +175,7 @@ model::Command creep(double steer, double vx, const model::VehicleParams& car) n
 /// it is stopped.
 double creeping_edge(const StopPlanner& planner, const road::KnownRoad& road, StopStart at, double steer,
                      const model::VehicleParams& car) noexcept {
+  at.body.steer = steer;
   const double edge = planner.edge(road, at), ends = at.time + kLongestCreep;
   double least = edge;
   do {
@@ -208,9 +209,8 @@ void Guard::watch_for_reset(const model::Measurement& measured) noexcept {
 /// that has jumped aside is left to a person: the car would be led off the road by it.
 bool Guard::may_ask(const model::Measurement& measured) const noexcept {
   const Findings& found = monitor_.findings();
-  const bool is_doubted = Supervisor::wants_trial(found) && !found.unmeasured && !found.frozen && !found.late;
-  const bool rests = stands() && reset_watch_.rests();
-  if (!is_doubted || !rests || reset_watch_.is_waiting() || !(measured.time >= run_.ask_at)) return false;
+  if (!Supervisor::wants_trial(found) || found.is_blind() || !stands() || !reset_watch_.rests()) return false;
+  if (reset_watch_.is_waiting() || !(measured.time >= run_.ask_at)) return false;
   return !run_.has_jumped_aside || agrees_with_road(measured);
 }
 
@@ -219,8 +219,12 @@ bool Guard::agrees_with_road(const model::Measurement& measured) const noexcept 
   const road::ReferenceLine& line = road_.line();
   if (options_.road == GuardRoad::kTrack && !line.is_empty()) {
     const auto at = line.project_along(place, measured.psi, 2.0 * model_.vehicle().width);
-    return at.distance < kFarFromRoad && std::fabs(at.d - d_) < kMostAside &&
-           std::fabs(angle_difference(measured.psi, line.at(at.s).heading)) < kAlongWaypoints;
+    const double e = angle_difference(measured.psi, line.at(at.s).heading);
+    // Of a car that counts as off its road, a place on it is the likelier one.
+    const bool is_back =
+        run_.is_astray && filter_.planner().edge(road_, {.s = at.s, .d = at.d, .e = e}) > 0.0;
+    return at.distance < kFarFromRoad && std::fabs(e) < kAlongWaypoints &&
+           (std::fabs(at.d - d_) < kMostAside || is_back);
   }
   const auto size = static_cast<std::size_t>(std::max(measured.waypoint_count, 0));
   for (std::size_t i = 0; i + 1 < size; ++i) {
@@ -325,23 +329,31 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const double edge = start ? filter_.planner().edge(road_, *start) : 0.0;
   const bool stands = std::fabs(car.vx) < kStandingSpeed && !rolls_back;
   const bool is_on_road = start && edge >= 0.0;
-  // Who drives before the wheels have turned uses the room that turning takes.
-  const bool has_turned = std::fabs(result.command.steer - car.steer) < kTurnedWheels * vehicle.steer_limit;
-  const bool waits = stands && is_on_road && !(turns_as_asked(act, car) && has_turned);
-  if (stands && result.command.throttle > 0.0) result.command = creep(result.command.steer, car.vx, vehicle);
-  Fit fit = start && !waits ? verify(*start, cycle, result.command, true) : Fit::kNone;
+  const bool creeps = stands || (std::fabs(car.vx) < 1.2 * kCreep && !rolls_back);
   const double kept = std::min(edge, kKeptShare * options_.margin) - kCreepNearer;
-  if (fit == Fit::kNone && stands && is_on_road && !waits &&
-      creeping_edge(filter_.planner(), road_, *start, car.steer, vehicle) > kept)
+  const auto stays = [&](double steer) {
+    return creeping_edge(filter_.planner(), road_, *start, steer, vehicle) > kept;
+  };
+  // In a bend a gentle way to the line leads over the edge beside it, where more lock does not.
+  double& steer = result.command.steer;
+  if (creeps && is_on_road && !stays(steer))
+    steer = stays(car.steer) ? car.steer : std::copysign(vehicle.steer_limit, -start->e);
+  // Who drives before the wheels have turned uses the room that turning takes.
+  const bool has_turned = std::fabs(steer - car.steer) < kTurnedWheels * vehicle.steer_limit;
+  const bool waits = stands && is_on_road && !(turns_as_asked(act, car) && has_turned);
+  if (stands && result.command.throttle > 0.0) result.command = creep(steer, car.vx, vehicle);
+  Fit fit = start && !waits ? verify(*start, cycle, result.command, true) : Fit::kNone;
+  if (fit == Fit::kNone && creeps && is_on_road && !waits && has_turned && stays(car.steer)) {
+    result.command = creep(steer, car.vx, vehicle);
     fit = Fit::kSeen;
+  }
   // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there,
   // and once it stands. Otherwise a car that creeps or stands turns its wheels: it needs less room then.
   const bool may_leave = run_.has_stood_astray && !waits && result.answer != Answer::kDrive;
   if (is_on_road && fit == Fit::kNone && !may_leave) {
-    const double steer = result.command.steer;
-    const bool is_on_arc = std::fabs(car.vx) < kCreep && !rolls_back;
-    if (!is_on_arc || !drive_backup(*start, result)) return false;
-    result.command.steer = steer;
+    const double turned_to = steer;
+    if (!creeps || !drive_backup(*start, result)) return false;
+    steer = turned_to;
     filter_.withdraw_stop();  // a receiver that plays the stop from now on would turn the wheels back
     return true;
   }

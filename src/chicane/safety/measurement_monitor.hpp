@@ -16,6 +16,10 @@ struct Findings {
   bool speed_mismatch = false;  ///< its speed contradicts its displacement, or what the car can do
   bool heading_jump = false;    ///< its yaw is not where the car can have turned to
   bool position_jump = false;   ///< its place is not where the car can have moved to
+
+  /// Nothing of it says where the car is now.
+  [[nodiscard]] bool is_blind() const noexcept { return late || unmeasured || frozen; }
+  [[nodiscard]] bool operator==(const Findings&) const = default;
 };
 
 /// Checks whether measurements are plausible (docs/guard.md, eq. 7 and 8). What is not plausible
@@ -131,10 +135,11 @@ class ResetWatch {
   [[nodiscard]] bool jumps(const model::Measurement& now) const noexcept;
 
   model::Measurement last_;
-  model::Measurement origin_;  ///< where the car seems to have been put
+  model::Measurement origin_;    ///< where the car seems to have been put
+  model::Measurement asked_at_;  ///< where it was asked to answer
   bool has_last_ = false;
   model::Measurement rests_since_;
-  model::Measurement silent_{.time = -kLongest};  ///< where the car did not answer
+  model::Measurement silent_{.time = -kLongest};  ///< where it was, if it did not
   bool has_jumped_ = false;
   bool is_waiting_ = false;
   bool has_answered_ = false;

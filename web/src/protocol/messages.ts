@@ -216,7 +216,7 @@ export const REASON = {
   POSITION_JUMP: 6,
   /** the controller's command would leave no way to stop on the road */
   NO_WAY_TO_STOP: 7,
-  /** the controller has no answer and the known road is far away */
+  /** the known road is far away */
   FAR_FROM_ROAD: 8,
   /** a receiver left alone could not stop the car on the road */
   TOO_FAST_FOR_SILENCE: 9,
@@ -502,7 +502,7 @@ export const REASON_WORDS: Words = {
   },
   [REASON.FAR_FROM_ROAD]: {
     severity: 'bad',
-    text: 'the controller has no answer and the known road is far away',
+    text: 'the known road is far away',
   },
   [REASON.TOO_FAST_FOR_SILENCE]: {
     severity: 'warning',
