@@ -107,15 +107,14 @@ TEST(OpenRoad, IsRacedAndEndsAtAStand) {
     const Settings slow{{"preset", "default"}, {"car", car}, {"track", "stage"}, {"laps", "1"}};
     const Settings on{
         {"preset", "race"}, {"car", car}, {"track", "stage"}, {"laps", "0"}, {"time_limit_s", "75"}};
-    const auto loop = ClosedLoop::create(protocol::compose({.scenario_file = "", .settings = on}).value());
-    ASSERT_TRUE(loop);
-    const auto longer = run_closed_loop(**loop);
+    const auto loop = test::loop_of(test::scenario_of(on));
+    const auto longer = run_closed_loop(*loop);
     ASSERT_EQ(longer.laps_completed, 1) << car;
     EXPECT_LT(longer.laps[0].lap_time, 0.96 * drive(slow).laps[0].lap_time) << car;
     EXPECT_EQ(longer.off_track_events, 0) << car;
-    EXPECT_LT((*loop)->frame().measurement.speed, 1.0) << car;
-    const double place = (*loop)->track().start_s() + (*loop)->world().progress;
-    EXPECT_NEAR(place, (*loop)->track().length() - 7.5, 7.5) << car << ": in the last metres of the road";
+    EXPECT_LT(loop->frame().measurement.speed, 1.0) << car;
+    const double place = loop->track().start_s() + loop->world().progress;
+    EXPECT_NEAR(place, loop->track().length() - 7.5, 7.5) << car << ": in the last metres of the road";
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
@@ -34,19 +35,15 @@ Start drive_from(const std::string& preset, double offset, const std::string& se
   const fs::path file =
       fs::path(::testing::TempDir()) / ("standstill_" + std::to_string(::getpid()) + ".csv");
   std::ofstream(file) << track;
-  const auto scenario = protocol::compose({.scenario_file = {},
-                                           .settings = {{"preset", preset},
-                                                        {"track", file.string()},
-                                                        {"guard.mode", "off"},
-                                                        {"laps", "0"},
-                                                        {"time_limit_s", seconds}}});
-  EXPECT_TRUE(scenario);
-  const auto loop = ClosedLoop::create(*scenario);
+  const auto loop = test::loop_of(test::scenario_of({{"preset", preset},
+                                                     {"track", file.string()},
+                                                     {"guard.mode", "off"},
+                                                     {"laps", "0"},
+                                                     {"time_limit_s", seconds}}));
   fs::remove(file);
-  EXPECT_TRUE(loop);
   Start start;
   bool is_first = true;
-  static_cast<void>(run_closed_loop(**loop, {.on_frame = [&](const telemetry::Frame& frame) {
+  static_cast<void>(run_closed_loop(*loop, {.on_frame = [&](const telemetry::Frame& frame) {
     if (is_first) start = {.first_steer = frame.result.command.steer, .begin = frame.lateral_error};
     is_first = false;
     start.end = frame.lateral_error;

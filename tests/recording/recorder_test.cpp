@@ -15,6 +15,7 @@
 #include "chicane/recording/replay.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/telemetry/mcap.hpp"
+#include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {
@@ -22,13 +23,9 @@ namespace {
 
 using telemetry::TemporaryFile;
 
-std::unique_ptr<run::ClosedLoop> short_run(std::vector<std::pair<std::string, std::string>> settings) {
+std::unique_ptr<run::ClosedLoop> short_run(test::Settings settings) {
   settings.insert(settings.begin(), {{"laps", "1"}, {"time_limit_s", "12"}});
-  const auto scenario = protocol::compose({.scenario_file = {}, .settings = settings});
-  EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
-  auto loop = run::ClosedLoop::create(scenario.value_or(scenario::Scenario{}));
-  EXPECT_TRUE(loop);
-  return std::move(*loop);
+  return test::loop_of(test::scenario_of(settings));
 }
 
 RecorderOptions recording(const run::ClosedLoop& loop, const std::string& path) {
@@ -247,13 +244,12 @@ TEST(Recorder, HoldsEveryTopicAndTimesThatNeverGoBackWhenTheRunStartsAnew) {
 
 TEST(Recorder, RecordsFaultsSoThatTheyComeOutTheSame) {
   const TemporaryFile file;
-  auto scenario = protocol::compose({.scenario_file = "", .settings = {}});
-  ASSERT_TRUE(scenario);
+  scenario::Scenario scenario = test::scenario_of();
   for (const char* name : {"gps_noise", "slow_solver", "link_lost"}) {
-    scenario->faults.push_back(
-        sim::default_event(*sim::fault_named(name), 0.5 + static_cast<double>(scenario->faults.size())));
+    scenario.faults.push_back(
+        sim::default_event(*sim::fault_named(name), 0.5 + static_cast<double>(scenario.faults.size())));
   }
-  const auto loop = std::move(*run::ClosedLoop::create(*scenario));
+  const auto loop = test::loop_of(scenario);
   auto recorder = Recorder::create(recording(*loop, file.path()));
   ASSERT_TRUE(recorder);
   while (loop->time() < 4.0) {
@@ -288,9 +284,8 @@ TEST(Recorder, WritesEachLapOnce) {
 
 TEST(Recorder, HasTheLastLapOfARun) {
   const TemporaryFile file;
-  auto scenario = protocol::compose(
-      {.scenario_file = {}, .settings = {{"preset", "default"}, {"track", "oval"}, {"laps", "2"}}});
-  const auto loop = std::move(*run::ClosedLoop::create(*scenario));
+  const auto loop =
+      test::loop_of(test::scenario_of({{"preset", "default"}, {"track", "oval"}, {"laps", "2"}}));
   static_cast<void>(record(*loop, file.path()));
   EXPECT_EQ(loop->summary().laps_completed, 2);
   int laps = 0;

@@ -10,16 +10,13 @@
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::recording {
 namespace {
 
 scenario::Scenario oval() {
-  const auto scenario = protocol::compose(
-      {.scenario_file = {},
-       .settings = {{"track", "oval"}, {"laps", "0"}, {"sensor.position_noise_m", "0.02"}}});
-  EXPECT_TRUE(scenario);
-  return scenario.value_or(scenario::Scenario{});
+  return test::scenario_of({{"track", "oval"}, {"laps", "0"}, {"sensor.position_noise_m", "0.02"}});
 }
 
 /// The events of a run in which settings and faults change, as a recording has them.

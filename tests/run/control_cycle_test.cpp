@@ -10,6 +10,7 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 scenario::Scenario scenario_of(const char* preset) {
-  return protocol::compose({.scenario_file = {}, .settings = {{"preset", preset}, {"laps", "1"}}}).value();
+  return test::scenario_of({{"preset", preset}, {"laps", "1"}});
 }
 
 TEST(ControlCycle, DoesOutsideTheLoopWhatItDoesInside) {
@@ -75,7 +76,7 @@ class EndlessPlan final : public controller::Controller {
 };
 
 TEST(ControlCycle, KeepsAPlanOfAnySizeWithinItsCapacity) {
-  const auto scenario = protocol::compose({.scenario_file = {}, .settings = {{"car", "f1tenth"}}}).value();
+  const auto scenario = test::scenario_of({{"car", "f1tenth"}});
   ControlCycle cycle(std::make_unique<EndlessPlan>(), scenario, nullptr);
   const auto frame = std::make_unique<telemetry::Frame>();
   frame->measurement = {.x = 0.0, .y = 0.0, .psi = 0.0, .speed = 1.0};

@@ -8,12 +8,13 @@
 #include <string_view>
 
 #include "chicane/protocol/library.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
 
 scenario::Scenario scenario_of(const std::string& car, const std::string& preset) {
-  return protocol::compose({.scenario_file = {}, .settings = {{"preset", preset}, {"car", car}}}).value();
+  return test::scenario_of({{"preset", preset}, {"car", car}});
 }
 
 /// With `road-car`. The course is planned once for all tests: that takes longer than they do.

@@ -14,18 +14,15 @@
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/setting.hpp"
+#include "support/roads.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
 
 scenario::Scenario race_by_waypoints(const char* car = "udacity") {
-  return protocol::compose({.scenario_file = {},
-                            .settings = {{"preset", "race"},
-                                         {"car", car},
-                                         {"track", "oval"},
-                                         {"guard.road", "waypoints"},
-                                         {"laps", "3"}}})
-      .value();
+  return test::scenario_of(
+      {{"preset", "race"}, {"car", car}, {"track", "oval"}, {"guard.road", "waypoints"}, {"laps", "3"}});
 }
 
 /// Wants a lap of the waypoints it is given.
@@ -53,12 +50,7 @@ class Learner final : public controller::Controller {
   controller::StepResult result_;
 };
 
-std::vector<Vec2> circle(double radius) {
-  std::vector<Vec2> points;
-  for (int i = 0; i < 40; ++i)
-    points.emplace_back(radius * std::cos(kTwoPi * i / 40.0), radius * std::sin(kTwoPi * i / 40.0));
-  return points;
-}
+std::vector<Vec2> circle(double radius) { return test::circle_points(radius, 40); }
 
 std::shared_ptr<const road::RacingRoad> wait_for_lap(LapPlanner& planner, const Learner& learner) {
   for (int i = 0; i < 12000; ++i) {

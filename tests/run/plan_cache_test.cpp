@@ -20,6 +20,7 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/library.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
@@ -149,14 +150,14 @@ TEST_F(PlanCacheTest, AWholeLimitAnswersWhateverNeedsNoMoreWork) {
 }
 
 TEST_F(PlanCacheTest, OfAScenarioOneIsKnownOnceItWasFound) {
-  const auto scenario = protocol::compose({.scenario_file = {}, .settings = {{"car", "udacity"}}}).value();
+  const auto scenario = test::scenario_of({{"car", "udacity"}});
   EXPECT_FALSE(known_limit(scenario, ring()));
   const lap_time::PlantLimit found = limit_of(scenario, ring(), {.wants_witness = false}).value();
   const auto known = known_limit(scenario, ring());
   ASSERT_TRUE(known);
   EXPECT_EQ(to_bytes(*known), to_bytes(found));
 
-  const auto small = protocol::compose({.scenario_file = {}, .settings = {{"car", "f1tenth"}}}).value();
+  const auto small = test::scenario_of({{"car", "f1tenth"}});
   EXPECT_FALSE(known_limit(small, ring()));
   const auto refused = limit_of(small, ring(), {});
   ASSERT_FALSE(refused);
