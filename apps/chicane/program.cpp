@@ -29,6 +29,9 @@
 namespace chicane::apps {
 namespace {
 
+constexpr std::chrono::milliseconds kTerminalPeriod{100};
+constexpr std::chrono::seconds kLogPeriod{10};
+
 /// Plans and limits are kept where the user's caches are, unless --no-cache is given.
 void use_cache(const Options& options) {
   const std::string folder = options.uses_cache ? run::DiskCache::default_folder() : "";
@@ -200,6 +203,30 @@ ExitCode say_how_to_build(const std::string& command, std::string_view program, 
 }
 
 }  // namespace
+
+StatusLine::StatusLine() : is_terminal_{isatty(STDERR_FILENO) == 1} {
+  next_ = begin_ + (is_terminal_ ? std::chrono::seconds{0} : kLogPeriod);
+}
+
+double StatusLine::seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+
+void StatusLine::show(std::string_view line) {
+  next_ = Clock::now() + (is_terminal_ ? Clock::duration(kTerminalPeriod) : kLogPeriod);
+  has_line_ = is_terminal_;
+  if (is_terminal_)
+    fmt::print(stderr, "\r{}\x1b[K", line);  // clears the rest of the old line
+  else
+    fmt::print(stderr, "{}\n", line);
+  std::fflush(stderr);
+}
+
+void StatusLine::end() {
+  if (has_line_.exchange(false)) fmt::print(stderr, "\n");
+}
+
+void StatusLine::clear() {
+  if (has_line_.exchange(false)) fmt::print(stderr, "\r\x1b[K");
+}
 
 ExitCode ros(const Options& options) {
   const std::string program = other_program("chicane-ros", true);

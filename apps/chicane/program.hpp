@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "options.hpp"
@@ -26,6 +27,34 @@ void let_interrupts_end();
 /// `kOneInterrupt` after the first ends the process at once. `flag` must outlive the process's last signal:
 /// make it static, or a variable of main().
 void catch_interrupts(std::atomic<bool>& flag);
+
+/// Tells on stderr how far a work is: on a terminal one line that renews itself ten times a second, otherwise
+/// a line every ten seconds.
+class StatusLine {
+ public:
+  StatusLine();
+  ~StatusLine() { end(); }
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+
+  [[nodiscard]] bool is_terminal() const noexcept { return is_terminal_; }
+  /// Time since the work began [s].
+  [[nodiscard]] double seconds() const;
+  /// Whether it is time for another show().
+  [[nodiscard]] bool is_due() const { return Clock::now() >= next_; }
+  void show(std::string_view line);
+  /// Leaves the cursor at the beginning of a line, below the one that was shown. Any thread.
+  void end();
+  /// Wipes the line that was shown.
+  void clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool is_terminal_;
+  std::atomic<bool> has_line_{false};  ///< the cursor stands behind a line that will be rewritten
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point next_;
+};
 
 // Programs that are installed apart from this one, and do the work of one of its commands.
 
