@@ -15,6 +15,8 @@
 #include "chicane/recording/replay.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/telemetry/mcap.hpp"
+#include "support/own_controller.hpp"
+#include "support/roads.hpp"
 #include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 
@@ -76,6 +78,22 @@ INSTANTIATE_TEST_SUITE_P(Controllers, RecordedController,
                            std::erase(name, '-');
                            return name;
                          });
+
+// Only who has the parts can compute it again.
+TEST(Replay, IsByTheControllerAndOnTheTrackOfOnesOwn) {
+  const TemporaryFile file;
+  run::Factories parts(test::make_own_controller);
+  parts.track = [](const scenario::Scenario&) -> Result<road::Track> {
+    return test::circle_road(80.0, 50, 5.0, 5.0);
+  };
+  const auto loop = run::ClosedLoop::create(test::scenario_of({{"laps", "0"}, {"time_limit_s", "8"}}), parts);
+  ASSERT_TRUE(loop) << loop.error().message;
+  EXPECT_EQ(record(**loop, file.path()).frames, 200U);
+  const Result<ReplayReport> replayed = verify_recording(file.path(), parts);
+  ASSERT_TRUE(replayed) << replayed.error().message;
+  EXPECT_TRUE(replayed->is_verified()) << replayed->first_difference.value_or(0);
+  EXPECT_FALSE(verify_recording(file.path())->is_verified());
+}
 
 // Delay and steering that a run finds out about its car are found again, and taken up at the same steps.
 TEST(Recorder, HasARunThatIdentifiesItsCar) {

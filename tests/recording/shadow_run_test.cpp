@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
+#include "support/own_controller.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::recording {
@@ -59,18 +60,8 @@ RunEvents told(const std::vector<RecordedEvent>& events, std::size_t from) {
 }
 
 /// Stands, and wants a lap to race by.
-class WantsLap final : public controller::Controller {
- public:
-  [[nodiscard]] const controller::StepResult& step(const model::Measurement& /*now*/,
-                                                   Deadline /*deadline*/) noexcept override {
-    return result_;
-  }
+class WantsLap final : public test::OwnController {
   [[nodiscard]] controller::LapRequest wants_lap() const noexcept override { return {.is_wanted = true}; }
-  void reset() noexcept override {}
-  [[nodiscard]] std::string_view name() const noexcept override { return "wants-lap"; }
-
- private:
-  controller::StepResult result_;
 };
 
 /// All that a branch comes to, number by number.

@@ -10,6 +10,7 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/own_controller.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {
@@ -61,18 +62,9 @@ TEST(ControlCycle, CountsItsCyclesAndSaysWhereARunBegins) {
 }
 
 /// A user's controller may write any size; a model car's plan is brought to scale point by point.
-class EndlessPlan final : public controller::Controller {
+class EndlessPlan final : public test::OwnController {
  public:
-  const controller::StepResult& step(const model::Measurement&, Deadline) noexcept override {
-    result_.plan.size = result_.plan.reference_size = 1'000'000;
-    result_.command = {0.0, 0.1};
-    return result_;
-  }
-  void reset() noexcept override {}
-  [[nodiscard]] std::string_view name() const noexcept override { return "endless-plan"; }
-
- private:
-  controller::StepResult result_;
+  EndlessPlan() : OwnController({0.0, 0.1}) { result_.plan.size = result_.plan.reference_size = 1'000'000; }
 };
 
 TEST(ControlCycle, KeepsAPlanOfAnySizeWithinItsCapacity) {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "chicane/protocol/library.hpp"
+#include "support/own_controller.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {
@@ -47,23 +48,11 @@ TEST(LaneChange, IsPassedFasterByRaceThanByPurePursuitAndStanley) {
 }
 #endif
 
-class Straight final : public controller::Controller {
- public:
-  [[nodiscard]] const controller::StepResult& step(const model::Measurement&, Deadline) noexcept override {
-    return result_;
-  }
-  void reset() noexcept override {}
-  [[nodiscard]] std::string_view name() const noexcept override { return "straight"; }
-
- private:
-  controller::StepResult result_{};
-};
-
 TEST(LaneChange, IsNotPassedByWhoDrivesStraightOn) {
   const scenario::Scenario scenario = scenario_of("udacity", "default");
   const auto limit =
       LaneChange::create(scenario.vehicle).value().find_limit(scenario, [](const scenario::Scenario&) {
-        return Result<std::unique_ptr<controller::Controller>>(std::make_unique<Straight>());
+        return Result<std::unique_ptr<controller::Controller>>(std::make_unique<test::OwnController>());
       });
   ASSERT_TRUE(limit.has_value());
   EXPECT_EQ(limit->passed_kmph, 0);

@@ -14,6 +14,7 @@
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/setting.hpp"
+#include "support/own_controller.hpp"
 #include "support/roads.hpp"
 #include "support/runs.hpp"
 
@@ -26,19 +27,12 @@ scenario::Scenario race_by_waypoints(const char* car = "udacity") {
 }
 
 /// Wants a lap of the waypoints it is given.
-class Learner final : public controller::Controller {
+class Learner final : public test::OwnController {
  public:
   explicit Learner(std::vector<Vec2> waypoints) : waypoints_{std::move(waypoints)} {}
-  [[nodiscard]] const controller::StepResult& step(const model::Measurement& /*now*/,
-                                                   Deadline /*deadline*/) noexcept override {
-    return result_;
-  }
   [[nodiscard]] controller::LapRequest wants_lap() const noexcept override {
     return {.is_wanted = is_wanted, .waypoints = waypoints_, .terms = terms};
   }
-  void reset() noexcept override {}
-  [[nodiscard]] std::string_view name() const noexcept override { return "learner"; }
-
   [[nodiscard]] double beside(const road::RacingRoad& /*lap*/) const noexcept override { return offset; }
 
   bool is_wanted = true;
@@ -47,7 +41,6 @@ class Learner final : public controller::Controller {
 
  private:
   std::vector<Vec2> waypoints_;
-  controller::StepResult result_;
 };
 
 std::vector<Vec2> circle(double radius) { return test::circle_points(radius, 40); }

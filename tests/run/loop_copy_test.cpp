@@ -11,6 +11,7 @@
 #include "chicane/controller/controller.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/own_controller.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {
@@ -102,25 +103,8 @@ TEST(Copy, KeepsFaultsThatAct) {
   expect_same(future_of(*copy, 5.0), future_of(*run, 5.0));
 }
 
-/// A user's controller that says nothing of copying.
-class Own final : public controller::Controller {
- public:
-  [[nodiscard]] const controller::StepResult& step(const model::Measurement&, Deadline) noexcept override {
-    return result_;
-  }
-  void reset() noexcept override {}
-  [[nodiscard]] std::string_view name() const noexcept override { return "own"; }
-
- private:
-  controller::StepResult result_;
-};
-
 TEST(Copy, IsNoneOfAControllerThatCannotBeCopied) {
-  const auto loop =
-      ClosedLoop::create(test::scenario_of({{"track", "oval"}}),
-                         [](const scenario::Scenario&) -> Result<std::unique_ptr<controller::Controller>> {
-                           return std::make_unique<Own>();
-                         });
+  const auto loop = ClosedLoop::create(test::scenario_of({{"track", "oval"}}), test::make_own_controller);
   ASSERT_TRUE(loop);
   EXPECT_EQ((*loop)->copy(), nullptr);
   EXPECT_EQ(controller::copy_of((*loop)->controller()), nullptr);
