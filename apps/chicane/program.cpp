@@ -92,6 +92,13 @@ int program(int count, const char* const* words, ExitCode (*run)(const Options&)
   return kEnvironment;
 }
 
+int program_of(const char* command, int count, const char* const* words,
+               ExitCode (*run)(const Options&)) noexcept {
+  std::vector<const char*> all{"chicane", command};
+  all.insert(all.end(), words + (count > 0 ? 1 : 0), words + count);
+  return program(static_cast<int>(all.size()), all.data(), run);
+}
+
 namespace {
 
 // The globals: a signal handler can reach nothing else.
@@ -180,14 +187,6 @@ std::string become(const std::string& program, std::vector<std::string> words) {
 
 namespace {
 
-/// The options in full, as bench/program/request.hpp reads them.
-std::vector<std::string> words_for_bench(const Options& options) {
-  std::vector<std::string> words{"--instances", std::to_string(options.instances), "--horizons",
-                                 fmt::format("{}", fmt::join(options.horizons, ","))};
-  if (options.is_json) words.emplace_back("--json");
-  return words;
-}
-
 ExitCode become_or_say_why(const std::string& program, std::vector<std::string> words) {
   fmt::print(stderr, "{}\n", become(program, std::move(words)));
   return kEnvironment;
@@ -239,7 +238,7 @@ ExitCode ros(const Options& options) {
 
 ExitCode bench(const Options& options) {
   const std::string program = other_program("chicane-bench", false);
-  if (!program.empty()) return become_or_say_why(program, words_for_bench(options));
+  if (!program.empty()) return become_or_say_why(program, options.words);
   return say_how_to_build("bench", "chicane-bench", "that measures", "chicane_bench");
 }
 

@@ -15,6 +15,10 @@ namespace chicane::apps {
 /// main's, the program first and a command second.
 [[nodiscard]] int program(int count, const char* const* words, ExitCode (*run)(const Options&)) noexcept;
 
+/// The same of a program that is one command: `words` are main's, the program first and then its options.
+[[nodiscard]] int program_of(const char* command, int count, const char* const* words,
+                             ExitCode (*run)(const Options&)) noexcept;
+
 /// Signals closer to the first than this are the same request: a terminal or a program like `timeout` may
 /// send one to the process and one to its group, and a second Ctrl-C by hand takes longer.
 inline constexpr std::chrono::milliseconds kOneInterrupt{500};
