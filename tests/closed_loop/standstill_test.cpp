@@ -10,6 +10,7 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/folder.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {
@@ -32,15 +33,12 @@ Start drive_from(const std::string& preset, double offset, const std::string& se
   const std::size_t at = track.find(shipped);
   EXPECT_NE(at, std::string::npos);
   track.replace(at, shipped.size(), "start_d_m=" + std::to_string(offset));
-  const fs::path file =
-      fs::path(::testing::TempDir()) / ("standstill_" + std::to_string(::getpid()) + ".csv");
-  std::ofstream(file) << track;
+  const test::Folder folder;
   const auto loop = test::loop_of(test::scenario_of({{"preset", preset},
-                                                     {"track", file.string()},
+                                                     {"track", folder.write("track.csv", track)},
                                                      {"guard.mode", "off"},
                                                      {"laps", "0"},
                                                      {"time_limit_s", seconds}}));
-  fs::remove(file);
   Start start;
   bool is_first = true;
   static_cast<void>(run_closed_loop(*loop, {.on_frame = [&](const telemetry::Frame& frame) {
