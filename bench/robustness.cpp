@@ -2,17 +2,9 @@
 // The solver on families of problems that are no car, beside Ipopt: how many are solved, at what cost, in
 // what time.
 //
-//   chicane-robustness [-n INSTANCES] [-f FIRST] [-i IPOPT] [-t TOLERANCE] [-m TURNS] [--each]
-//                      [--references FILE] [NAME...]
-//   chicane-robustness --tolerances [-n INSTANCES] [NAME...]     statuses and residuals, without Ipopt
-//   chicane-robustness --peers [-n INSTANCES] [-i IPOPT] [NAME...]     times beside HPIPM's, fatrop's and
-//   Ipopt's chicane-robustness --closed-loop [-n INSTANCES] [NAME...]     20 cycles of a controller for each
-//   instance
-//
-// Prints the tables of docs/measured/solver.md. FIRST: seed of the first instance.
-// IPOPT: it solves so many of each, and what is not solved; all without. NAME: families whose name contains
-// it; all without. FILE keeps what Ipopt finds, which takes minutes; without Ipopt (Debian:
-// coinor-libipopt-dev) FILE alone is compared with.
+// Prints the tables of docs/measured/solver.md; `--help` lists its options. What Ipopt finds takes minutes,
+// and is kept in a file; without Ipopt (Debian: coinor-libipopt-dev) that alone is compared with.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -85,9 +77,9 @@ void print_infeasible(const std::vector<FamilyRow>& rows) {
   }
 }
 
-bool is_wanted(const Family& family, const std::vector<std::string_view>& names) {
+bool is_wanted(const Family& family, const std::vector<std::string>& names) {
   bool is_named = names.empty();
-  for (const std::string_view name : names)
+  for (const std::string& name : names)
     is_named = is_named || family.name.find(name) != std::string_view::npos;
   return is_named;
 }
@@ -95,7 +87,7 @@ bool is_wanted(const Family& family, const std::vector<std::string_view>& names)
 /// Each family at each tolerance, both starts: how many are optimal, at the floor of rounding, within the
 /// loose tolerance, and none of these; the largest residual of the first and of the second by the independent
 /// check.
-int print_tolerances(FamilyRequest request, const std::vector<std::string_view>& names) {
+int print_tolerances(FamilyRequest request, const std::vector<std::string>& names) {
   int wrong = 0;
   std::printf(
       "| family | tolerance | optimal | at floor | near | not | residual | at floor "
@@ -134,7 +126,7 @@ int print_tolerances(FamilyRequest request, const std::vector<std::string_view>&
 }
 
 /// Each family in closed loop, beside Ipopt from the same start.
-int print_loops(const FamilyRequest& request, const std::vector<std::string_view>& names) {
+int print_loops(const FamilyRequest& request, const std::vector<std::string>& names) {
   std::printf(
       "| family | solved | of Ipopt's | more | iterations | time [ms] | p99 | ratio | p1 | with its "
       "multipliers "
@@ -173,7 +165,7 @@ void print_profile(const Compared& all) {
   }
 }
 /// Each family beside other solvers; ratios are medians of what both solve.
-int print_peers(FamilyRequest request, const std::vector<std::string_view>& names) {
+int print_peers(FamilyRequest request, const std::vector<std::string>& names) {
   request.with_peers = true;
   Compared everything;
   std::printf(
@@ -214,33 +206,21 @@ int main(int argc, char** argv) {
   FamilyRequest request{.with_ipopt = true};
   bool are_tolerances = false, are_loops = false, are_peers = false;
   std::string file;
-  std::vector<std::string_view> names;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word = argv[i];
-    const char* value = i + 1 < argc ? argv[i + 1] : "";
-    if (word == "--each") {
-      request.each = true;
-    } else if (word == "--tolerances") {
-      are_tolerances = true;
-      request.instances = 30;
-    } else if (word == "--peers") {
-      are_peers = true;
-    } else if (word == "--closed-loop") {
-      are_loops = true;
-      request.instances = 20;
-    } else if (word == "-n" || word == "-f" || word == "-i" || word == "-t" || word == "-m" ||
-               word == "--references") {
-      if (word == "-n") request.instances = std::atoi(value);
-      if (word == "-i") request.ipopt_instances = std::atoi(value);
-      if (word == "-f") request.first = std::atoi(value);
-      if (word == "-t") request.tolerance = std::atof(value);
-      if (word == "-m") request.max_iterations = std::atoi(value);
-      if (word == "--references") file = value;
-      ++i;
-    } else {
-      names.push_back(word);
-    }
-  }
+  std::vector<std::string> names;
+  CLI::App app("The solver on families of problems that are no car");
+  const CLI::Option* instances = app.add_option("-n", request.instances, "Instances of each family");
+  app.add_option("-f", request.first, "Seed of the first one");
+  app.add_option("-i", request.ipopt_instances, "Ipopt solves so many of each, and what is not solved");
+  app.add_option("-t", request.tolerance, "Tolerance");
+  app.add_option("-m", request.max_iterations, "Most turns");
+  app.add_option("--references", file, "File that keeps what Ipopt finds");
+  app.add_flag("--each", request.each, "A line for each instance");
+  app.add_flag("--tolerances", are_tolerances, "Statuses and residuals, without Ipopt");
+  app.add_flag("--peers", are_peers, "Times beside HPIPM's, fatrop's and Ipopt's");
+  app.add_flag("--closed-loop", are_loops, "20 cycles of a controller for each instance");
+  app.add_option("names", names, "Families whose name contains one of these");
+  CLI11_PARSE(app, argc, argv);
+  if (instances->empty() && (are_tolerances || are_loops)) request.instances = are_loops ? 20 : 30;
   if (are_tolerances) return print_tolerances(request, names);
   if (are_peers) return print_peers(request, names);
   if (are_loops) return print_loops(request, names);

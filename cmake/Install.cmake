@@ -11,23 +11,24 @@ add_library(chicane::lib ALIAS chicane_lib)
 set_target_properties(chicane_lib PROPERTIES EXPORT_NAME lib)
 target_link_libraries(chicane_lib INTERFACE ${modules})
 
-# What the static libraries need from the system, as far as this build uses it: arguments of find_package() and pkg-config words by target.
-set(package_of_tl::expected "tl-expected")
-set(package_of_Threads::Threads "Threads")
-set(package_of_fmt::fmt "fmt")
-set(package_of_NLopt::nlopt "NLopt")
-set(package_of_yaml-cpp "yaml-cpp")
-set(package_of_PNG::PNG "PNG")
-set(package_of_pugixml::pugixml "pugixml")
-set(package_of_SQLite::SQLite3 "SQLite3")
-set(package_of_zstd::libzstd_shared "zstd")
-set(pc_requires_of_fmt::fmt "fmt")
-set(pc_requires_of_NLopt::nlopt "nlopt")
-set(pc_requires_of_yaml-cpp "yaml-cpp")
-set(pc_requires_of_PNG::PNG "libpng")
-set(pc_requires_of_pugixml::pugixml "pugixml")
-set(pc_requires_of_SQLite::SQLite3 "sqlite3")
-set(pc_requires_of_zstd::libzstd_shared "libzstd")
+# What the static libraries need from the system, as far as this build uses it: target, name for find_package() and for pkg-config, package of
+# Debian (Package.cmake).
+foreach(row IN ITEMS
+    tl::expected,tl-expected,,libexpected-dev
+    Threads::Threads,Threads,,
+    fmt::fmt,fmt,fmt,libfmt-dev
+    NLopt::nlopt,NLopt,nlopt,libnlopt-dev
+    yaml-cpp,yaml-cpp,yaml-cpp,libyaml-cpp-dev
+    PNG::PNG,PNG,libpng,libpng-dev
+    pugixml::pugixml,pugixml,pugixml,libpugixml-dev
+    SQLite::SQLite3,SQLite3,sqlite3,libsqlite3-dev
+    zstd::libzstd_shared,zstd,libzstd,libzstd-dev)
+  string(REPLACE "," ";" row "${row}")
+  list(POP_FRONT row need package_of_need requires_of_need deb_of_need)
+  foreach(kind package_of requires_of deb_of)
+    set(${kind}_${need} "${${kind}_need}")
+  endforeach()
+endforeach()
 set(pc_libs_of_Threads::Threads "-pthread")
 
 # Headers that only our own sources include: of no concern to users. As a public link they are.
@@ -93,7 +94,7 @@ function(write_pc target pc_name)
         list(PREPEND archives "-l${module}")
       endif()
       foreach(need IN LISTS needs_of_${module})
-        list(APPEND requires ${pc_requires_of_${need}})
+        list(APPEND requires ${requires_of_${need}})
         list(APPEND libs ${pc_libs_of_${need}})
       endforeach()
     endif()

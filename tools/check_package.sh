@@ -55,13 +55,13 @@ check_program() {
 
 check_library() {
   timed "apt install ./libchicane-dev_*.deb with a compiler" apt install "${deb[libchicane-dev]}" "${deb[chicane-doc]}" g++ pkg-config cmake make
-  cp -r "$root/tests/install/consumer" "$bare/check/consumer"
   timed "the first example by pkg-config" in_bare sh -c \
     'cd /check && g++ /usr/share/doc/chicane/examples/01_drive_a_lap.cpp -o lap $(pkg-config --cflags --libs chicane)'
   timed "  drives a lap" in_bare sh -c 'cd / && /check/lap'
-  timed "a controller and a plant of one's own by CMake" in_bare sh -c 'cmake -S /check/consumer -B /check/built && cmake --build /check/built'
-  timed "  the controller drives a lap" in_bare sh -c 'cd / && /check/built/own_controller /check/own.mcap'
-  timed "  the plant is driven a lap" in_bare sh -c 'cd / && /check/built/own_plant /check/plant.mcap'
+  timed "a controller and a car of one's own by CMake" in_bare sh -c 'cmake -S /usr/share/doc/chicane/examples -B /check/built &&
+    cmake --build /check/built --target 03_your_own_controller 06_your_own_car_and_road'
+  timed "  the controller drives a lap" in_bare sh -c 'cd / && /check/built/03_your_own_controller'
+  timed "  the car is driven a lap" in_bare sh -c 'cd / && /check/built/06_your_own_car_and_road'
 }
 
 check_ros() {

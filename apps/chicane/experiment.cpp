@@ -3,7 +3,6 @@
 #include "experiment.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -17,6 +16,7 @@
 #include "chicane/run/plan_cache.hpp"
 #include "chicane/run/roads.hpp"
 #include "option_row.hpp"
+#include "program.hpp"
 
 namespace chicane::apps {
 
@@ -99,29 +99,23 @@ LineExtent extent_of(const road::RacingLine& line) {
 Result<lap_time::PlantLimit> limit_of(const scenario::Scenario& scenario, const road::Track& track,
                                       const LimitQuestion& question, const std::atomic<bool>& wants_stop,
                                       double& wall_time) {
-  using Clock = std::chrono::steady_clock;
-  const bool is_terminal = isatty(STDERR_FILENO) == 1;
-  const auto start = Clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-  double shown_at = 0.0;
+  StatusLine line;
   lap_time::PlantLimitOptions options{.wants_witness = question.wants_witness, .budget = question.budget};
   lap_time::PlanProgress progress;
   options.on_progress = [&](const lap_time::PlanProgress& come) { progress = come; };
   options.go_on = [&](std::string_view stage, int iteration, double lap_time) {
-    const double now = seconds();
-    if (now - shown_at >= (is_terminal ? 0.1 : 10.0)) {
-      shown_at = now;
-      const bool is_far = progress.work >= progress.expected;
+    if (line.is_due()) {
+      const bool is_far = progress.work <= 0.0 || progress.work >= progress.expected;
+      const double left_share = progress.expected / progress.work - 1.0;
       const std::string left =
-          is_far ? "" : fmt::format(", about {:.0f} s left", now * (progress.expected / progress.work - 1.0));
-      fmt::print(stderr, "{}limit: {}, iteration {}, {:.3f} s{}{}", is_terminal ? "\r" : "", stage, iteration,
-                 lap_time, left, is_terminal ? "\x1b[K" : "\n");
+          is_far ? "" : fmt::format(", about {:.0f} s left", line.seconds() * left_share);
+      line.show(fmt::format("limit: {}, iteration {}, {:.3f} s{}", stage, iteration, lap_time, left));
     }
     return !wants_stop.load();
   };
   Result<lap_time::PlantLimit> limit = run::limit_of(scenario, track, options);
-  wall_time = seconds();
-  if (is_terminal && shown_at > 0.0) fmt::print(stderr, "\r\x1b[K");
+  wall_time = line.seconds();
+  line.clear();
   return limit;
 }
 

@@ -29,6 +29,9 @@
 namespace chicane::apps {
 namespace {
 
+constexpr std::chrono::milliseconds kTerminalPeriod{100};
+constexpr std::chrono::seconds kLogPeriod{10};
+
 /// Plans and limits are kept where the user's caches are, unless --no-cache is given.
 void use_cache(const Options& options) {
   const std::string folder = options.uses_cache ? run::DiskCache::default_folder() : "";
@@ -87,6 +90,13 @@ int program(int count, const char* const* words, ExitCode (*run)(const Options&)
     std::fprintf(stderr, "chicane: unknown error\n");
   }
   return kEnvironment;
+}
+
+int program_of(const char* command, int count, const char* const* words,
+               ExitCode (*run)(const Options&)) noexcept {
+  std::vector<const char*> all{"chicane", command};
+  all.insert(all.end(), words + (count > 0 ? 1 : 0), words + count);
+  return program(static_cast<int>(all.size()), all.data(), run);
 }
 
 namespace {
@@ -177,14 +187,6 @@ std::string become(const std::string& program, std::vector<std::string> words) {
 
 namespace {
 
-/// The options in full, as bench/program/request.hpp reads them.
-std::vector<std::string> words_for_bench(const Options& options) {
-  std::vector<std::string> words{"--instances", std::to_string(options.instances), "--horizons",
-                                 fmt::format("{}", fmt::join(options.horizons, ","))};
-  if (options.is_json) words.emplace_back("--json");
-  return words;
-}
-
 ExitCode become_or_say_why(const std::string& program, std::vector<std::string> words) {
   fmt::print(stderr, "{}\n", become(program, std::move(words)));
   return kEnvironment;
@@ -201,6 +203,30 @@ ExitCode say_how_to_build(const std::string& command, std::string_view program, 
 
 }  // namespace
 
+StatusLine::StatusLine() : is_terminal_{isatty(STDERR_FILENO) == 1} {
+  next_ = begin_ + (is_terminal_ ? std::chrono::seconds{0} : kLogPeriod);
+}
+
+double StatusLine::seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+
+void StatusLine::show(std::string_view line) {
+  next_ = Clock::now() + (is_terminal_ ? Clock::duration(kTerminalPeriod) : kLogPeriod);
+  has_line_ = is_terminal_;
+  if (is_terminal_)
+    fmt::print(stderr, "\r{}\x1b[K", line);  // clears the rest of the old line
+  else
+    fmt::print(stderr, "{}\n", line);
+  std::fflush(stderr);
+}
+
+void StatusLine::end() {
+  if (has_line_.exchange(false)) fmt::print(stderr, "\n");
+}
+
+void StatusLine::clear() {
+  if (has_line_.exchange(false)) fmt::print(stderr, "\r\x1b[K");
+}
+
 ExitCode ros(const Options& options) {
   const std::string program = other_program("chicane-ros", true);
   if (!program.empty()) return become_or_say_why(program, options.words);
@@ -212,7 +238,7 @@ ExitCode ros(const Options& options) {
 
 ExitCode bench(const Options& options) {
   const std::string program = other_program("chicane-bench", false);
-  if (!program.empty()) return become_or_say_why(program, words_for_bench(options));
+  if (!program.empty()) return become_or_say_why(program, options.words);
   return say_how_to_build("bench", "chicane-bench", "that measures", "chicane_bench");
 }
 

@@ -8,7 +8,6 @@
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <netinet/in.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -86,7 +85,6 @@ std::string RunNotices::ended(double time) {
 
 namespace {
 
-constexpr std::chrono::milliseconds kTerminalPeriod{100};
 constexpr double kLinePeriod = 10.0;  // seconds of the run
 
 /// At most 80 columns.
@@ -110,36 +108,20 @@ std::string line_of(const telemetry::CompletedLap& lap) {
                      mps_to_mph(lap.mean_speed), verdict);
 }
 
-Progress::Progress() : is_terminal_{isatty(STDERR_FILENO) == 1} {}
-
-Progress::~Progress() {
-  if (has_line_) fmt::print(stderr, "\n");
-}
-
 void Progress::show(const telemetry::Frame& frame) {
   for (const std::string& notice : notices_.look_at(frame)) say(notice);
-  if (is_terminal_) {
-    const Clock::time_point now = Clock::now();
-    if (now < next_) return;
-    next_ = now + kTerminalPeriod;
-    has_line_ = true;
-    fmt::print(stderr, "\r{}\x1b[K", line(frame));  // clears the rest of the old line
-    std::fflush(stderr);
-  } else if (frame.time >= next_run_time_) {
-    next_run_time_ = frame.time + kLinePeriod;
-    fmt::print(stderr, "{}\n", line(frame));
-  }
+  if (!(line_.is_terminal() ? line_.is_due() : frame.time >= next_run_time_)) return;
+  next_run_time_ = frame.time + kLinePeriod;
+  line_.show(line(frame));
 }
 
 void Progress::say(std::string_view line) {
-  if (has_line_.exchange(false)) fmt::print(stderr, "\n");
+  line_.end();
   print_sentence(stderr, line);
 }
 
 namespace {
 
-constexpr std::chrono::milliseconds kRedrawPeriod{100};
-constexpr std::chrono::seconds kReportPeriod{10};
 constexpr std::chrono::milliseconds kGoodbyeOfPage{50};
 
 /// Road in SVG as a stroke of its mean width, with a dashed stroke on it; the caller appends the dash length.
@@ -207,16 +189,16 @@ std::string plan_line(const lap_time::PlanProgress& now, double elapsed, double 
 }
 
 PlanWait::PlanWait(const scenario::Scenario& scenario, std::optional<net::ServerOptions>* server)
-    : scenario_{scenario}, server_{server}, is_terminal_{isatty(STDERR_FILENO) == 1} {}
+    : scenario_{scenario}, server_{server} {}
 
 PlanWait::~PlanWait() {
-  clear_line();
+  line_.clear();
   if (page_ && page_->server) (*server_)->port = page_->server->port();
 }
 
 run::PlanHooks PlanWait::hooks() {
   return {.on_progress = [this](const lap_time::PlanProgress& now) { show(now); },
-          .say = [this](std::string_view line) { clear_line(), print_sentence(stderr, line); }};
+          .say = [this](std::string_view line) { line_.clear(), print_sentence(stderr, line); }};
 }
 
 void PlanWait::open() {
@@ -252,30 +234,14 @@ void PlanWait::open() {
 }
 
 void PlanWait::show(const lap_time::PlanProgress& now) {
-  const Clock::time_point time = Clock::now();
-  const std::string line =
-      plan_line(now, std::chrono::duration<double>(time - begin_).count(), run::plan_budget(scenario_));
-  if (!shown_) open();
+  const std::string line = plan_line(now, line_.seconds(), run::plan_budget(scenario_));
+  if (!std::exchange(has_begun_, true)) open();
   if (page_) {
     const std::lock_guard lock(page_->mutex);
     page_->line = line;
     page_->now = now;
   }
-  const Clock::duration period = is_terminal_ ? Clock::duration(kRedrawPeriod) : kReportPeriod;
-  if (shown_ && time - *shown_ < period) return;
-  const bool is_first = !shown_.has_value();
-  shown_ = time;
-  if (is_terminal_) {
-    has_line_ = true;
-    fmt::print(stderr, "\r{}\x1b[K", line);
-    std::fflush(stderr);
-  } else if (!is_first) {
-    fmt::print(stderr, "{}\n", line);
-  }
-}
-
-void PlanWait::clear_line() {
-  if (std::exchange(has_line_, false)) fmt::print(stderr, "\r\x1b[K");
+  if (line_.is_due()) line_.show(line);
 }
 
 namespace {

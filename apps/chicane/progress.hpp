@@ -20,6 +20,7 @@
 #include "chicane/run/racing.hpp"
 #include "chicane/telemetry/frame.hpp"
 #include "options.hpp"
+#include "program.hpp"
 
 namespace chicane::apps {
 
@@ -51,21 +52,12 @@ class RunNotices {
 /// every ten seconds of the run. Notices are lines of their own, printed at once.
 class Progress {
  public:
-  Progress();
-  /// Leaves the cursor at the beginning of a line.
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-
   void show(const telemetry::Frame& frame);
   /// Prints a line of its own. Any thread.
   void say(std::string_view line);
 
  private:
-  using Clock = std::chrono::steady_clock;
-  bool is_terminal_;
-  std::atomic<bool> has_line_{false};  ///< the cursor stands behind a line that will be rewritten
-  Clock::time_point next_{};
+  StatusLine line_;
   double next_run_time_ = 10.0;
   RunNotices notices_;
 };
@@ -91,18 +83,14 @@ class PlanWait {
   [[nodiscard]] const Result<void>& opened() const noexcept { return opened_; }
 
  private:
-  using Clock = std::chrono::steady_clock;
   struct Page;
   void show(const lap_time::PlanProgress& now);
   void open();
-  void clear_line();
 
   const scenario::Scenario& scenario_;
   std::optional<net::ServerOptions>* server_;
-  bool is_terminal_;
-  bool has_line_ = false;
-  Clock::time_point begin_ = Clock::now();
-  std::optional<Clock::time_point> shown_{};
+  StatusLine line_;
+  bool has_begun_ = false;
   std::unique_ptr<Page> page_;
   Result<void> opened_{};
 };

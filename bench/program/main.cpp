@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
+// The program chicane-bench, which `chicane bench` becomes.
 #include <atomic>
-#include <cerrno>
-#include <csignal>
 #include <cstdio>
-#include <cstring>
-#include <exception>
-#include <string>
-#include <vector>
 
-#include "chicane/base/instruction_set.hpp"
+#include "commands.hpp"
+#include "program.hpp"
 #include "program/measure.hpp"
 #ifdef CHICANE_HAVE_IPOPT
 #include "references/ipopt_reference.hpp"
@@ -21,18 +17,7 @@ namespace {
 
 using namespace chicane;
 
-// Exit codes of `chicane`.
-constexpr int kSuccess = 0;
-constexpr int kUsage = 2;
-constexpr int kEnvironment = 3;
-
-std::atomic<bool> stop{false};  // a signal handler can reach nothing but globals
-static_assert(std::atomic<bool>::is_always_lock_free);
-
-int report(const Error& error) {
-  std::fprintf(stderr, "%s\n", error.message.c_str());
-  return error.code == ErrorCode::kIo ? kEnvironment : kUsage;
-}
+std::atomic<bool> stop{false};  // set by signals, whose handler outlives each run
 
 bench::References all_references() {
   bench::References references;
@@ -49,31 +34,16 @@ bench::References all_references() {
   return references;
 }
 
-int run(const std::vector<std::string>& words) {
-  if (const auto set = environment_instruction_set(); !set) return report(set.error());
-  const Result<bench::Request> request = bench::parse_request(words);
-  if (!request) return report(request.error());
-  // Ctrl-C and SIGTERM end it with the results so far: no row takes long.
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop = true; });
+apps::ExitCode run(const apps::Options& options) {
+  apps::catch_interrupts(stop);  // it ends with the results so far: no row takes long
   bench::References references = all_references();
-  const Result<bench::BenchReport> result = bench::measure(*request, references, stop);
-  if (!result) return report(result.error());
-  const std::string text = request->is_json ? to_json(*result) : to_markdown(*result);
-  if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return kSuccess;
-  std::fprintf(stderr, "chicane bench: the results could not be written: %s\n", std::strerror(errno));
-  return kEnvironment;
+  const Result<bench::BenchReport> result =
+      bench::measure({.instances = options.instances, .horizons = options.horizons}, references, stop);
+  if (!result) return apps::report(result.error());
+  std::fputs((options.is_json ? to_json(*result) : to_markdown(*result)).c_str(), stdout);
+  return apps::kSuccess;
 }
 
 }  // namespace
 
-/// What `chicane bench` starts; takes the options it passes on (program/request.hpp).
-int main(int count, char** words) {
-  try {
-    return run({words + 1, words + count});
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "chicane bench: %s\n", e.what());
-  } catch (...) {
-    std::fputs("chicane bench: unknown error\n", stderr);
-  }
-  return kEnvironment;
-}
+int main(int count, char** words) { return apps::program_of("bench", count, words, run); }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/program_outcome.hpp"
+#include "support/folder.hpp"
 
 namespace chicane {
 namespace {
@@ -22,19 +23,8 @@ using ::testing::HasSubstr;
 /// Words of both outputs.
 test::Outcome chicane(const std::string& arguments) { return test::chicane_program(arguments + " 2>&1"); }
 
-class CheckCommand : public ::testing::Test {
+class CheckCommand : public testing::Test, protected test::Folder {
  protected:
-  CheckCommand() { fs::create_directories(folder_); }
-  ~CheckCommand() override { fs::remove_all(folder_); }
-  CheckCommand(const CheckCommand&) = delete;
-  CheckCommand& operator=(const CheckCommand&) = delete;
-
-  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
-  }
-
-  fs::path folder_ = fs::path(::testing::TempDir()) / ("chicane_check_command_" + std::to_string(::getpid()));
 };
 
 /// A closed circle of this radius and half width [m].

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "apps/program_outcome.hpp"
+#include "support/folder.hpp"
 
 namespace chicane {
 namespace {
@@ -20,18 +21,8 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class LeagueCommand : public ::testing::Test {
+class LeagueCommand : public testing::Test, protected test::Folder {
  protected:
-  LeagueCommand() { fs::create_directories(folder_); }
-  ~LeagueCommand() override { fs::remove_all(folder_); }
-  LeagueCommand(const LeagueCommand&) = delete;
-  LeagueCommand& operator=(const LeagueCommand&) = delete;
-
-  [[nodiscard]] std::string read(const std::string& name) const {
-    std::ostringstream text;
-    text << std::ifstream(folder_ / name).rdbuf();
-    return text.str();
-  }
   /// Its exit code; what it says is in said_.
   int league(const std::string& entries, const std::string& options, const std::string& before = "") {
     std::ofstream(folder_ / "l.yaml") << "settings: {laps: 0, time_limit_s: 1.5}\n"
@@ -45,8 +36,6 @@ class LeagueCommand : public ::testing::Test {
   }
 
   test::Outcome said_;
-  fs::path folder_ =
-      fs::path(::testing::TempDir()) / ("chicane_league_command_" + std::to_string(::getpid()));
 };
 
 TEST_F(LeagueCommand, DrivesOurControllersAndAProgramOverTheWire) {
@@ -62,8 +51,8 @@ TEST_F(LeagueCommand, DrivesOurControllersAndAProgramOverTheWire) {
   EXPECT_EQ(rows[1]["entry"], "theirs");
   EXPECT_EQ(rows[1]["clean"], true) << said_.err;
   EXPECT_GT(rows[1]["top_speed_mps"], 0.0);
-  EXPECT_THAT(read("l.html"), HasSubstr("Standings"));
-  EXPECT_THAT(read("r.jsonl"), HasSubstr("\"search_value\":10"));
+  EXPECT_THAT(content("l.html"), HasSubstr("Standings"));
+  EXPECT_THAT(content("r.jsonl"), HasSubstr("\"search_value\":10"));
   ASSERT_EQ(league(entries, options), 0) << said_.err;
   EXPECT_THAT(said_.err, HasSubstr("1 of 1 runs, 1 of them found")) << "what is done is not done again";
   EXPECT_THAT(said_.err, Not(HasSubstr("in real time")));
@@ -101,16 +90,16 @@ TEST_F(LeagueCommand, LeavesAPageThatItCannotReplace) {
   std::ofstream(page) << "old\n";
   EXPECT_EQ(league(entries, "-o '" + page + "'", "ulimit -f 2; "), 3);
   EXPECT_THAT(said_.err, HasSubstr(page + ": cannot be written: File too large"));
-  EXPECT_EQ(read("old.html"), "old\n");
+  EXPECT_EQ(content("old.html"), "old\n");
 }
 
 TEST_F(LeagueCommand, RefusesTheResultsOfAnotherLeagueAndLeavesThem) {
   ASSERT_EQ(league("  ours: {preset: pid}\n", ""), 0) << said_.err;
-  const std::string beside = read("r.beside.jsonl");
+  const std::string beside = content("r.beside.jsonl");
   ASSERT_EQ(league("  ours: {preset: stanley}\n", ""), 2) << said_.err;
   EXPECT_THAT(said_.err, HasSubstr("r.beside.jsonl: got the limits and trials of l (plan "));
   EXPECT_THAT(said_.err, HasSubstr("; choose another file"));
-  EXPECT_EQ(read("r.beside.jsonl"), beside);
+  EXPECT_EQ(content("r.beside.jsonl"), beside);
 }
 
 TEST_F(LeagueCommand, SaysAtOnceThatAPageCannotBeWritten) {

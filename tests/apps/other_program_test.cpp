@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Commands that are programs of their own, chicane-bench, chicane-ros and chicane-lab, are started wherever
-// the program stands. Seen with a copy of the program and scripts.
+// the program stands. Seen with a copy of the program.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <regex>
 #include <set>
-#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/program_outcome.hpp"
 
 namespace chicane {
 namespace {
@@ -24,110 +23,81 @@ using ::testing::HasSubstr;
 class OtherProgram : public ::testing::Test {
  protected:
   OtherProgram() {
-    folder_ = fs::path(::testing::TempDir()) /
-              (std::string("chicane_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() +
-               "_" + std::to_string(::getpid()));
     fs::create_directories(folder_ / "bin");
     fs::copy_file(CHICANE_PROGRAM, folder_ / "bin/chicane");
   }
   ~OtherProgram() override { fs::remove_all(folder_); }
 
-  /// A program that prints its words and ends with 7.
-  void put_script(const std::string& place) const {
+  [[nodiscard]] test::Outcome run(const std::string& words) const {
+    const std::string where = "'" + folder_.string() + "/";
+    return test::shell("PATH=" + where + "path' " + where + "bin/chicane' " + words);
+  }
+
+  fs::path folder_ = test::file_of_test("programs");
+};
+
+TEST_F(OtherProgram, ThatIsMissingIsSaidWithTheWayToHaveIt) {
+  struct Missing {
+    const char* words;
+    int code;
+    std::vector<const char*> said;
+  };
+  for (const auto& [words, code, said] : std::vector<Missing>{
+           {"bench", 3, {"./run.sh bench", "--target chicane_bench"}},
+           {"ros --car f1tenth", 2, {"apt install ./chicane-ros_*.deb"}},
+           {"lane-change",
+            3,
+            {"chicane lane-change: chicane-lab", "./run.sh lane-change", "--target chicane_lab"}}}) {
+    const test::Outcome outcome = run(words);
+    EXPECT_EQ(outcome.code, code) << words;
+    EXPECT_EQ(outcome.out, "");
+    for (const char* each : said) EXPECT_THAT(outcome.err, HasSubstr(each));
+  }
+}
+
+TEST_F(OtherProgram, IsNotNeededForHelpAndMistakes) {
+  for (const auto& [words, said] : std::vector<std::pair<const char*, const char*>>{
+           {"bench --help", "--instances"}, {"ros --help", "--odom-topic"}, {"sweep --help", "--shard"}}) {
+    const test::Outcome help = run(words);
+    EXPECT_EQ(help.code, 0) << words;
+    EXPECT_THAT(help.out, HasSubstr(said));
+  }
+  for (const auto& [words, said] : std::vector<std::pair<const char*, const char*>>{
+           {"bench --horizons 10,201", "chicane bench: --horizons"},
+           {"bench --instances 0", "chicane bench: --instances"},
+           {"ros --domain 500", "chicane ros: "},
+           {"sweep plan.yaml --shard 4/3", "chicane sweep: --shard"}}) {
+    const test::Outcome mistake = run(words);
+    EXPECT_EQ(mistake.code, 2) << words;
+    EXPECT_THAT(mistake.err, HasSubstr(said));
+  }
+}
+
+/// Seen with programs that print their words and end with 7.
+TEST_F(OtherProgram, IsStartedWhereverItStandsWithTheWordsGiven) {
+  struct Start {
+    const char *place, *words, *printed;
+  };
+  for (const auto& [place, words, printed] :
+       std::vector<Start>{{"bin/chicane-bench", "bench --json --horizons 2,200 --instances 3",
+                           "--json --horizons 2,200 --instances 3"},
+                          {"libexec/chicane/chicane-bench", "bench", ""},
+                          {"bin/chicane-ros", "ros --track oval --set 'horizon.steps=12' --domain 7",
+                           "--track oval --set horizon.steps=12 --domain 7"},
+                          {"libexec/chicane/chicane-ros", "ros --simulate", "--simulate"},
+                          {"path/chicane-ros", "ros --simulate", "--simulate"},
+                          {"libexec/chicane/chicane-lab", "merge a.jsonl 'b c.jsonl' -o all.jsonl",
+                           "merge a.jsonl b c.jsonl -o all.jsonl"},
+                          {"bin/chicane-lab", "replay drive.csv", "replay drive.csv"}}) {
     const fs::path file = folder_ / place;
     fs::create_directories(file.parent_path());
     std::ofstream(file) << "#!/bin/sh\necho \"$@\"\nexit 7\n";
     fs::permissions(file, fs::perms::owner_all);
+    const test::Outcome outcome = run(words);
+    EXPECT_EQ(outcome.code, 7) << place;
+    EXPECT_EQ(outcome.out, printed + std::string("\n"));
+    fs::remove(file);
   }
-  /// Exit code; what it printed is in `out` and `err`.
-  int run(const std::string& words) {
-    const std::string where = "'" + folder_.string() + "/";
-    const int status = std::system(  // NOLINT(cert-env33-c): a shell is what users have
-        ("PATH=" + where + "path' " + where + "bin/chicane' " + words + " > " + where + "out' 2> " + where +
-         "err'")
-            .c_str());
-    out = read("out");
-    err = read("err");
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-
-  std::string out, err;
-
- private:
-  [[nodiscard]] std::string read(const char* name) const {
-    std::ostringstream text;
-    text << std::ifstream(folder_ / name).rdbuf();
-    return text.str();
-  }
-  fs::path folder_;
-};
-
-TEST_F(OtherProgram, BenchSaysHowToBuildTheProgramThatIsMissing) {
-  EXPECT_EQ(run("bench"), 3);
-  EXPECT_EQ(out, "");
-  EXPECT_THAT(err, HasSubstr("./run.sh bench"));
-  EXPECT_THAT(err, HasSubstr("--target chicane_bench"));
-}
-
-TEST_F(OtherProgram, HelpOfBenchAndMistakesNeedNoOtherProgram) {
-  EXPECT_EQ(run("bench --help"), 0);
-  EXPECT_THAT(out, HasSubstr("--instances"));
-  EXPECT_EQ(run("bench --horizons 10,201"), 2);
-  EXPECT_EQ(run("bench --instances 0"), 2);
-}
-
-TEST_F(OtherProgram, BenchStartsTheProgramBesideIt) {
-  put_script("bin/chicane-bench");
-  EXPECT_EQ(run("bench"), 7);
-  EXPECT_EQ(out, "--instances 100 --horizons 10,20,50\n");
-  EXPECT_EQ(run("bench --json --horizons 2,200 --instances 3"), 7);
-  EXPECT_EQ(out, "--instances 3 --horizons 2,200 --json\n");
-}
-
-TEST_F(OtherProgram, BenchStartsTheProgramOfAnInstallation) {
-  put_script("libexec/chicane/chicane-bench");
-  EXPECT_EQ(run("bench --json"), 7);
-}
-
-TEST_F(OtherProgram, RosSaysInALineHowToInstallTheProgramThatIsMissing) {
-  EXPECT_EQ(run("ros --car f1tenth"), 2);
-  EXPECT_EQ(out, "");
-  EXPECT_THAT(err, HasSubstr("apt install ./chicane-ros_*.deb"));
-  EXPECT_EQ(std::count(err.begin(), err.end(), '\n'), 1);
-}
-
-TEST_F(OtherProgram, HelpOfRosAndMistakesNeedNoOtherProgram) {
-  EXPECT_EQ(run("ros --help"), 0);
-  EXPECT_THAT(out, HasSubstr("--odom-topic"));
-  EXPECT_EQ(run("ros --domain 500"), 2);
-  EXPECT_THAT(err, HasSubstr("chicane ros: "));
-}
-
-TEST_F(OtherProgram, RosStartsTheProgramBesideItWithTheSameWords) {
-  put_script("bin/chicane-ros");
-  EXPECT_EQ(run("ros --track oval --set 'horizon.steps=12' --domain 7"), 7);
-  EXPECT_EQ(out, "--track oval --set horizon.steps=12 --domain 7\n");
-}
-
-TEST_F(OtherProgram, LabSaysHowToBuildTheProgramThatIsMissing) {
-  EXPECT_EQ(run("lane-change"), 3);
-  EXPECT_EQ(out, "");
-  EXPECT_THAT(err, HasSubstr("chicane lane-change: chicane-lab"));
-  EXPECT_THAT(err, HasSubstr("./run.sh lane-change"));
-  EXPECT_THAT(err, HasSubstr("--target chicane_lab"));
-}
-
-TEST_F(OtherProgram, HelpOfLabAndMistakesNeedNoOtherProgram) {
-  EXPECT_EQ(run("sweep --help"), 0);
-  EXPECT_THAT(out, HasSubstr("--shard"));
-  EXPECT_EQ(run("sweep plan.yaml --shard 4/3"), 2);
-  EXPECT_THAT(err, HasSubstr("chicane sweep: --shard"));
-}
-
-TEST_F(OtherProgram, LabStartsItsProgramWithTheCommandAndTheSameWords) {
-  put_script("libexec/chicane/chicane-lab");
-  EXPECT_EQ(run("merge a.jsonl 'b c.jsonl' -o all.jsonl"), 7);
-  EXPECT_EQ(out, "merge a.jsonl b c.jsonl -o all.jsonl\n");
 }
 
 /// The quoted words of a file's lines that begin with `begin`, with `quote` around each.
@@ -150,19 +120,6 @@ TEST(Lab, IsBuiltByRunShForEachOfItsCommands) {
   std::set<std::string> built = quoted_words("/run.sh", "  ' campaign '", '\'');
   built.insert({"tune", "video"});  // which need a package more
   EXPECT_EQ(built, commands);
-}
-
-TEST_F(OtherProgram, LabShowsLogsOfOtherPrograms) {
-  put_script("bin/chicane-lab");
-  EXPECT_EQ(run("replay drive.csv"), 7);
-  EXPECT_EQ(out, "replay drive.csv\n");
-}
-
-TEST_F(OtherProgram, RosStartsTheProgramOfAnInstallationOrOnThePath) {
-  put_script("path/chicane-ros");
-  EXPECT_EQ(run("ros --simulate"), 7);
-  put_script("libexec/chicane/chicane-ros");
-  EXPECT_EQ(run("ros --simulate"), 7);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "apps/program_outcome.hpp"
+#include "support/folder.hpp"
 
 namespace chicane {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-class VideoCommand : public ::testing::Test {
+class VideoCommand : public testing::Test, protected test::Folder {
  protected:
   VideoCommand() {
     fs::create_directories(folder_ / "bin");
@@ -25,10 +26,6 @@ class VideoCommand : public ::testing::Test {
         << "#!/bin/sh\nfor last; do :; done\necho \"$*\" >&2\nexec cat > \"${last#file:}\"\n";
     fs::permissions(folder_ / "bin" / "ffmpeg", fs::perms::owner_all);
   }
-  ~VideoCommand() override { fs::remove_all(folder_); }
-  VideoCommand(const VideoCommand&) = delete;
-  VideoCommand& operator=(const VideoCommand&) = delete;
-
   /// Its exit code; what it says on stderr is in said_. `path`: where programs are looked for.
   int program(const std::string& arguments, const std::string& path) {
     const test::Outcome outcome =
@@ -41,7 +38,6 @@ class VideoCommand : public ::testing::Test {
   }
   [[nodiscard]] std::string usual() const { return (folder_ / "bin").string() + ":" + std::getenv("PATH"); }
 
-  fs::path folder_ = fs::path(::testing::TempDir()) / ("chicane_video_command_" + std::to_string(::getpid()));
   std::string said_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/file.hpp"
+#include "support/folder.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -17,24 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Files : public testing::Test {
+class Files : public testing::Test, protected test::Folder {
  protected:
-  Files() { fs::create_directories(folder_); }
-  ~Files() override { fs::remove_all(folder_); }
-  Files(const Files&) = delete;
-  Files& operator=(const Files&) = delete;
-
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  [[nodiscard]] std::string content(const std::string& name) const {
-    std::ostringstream text;
-    text << std::ifstream(folder_ / name).rdbuf();
-    return text.str();
-  }
   [[nodiscard]] std::ptrdiff_t count() const {
     return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
   }
-
-  fs::path folder_ = fs::temp_directory_path() / ("chicane_file_test." + std::to_string(getpid()));
 };
 
 std::string message(const Result<void>& result) { return result ? "" : result.error().message; }

@@ -12,17 +12,14 @@ namespace {
 
 TEST(WholeLoop, AllocatesNothingInTwoLapsOfTheDefaultController) {
   for (const std::string car : {"udacity", "road-car"}) {
-    const auto scenario = protocol::compose(
-        {.scenario_file = "", .settings = {{"car", car}, {"track", "lakeside"}, {"laps", "2"}}});
-    ASSERT_TRUE(scenario) << scenario.error().message;
-    const auto loop = run::ClosedLoop::create(*scenario);
-    ASSERT_TRUE(loop) << loop.error().message;
+    const auto loop = test::loop_of(test::scenario_of(
+        {{"car", car}, {"track", "lakeside"}, {"laps", "2"}, {"sensor.position_noise_m", "0.02"}}));
     int cycles = 0;
     const test::AllocationGuard guard;
-    while (!(*loop)->is_over()) cycles += (*loop)->advance() ? 1 : 0;
+    while (!loop->is_over()) cycles += loop->advance() ? 1 : 0;
     EXPECT_EQ(guard.count(), 0) << car << ", " << cycles << " control steps";
     EXPECT_GT(cycles, 1000) << car;
-    EXPECT_EQ((*loop)->summary().laps_completed, 2) << car;
+    EXPECT_EQ(loop->summary().laps_completed, 2) << car;
   }
 }
 

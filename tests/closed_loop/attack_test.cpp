@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "support/runs.hpp"
 #include "support/slow_tests.hpp"
 
 namespace chicane::attack {
@@ -124,15 +125,11 @@ TEST(Guard, DrivesOnAfterAReset) {
 /// Nothing of what it sees changes what is sent: the same bits as without it, faults and all.
 TEST(Guard, ReportsInObserveWhatItWouldHaveDone) {
   const auto run_with = [](const char* mode) {
-    auto scenario = protocol::compose(
-        {.scenario_file = {},
-         .settings = {{"track", "oval"}, {"laps", "0"}, {"time_limit_s", "24"}, {"guard.mode", mode}}});
-    EXPECT_TRUE(scenario);
-    scenario->faults = {sim::default_event(*sim::fault_named("nan_measurement"), 14.0),
-                        sim::default_event(*sim::fault_named("position_jump"), 19.0)};
-    auto loop = run::ClosedLoop::create(*scenario);
-    EXPECT_TRUE(loop);
-    return run::run_closed_loop(**loop);
+    scenario::Scenario scenario =
+        test::scenario_of({{"track", "oval"}, {"laps", "0"}, {"time_limit_s", "24"}, {"guard.mode", mode}});
+    scenario.faults = {sim::default_event(*sim::fault_named("nan_measurement"), 14.0),
+                       sim::default_event(*sim::fault_named("position_jump"), 19.0)};
+    return test::drive(scenario);
   };
   const auto found = [](const telemetry::RunSummary& run, controller::GuardReason reason) {
     return run.guard_reasons[static_cast<std::size_t>(reason)];

@@ -27,7 +27,7 @@ std::vector<std::string> cars() {
 
 class EveryCar : public testing::TestWithParam<std::string> {
  protected:
-  scenario::Scenario scenario_ = *protocol::compose({"", {{"car", GetParam()}}});
+  scenario::Scenario scenario_ = test::scenario_of({{"car", GetParam()}});
   std::unique_ptr<sim::Plant> plant_ = std::move(*make_plant(scenario_));
 };
 
@@ -128,8 +128,7 @@ TEST(Cars, ThatAreOrdinaryBrakeFromTopSpeedWithoutSpinning) {
 }
 
 TEST(Cars, ThatCannotTurnSoTightlyAreRefusedWithPlaceAndRadius) {
-  const auto scenario = protocol::compose({"", {{"car", "indy"}, {"track", "hairpins"}}});
-  const auto loop = ClosedLoop::create(*scenario);
+  const auto loop = ClosedLoop::create(test::scenario_of({{"car", "indy"}, {"track", "hairpins"}}));
   ASSERT_FALSE(loop);
   EXPECT_EQ(loop.error().code, ErrorCode::kInvalidArgument);
   EXPECT_THAT(
@@ -139,9 +138,8 @@ TEST(Cars, ThatCannotTurnSoTightlyAreRefusedWithPlaceAndRadius) {
 }
 
 TEST(Cars, ThatAreTooWideAreRefusedWithPlaceAndWidth) {
-  const auto scenario =
-      protocol::compose({"", {{"car", "f1tenth"}, {"track", "oval"}, {"track_scale", "0.02"}}});
-  const auto loop = ClosedLoop::create(*scenario);
+  const auto loop =
+      ClosedLoop::create(test::scenario_of({{"car", "f1tenth"}, {"track", "oval"}, {"track_scale", "0.02"}}));
   ASSERT_FALSE(loop);
   EXPECT_THAT(loop.error().message,
               testing::HasSubstr("track: oval is not for the car f1tenth: the road is 0.22 m wide"));
@@ -149,13 +147,13 @@ TEST(Cars, ThatAreTooWideAreRefusedWithPlaceAndWidth) {
 
 // The track of a model car is as small as the car, unless something else is said.
 TEST(Cars, DriveOnTracksOfTheirScale) {
-  const auto scaled = protocol::compose({"", {{"car", "f1tenth"}, {"track", "oval"}}});
-  const auto large = protocol::compose({"", {{"car", "road-car"}, {"track", "oval"}}});
-  const auto told = protocol::compose({"", {{"car", "f1tenth"}, {"track", "oval"}, {"track_scale", "0.2"}}});
-  const double length = make_track(*large)->length();
-  EXPECT_EQ(scaled->size_of_track(), 0.1);
-  EXPECT_NEAR(make_track(*scaled)->length(), 0.1 * length, 1e-9);
-  EXPECT_NEAR(make_track(*told)->length(), 0.2 * length, 1e-9);
+  const auto scaled = test::scenario_of({{"car", "f1tenth"}, {"track", "oval"}});
+  const auto large = test::scenario_of({{"car", "road-car"}, {"track", "oval"}});
+  const auto told = test::scenario_of({{"car", "f1tenth"}, {"track", "oval"}, {"track_scale", "0.2"}});
+  const double length = make_track(large)->length();
+  EXPECT_EQ(scaled.size_of_track(), 0.1);
+  EXPECT_NEAR(make_track(scaled)->length(), 0.1 * length, 1e-9);
+  EXPECT_NEAR(make_track(told)->length(), 0.2 * length, 1e-9);
 }
 
 std::string name_of(const testing::TestParamInfo<std::string>& car) {

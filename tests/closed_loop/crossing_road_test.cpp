@@ -10,17 +10,15 @@
 
 #include "chicane/base/math.hpp"
 #include "closed_loop/drive.hpp"
+#include "support/folder.hpp"
 
 namespace chicane::run {
 namespace {
 
 /// A figure of eight, 4.5 m to each side, whose points begin at `start` of the lap; 0 is the crossing. The
 /// way over it is a mirror image for height < 0.
-std::string write_eight(double length, double height, double start) {
-  const std::string file =
-      (std::filesystem::temp_directory_path() / ("chicane_eight_" + std::to_string(::getpid()) + ".csv"))
-          .string();
-  std::ofstream out{file};
+std::string eight(double length, double height, double start) {
+  std::ostringstream out;
   out << "# x_m,y_m,w_tr_right_m,w_tr_left_m\n";
   constexpr int kPoints = 100;
   for (int i = 0; i < kPoints; ++i) {
@@ -30,7 +28,7 @@ std::string write_eight(double length, double height, double start) {
                   height * std::sin(2.0 * angle));
     out << row;
   }
-  return file;
+  return out.str();
 }
 
 void expect_clean(Settings settings, const std::string& what) {
@@ -43,9 +41,10 @@ void expect_clean(Settings settings, const std::string& what) {
 // Also where both passages have a waypoint in the same place, and where the run starts there. The cars take
 // turns, as do the mirror images; with the slow tests each drives all of them.
 TEST(CrossingRoad, IsDrivenFromTheTrackAndFromWaypoints) {
+  const test::Folder folder;
   for (const double height : {120.0, -120.0}) {
     for (const double start : {0.0, 0.13}) {
-      const std::string file = write_eight(200.0, height, start);
+      const std::string file = folder.write("eight.csv", eight(200.0, height, start));
       for (const std::string car : {"udacity", "road-car"}) {
         for (const char* road : {"track", "waypoints"}) {
           const bool is_mirrored = height < 0.0;
@@ -58,7 +57,6 @@ TEST(CrossingRoad, IsDrivenFromTheTrackAndFromWaypoints) {
           expect_clean({{"preset", "default"}, {"car", car}, {"track", file}, {"guard.road", road}}, what);
         }
       }
-      std::filesystem::remove(file);
     }
   }
 }
@@ -84,21 +82,17 @@ TEST(OpenRoad, IsDrivenToItsFinishAndIsOneLap) {
 
 // Without room behind its finish a race brakes before it, and passes it.
 TEST(OpenRoad, IsFinishedAlsoWhereItEnds) {
-  const std::string file =
-      (std::filesystem::temp_directory_path() / ("chicane_open_" + std::to_string(::getpid()) + ".csv"))
-          .string();
-  {
-    std::ofstream out{file};
-    out << "# closed=false\n# x_m,y_m,w_tr_right_m,w_tr_left_m\n";
-    for (int i = 0; i <= 40; ++i) out << 10.0 * i << ',' << 20.0 * std::sin(0.08 * i) << ",4.5,4.5\n";
-  }
+  const test::Folder folder;
+  std::ostringstream out;
+  out << "# closed=false\n# x_m,y_m,w_tr_right_m,w_tr_left_m\n";
+  for (int i = 0; i <= 40; ++i) out << 10.0 * i << ',' << 20.0 * std::sin(0.08 * i) << ",4.5,4.5\n";
+  const std::string file = folder.write("open.csv", out.str());
   for (const char* car : {"udacity", "road-car"}) {
     const auto run =
         drive({{"preset", "race"}, {"car", car}, {"track", file}, {"laps", "1"}, {"time_limit_s", "60"}});
     EXPECT_TRUE(run.completed) << car << ": " << run.end_reason;
     EXPECT_EQ(run.off_track_events, 0) << car;
   }
-  std::filesystem::remove(file);
 }
 
 TEST(OpenRoad, IsRacedAndEndsAtAStand) {
@@ -107,15 +101,14 @@ TEST(OpenRoad, IsRacedAndEndsAtAStand) {
     const Settings slow{{"preset", "default"}, {"car", car}, {"track", "stage"}, {"laps", "1"}};
     const Settings on{
         {"preset", "race"}, {"car", car}, {"track", "stage"}, {"laps", "0"}, {"time_limit_s", "75"}};
-    const auto loop = ClosedLoop::create(protocol::compose({.scenario_file = "", .settings = on}).value());
-    ASSERT_TRUE(loop);
-    const auto longer = run_closed_loop(**loop);
+    const auto loop = test::loop_of(test::scenario_of(on));
+    const auto longer = run_closed_loop(*loop);
     ASSERT_EQ(longer.laps_completed, 1) << car;
     EXPECT_LT(longer.laps[0].lap_time, 0.96 * drive(slow).laps[0].lap_time) << car;
     EXPECT_EQ(longer.off_track_events, 0) << car;
-    EXPECT_LT((*loop)->frame().measurement.speed, 1.0) << car;
-    const double place = (*loop)->track().start_s() + (*loop)->world().progress;
-    EXPECT_NEAR(place, (*loop)->track().length() - 7.5, 7.5) << car << ": in the last metres of the road";
+    EXPECT_LT(loop->frame().measurement.speed, 1.0) << car;
+    const double place = loop->track().start_s() + loop->world().progress;
+    EXPECT_NEAR(place, loop->track().length() - 7.5, 7.5) << car << ": in the last metres of the road";
   }
 }
 

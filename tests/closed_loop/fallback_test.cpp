@@ -31,10 +31,10 @@ struct BlindRun {
 };
 
 BlindRun drive_blind(double blind_from, double sees_at, double end) {
-  const auto scenario = protocol::compose({"", {{"preset", "weighted"}, {"track", "lakeside"}}});
-  const auto track = run::make_track(*scenario);
-  const auto plant = std::move(*run::make_plant(*scenario));
-  test::Guarded mpc(std::move(*run::make_controller(*scenario)), scenario->vehicle);
+  const auto scenario = test::scenario_of({{"preset", "weighted"}, {"track", "lakeside"}});
+  const auto track = run::make_track(scenario);
+  const auto plant = std::move(*run::make_plant(scenario));
+  test::Guarded mpc(std::move(*run::make_controller(scenario)), scenario.vehicle);
   sim::World world{*plant, *track};
   sim::Sensor sensor{{}, 1};
   sim::ActuationDelay in_flight;
@@ -53,7 +53,7 @@ BlindRun drive_blind(double blind_from, double sees_at, double end) {
       run.speed_after = now.speed;
       run.lowest_rung = std::max(run.lowest_rung, answer.guard.rung);
       run.last_rung = answer.guard.rung;
-      run.is_bounded = run.is_bounded && std::fabs(answer.command.steer) <= scenario->vehicle.steer_limit &&
+      run.is_bounded = run.is_bounded && std::fabs(answer.command.steer) <= scenario.vehicle.steer_limit &&
                        std::fabs(answer.command.throttle) <= 1.0;
       in_flight.push(time + 0.1, answer.command);
       next += 0.12;

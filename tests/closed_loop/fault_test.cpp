@@ -34,11 +34,10 @@ struct Outcome {
 };
 
 Outcome drive_through(const Settings& settings, Fault fault) {
-  auto scenario = protocol::compose({.scenario_file = "", .settings = settings});
-  EXPECT_TRUE(scenario);
-  scenario->laps = 0;
-  scenario->faults = {sim::default_event(fault, kBegins)};
-  const auto loop = std::move(*run::ClosedLoop::create(*scenario));
+  scenario::Scenario scenario = test::scenario_of(settings);
+  scenario.laps = 0;
+  scenario.faults = {sim::default_event(fault, kBegins)};
+  const auto loop = test::loop_of(scenario);
   const model::VehicleParams& car = loop->scenario().vehicle;
   Outcome outcome;
   while (loop->time() < kEnds && !loop->is_over()) {
@@ -133,8 +132,7 @@ TEST(Faults, SameSeedSameBits) {
 }
 
 TEST(Faults, AreSwitchedWhileTheRunGoesOn) {
-  const auto scenario = protocol::compose({.scenario_file = "", .settings = {}});
-  const auto loop = std::move(*run::ClosedLoop::create(*scenario));
+  const auto loop = test::loop_of(test::scenario_of());
   while (loop->time() < 1.0) loop->advance();
   EXPECT_EQ(loop->frame().active_faults, 0U);
   EXPECT_TRUE(loop->set_fault("half_grip", true));
@@ -147,8 +145,7 @@ TEST(Faults, AreSwitchedWhileTheRunGoesOn) {
 }
 
 TEST(Faults, LastAsLongAsTheSwitchSays) {
-  const auto scenario = protocol::compose({.scenario_file = "", .settings = {}});
-  const auto loop = std::move(*run::ClosedLoop::create(*scenario));
+  const auto loop = test::loop_of(test::scenario_of());
   while (loop->time() < 1.0) loop->advance();
   loop->apply({.name = "fault.ice_patch", .value = "+1.5*0.9"});
   const auto is_on_at = [&](double time) {

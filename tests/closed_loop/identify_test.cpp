@@ -15,16 +15,13 @@ namespace {
 telemetry::RunSummary identified(const char* car, double delay, double offset, const Settings& more = {}) {
   Settings settings{{"car", car}, {"laps", "1"}};
   settings.insert(settings.end(), more.begin(), more.end());
-  auto scenario = protocol::compose({.scenario_file = "", .settings = settings});
-  EXPECT_TRUE(scenario);
+  scenario::Scenario scenario = test::scenario_of(settings);
   const auto add = [&](const char* fault, double strength) {
-    scenario->faults.push_back({*sim::fault_named(fault), 0.0, 1000.0, strength});
+    scenario.faults.push_back({*sim::fault_named(fault), 0.0, 1000.0, strength});
   };
-  if (delay > 0.0) add("delay_doubled", 1.0 + delay / scenario->latency);
+  if (delay > 0.0) add("delay_doubled", 1.0 + delay / scenario.latency);
   if (offset != 0.0) add("steering_offset", offset);
-  const auto loop = run::ClosedLoop::create(*scenario);
-  EXPECT_TRUE(loop);
-  return run::run_closed_loop(**loop);
+  return test::drive(scenario);
 }
 
 TEST(IdentifyDuringRun, FindsDelayAndOffsetWithinALap) {

@@ -224,11 +224,8 @@ TEST(Race, HastensOnlyWhereItIsWorthItAndThePlanDoesNotBrake) {
 }
 
 TEST(Race, IsRefusedWhereThereIsNoLap) {
-  const auto scenario = protocol::compose(
-      {.scenario_file = {},
-       .settings = {{"preset", "race"}, {"car", "road-car"}, {"vehicle.track_width_m", "9.4"}}});
-  ASSERT_TRUE(scenario);
-  const auto loop = ClosedLoop::create(*scenario);
+  const auto loop = ClosedLoop::create(
+      test::scenario_of({{"preset", "race"}, {"car", "road-car"}, {"vehicle.track_width_m", "9.4"}}));
   ASSERT_FALSE(loop);
   EXPECT_NE(loop.error().message.find("the road is"), std::string::npos) << loop.error().message;
 }

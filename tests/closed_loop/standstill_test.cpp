@@ -10,6 +10,8 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/folder.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
@@ -31,22 +33,15 @@ Start drive_from(const std::string& preset, double offset, const std::string& se
   const std::size_t at = track.find(shipped);
   EXPECT_NE(at, std::string::npos);
   track.replace(at, shipped.size(), "start_d_m=" + std::to_string(offset));
-  const fs::path file =
-      fs::path(::testing::TempDir()) / ("standstill_" + std::to_string(::getpid()) + ".csv");
-  std::ofstream(file) << track;
-  const auto scenario = protocol::compose({.scenario_file = {},
-                                           .settings = {{"preset", preset},
-                                                        {"track", file.string()},
-                                                        {"guard.mode", "off"},
-                                                        {"laps", "0"},
-                                                        {"time_limit_s", seconds}}});
-  EXPECT_TRUE(scenario);
-  const auto loop = ClosedLoop::create(*scenario);
-  fs::remove(file);
-  EXPECT_TRUE(loop);
+  const test::Folder folder;
+  const auto loop = test::loop_of(test::scenario_of({{"preset", preset},
+                                                     {"track", folder.write("track.csv", track)},
+                                                     {"guard.mode", "off"},
+                                                     {"laps", "0"},
+                                                     {"time_limit_s", seconds}}));
   Start start;
   bool is_first = true;
-  static_cast<void>(run_closed_loop(**loop, {.on_frame = [&](const telemetry::Frame& frame) {
+  static_cast<void>(run_closed_loop(*loop, {.on_frame = [&](const telemetry::Frame& frame) {
     if (is_first) start = {.first_steer = frame.result.command.steer, .begin = frame.lateral_error};
     is_first = false;
     start.end = frame.lateral_error;

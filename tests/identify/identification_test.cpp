@@ -10,23 +10,19 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::identify {
 namespace {
 
-using Settings = std::vector<std::pair<std::string, std::string>>;
-
 /// What was measured and sent in a run.
-DriveLog drive_log(const Settings& settings, double steer_offset = 0.0) {
-  const auto scenario = protocol::compose({.scenario_file = "", .settings = settings});
-  EXPECT_TRUE(scenario);
-  auto loop = run::ClosedLoop::create(*scenario);
-  EXPECT_TRUE(loop);
+DriveLog drive_log(const test::Settings& settings, double steer_offset = 0.0) {
+  const auto loop = test::loop_of(test::scenario_of(settings));
   DriveLog log{"run", {}, {}, true};
   double last = -1.0;
-  while (!(*loop)->is_over()) {
-    (*loop)->advance();
-    const telemetry::Frame& frame = (*loop)->frame();
+  while (!loop->is_over()) {
+    loop->advance();
+    const telemetry::Frame& frame = loop->frame();
     const model::Measurement& m = frame.measurement;
     if (m.time <= last) continue;
     last = m.time;
@@ -205,9 +201,8 @@ TEST(Identification, IsTheMirrorImageOfAMirroredLog) {
 // Whoever names no car got the one of the original simulator, for a model car, too.
 TEST(Identification, TellsTheSizeOfACarByHowItTurns) {
   for (const char* car : {"f1tenth", "road-car", "orca-1-43"}) {
-    const auto scenario = protocol::compose({"", {{"car", car}}});
     const DriveLog log = drive_log({{"car", car}, {"track", "hairpins"}, {"laps", "1"}});
-    const double wheelbase = scenario->vehicle.wheelbase();
+    const double wheelbase = test::scenario_of({{"car", car}}).vehicle.wheelbase();
     EXPECT_NEAR(turning_wheelbase({log}), wheelbase, 0.35 * wheelbase)
         << car;  // enough to tell it from others
   }

@@ -1,15 +1,24 @@
 #!/usr/bin/env bash
-# Builds and runs programs against an installation: two with CMake, one with pkg-config. Configures the installed examples.
+# Builds and runs programs against an installation: one with CMake and with pkg-config, and of the installed examples a controller, a car
+# and a road of one's own.
 #   consumers.sh SOURCE_FOLDER PREFIX WORK_FOLDER COMPILER BUILD_FOLDER
 set -euo pipefail
 source=$1 prefix=$2 work=$3 compiler=$4 build=$5
-rm -rf "$work/consumer" "$work/own_controller.mcap" "$work/own_plant.mcap"
-cmake -G Ninja -S "$source" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
+# configured FOLDER NAME: the project in FOLDER, in "$work/NAME".
+configured() {
+  rm -rf "${work:?}/$2"
+  cmake -G Ninja -S "$1" -B "$work/$2" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
+}
+configured "$source" consumer
 cmake --build "$work/consumer" >/dev/null
-# Programs outside the installation find its data, by what CMake and pkg-config told their compiler.
+"$work/consumer/consumer"
+# Programs outside the installation find its data, by what CMake told their compiler.
 unset CHICANE_DATA_DIR
-(cd / && "$work/consumer/own_controller" "$work/own_controller.mcap")
-(cd / && "$work/consumer/own_plant" "$work/own_plant.mcap")
+configured "$(dirname "$(find "$prefix" -name 01_drive_a_lap.cpp)")" examples
+for example in 03_your_own_controller 06_your_own_car_and_road; do
+  cmake --build "$work/examples" --target "$example" >/dev/null
+  (cd / && "$work/examples/$example")
+done
 
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name chicane.pc)")
 export PKG_CONFIG_PATH
@@ -19,7 +28,3 @@ if grep -qF "$build/" <<<"$flags"; then [[ $prefix == "$build"/* ]] || { echo "c
 "$compiler" "$source/main.cpp" -o "$work/pkg_config_consumer" $flags
 "$work/pkg_config_consumer"
 [ -f "$(pkg-config --variable=datadir chicane)/presets/default.yaml" ] || { echo "chicane.pc: no presets/default.yaml in datadir"; exit 1; }
-
-examples=$(dirname "$(find "$prefix" -name 01_drive_a_lap.cpp)")
-rm -rf "$work/examples"
-cmake -G Ninja -S "$examples" -B "$work/examples" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Starts `chicane` (its path in CHICANE) with a page, and listens to it as a second viewer, by the protocol's
-// reference client.
+// Starts `chicane` (its path in CHICANE) with a page, and listens to it by the reference client of the protocol.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
@@ -37,7 +36,7 @@ export async function startProgram(command, args, port = 0) {
     port: listening,
     url: `http://127.0.0.1:${listening}/`,
     async stop(signal = 'SIGTERM') {
-      if (child.exitCode !== null || child.signalCode !== null) return;
+      if (child.exitCode !== null || child.signalCode !== null) return child.exitCode;
       child.kill(signal);
       await once(child, 'exit');
       return child.exitCode;
@@ -51,10 +50,33 @@ export async function startProgram(command, args, port = 0) {
   return program;
 }
 
-/** Changes a setting of the run, as the program's own page may: without an origin a viewer only watches. */
+/** A client with the origin of the program's own page: without one a viewer only watches. */
+export function clientOf(url, subprotocol = 'foxglove.sdk.v1') {
+  const socket = new WebSocket(url.replace('http', 'ws'), [subprotocol], { origin: new URL(url).origin });
+  return { socket, client: new foxglove.FoxgloveClient({ ws: socket }) };
+}
+
+export const reader = (schema) => new cdr.MessageReader(rosmsg.parse(schema, { ros2: true }));
+
+/** A client, once it is connected, that hears each message of the topics that `wants` takes. */
+export async function subscribe(url, wants, onMessage) {
+  const { socket, client } = clientOf(url);
+  const readers = new Map();
+  client.on('advertise', (channels) => {
+    for (const { id, topic, schema } of channels.filter((channel) => wants(channel.topic)))
+      readers.set(client.subscribe(id), { topic, of: reader(schema) });
+  });
+  client.on('message', ({ subscriptionId, data }) => {
+    const { topic, of } = readers.get(subscriptionId);
+    onMessage(topic, of.readMessage(data));
+  });
+  await once(socket, 'open');
+  return { socket, client };
+}
+
+/** Changes a setting of the run. */
 export async function change(url, name, value) {
-  const socket = new WebSocket(url.replace('http', 'ws'), ['foxglove.sdk.v1'], { origin: new URL(url).origin });
-  const client = new foxglove.FoxgloveClient({ ws: socket });
+  const { socket, client } = clientOf(url);
   await once(socket, 'open');
   const answer = new Promise((resolve) => client.on('parameterValues', resolve));
   client.setParameters([{ name, value }], 'change');
@@ -68,25 +90,14 @@ export async function change(url, name, value) {
 
 /** Frames by cycle, the newest 2000 of them, and all changes. */
 export async function watch(url) {
-  const socket = new WebSocket(url.replace('http', 'ws'), ['foxglove.sdk.v1']);
-  const client = new foxglove.FoxgloveClient({ ws: socket });
-  const readers = new Map();
   const seen = { frames: new Map(), changes: [], newest: null };
-  client.on('advertise', (channels) => {
-    for (const { id, topic, schema } of channels) {
-      if (!['/chicane/frame', '/chicane/change'].includes(topic)) continue;
-      readers.set(client.subscribe(id), { topic, reader: new cdr.MessageReader(rosmsg.parse(schema, { ros2: true })) });
-    }
-  });
-  client.on('message', ({ subscriptionId, data }) => {
-    const { topic, reader } = readers.get(subscriptionId);
-    const message = reader.readMessage(data);
+  const wants = (topic) => ['/chicane/frame', '/chicane/change'].includes(topic);
+  const { socket } = await subscribe(url, wants, (topic, message) => {
     if (topic === '/chicane/change') return seen.changes.push(message);
     seen.newest = message;
     seen.frames.set(message.cycle, message);
     if (seen.frames.size > 2000) seen.frames.delete(seen.frames.keys().next().value);
   });
-  await once(socket, 'open');
   return {
     ...seen,
     get newest() {

@@ -5,11 +5,7 @@
 //   CHICANE=/path/to/chicane node choices.mjs [rounds, 10] [seconds, 1]
 import { argv } from 'node:process';
 import { setTimeout as sleep } from 'node:timers/promises';
-import rosmsg from '@foxglove/rosmsg';
-import cdr from '@foxglove/rosmsg2-serialization';
-import foxglove from '@foxglove/ws-protocol';
-import WebSocket from 'ws';
-import { startDrive } from './chicane_drive.mjs';
+import { startDrive, subscribe } from './chicane_drive.mjs';
 
 const ROUNDS = Number(argv[2] ?? 10);
 const SECONDS = Number(argv[3] ?? 1);
@@ -24,25 +20,16 @@ const CHOICES = [
 
 /** Gaps between frames [ms], and when the first frame of another run came. */
 async function watch(url) {
-  const as = { origin: new URL(url).origin }; // the page itself, which may control
-  const client = new foxglove.FoxgloveClient({ ws: new WebSocket(url.replace('http', 'ws'), ['foxglove.sdk.v1'], as) });
-  const seen = { client, gaps: [], refusals: [], last: NaN, time: -1, began: NaN };
-  let reader;
-  client.on('advertise', (channels) => {
-    const { id, schema } = channels.find(({ topic }) => topic === '/chicane/frame');
-    reader = new cdr.MessageReader(rosmsg.parse(schema, { ros2: true }));
-    client.subscribe(id);
-  });
-  client.on('message', ({ data }) => {
+  const seen = { gaps: [], refusals: [], last: NaN, time: -1, began: NaN };
+  const isFrame = (topic) => topic === '/chicane/frame';
+  const { client } = await subscribe(url, isFrame, (_topic, { time_s: time }) => {
     const now = performance.now();
-    const { time_s: time } = reader.readMessage(data);
     if (Number.isFinite(seen.last)) seen.gaps.push(now - seen.last);
     if (time < seen.time) seen.began = now;
     [seen.last, seen.time] = [now, time];
   });
   client.on('status', ({ message }) => seen.refusals.push(message));
-  await new Promise((resolve) => client.on('open', resolve));
-  return seen;
+  return Object.assign(seen, { client });
 }
 
 const drive = await startDrive();

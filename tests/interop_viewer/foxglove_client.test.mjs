@@ -2,29 +2,21 @@
 // The reference client of the Foxglove WebSocket protocol against our server: what Foxglove and Lichtblick do.
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
-import rosmsg from '@foxglove/rosmsg';
-import cdr from '@foxglove/rosmsg2-serialization';
-import foxglove from '@foxglove/ws-protocol';
 import WebSocket from 'ws';
+import { clientOf, reader, startDrive } from './chicane_drive.mjs';
 import { PATIENCE } from './patience.mjs';
-import { startDemo } from './viewer_demo.mjs';
 
-const { FoxgloveClient } = foxglove; // these packages are CommonJS
-const { MessageReader } = cdr;
-const { parse } = rosmsg;
-
-let demo;
+let drive;
 before(async () => {
-  demo = await startDemo();
+  drive = await startDrive(['--laps', '0']);
 });
 after(async () => {
-  assert.equal(await demo.stop(), 0);
+  assert.equal(await drive.stop(), 0);
 });
 
 /** A connected client that remembers what it was told. */
 async function connect(subprotocol) {
-  const socket = new WebSocket(demo.url.replace('http', 'ws'), [subprotocol]);
-  const client = new FoxgloveClient({ ws: socket });
+  const { socket, client } = clientOf(drive.url, subprotocol);
   const seen = { info: null, channels: new Map(), services: new Map(), problems: [] };
   const next = (event, accept = () => true) =>
     new Promise((resolve, reject) => {
@@ -46,7 +38,7 @@ async function connect(subprotocol) {
   return { client, socket, seen, next };
 }
 
-const decode = (schema, bytes) => new MessageReader(parse(schema, { ros2: true })).readMessage(bytes);
+const decode = (schema, bytes) => reader(schema).readMessage(bytes);
 
 for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
   describe(subprotocol, () => {
@@ -112,19 +104,17 @@ for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
       const { client, next } = connection;
       client.getParameters([], 'all');
       const { parameters } = await next('parameterValues', ({ id }) => id === 'all');
-      assert.deepEqual(
-        parameters.map(({ name }) => name),
-        ['demo.gain', 'demo.name'],
-      );
-      client.subscribeParameterUpdates(['demo.gain']);
-      client.setParameters([{ name: 'demo.gain', value: 3 }], 'set');
+      assert.ok(parameters.length > 90);
+      client.subscribeParameterUpdates(['latency_ms']);
+      client.setParameters([{ name: 'latency_ms', value: 60 }], 'set');
       const answer = await next('parameterValues', ({ id }) => id === 'set');
-      assert.deepEqual(answer.parameters, [{ name: 'demo.gain', type: 'float64', value: 3 }]);
+      assert.deepEqual(answer.parameters, [{ name: 'latency_ms', type: 'float64', value: 60 }]);
       const refused = next('status');
-      client.setParameters([{ name: 'demo.gain', value: 99 }], 'again');
+      client.setParameters([{ name: 'latency_ms', value: 900 }], 'again');
       const update = await next('parameterValues', ({ id }) => id === 'again');
-      assert.equal(update.parameters[0].value, 3);
-      assert.deepEqual(await refused, { op: 'status', level: 2, message: 'demo.gain: expected a number from 0 to 10' });
+      assert.equal(update.parameters[0].value, 60);
+      const message = 'latency_ms: got 900, expected a number in [0, 500] ms';
+      assert.deepEqual(await refused, { op: 'status', level: 2, message });
     });
 
     it('calls services, and tells all viewers of a pause', async () => {
@@ -146,7 +136,7 @@ for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
         'message',
         ({ subscriptionId, data }) => subscriptionId === id && decode(runChannel.schema, data).is_paused,
       );
-      assert.deepEqual(await call('/step', []), { success: false, message: '/step: pause first' });
+      assert.deepEqual(await call('/step', []), { success: false, message: 'the run is not paused' });
       assert.deepEqual(await call('/pause', [1]), { success: true, message: 'paused' });
       await paused;
       assert.deepEqual(await call('/step', []), { success: true, message: 'one step' });
@@ -170,15 +160,15 @@ for (const subprotocol of ['foxglove.websocket.v1', 'foxglove.sdk.v1']) {
         socket.send(nonsense);
         assert.equal((await status).level, 2);
       }
-      client.getParameters(['demo.name'], 'still here');
+      client.getParameters(['preset'], 'still here');
       const { parameters } = await next('parameterValues', ({ id }) => id === 'still here');
-      assert.equal(parameters[0].value, 'demo');
+      assert.equal(parameters[0].value, 'default');
     });
   });
 }
 
 it('refuses a client that offers neither sub-protocol, in words', async () => {
-  const socket = new WebSocket(demo.url.replace('http', 'ws'));
+  const socket = new WebSocket(drive.url.replace('http', 'ws'));
   const status = await new Promise((resolve) => {
     socket.on('unexpected-response', (_request, response) => resolve(response.statusCode));
     socket.on('open', () => resolve('open'));

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 // A recorded run in the page: served by chicane replay with a second future beside it, and alone in a report.
 import assert from 'node:assert/strict';
-import { execFileSync, spawn } from 'node:child_process';
-import { once } from 'node:events';
+import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, afterEach, before, describe, it } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { launch } from './browser.mjs';
-import { startDrive } from './chicane_drive.mjs';
+import { startDrive, startProgram } from './chicane_drive.mjs';
 import { DashboardPage, headline } from './dashboard_page.mjs';
 
 const program = process.env.CHICANE ?? 'chicane';
@@ -20,7 +19,6 @@ const report = join(folder, 'report.html');
 
 let browser;
 let server;
-let url;
 let dashboard;
 
 before(async () => {
@@ -28,29 +26,14 @@ before(async () => {
   run('drive', '--fast', '--laps', '2', '--record', log);
   run('replay', log, '--branch-at', '40', '--set', 'tracking_mpc.speed_limit_mps=20', '--output', future, '--json');
   run('report', log, future, '--output', report);
-  server = spawn(program, ['replay', log, future, '--port', '0'], { stdio: ['ignore', 'ignore', 'pipe'] });
-  url = await addressOf(server);
+  server = await startProgram('replay', [log, future]);
   browser = await launch();
 });
 after(async () => {
   await browser?.close();
-  server?.kill('SIGINT');
-  if (server && server.exitCode === null) await once(server, 'exit');
-  assert.equal(server?.exitCode, 0, 'Ctrl-C ends it well');
+  assert.equal(await server?.stop('SIGINT'), 0, 'Ctrl-C ends it well');
   rmSync(folder, { recursive: true });
 });
-
-function addressOf(child) {
-  let said = '';
-  return new Promise((resolve, reject) => {
-    child.stderr.on('data', (data) => {
-      said += data;
-      const found = /http:\/\/localhost:(\d+)\//.exec(said);
-      if (found) resolve(`http://127.0.0.1:${found[1]}/`);
-    });
-    child.on('exit', (code) => reject(new Error(`chicane replay ended with ${code}: ${said}`)));
-  });
-}
 
 /** The page once its recording is read to the end. */
 async function open(address, options = {}) {
@@ -70,7 +53,7 @@ const time = (page) => page.locator('.timeline-time').innerText();
 describe('a recording in the page', () => {
   let page;
   before(async () => {
-    page = await open(url);
+    page = await open(server.url);
   });
   afterEach(() => dashboard.hadNothingToComplainOf(isAboutGraphics));
   after(() => dashboard.close(isAboutGraphics));
@@ -290,8 +273,8 @@ it('keeps the laps of several runs in a recording apart', async () => {
   );
   await live.close();
   await drive.stop();
-  const replay = spawn(program, ['replay', file, '--port', '0'], { stdio: ['ignore', 'ignore', 'pipe'] });
-  const page = await open(await addressOf(replay));
+  const replay = await startProgram('replay', [file]);
+  const page = await open(replay.url);
   const first = await dashboard.lapRows().count();
   assert.ok(first >= 3, `${first} laps on the oval`);
   const runs = page.getByLabel('Run of the recording');
@@ -309,8 +292,7 @@ it('keeps the laps of several runs in a recording apart', async () => {
   );
   assert.ok(second < first);
   await dashboard.close(isAboutGraphics);
-  replay.kill('SIGINT');
-  await once(replay, 'exit');
+  await replay.stop();
 });
 
 it('has nothing that its reader would fetch', () => {

@@ -3,15 +3,15 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { launch } from './browser.mjs';
+import { startDrive } from './chicane_drive.mjs';
 import { DashboardPage, EVERY_SIZE, repaintSeldom } from './dashboard_page.mjs';
 import { PATIENCE } from './patience.mjs';
-import { startDemo } from './viewer_demo.mjs';
 
-let demo;
+let drive;
 before(async () => {
-  demo = await startDemo();
+  drive = await startDrive();
 });
-after(() => demo.stop());
+after(() => drive.stop());
 
 /** Counts draw calls, so that a test can see whether anything is drawn. */
 const countDrawing = () => {
@@ -38,13 +38,13 @@ async function open(browser, { storage = {}, fluent = false, ...options } = {}) 
   const opened = shelf.get(key) ?? (await fresh(browser, { fluent, ...options }));
   shelf.delete(key);
   const { page, complaints } = opened;
-  await page.goto(`${demo.url}nothing`); // of the same origin, whose storage this is
+  await page.goto(`${drive.url}nothing`); // of the same origin, whose storage this is
   await page.evaluate((entries) => {
     localStorage.clear();
     for (const [name, value] of entries) localStorage.setItem(name, JSON.stringify(value));
   }, Object.entries(storage));
   complaints.length = 0;
-  await page.goto(demo.url);
+  await page.goto(drive.url);
   await page.getByText('Live', { exact: true }).waitFor();
   const leave = async () => {
     await page.goto('about:blank');
@@ -265,7 +265,7 @@ describe('the 3D picture', () => {
         },
       });
     const opened = await fresh(browser, { script });
-    await opened.page.goto(demo.url);
+    await opened.page.goto(drive.url);
     await opened.page.getByText('Live', { exact: true }).waitFor();
     await choose(opened.page, 'Chase');
     await ready(opened.page);

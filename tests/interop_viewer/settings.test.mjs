@@ -2,28 +2,19 @@
 // The reference client of the Foxglove WebSocket protocol turns the knobs of a running experiment: the whole program
 // (path in CHICANE), its recording and what `replay --verify` says of it.
 import assert from 'node:assert/strict';
-import { spawn, spawnSync } from 'node:child_process';
-import { once } from 'node:events';
+import { spawnSync } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import rosmsg from '@foxglove/rosmsg';
-import cdr from '@foxglove/rosmsg2-serialization';
-import foxglove from '@foxglove/ws-protocol';
-import WebSocket from 'ws';
+import { change, startDrive, subscribe } from './chicane_drive.mjs';
 import { PATIENCE } from './patience.mjs';
 
-const { FoxgloveClient } = foxglove; // these packages are CommonJS
-const { MessageReader } = cdr;
-const { parse } = rosmsg;
 const program = process.env.CHICANE ?? 'chicane';
 
 const folder = mkdtempSync(join(tmpdir(), 'chicane-settings-'));
 const recording = join(folder, 'run.mcap');
-let child;
-let url;
-let socketUrl;
+let drive;
 let client;
 const latest = new Map(); // topic → message
 const changes = [];
@@ -54,35 +45,13 @@ function set(name, value) {
 const changeOf = (name) => until(`change of ${name}`, () => changes.find((change) => change.name === name));
 
 before(async () => {
-  child = spawn(program, ['drive', '--port', '0', '--track', 'oval', '--laps', '0', '--record', recording], {
-    stdio: ['ignore', 'pipe', 'pipe'],
-  });
-  let said = '';
-  const link = await new Promise((resolve) => {
-    child.stderr.on('data', (text) => {
-      said += text;
-      const found = /http:\/\/localhost:\d+\/\?token=\S+/.exec(said)?.[0];
-      if (found) resolve(found);
-    });
-  });
-  url = new URL(link).origin;
-  socketUrl = link.replace('http', 'ws'); // with the token, which whoever sets something needs
-  client = new FoxgloveClient({ ws: new WebSocket(socketUrl, ['foxglove.sdk.v1']) });
-  const readers = new Map();
-  const topics = new Map();
-  client.on('advertise', (channels) => {
-    for (const channel of channels.filter(({ topic }) => topic.startsWith('/chicane/'))) {
-      const id = client.subscribe(channel.id);
-      topics.set(id, channel.topic);
-      readers.set(id, new MessageReader(parse(channel.schema, { ros2: true })));
-    }
-  });
-  client.on('message', ({ subscriptionId, data }) => {
-    const message = readers.get(subscriptionId).readMessage(data);
-    latest.set(topics.get(subscriptionId), message);
-    if (topics.get(subscriptionId) === '/chicane/change') changes.push(message);
+  drive = await startDrive(['--track', 'oval', '--laps', '0', '--record', recording]);
+  const isOurs = (topic) => topic.startsWith('/chicane/');
+  ({ client } = await subscribe(drive.url, isOurs, (topic, message) => {
+    latest.set(topic, message);
+    if (topic === '/chicane/change') changes.push(message);
     tell();
-  });
+  }));
   client.on('parameterValues', ({ parameters }) => {
     parameters.forEach(({ name, value }) => values.set(name, value));
     tell();
@@ -95,7 +64,7 @@ before(async () => {
 });
 
 after(() => {
-  child?.kill('SIGKILL');
+  drive?.stop('SIGKILL');
   rmSync(folder, { recursive: true, force: true });
 });
 
@@ -129,12 +98,9 @@ describe('a run that goes on', () => {
   });
 
   it('tells other viewers', async () => {
-    const other = new FoxgloveClient({ ws: new WebSocket(socketUrl, ['foxglove.sdk.v1']) });
-    await new Promise((resolve) => other.on('open', resolve));
-    other.setParameters([{ name: 'latency_ms', value: 60 }]);
+    await change(drive.url, 'latency_ms', 60);
     await until('60 ms', () => values.get('latency_ms') === 60);
     await until('60 ms in the description', () => latest.get('/chicane/run').latency_s === 0.06);
-    other.close();
   });
 
   it('is driven by a person who lets go of the keys', async () => {
@@ -187,11 +153,11 @@ describe('a run that goes on', () => {
   });
 
   it('describes its settings over HTTP', async () => {
-    const schema = await (await fetch(`${url}/schema.json`)).json();
+    const schema = await (await fetch(`${drive.url}schema.json`)).json();
     assert.equal(schema.find(({ key }) => key === 'cubic_mpc.horizon_steps').default, 7);
     set('cubic_mpc.weight_lateral', 321);
     await until('the weight', () => values.get('cubic_mpc.weight_lateral') === 321);
-    const answer = await fetch(`${url}/preset.yaml`);
+    const answer = await fetch(`${drive.url}preset.yaml`);
     const text = await answer.text();
     assert.match(answer.headers.get('content-disposition'), /preset\.yaml/);
     assert.match(text, /preset: "sixty-mph"/);
@@ -205,8 +171,7 @@ describe('a run that goes on', () => {
 
   it('comes out the same, bit for bit, when it is computed again', async () => {
     client.close();
-    child.kill('SIGINT');
-    await once(child, 'exit');
+    await drive.stop('SIGINT');
     const verified = spawnSync(program, ['replay', recording, '--verify', '--json']);
     const report = JSON.parse(verified.stdout);
     // A recorder that a busy machine holds up leaves steps out, and those behind them cannot be compared.

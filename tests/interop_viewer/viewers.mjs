@@ -2,13 +2,13 @@
 // What many viewers cost the car: the control step of a run in real time, with and without them. Half of them never
 // read.
 //   CHICANE=/path/to/chicane node viewers.mjs [viewers, 200] [seconds, 20] [times, 3]
-import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { readFileSync } from 'node:fs';
 import { setPriority } from 'node:os';
 import { argv, exit } from 'node:process';
 import { setTimeout as sleep } from 'node:timers/promises';
 import WebSocket from 'ws';
+import { startDrive } from './chicane_drive.mjs';
 
 const VIEWERS = Number(argv[2] ?? 200);
 const SECONDS = Number(argv[3] ?? 20);
@@ -19,32 +19,8 @@ const PAGE = 4096; // [bytes]
 
 setPriority(19); // the clients' work is not what is measured
 
-async function start() {
-  const child = spawn(process.env.CHICANE ?? 'chicane', ['drive', '--port', '0', '--laps', '10000', '--json'], {
-    stdio: ['ignore', 'pipe', 'pipe'],
-  });
-  let [said, out] = ['', ''];
-  child.stdout.on('data', (data) => (out += data));
-  const port = await new Promise((resolve, reject) => {
-    child.stderr.on('data', (data) => {
-      said = (said + data).slice(-4000);
-      const found = /http:\/\/localhost:(\d+)\//.exec(said);
-      if (found) resolve(Number(found[1]));
-    });
-    child.on('exit', (code) => reject(new Error(`chicane drive ended with ${code}: ${said}`)));
-  });
-  return {
-    port,
-    /** Resident memory [MB]. */
-    memory: () => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${child.pid}/status`, 'utf8'))[1]) / 1e3,
-    /** Its results. */
-    async stop() {
-      child.kill('SIGINT');
-      await once(child, 'exit');
-      return JSON.parse(out);
-    },
-  };
-}
+/** Resident memory [MB]. */
+const memoryOf = (pid) => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, 'utf8'))[1]) / 1e3;
 
 /** A viewer that subscribes as a dashboard does, and reads, or stops reading for ever. */
 async function view(port, reads) {
@@ -85,7 +61,7 @@ const quantile = (values, share) =>
 
 async function measure(count) {
   const before = kernelMemory();
-  const drive = await start();
+  const drive = await startDrive(['--json']);
   const viewers = [];
   for (let i = 0; i < count; ++i) viewers.push(await view(drive.port, i % 2 === 0));
   let kernel = 0;
@@ -93,10 +69,10 @@ async function measure(count) {
     await sleep(1000);
     kernel = Math.max(kernel, kernelMemory() - before);
   }
-  const memory = drive.memory();
+  const memory = memoryOf(drive.pid);
   const readers = viewers.filter((_, i) => i % 2 === 0);
   const dropped = readers.filter(({ isDropped }) => isDropped).length;
-  const { step_time_us: step, deadline_misses: misses } = await drive.stop();
+  const { step_time_us: step, deadline_misses: misses } = await drive.result();
   for (const { close } of viewers) close();
   const told =
     readers.length === 0

@@ -9,23 +9,14 @@
 #include <vector>
 
 #include "chicane/base/math.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::lap_time {
 namespace {
 
 /// A closed road with corners to both sides, one side wider than the other; `side` −1 mirrors it at the y
 /// axis, along which the original's helper has its gap.
-road::Track bean(double side = 1.0, double size = 1.0) {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i < 140; ++i) {
-    const double angle = kTwoPi * i / 140.0;
-    const double radius = size * (75.0 + 25.0 * std::cos(2.0 * angle) + 12.0 * std::sin(3.0 * angle));
-    road::TrackPoint point{{side * radius * std::cos(angle), radius * std::sin(angle)}, 4.0, 5.0};
-    if (side < 0.0) std::swap(point.left, point.right);
-    points.push_back(point);
-  }
-  return *road::Track::create("bean", points, true);
-}
+road::Track bean(double side = 1.0, double size = 1.0) { return test::bean_road(side, size, 4.0, 5.0); }
 
 const PlantLimitOptions kCoarse{.time_step = 0.1};
 
@@ -99,13 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Plants, PlantLimitOf, testing::Values("udacity", "road-
 
 TEST(PlantLimit, ARoadShorterThanTheCarsTightestCircleIsRefused) {
   // A ring of 4 m, 1.3 m to each side.
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i < 60; ++i) {
-    const double angle = kTwoPi * i / 60.0;
-    points.push_back({{4.0 * std::cos(angle), 4.0 * std::sin(angle)}, 1.3, 1.3});
-  }
-  const road::Track track =
-      *road::Track::create("ring", points, true, {.spacing = 0.3, .smoothing_sigma = 0.0});
+  const road::Track track = test::circle_road(4.0, 60, 1.3, 1.3, {.spacing = 0.3, .smoothing_sigma = 0.0});
   const Result<PlantLimit> limit = find_plant_limit(track, "road-car");
   ASSERT_FALSE(limit);
   EXPECT_EQ(limit.error().code, ErrorCode::kInvalidArgument);
@@ -116,12 +101,7 @@ TEST(PlantLimit, ARoadShorterThanTheCarsTightestCircleIsRefused) {
 }
 
 TEST(PlantLimit, ARoadNarrowerThanTheCarIsNamedWithItsPlace) {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i < 60; ++i) {
-    const double angle = kTwoPi * i / 60.0;
-    points.push_back({{60.0 * std::cos(angle), 60.0 * std::sin(angle)}, 0.8, 0.8});
-  }
-  const Result<PlantLimit> limit = find_plant_limit(*road::Track::create("lane", points, true), "udacity");
+  const Result<PlantLimit> limit = find_plant_limit(test::circle_road(60.0, 60, 0.8, 0.8, {}), "udacity");
   ASSERT_FALSE(limit);
   EXPECT_NE(limit.error().message.find("the road is 1.6"), std::string::npos) << limit.error().message;
 }

@@ -14,22 +14,14 @@
 #include "chicane/lap_time/detail/plant_models.hpp"
 #include "chicane/lap_time/limit.hpp"
 #include "lap_time/derivatives.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::lap_time {
 namespace {
 
 /// A closed road with corners to both sides, one side wider than the other; `side` −1 mirrors it.
 road::Track bean(double side = 1.0, double half_width = 4.0) {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i < 140; ++i) {
-    const double angle = kTwoPi * i / 140.0;
-    const double radius = 75.0 + 25.0 * std::cos(2.0 * angle) + 12.0 * std::sin(3.0 * angle);
-    road::TrackPoint point{
-        {side * radius * std::cos(angle), radius * std::sin(angle)}, half_width, 1.2 * half_width};
-    if (side < 0.0) std::swap(point.left, point.right);
-    points.push_back(point);
-  }
-  return *road::Track::create("bean", points, true);
+  return test::bean_road(side, 1.0, half_width, 1.2 * half_width);
 }
 
 model::VehicleParams car_named(const std::string& name) {

@@ -12,18 +12,17 @@
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/run_steps.hpp"
 #include "support/alloc_guard.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
 
 using telemetry::Change;
-using Settings = std::vector<std::pair<std::string, std::string>>;
+using test::Settings;
 
 std::unique_ptr<ClosedLoop> loop_of(Settings settings) {
   settings.emplace_back("laps", "0");
-  const auto scenario = protocol::compose({.scenario_file = {}, .settings = std::move(settings)});
-  EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
-  return std::move(*ClosedLoop::create(*scenario));
+  return test::loop_of(test::scenario_of(settings));
 }
 
 Setting setting(const char* name, const char* value, bool starts_anew = false) {

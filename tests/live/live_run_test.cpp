@@ -11,15 +11,14 @@
 #include "chicane/live/run_publisher.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/replay.hpp"
+#include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::live {
 namespace {
 
 scenario::Scenario laps_of_oval(const std::string& laps) {
-  return protocol::compose(
-             {.scenario_file = {}, .settings = {{"preset", "pid"}, {"track", "oval"}, {"laps", laps}}})
-      .value();
+  return test::scenario_of({{"preset", "pid"}, {"track", "oval"}, {"laps", laps}});
 }
 
 /// A run at 20 times the pace of the clock, on a port of the system's choice.
@@ -55,9 +54,7 @@ TEST(LiveRun, DrivesToItsEndAndRecordsAllOfIt) {
 
 TEST(LiveRun, TellsOfEachLapTheLastOneToo) {
   const scenario::Scenario scenario =
-      protocol::compose(
-          {.scenario_file = {}, .settings = {{"preset", "default"}, {"track", "oval"}, {"laps", "1"}}})
-          .value();
+      test::scenario_of({{"preset", "default"}, {"track", "oval"}, {"laps", "1"}});
   run::RunControls controls;
   controls.wants_stop = false;
   const auto live = fast_run(scenario, controls);

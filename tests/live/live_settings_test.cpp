@@ -17,6 +17,7 @@
 
 #include "chicane/protocol/library.hpp"
 #include "live/settings_of_a_run.hpp"
+#include "support/folder.hpp"
 
 namespace chicane::live {
 namespace {
@@ -214,8 +215,8 @@ TEST(LiveSettings, ChangeNothingWhenTheRunCannotBeBuiltAndSaySo) {
 
 // A viewer read the first lines of any file of the machine in such a message.
 TEST(LiveSettings, ChooseFromTheLibraryByNameAndOpenNoOtherFile) {
-  const std::string file = testing::TempDir() + "live_settings_secret.yaml";
-  std::ofstream(file) << "the secret word\n";
+  const test::Folder folder;
+  const std::string file = folder.write("secret.yaml", "the secret word\n");
   Live live;
   for (const char* key : {"preset", "car", "track"}) {
     for (const std::string& value :
@@ -231,30 +232,27 @@ TEST(LiveSettings, ChooseFromTheLibraryByNameAndOpenNoOtherFile) {
   }
   EXPECT_TRUE(live.started.empty());
   EXPECT_EQ(live.said, "");
-  std::filesystem::remove(file);
 }
 
 TEST(LiveSettings, TakeBackTheFileThatTheRunWasStartedWith) {
-  const std::string file = testing::TempDir() + "live_settings_mine.csv";
-  std::filesystem::copy_file(*protocol::locate(protocol::Shelf::kTrack, "oval"), file,
-                             std::filesystem::copy_options::overwrite_existing);
+  const test::Folder folder;
+  const std::string file =
+      folder.write("mine.csv", test::content_of(*protocol::locate(protocol::Shelf::kTrack, "oval")));
   Live live(scenario_of({{"track", file}}));
   ASSERT_TRUE(live.settings.set({"track", std::string("hairpins")}));
   live.end_of_build();
   ASSERT_TRUE(live.settings.set({"track", file}));
   EXPECT_EQ(live.started.back().scenario.track, file);
-  std::filesystem::remove(file);
 }
 
 TEST(LiveSettings, TellWhatAFileHoldsToWhoStartedTheProgramOnly) {
-  const std::string file = testing::TempDir() + "live_settings_preset_that_goes_bad.yaml";
-  std::ofstream(file) << "preset: default\n";
+  const test::Folder folder;
+  const std::string file = folder.write("goes_bad.yaml", "preset: default\n");
   Live live(scenario_of({{"preset", file}}));
   std::ofstream(file) << "preset: default\nlaps: the secret word\n";
   EXPECT_EQ(live.refusal({"car", std::string("road-car")}),
             "car: road-car cannot be used here; the program's own output says why");
   EXPECT_THAT(live.said, HasSubstr(":2: laps: got the secret word"));
-  std::filesystem::remove(file);
 
   Live other;
   ASSERT_TRUE(other.settings.set({"track", std::string("oval")}));
@@ -357,14 +355,14 @@ TEST(LiveSettings, DescribeThemselvesInJson) {
 }
 
 TEST(LiveSettings, BecomeAPresetFileThatGivesThemBackForEveryRow) {
-  const std::string file = testing::TempDir() + "live_settings_preset.yaml";
+  const test::Folder folder;
   for (const protocol::Parameter& row : protocol::list()) {
     SCOPED_TRACE(row.key);
     // Only a double track has parameters of its own.
     const std::string car = row.key.starts_with("plant_params.") ? "bmw-320i" : "udacity";
     const scenario::Scenario plain = scenario_of({{"car", car}});
     const Live live(scenario_of({{"car", car}, {std::string(row.key), another_value(row, plain)}}));
-    std::ofstream(file) << live.settings.preset_yaml();
+    const std::string file = folder.write("preset.yaml", live.settings.preset_yaml());
     const Result<scenario::Scenario> again = protocol::compose({.scenario_file = file, .settings = {}});
     ASSERT_TRUE(again) << again.error().message;
     for (const protocol::Parameter& each : protocol::list()) {
@@ -372,7 +370,6 @@ TEST(LiveSettings, BecomeAPresetFileThatGivesThemBackForEveryRow) {
           << each.key;
     }
   }
-  std::filesystem::remove(file);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "chicane/wire/serve.hpp"
 #include "net/raw_socket.hpp"
 #include "protocol/hostile_telemetry.hpp"
+#include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::live {
@@ -22,18 +23,14 @@ using wire::ServeOptions;
 using wire::UdacityEndpoint;
 
 scenario::Scenario short_run(const std::string& controller) {
-  const auto scenario = protocol::compose(
-      {.scenario_file = {}, .settings = {{"controller", controller}, {"time_limit_s", "6"}}});
-  EXPECT_TRUE(scenario);
-  return *scenario;
+  return test::scenario_of({{"controller", controller}, {"time_limit_s", "6"}});
 }
 
 /// What a simulator sends during a short drive.
 std::vector<std::string> telemetry_of_a_drive() {
-  auto loop = run::ClosedLoop::create(short_run("pid"));
-  EXPECT_TRUE(loop);
+  const auto loop = test::loop_of(short_run("pid"));
   std::vector<std::string> messages;
-  static_cast<void>(run::run_closed_loop(**loop, {.on_frame = [&](const telemetry::Frame& frame) {
+  static_cast<void>(run::run_closed_loop(*loop, {.on_frame = [&](const telemetry::Frame& frame) {
     messages.push_back(protocol::encode_telemetry(frame.measurement));
   }}));
   return messages;

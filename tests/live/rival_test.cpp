@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "chicane/protocol/library.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::live {
 namespace {
@@ -18,12 +19,7 @@ using Json = nlohmann::json;
 
 class Race : public testing::Test {
  protected:
-  void SetUp() override {
-    scenario =
-        protocol::compose({.scenario_file = {}, .settings = {{"track", "oval"}, {"laps", "0"}}}).value();
-    loop = std::move(*run::ClosedLoop::create(scenario));
-    log.begin(scenario);
-  }
+  void SetUp() override { log.begin(scenario); }
   /// A race that has begun.
   void race(const std::string& question) {
     const auto asked = rival.ask(question, scenario);
@@ -60,8 +56,8 @@ class Race : public testing::Test {
   }
   Json answer() const { return Json::parse(rival.answer()); }
 
-  scenario::Scenario scenario;
-  std::unique_ptr<run::ClosedLoop> loop;
+  scenario::Scenario scenario = test::scenario_of({{"track", "oval"}, {"laps", "0"}});
+  std::unique_ptr<run::ClosedLoop> loop = test::loop_of(scenario);
   std::atomic<bool> is_asked{false};
   RunLog log{false};
   Rival rival{log, [this] { is_asked = true; }};

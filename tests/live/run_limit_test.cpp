@@ -14,15 +14,12 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/make.hpp"
 #include "support/roads.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::live {
 namespace {
 
-scenario::Scenario on(const std::string& track) {
-  const auto scenario = protocol::compose({.scenario_file = {}, .settings = {{"track", track}}});
-  EXPECT_TRUE(scenario);
-  return scenario.value_or(scenario::Scenario{});
-}
+scenario::Scenario on(const std::string& track) { return test::scenario_of({{"track", track}}); }
 
 road::Track open_road() { return test::straight_road(30, 5.0, 5.0, {}); }
 
@@ -74,10 +71,7 @@ TEST(RunLimit, SaysWhyThereIsNone) {
   limit.compare(run, kGoOn, kAsLongAsItTakes);
   EXPECT_EQ(run.why_no_limit, "nobody knows the road");
 
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i < 60; ++i)
-    points.push_back({50.0 * Vec2{std::cos(i * kTwoPi / 60), std::sin(i * kTwoPi / 60)}, 0.6, 0.6});
-  limit.search(road::Track::create("narrow", points, true).value(), on("oval"));
+  limit.search(test::circle_road(50.0, 60, 0.6, 0.6, {}), on("oval"));
   limit.compare(run, kGoOn, kAsLongAsItTakes);
   EXPECT_NE(run.why_no_limit.find("the road is"), std::string::npos) << run.why_no_limit;
 }

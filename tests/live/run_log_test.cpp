@@ -14,6 +14,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "support/alloc_guard.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::live {
 namespace {
@@ -21,13 +22,9 @@ namespace {
 using recording::BranchReport;
 using testing::HasSubstr;
 
-std::unique_ptr<run::ClosedLoop> loop_of(
-    const std::vector<std::pair<std::string, std::string>>& settings = {}) {
-  std::vector<std::pair<std::string, std::string>> all{{"laps", "0"}, {"sensor.position_noise_m", "0.05"}};
-  all.insert(all.end(), settings.begin(), settings.end());
-  const auto scenario = protocol::compose({.scenario_file = {}, .settings = all});
-  EXPECT_TRUE(scenario);
-  return std::move(*run::ClosedLoop::create(*scenario));
+std::unique_ptr<run::ClosedLoop> loop_on(const std::string& track) {
+  return test::loop_of(
+      test::scenario_of({{"laps", "0"}, {"sensor.position_noise_m", "0.05"}, {"track", track}}));
 }
 
 /// A run whose log is kept.
@@ -50,7 +47,7 @@ class Driven {
   }
   Result<BranchReport> branch(const recording::BranchOptions& options) { return log.branch(options, {}); }
 
-  std::unique_ptr<run::ClosedLoop> loop = loop_of();
+  std::unique_ptr<run::ClosedLoop> loop = loop_on("lakeside");
   RunLog log{false};
 };
 
@@ -92,7 +89,7 @@ TEST(RunLog, KnowsARunThatStartedAnewFromThereOnWithItsSettings) {
 TEST(RunLog, KnowsTheNewestRunOnly) {
   Driven run;
   run.drive(30);
-  run.loop = loop_of({{"track", "oval"}});
+  run.loop = loop_on("oval");
   run.log.begin(run.loop->scenario());
   run.drive(50);
   const auto report = run.branch({.at = 1.0, .duration = 1.0, .drives_both = true});
@@ -106,7 +103,7 @@ TEST(RunLog, SaysWhyARunIsNotKnown) {
   ASSERT_FALSE(log.since({}));
   EXPECT_THAT(log.since({}).error().message, HasSubstr("has not begun"));
 
-  const auto loop = loop_of();
+  const auto loop = loop_on("lakeside");
   log.begin(loop->scenario());
   while (!loop->advance()) {
   }
@@ -121,7 +118,7 @@ TEST(RunLog, SaysWhyARunIsNotKnown) {
 }
 
 TEST(RunLog, AllocatesNothingOnTheControlThread) {
-  const auto loop = loop_of();
+  const auto loop = loop_on("lakeside");
   RunLog log(false);
   log.begin(loop->scenario());
   while (!loop->advance()) {
@@ -135,11 +132,8 @@ TEST(RunLog, AllocatesNothingOnTheControlThread) {
   EXPECT_EQ(guard.count(), 0);
 }
 
-std::unique_ptr<run::ClosedLoop> oval(const char* controller = "pid") {
-  const auto scenario = protocol::compose(
-      {.scenario_file = {}, .settings = {{"track", "oval"}, {"laps", "0"}, {"controller", controller}}});
-  EXPECT_TRUE(scenario);
-  return std::move(*run::ClosedLoop::create(*scenario));
+std::unique_ptr<run::ClosedLoop> oval() {
+  return test::loop_of(test::scenario_of({{"track", "oval"}, {"laps", "0"}, {"controller", "pid"}}));
 }
 
 void drive(run::ClosedLoop& loop, RunLog& log, int cycles) {

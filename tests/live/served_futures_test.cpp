@@ -12,18 +12,17 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::live {
 namespace {
 
+using test::Settings;
 using testing::HasSubstr;
-using Settings = std::vector<std::pair<std::string, std::string>>;
 
 scenario::Scenario scenario_of(Settings settings) {
   settings.insert(settings.begin(), {{"track", "oval"}, {"laps", "0"}});
-  const auto scenario = protocol::compose({.scenario_file = {}, .settings = settings});
-  EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
-  return scenario.value_or(scenario::Scenario{});
+  return test::scenario_of(settings);
 }
 
 /// A car that another program simulates: what is told of it is what was measured, and what it was sent.

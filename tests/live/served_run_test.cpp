@@ -15,16 +15,14 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/wire/simulate.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::live {
 namespace {
 
 scenario::Scenario short_scenario() {
-  auto scenario = protocol::compose(
-      {.scenario_file = {},
-       .settings = {
-           {"preset", "pid"}, {"track", "oval"}, {"laps", "0"}, {"time_limit_s", "2"}, {"latency_ms", "0"}}});
-  return scenario.value();
+  return test::scenario_of(
+      {{"preset", "pid"}, {"track", "oval"}, {"laps", "0"}, {"time_limit_s", "2"}, {"latency_ms", "0"}});
 }
 
 TEST(ServedRun, AnswersOneSimulatorAfterTheOtherAndReportsOnAll) {

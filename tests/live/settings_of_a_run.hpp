@@ -12,6 +12,7 @@
 
 #include "chicane/live/live_settings.hpp"
 #include "chicane/protocol/library.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::test {
 
@@ -20,12 +21,7 @@ using live::LiveSettings;
 using protocol::foxglove::Parameter;
 using protocol::foxglove::ParameterValue;
 
-inline scenario::Scenario scenario_of(std::vector<std::pair<std::string, std::string>> settings) {
-  Result<scenario::Scenario> scenario =
-      protocol::compose({.scenario_file = {}, .settings = std::move(settings)});
-  EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
-  return scenario.value_or(scenario::Scenario{});
-}
+using test::scenario_of;
 
 /// Another value than the one that holds, which may stand beside the others.
 inline std::string another_value(const protocol::Parameter& row, const scenario::Scenario& scenario) {

@@ -11,6 +11,7 @@
 
 #include "chicane/live/run_log.hpp"
 #include "chicane/protocol/library.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::live {
 namespace {
@@ -66,9 +67,7 @@ TEST(WhatIf, RefusesWhatIsNoQuestionInWords) {
 }
 
 TEST(WhatIf, AnswersTheNewestQuestionWithBothFutures) {
-  const auto scenario =
-      protocol::compose({.scenario_file = {}, .settings = {{"track", "oval"}, {"laps", "0"}}});
-  const auto loop = *run::ClosedLoop::create(*scenario);
+  const auto loop = test::loop_of(test::scenario_of({{"track", "oval"}, {"laps", "0"}}));
   RunLog log(false);
   log.begin(loop->scenario());
   for (int cycles = 0; cycles < 300;) {

@@ -9,16 +9,14 @@
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::live {
 namespace {
 
 using Json = nlohmann::json;
 
-scenario::Scenario short_run() {
-  auto scenario = protocol::compose({.scenario_file = {}, .settings = {{"track", "oval"}, {"laps", "1"}}});
-  return scenario.value();
-}
+scenario::Scenario short_run() { return test::scenario_of({{"track", "oval"}, {"laps", "1"}}); }
 
 class WorkerRuns : public testing::Test {
  protected:
@@ -48,9 +46,7 @@ class WorkerRuns : public testing::Test {
 };
 
 TEST_F(WorkerRuns, AreThoseOfTheProgramBitForBitAtWhateverPace) {
-  const auto loop = run::ClosedLoop::create(short_run());
-  ASSERT_TRUE(loop);
-  const telemetry::RunSummary expected = run::run_closed_loop(**loop);
+  const telemetry::RunSummary expected = test::drive(short_run());
   ASSERT_TRUE(expected.completed);
   for (const double pace : {1.0, 20.0}) {
     start(short_run());

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "chicane/base/math.hpp"
+#include "chicane/protocol/csv_text.hpp"
 #include "support/comma_locale.hpp"
 
 namespace chicane::protocol {
@@ -328,6 +329,12 @@ TEST(CsvTrack, EveryBrokenFixtureIsListed) {
     count += entry.path().extension() == ".csv" ? 1U : 0U;
   }
   EXPECT_EQ(count, 34U);
+}
+
+TEST(CsvText, ReadsFiniteNumbersOnly) {
+  EXPECT_EQ(number("+1.5e1"), 15.0);
+  for (const char* bad : {"", "1.5x", "nan", "inf", "1e999", "--1"}) EXPECT_FALSE(number(bad)) << bad;
+  EXPECT_FALSE(number("1,250.5", ';')) << "of thousands";
 }
 
 }  // namespace

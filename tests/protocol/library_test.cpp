@@ -12,6 +12,7 @@
 
 #include "chicane/model/vehicle.hpp"
 #include "chicane/protocol/schema.hpp"
+#include "support/folder.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -20,21 +21,12 @@ using scenario::Scenario;
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
-/// A folder of its own for each test, gone afterwards.
-class Library : public ::testing::Test {
+class Library : public testing::Test, protected test::Folder {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(::testing::TempDir()) /
-              (std::string("chicane_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  Library() {
     fs::create_directories(folder_ / "presets");
     fs::create_directories(folder_ / "tracks");
   }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string write(const std::string& name, const std::string& text) {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
-  }
-  fs::path folder_;
 };
 
 std::string error_of(const Request& request) {
@@ -246,8 +238,8 @@ TEST(RememberedFiles, ComposeTheSameAsFiles) {
 }
 
 TEST(RememberedFiles, AreReadOnceAndFailuresAgain) {
-  const fs::path file =
-      fs::path(::testing::TempDir()) / ("remembered_" + std::to_string(::getpid()) + ".yaml");
+  const test::Folder folder;
+  const fs::path file = folder.path("remembered.yaml");
   const Request request{.scenario_file = {}, .settings = {{"preset", file.string()}}};
   RememberedFiles files;
   EXPECT_FALSE(compose(request, files)) << "there is none yet";

@@ -15,6 +15,7 @@
 
 #include "protocol/cdr_reader.hpp"
 #include "protocol/viewer_samples.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -251,14 +252,8 @@ TEST(RosMessages, BytesEqualTheFixturesTheBrowserReads) {
 }
 
 TEST(RosMessages, RoadLinesCloseAndKeepTheirWidths) {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i < 90; ++i) {
-    const double angle = 2.0 * M_PI * i / 90.0;
-    points.push_back({{50.0 * std::cos(angle), 50.0 * std::sin(angle)}, 3.0, 5.0});
-  }
-  const auto track = road::Track::create("ring", points, true);
-  ASSERT_TRUE(track) << track.error().message;
-  const RoadLines lines = road_lines(*track, 2.0);
+  const road::Track track = test::circle_road(50.0, 90, 3.0, 5.0, {});
+  const RoadLines lines = road_lines(track, 2.0);
   ASSERT_GE(lines.centre.size(), 157U);  // 2π · 50 m / 2 m
   ASSERT_EQ(lines.left.size(), lines.centre.size());
   EXPECT_LT((lines.left.front() - lines.left.back()).norm(), 1e-6);

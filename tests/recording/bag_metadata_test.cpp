@@ -10,29 +10,18 @@
 #include <sstream>
 
 #include "chicane/recording/recorder.hpp"
+#include "support/folder.hpp"
 
 namespace chicane::recording {
 namespace {
 
-class BagMetadata : public testing::Test {
+class BagMetadata : public testing::Test, protected test::Folder {
  protected:
-  BagMetadata() { std::filesystem::create_directories(folder_); }
-  ~BagMetadata() override { std::filesystem::remove_all(folder_); }
-  [[nodiscard]] std::string file(const char* name) const { return (folder_ / name).string(); }
-  [[nodiscard]] static std::string text_of(const std::string& path) {
-    std::stringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-  }
-
-  // A folder for each process: tests run beside each other.
-  std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) / ("chicane_bag_metadata_" + std::to_string(::getpid()));
 };
 
 TEST_F(BagMetadata, CountsTheMessagesOfARecordingInTheLayoutOfRosbag2) {
   RecorderOptions options;
-  options.path = file("run.mcap");
+  options.path = path("run.mcap");
   options.may_wait = true;
   {
     const auto recorder = Recorder::create(options);
@@ -47,7 +36,7 @@ TEST_F(BagMetadata, CountsTheMessagesOfARecordingInTheLayoutOfRosbag2) {
   }
   ASSERT_TRUE(can_be_bag(options.path));
   ASSERT_TRUE(write_bag_metadata(options.path));
-  const std::string text = text_of(file("metadata.yaml"));
+  const std::string text = content("metadata.yaml");
   // As rosbag2_storage writes it (metadata_io.cpp, version 5).
   EXPECT_THAT(text,
               testing::StartsWith("rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: mcap\n"
@@ -61,15 +50,15 @@ TEST_F(BagMetadata, CountsTheMessagesOfARecordingInTheLayoutOfRosbag2) {
 }
 
 TEST_F(BagMetadata, AFolderIsTheBagOfOneRecording) {
-  std::ofstream(file("metadata.yaml"))
+  std::ofstream(path("metadata.yaml"))
       << "rosbag2_bagfile_information:\n  relative_file_paths:\n    - \"other.mcap\"\n";
-  const auto refused = can_be_bag(file("run.mcap"));
+  const auto refused = can_be_bag(path("run.mcap"));
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, testing::HasSubstr("another recording"));
-  EXPECT_TRUE(can_be_bag(file("other.mcap")));
+  EXPECT_TRUE(can_be_bag(path("other.mcap")));
 }
 
-TEST_F(BagMetadata, FailsWithoutTheRecording) { EXPECT_FALSE(write_bag_metadata(file("none.mcap"))); }
+TEST_F(BagMetadata, FailsWithoutTheRecording) { EXPECT_FALSE(write_bag_metadata(path("none.mcap"))); }
 
 }  // namespace
 }  // namespace chicane::recording

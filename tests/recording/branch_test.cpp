@@ -12,6 +12,7 @@
 #include "chicane/recording/recorder.hpp"
 #include "chicane/recording/replay.hpp"
 #include "chicane/telemetry/mcap.hpp"
+#include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {
@@ -56,13 +57,9 @@ class Recording {
   std::unique_ptr<Recorder> recorder_;
 };
 
-std::unique_ptr<run::ClosedLoop> short_run(std::vector<std::pair<std::string, std::string>> settings = {}) {
+std::unique_ptr<run::ClosedLoop> short_run(test::Settings settings = {}) {
   settings.insert(settings.begin(), {{"laps", "1"}, {"sensor.position_noise_m", "0.05"}});
-  const auto scenario = protocol::compose({.scenario_file = {}, .settings = settings});
-  EXPECT_TRUE(scenario);
-  auto loop = run::ClosedLoop::create(scenario.value_or(scenario::Scenario{}));
-  EXPECT_TRUE(loop);
-  return std::move(*loop);
+  return test::loop_of(test::scenario_of(settings));
 }
 
 /// `cycles` control steps; with a `budget` [s] as in real time.

@@ -10,6 +10,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {
@@ -20,22 +21,18 @@ using ::testing::HasSubstr;
 
 /// Two seconds of the given run with a change of a setting after the first.
 std::size_t record(const std::string& path, const std::string& controller = "pid") {
-  const auto scenario =
-      protocol::compose({.scenario_file = {}, .settings = {{"controller", controller}, {"laps", "1"}}});
-  EXPECT_TRUE(scenario);
-  const auto loop = run::ClosedLoop::create(*scenario);
-  EXPECT_TRUE(loop);
+  const auto loop = test::loop_of(test::scenario_of({{"controller", controller}, {"laps", "1"}}));
   RecorderOptions options;
   options.path = path;
-  options.run.track = (*loop)->track().name();
-  options.scenario = *scenario;
+  options.run.track = loop->track().name();
+  options.scenario = loop->scenario();
   options.may_wait = true;
   const auto recorder = Recorder::create(options);
   EXPECT_TRUE(recorder);
   std::size_t steps = 0;
   while (steps < 50) {
-    if (!(*loop)->advance()) continue;
-    (*recorder)->record((*loop)->frame());
+    if (!loop->advance()) continue;
+    (*recorder)->record(loop->frame());
     ++steps;
   }
   EXPECT_TRUE((*recorder)->finish());

@@ -9,35 +9,32 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::recording {
 
 /// Drives laps of a track and records them in `path`, as the program does; the frames that were recorded.
 inline std::vector<telemetry::Frame> record_run(const std::string& path, const std::string& track,
                                                 const std::string& laps) {
-  const auto scenario =
-      protocol::compose({.scenario_file = {}, .settings = {{"track", track}, {"laps", laps}}});
-  EXPECT_TRUE(scenario);
-  const auto loop = run::ClosedLoop::create(*scenario);
-  EXPECT_TRUE(loop);
+  const auto loop = test::loop_of(test::scenario_of({{"track", track}, {"laps", laps}}));
   RecorderOptions options;
   options.path = path;
   options.run.track = track;
-  options.run.track_length = (*loop)->track().length();
-  options.run.vehicle = scenario->vehicle;
-  options.run.road = protocol::road_lines((*loop)->track(), 2.0);
-  options.scenario = *scenario;
+  options.run.track_length = loop->track().length();
+  options.run.vehicle = loop->scenario().vehicle;
+  options.run.road = protocol::road_lines(loop->track(), 2.0);
+  options.scenario = loop->scenario();
   options.may_wait = true;
   const auto recorder = Recorder::create(options);
   EXPECT_TRUE(recorder);
   std::vector<telemetry::Frame> frames;
   static_cast<void>(run::run_closed_loop(
-      **loop, {.on_frame =
-                   [&](const telemetry::Frame& frame) {
-                     frames.push_back(frame);
-                     (*recorder)->record(frame);
-                   },
-               .on_lap = [&](const telemetry::CompletedLap& lap) { (*recorder)->record(lap); }}));
+      *loop, {.on_frame =
+                  [&](const telemetry::Frame& frame) {
+                    frames.push_back(frame);
+                    (*recorder)->record(frame);
+                  },
+              .on_lap = [&](const telemetry::CompletedLap& lap) { (*recorder)->record(lap); }}));
   EXPECT_TRUE((*recorder)->finish());
   return frames;
 }

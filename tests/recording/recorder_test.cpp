@@ -15,6 +15,9 @@
 #include "chicane/recording/replay.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/telemetry/mcap.hpp"
+#include "support/own_controller.hpp"
+#include "support/roads.hpp"
+#include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {
@@ -22,13 +25,9 @@ namespace {
 
 using telemetry::TemporaryFile;
 
-std::unique_ptr<run::ClosedLoop> short_run(std::vector<std::pair<std::string, std::string>> settings) {
+std::unique_ptr<run::ClosedLoop> short_run(test::Settings settings) {
   settings.insert(settings.begin(), {{"laps", "1"}, {"time_limit_s", "12"}});
-  const auto scenario = protocol::compose({.scenario_file = {}, .settings = settings});
-  EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
-  auto loop = run::ClosedLoop::create(scenario.value_or(scenario::Scenario{}));
-  EXPECT_TRUE(loop);
-  return std::move(*loop);
+  return test::loop_of(test::scenario_of(settings));
 }
 
 RecorderOptions recording(const run::ClosedLoop& loop, const std::string& path) {
@@ -79,6 +78,22 @@ INSTANTIATE_TEST_SUITE_P(Controllers, RecordedController,
                            std::erase(name, '-');
                            return name;
                          });
+
+// Only who has the parts can compute it again.
+TEST(Replay, IsByTheControllerAndOnTheTrackOfOnesOwn) {
+  const TemporaryFile file;
+  run::Factories parts(test::make_own_controller);
+  parts.track = [](const scenario::Scenario&) -> Result<road::Track> {
+    return test::circle_road(80.0, 50, 5.0, 5.0);
+  };
+  const auto loop = run::ClosedLoop::create(test::scenario_of({{"laps", "0"}, {"time_limit_s", "8"}}), parts);
+  ASSERT_TRUE(loop) << loop.error().message;
+  EXPECT_EQ(record(**loop, file.path()).frames, 200U);
+  const Result<ReplayReport> replayed = verify_recording(file.path(), parts);
+  ASSERT_TRUE(replayed) << replayed.error().message;
+  EXPECT_TRUE(replayed->is_verified()) << replayed->first_difference.value_or(0);
+  EXPECT_FALSE(verify_recording(file.path())->is_verified());
+}
 
 // Delay and steering that a run finds out about its car are found again, and taken up at the same steps.
 TEST(Recorder, HasARunThatIdentifiesItsCar) {
@@ -247,13 +262,12 @@ TEST(Recorder, HoldsEveryTopicAndTimesThatNeverGoBackWhenTheRunStartsAnew) {
 
 TEST(Recorder, RecordsFaultsSoThatTheyComeOutTheSame) {
   const TemporaryFile file;
-  auto scenario = protocol::compose({.scenario_file = "", .settings = {}});
-  ASSERT_TRUE(scenario);
+  scenario::Scenario scenario = test::scenario_of();
   for (const char* name : {"gps_noise", "slow_solver", "link_lost"}) {
-    scenario->faults.push_back(
-        sim::default_event(*sim::fault_named(name), 0.5 + static_cast<double>(scenario->faults.size())));
+    scenario.faults.push_back(
+        sim::default_event(*sim::fault_named(name), 0.5 + static_cast<double>(scenario.faults.size())));
   }
-  const auto loop = std::move(*run::ClosedLoop::create(*scenario));
+  const auto loop = test::loop_of(scenario);
   auto recorder = Recorder::create(recording(*loop, file.path()));
   ASSERT_TRUE(recorder);
   while (loop->time() < 4.0) {
@@ -288,9 +302,8 @@ TEST(Recorder, WritesEachLapOnce) {
 
 TEST(Recorder, HasTheLastLapOfARun) {
   const TemporaryFile file;
-  auto scenario = protocol::compose(
-      {.scenario_file = {}, .settings = {{"preset", "default"}, {"track", "oval"}, {"laps", "2"}}});
-  const auto loop = std::move(*run::ClosedLoop::create(*scenario));
+  const auto loop =
+      test::loop_of(test::scenario_of({{"preset", "default"}, {"track", "oval"}, {"laps", "2"}}));
   static_cast<void>(record(*loop, file.path()));
   EXPECT_EQ(loop->summary().laps_completed, 2);
   int laps = 0;

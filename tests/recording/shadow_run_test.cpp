@@ -10,16 +10,14 @@
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
+#include "support/own_controller.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::recording {
 namespace {
 
 scenario::Scenario oval() {
-  const auto scenario = protocol::compose(
-      {.scenario_file = {},
-       .settings = {{"track", "oval"}, {"laps", "0"}, {"sensor.position_noise_m", "0.02"}}});
-  EXPECT_TRUE(scenario);
-  return scenario.value_or(scenario::Scenario{});
+  return test::scenario_of({{"track", "oval"}, {"laps", "0"}, {"sensor.position_noise_m", "0.02"}});
 }
 
 /// The events of a run in which settings and faults change, as a recording has them.
@@ -62,18 +60,8 @@ RunEvents told(const std::vector<RecordedEvent>& events, std::size_t from) {
 }
 
 /// Stands, and wants a lap to race by.
-class WantsLap final : public controller::Controller {
- public:
-  [[nodiscard]] const controller::StepResult& step(const model::Measurement& /*now*/,
-                                                   Deadline /*deadline*/) noexcept override {
-    return result_;
-  }
+class WantsLap final : public test::OwnController {
   [[nodiscard]] controller::LapRequest wants_lap() const noexcept override { return {.is_wanted = true}; }
-  void reset() noexcept override {}
-  [[nodiscard]] std::string_view name() const noexcept override { return "wants-lap"; }
-
- private:
-  controller::StepResult result_;
 };
 
 /// All that a branch comes to, number by number.

@@ -18,6 +18,7 @@
 #include "chicane/recording/recorder.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/telemetry/mcap.hpp"
+#include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {
@@ -40,10 +41,7 @@ void redirect(const std::string& path, int except, int target) {
 class SlowDisk : public testing::Test {
  protected:
   SlowDisk() {
-    const auto scenario = protocol::compose({.scenario_file = {}, .settings = {{"controller", "pid"}}});
-    auto loop = run::ClosedLoop::create(scenario.value_or(scenario::Scenario{}));
-    EXPECT_TRUE(loop);
-    loop_ = std::move(*loop);
+    loop_ = test::loop_of(test::scenario_of({{"controller", "pid"}}));
     RecorderOptions options;
     options.path = std::filesystem::weakly_canonical(file_.path()).string();
     options.scenario = loop_->scenario();

@@ -17,19 +17,12 @@
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/sim/plant_registry.hpp"
+#include "support/runs.hpp"
 
 namespace chicane {
 namespace {
 
 using ::testing::HasSubstr;
-
-using Settings = std::vector<std::pair<std::string, std::string>>;
-
-std::unique_ptr<run::ClosedLoop> loop_of(const Settings& settings) {
-  const auto scenario = protocol::compose({.scenario_file = "", .settings = settings});
-  if (!scenario) throw std::runtime_error(scenario.error().message);
-  return std::move(*run::ClosedLoop::create(*scenario));
-}
 
 TEST(OneMorePlant, IsAChoiceOfTheSchemaAndInItsMessages) {
   scenario::Scenario scenario;
@@ -41,7 +34,7 @@ TEST(OneMorePlant, IsAChoiceOfTheSchemaAndInItsMessages) {
 }
 
 TEST(OneMorePlant, IsDriven) {
-  const auto loop = loop_of({{"plant", "cart"}, {"preset", "pid"}});
+  const auto loop = test::loop_of(test::scenario_of({{"plant", "cart"}, {"preset", "pid"}}));
   while (loop->time() < 3.0) loop->advance();
   EXPECT_GT(loop->frame().truth.vx, 5.0);
   EXPECT_EQ(loop->frame().truth.vy, 0.0) << "the cart does not slip";
@@ -58,7 +51,7 @@ TEST(OneMoreFault, IsReadWrittenListedAndSwitched) {
 }
 
 TEST(OneMoreFault, HasABitOfItsOwnAndActs) {
-  const auto loop = loop_of({{"preset", "pid"}});
+  const auto loop = test::loop_of(test::scenario_of({{"preset", "pid"}}));
   while (loop->time() < 3.0) loop->advance();
   EXPECT_TRUE(loop->set_fault("fast_speedometer", true));
   while (!loop->advance()) continue;
@@ -76,7 +69,7 @@ TEST(OneMoreTrackFormat, IsFoundReadAndDrivenOn) {
   const std::vector<protocol::Entry> tracks = protocol::entries(protocol::Shelf::kTrack);
   EXPECT_TRUE(
       std::any_of(tracks.begin(), tracks.end(), [](const auto& each) { return each.name == "ring"; }));
-  const auto loop = loop_of({{"track", "ring"}, {"preset", "pid"}});
+  const auto loop = test::loop_of(test::scenario_of({{"track", "ring"}, {"preset", "pid"}}));
   EXPECT_NEAR(loop->track().centre().length(), kTwoPi * 80.0, 1.0);
   while (loop->time() < 3.0) loop->advance();
   EXPECT_FALSE(loop->frame().is_off_track);

@@ -4,20 +4,19 @@
 #include <gtest/gtest.h>
 
 #include "chicane/base/math.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::road {
 namespace {
 
 /// A circle of 50 m whose points are `off` [m] inside and outside in turns.
 Track rough_circle(double off, double sigma) {
-  std::vector<TrackPoint> points;
-  constexpr int kCount = 120;
-  for (int i = 0; i < kCount; ++i) {
-    const double radius = 50.0 + (i % 2 == 0 ? off : -off);
-    const double angle = 2.0 * kPi * i / kCount;
-    points.push_back({{radius * std::cos(angle), radius * std::sin(angle)}, 4.0, 4.0});
-  }
-  return *Track::create("circle", points, true, {.smoothing_sigma = sigma});
+  bool is_inside = false;
+  const auto points = test::points_round(120, [&](double) {
+    is_inside = !is_inside;
+    return is_inside ? 50.0 + off : 50.0 - off;
+  });
+  return *Track::create("circle", test::with_widths(points, 4.0, 4.0), true, {.smoothing_sigma = sigma});
 }
 
 TEST(PointFit, IsTheNoiseThatSmoothingTookAway) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/nodes.hpp"
+#include "support/folder.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -12,22 +13,11 @@
 namespace chicane::ros {
 namespace {
 
-namespace fs = std::filesystem;
-
-class MapFile : public ::testing::Test {
+class MapFile : public testing::Test, protected test::Folder {
  protected:
-  MapFile() {
-    folder_ = fs::path(::testing::TempDir()) / ("chicane_map_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  ~MapFile() override { fs::remove_all(folder_); }
-  [[nodiscard]] std::string put(const std::string& name, std::string_view text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return (folder_ / name).string();
-  }
   /// What is wrong with a map file of that text, without the folder.
   [[nodiscard]] std::string fault_of(std::string_view text) const {
-    const auto map = read_map(put("map.yaml", text));
+    const auto map = read_map(write("map.yaml", std::string(text)));
     if (map) return "nothing";
     std::string message = map.error().message;
     for (std::size_t at = message.find(folder_.string()); at != std::string::npos;
@@ -35,9 +25,6 @@ class MapFile : public ::testing::Test {
       message.erase(at, folder_.string().size() + 1);
     return message;
   }
-
- private:
-  fs::path folder_;
 };
 
 /// Three cells by two: the upper row black, unknown and white, the lower row white, white and black.
@@ -48,8 +35,8 @@ constexpr std::string_view kMap =
     "0.196\n";
 
 TEST_F(MapFile, PutsTheLowestRowFirstAndTakesUnknownCellsAsFree) {
-  static_cast<void>(put("m.pgm", kText));
-  const auto map = read_map(put("map.yaml", kMap));
+  write("m.pgm", std::string(kText));
+  const auto map = read_map(write("map.yaml", std::string(kMap)));
   ASSERT_TRUE(map) << map.error().message;
   EXPECT_EQ(map->width, 3);
   EXPECT_EQ(map->height, 2);
@@ -60,7 +47,7 @@ TEST_F(MapFile, PutsTheLowestRowFirstAndTakesUnknownCellsAsFree) {
 }
 
 TEST_F(MapFile, SaysWhatIsWrongWithALine) {
-  static_cast<void>(put("m.pgm", kText));
+  write("m.pgm", std::string(kText));
   EXPECT_EQ(fault_of("image: m.pgm\nresolution: -1\norigin: [0, 0]\n"),
             "map.yaml:2: resolution: got -1, expected a number in [0.0001, 100]");
   EXPECT_EQ(fault_of("image: m.pgm\nresolution: 0.05\norigin: [0, a]\nmode: raw\n"),

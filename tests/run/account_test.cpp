@@ -9,20 +9,12 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/sim/plant_registry.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::run {
 namespace {
 
 constexpr double kRadius = 200.0;
-
-road::Track circle() {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i < 200; ++i) {
-    const double angle = kTwoPi * i / 200;
-    points.push_back({Vec2{kRadius * std::cos(angle), kRadius * std::sin(angle)}, 5.0, 5.0});
-  }
-  return road::Track::create("circle", points, true).value();
-}
 
 /// The original's car on a circle, with the account of its run.
 class AccountTest : public ::testing::Test {
@@ -40,7 +32,7 @@ class AccountTest : public ::testing::Test {
     return world_.time() - start;
   }
 
-  road::Track track_ = circle();
+  road::Track track_ = test::circle_road(kRadius, 200, 5.0, 5.0, {});
   std::unique_ptr<sim::Plant> plant_ = std::move(*sim::make_plant("udacity", {}));
   sim::World world_{*plant_, track_};
 };

@@ -12,21 +12,13 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/run_steps.hpp"
 #include "chicane/sim/plant_registry.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
 
 scenario::Scenario scenario_of(const std::string& car, const std::string& track, int laps) {
-  Result<scenario::Scenario> scenario = protocol::compose(
-      {.scenario_file = {}, .settings = {{"car", car}, {"track", track}, {"laps", std::to_string(laps)}}});
-  EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
-  return scenario.value_or(scenario::Scenario{});
-}
-
-telemetry::RunSummary run(const scenario::Scenario& scenario) {
-  Result<std::unique_ptr<ClosedLoop>> loop = ClosedLoop::create(scenario);
-  EXPECT_TRUE(loop) << (loop ? "" : loop.error().message);
-  return loop ? run_closed_loop(**loop) : telemetry::RunSummary{};
+  return test::scenario_of({{"car", car}, {"track", track}, {"laps", std::to_string(laps)}});
 }
 
 void expect_clean(const telemetry::RunSummary& summary, unsigned most_fallbacks = 0) {
@@ -44,7 +36,7 @@ void expect_clean(const telemetry::RunSummary& summary, unsigned most_fallbacks 
 TEST(DefaultPreset, LapsBothLakesFastAndClean) {
   for (const char* track : {"lakeside", "original-lake"}) {
     SCOPED_TRACE(track);
-    const telemetry::RunSummary summary = run(scenario_of("udacity", track, 3));
+    const telemetry::RunSummary summary = test::drive(scenario_of("udacity", track, 3));
     expect_clean(summary);
     ASSERT_EQ(summary.laps.size(), 3U);
     EXPECT_LE(summary.laps.back().lap_time, 29.0);
@@ -57,21 +49,20 @@ TEST(DefaultPreset, LapsBothLakesFastAndClean) {
 TEST(DefaultPreset, LapsCleanWithJitterOfTheLatency) {
   scenario::Scenario scenario = scenario_of("udacity", "lakeside", 2);
   scenario.latency_jitter = 0.04;
-  const telemetry::RunSummary first = run(scenario);
+  const telemetry::RunSummary first = test::drive(scenario);
   expect_clean(first, 5);
-  EXPECT_EQ(run(scenario).state_hash, first.state_hash);
+  EXPECT_EQ(test::drive(scenario).state_hash, first.state_hash);
   scenario.seed = 2;
-  EXPECT_NE(run(scenario).state_hash, first.state_hash);
+  EXPECT_NE(test::drive(scenario).state_hash, first.state_hash);
 }
 
 TEST(LatencyJitter, IsNotTold) {
   scenario::Scenario scenario = scenario_of("udacity", "lakeside", 1);
   scenario.latency_jitter = 0.2;
-  const Result<std::unique_ptr<ClosedLoop>> loop = ClosedLoop::create(scenario);
-  ASSERT_TRUE(loop);
+  const auto loop = test::loop_of(scenario);
   for (int i = 0; i < 2000; ++i) {
-    (*loop)->advance();
-    EXPECT_LE((*loop)->frame().measurement.delay, scenario.latency + 1e-9);
+    loop->advance();
+    EXPECT_LE(loop->frame().measurement.delay, scenario.latency + 1e-9);
   }
 }
 
@@ -120,7 +111,7 @@ TEST(ClosedLoop, LookedAtBeforeEachStepDrivesTheSame) {
     EXPECT_EQ(loop->frame().measurement.time, first.time);
     EXPECT_EQ(loop->frame().measurement.x, first.x);
   }
-  EXPECT_EQ(loop->summary().state_hash, run(scenario).state_hash);
+  EXPECT_EQ(loop->summary().state_hash, test::drive(scenario).state_hash);
 }
 
 class ShippedTrack : public ::testing::TestWithParam<const char*> {};
@@ -131,7 +122,7 @@ TEST_P(ShippedTrack, IsDrivenCleanlyByBothCarsWithTheSameTuning) {
     const bool is_long = std::string(GetParam()) == "speedway";
     // At 55 m/s into a bend the guard refuses a few answers of road-car (docs/measured/numbers.md).
     const bool is_at_the_edge = std::string(car) == "road-car" && is_long;
-    expect_clean(run(scenario_of(car, GetParam(), is_long ? 1 : 2)), is_at_the_edge ? 10 : 0);
+    expect_clean(test::drive(scenario_of(car, GetParam(), is_long ? 1 : 2)), is_at_the_edge ? 10 : 0);
   }
 }
 INSTANTIATE_TEST_SUITE_P(Tracks, ShippedTrack, ::testing::Values("lakeside", "oval", "hairpins", "speedway"),
@@ -160,22 +151,22 @@ TEST(ClosedLoop, OfARunUntilStoppedGoesOnAfterAnExcursionByHand) {
 
 TEST(ClosedLoop, DoesTheSameTwice) {
   const scenario::Scenario scenario = scenario_of("udacity", "lakeside", 1);
-  const telemetry::RunSummary first = run(scenario);
-  EXPECT_EQ(first.state_hash, run(scenario).state_hash);
+  const telemetry::RunSummary first = test::drive(scenario);
+  EXPECT_EQ(first.state_hash, test::drive(scenario).state_hash);
   scenario::Scenario other = scenario;
   other.latency = 0.1001;
-  EXPECT_NE(first.state_hash, run(other).state_hash) << "the hash sees what happens";
+  EXPECT_NE(first.state_hash, test::drive(other).state_hash) << "the hash sees what happens";
 }
 
 TEST(ClosedLoop, SeesTheSeedOnlyWhereThereIsNoise) {
   scenario::Scenario scenario = scenario_of("udacity", "oval", 1);
-  const std::uint64_t quiet = run(scenario).state_hash;
+  const std::uint64_t quiet = test::drive(scenario).state_hash;
   scenario.seed = 2;
-  EXPECT_EQ(quiet, run(scenario).state_hash);
+  EXPECT_EQ(quiet, test::drive(scenario).state_hash);
   scenario.sensor.position_noise = 0.05;
-  const std::uint64_t noisy = run(scenario).state_hash;
+  const std::uint64_t noisy = test::drive(scenario).state_hash;
   scenario.seed = 3;
-  EXPECT_NE(noisy, run(scenario).state_hash);
+  EXPECT_NE(noisy, test::drive(scenario).state_hash);
 }
 
 TEST(ClosedLoop, RestartsAsIfItWereNew) {
@@ -183,13 +174,13 @@ TEST(ClosedLoop, RestartsAsIfItWereNew) {
   std::unique_ptr<ClosedLoop> loop = std::move(*ClosedLoop::create(scenario));
   for (int i = 0; i < 500; ++i) loop->advance();
   loop->restart();
-  EXPECT_EQ(run_closed_loop(*loop).state_hash, run(scenario).state_hash);
+  EXPECT_EQ(run_closed_loop(*loop).state_hash, test::drive(scenario).state_hash);
 }
 
 TEST(ClosedLoop, SaysWhyItEnded) {
   scenario::Scenario scenario = scenario_of("udacity", "lakeside", 3);
   scenario.time_limit = 2.0;
-  const telemetry::RunSummary late = run(scenario);
+  const telemetry::RunSummary late = test::drive(scenario);
   EXPECT_FALSE(late.completed);
   EXPECT_EQ(late.end_reason, "time limit reached");
   std::unique_ptr<ClosedLoop> loop = std::move(*ClosedLoop::create(scenario));
@@ -236,9 +227,10 @@ TEST(RealtimeLoop, ShowsWhereAPausedRunBegins) {
   std::vector<double> times;
   static_cast<void>(run_realtime(*loop, {}, controls, {.on_frame = [&](const telemetry::Frame& frame) {
     times.push_back(frame.time);
-    controls.wants_restart = times.size() == 1;
+    if (times.size() == 1) controls.wants_restart = true;
     controls.wants_stop = times.size() == 2;
   }}));
+  EXPECT_FALSE(controls.wants_restart) << "once";
   EXPECT_EQ(times, (std::vector<double>{0.0, 0.0}));
 }
 

@@ -10,6 +10,8 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/own_controller.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
@@ -17,7 +19,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 scenario::Scenario scenario_of(const char* preset) {
-  return protocol::compose({.scenario_file = {}, .settings = {{"preset", preset}, {"laps", "1"}}}).value();
+  return test::scenario_of({{"preset", preset}, {"laps", "1"}});
 }
 
 TEST(ControlCycle, DoesOutsideTheLoopWhatItDoesInside) {
@@ -60,22 +62,13 @@ TEST(ControlCycle, CountsItsCyclesAndSaysWhereARunBegins) {
 }
 
 /// A user's controller may write any size; a model car's plan is brought to scale point by point.
-class EndlessPlan final : public controller::Controller {
+class EndlessPlan final : public test::OwnController {
  public:
-  const controller::StepResult& step(const model::Measurement&, Deadline) noexcept override {
-    result_.plan.size = result_.plan.reference_size = 1'000'000;
-    result_.command = {0.0, 0.1};
-    return result_;
-  }
-  void reset() noexcept override {}
-  [[nodiscard]] std::string_view name() const noexcept override { return "endless-plan"; }
-
- private:
-  controller::StepResult result_;
+  EndlessPlan() : OwnController({0.0, 0.1}) { result_.plan.size = result_.plan.reference_size = 1'000'000; }
 };
 
 TEST(ControlCycle, KeepsAPlanOfAnySizeWithinItsCapacity) {
-  const auto scenario = protocol::compose({.scenario_file = {}, .settings = {{"car", "f1tenth"}}}).value();
+  const auto scenario = test::scenario_of({{"car", "f1tenth"}});
   ControlCycle cycle(std::make_unique<EndlessPlan>(), scenario, nullptr);
   const auto frame = std::make_unique<telemetry::Frame>();
   frame->measurement = {.x = 0.0, .y = 0.0, .psi = 0.0, .speed = 1.0};

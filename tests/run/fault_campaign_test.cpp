@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
 
 scenario::Scenario on_oval(const char* mode = "on") {
-  return protocol::compose({.scenario_file = {}, .settings = {{"track", "oval"}, {"guard.mode", mode}}})
-      .value();
+  return test::scenario_of({{"track", "oval"}, {"guard.mode", mode}});
 }
 
 /// Trials of one fault at each `step` [s] of the flying lap.
@@ -39,7 +39,7 @@ TEST(FaultCampaign, FindsTheFlyingLap) {
 }
 
 TEST(FaultCampaign, TakesAnOpenRoadFromItsStartToItsEnd) {
-  const auto stage = protocol::compose({.scenario_file = {}, .settings = {{"track", "stage"}}}).value();
+  const auto stage = test::scenario_of({{"track", "stage"}});
   const auto lap = drive_undisturbed(stage, 0.0);
   ASSERT_TRUE(lap) << lap.error().message;
   EXPECT_EQ(lap->begins, 0.0);
@@ -81,16 +81,14 @@ TEST(FaultCampaign, EndsEarlyWithWhatItHas) {
 TEST(FaultCampaign, ASilenceMayLastAsLongAsTheGuardIsTold) {
   const auto least_edges = [](const char* track, double silence, const char* blind_time,
                               const std::vector<double>& onsets, const char* fault = "link_lost") {
-    const auto scenario = protocol::compose(
-        {.scenario_file = {},
-         .settings = {{"track", track}, {"car", "road-car"}, {"guard.blind_time_s", blind_time}}});
-    EXPECT_TRUE(scenario);
-    const auto lap = drive_undisturbed(*scenario, 0.0);
+    const auto scenario =
+        test::scenario_of({{"track", track}, {"car", "road-car"}, {"guard.blind_time_s", blind_time}});
+    const auto lap = drive_undisturbed(scenario, 0.0);
     EXPECT_TRUE(lap);
     std::vector<FaultTrial> trials;
     for (const double onset : onsets)
       trials.push_back({.fault = *sim::fault_named(fault), .onset = onset, .duration = silence});
-    const auto outcomes = drive_trials(*scenario, *lap, trials, 2);
+    const auto outcomes = drive_trials(scenario, *lap, trials, 2);
     EXPECT_TRUE(outcomes);
     std::vector<double> edges;
     for (const FaultOutcome& outcome : outcomes.value_or(std::vector<FaultOutcome>{}))

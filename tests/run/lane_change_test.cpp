@@ -8,12 +8,14 @@
 #include <string_view>
 
 #include "chicane/protocol/library.hpp"
+#include "support/own_controller.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
 
 scenario::Scenario scenario_of(const std::string& car, const std::string& preset) {
-  return protocol::compose({.scenario_file = {}, .settings = {{"preset", preset}, {"car", car}}}).value();
+  return test::scenario_of({{"preset", preset}, {"car", car}});
 }
 
 /// With `road-car`. The course is planned once for all tests: that takes longer than they do.
@@ -46,23 +48,11 @@ TEST(LaneChange, IsPassedFasterByRaceThanByPurePursuitAndStanley) {
 }
 #endif
 
-class Straight final : public controller::Controller {
- public:
-  [[nodiscard]] const controller::StepResult& step(const model::Measurement&, Deadline) noexcept override {
-    return result_;
-  }
-  void reset() noexcept override {}
-  [[nodiscard]] std::string_view name() const noexcept override { return "straight"; }
-
- private:
-  controller::StepResult result_{};
-};
-
 TEST(LaneChange, IsNotPassedByWhoDrivesStraightOn) {
   const scenario::Scenario scenario = scenario_of("udacity", "default");
   const auto limit =
       LaneChange::create(scenario.vehicle).value().find_limit(scenario, [](const scenario::Scenario&) {
-        return Result<std::unique_ptr<controller::Controller>>(std::make_unique<Straight>());
+        return Result<std::unique_ptr<controller::Controller>>(std::make_unique<test::OwnController>());
       });
   ASSERT_TRUE(limit.has_value());
   EXPECT_EQ(limit->passed_kmph, 0);

@@ -14,34 +14,25 @@
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/setting.hpp"
+#include "support/own_controller.hpp"
+#include "support/roads.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
 
 scenario::Scenario race_by_waypoints(const char* car = "udacity") {
-  return protocol::compose({.scenario_file = {},
-                            .settings = {{"preset", "race"},
-                                         {"car", car},
-                                         {"track", "oval"},
-                                         {"guard.road", "waypoints"},
-                                         {"laps", "3"}}})
-      .value();
+  return test::scenario_of(
+      {{"preset", "race"}, {"car", car}, {"track", "oval"}, {"guard.road", "waypoints"}, {"laps", "3"}});
 }
 
 /// Wants a lap of the waypoints it is given.
-class Learner final : public controller::Controller {
+class Learner final : public test::OwnController {
  public:
   explicit Learner(std::vector<Vec2> waypoints) : waypoints_{std::move(waypoints)} {}
-  [[nodiscard]] const controller::StepResult& step(const model::Measurement& /*now*/,
-                                                   Deadline /*deadline*/) noexcept override {
-    return result_;
-  }
   [[nodiscard]] controller::LapRequest wants_lap() const noexcept override {
     return {.is_wanted = is_wanted, .waypoints = waypoints_, .terms = terms};
   }
-  void reset() noexcept override {}
-  [[nodiscard]] std::string_view name() const noexcept override { return "learner"; }
-
   [[nodiscard]] double beside(const road::RacingRoad& /*lap*/) const noexcept override { return offset; }
 
   bool is_wanted = true;
@@ -50,15 +41,9 @@ class Learner final : public controller::Controller {
 
  private:
   std::vector<Vec2> waypoints_;
-  controller::StepResult result_;
 };
 
-std::vector<Vec2> circle(double radius) {
-  std::vector<Vec2> points;
-  for (int i = 0; i < 40; ++i)
-    points.emplace_back(radius * std::cos(kTwoPi * i / 40.0), radius * std::sin(kTwoPi * i / 40.0));
-  return points;
-}
+std::vector<Vec2> circle(double radius) { return test::circle_points(radius, 40); }
 
 std::shared_ptr<const road::RacingRoad> wait_for_lap(LapPlanner& planner, const Learner& learner) {
   for (int i = 0; i < 12000; ++i) {

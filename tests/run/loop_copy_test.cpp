@@ -11,19 +11,17 @@
 #include "chicane/controller/controller.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/own_controller.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
 
-using Settings = std::vector<std::pair<std::string, std::string>>;
+using test::Settings;
 
 std::unique_ptr<ClosedLoop> loop_of(Settings settings) {
   settings.insert(settings.begin(), {{"laps", "0"}, {"sensor.position_noise_m", "0.02"}});
-  const auto scenario = protocol::compose({.scenario_file = {}, .settings = settings});
-  EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
-  auto loop = ClosedLoop::create(scenario.value_or(scenario::Scenario{}));
-  EXPECT_TRUE(loop) << (loop ? "" : loop.error().message);
-  return std::move(*loop);
+  return test::loop_of(test::scenario_of(settings));
 }
 
 void drive(ClosedLoop& loop, double seconds) {
@@ -105,25 +103,8 @@ TEST(Copy, KeepsFaultsThatAct) {
   expect_same(future_of(*copy, 5.0), future_of(*run, 5.0));
 }
 
-/// A user's controller that says nothing of copying.
-class Own final : public controller::Controller {
- public:
-  [[nodiscard]] const controller::StepResult& step(const model::Measurement&, Deadline) noexcept override {
-    return result_;
-  }
-  void reset() noexcept override {}
-  [[nodiscard]] std::string_view name() const noexcept override { return "own"; }
-
- private:
-  controller::StepResult result_;
-};
-
 TEST(Copy, IsNoneOfAControllerThatCannotBeCopied) {
-  const auto scenario = protocol::compose({.scenario_file = {}, .settings = {{"track", "oval"}}});
-  const auto loop = ClosedLoop::create(
-      *scenario, [](const scenario::Scenario&) -> Result<std::unique_ptr<controller::Controller>> {
-        return std::make_unique<Own>();
-      });
+  const auto loop = ClosedLoop::create(test::scenario_of({{"track", "oval"}}), test::make_own_controller);
   ASSERT_TRUE(loop);
   EXPECT_EQ((*loop)->copy(), nullptr);
   EXPECT_EQ(controller::copy_of((*loop)->controller()), nullptr);

@@ -20,6 +20,8 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/library.hpp"
+#include "support/folder.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
@@ -34,21 +36,15 @@ road::Track ring(double radius = 60.0, double half_width = 4.0) {
 }
 
 /// A cache of this process for one test.
-class PlanCacheTest : public testing::Test {
+class PlanCacheTest : public testing::Test, protected test::Folder {
  protected:
-  PlanCacheTest()
-      : folder_{std::filesystem::temp_directory_path() /
-                ("chicane-plans-" + std::to_string(::getpid()) + "-" +
-                 testing::UnitTest::GetInstance()->current_test_info()->name())} {
-    std::filesystem::remove_all(folder_);
+  PlanCacheTest() {
+    std::filesystem::remove_all(folder_);  // the cache makes it
     cache_ = std::make_shared<DiskCache>(folder_.string(),
                                          [this](std::string_view line) { said_.emplace_back(line); });
     use_plan_cache(cache_);
   }
-  ~PlanCacheTest() override {
-    use_plan_cache(nullptr);
-    std::filesystem::remove_all(folder_);
-  }
+  ~PlanCacheTest() override { use_plan_cache(nullptr); }
 
   /// Iterations that it took.
   int plan(road::RacingLine& line, lap_time::RacingPlanOptions options = {.time_step = 0.12}) {
@@ -58,7 +54,6 @@ class PlanCacheTest : public testing::Test {
     return iterations;
   }
 
-  std::filesystem::path folder_;
   std::shared_ptr<const DiskCache> cache_;
   std::vector<std::string> said_;
 };
@@ -149,14 +144,14 @@ TEST_F(PlanCacheTest, AWholeLimitAnswersWhateverNeedsNoMoreWork) {
 }
 
 TEST_F(PlanCacheTest, OfAScenarioOneIsKnownOnceItWasFound) {
-  const auto scenario = protocol::compose({.scenario_file = {}, .settings = {{"car", "udacity"}}}).value();
+  const auto scenario = test::scenario_of({{"car", "udacity"}});
   EXPECT_FALSE(known_limit(scenario, ring()));
   const lap_time::PlantLimit found = limit_of(scenario, ring(), {.wants_witness = false}).value();
   const auto known = known_limit(scenario, ring());
   ASSERT_TRUE(known);
   EXPECT_EQ(to_bytes(*known), to_bytes(found));
 
-  const auto small = protocol::compose({.scenario_file = {}, .settings = {{"car", "f1tenth"}}}).value();
+  const auto small = test::scenario_of({{"car", "f1tenth"}});
   EXPECT_FALSE(known_limit(small, ring()));
   const auto refused = limit_of(small, ring(), {});
   ASSERT_FALSE(refused);
@@ -206,15 +201,8 @@ TEST(Planning, EndsWithTheProcessesFlag) {
 
 namespace fs = std::filesystem;
 
-class DiskCacheTest : public testing::Test {
+class DiskCacheTest : public testing::Test, protected test::Folder {
  protected:
-  DiskCacheTest()
-      : folder_{fs::temp_directory_path() / ("chicane-cache-" + std::to_string(::getpid()) + "-" +
-                                             testing::UnitTest::GetInstance()->current_test_info()->name())} {
-    fs::remove_all(folder_);
-  }
-  ~DiskCacheTest() override { fs::remove_all(folder_); }
-
   [[nodiscard]] DiskCache cache(std::uint64_t most = DiskCache::kMostBytes) {
     return DiskCache(
         folder_.string(), [this](std::string_view line) { said_.emplace_back(line); }, most);
@@ -223,7 +211,6 @@ class DiskCacheTest : public testing::Test {
     return folder_ / (std::string(name) + ".cache");
   }
 
-  fs::path folder_;
   std::vector<std::string> said_;
 };
 
@@ -277,7 +264,6 @@ TEST_F(DiskCacheTest, RemovesWhatWasUnusedForLongest) {
 }
 
 TEST_F(DiskCacheTest, KeepsABoundedNumberOfFiles) {
-  fs::create_directories(folder_);
   for (std::size_t i = 0; i < DiskCache::kMostFiles + 20; ++i) std::ofstream(file(std::to_string(i))) << "x";
   cache().keep("abc", "x");
   EXPECT_EQ(cache().find("abc"), "x");

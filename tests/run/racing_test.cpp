@@ -10,15 +10,13 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
 
 scenario::Scenario race_on(const char* track, const char* margin = "0.3") {
-  return protocol::compose(
-             {.scenario_file = {},
-              .settings = {{"preset", "race"}, {"track", track}, {"tracking_mpc.edge_margin_m", margin}}})
-      .value();
+  return test::scenario_of({{"preset", "race"}, {"track", track}, {"tracking_mpc.edge_margin_m", margin}});
 }
 
 TEST(PlanLap, IsForThoseWhoRaceOnAKnownRoad) {
@@ -26,7 +24,7 @@ TEST(PlanLap, IsForThoseWhoRaceOnAKnownRoad) {
   const road::Track track = make_track(race).value();
   EXPECT_TRUE(races(race));
   EXPECT_EQ(plan_lap(race, nullptr).value(), nullptr) << "no road is known";
-  const scenario::Scenario other = protocol::compose({.scenario_file = {}, .settings = {}}).value();
+  const scenario::Scenario other = test::scenario_of();
   EXPECT_FALSE(races(other));
   EXPECT_EQ(plan_lap(other, &track).value(), nullptr);
 }
@@ -88,9 +86,7 @@ TEST(LapsWithout, AreThoseOfTheScenarioThatLacksTheCause) {
   ASSERT_TRUE(laps) << laps.error().message;
   scenario::Scenario instant = scenario;
   instant.latency = 0.0;
-  const auto loop = ClosedLoop::create(instant);
-  ASSERT_TRUE(loop) << loop.error().message;
-  const telemetry::RunSummary run = run_closed_loop(**loop);
+  const telemetry::RunSummary run = test::drive(instant);
   EXPECT_EQ(laps->front().lap_time, run.laps.front().lap_time);
   EXPECT_EQ(laps->front().corners, run.laps.front().corner_times);
   // More grip is a faster lap: the calm preset plans with 0.8 of it.

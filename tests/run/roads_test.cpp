@@ -11,16 +11,16 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"
+#include "support/roads.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
 
 scenario::Scenario scenario_of(const std::string& track, const std::string& guard,
                                const std::string& car = "udacity") {
-  return protocol::compose(
-             {"",
-              {{"track", track}, {"guard.mode", guard}, {"car", car}, {"laps", "0"}, {"time_limit_s", "4"}}})
-      .value();
+  return test::scenario_of(
+      {{"track", track}, {"guard.mode", guard}, {"car", car}, {"laps", "0"}, {"time_limit_s", "4"}});
 }
 
 TEST(Roads, AreMadeOnceForEachTrackGuardAndCar) {
@@ -41,8 +41,7 @@ TEST(Roads, ChangeNothingInARun) {
   Roads roads;
   for (const char* guard : {"on", "off"}) {
     const scenario::Scenario scenario = scenario_of("oval", guard);
-    const auto alone = ClosedLoop::create(scenario);
-    const std::uint64_t expected = run_closed_loop(**alone).state_hash;
+    const std::uint64_t expected = test::drive(scenario).state_hash;
     for (int i = 0; i < 2; ++i) {
       const auto loop = ClosedLoop::create(scenario, roads);
       EXPECT_EQ(run_closed_loop(**loop).state_hash, expected) << guard;
@@ -80,15 +79,7 @@ TEST(MakeWaypoints, ThinsDenseNoisyPointsEvenlyAllRound) {
   }
 }
 
-/// Circle of 60 m about the origin, 4 m to each edge.
-road::Track round_road() {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i < 120; ++i) {
-    const double angle = kTwoPi * i / 120;
-    points.push_back({Vec2{60.0 * std::cos(angle), 60.0 * std::sin(angle)}, 4.0, 4.0});
-  }
-  return road::Track::create("circle", points, true).value();
-}
+road::Track round_road() { return test::circle_road(60.0, 120, 4.0, 4.0, {}); }
 
 /// Six waypoints on a circle of `radius`, `moved` metres to the east.
 model::Measurement shown(double radius, double moved = 0.0) {

@@ -9,6 +9,7 @@
 
 #include "chicane/base/math.hpp"
 #include "support/alloc_guard.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::run {
 namespace {
@@ -21,12 +22,7 @@ constexpr double kPeriod = 0.12;  // of telemetry with the original's latency [s
 /// Circle about the origin, counter-clockwise, s = 0 at (kRadius, 0), 5 m to the left edge and 4 m to the
 /// right.
 road::Track circle() {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i < 120; ++i) {
-    const double angle = kTwoPi * i / 120;
-    points.push_back({Vec2{kRadius * std::cos(angle), kRadius * std::sin(angle)}, 5.0, 4.0});
-  }
-  return road::Track::create("circle", points, true, {.spacing = 2.0, .smoothing_sigma = 0.0}).value();
+  return test::circle_road(kRadius, 120, 5.0, 4.0, {.spacing = 2.0, .smoothing_sigma = 0.0});
 }
 
 /// Somebody else's car that goes round, as telemetry tells of it.

@@ -10,6 +10,7 @@
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/sim/fault.hpp"
 #include "chicane/telemetry/frame.hpp"
+#include "support/runs.hpp"
 
 namespace chicane::run {
 namespace {
@@ -54,15 +55,14 @@ void expect_true_sentences(const Drive& drive, double seconds) {
   if (!drive.fault.empty()) ask.faults.push_back(drive.fault);
   Result<scenario::Scenario> scenario = protocol::compose(ask);
   ASSERT_TRUE(scenario) << scenario.error().message;
-  auto loop = ClosedLoop::create(*scenario);
-  ASSERT_TRUE(loop) << loop.error().message;
+  const auto loop = test::loop_of(*scenario);
   const std::string name = drive.preset + " " + drive.car + " " + drive.fault;
   int contradictions = 0;
   unsigned events = 0;
   double moved_at = 0.0, alarm_ended = -2.0;
-  while ((*loop)->time() < seconds && !(*loop)->is_over()) {
-    if (!(*loop)->advance()) continue;
-    const telemetry::Frame& frame = (*loop)->frame();
+  while (loop->time() < seconds && !loop->is_over()) {
+    if (!loop->advance()) continue;
+    const telemetry::Frame& frame = loop->frame();
     const std::string found = against(frame, scenario->vehicle.brake_throttle_limit);
     if (!found.empty() && contradictions++ < 3)
       ADD_FAILURE() << name << ", " << frame.time << " s: " << found << ": "
@@ -79,7 +79,7 @@ void expect_true_sentences(const Drive& drive, double seconds) {
       alarm_ended = frame.time;
     }
   }
-  EXPECT_LE((*loop)->frame().situation.alarms, events) << name;
+  EXPECT_LE(loop->frame().situation.alarms, events) << name;
   EXPECT_EQ(contradictions, 0) << name;
 }
 

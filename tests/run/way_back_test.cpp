@@ -10,13 +10,14 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/parallel.hpp"
+#include "support/runs.hpp"
 #include "support/slow_tests.hpp"
 
 namespace chicane::run {
 namespace {
 
 scenario::Scenario scenario_of(const std::string& track, const std::string& car) {
-  return protocol::compose({.scenario_file = {}, .settings = {{"track", track}, {"car", car}}}).value();
+  return test::scenario_of({{"track", track}, {"car", car}});
 }
 
 /// Drives all starts with `jobs` threads.

@@ -10,6 +10,7 @@
 
 #include "chicane/base/random.hpp"
 #include "chicane/protocol/track_codec.hpp"
+#include "support/roads.hpp"
 
 namespace chicane::sim {
 namespace {
@@ -72,11 +73,8 @@ TEST(RangeScanner, AgreesWithTheRoadsGeometryWithinOneCentimetre) {
 }
 
 TEST(RangeScanner, SeesAStraightWallWhereItIs) {
-  std::vector<road::TrackPoint> points;
-  for (int i = 0; i <= 20; ++i) points.push_back({.position = {5.0 * i, 0.0}, .left = 2.0, .right = 3.0});
-  auto track = road::Track::create("straight", points, false);
-  ASSERT_TRUE(track);
-  auto scanner = RangeScanner::create(*track, {.beams = 3, .field_of_view = 3.14159265358979});
+  auto scanner = RangeScanner::create(test::straight_road(10, 2.0, 3.0, {}),
+                                      {.beams = 3, .field_of_view = 3.14159265358979});
   ASSERT_TRUE(scanner);
   std::vector<float> ranges(3);
   scanner->scan({.x = 50.0, .y = 0.5, .psi = 0.0}, ranges);

@@ -39,6 +39,17 @@ inline road::Track circle_road(double radius, int count, double left, double rig
       .value();
 }
 
+/// Closed, with corners to both sides; `side` −1 mirrors it at the y axis, with its edges.
+inline road::Track bean_road(double side, double size, double left, double right) {
+  const std::vector<Vec2> line = points_round(140, [&](double angle) {
+    return size * (75.0 + 25.0 * std::cos(2.0 * angle) + 12.0 * std::sin(3.0 * angle));
+  });
+  std::vector<road::TrackPoint> points =
+      with_widths(line, side > 0.0 ? left : right, side > 0.0 ? right : left);
+  for (road::TrackPoint& point : points) point.position.x() *= side;
+  return road::Track::create("bean", points, true).value();
+}
+
 /// From the origin `count` times 10 m along x; open.
 inline std::vector<road::TrackPoint> straight_points(int count, double left, double right) {
   std::vector<Vec2> line;

@@ -14,6 +14,7 @@
 #include "chicane/run/fault_campaign.hpp"
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/trial.hpp"
+#include "support/folder.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -22,18 +23,8 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class CampaignTest : public testing::Test {
+class CampaignTest : public testing::Test, protected test::Folder {
  protected:
-  CampaignTest() { fs::create_directories(folder_); }
-  ~CampaignTest() override { fs::remove_all(folder_); }
-  CampaignTest(const CampaignTest&) = delete;
-  CampaignTest& operator=(const CampaignTest&) = delete;
-
-  [[nodiscard]] std::string path(const char* name) const { return (folder_ / name).string(); }
-  [[nodiscard]] std::string read(const char* name) const {
-    std::ifstream stream(path(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
   Result<Progress> drive(const char* file, std::uint64_t stop_after = 1000, int jobs = 2) {
     std::atomic<bool> stop{false};
     return drive_plan(
@@ -54,7 +45,6 @@ class CampaignTest : public testing::Test {
     return groups;
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("chicane_campaign_test." + std::to_string(getpid()));
   Campaign campaign_{.tracks = {"oval"},
                      .cars = {"udacity"},
                      .presets = {"default", "pid"},
@@ -106,7 +96,7 @@ TEST_F(CampaignTest, WritesTheSameFileWhenItIsStoppedAndGoesOn) {
   ASSERT_TRUE(rest) << rest.error().message;
   EXPECT_TRUE(rest->is_complete());
   EXPECT_EQ(rest->found, part->driven);
-  EXPECT_EQ(read("whole.jsonl"), read("parts.jsonl"));
+  EXPECT_EQ(content("whole.jsonl"), content("parts.jsonl"));
   campaign_.seed = 7;
   const auto other = drive("parts.jsonl");
   ASSERT_FALSE(other) << "results of another campaign are completed";

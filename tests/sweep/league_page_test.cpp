@@ -10,6 +10,7 @@
 
 #include "chicane/sweep/league.hpp"
 #include "chicane/sweep/sweep.hpp"
+#include "support/folder.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -19,10 +20,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// A league that takes a second: nobody has to complete a lap.
-class LeagueFiles : public testing::Test {
+class LeagueFiles : public testing::Test, protected test::Folder {
  protected:
   LeagueFiles() {
-    fs::create_directories(folder_);
     league_ = parse_league(R"(
 name: small & <plain>
 settings: {laps: 0, time_limit_s: 2}
@@ -37,11 +37,6 @@ disturbances: {none: {}, late: {latency_ms: 130}}
                            "l.yaml")
                   .value();
   }
-  ~LeagueFiles() override { fs::remove_all(folder_); }
-  LeagueFiles(const LeagueFiles&) = delete;
-  LeagueFiles& operator=(const LeagueFiles&) = delete;
-
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
   /// All runs, a limit of 10 s, and one trial of the program.
   LeagueResults driven(const Result<telemetry::RunSummary>& of_program) {
@@ -69,7 +64,6 @@ disturbances: {none: {}, late: {latency_ms: 130}}
     return run;
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("chicane_league_test." + std::to_string(getpid()));
   League league_;
 };
 

@@ -11,6 +11,7 @@
 
 #include "chicane/sweep/plan_codec.hpp"
 #include "chicane/sweep/result_file.hpp"
+#include "support/folder.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -20,10 +21,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// Results that are written by hand: a run is clean where speed times latency stays below 5000.
-class SummaryPage : public testing::Test {
+class SummaryPage : public testing::Test, protected test::Folder {
  protected:
   SummaryPage() {
-    fs::create_directories(folder_);
     const Plan plan = parse_plan(R"(
 name: by hand
 settings: {laps: 1}
@@ -46,17 +46,6 @@ keep: [completed, off_track_events]
           << "},\"completed\":true,\"off_track_events\":" << (is_clean ? 0 : 2) << "}\n";
     }
   }
-  ~SummaryPage() override { fs::remove_all(folder_); }
-  SummaryPage(const SummaryPage&) = delete;
-  SummaryPage& operator=(const SummaryPage&) = delete;
-
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  [[nodiscard]] std::string read(const std::string& name) const {
-    std::ifstream stream(folder_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-
-  fs::path folder_ = fs::temp_directory_path() / ("chicane_summary_page_test." + std::to_string(getpid()));
 };
 
 TEST_F(SummaryPage, HasAMapOfNumbersForEachText) {
@@ -86,7 +75,7 @@ TEST_F(SummaryPage, MapsInLettersStandBetweenTheirLines) {
   std::ofstream(path("page.md")) << "above\n<!-- sweep: by hand -->\nolder\n<!-- end of sweep -->\nbelow\n";
   const auto written = write_maps({path("r.jsonl")}, path("page.md"));
   ASSERT_TRUE(written) << written.error().message;
-  const std::string page = read("page.md");
+  const std::string page = content("page.md");
   EXPECT_TRUE(page.starts_with("above\n<!-- sweep: by hand -->\n18 runs, all with `laps=1`."));
   EXPECT_TRUE(page.ends_with("<!-- end of sweep -->\nbelow\n"));
   EXPECT_THAT(page, Not(HasSubstr("older")));
@@ -97,7 +86,7 @@ TEST_F(SummaryPage, MapsInLettersStandBetweenTheirLines) {
                               "150  100     ·     ·\n"));
   EXPECT_THAT(page, HasSubstr("100  100  [100]    ·\n")) << "the nearest value is marked";
   ASSERT_TRUE(write_maps({path("r.jsonl")}, path("page.md")));
-  EXPECT_EQ(read("page.md"), page) << "once more changes nothing";
+  EXPECT_EQ(content("page.md"), page) << "once more changes nothing";
 }
 
 TEST_F(SummaryPage, APageWithoutItsSecondLineIsLeftAsItIs) {
@@ -105,7 +94,7 @@ TEST_F(SummaryPage, APageWithoutItsSecondLineIsLeftAsItIs) {
   const auto written = write_maps({path("r.jsonl")}, path("page.md"));
   ASSERT_FALSE(written);
   EXPECT_THAT(written.error().message, HasSubstr("end of sweep"));
-  EXPECT_THAT(read("page.md"), HasSubstr("mine"));
+  EXPECT_THAT(content("page.md"), HasSubstr("mine"));
 }
 
 }  // namespace

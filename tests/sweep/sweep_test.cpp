@@ -20,6 +20,7 @@
 #include "chicane/sweep/result_table.hpp"
 #include "chicane/sweep/trial.hpp"
 #include "chicane/version.hpp"
+#include "support/folder.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -35,18 +36,8 @@ axes:
 keep: [top_speed_mps, lap_times_s, end_reason]
 )";
 
-class Sweep : public testing::Test {
+class Sweep : public testing::Test, protected test::Folder {
  protected:
-  Sweep() { fs::create_directories(folder_); }
-  ~Sweep() override { fs::remove_all(folder_); }
-  Sweep(const Sweep&) = delete;
-  Sweep& operator=(const Sweep&) = delete;
-
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  static std::string read(const std::string& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
   Result<Progress> run(const std::string& file, const run::Shard& shard = {}, int jobs = 1) {
     return drive_plan(plan_, shard, {.jobs = jobs, .file = path(file)}, stop_);
   }
@@ -55,10 +46,9 @@ class Sweep : public testing::Test {
     std::vector<std::string> files;
     for (const std::string& name : names) files.push_back(path(name));
     const auto done = merge(files, path("merged"));
-    return done ? read(path("merged")) : done.error().message;
+    return done ? content("merged") : done.error().message;
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("chicane_sweep_test." + std::to_string(getpid()));
   Plan plan_ = parse_plan(kPlan, "plan.yaml").value();
   std::atomic<bool> stop_{false};
 };
@@ -122,7 +112,7 @@ TEST_F(Sweep, TheMergedBytesDependOnNothingButThePlan) {
 
 TEST_F(Sweep, GoesOnAfterItWasKilledInTheMiddleOfALine) {
   ASSERT_TRUE(run("a.jsonl"));
-  const std::string whole = read(path("a.jsonl"));
+  const std::string whole = content("a.jsonl");
   const std::string expected = merged({"a.jsonl"});
   for (const std::size_t size : {std::size_t{0}, std::size_t{10}, whole.size() / 2, whole.size() - 1}) {
     std::ofstream(path("a.jsonl"), std::ios::trunc) << whole.substr(0, size);
@@ -152,7 +142,7 @@ TEST_F(Sweep, StopsWithWhatIsDoneAndGoesOnLater) {
 TEST_F(Sweep, AFullDiskIsSaidAndLeavesNoHalfLine) {
   ASSERT_TRUE(run("a.jsonl"));
   const std::string expected = merged({"a.jsonl"});
-  const std::size_t size = read(path("a.jsonl")).size();
+  const std::size_t size = content("a.jsonl").size();
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
@@ -165,7 +155,7 @@ TEST_F(Sweep, AFullDiskIsSaidAndLeavesNoHalfLine) {
   EXPECT_EQ(full.error().code, ErrorCode::kIo);
   EXPECT_THAT(full.error().message, HasSubstr("cannot be written: "));
   EXPECT_THAT(full.error().message, HasSubstr("of 12 runs are done"));
-  EXPECT_EQ(read(path("b.jsonl")).back(), '\n');
+  EXPECT_EQ(content("b.jsonl").back(), '\n');
   EXPECT_GT(run("b.jsonl")->found, 0U);
   EXPECT_EQ(merged({"b.jsonl"}), expected);
 }
@@ -199,7 +189,7 @@ TEST_F(Sweep, ResultsOfAnotherBuildAreNotMixed) {
   ASSERT_TRUE(run("a.jsonl"));
   const std::string ours = program_name();
   EXPECT_THAT(ours, testing::MatchesRegex("chicane [0-9.]+ \\([0-9a-f]+\\)"));
-  std::string other = read(path("a.jsonl"));
+  std::string other = content("a.jsonl");
   other.replace(other.find(ours), ours.size(), "chicane " CHICANE_VERSION " (0123456789ab)");
   std::ofstream(path("b.jsonl")) << other;
   EXPECT_THAT(
@@ -236,7 +226,7 @@ TEST_F(Sweep, APipeIsWrittenToAndNotReplaced) {
   ASSERT_TRUE(run("a.jsonl"));
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   std::string got;
-  std::thread reader([&] { got = read(path("pipe")); });
+  std::thread reader([&] { got = content("pipe"); });
   const auto done = merge({path("a.jsonl")}, path("pipe"));
   reader.join();
   ASSERT_TRUE(done);
@@ -246,7 +236,7 @@ TEST_F(Sweep, APipeIsWrittenToAndNotReplaced) {
 
 TEST_F(Sweep, TwoResultsOfOneRunAreSaid) {
   ASSERT_TRUE(run("a.jsonl"));
-  std::string other = read(path("a.jsonl"));
+  std::string other = content("a.jsonl");
   const std::size_t at = other.find("state_hash\":\"", other.find("{\"run\":4,")) + 13;
   other[at] = other[at] == '0' ? '1' : '0';
   std::ofstream(path("b.jsonl")) << other;
@@ -265,7 +255,7 @@ TEST_F(Sweep, AFileHasOneWriter) {
 TEST_F(Sweep, TablesHaveAColumnForEachSettingAndResult) {
   ASSERT_TRUE(run("a.jsonl"));
   ASSERT_TRUE(write_csv(path("a.jsonl"), path("a.csv")));
-  const std::string csv = read(path("a.csv"));
+  const std::string csv = content("a.csv");
   EXPECT_EQ(csv.substr(0, csv.find("\r\n")),
             "run,seed,latency_ms,top_speed_mps,lap_times_s,end_reason,error");
   EXPECT_THAT(csv, HasSubstr("\r\n0,1,60,"));
@@ -404,10 +394,10 @@ TEST_F(Sweep, ASearchThatFindsNothingSaysSoWithTheSlowestRun) {
   plan_ = parse_plan(kSearching, "plan.yaml").value();
   plan_.search->from = plan_.search->to = 55.0;
   ASSERT_TRUE(run("a.jsonl"));
-  EXPECT_THAT(read(path("a.jsonl")), HasSubstr(R"("search_value":null,"search_trials":1,)"));
+  EXPECT_THAT(content("a.jsonl"), HasSubstr(R"("search_value":null,"search_trials":1,)"));
   plan_.search->from = plan_.search->to = 120.0;
   ASSERT_TRUE(run("b.jsonl"));
-  EXPECT_THAT(read(path("b.jsonl")), HasSubstr("expected a number in [0, 110]"));
+  EXPECT_THAT(content("b.jsonl"), HasSubstr("expected a number in [0, 110]"));
 }
 
 }  // namespace

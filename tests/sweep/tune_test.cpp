@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "chicane/protocol/library.hpp"
+#include "support/folder.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -52,30 +53,18 @@ TEST(Tune, FindsTheSameForTheSameSeedOnAnyNumberOfThreads) {
   EXPECT_TRUE(first->by_hand.lap_time > 0.0);
 }
 
-std::string file_of(const char* name) {
-  const std::string file =
-      (std::filesystem::temp_directory_path() / ("chicane_tune_" + std::string(name))).string();
-  std::filesystem::remove(file);
-  return file;
-}
-
-std::string text_of(const std::string& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
-
 TEST(Tune, ASearchThatWasEndedGoesOnWithItsLogAndFindsTheSame) {
+  const test::Folder folder;
   std::atomic<bool> stop{false};
   TuneTask whole = task();
   whole.evaluations = 6;
-  whole.log = file_of("whole.jsonl");
+  whole.log = folder.path("whole.jsonl");
   const auto expected = tune(whole, stop);
   if (is_without_nlopt(expected)) GTEST_SKIP() << expected.error().message;
   ASSERT_TRUE(expected) << expected.error().message;
 
   TuneTask parts = whole;
-  parts.log = file_of("parts.jsonl");
+  parts.log = folder.path("parts.jsonl");
   parts.evaluations = 3;
   ASSERT_TRUE(tune(parts, stop));
   std::ofstream(parts.log, std::ios::app) << R"({"values":{"pure_purs)";  // a process was killed there
@@ -85,11 +74,11 @@ TEST(Tune, ASearchThatWasEndedGoesOnWithItsLogAndFindsTheSame) {
   EXPECT_EQ(found->values, expected->values);
   EXPECT_EQ(found->found.margin, expected->found.margin);
   EXPECT_EQ(found->runs, expected->runs);
-  EXPECT_EQ(text_of(parts.log), text_of(whole.log));
+  EXPECT_EQ(test::content_of(parts.log), test::content_of(whole.log));
 
   const auto again = tune(whole, stop);  // all is known
   ASSERT_TRUE(again);
-  EXPECT_EQ(text_of(parts.log), text_of(whole.log)) << "nothing was driven twice";
+  EXPECT_EQ(test::content_of(parts.log), test::content_of(whole.log)) << "nothing was driven twice";
 
   TuneTask other = whole;
   other.settings.emplace_back("plant_options.friction_scale", "0.8");
@@ -97,11 +86,12 @@ TEST(Tune, ASearchThatWasEndedGoesOnWithItsLogAndFindsTheSame) {
 }
 
 TEST(Tune, ALogIsNotGoneOnWithWhenThePresetHasChanged) {
+  const test::Folder folder;
   std::atomic<bool> stop{false};
   TuneTask theirs = task();
   theirs.evaluations = 1;
-  theirs.log = file_of("theirs.jsonl");
-  const std::string preset = file_of("theirs.yaml");
+  theirs.log = folder.path("theirs.jsonl");
+  const std::string preset = folder.path("theirs.yaml");
   theirs.settings[0].second = preset;
   std::ofstream(preset) << "controller: pure-pursuit\npure_pursuit: {lookahead_min_m: 5}\n";
   const auto first = tune(theirs, stop);
@@ -112,10 +102,11 @@ TEST(Tune, ALogIsNotGoneOnWithWhenThePresetHasChanged) {
 }
 
 TEST(Tune, WhatCannotWinIsTriedNoFurther) {
+  const test::Folder folder;
   std::atomic<bool> stop{false};
   TuneTask hasty = task();
   hasty.evaluations = 20;
-  hasty.log = file_of("hasty.jsonl");
+  hasty.log = folder.path("hasty.jsonl");
   const auto tuning = tune(hasty, stop);
   if (is_without_nlopt(tuning)) GTEST_SKIP() << tuning.error().message;
   ASSERT_TRUE(tuning);
@@ -123,7 +114,7 @@ TEST(Tune, WhatCannotWinIsTriedNoFurther) {
   EXPECT_EQ(tuning->by_hand.driven, trials);
   EXPECT_EQ(tuning->found.passed, trials);
   EXPECT_LT(tuning->runs, trials * tuning->evaluations) << "some look ahead too short or too far";
-  const std::string log = text_of(hasty.log);
+  const std::string log = test::content_of(hasty.log);
   EXPECT_THAT(log, HasSubstr(R"("driven":1,"passed":0)"));
   EXPECT_THAT(log, Not(HasSubstr(R"("driven":6,"passed":4)"))) << "ends with the first trial that is failed";
 }

@@ -2,45 +2,26 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "chicane/telemetry/mcap.hpp"
+#include "support/folder.hpp"
 
 namespace chicane::telemetry {
 
-/// A path in the folder for temporary files where nothing is yet; removed at the end.
+/// A path where nothing is yet; removed at the end.
 class TemporaryFile {
  public:
-  TemporaryFile() {
-    std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::replace(name.begin(), name.end(), '/', '_');
-    path_ = std::filesystem::path(::testing::TempDir()) / (name + std::to_string(::getpid()) + ".mcap");
-    std::filesystem::remove(path_);
-  }
-  ~TemporaryFile() { std::filesystem::remove(path_); }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-  [[nodiscard]] std::string path() const { return path_.string(); }
-  [[nodiscard]] std::string bytes() const {
-    std::ostringstream text;
-    text << std::ifstream(path_, std::ios::binary).rdbuf();
-    return text.str();
-  }
-  void replace(const std::string& bytes) const {
-    std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
-  }
+  [[nodiscard]] std::string path() const { return folder_.path(kName); }
+  [[nodiscard]] std::string bytes() const { return folder_.content(kName); }
+  void replace(const std::string& bytes) const { folder_.write(kName, bytes); }
 
  private:
-  std::filesystem::path path_;
+  static constexpr const char* kName = "run.mcap";
+  test::Folder folder_;
 };
 
 /// Message `number` of the sample: its bytes depend on the number alone.

@@ -16,6 +16,7 @@
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
 #include "chicane/wire/simulate.hpp"
+#include "support/runs.hpp"
 #include "support/slow_tests.hpp"
 
 namespace chicane::wire {
@@ -71,10 +72,7 @@ Outcome vanish(scenario::Scenario scenario, double moment, bool has_plan = true)
 class AControllerThatVanishes : public ::testing::TestWithParam<std::tuple<const char*, const char*>> {
  protected:
   [[nodiscard]] static scenario::Scenario scenario() {
-    return protocol::compose(
-               {.scenario_file = {},
-                .settings = {{"track", std::get<0>(GetParam())}, {"car", std::get<1>(GetParam())}}})
-        .value();
+    return test::scenario_of({{"track", std::get<0>(GetParam())}, {"car", std::get<1>(GetParam())}});
   }
 };
 

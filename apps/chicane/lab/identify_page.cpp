@@ -176,7 +176,6 @@ void add_slip(ReportDocument& document, const Identification& found) {
   }
 }
 
-/// Joins lines that a terminal's width has broken: a line ends only after a full stop.
 }  // namespace
 
 std::string identify_document(const Identification& found, const IdentifyPageWords& words) {

@@ -3,7 +3,6 @@
 #include "lab/many_runs.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <string>
@@ -15,7 +14,6 @@
 #include "chicane/run/parallel.hpp"
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/trial.hpp"
-#include "program.hpp"
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -24,8 +22,6 @@
 namespace chicane::apps {
 namespace {
 
-// Periods of RunCounter's lines on a terminal and in a log.
-constexpr std::chrono::milliseconds kTerminalPeriod{200}, kLogPeriod{10000};
 constexpr int kKeptMemory = 1 << 30;  // [byte] more than a run allocates at a time
 
 /// Time left in two digits or more: minutes from 90 s, hours from 90 min.
@@ -68,26 +64,12 @@ Result<void> write_below(const std::string& page, std::string_view marker, const
   return write_file(page, above + std::string(marker) + text);
 }
 
-RunCounter::RunCounter(const char* what) : what_{what}, is_terminal_{isatty(STDERR_FILENO) == 1} {
-  next_ = started_ + (is_terminal_ ? std::chrono::milliseconds{0} : kLogPeriod);
-}
-
 void RunCounter::show(std::uint64_t done, std::uint64_t runs, std::uint64_t driven) {
-  const Clock::time_point now = Clock::now();
-  if (now < next_) return;
-  next_ = now + (is_terminal_ ? kTerminalPeriod : kLogPeriod);
-  const double seconds = std::chrono::duration<double>(now - started_).count();
+  if (!line_.is_due()) return;
+  const double seconds = line_.seconds();
   const double speed = seconds > 0.0 ? static_cast<double>(driven) / seconds : 0.0;
   const std::string left = speed > 0.0 ? time_left(static_cast<double>(runs - done) / speed) : "?";
-  fmt::print(stderr, "{}{} of {} {}, {:.1f} a second, {} left{}", is_terminal_ ? "\r" : "", done, runs, what_,
-             speed, left, is_terminal_ ? "\x1b[K" : "\n");
-  std::fflush(stderr);
-  has_line_ = is_terminal_;
-}
-
-void RunCounter::end() {
-  if (has_line_) fmt::print(stderr, "\n");
-  has_line_ = false;
+  line_.show(fmt::format("{} of {} {}, {:.1f} a second, {} left", done, runs, what_, speed, left));
 }
 
 std::function<void(const sweep::Progress&)> RunCounter::follow() {

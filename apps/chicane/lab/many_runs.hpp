@@ -14,6 +14,7 @@
 #include "chicane/sweep/result_table.hpp"
 #include "chicane/sweep/sweep.hpp"
 #include "options.hpp"
+#include "program.hpp"
 
 namespace chicane::apps {
 
@@ -25,26 +26,22 @@ namespace chicane::apps {
 [[nodiscard]] Result<void> write_below(const std::string& page, std::string_view marker,
                                        const std::string& text);
 
-/// Tells on stderr how many of many runs are done, how fast, and how long the rest will take: on a terminal
-/// one line that renews itself, otherwise a line every ten seconds. One thread at a time.
+/// Tells on stderr how many of many runs are done, how fast, and how long the rest will take. One thread at a
+/// time.
 class RunCounter {
  public:
   /// `what`: plural noun for the counted things.
-  explicit RunCounter(const char* what = "runs");
+  explicit RunCounter(const char* what = "runs") : what_{what} {}
   /// `driven`: of the `done` ones since the start, for the speed.
   void show(std::uint64_t done, std::uint64_t runs, std::uint64_t driven);
   /// Leaves the cursor at the beginning of a line.
-  void end();
+  void end() { line_.end(); }
   /// Observer for SweepOptions::on_progress, valid as long as this counter.
   [[nodiscard]] std::function<void(const sweep::Progress&)> follow();
 
  private:
-  using Clock = std::chrono::steady_clock;
   const char* what_;
-  bool is_terminal_;
-  bool has_line_ = false;
-  Clock::time_point started_ = Clock::now();
-  Clock::time_point next_;
+  StatusLine line_;
 };
 
 /// The runs of a command: a plan, and what drives each of them.

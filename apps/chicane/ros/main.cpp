@@ -132,7 +132,5 @@ ExitCode ros_node(const Options& given) {
 }  // namespace chicane::apps
 
 int main(int count, char** words) {
-  std::vector<const char*> command{"chicane", "ros"};
-  command.insert(command.end(), words + (count > 0 ? 1 : 0), words + count);
-  return chicane::apps::program(static_cast<int>(command.size()), command.data(), chicane::apps::ros_node);
+  return chicane::apps::program_of("ros", count, words, chicane::apps::ros_node);
 }

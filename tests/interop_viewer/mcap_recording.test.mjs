@@ -7,12 +7,9 @@ import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import rosmsg from '@foxglove/rosmsg';
-import cdr from '@foxglove/rosmsg2-serialization';
 import { McapIndexedReader, McapStreamReader } from '@mcap/core';
+import { reader as readerOf } from './chicane_drive.mjs';
 
-const { MessageReader } = cdr; // these packages are CommonJS
-const { parse } = rosmsg;
 const STEPS = 250; // 10 s of 40 ms each
 const MESSAGES = STEPS * 11 + 7; // and once: the run, three lines of the road, the limit, its line and the scene
 
@@ -23,7 +20,6 @@ before(() => {
   const file = join(folder, 'run.mcap');
   try {
     execFileSync(process.env.CHICANE, ['drive', '--fast', '--set', 'time_limit_s=10', '--record', file], {
-      cwd: process.env.CHICANE_SOURCE_DIR,
       stdio: 'ignore',
     });
   } catch (error) {
@@ -86,7 +82,7 @@ describe('a recorded run', () => {
       assert.equal(schema.encoding, 'ros2msg');
       assert.equal(channel.messageEncoding, 'cdr');
       const text = new TextDecoder().decode(schema.data);
-      readers.set(channel.id, new MessageReader(parse(text, { ros2: true })));
+      readers.set(channel.id, readerOf(text));
     }
     const seen = new Map();
     for (const message of await collect(reader.readMessages())) {

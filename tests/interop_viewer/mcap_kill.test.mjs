@@ -3,8 +3,7 @@
 // without a repair step, with our reader and with @mcap/core, and must hold all but the last 100 ms of what viewers had
 // been told.
 import assert from 'node:assert/strict';
-import { execFile, spawn } from 'node:child_process';
-import { once } from 'node:events';
+import { execFile } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -12,13 +11,11 @@ import { after, before, it } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { promisify } from 'node:util';
 import { McapStreamReader } from '@mcap/core';
-import { listen } from './live_time.mjs';
+import { startDrive, watch } from './chicane_drive.mjs';
 
 const KILLS = Number(process.env.CHICANE_KILLS ?? 6);
 const AT_ONCE = 3;
 const MOST_LOST_S = 0.1;
-const { CHICANE } = process.env;
-const options = { cwd: process.env.CHICANE_SOURCE_DIR };
 
 let folder;
 before(() => {
@@ -29,32 +26,15 @@ after(() => rmSync(folder, { recursive: true }));
 /** The last second that viewers were told of, and the file. */
 async function recordUntilKilled(number, seconds) {
   const file = join(folder, `${number}.mcap`);
-  const child = spawn(CHICANE, ['drive', '--port', '0', '--laps', '1000', '--record', file], {
-    ...options,
-    stdio: ['ignore', 'ignore', 'pipe'],
-  });
-  const exit = once(child, 'exit');
-  try {
-    let said = '';
-    const port = await new Promise((resolve, reject) => {
-      child.stderr.on('data', (data) => {
-        said += data;
-        const found = /http:\/\/localhost:(\d+)\//.exec(said);
-        if (found) resolve(Number(found[1]));
-      });
-      child.on('exit', () => reject(new Error(said)));
-    });
-    const viewer = await listen(port);
-    while (viewer.time() === null) await sleep(5);
-    await sleep(1000 * seconds);
-    child.kill('SIGKILL');
-    const told = viewer.time();
-    await exit;
-    viewer.close();
-    return { file, told };
-  } finally {
-    child.kill('SIGKILL');
-  }
+  const drive = await startDrive(['--record', file]);
+  const viewer = await watch(drive.url);
+  while (!viewer.newest) await sleep(5);
+  await sleep(1000 * seconds);
+  const exit = drive.stop('SIGKILL');
+  const told = viewer.newest.time_s;
+  await exit;
+  viewer.close();
+  return { file, told };
 }
 
 /** Step messages by the reference reader, from front to back, as it reads a file that has no end. */
@@ -74,7 +54,7 @@ function readByReference(file) {
 }
 
 async function readByUs(file) {
-  const { stdout } = await promisify(execFile)(CHICANE, ['replay', file, '--verify', '--json'], options);
+  const { stdout } = await promisify(execFile)(process.env.CHICANE, ['replay', file, '--verify', '--json']);
   return JSON.parse(stdout);
 }
 

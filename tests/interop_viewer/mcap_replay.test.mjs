@@ -2,21 +2,19 @@
 // What `chicane replay` serves to a browser, read as a browser does: by range, with the reference reader; and
 // recordings of both ends of a session with an external simulator.
 import assert from 'node:assert/strict';
-import { execFile, spawn } from 'node:child_process';
-import { once } from 'node:events';
+import { execFile } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { McapIndexedReader } from '@mcap/core';
-
-const { CHICANE } = process.env;
-const options = { cwd: process.env.CHICANE_SOURCE_DIR };
+import { startProgram } from './chicane_drive.mjs';
 
 /** Runs the program to its end. */
 const chicane = (...words) =>
   new Promise((resolve) => {
-    execFile(CHICANE, words, options, (error, stdout, stderr) => resolve({ code: error?.code ?? 0, stdout, stderr }));
+    const tell = (error, stdout, stderr) => resolve({ code: error?.code ?? 0, stdout, stderr });
+    execFile(process.env.CHICANE, words, tell);
   });
 
 let folder;
@@ -27,26 +25,6 @@ before(async () => {
   await chicane('drive', '--fast', '--set', 'time_limit_s=10', '--record', log); // 1: the laps were not driven
 });
 after(() => rmSync(folder, { recursive: true }));
-
-/** A program that runs until it is told to end, from the moment it names its port. */
-async function start(...words) {
-  const child = spawn(CHICANE, [...words, '--port', '0'], { ...options, stdio: ['ignore', 'pipe', 'pipe'] });
-  const exit = once(child, 'exit');
-  let said = '';
-  const port = await new Promise((resolve, reject) => {
-    child.stderr.on('data', (data) => {
-      said += data;
-      const found = /http:\/\/localhost:(\d+)\//.exec(said);
-      if (found) resolve(Number(found[1]));
-    });
-    child.on('exit', () => reject(new Error(said)));
-  });
-  const end = async () => {
-    child.kill('SIGINT');
-    return (await exit)[0];
-  };
-  return { url: `http://127.0.0.1:${port}`, port, end };
-}
 
 /** As browsers do: once more when a connection that was kept open has been closed meanwhile. */
 const get = (url, init) => fetch(url, init).catch(() => fetch(url, init));
@@ -71,48 +49,48 @@ async function steps(reader, startTime) {
 
 describe('chicane replay', () => {
   it('names its logs, which are sought in by range', async () => {
-    const program = await start('replay', log);
-    const mode = await (await get(`${program.url}/mode.json`)).json();
+    const program = await startProgram('replay', [log]);
+    const mode = await (await get(`${program.url}mode.json`)).json();
     assert.deepEqual(mode, { mode: 'replay', logs: [{ name: 'run.mcap', url: '/log/0.mcap' }], start_s: 0 });
-    const reader = await openByRange(`${program.url}/log/0.mcap`);
+    const reader = await openByRange(`${program.url}log/0.mcap`);
     assert.equal((await steps(reader)).length, 250);
     assert.equal((await steps(reader, 9_000_000_000n))[0], 9_000_000_000n);
-    const whole = await get(`${program.url}/log/0.mcap`);
+    const whole = await get(`${program.url}log/0.mcap`);
     assert.deepEqual(Buffer.from(await whole.arrayBuffer()), readFileSync(log));
     for (const path of ['/log/1.mcap', '/log/0.mcap/..', '/log/', '/log/%2e%2e/run.mcap', `/log/${log}`]) {
-      assert.equal((await get(program.url + path)).status, 404, path);
+      assert.equal((await get(program.url + path.slice(1))).status, 404, path);
     }
-    assert.equal((await get(`${program.url}/log/0.mcap`, { headers: { Range: 'bytes=99999999999-' } })).status, 416);
-    assert.equal(await program.end(), 0);
+    assert.equal((await get(`${program.url}log/0.mcap`, { headers: { Range: 'bytes=99999999999-' } })).status, 416);
+    assert.equal(await program.stop('SIGINT'), 0);
   });
 
   it('gives a recording whose writer was killed an index', async () => {
     const cut = join(folder, 'cut.mcap');
     const bytes = readFileSync(log);
     writeFileSync(cut, bytes.subarray(0, Math.floor(0.8 * bytes.length)));
-    const program = await start('replay', cut, log);
-    const reader = await openByRange(`${program.url}/log/0.mcap`);
+    const program = await startProgram('replay', [cut, log]);
+    const reader = await openByRange(`${program.url}log/0.mcap`);
     const count = (await steps(reader)).length;
     assert.ok(count > 100 && count < 250, `${count} steps`);
-    assert.equal((await steps(await openByRange(`${program.url}/log/1.mcap`))).length, 250);
-    assert.equal(await program.end(), 0);
+    assert.equal((await steps(await openByRange(`${program.url}log/1.mcap`))).length, 250);
+    assert.equal(await program.stop('SIGINT'), 0);
   });
 
   it('shows a branch beside what was', async () => {
     const kept = join(folder, 'branch.mcap');
-    const program = await start('replay', log, '--branch-at', '5', '--set', 'latency_ms=50', '--output', kept);
-    const { logs, start_s } = await (await get(`${program.url}/mode.json`)).json();
+    const program = await startProgram('replay', [log, '--branch-at', '5', '--set', 'latency_ms=50', '--output', kept]);
+    const { logs, start_s } = await (await get(`${program.url}mode.json`)).json();
     assert.deepEqual(
       logs.map(({ name }) => name),
       ['run.mcap', 'branch at 5.0 s'],
     );
     assert.equal(start_s, 5);
-    const reader = await openByRange(`${program.url}/log/1.mcap`);
+    const reader = await openByRange(`${program.url}log/1.mcap`);
     assert.equal((await steps(reader)).length, 250);
     const changes = [];
     for await (const message of reader.readMessages({ topics: ['/chicane/change'] })) changes.push(message.logTime);
     assert.equal(changes.length, 1);
-    assert.equal(await program.end(), 0);
+    assert.equal(await program.stop('SIGINT'), 0);
     assert.equal((await chicane('replay', kept, '--verify')).code, 0);
   });
 
@@ -151,7 +129,7 @@ describe('chicane report', () => {
 describe('a session with an external simulator', () => {
   it('is recorded at both ends; what was received is computed again, what another sent is not', async () => {
     const [served, simulated] = [join(folder, 'served.mcap'), join(folder, 'simulated.mcap')];
-    const server = await start('serve', '--record', served);
+    const server = await startProgram('serve', ['--record', served]);
     const url = `ws://127.0.0.1:${server.port}/socket.io/?EIO=4&transport=websocket`;
     await chicane(
       'simulate',
@@ -165,7 +143,7 @@ describe('a session with an external simulator', () => {
       simulated,
       '--compress',
     );
-    assert.equal(await server.end(), 0);
+    assert.equal(await server.stop('SIGINT'), 0);
     const verified = await chicane('replay', served, '--verify', '--json');
     assert.equal(verified.code, 0, verified.stdout);
     assert.ok(JSON.parse(verified.stdout).steps > 10);

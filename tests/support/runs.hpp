@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chicane/protocol/library.hpp"
+#include "chicane/run/closed_loop.hpp"
+
+namespace chicane::test {
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+/// What the program makes of these settings, by schema key; of one given twice the last.
+inline scenario::Scenario scenario_of(const Settings& settings = {}) {
+  const Result<scenario::Scenario> scenario = protocol::compose({.scenario_file = {}, .settings = settings});
+  EXPECT_TRUE(scenario) << (scenario ? "" : scenario.error().message);
+  return scenario.value_or(scenario::Scenario{});
+}
+
+inline std::unique_ptr<run::ClosedLoop> loop_of(const scenario::Scenario& scenario) {
+  Result<std::unique_ptr<run::ClosedLoop>> loop = run::ClosedLoop::create(scenario);
+  if (!loop) throw std::runtime_error(loop.error().message);
+  return std::move(*loop);
+}
+
+/// What `chicane drive --fast` reports.
+inline telemetry::RunSummary drive(const scenario::Scenario& scenario) {
+  return run::run_closed_loop(*loop_of(scenario));
+}
+
+}  // namespace chicane::test
