@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
         Golden{"default_road_car",
                {{"track", "hairpins"}, {"car", "road-car"}},
                0x13e70c37bcadf35f,
-               0xaa6896c514a31ae7},
+               0xb3ce88dad40045a3},
         Golden{"with_noise",
                {{"track", "oval"}, {"sensor.position_noise_m", "0.05"}, {"seed", "7"}},
                0xa5873ef58cd3a8c4,
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
                0x73b51a6c04adff0b,
                {"gps_noise@3", "frozen_sensor@6"}},
         Golden{
-            "model_car", {{"car", "f1tenth"}, {"time_limit_s", "6"}}, 0x416b0a24f7d72d36, 0xd4ebddcc8eeb63a0},
+            "model_car", {{"car", "f1tenth"}, {"time_limit_s", "6"}}, 0x416b0a24f7d72d36, 0x9fca7825a5a7d92a},
         Golden{"pid", {{"preset", "pid"}, {"latency_ms", "37"}}, 0xdab4f526bb2d5617, 0xdab4f526bb2d5617}),
     [](const auto& run) { return std::string(run.param.name); });
 
