@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
         Golden{"default_udacity", {{"track", "lakeside"}}, 0x0c8200a0a532b872, 0x17e76bd240ed9900},
         Golden{"default_road_car",
                {{"track", "hairpins"}, {"car", "road-car"}},
-               0x13e70c37bcadf35f,
+               0x3a16a588d79ba285,
                0xb3ce88dad40045a3},
         Golden{"with_noise",
                {{"track", "oval"}, {"sensor.position_noise_m", "0.05"}, {"seed", "7"}},
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
                0x73b51a6c04adff0b,
                {"gps_noise@3", "frozen_sensor@6"}},
         Golden{
-            "model_car", {{"car", "f1tenth"}, {"time_limit_s", "6"}}, 0x416b0a24f7d72d36, 0x9fca7825a5a7d92a},
+            "model_car", {{"car", "f1tenth"}, {"time_limit_s", "6"}}, 0x4131fcf0c35031a8, 0x9fca7825a5a7d92a},
         Golden{"pid", {{"preset", "pid"}, {"latency_ms", "37"}}, 0xdab4f526bb2d5617, 0xdab4f526bb2d5617}),
     [](const auto& run) { return std::string(run.param.name); });
 
