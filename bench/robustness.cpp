@@ -2,8 +2,8 @@
 // The solver on families of problems that are no car, beside Ipopt: how many are solved, at what cost, in
 // what time.
 //
-// Prints the tables of docs/measured/solver.md; `--help` lists its options. What Ipopt finds takes minutes,
-// and is kept in a file; without Ipopt (Debian: coinor-libipopt-dev) that alone is compared with.
+// Prints the tables of docs/measured/solver.md; `--help` lists its options. Ipopt takes minutes, so
+// a file keeps its results; without Ipopt (Debian: coinor-libipopt-dev) the file alone is compared with.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -212,7 +212,7 @@ int main(int argc, char** argv) {
   app.add_option("-f", request.first, "Seed of the first one");
   app.add_option("-i", request.ipopt_instances, "Ipopt solves so many of each, and what is not solved");
   app.add_option("-t", request.tolerance, "Tolerance");
-  app.add_option("-m", request.max_iterations, "Most turns");
+  app.add_option("-m", request.max_iterations, "Most iterations");
   app.add_option("--references", file, "File that keeps what Ipopt finds");
   app.add_flag("--each", request.each, "A line for each instance");
   app.add_flag("--tolerances", are_tolerances, "Statuses and residuals, without Ipopt");

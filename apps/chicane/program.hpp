@@ -15,7 +15,7 @@ namespace chicane::apps {
 /// main's, the program first and a command second.
 [[nodiscard]] int program(int count, const char* const* words, ExitCode (*run)(const Options&)) noexcept;
 
-/// The same of a program that is one command: `words` are main's, the program first and then its options.
+/// Runs a program that is one command: `words` are main's, the program first and then its options.
 [[nodiscard]] int program_of(const char* command, int count, const char* const* words,
                              ExitCode (*run)(const Options&)) noexcept;
 
@@ -32,8 +32,8 @@ void let_interrupts_end();
 /// make it static, or a variable of main().
 void catch_interrupts(std::atomic<bool>& flag);
 
-/// Tells on stderr how far a work is: on a terminal one line that renews itself ten times a second, otherwise
-/// a line every ten seconds.
+/// Shows on stderr how far some work is: on a terminal one line that renews itself ten times a second,
+/// otherwise a line every ten seconds.
 class StatusLine {
  public:
   StatusLine();

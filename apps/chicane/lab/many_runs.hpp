@@ -26,7 +26,7 @@ namespace chicane::apps {
 [[nodiscard]] Result<void> write_below(const std::string& page, std::string_view marker,
                                        const std::string& text);
 
-/// Tells on stderr how many of many runs are done, how fast, and how long the rest will take. One thread at a
+/// Shows on stderr how many of many runs are done, how fast, and how long the rest will take. One thread at a
 /// time.
 class RunCounter {
  public:

@@ -364,7 +364,7 @@ class PredictionModel {
   static constexpr double kLeastSide = 1e-3;    ///< keeps quotients defined without acceleration [m/s²]
   static constexpr double kLeastLoad = 0.1;     ///< least share of the load at rest, and least 1 − u²
   static constexpr double kLeastSquare = 1e-8;  ///< least square of a slip: the secant has a kink at 0
-  // Widths over which change() is smooth where advance() has a kink.
+  // Widths over which change() is smooth where advance() has a kink; kBlend blends wheels in both.
   static constexpr double kSmoothUse = 0.02;             ///< at kMostAlong, share of the peak
   static constexpr double kBlend = 0.3;                  ///< between drive and brakes [m/s²]
   static constexpr double kSmoothLoad = 0.05;            ///< at kLeastLoad, share of the load at rest

@@ -10,13 +10,13 @@
 namespace chicane::safety {
 namespace {
 
-constexpr double kFullSize = 4.5;      // [m] length of a car in full size
-constexpr double kShort = 0.12;        // [s] over which the car's motion is averaged
-constexpr double kLong = 0.4;          // [s] the same for noisy sensors, and of braking
-constexpr double kSpacing = 0.0095;    // [s] at least between samples: they reach half a second back
-constexpr double kLongestStep = 0.25;  // [s] between measurements that are compared
-constexpr double kMostUse = 0.75;   // of the tyres' peak slip: beyond it grip is in question, or they slide
-constexpr double kSpareUse = 0.35;  // of it, up to which grip is not in question
+constexpr double kFullSize = 4.5;       // [m] length of a car in full size
+constexpr double kShort = 0.12;         // [s] over which the car's motion is averaged
+constexpr double kLong = 0.4;           // [s] the same for noisy sensors, and of braking
+constexpr double kSpacing = 0.0095;     // [s] at least between samples: they reach half a second back
+constexpr double kLongestStep = 0.25;   // [s] between measurements that are compared
+constexpr double kMostUse = 0.75;       // share of the tyres' peak slip beyond which grip is in question
+constexpr double kSpareUse = 0.35;      // of it, up to which grip is not in question
 constexpr double kMostSideslip = 0.12;  // [rad]
 constexpr double kSlides = 0.08;        // [rad] of a course that is another one than a car that grips has
 constexpr double kCalmFor = 0.5;        // [s] after a slide, until the steering is judged again
