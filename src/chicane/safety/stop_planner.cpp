@@ -24,6 +24,8 @@ constexpr double kYawBandwidth = 6.0;      // [rad/s] of the feedback to the yaw
 constexpr double kPreview = 0.15;          // [s] the car answers the wheel about so late
 constexpr double kGripShare = 0.85;        // of the assumed tyre force of the rear axle, used sideways
 constexpr double kGravity = 9.81;          // [m/s²]
+constexpr double kBeyond = 0.3;            // of that force, above it: no car follows the bend
+constexpr double kKept = 0.5;              // of that force, sideways, in a bend that no car follows
 constexpr double kLeastBraking = 0.15;     // of the useful one, in any curve
 constexpr double kMostPerMetre = 0.25;     // [1/m] of the feedback: ω/v of a slow car
 constexpr int kTurns = 3;                  // of the search for a stable deceleration
@@ -214,6 +216,14 @@ double StopPlanner::stable_share(const model::BodyMotion<double>& m, double dece
   return low;
 }
 
+/// The acceleration sideways [m/s²] that braking leaves where the bend asks for `asked`: all of it up to the
+/// force of the rear axle, and half of that force where no car follows the bend (eq. 4a).
+double StopPlanner::left_sideways(double asked, double v) const noexcept {
+  const double most = kGripShare * friction_ * model_.load(v);
+  const double beyond = std::clamp((asked / most - 1.0) / kBeyond, 0.0, 1.0);
+  return std::min(asked, (1.0 - (1.0 - kKept) * beyond) * most);
+}
+
 /// Share of a deceleration that leaves the rear axle, unloaded by it, the force that holds the car sideways:
 /// equation 4.
 double StopPlanner::braking_share(double sideways, double deceleration, double v) const noexcept {
@@ -273,7 +283,8 @@ double StopPlanner::slowing(const road::KnownRoad& road, const StopStart& at, co
   const double v = std::max(at.body.vx, 1.0);
   const double bend = std::max({std::fabs(curvatures.ahead), std::fabs(curvatures.wanted),
                                 std::fabs(road.line().demand(at.s).curvature)});
-  const double sideways = (1.0 - car.steer_helper) * std::max(bend * v * v, std::fabs(at.body.r) * v);
+  const double sideways =
+      left_sideways((1.0 - car.steer_helper) * std::max(bend * v * v, std::fabs(at.body.r) * v), v);
   const double raced = raced_slowing(road, at);
   const double useful = longitudinal_acceleration(car, lowest_throttle(car, v), v);
   const double asked = useful * braking.share;
