@@ -233,18 +233,43 @@ struct FaultRun {
   std::string_view fault;
   double at, lasts;            // [s]
   std::string_view also = "";  // another fault at the same time
+  double grip_scale = 1.0;
 };
 
 struct Standing {
-  double time = 0.0;  ///< for which the car stands on its road after its fault, longest [s]
-  std::string why{};  ///< its last reason and place
+  double time = 0.0;     ///< for which the car stands on its road after its fault, longest [s]
+  std::string why{};     ///< its last reason and place
+  bool can_turn = true;  ///< can_turn()
 };
+
+/// Whether the standing car of `loop` gets along its road with all tyres inside, at walking pace with its
+/// wheels at full lock to either side: by the plant itself, so that no model of a turning circle is assumed.
+bool can_turn(const ClosedLoop& loop) {
+  const scenario::Scenario& scenario = loop.scenario();
+  const model::VehicleParams& car = scenario.vehicle;
+  const double pace = std::sqrt(car.scale);  // [m/s]
+  for (const double lock : {-car.steer_limit, car.steer_limit}) {
+    const auto plant = std::move(*make_plant(scenario));
+    sim::World world(*plant, loop.track());
+    world.reset({.x = loop.car().x, .y = loop.car().y, .psi = loop.car().psi}, 0.0);
+    while (world.time() < 60.0 && world.state().edge_distance > 0.0) {
+      if (std::fabs(world.state().heading_error) < 0.2) return true;
+      const double v = plant->state().vx;
+      const bool turns =
+          world.time() < 5.0 && std::fabs(plant->state().steer - lock) > 0.02 * car.steer_limit;
+      const double rest = car.latches_brakes() ? car.brake_release_throttle : 0.0;
+      world.advance({lock, turns ? rest : throttle_for(car, 2.5 * std::max(pace - v, 0.0) / pace, v)});
+    }
+  }
+  return false;
+}
 
 Standing stands_after(const FaultRun& run) {
   auto scenario = *protocol::compose(
       {.scenario_file = "",
        .settings = {{"preset", run.preset}, {"car", run.car}, {"track", run.track}, {"laps", "0"}}});
   scenario.vehicle.mass *= run.mass_scale;
+  scenario.vehicle.friction *= run.grip_scale;
   for (const std::string_view name : {run.fault, run.also})
     if (const auto one = sim::fault_named(name)) scenario.faults.push_back(sim::default_event(*one, run.at));
   for (sim::FaultEvent& event : scenario.faults) event.duration = run.lasts;
@@ -265,6 +290,7 @@ Standing stands_after(const FaultRun& run) {
                fmt::format("{}, {:.1f} m inside, {:.1f} rad", controller::word_of(now.guard.reason).name,
                            now.edge_distance, now.heading_error)};
   }
+  if (longest.time > kAgain) longest.can_turn = can_turn(*loop);
   return longest;
 }
 
@@ -272,8 +298,9 @@ Standing stands_after(const FaultRun& run) {
 /// lock that its wheels do not reach; between a way back and a stop that turn its wheels in turn; across a
 /// hairpin, nearer to the edge than it takes to turn by the tangent of its lock, without any fault; beside
 /// the edge of a bend, where the gentle way to the line leads over it; after a trial in which its speed was
-/// not measured. Wheels that a stop has locked on ice get grip again, those of the original with the brake
-/// that it keeps.
+/// not measured. It gave up an arc that it had begun two millimetres too near to the edge; its turning was
+/// judged by an angle that its wheels had only later; a trial of its speed wanted a metre of room. Wheels
+/// that a stop has locked on ice get grip again, those of the original with the brake that it keeps.
 TEST(MovesAgain, FromWhereItStood) {
   for (const FaultRun& run :
        {FaultRun{"pid", "vw-vanagon", "oval", 0.902734, "gps_noise", 4.350844, 1.0},
@@ -284,6 +311,12 @@ TEST(MovesAgain, FromWhereItStood) {
         {"sixty-mph", "bmw-320i", "hairpins", 0.839345, "slow_solver", 4.0, 0.3},
         {"pid", "f1tenth", CHICANE_TRACKS "f1tenth_centerline.csv", 1.0, "link_lost", 5.0, 2.0},
         {"weighted", "formula-student", "speedway", 1.0, "speed_sensor_zero", 5.0, 5.0},
+        {"stanley", "f1tenth", CHICANE_TRACKS "../maps/clover.yaml", 1.096685, "steering_stuck", 7.280214,
+         0.3, "", 1.046342},
+        {"weighted", "vw-vanagon", CHICANE_TRACKS "course.geojson", 1.070941, "dead_controller", 9.046654,
+         0.3, "", 1.092472},
+        {"pid", "tum-1200", CHICANE_TRACKS "course.xodr", 0.974118, "speed_sensor_zero", 10.630399, 2.0, "",
+         0.967505},
         {"default", "udacity", "lakeside", 1.0, "ice_patch", 8.0, 5.0, "link_lost"},
         {"default", "road-car", "oval", 1.0, "ice_patch", 8.0, 5.0, "link_lost"}}) {
     const Standing standing = stands_after(run);
@@ -315,21 +348,24 @@ FaultRun draw(Random& chance) {
           chance.uniform() < 0.3 ? pick(sim::fault_kinds()).name : ""};
 }
 
-/// Other runs: --gtest_random_seed=N. The large search counts how many stand, the sample must have none.
+/// Other runs: --gtest_random_seed=N. Cars that face the edge nearer than they turn count apart: there is no
+/// reverse gear. The large search counts how many others stand, the sample must have none.
 TEST(MovesAgain, AfterAFaultThatHasEnded) {
   Random chance(57 + static_cast<std::uint64_t>(testing::GTEST_FLAG(random_seed)));
-  constexpr int kRuns = kDrivesAll ? 20'000 : 4, kMost = kDrivesAll ? kRuns / 50 : 0;
-  int stood = 0;
+  constexpr int kRuns = kDrivesAll ? 20'000 : 4, kMost = kDrivesAll ? kRuns / 200 : 0;
+  int stood = 0, faces_edge = 0;
   std::string which;
   for (int i = 0; i < kRuns; ++i) {
     const FaultRun run = draw(chance);
     const Standing standing = stands_after(run);
     if (standing.time <= kAgain) continue;
-    ++stood;
+    ++(standing.can_turn ? stood : faces_edge);
+    if (!standing.can_turn) continue;
     which += fmt::format("\nrun {}: {} {} on {}, {} from {:.1f} s: {:.0f} s, {}", i, run.preset, run.car,
                          run.track, run.fault, run.at, standing.time, standing.why);
   }
-  EXPECT_LE(stood, kMost) << which;
+  EXPECT_LE(stood, kMost) << faces_edge << " others face the edge nearer than they turn" << which;
+  EXPECT_LE(faces_edge, kDrivesAll ? kRuns / 50 : 0);
 }
 
 }  // namespace

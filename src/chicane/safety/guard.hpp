@@ -179,6 +179,7 @@ class Guard {
     bool is_astray = false;         ///< it is off the road or across it
     bool has_stood_astray = false;  ///< since it is astray; from then on it may leave the road to turn
     bool is_led = false;            ///< it stood while commands were refused, and is led back to the line
+    bool creeps = false;            ///< it has begun an arc beside the edge
     bool is_idle = false;           ///< its controller does not drive a car that stands, or is led
     bool rests = false;             ///< it came to rest, and has not been asked to drive since
     bool is_by_hand = false;        ///< a person drove in the last cycle
@@ -188,7 +189,9 @@ class Guard {
     double tried = 0.0;             ///< way driven to see whether the car was put elsewhere, by the model [m]
     double held_speed = 0.0;        ///< of a car that should move, when it began not to [m/s]
     double led_at = 0.0;            ///< it is led, last [s]
-    model::Pose led_from{};         ///< where it was judged by its turning last
+    model::Pose led_from{};         ///< where it was then
+    double led_heading = 0.0;       ///< when it was judged by its turning last [rad]
+    double led_asked = 0.0;         ///< turning by its wheels' angle since [rad]
     double stays_until = 0.0;       ///< its wheels turned it otherwise than asked [s]
     Since answered;                 ///< the controller, last
     Since still;                    ///< a car that is measured elsewhere stands by the estimate

@@ -151,6 +151,7 @@ constexpr double kTrialRoom = 1.0;   // to the edge [m], where no stop fits; hal
 constexpr double kTrialSpeed = 1.0;  // [m/s]
 constexpr double kTrialPedal = 0.3;
 constexpr double kCreep = 1.0;             // [m/s] of a car that turns at the edge
+constexpr double kStillCreeps = 1.2;       // times kCreep: the drive overshoots it by a fifth at most
 constexpr double kCreepDrive = 2.5;        // [1/s] of its drive: turned wheels resist
 constexpr double kCreepStep = 0.1;         // [s] of creeping that are simulated at once
 constexpr double kLongestCreep = 6.0;      // [s]
@@ -270,13 +271,26 @@ bool Guard::try_reset(const std::optional<StopStart>& start, const Cycle& cycle,
     return false;
   }
   const double speed = std::fabs(estimator_.state().vx);
-  const model::Command command{0.0, speed < kTrialSpeed ? kTrialPedal : 0.0};
+  model::Command command{0.0, speed < kTrialSpeed ? kTrialPedal : 0.0};
   // A car that stopped where the known road ends has no stop ahead of it, nor one that is across the road or
   // off it; the way of the trial does without there, and as far inside the edges as walking pace needs.
+  // Nearer to one it is an arc along the road that comes no nearer.
   const double edge = start ? filter_.planner().edge(road_, *start) : -kFarFromRoad;
   const bool has_room = edge < 0.0 || edge >= (run_.tried > 0.0 ? 0.5 : 1.0) * kTrialRoom;
   const bool has_stop = start && verify(*start, cycle, command, true) != Fit::kNone;
-  if (!has_room && !has_stop) return false;
+  if (!has_room && !has_stop) {
+    const model::VehicleParams vehicle = led_vehicle();
+    const double lock = std::copysign(vehicle.steer_limit, -start->e);
+    const double kept = std::min(edge, kKeptShare * options_.margin) - kCreepNearer;
+    if (!(creeping_edge(filter_.planner(), road_, *start, lock, vehicle) > kept)) return false;
+    const bool has_turned = std::fabs(lock - start->body.steer) < kTurnedWheels * vehicle.steer_limit;
+    command = has_turned ? creep(lock, speed, vehicle) : model::Command{lock, 0.0};
+    filter_.withdraw_stop();
+    if (!has_turned) {
+      take_over(command, Rung::kReturnToRoad, result);
+      return true;
+    }
+  }
   if (run_.tried == 0.0) reset_watch_.ask();  // a car that still rolled has turned round since it was asked
   run_.tried += std::max(speed, kTrialSpeed) * std::max(cycle.interval, 0.0);
   take_over(command, Rung::kReturnToRoad, result);
@@ -329,15 +343,19 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const double edge = start ? filter_.planner().edge(road_, *start) : 0.0;
   const bool stands = std::fabs(car.vx) < kStandingSpeed && !rolls_back;
   const bool is_on_road = start && edge >= 0.0;
-  const bool creeps = stands || (std::fabs(car.vx) < 1.2 * kCreep && !rolls_back);
-  const double kept = std::min(edge, kKeptShare * options_.margin) - kCreepNearer;
-  const auto stays = [&](double steer) {
-    return creeping_edge(filter_.planner(), road_, *start, steer, vehicle) > kept;
+  const bool creeps = stands || (std::fabs(car.vx) < kStillCreeps * kCreep && !rolls_back);
+  // An arc that has begun counts to its end without a margin: the car may stray by millimetres from it.
+  run_.creeps &= creeps && is_on_road;
+  const double least = run_.creeps ? kCreepNearer : kKeptShare * options_.margin;
+  const double kept = std::min(edge, least) - kCreepNearer;
+  const auto stays = [&](double angle) {
+    return creeping_edge(filter_.planner(), road_, *start, angle, vehicle) > kept;
   };
   // In a bend a gentle way to the line leads over the edge beside it, where more lock does not.
   double& steer = result.command.steer;
   if (creeps && is_on_road && !stays(steer))
-    steer = stays(car.steer) ? car.steer : std::copysign(vehicle.steer_limit, -start->e);
+    steer = start->e * car.steer < 0.0 && stays(car.steer) ? car.steer
+                                                           : std::copysign(vehicle.steer_limit, -start->e);
   // Who drives before the wheels have turned uses the room that turning takes.
   const bool has_turned = std::fabs(steer - car.steer) < kTurnedWheels * vehicle.steer_limit;
   const bool waits = stands && is_on_road && !(turns_as_asked(act, car) && has_turned);
@@ -346,6 +364,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   if (fit == Fit::kNone && creeps && is_on_road && !waits && has_turned && stays(car.steer)) {
     result.command = creep(steer, car.vx, vehicle);
     fit = Fit::kSeen;
+    run_.creeps = true;
   }
   // On the road the car comes no nearer to the edge, but for a controller that cannot drive on from there,
   // and once it stands. Otherwise a car that creeps or stands turns its wheels: it needs less room then.
@@ -377,11 +396,15 @@ bool Guard::turns_as_asked(double time, const model::State& car) noexcept {
   const model::Pose from = run_.led_from;
   const bool goes_on = time - std::exchange(run_.led_at, time) < kStillTime;
   const double way = (now.x - from.x) * cos(now.psi) + (now.y - from.y) * sin(now.psi);
-  const double asked = way * car.steer / model_.vehicle().wheelbase();
-  const bool is_judged = goes_on && std::fabs(asked) > kSeenTurn;
-  if (is_judged && angle_difference(now.psi, from.psi) / asked < kLeastTurned)
+  run_.led_asked += way * car.steer / model_.vehicle().wheelbase();
+  const bool is_judged = goes_on && std::fabs(run_.led_asked) > kSeenTurn;
+  if (is_judged && angle_difference(now.psi, run_.led_heading) / run_.led_asked < kLeastTurned)
     run_.stays_until = time + kAskPause;
-  if (!goes_on || is_judged) run_.led_from = {now.x, now.y, now.psi};
+  if (!goes_on || is_judged) {
+    run_.led_heading = now.psi;
+    run_.led_asked = 0.0;
+  }
+  run_.led_from = {now.x, now.y, now.psi};
   if (!(time < run_.stays_until)) return true;
   report_.reason = controller::GuardReason::kOtherSteering;
   return false;
