@@ -78,19 +78,6 @@ TEST(CommandText, EveryCommandHasAnExampleOfItsOwnAndARowInTheDocs) {
   }
 }
 
-TEST(CommandText, TheHelpIsInGroups) {
-  std::vector<std::string> found;
-  for (const std::string& line : lines_of(bash(kQuotedProgram + " --help"))) {
-    if (line.ends_with(':') && line != "Options:") found.push_back(line);
-    if (line.starts_with("  ") && line[2] != '-' && line[2] != ' ')
-      found.push_back(line.substr(2, line.find(' ', 2) - 2));
-  }
-  EXPECT_THAT(found, ElementsAre("Drive:", "drive", "serve", "simulate", "Look:", "replay", "report", "video",
-                                 "Compare:", "limit", "league", "sweep", "merge", "tune", "Prove:",
-                                 "campaign", "recover", "lane-change", "claims", "bench", "Tools:", "check",
-                                 "list", "import", "identify", "ros", "completion", "manual"));
-}
-
 TEST(CommandText, WithoutACommandSixLinesForANewcomer) {
   const std::vector<std::string> lines = lines_of(bash(kQuotedProgram));
   ASSERT_EQ(lines.size(), 6U);

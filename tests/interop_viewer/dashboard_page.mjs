@@ -83,6 +83,9 @@ export const headline = (page) =>
   });
 
 export const differentFrom = (before) => (now) => now !== before;
+export const atLeast = (least) => (now) => now >= least;
+export const above = (bound) => (now) => now > bound;
+export const below = (bound) => (now) => now < bound;
 
 export class DashboardPage {
   /**
@@ -171,12 +174,14 @@ export class DashboardPage {
   async number(id) {
     return Number((await this.text(id)).replace('−', '-'));
   }
+  /** What the strip says of the speed, in the reader's unit. */
+  speed = () => this.number('speed');
 
   /** The lap clock. */
-  async seconds() {
+  seconds = async () => {
     const [minutes, rest] = (await this.text('lap-time')).split(':').map(Number);
     return 60 * minutes + rest;
-  }
+  };
 
   async show(mode) {
     if (await this.page.locator('#menu:popover-open').count()) await this.page.keyboard.press('Escape');
@@ -201,6 +206,7 @@ export class DashboardPage {
   lapRows() {
     return this.page.getByTestId('lap-rows').locator('tbody tr:not(.limit)');
   }
+  laps = () => this.lapRows().count();
 
   /** Chooses what the menu has, and leaves it: after a pace it stays open, over what is below. */
   async fromMenu(name) {
@@ -221,9 +227,7 @@ export class DashboardPage {
   }
 
   /** What is driven: controller, preset, car, track, latency, guard. */
-  summary() {
-    return this.page.locator('.run').getAttribute('title');
-  }
+  summary = () => this.page.locator('.run').getAttribute('title');
 
   /** The row of a setting in Try: what is searched for is found. */
   async setting(key) {
@@ -277,12 +281,16 @@ export class DashboardPage {
     await this.button('Pause').waitFor();
   }
 
-  /** Waits until `read` gives something that `accept` accepts: looks soon again at first, then ever less often. */
+  /**
+   * Waits until `read`, a function or a test id, gives something that `accept`, a function, an expression or a value,
+   * accepts: looks soon again at first, then ever less often.
+   */
   async until(read, accept, what) {
     const end = Date.now() + PATIENCE;
+    const isGood = accept instanceof RegExp ? (text) => accept.test(text) : (value) => value === accept;
     for (let pause = 50; ; pause = Math.min(1.5 * pause, 400)) {
-      const value = await read();
-      if (accept(value)) return value;
+      const value = await (typeof read === 'string' ? this.text(read) : read());
+      if (typeof accept === 'function' ? accept(value) : isGood(value)) return value;
       assert.ok(Date.now() < end, `${what}: still ${value}`);
       await sleep(pause);
     }

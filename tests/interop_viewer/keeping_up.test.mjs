@@ -2,7 +2,7 @@
 // The dashboard keeps up with sixty frames a second. What that costs is measured by performance.mjs, not asserted here.
 import assert from 'node:assert/strict';
 import { it } from 'node:test';
-import { DashboardPage, EVERY_SIZE } from './dashboard_page.mjs';
+import { atLeast, DashboardPage, EVERY_SIZE } from './dashboard_page.mjs';
 import { browserAndDrive } from './here.mjs';
 import { arrivals, meter, notePaints, SIXTY_A_SECOND } from './paints.mjs';
 
@@ -31,11 +31,7 @@ for (const mode of EVERY_SIZE ? ['watch', 'understand'] : ['understand']) {
     const { heap } = await read();
 
     const other = await arrivals(here.drive.url);
-    await dashboard.until(
-      () => other.times.size,
-      (count) => count >= FRAMES,
-      'frames at another viewer',
-    );
+    await dashboard.until(() => other.times.size, atLeast(FRAMES), 'frames at another viewer');
     const newest = BigInt([...other.times.keys()].at(-1));
     const painted = await dashboard.until(
       paints,

@@ -8,17 +8,13 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { startDrive, watch } from './chicane_drive.mjs';
-import { DashboardPage } from './dashboard_page.mjs';
+import { atLeast, DashboardPage } from './dashboard_page.mjs';
 import { browserAlone } from './here.mjs';
 
 const here = browserAlone();
 
 async function laps(dashboard, count) {
-  await dashboard.until(
-    () => dashboard.lapRows().count(),
-    (found) => found >= count,
-    `${count} laps`,
-  );
+  await dashboard.until(dashboard.laps, atLeast(count), `${count} laps`);
 }
 const type = (dashboard, key, value) => dashboard.type(key, value);
 
@@ -48,11 +44,7 @@ describe('a lap', () => {
     await dashboard.lapRows().last().locator('.setup', { hasText: 'latency ms 60' }).waitFor();
     await dashboard.lapRows().last().getByRole('button').click(); // A
     await page.getByLabel('B', { exact: true }).selectOption('lap 1');
-    await dashboard.until(
-      () => dashboard.text('lap-difference'),
-      (text) => /latency_ms 60 \| 100/.test(text.replace(/\s+/g, ' ')),
-      'what differed',
-    );
+    await dashboard.until('lap-difference', /latency_ms\s+60\s+\|\s+100/, 'what differed');
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
     await dashboard.close();
     const late = await DashboardPage.open(here.browser, drive.url, { mode: 'understand' });

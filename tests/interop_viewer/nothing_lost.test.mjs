@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { startDrive } from './chicane_drive.mjs';
-import { DashboardPage, differentFrom, headline } from './dashboard_page.mjs';
+import { above, atLeast, DashboardPage, differentFrom, headline } from './dashboard_page.mjs';
 import { browserAlone } from './here.mjs';
 
 const here = browserAlone();
@@ -23,11 +23,7 @@ describe('a page that is opened late', () => {
     await type(first, 'latency_ms', 60);
     await type(first, 'run.pace', 5); // faster, a busy program would leave out too much of a lap to compare it
     await first.show('understand');
-    await first.until(
-      () => lapRows(first),
-      (count) => count >= 2,
-      'two laps',
-    );
+    await first.until(() => lapRows(first), atLeast(2), 'two laps');
     await first.show('try');
     await type(first, 'run.pace', 1);
     await first.pause();
@@ -42,15 +38,11 @@ describe('a page that is opened late', () => {
     await late.showEngineer();
     await late.until(
       () => late.colours('.plot[aria-label="Lateral error"] canvas'),
-      (colours) => colours > 8,
+      above(8),
       'a plot of the last minute',
     );
     await late.page.getByText('60 s', { exact: true }).click();
-    await late.until(
-      () => headline(late.page),
-      (text) => /^Lap \d.* (lost|won) \d+\.\d\d s/s.test(text),
-      'two laps along the track',
-    );
+    await late.until(() => headline(late.page), /^Lap \d.* (lost|won) \d+\.\d\d s/s, 'two laps along the track');
     await late.show('try');
     await late.page.locator('.events li', { hasText: 'latency_ms set to 60' }).waitFor();
     await late.close();
@@ -58,11 +50,7 @@ describe('a page that is opened late', () => {
 
   it('shows the same settings as changed, and how they were at the start', async () => {
     const late = await open(drive, 'try', 'Paused');
-    await late.until(
-      () => late.text('changes'),
-      (text) => /1 change.*latency_ms 100 → 60/s.test(text.replace(/\s+/g, ' ')),
-      'the change of before',
-    );
+    await late.until('changes', /1\s+change.*latency_ms\s+100\s+→\s+60/s, 'the change of before');
     await late.button('Reset latency_ms').click();
     await late.page.getByText('No changes').waitFor();
     await first.show('try');
@@ -74,11 +62,7 @@ describe('a page that is opened late', () => {
     const late = await open(drive, 'understand', 'Paused');
     await first.show('understand');
     const driven = await lapRows(first);
-    await late.until(
-      () => lapRows(late),
-      (count) => count === driven,
-      'all laps',
-    );
+    await late.until(() => lapRows(late), driven, 'all laps');
     const best = ({ page }) => page.getByTestId('lap-rows').locator('tr.best td').first().textContent();
     const time = await best(late);
     assert.match(time, /^\d+:\d\d\.\d{3}$/);
@@ -96,17 +80,9 @@ describe('the end of a run', () => {
     await dashboard.show('watch');
     await page.getByTestId('end-card').waitFor();
     assert.equal(await dashboard.text('end-title'), 'Finished');
-    await dashboard.until(
-      () => dashboard.text('end-laps'),
-      (count) => count === '2',
-      'both laps', // the table follows its laps a moment later
-    );
+    await dashboard.until('end-laps', '2', 'both laps'); // the table follows its laps a moment later
     await dashboard.show('understand');
-    await dashboard.until(
-      () => lapRows(dashboard),
-      (count) => count === 2,
-      'the last lap, too',
-    );
+    await dashboard.until(() => lapRows(dashboard), 2, 'the last lap, too');
     await dashboard.show('watch');
     await page.getByText('Program ended', { exact: true }).waitFor();
     assert.equal(await page.getByTestId('banner').count(), 0, 'nothing is wrong');
@@ -130,11 +106,7 @@ describe('the end of a run', () => {
       const drive = await startDrive(['--track', 'oval']);
       const dashboard = await open(drive, 'try');
       await drive.stop(signal);
-      await dashboard.until(
-        () => dashboard.text('end-title'),
-        (text) => text === title,
-        title,
-      );
+      await dashboard.until('end-title', title, title);
       await dashboard.close(isAboutSocket);
     }
   });
@@ -148,11 +120,7 @@ describe('the end of a run', () => {
     await dashboard.page.getByTestId('other-run').waitFor();
     assert.match(await dashboard.text('other-run'), /road-car on oval/);
     await dashboard.button('Drive that again').click();
-    await dashboard.until(
-      () => dashboard.page.locator('.run').getAttribute('title'),
-      (text) => /road-car · oval/.test(text),
-      'what was driven before',
-    );
+    await dashboard.until(dashboard.summary, /road-car · oval/, 'what was driven before');
     assert.equal(await dashboard.page.getByTestId('other-run').count(), 0);
     await dashboard.close(isAboutSocket);
     await drive.stop();

@@ -5,7 +5,7 @@ import { execFile } from 'node:child_process';
 import { describe, it } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { promisify } from 'node:util';
-import { DashboardPage, PHONE } from './dashboard_page.mjs';
+import { above, below, DashboardPage, PHONE } from './dashboard_page.mjs';
 import { browserAlone } from './here.mjs';
 
 const url = pathToFileURL(process.env.CHICANE_PAGE ?? 'index.html').href;
@@ -47,25 +47,13 @@ describe('the page that needs no program', () => {
 
   it('pauses, steps, begins again, breaks and mends', async () => {
     const dashboard = await DashboardPage.open(here.browser, url, { mode: 'try' });
-    await dashboard.until(
-      () => dashboard.seconds(),
-      (seconds) => seconds > 1,
-      'it drives',
-    );
+    await dashboard.until(dashboard.seconds, above(1), 'it drives');
     await dashboard.pause();
     const time = await dashboard.seconds();
     await dashboard.page.locator('body').press('.');
-    await dashboard.until(
-      () => dashboard.seconds(),
-      (seconds) => seconds > time,
-      'a step',
-    );
+    await dashboard.until(dashboard.seconds, above(time), 'a step');
     await dashboard.startAgain();
-    await dashboard.until(
-      () => dashboard.seconds(),
-      (seconds) => seconds < time,
-      'the start',
-    );
+    await dashboard.until(dashboard.seconds, below(time), 'the start');
     await dashboard.resume();
     await dashboard.show('try');
     await dashboard.page.locator('.fault').first().click();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a page costs while it shows a run, and how old its picture is.
-import { DashboardPage } from './dashboard_page.mjs';
+import { above, DashboardPage } from './dashboard_page.mjs';
 import { arrivals, meter, notePaints } from './paints.mjs';
 
 export const quantile = (values, share) =>
@@ -15,11 +15,7 @@ export async function pageCost(browser, url, tab, seconds, meanwhile = async () 
   await page.goto(`${url}#${tab}`);
   await page.getByText('Live', { exact: true }).waitFor();
   const dashboard = new DashboardPage(page, []);
-  await dashboard.until(
-    () => dashboard.number('speed'),
-    (mph) => mph > 5,
-    'a car that drives',
-  );
+  await dashboard.until(dashboard.speed, above(5), 'a car that drives');
   const read = await meter(page);
   await page.waitForTimeout(3000); // the history fills, code is compiled
   const other = await arrivals(url);

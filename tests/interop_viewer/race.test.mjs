@@ -19,17 +19,13 @@ it('drives a second car with other settings beside the run, tells where it gains
   await dashboard.button('Race A against B').click();
   await dashboard.until(
     async () => (await page.getByTestId('race-verdict').count()) === 1 && dashboard.text('race-verdict'),
-    (text) => /^Lap ([2-9]|\d\d): B is \d+\.\d{3} s faster\.$/.test(text),
+    /^Lap ([2-9]|\d\d): B is \d+\.\d{3} s faster\.$/,
     'two laps of both cars',
   );
   await page.locator('.line-key', { hasText: /^B$/ }).waitFor(); // the ghost on the picture
   await dashboard.show('understand');
   await page.getByLabel('B', { exact: true }).selectOption('lap 2 of B, the ghost');
-  await dashboard.until(
-    () => headline(page),
-    (text) => /lost \d+\.\d\d s to\s+lap 2 of B, the ghost\s*;/.test(text),
-    'where B gains',
-  );
+  await dashboard.until(() => headline(page), /lost \d+\.\d\d s to\s+lap 2 of B, the ghost\s*;/, 'where B gains');
   await dashboard.show('try');
   const { run, rival } = await race();
   assert.ok(rival[0].lap_time_s < run[0].lap_time_s - 1);
@@ -42,11 +38,7 @@ it('drives a second car with other settings beside the run, tells where it gains
   await page.getByTestId('race').waitFor({ state: 'detached' });
   assert.equal((await race()).state, 'none');
   await dashboard.aimAt('run');
-  await dashboard.until(
-    () => dashboard.text('changes'),
-    (text) => /pid\.speed_reference_mps 20 → 24/.test(text.replace(/\s+/g, ' ')),
-    'the setting of the winner',
-  );
+  await dashboard.until('changes', /pid\.speed_reference_mps\s+20\s+→\s+24/, 'the setting of the winner');
   await dashboard.close();
 });
 

@@ -2,7 +2,7 @@
 // The line of the fastest lap, as the page draws it: on the map and in three dimensions, for who wants it.
 import assert from 'node:assert/strict';
 import { it } from 'node:test';
-import { DashboardPage, PHONE } from './dashboard_page.mjs';
+import { above, atLeast, below, DashboardPage, PHONE } from './dashboard_page.mjs';
 import { browserAndDrive } from './here.mjs';
 
 const here = browserAndDrive(['--track', 'oval']); // whose limit takes a second of work
@@ -17,11 +17,7 @@ async function open(options) {
   const { page } = dashboard;
   await line(page).waitFor();
   if (state === 'Paused') return dashboard;
-  await dashboard.until(
-    () => dashboard.number('speed'),
-    (mph) => mph > 60,
-    'a car that drives',
-  );
+  await dashboard.until(dashboard.speed, above(60), 'a car that drives');
   await dashboard.pause();
   state = 'Paused';
   return dashboard;
@@ -58,26 +54,18 @@ async function toggles(dashboard, selector, fields) {
   const { page } = dashboard;
   const seen = () => violet(page, selector);
   assert.equal(await isOn(page), 'true');
-  await dashboard.until(
-    async () => (await seen()).fields,
-    (now) => now >= fields,
-    'the racing line',
-  );
+  await dashboard.until(async () => (await seen()).fields, atLeast(fields), 'the racing line');
   const { pixels } = await seen();
   await page.locator('body').press('l');
   assert.equal(await isOn(page), 'false');
   await dashboard.until(
     async () => (await seen()).pixels,
-    (left) => left < 0.2 * pixels,
+    below(0.2 * pixels),
     `the picture without it, after ${pixels} pixels`,
   );
   await page.locator('body').press('l');
   assert.equal(await isOn(page), 'true');
-  await dashboard.until(
-    async () => (await seen()).fields,
-    (now) => now >= fields,
-    'the racing line again',
-  );
+  await dashboard.until(async () => (await seen()).fields, atLeast(fields), 'the racing line again');
 }
 
 it('is drawn on the map, round the whole track, and left away', async () => {

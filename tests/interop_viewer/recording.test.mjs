@@ -9,7 +9,7 @@ import { after, afterEach, before, describe, it } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { launch } from './browser.mjs';
 import { startDrive, startProgram } from './chicane_drive.mjs';
-import { DashboardPage, headline } from './dashboard_page.mjs';
+import { above, atLeast, below, DashboardPage, headline } from './dashboard_page.mjs';
 
 const program = process.env.CHICANE ?? 'chicane';
 const folder = mkdtempSync(join(tmpdir(), 'chicane-recording-'));
@@ -62,68 +62,32 @@ describe('a recording in the page', () => {
     await dashboard.lapRows().nth(1).waitFor({ state: 'attached' }); // both laps, though we stand at the start
     await dashboard.show('watch');
     await scrub(page, 30);
-    await dashboard.until(
-      () => dashboard.number('speed'),
-      (mph) => mph > 50,
-      'the speed of that moment',
-    );
+    await dashboard.until(dashboard.speed, above(50), 'the speed of that moment');
     assert.match(await time(page), /^0:30\.00/);
     const there = await dashboard.number('speed');
     await scrub(page, 0);
-    await dashboard.until(
-      () => dashboard.number('speed'),
-      (mph) => mph < 1,
-      'standstill at the start',
-    );
+    await dashboard.until(dashboard.speed, below(1), 'standstill at the start');
     await scrub(page, 30);
-    await dashboard.until(
-      () => dashboard.number('speed'),
-      (mph) => mph === there,
-      'the same moment again',
-    );
+    await dashboard.until(dashboard.speed, there, 'the same moment again');
     await dashboard.page.locator('body').press('.');
-    await dashboard.until(
-      () => time(page),
-      (text) => /^0:30\.0[1-9]/.test(text),
-      'the next control step',
-    );
+    await dashboard.until(() => time(page), /^0:30\.0[1-9]/, 'the next control step');
     await dashboard.button('Play').click();
-    await dashboard.until(
-      () => time(page),
-      (text) => /^0:3[2-9]/.test(text),
-      'it plays',
-    );
+    await dashboard.until(() => time(page), /^0:3[2-9]/, 'it plays');
     await page.keyboard.press('Space');
     await page.getByText('Recording', { exact: true }).waitFor();
     await dashboard.button('Next landmark').click();
-    await dashboard.until(
-      () => time(page),
-      (text) => /^0:3[4-9]|^1:/.test(text),
-      'the end of a lap',
-    );
+    await dashboard.until(() => time(page), /^0:3[4-9]|^1:/, 'the end of a lap');
   });
 
   it('shows both futures, each in turn', async () => {
     await scrub(page, 55);
-    await dashboard.until(
-      () => dashboard.number('speed'),
-      (mph) => mph > 60,
-      'as it was driven',
-    );
+    await dashboard.until(dashboard.speed, above(60), 'as it was driven');
     await page.getByText('branch.mcap', { exact: true }).first().waitFor({ state: 'attached' });
     await page.getByLabel('Recording shown').selectOption({ label: 'branch.mcap' });
-    await dashboard.until(
-      () => dashboard.number('speed'),
-      (mph) => mph > 20 && mph < 50,
-      'slower since the branch',
-    );
+    await dashboard.until(dashboard.speed, (mph) => mph > 20 && mph < 50, 'slower since the branch');
     assert.match(await time(page), /^0:55/);
     await page.getByLabel('Recording shown').selectOption({ label: 'run.mcap' });
-    await dashboard.until(
-      () => dashboard.number('speed'),
-      (mph) => mph > 60,
-      'as it was driven, again',
-    );
+    await dashboard.until(dashboard.speed, above(60), 'as it was driven, again');
   });
 
   it('draws laps of the other recording, and says where they lose time', async () => {
@@ -135,7 +99,7 @@ describe('a recording in the page', () => {
     await page.getByLabel('B', { exact: true }).selectOption('lap 2');
     await dashboard.until(
       () => headline(page),
-      (text) => /^Lap 1 of branch\.mcap, from standstill, lost \d+\.\d\d s to\s+lap 2\s*; T\d cost most, \d/.test(text),
+      /^Lap 1 of branch\.mcap, from standstill, lost \d+\.\d\d s to\s+lap 2\s*; T\d cost most, \d/,
       'where it loses',
     );
     assert.match(await page.getByTestId('corner-costs').locator('tr').nth(1).innerText(), /^T\d\s+\+\d+\.\d\d\s+\S/);
@@ -201,11 +165,7 @@ it('is shown when its file is dropped on a page that watches a run; what is none
   await drop(log);
   await page.getByText('Recording', { exact: true }).waitFor();
   await page.locator('.timeline-name', { hasText: 'run.mcap' }).waitFor();
-  await dashboard.until(
-    () => dashboard.lapRows().count(),
-    (count) => count === 2,
-    'both of its laps',
-  );
+  await dashboard.until(dashboard.laps, 2, 'both of its laps');
   assert.match(await page.locator('.run').getAttribute('title'), /lakeside/, 'not the oval of the run');
   await dashboard.close(isAboutGraphics);
   await drive.stop();
@@ -252,25 +212,13 @@ it('keeps the laps of several runs in a recording apart', async () => {
   const file = join(folder, 'several.mcap');
   const drive = await startDrive(['--track', 'oval', '--pace', '20', '--record', file]);
   const live = await DashboardPage.open(browser, drive.url, { mode: 'understand' });
-  await live.until(
-    () => live.lapRows().count(),
-    (count) => count >= 3,
-    'laps on the oval',
-  );
+  await live.until(live.laps, atLeast(3), 'laps on the oval');
   await live.show('try');
   await live.page.locator('.choices').getByLabel('Track', { exact: true }).selectOption('hairpins');
   await live.page.getByRole('dialog').getByText('Restart', { exact: true }).click();
-  await live.until(
-    () => live.page.locator('.run').getAttribute('title'),
-    (text) => /hairpins/.test(text),
-    'the other track',
-  );
+  await live.until(live.summary, /hairpins/, 'the other track');
   await live.show('understand');
-  await live.until(
-    () => live.lapRows().count(),
-    (count) => count === 1,
-    'a lap on the other track',
-  );
+  await live.until(live.laps, 1, 'a lap on the other track');
   await live.close();
   await drive.stop();
   const replay = await startProgram('replay', [file]);
@@ -280,16 +228,8 @@ it('keeps the laps of several runs in a recording apart', async () => {
   const runs = page.getByLabel('Run of the recording');
   assert.equal(await runs.locator('option').count(), 2);
   await runs.selectOption('1');
-  await dashboard.until(
-    () => page.locator('.run').getAttribute('title'),
-    (text) => /hairpins/.test(text),
-    'the other run',
-  );
-  const second = await dashboard.until(
-    () => dashboard.lapRows().count(),
-    (count) => count < first && count >= 1,
-    'its laps only',
-  );
+  await dashboard.until(dashboard.summary, /hairpins/, 'the other run');
+  const second = await dashboard.until(dashboard.laps, (count) => count < first && count >= 1, 'its laps only');
   assert.ok(second < first);
   await dashboard.close(isAboutGraphics);
   await replay.stop();

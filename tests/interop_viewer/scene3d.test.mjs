@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { launch } from './browser.mjs';
 import { startDrive } from './chicane_drive.mjs';
-import { DashboardPage, EVERY_SIZE, repaintSeldom } from './dashboard_page.mjs';
+import { above, DashboardPage, EVERY_SIZE, repaintSeldom } from './dashboard_page.mjs';
 import { PATIENCE } from './patience.mjs';
 
 let drive;
@@ -225,11 +225,7 @@ describe('the 3D picture', () => {
     const smooth = await open(browser, { storage: { 'chicane.camera': 'track' }, fluent: true });
     const { page: moving } = smooth;
     const dashboard = new DashboardPage(moving, smooth.complaints);
-    await dashboard.until(
-      () => dashboard.colours('canvas.map-2d'),
-      (count) => count > 20,
-      'the map',
-    );
+    await dashboard.until(() => dashboard.colours('canvas.map-2d'), above(20), 'the map');
     await moving.evaluate(() => {
       let last = performance.now();
       globalThis.longest = 0;
@@ -281,11 +277,7 @@ it('is replaced by the map, with a note, where there is no WebGL', async (test) 
   const { page, complaints } = await open(browser);
   await page.getByText('This browser offers no WebGL 2').waitFor();
   const dashboard = new DashboardPage(page);
-  await dashboard.until(
-    () => dashboard.colours('canvas.map-2d'),
-    (colours) => colours > 20,
-    'the map shows road and car',
-  );
+  await dashboard.until(() => dashboard.colours('canvas.map-2d'), above(20), 'the map shows road and car');
   assert.deepEqual(await accessibilityFindings(page), []);
   await choose(page, 'Chase'); // in vain, and says so again
   await page.getByText('This browser offers no WebGL 2').waitFor();

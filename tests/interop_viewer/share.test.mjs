@@ -60,17 +60,9 @@ describe('a link to a run', () => {
     assert.ok(!page.url().includes('#run'), 'a reload does not ask again');
     assert.deepEqual(await dashboard.accessibilityFindings(), []);
     await dashboard.button('Drive it').click();
-    await dashboard.until(
-      () => summary(dashboard),
-      (text) => /road-car · hairpins · 80 ms/.test(text),
-      'the run of the link',
-    );
+    await dashboard.until(() => summary(dashboard), /road-car · hairpins · 80 ms/, 'the run of the link');
     const limit = (await dashboard.setting('tracking_mpc.speed_limit_mps')).locator('.number-box');
-    await dashboard.until(
-      () => limit.inputValue(),
-      (text) => text === '60',
-      'what the link does not mention, as the preset gives it',
-    );
+    await dashboard.until(() => limit.inputValue(), '60', 'what the link does not mention, as the preset gives it');
     await dashboard.show('try');
     await dashboard.fromMenu('Share this run');
     await dashboard.until(

@@ -3,7 +3,7 @@
 // screen.
 import assert from 'node:assert/strict';
 import { after, afterEach, describe, it } from 'node:test';
-import { DashboardPage, EVERY_SIZE, LAPTOP, MODES, PHONE } from './dashboard_page.mjs';
+import { above, DashboardPage, EVERY_SIZE, LAPTOP, MODES, PHONE } from './dashboard_page.mjs';
 import { misfits } from './fit.mjs';
 import { browserAndDrive } from './here.mjs';
 
@@ -74,11 +74,7 @@ async function lookAtDriving(dashboard, what, moments) {
 describe('nothing lies over the car and its plan', () => {
   it('on the track and on the map, at any size', async () => {
     const dashboard = await open();
-    await dashboard.until(
-      () => dashboard.number('speed'),
-      (mph) => mph > 30,
-      'a car that drives',
-    );
+    await dashboard.until(dashboard.speed, above(30), 'a car that drives');
     for (const [width, height] of SIZES) {
       await dashboard.page.setViewportSize({ width, height });
       for (const camera of ['Map', 'Track']) {
@@ -144,32 +140,8 @@ describe('the first screen', () => {
     const places = () =>
       dashboard.page.locator('.strip > *').evaluateAll((all) => all.map((each) => Math.round(each.offsetLeft)));
     const [first, speed] = [await places(), await dashboard.text('speed')];
-    await dashboard.until(
-      () => dashboard.text('speed'),
-      (now) => now.length !== speed.length || now !== speed,
-      'another speed',
-    );
+    await dashboard.until('speed', (now) => now.length !== speed.length || now !== speed, 'another speed');
     assert.deepEqual(await places(), first);
-  });
-});
-
-describe('the strip', () => {
-  it('says that a person drives, until the controller drives again', async () => {
-    const dashboard = await open();
-    const { page } = dashboard;
-    await page.locator('body').press('m');
-    await page
-      .getByTestId('why')
-      .getByText(/^(A person drives|Off the road)/) // nobody steers now
-      .first()
-      .waitFor();
-    await page.keyboard.press('Escape');
-    await dashboard.startAgain();
-    await dashboard.until(
-      () => dashboard.text('why'),
-      (text) => /^(Grip|Brakes|Full throttle|Part throttle|Rolls)/.test(text),
-      'what the controller does',
-    );
   });
 });
 

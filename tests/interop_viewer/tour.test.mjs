@@ -2,7 +2,7 @@
 // The tours as a newcomer takes them: a step done on a real run, left and gone on with, by keyboard and on a phone.
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { DashboardPage, PHONE } from './dashboard_page.mjs';
+import { atLeast, DashboardPage, PHONE } from './dashboard_page.mjs';
 import { browserAndDrive } from './here.mjs';
 
 const here = browserAndDrive(['--track', 'lakeside', '--pace', '3']);
@@ -10,12 +10,7 @@ const here = browserAndDrive(['--track', 'lakeside', '--pace', '3']);
 const tour = ({ page }) => page.getByTestId('tour');
 const heading = (dashboard) => tour(dashboard).getByRole('heading').innerText();
 const tasksDone = (dashboard) => tour(dashboard).locator('.tour-tasks .done').count();
-const isDone = (dashboard, count, what) =>
-  dashboard.until(
-    () => tasksDone(dashboard),
-    (done) => done >= count,
-    what,
-  );
+const isDone = (dashboard, count, what) => dashboard.until(() => tasksDone(dashboard), atLeast(count), what);
 const EFFECTS = 'What N, dt, weights and latency do';
 const DASHBOARD = 'What the dashboard can do';
 const choose = (dashboard, title) => tour(dashboard).getByRole('button', { name: title }).click();

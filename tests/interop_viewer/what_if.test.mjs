@@ -8,7 +8,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import { startDrive, startProgram } from './chicane_drive.mjs';
-import { DashboardPage, headline, PHONE } from './dashboard_page.mjs';
+import { above, DashboardPage, headline, PHONE } from './dashboard_page.mjs';
 import { browserAlone } from './here.mjs';
 
 const SPEED = 'tracking_mpc.speed_limit_mps';
@@ -32,11 +32,7 @@ describe('what if, in a live run', () => {
   before(async () => {
     drive = await startDrive(['--track', 'oval', '--pace', '4']);
     dashboard = await DashboardPage.open(here.browser, drive.url, { mode: 'try' });
-    await dashboard.until(
-      () => dashboard.number('speed'),
-      (mph) => mph > 60,
-      'a car that drives',
-    );
+    await dashboard.until(dashboard.speed, above(60), 'a car that drives');
     await dashboard.pause();
   });
   after(async () => {
@@ -53,7 +49,7 @@ describe('what if, in a live run', () => {
     await dashboard.button('Compare').click();
     await dashboard.until(
       () => headline(page),
-      (text) => /^(Lap \d+ a|A)s it is won \d+\.\d\d s from (lap \d+ )?with speed limit mps 15[.;]/.test(text),
+      /^(Lap \d+ a|A)s it is won \d+\.\d\d s from (lap \d+ )?with speed limit mps 15[.;]/,
       'both futures along the road',
     );
     assert.equal(await page.locator('.lap-plots path.b').count(), 3, 'speed, pedal and steer of the other future');
@@ -91,11 +87,7 @@ describe('what if, in a live run', () => {
     await dashboard.button('Keep the change').click();
     await dashboard.button('Kept').waitFor();
     await dashboard.aimAt('run');
-    await dashboard.until(
-      () => dashboard.text('changes'),
-      (text) => /1 change.*speed_limit_mps.*25/s.test(text),
-      'the change',
-    );
+    await dashboard.until('changes', /1 change.*speed_limit_mps.*25/s, 'the change');
     await dashboard.show('try');
     await dashboard.startAgain();
     await page.getByTestId('what-if-verdict').waitFor({ state: 'detached' });
@@ -119,11 +111,7 @@ it('another future of a recording begins at the moment that is shown', async () 
     slider.value = '10';
     slider.dispatchEvent(new Event('input', { bubbles: true }));
   });
-  await dashboard.until(
-    () => dashboard.number('speed'),
-    (mph) => mph > 40,
-    'the speed of that moment',
-  );
+  await dashboard.until(dashboard.speed, above(40), 'the speed of that moment');
   await page.getByLabel('For how long').selectOption('10');
   await askForLess(dashboard);
   assert.match(await verdict(dashboard), /slower/);
@@ -163,11 +151,7 @@ describe('what if, of a car that another program simulates', () => {
     const served = await startServed('--track', 'oval', '--set', `${SPEED}=20`);
     const dashboard = await DashboardPage.open(here.browser, served.url, { mode: 'try' });
     const { page } = dashboard;
-    await dashboard.until(
-      () => dashboard.number('speed'),
-      (mph) => mph > 20,
-      'a car that drives',
-    );
+    await dashboard.until(dashboard.speed, above(20), 'a car that drives');
     await dashboard.button('Drive both').waitFor();
     assert.equal(await dashboard.button('Race A against B').count(), 0, 'there is no second car of theirs');
     await page.getByLabel('For how long').selectOption('10');

@@ -4,8 +4,8 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
-import { startDrive, watch } from './chicane_drive.mjs';
-import { DashboardPage, differentFrom, headline } from './dashboard_page.mjs';
+import { watch } from './chicane_drive.mjs';
+import { above, atLeast, DashboardPage, headline } from './dashboard_page.mjs';
 import { browserAndDrive } from './here.mjs';
 
 const here = browserAndDrive(['--track', 'lakeside']);
@@ -29,17 +29,9 @@ async function pauseWhileItGathersSpeed(other) {
   for (;;) {
     await dashboard.pause();
     await dashboard.startAgain();
-    await dashboard.until(
-      () => dashboard.number('speed'),
-      (mph) => mph === 0,
-      'a car at the start',
-    );
+    await dashboard.until(dashboard.speed, 0, 'a car at the start');
     await dashboard.resume();
-    await dashboard.until(
-      () => dashboard.number('speed'),
-      (mph) => mph > 15,
-      'a car that gathers speed',
-    );
+    await dashboard.until(dashboard.speed, above(15), 'a car that gathers speed');
     await dashboard.pause();
     const last = await dashboard.settled(() => other.newest);
     if (last.throttle_asked > 0.5) return last;
@@ -128,83 +120,13 @@ describe('the workbench', () => {
     assert.ok(found.includes('tracking_mpc.weight_lateral') && found.every((key) => /weight/.test(key)), found.join());
     const before = await box('tracking_mpc.weight_lateral').inputValue();
     await type('tracking_mpc.weight_lateral', 7);
-    await dashboard.until(
-      () => dashboard.text('changes'),
-      (text) => /1 change/.test(text),
-      'the list of changes',
-    );
+    await dashboard.until('changes', /1 change/, 'the list of changes');
     await page.locator('.name').click();
     const preset = await download('Keep these settings as a preset');
     await page.keyboard.press('Escape');
     assert.match(preset.content.toString(), /weight_lateral: 7/);
     await type('tracking_mpc.weight_lateral', before);
     await page.getByText('No changes').waitFor();
-  });
-
-  it('drives by hand, and hands back', async () => {
-    // Before the settings are there, the key does nothing.
-    await page.locator('.sliders .setting').first().waitFor();
-    await dashboard.show('watch');
-    await page.locator('body').press('m');
-    await page.getByText('By hand', { exact: true }).waitFor();
-    await page.keyboard.down('ArrowLeft');
-    await dashboard.until(
-      () => dashboard.text('wheels'),
-      (text) => /left/.test(text) && parseFloat(text) > 0.5,
-      'wheels to the left',
-    );
-    await page.keyboard.up('ArrowLeft');
-    await page.keyboard.down('ArrowDown');
-    await dashboard.until(
-      () => dashboard.text('pedal'),
-      (text) => /brake/.test(text),
-      'the brake',
-    );
-    await page.keyboard.up('ArrowDown');
-    await page.keyboard.press('Escape');
-    await page.getByText('By hand', { exact: true }).waitFor({ state: 'detached' });
-    // A page that closes at once may not have asked, and a car that is left beside the road ends the run. Where it has
-    // stood for long the strip is an alarm, without the lap's time, until the car is at the start.
-    await dashboard.startAgain();
-    await dashboard.pause();
-    await dashboard.startAgain();
-    await dashboard.until(() => dashboard.number('speed'), equals(0), 'a car at the start');
-    await dashboard.resume();
-  });
-
-  it('changes the pace of the run', async () => {
-    await dashboard.fromMenu('4×');
-    await page.getByText('4× speed').waitFor();
-    const moment = async () => ({ run: await dashboard.seconds(), clock: performance.now() / 1000 });
-    let last = await moment();
-    // Of the stretches of half a second, one in which the machine does not hold up the run.
-    const pace = async () => {
-      await page.waitForTimeout(500);
-      const [before, now] = [last, await moment()];
-      last = now;
-      return (now.run - before.run) / (now.clock - before.clock);
-    };
-    await dashboard.until(pace, (measured) => measured > 2, 'a pace well above 1');
-    await page.locator('body').press('[');
-    await page.getByText('2× speed').waitFor();
-    await dashboard.fromMenu('1×');
-    await page.getByText('2× speed').waitFor({ state: 'detached' });
-  });
-
-  it('injects a fault and clears it', async () => {
-    await dashboard.show('try');
-    await page.getByText(/how long and how strong$/).click();
-    await page
-      .getByLabel(/^Duration of/)
-      .first()
-      .fill('600'); // it lasts until it is cleared, however slow the machine is
-    await page.locator('.fault').first().click();
-    await page.locator('.fault[aria-pressed="true"]').first().waitFor();
-    await page.locator('.pill', { hasText: 's left' }).waitFor();
-    await page.locator('.events li', { hasText: 'Fault' }).first().waitFor();
-    await dashboard.button('Clear all').click();
-    await page.locator('.pill', { hasText: 's left' }).waitFor({ state: 'detached' });
-    await page.locator('.fault[aria-pressed="true"]').waitFor({ state: 'detached' });
   });
 
   it('gives a fault the duration and strength that are asked for, and counts down', async () => {
@@ -227,10 +149,12 @@ describe('the workbench', () => {
     const first = await dashboard.until(left, (seconds) => seconds > 100 && seconds <= 300, 'a countdown');
     await dashboard.until(left, (seconds) => seconds < first - 1, 'less time left');
     await page.locator('.pill', { hasText: /Ice patch, \d+ s left/ }).waitFor();
+    await page.locator('.events li', { hasText: 'Fault' }).first().waitFor();
     assert.match(await dashboard.text('fault-answer'), /What is done about it: \S+/);
     assert.deepEqual(await dashboard.accessibilityFindings('main', 'all'), []); // with the marks of a fault
     await dashboard.button('Clear all').click();
     await page.locator('button.fault[aria-pressed="true"]').waitFor({ state: 'detached' });
+    await page.locator('.pill', { hasText: 's left' }).waitFor({ state: 'detached' });
   });
 
   it('explains what limits the speed', async () => {
@@ -253,11 +177,7 @@ describe('the workbench', () => {
   it('tells speeds in the unit of the reader, and remembers it', async () => {
     await dashboard.show('watch');
     const unit = page.locator('.speed .unit');
-    await dashboard.until(
-      () => dashboard.number('speed'),
-      (now) => now > 1,
-      'a car that drives',
-    );
+    await dashboard.until(dashboard.speed, above(1), 'a car that drives');
     await dashboard.pause();
     const told = { mph: 0, 'km/h': 0, 'm/s': 0 };
     for (const name of Object.keys(told)) {
@@ -287,22 +207,14 @@ describe('the workbench', () => {
     await dashboard.until(summary, (text) => /stanley/.test(text), 'the other controller');
     await choice('Preset').selectOption('weighted');
     await dashboard.until(summary, (text) => /cubic-mpc · weighted/.test(text), 'the preset');
-    await dashboard.until(
-      () => dashboard.number('speed'),
-      (mph) => mph > 10,
-      'a car that drives',
-    );
+    await dashboard.until(dashboard.speed, above(10), 'a car that drives');
   });
 
   it('counts laps, compares two of them and exports', async () => {
     await dashboard.show('try');
     await type('run.pace', 20);
     await dashboard.show('understand');
-    await dashboard.until(
-      () => dashboard.lapRows().count(),
-      (count) => count >= 2,
-      'laps',
-    );
+    await dashboard.until(dashboard.laps, atLeast(2), 'laps');
     await dashboard.show('try'); // before the page has seen more laps than it keeps
     await dashboard.fromMenu('1×');
     await dashboard.show('understand');
@@ -330,47 +242,4 @@ describe('the workbench', () => {
     test.diagnostic(`Laps, lap 2 as A, the limit as B: "${most.replace(/\s+/g, ' ')}" after ${took.toFixed(1)} s`);
     assert.ok(took < 60, `${took} s`);
   });
-
-  it('finds the limit again for a car with another grip', async () => {
-    await dashboard.show('understand');
-    const limit = () => page.getByTestId('limit').locator('td').first().textContent();
-    const before = await limit();
-    await dashboard.show('try');
-    await type('plant_options.friction_scale', 0.8);
-    await dashboard.show('understand');
-    const seconds = (text) => text.split(':').reduce((sum, part) => 60 * sum + Number(part), 0);
-    await dashboard.until(limit, (now) => seconds(now) > seconds(before) + 0.1, 'the limit with less grip');
-    await dashboard.show('try');
-    await type('plant_options.friction_scale', 1);
-    await dashboard.show('understand');
-    await dashboard.until(limit, (now) => now === before, 'the limit of before');
-  });
-});
-
-it('takes another run of a restarted server for another run', async () => {
-  await open('understand');
-  await dashboard.until(
-    () => dashboard.seconds(),
-    (now) => now > 1,
-    'a run',
-  );
-  // What the page still loads when its program ends, the browser complains of.
-  await dashboard.show('try');
-  await page.getByText('No changes').waitFor();
-  await dashboard.show('watch');
-  const { port } = here.drive;
-  await here.drive.stop();
-  await page.getByTestId('end-card').waitFor();
-  here.drive = await startDrive(['--track', 'hairpins', '--controller', 'pid'], port);
-  await page.getByTestId('end-card').waitFor({ state: 'detached' });
-  await dashboard.until(
-    () => page.locator('.run').getAttribute('title'),
-    (text) => /pid.*hairpins/.test(text),
-    'the other run',
-  );
-  const first = await dashboard.seconds();
-  await dashboard.until(() => dashboard.seconds(), differentFrom(first), 'the lap clock');
-  await dashboard.show('try');
-  await page.getByText('No changes').waitFor();
-  await dashboard.close((each) => each.startsWith('WebSocket connection to'));
 });

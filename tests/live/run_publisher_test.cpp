@@ -71,17 +71,5 @@ TEST_F(Publisher, TellsTheEndOnceForEachRun) {
   EXPECT_TRUE(publisher.end({}));
 }
 
-TEST_F(Publisher, ServicesAskWhatTheControlsKnow) {
-  run::RunControls controls;
-  const wire::ViewerServices services = run_services(controls);
-  EXPECT_FALSE(services.step()) << "it is not paused";
-  EXPECT_TRUE(services.pause(true));
-  EXPECT_TRUE(controls.is_paused);
-  EXPECT_TRUE(services.step());
-  EXPECT_EQ(controls.steps, 1);
-  EXPECT_TRUE(services.reset());
-  EXPECT_TRUE(controls.wants_restart);
-}
-
 }  // namespace
 }  // namespace chicane::live

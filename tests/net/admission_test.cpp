@@ -24,6 +24,7 @@ constexpr Host kHosts[] = {
     {"127.0.0.1:4567", true, true, true},
     {"127.8.8.8", true, true, true},
     {"[::1]:4567", true, true, true},
+    {"Car.local:4567", true, true, false},
     {"car.local:4567", true, true, false},  // --allowed by the operator, by name
     {"192.168.1.2:4567", false, true, false},
     {"[fe80::1]:4567", false, true, false},
@@ -31,6 +32,9 @@ constexpr Host kHosts[] = {
     {"localhost.evil.example", false, false, false},
     {"127.0.0.1.evil.example:4567", false, false, false},
     {"localhost:evil", false, false, false},
+    {"evil.example:4567", false, false, false},
+    {"127.evil", false, false, false},
+    {"[::1", false, false, false},
     {"", false, false, false},
 };
 
@@ -53,6 +57,7 @@ constexpr Origin kOrigins[] = {
     {"http://localhost:8080", From::kForeign},
     {"http://evil.example/*", From::kForeign},
     {"*", From::kForeign},
+    {"http://*:8080", From::kForeign},
 };
 
 enum class Proof { kNone, kWrongLink, kWrong, kLink, kCookie };
@@ -160,7 +165,7 @@ TEST(Admission, IsAsTheTableOfTheDocsSays) {
       }
     }
   }
-  EXPECT_EQ(cases, 2 * 2 * 13 * 13 * 12 * 6);
+  EXPECT_EQ(cases, 2 * 2 * 17 * 14 * 12 * 6);
 }
 
 TEST(Admission, NeedsExactlyOneHost) {
@@ -187,39 +192,6 @@ TEST(Admission, TheCookieIsForThisServerAndNotForScripts) {
   const Doorkeeper door{
       .address = "127.0.0.1", .allowed_hosts = {}, .allowed_origins = {}, .token = "secret", .port = 4567};
   EXPECT_EQ(door.cookie(), "chicane-4567=secret; Path=/; HttpOnly; SameSite=Strict");
-}
-
-TEST(Access, LoopbackHostsAreAllowedWithAnyPort) {
-  for (const char* host :
-       {"localhost", "localhost:4567", "LOCALHOST:80", "127.0.0.1:4567", "127.8.8.8", "[::1]:4567"}) {
-    EXPECT_TRUE(host_is_allowed(host, "127.0.0.1", {})) << host;
-  }
-}
-
-TEST(Access, NamesOfStrangersAreRefusedAlsoWhenTheyLookLikeOurs) {
-  for (const char* host : {"", "evil.example", "localhost.evil.example", "127.0.0.1.evil.example",
-                           "evil.example:4567", "localhost:evil", "[::1", "127.evil", "192.168.1.2"}) {
-    EXPECT_FALSE(host_is_allowed(host, "127.0.0.1", {})) << host;
-  }
-}
-
-TEST(Access, BoundToEverythingNumericAddressesAreAllowedButNoNames) {
-  EXPECT_TRUE(host_is_allowed("192.168.1.2:4567", "0.0.0.0", {}));
-  EXPECT_TRUE(host_is_allowed("[fe80::1]:4567", "::", {}));
-  EXPECT_FALSE(host_is_allowed("rebound.example:4567", "0.0.0.0", {}));
-  EXPECT_TRUE(host_is_allowed("Car.local:4567", "0.0.0.0", {"car.local"}));
-}
-
-TEST(Access, AnOriginMustBeTheHostItself) {
-  EXPECT_TRUE(origin_is_allowed("http://localhost:4567", "localhost:4567", {}));
-  EXPECT_FALSE(origin_is_allowed("https://localhost:4567", "localhost:4567", {})) << "a server with TLS";
-  EXPECT_TRUE(origin_is_allowed("https://car.local", "car.local", {"https://car.local"}));
-  for (const char* origin :
-       {"http://evil.example", "http://localhost:4567.evil.example", "http://localhost:8080", "null",
-        "localhost:4567", "http://evil.example/localhost:4567"}) {
-    EXPECT_FALSE(origin_is_allowed(origin, "localhost:4567", {})) << origin;
-  }
-  EXPECT_TRUE(origin_is_allowed("https://app.foxglove.dev", "localhost:4567", {"https://app.foxglove.dev"}));
 }
 
 }  // namespace

@@ -117,11 +117,6 @@ TEST(JsonReport, ConvertsUnits) {
   EXPECT_EQ(report["seed"], 3);
 }
 
-TEST(JsonReport, TellsTheSectorsOfALapInTheirOrder) {
-  const Json report = Json::parse(to_json(example()));
-  EXPECT_EQ(report["laps"][0]["sector_times_s"], Json::parse("[9.0, 9.5, 10.0]"));
-}
-
 TEST(JsonReport, TellsTheGapsToTheLimit) {
   telemetry::RunSummary run = example();
   run.why_no_limit = "the road is open";
@@ -205,16 +200,6 @@ TEST(JsonReport, OtherTextIsNoRun) {
                            R"({"laps": [], "total": {}, "completed": 1})"})
     EXPECT_FALSE(read_run(text)) << text;
   EXPECT_TRUE(read_run(R"({"laps": [1, {"sector_times_s": [null]}], "total": 7, "completed": false})"));
-}
-
-TEST(GuardFacts, NameModeRoadAndVersion) {
-  const GuardFacts on = guard_facts({});
-  EXPECT_EQ(on, (GuardFacts{.mode = "on", .road = "track", .version = safety::kGuardVersion}));
-  EXPECT_GE(on.version, 2) << "1: the guard of runs that name no version";
-  const GuardFacts off =
-      guard_facts({.mode = safety::GuardMode::kOff, .road = safety::GuardRoad::kWaypoints});
-  EXPECT_EQ(off.mode, "off");
-  EXPECT_EQ(off.road, "waypoints");
 }
 
 }  // namespace

@@ -98,27 +98,6 @@ TEST(RosMessages, ALapBegunWithAnotherCarHasNoGap) {
   EXPECT_TRUE(std::isnan(gap()));
 }
 
-TEST(RosMessages, OdometryStandsAtTheRearAxleAndMovesWithIt) {
-  const std::string bytes = encode("/odom");
-  CdrReader reader{bytes};
-  EXPECT_EQ(reader.seconds(), 12.25);
-  EXPECT_EQ(reader.text(), "odom");  // as /tf has it
-  EXPECT_EQ(reader.text(), "base_link");
-  EXPECT_NEAR(reader.number(), 10.0 - 2.0 * std::cos(0.5), 1e-12);
-  EXPECT_NEAR(reader.number(), -20.0 - 2.0 * std::sin(0.5), 1e-12);
-  EXPECT_EQ(reader.number(), 0.0);
-  reader.skip_numbers(2);
-  EXPECT_NEAR(reader.number(), std::sin(0.25), 1e-15);
-  EXPECT_NEAR(reader.number(), std::cos(0.25), 1e-15);
-  reader.skip_numbers(36);
-  EXPECT_DOUBLE_EQ(reader.number(), 30.0);
-  EXPECT_DOUBLE_EQ(reader.number(), -0.4 - 0.25 * 2.0);  // v of a point behind: vy − r b
-  reader.skip_numbers(3);
-  EXPECT_DOUBLE_EQ(reader.number(), 0.25);
-  reader.skip_numbers(36);
-  EXPECT_TRUE(reader.is_at_end());
-}
-
 TEST(RosMessages, PlanOfAnySizeStaysInsideItsArrays) {
   telemetry::Frame frame = samples::frame();
   for (const int size : {-5, 0, controller::Plan::kCapacity, 100'000}) {
@@ -129,20 +108,6 @@ TEST(RosMessages, PlanOfAnySizeStaysInsideItsArrays) {
     EXPECT_EQ(reader.get<std::uint32_t>(),
               static_cast<std::uint32_t>(std::clamp(size, 0, controller::Plan::kCapacity)));
   }
-}
-
-TEST(RosMessages, DriveIsLeftPositiveAndInSingles) {
-  const std::string bytes = encode("/drive");
-  CdrReader reader{bytes};
-  reader.seconds();
-  EXPECT_EQ(reader.text(), "base_link");
-  EXPECT_EQ(reader.get<float>(), 0.01F);
-  EXPECT_EQ(reader.get<float>(), 0.0F);
-  EXPECT_EQ(reader.get<float>(), 33.0F);
-  // Drive law of VehicleParams: 5.43 · 0.625 − 0.104 · 29.5; single precision.
-  EXPECT_NEAR(static_cast<double>(reader.get<float>()), 5.43 * 0.625 - 0.104 * 29.5, 1e-5);
-  EXPECT_EQ(reader.get<float>(), 0.0F);
-  EXPECT_TRUE(reader.is_at_end());
 }
 
 TEST(RosMessages, DiagnosticsSayInWordsWhoIsInControl) {

@@ -62,17 +62,6 @@ TEST(FaultKinds, KeepThePlacesThatRecordingsKnow) {
   for (std::size_t i = 0; i < kRecorded.size(); ++i) EXPECT_EQ(fault_kinds()[i].name, kRecorded[i]);
 }
 
-TEST(FaultKinds, EachDoesSomething) {
-  for (const FaultKind& kind : fault_kinds()) {
-    const bool does_something = kind.measure != nullptr || kind.loses_command != nullptr ||
-                                kind.actuate != nullptr || kind.extra_delay != nullptr ||
-                                kind.grip != nullptr || kind.side_acceleration != nullptr ||
-                                kind.deadline_questions != nullptr;
-    EXPECT_TRUE(does_something) << kind.name;
-    EXPECT_LE(kind.stream.size(), 8U) << kind.name;
-  }
-}
-
 TEST(FaultLab, BeginsAndEndsWhenItIsTold) {
   const std::vector<FaultEvent> events{{fault("half_grip"), 2.0, 3.0, 0.5},
                                        {fault("side_wind"), 4.0, 3.0, -1.5}};

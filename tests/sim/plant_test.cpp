@@ -142,23 +142,6 @@ TEST_P(EveryPlant, NeverGainsEnergyWithoutDrive) {
   EXPECT_LT(before, 35.0);
 }
 
-TEST_P(EveryPlant, RepeatsItselfBitForBit) {
-  std::uint64_t hashes[2] = {};
-  for (std::uint64_t& hash : hashes) {
-    const auto plant = make();
-    Random random{33};
-    Fnv fnv;
-    for (int i = 0; i < 2000; ++i) {
-      plant->advance({.steer = random.uniform(-0.2, 0.2), .throttle = random.uniform(-0.5, 1.0)});
-      fnv.add(plant->state().x);
-      fnv.add(plant->state().psi);
-      fnv.add(plant->output().speed);
-    }
-    hash = fnv.value();
-  }
-  EXPECT_EQ(hashes[0], hashes[1]);
-}
-
 TEST_P(EveryPlant, SaysHowMuchOfItsGripEachAxleUses) {
   const auto plant = make();
   const auto drive = [&](double speed, double steer, double throttle) {
@@ -215,16 +198,6 @@ TEST(MakePlant, RefusesUnknownNamesAndDeviationsOutOfRange) {
   EXPECT_EQ(make_plant("boat").error().code, ErrorCode::kNotFound);
   EXPECT_THAT(make_plant("udacity", {.friction_scale = 0.0}).error().message, HasSubstr("friction_scale"));
   EXPECT_THAT(make_plant("road-car", {.mass_scale = 5.0}).error().message, HasSubstr("mass_scale"));
-}
-
-TEST(MakePlant, KnowsEveryPlantOfTheListByItsOwnName) {
-  ASSERT_EQ(plants().size(), plant_names().size());
-  for (std::size_t i = 0; i < plants().size(); ++i) {
-    EXPECT_EQ(plants()[i].name, plant_names()[i]);
-    EXPECT_FALSE(plants()[i].meaning.empty());
-    EXPECT_EQ(std::count(plant_names().begin(), plant_names().end(), plants()[i].name), 1);
-    EXPECT_TRUE(make_plant(plants()[i].name)) << plants()[i].name;
-  }
 }
 
 }  // namespace

@@ -22,9 +22,7 @@ road::Track circle(double radius) { return test::circle_road(radius, 100, 5.0, 5
 
 TEST(Serve, SaysOnceThatTheToldRoadIsAnotherOneAndJudgesNothingByIt) {
   const road::Track track = circle(60.0);  // the message's waypoints are 118 m from the origin and less
-  ServeOptions options = Served::immediate();
-  options.track = &track;
-  Served served(options);
+  Served served(&ServeOptions::track, &track);
   RawSocket client = served.connect();
   for (int i = 0; i < 3; ++i) {
     client.send(RawSocket::masked(kRealTelemetry));
@@ -39,9 +37,7 @@ TEST(Serve, SaysOnceThatTheToldRoadIsAnotherOneAndJudgesNothingByIt) {
 
 TEST(Serve, JudgesByTheToldRoadWhereItFits) {
   const road::Track track = circle(118.0);
-  ServeOptions options = Served::immediate();
-  options.track = &track;
-  Served served(options);
+  Served served(&ServeOptions::track, &track);
   RawSocket client = served.connect();
   client.send(RawSocket::masked(kRealTelemetry));
   steer_of(client.frame());

@@ -77,9 +77,7 @@ TEST(Serve, AnswersEachOfSeveralPipelinedTelemetries) {
 }
 
 TEST(Serve, ManualDrivingIsAnsweredAtOnceWithoutTheLatency) {
-  ServeOptions options = Served::immediate();
-  options.latency = 1h;
-  Served served(options);
+  Served served(&ServeOptions::latency, 1h);
   RawSocket client = served.connect();
   client.send(RawSocket::masked(R"(42["telemetry",null])"));
   EXPECT_EQ(client.frame()->payload, R"(42["manual",{}])");
@@ -97,9 +95,7 @@ TEST(Serve, BeginsAnewOnceWhenAPersonDrives) {
 }
 
 TEST(Serve, TheLatencyDelaysTheAnswerAndNothingElse) {
-  ServeOptions options = Served::immediate();
-  options.latency = 300ms;
-  Served served(options);
+  Served served(&ServeOptions::latency, 300ms);
   RawSocket client = served.connect();
   const auto sent = std::chrono::steady_clock::now();
   client.send(RawSocket::masked(kRealTelemetry));
@@ -112,9 +108,7 @@ TEST(Serve, TheLatencyDelaysTheAnswerAndNothingElse) {
 }
 
 TEST(Serve, TellsTheControllerHowLongItsCommandsTake) {
-  ServeOptions options = Served::immediate();
-  options.latency = 20ms;
-  Served served(options);
+  Served served(&ServeOptions::latency, 20ms);
   RawSocket client = served.connect();
   driven(client);
   EXPECT_DOUBLE_EQ(served.controller.last().delay,
@@ -131,9 +125,7 @@ TEST(Serve, TellsTheControllerHowLongItsCommandsTake) {
 }
 
 TEST(Serve, CountsByTheTimeThatTelemetryCarries) {
-  ServeOptions options = Served::immediate();
-  options.time_field = "t";
-  Served served(options);
+  Served served(&ServeOptions::time_field, "t");
   RawSocket client = served.connect();
   const auto seen_at = [&](const std::string& t) {
     client.send(RawSocket::masked(test::with("\"x\":", "\"t\":" + t + ",\"x\":")));
@@ -153,9 +145,7 @@ TEST(Serve, CountsByTheTimeThatTelemetryCarries) {
 
 TEST(Serve, BeginsAnewAfterASilenceAndOnceMoreWithTheNextTelemetry) {
   for (const bool is_long : {false, true}) {
-    ServeOptions options = Served::immediate();
-    options.forget_after = is_long ? -60s : 60s;  // every gap is long, or none
-    Served served(options);
+    Served served(&ServeOptions::forget_after, is_long ? -60s : 60s);  // every gap is long, or none
     RawSocket unity = served.connect();
     int resets = 0;
     for (int i = 0; i < 3; ++i) {
@@ -167,9 +157,7 @@ TEST(Serve, BeginsAnewAfterASilenceAndOnceMoreWithTheNextTelemetry) {
 }
 
 TEST(Serve, EveryHostileMessageIsSafe) {
-  ServeOptions options = Served::immediate();
-  options.quiet_after = 0ns;  // each message comes over a connection of its own
-  Served served(options);
+  Served served(&ServeOptions::quiet_after, 0ns);  // each message comes over a connection of its own
   for (const test::Hostile& hostile : test::hostile_messages()) {
     const std::string shown = hostile.text.substr(0, 100);
     RawSocket client = served.connect();
@@ -234,9 +222,7 @@ TEST(Serve, ASecondSimulatorIsRefusedInWordsWhileTheFirstIsDriven) {
 }
 
 TEST(Serve, ASecondSimulatorTakesOverWhenTheFirstIsQuiet) {
-  ServeOptions options = Served::immediate();
-  options.quiet_after = 0ns;
-  Served served(options);
+  Served served(&ServeOptions::quiet_after, 0ns);
   RawSocket first = served.connect();
   driven(first);
   EXPECT_EQ(served.controller.resets(), 1);
@@ -284,9 +270,7 @@ TEST(Serve, AfterADisconnectionTheNextSimulatorIsServedAfresh) {
 }
 
 TEST(Serve, AStockClientThatStaysSilentIsGreeted) {
-  ServeOptions options = Served::immediate();
-  options.open_after = 10ms;
-  Served served(options);
+  Served served(&ServeOptions::open_after, 10ms);
   RawSocket stock = served.connect();
   const auto open = stock.frame();
   ASSERT_TRUE(open);
@@ -300,9 +284,7 @@ TEST(Serve, AStockClientThatStaysSilentIsGreeted) {
 }
 
 TEST(Serve, AnOldStockClientIsConnectedByTheServer) {
-  ServeOptions options = Served::immediate();
-  options.open_after = 10ms;
-  Served served(options);
+  Served served(&ServeOptions::open_after, 10ms);
   RawSocket stock(served.port());
   std::string request = test::unity_handshake(served.port());
   request.replace(request.find("EIO=4"), 5, "EIO=3");
@@ -313,9 +295,7 @@ TEST(Serve, AnOldStockClientIsConnectedByTheServer) {
 }
 
 TEST(Serve, SilenceIsReportedAndItsEndToo) {
-  ServeOptions options = Served::immediate();
-  options.silent_after = 10ms;
-  Served served(options);
+  Served served(&ServeOptions::silent_after, 10ms);
   RawSocket client = served.connect();
   EXPECT_TRUE(served.has_logged("is connected but sends no telemetry"));
   driven(client);
@@ -324,9 +304,7 @@ TEST(Serve, SilenceIsReportedAndItsEndToo) {
 }
 
 TEST(Serve, AFloodWithoutWaitingIsEndedInWords) {
-  ServeOptions options = Served::immediate();
-  options.latency = 1h;
-  Served served(options);
+  Served served(&ServeOptions::latency, 1h);
   RawSocket client = served.connect();
   for (int i = 0; i < 20; ++i) client.send(RawSocket::masked(kRealTelemetry));
   const auto frame = client.frame();

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <type_traits>
 
 #include "chicane/wire/serve.hpp"
 #include "net/raw_socket.hpp"
@@ -86,6 +87,9 @@ class Served {
                             {{.path = "/index.html", .content_type = "text/html", .content = "the page"}});
     if (created) server_ = std::move(*created);
   }
+  /// With one option that is not as immediate() has it.
+  template <class Part, class Value>
+  Served(Value Part::*option, std::type_identity_t<Value> value) : Served(with(option, value)) {}
   void stop() { endpoint_->stop(); }
   ~Served() {
     stop();
@@ -94,6 +98,12 @@ class Served {
   Served(const Served&) = delete;
   Served& operator=(const Served&) = delete;
 
+  template <class Part, class Value>
+  static ServeOptions with(Value Part::*option, std::type_identity_t<Value> value) {
+    ServeOptions options = immediate();
+    options.*option = value;
+    return options;
+  }
   static ServeOptions immediate() {
     ServeOptions options;
     options.latency = std::chrono::nanoseconds{0};
