@@ -96,9 +96,7 @@ TEST_P(LapsOf, ACarAreCleanWithTheDefaultSettings) {
   for (const char* track : {"oval", "lakeside"}) {
     const bool is_turn = (GetParam() == "bmw-320i") == (track[0] == 'l');
     if (!kDrivesAll && !is_turn) continue;
-    const auto run = drive({{"car", GetParam()}, {"track", track}, {"laps", "3"}});
-    ASSERT_TRUE(run.completed) << track << ": " << run.end_reason;
-    EXPECT_EQ(run.off_track_events, 0) << track;
+    const auto run = drive_cleanly({{"car", GetParam()}, {"track", track}, {"laps", "3"}});
     const auto refused = run.guard_reasons[static_cast<std::size_t>(controller::GuardReason::kNoWayToStop)];
     // Cars that are hardly stable by themselves at their speed: a stop that fits has to be found anew at
     // times.
@@ -112,19 +110,15 @@ TEST_P(LapsOf, ACarAreCleanWithTheDefaultSettings) {
 // It braked from 40 m/s into the bend after the straight until its rear axle slid, and stood beside the line
 // for good.
 TEST(Cars, ThatBrakingMakesUnstableAreBrakedIntoBendsWithoutSpinning) {
-  const auto run = drive({{"car", "vw-vanagon"}, {"track", "speedway"}, {"laps", kDrivesAll ? "2" : "1"}});
-  EXPECT_TRUE(run.completed) << run.end_reason;
-  EXPECT_EQ(run.off_track_events, 0);
+  drive_cleanly({{"car", "vw-vanagon"}, {"track", "speedway"}, {"laps", kDrivesAll ? "2" : "1"}});
 }
 
 TEST(Cars, ThatAreOrdinaryBrakeFromTopSpeedWithoutSpinning) {
-  const auto run = drive({{"car", "road-car"},
-                          {"track", "speedway"},
-                          {"laps", kDrivesAll ? "2" : "1"},
-                          {"latency_ms", "300"},
-                          {"time_limit_s", "300"}});
-  EXPECT_TRUE(run.completed);
-  EXPECT_EQ(run.off_track_events, 0);
+  drive_cleanly({{"car", "road-car"},
+                 {"track", "speedway"},
+                 {"laps", kDrivesAll ? "2" : "1"},
+                 {"latency_ms", "300"},
+                 {"time_limit_s", "300"}});
 }
 
 TEST(Cars, ThatCannotTurnSoTightlyAreRefusedWithPlaceAndRadius) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,16 @@ using test::Settings;
 /// What `chicane drive --fast` reports for these settings, by schema key.
 inline telemetry::RunSummary drive(const Settings& settings) {
   return test::drive(test::scenario_of(settings));
+}
+
+/// The same of a run that has to end completed and without leaving the road.
+inline telemetry::RunSummary drive_cleanly(const Settings& settings) {
+  const telemetry::RunSummary run = drive(settings);
+  std::string what;
+  for (const auto& [key, value] : settings) what += key + "=" + value + " ";
+  if (!run.completed) throw std::runtime_error(what + "is not completed: " + run.end_reason);
+  EXPECT_EQ(run.off_track_events, 0) << what;
+  return run;
 }
 
 inline double top_mph(const telemetry::RunSummary& run) { return mps_to_mph(run.total.top_speed); }
