@@ -15,6 +15,7 @@
 #include "chicane/base/random.hpp"
 #include "chicane/protocol/car_messages.hpp"
 #include "chicane/telemetry/mcap.hpp"
+#include "support/results.hpp"
 
 namespace chicane::identify {
 namespace {
@@ -69,9 +70,8 @@ class Csv {
 TEST(DriveLog, IsReadFromACsvFileWithoutAHeaderByPositions) {
   const std::string all = rows("", plain);
   const Csv csv(all.substr(1));
-  const auto logs = csv.read(
-      {.positions = {{0, "time"}, {1, "x"}, {2, "y"}, {3, "psi_rad"}, {4, "speed_mps"}, {5, "steer"}}});
-  ASSERT_TRUE(logs) << logs.error().message;
+  const auto logs = test::good(csv.read(
+      {.positions = {{0, "time"}, {1, "x"}, {2, "y"}, {3, "psi_rad"}, {4, "speed_mps"}, {5, "steer"}}}));
   ASSERT_EQ(logs->size(), 1U);
   EXPECT_EQ(logs->front().samples.size(), 200U);
   EXPECT_DOUBLE_EQ(logs->front().commands.front().steer, 0.27);
@@ -82,8 +82,7 @@ TEST(DriveLog, IsReadFromACsvFileWithoutAHeaderByPositions) {
 }
 
 TEST(DriveLog, IsReadFromACsvFileWithAHeader) {
-  const auto logs = Csv(rows("time,x,y,psi,speed,steer", plain)).read();
-  ASSERT_TRUE(logs) << logs.error().message;
+  const auto logs = test::good(Csv(rows("time,x,y,psi,speed,steer", plain)).read());
   ASSERT_EQ(logs->size(), 1U);
   const DriveLog& log = logs->front();
   ASSERT_EQ(log.samples.size(), 200U);
@@ -165,8 +164,7 @@ TEST(DriveLog, NamesLineAndColumnOfAWrongCell) {
 /// Writes a bag as other programs do: odometry and commands on topics of their own, in CDR.
 void write_bag(const std::string& file, bool has_second_odometry) {
   std::filesystem::remove(file);
-  const auto writer = telemetry::McapWriter::create(file, "test", false);
-  ASSERT_TRUE(writer) << writer.error().message;
+  const auto writer = test::good(telemetry::McapWriter::create(file, "test", false));
   const auto odom = (*writer)->add_channel("/pf/odom", protocol::OdometryMessage::kType, "");
   const auto other =
       has_second_odometry ? (*writer)->add_channel("/odom", protocol::OdometryMessage::kType, "") : odom;
@@ -208,8 +206,7 @@ TEST(DriveLog, IsReadFromABagOfOdometryAndCommands) {
       (std::filesystem::temp_directory_path() / ("chicane_log_" + std::to_string(::getpid()) + ".mcap"))
           .string();
   write_bag(file, false);
-  const auto logs = read_log(file, {});
-  ASSERT_TRUE(logs) << logs.error().message;
+  const auto logs = test::good(read_log(file, {}));
   ASSERT_EQ(logs->size(), 1U);
   const DriveLog& log = logs->front();
   ASSERT_EQ(log.samples.size(), 200U);
@@ -220,9 +217,7 @@ TEST(DriveLog, IsReadFromABagOfOdometryAndCommands) {
   EXPECT_FALSE(log.is_centre_of_mass);
 
   write_bag(file, true);
-  const auto unclear = read_log(file, {});
-  ASSERT_FALSE(unclear);
-  EXPECT_THAT(unclear.error().message,
+  EXPECT_THAT(test::refusal_of(read_log(file, {})),
               HasSubstr("got the topics /odom, /pf/odom of nav_msgs/msg/Odometry, expected "
                         "one; name it by --odom-topic"));
   EXPECT_TRUE(read_log(file, {.odom_topic = "/odom"}));
@@ -239,13 +234,11 @@ TEST(DriveLog, IsReadFromTheFolderThatRosbag2Writes) {
               HasSubstr("got a bag of ROS 1, expected one of ROS 2"));
   std::ofstream(folder / "metadata.yaml") << "rosbag2_bagfile_information:\n";
   write_bag((folder / "bag_0.mcap").string(), false);
-  const auto one = read_log(folder.string(), {});
-  ASSERT_TRUE(one) << one.error().message;
+  const auto one = test::good(read_log(folder.string(), {}));
   EXPECT_EQ(one->size(), 1U);
   EXPECT_TRUE(read_plain_log(folder.string(), {}));
   write_bag((folder / "bag_1.mcap").string(), false);
-  const auto both = read_log(folder.string(), {});
-  ASSERT_TRUE(both) << both.error().message;
+  const auto both = test::good(read_log(folder.string(), {}));
   EXPECT_EQ(both->size(), 2U) << "parts of a bag that was split";
   EXPECT_THAT(read_plain_log(folder.string(), {}).error().message, HasSubstr("got a bag of 2 files"));
   std::filesystem::remove_all(folder);
@@ -261,8 +254,7 @@ TEST(DriveLog, IsPartedAtGapsAndJumps) {
     text << plain({time, x, 0.0, 0.0, 5.0, 0.0}) << '\n';
     x += 0.25;
   }
-  const auto logs = Csv(text.str()).read();
-  ASSERT_TRUE(logs) << logs.error().message;
+  const auto logs = test::good(Csv(text.str()).read());
   ASSERT_EQ(logs->size(), 3U);
   EXPECT_EQ((*logs)[0].samples.size(), 150U);
   EXPECT_EQ((*logs)[1].samples.size(), 100U);
@@ -271,8 +263,7 @@ TEST(DriveLog, IsPartedAtGapsAndJumps) {
 
 TEST(SqliteBag, HasItsOdometryAndCommands) {
   const std::string folder = std::string(CHICANE_SOURCE_DIR) + "/tests/fuzz/corpus/bag/";
-  const auto log = read_plain_log(folder + "plain.db3", {});
-  ASSERT_TRUE(log) << log.error().message;
+  const auto log = test::good(read_plain_log(folder + "plain.db3", {}));
   ASSERT_EQ(log->samples.size(), 6U);
   EXPECT_NEAR(log->samples[5].time - log->samples[0].time, 0.5, 1e-9);
   EXPECT_NEAR(log->samples[5].psi, 0.5, 1e-9);

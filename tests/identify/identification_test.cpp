@@ -10,6 +10,7 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/results.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::identify {
@@ -61,8 +62,7 @@ model::VehicleParams guess() {
 TEST(Identification, FindsTheCarThatDrove) {
   const DriveLog log =
       drive_log({{"car", "road-car"}, {"track", "hairpins"}, {"laps", "1"}, {"latency_ms", "70"}}, 0.01);
-  const auto found = identify({log}, guess(), {.hold_out = 0.3});
-  ASSERT_TRUE(found) << found.error().message;
+  const auto found = test::good(identify({log}, guess(), {.hold_out = 0.3}));
   const model::VehicleParams truth = model::road_car_params();
   // Smooth steering tells delay and lag apart only by a few milliseconds of their sum.
   EXPECT_NEAR(1e3 * found->delay + of(*found, "steer_lag_ms").value, 120.0, 15.0);
@@ -96,8 +96,7 @@ TEST(Identification, DoesNotPredictByCommandsThatDidNotDriveTheCar) {
   for (const SentCommand& commands : log.commands) steer.push_back(commands.steer);
   for (std::size_t i = 0; i < steer.size(); ++i)
     log.commands[i].steer = -steer[(i + steer.size() / 3) % steer.size()];
-  const auto found = identify({log}, guess(), {.hold_out = 0.3, .is_rough = true});
-  ASSERT_TRUE(found) << found.error().message;
+  const auto found = test::good(identify({log}, guess(), {.hold_out = 0.3, .is_rough = true}));
   EXPECT_FALSE(found->predicts()) << found->held_out[0].position << ' ' << found->held_out[0].kept_position;
 }
 
@@ -119,8 +118,8 @@ TEST(Identification, DoesNotPredictWhatIsBeyondTheSensors) {
 TEST(Identification, FindsTyresAndYawInertiaNearTheLimit) {
   const DriveLog log = drive_log(
       {{"car", "road-car"}, {"track", "hairpins"}, {"laps", "1"}, {"tracking_mpc.grip_share", "1"}});
-  const auto found = identify({log}, guess(), {.hold_out = 0.0, .wheels = {.drive = {9.0, 10.0}}});
-  ASSERT_TRUE(found) << found.error().message;
+  const auto found =
+      test::good(identify({log}, guess(), {.hold_out = 0.0, .wheels = {.drive = {9.0, 10.0}}}));
   const model::VehicleParams truth = model::road_car_params();
   EXPECT_NEAR(found->vehicle.yaw_inertia, truth.yaw_inertia, 0.04 * truth.yaw_inertia);
   EXPECT_NEAR(found->vehicle.friction, truth.friction, 0.01 * truth.friction);
@@ -151,8 +150,7 @@ TEST(Identification, SaysWhatTheLogDoesNotExcite) {
     log.samples.push_back({.time = t, .x = 20.0 * t, .y = 0.0, .psi = 0.0, .speed = 20.0});
     log.commands.push_back({t, 0.0, 0.1});
   }
-  const auto found = identify({log}, guess(), {.hold_out = 0.3});
-  ASSERT_TRUE(found) << found.error().message;
+  const auto found = test::good(identify({log}, guess(), {.hold_out = 0.3}));
   for (const char* key : {"friction", "cornering_front", "cornering_rear", "yaw_inertia_kgm2", "wheelbase_m"})
     EXPECT_FALSE(of(*found, key).is_excited) << key;
   EXPECT_TRUE(of(*found, "steer_offset_deg").is_excited);
@@ -164,8 +162,7 @@ TEST(Identification, SaysWhatTheLogDoesNotExcite) {
 TEST(Identification, TheLeastFrictionIsTheLowerEndOfWhatALogNearTheLimitTells) {
   const DriveLog log =
       drive_log({{"car", "road-car"}, {"track", "oval"}, {"laps", "1"}, {"tracking_mpc.grip_share", "1"}});
-  const auto found = identify({log}, guess(), {.hold_out = 0.3});
-  ASSERT_TRUE(found) << found.error().message;
+  const auto found = test::good(identify({log}, guess(), {.hold_out = 0.3}));
   ASSERT_TRUE(found->knows_tires()) << found->use_front << ' ' << found->use_rear;
   EXPECT_EQ(found->least_friction(), of(*found, "friction").low);
   EXPECT_LT(found->least_friction(), 1.2);
@@ -226,9 +223,8 @@ TEST(Identification, NeedsTenSecondsOfDriving) {
     log.samples.push_back({.time = 0.05 * i, .x = 1.0 * i, .y = 0.0, .psi = 0.0, .speed = 20.0});
     log.commands.push_back({0.05 * i, 0.0, 0.1});
   }
-  const auto found = identify({log}, guess(), {.hold_out = 0.0});
-  ASSERT_FALSE(found);
-  EXPECT_THAT(found.error().message, testing::HasSubstr("expected at least 10 s"));
+  EXPECT_THAT(test::refusal_of(identify({log}, guess(), {.hold_out = 0.0})),
+              testing::HasSubstr("expected at least 10 s"));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "chicane/live/run_publisher.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/replay.hpp"
+#include "support/results.hpp"
 #include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 
@@ -33,21 +34,18 @@ TEST(LiveRun, DrivesToItsEndAndRecordsAllOfIt) {
   scenario::Scenario scenario = laps_of_oval("1");
   scenario.time_limit = 8.0;
   run::RunControls controls;
-  const auto live = fast_run(scenario, controls);
-  ASSERT_TRUE(live) << live.error().message;
+  const auto live = test::good(fast_run(scenario, controls));
   EXPECT_NE((*live)->port(), 0);
   const telemetry::TemporaryFile file;
-  auto recorder = recording::Recorder::create(
-      {.path = file.path(), .run = (*live)->description(), .scenario = scenario, .may_wait = true});
-  ASSERT_TRUE(recorder);
+  auto recorder = test::good(recording::Recorder::create(
+      {.path = file.path(), .run = (*live)->description(), .scenario = scenario, .may_wait = true}));
   int frames = 0;
   const telemetry::RunSummary summary =
       (*live)->run(recorder->get(), {.on_frame = [&](const telemetry::Frame&) { ++frames; }});
   EXPECT_EQ(summary.end_reason, "time limit reached");
   EXPECT_EQ(static_cast<int>(summary.cycles), frames);
   ASSERT_TRUE((*recorder)->finish());
-  const auto replayed = recording::verify_recording(file.path());
-  ASSERT_TRUE(replayed);
+  const auto replayed = test::good(recording::verify_recording(file.path()));
   EXPECT_TRUE(replayed->is_verified());
   EXPECT_EQ(replayed->steps, summary.cycles);
 }
@@ -57,8 +55,7 @@ TEST(LiveRun, TellsOfEachLapTheLastOneToo) {
       test::scenario_of({{"preset", "default"}, {"track", "oval"}, {"laps", "1"}});
   run::RunControls controls;
   controls.wants_stop = false;
-  const auto live = fast_run(scenario, controls);
-  ASSERT_TRUE(live);
+  const auto live = test::good(fast_run(scenario, controls));
   std::vector<int> laps;
   const telemetry::RunSummary summary =
       (*live)->run(nullptr, {.on_lap = [&](const telemetry::CompletedLap& lap) { laps.push_back(lap.lap); }});
@@ -72,8 +69,7 @@ TEST(LiveRun, BeginsWithAPersonAtTheWheelWhenAsked) {
   run::RunControls controls;
   LiveRunOptions options;
   options.is_manual = true;
-  const auto live = fast_run(scenario, controls, options);
-  ASSERT_TRUE(live);
+  const auto live = test::good(fast_run(scenario, controls, options));
   bool was_always_manual = true;
   static_cast<void>((*live)->run(
       nullptr, {.on_frame = [&](const telemetry::Frame& frame) { was_always_manual &= frame.is_manual; }}));
@@ -89,8 +85,7 @@ TEST(LiveRun, StopsWhenAskedAndRefusesAPaceThatIsNone) {
   EXPECT_NE(refused.error().message.find("run.pace: got 1000"), std::string::npos);
 
   run::RunControls stopping;
-  const auto live = fast_run(laps_of_oval("0"), stopping);
-  ASSERT_TRUE(live);
+  const auto live = test::good(fast_run(laps_of_oval("0"), stopping));
   int frames = 0;
   const telemetry::RunSummary summary = (*live)->run(
       nullptr, {.on_frame = [&](const telemetry::Frame&) { stopping.wants_stop = ++frames == 20; }});

@@ -13,6 +13,7 @@
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/make.hpp"
+#include "support/results.hpp"
 #include "support/roads.hpp"
 #include "support/runs.hpp"
 
@@ -38,8 +39,7 @@ TEST(RunLimit, IsFoundBesideTheRunAndItsLapsAreSetBesideIt) {
     EXPECT_NE(news.found, nullptr) << news.why_not;
     ++told;
   });
-  const auto track = run::make_track(on("oval"));
-  ASSERT_TRUE(track);
+  const auto track = test::good(run::make_track(on("oval")));
   EXPECT_FALSE(RunLimit::first_answer(*track).why_not.empty());
   limit.search(*track, on("oval"));
   EXPECT_TRUE(limit.is_searching());
@@ -136,8 +136,7 @@ TEST(RunLimit, IsAnotherOneOnceTheCarHasOtherGripOrMass) {
   frame.lap = 3;  // in its fourth lap
   now.plant_options.friction_scale = 0.5;
   limit.follow(now, frame);
-  const auto changed = limit.news();
-  ASSERT_TRUE(changed);
+  const auto changed = test::good(limit.news());
   EXPECT_FALSE(changed->found);
   EXPECT_NE(changed->why_not.find("grip"), std::string::npos) << changed->why_not;
   const auto second = awaited_news(limit, now, frame);

@@ -14,6 +14,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "support/alloc_guard.hpp"
+#include "support/results.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::live {
@@ -62,8 +63,7 @@ TEST(RunLog, KnowsARunWellEnoughToComputeItAgainBitForBit) {
   run.drive(20);
   run.change("manual.is_on", "false");
   run.drive(60);
-  const auto report = run.branch({.at = 9.0, .duration = 2.0, .drives_both = true});
-  ASSERT_TRUE(report) << report.error().message;
+  const auto report = test::good(run.branch({.at = 9.0, .duration = 2.0, .drives_both = true}));
   EXPECT_FALSE(report->first_difference) << *report->first_difference;
   EXPECT_EQ(report->steps_before, 225U);
   EXPECT_DOUBLE_EQ(report->known_until, 239 * 0.04);
@@ -78,8 +78,7 @@ TEST(RunLog, KnowsARunThatStartedAnewFromThereOnWithItsSettings) {
   run.drive(30);
   run.loop->restart();
   run.drive(100);
-  const auto report = run.branch({.at = 1.0, .duration = 3.0, .drives_both = true});
-  ASSERT_TRUE(report) << report.error().message;
+  const auto report = test::good(run.branch({.at = 1.0, .duration = 3.0, .drives_both = true}));
   EXPECT_FALSE(report->first_difference);
   EXPECT_EQ(report->steps_before, 25U);
   EXPECT_LT(report->recorded.top_speed, 10.5);
@@ -92,8 +91,7 @@ TEST(RunLog, KnowsTheNewestRunOnly) {
   run.loop = loop_on("oval");
   run.log.begin(run.loop->scenario());
   run.drive(50);
-  const auto report = run.branch({.at = 1.0, .duration = 1.0, .drives_both = true});
-  ASSERT_TRUE(report) << report.error().message;
+  const auto report = test::good(run.branch({.at = 1.0, .duration = 1.0, .drives_both = true}));
   EXPECT_FALSE(report->first_difference);
   EXPECT_EQ(report->cycle, 25U);
 }
@@ -165,8 +163,7 @@ TEST(RunLog, FollowsARunThatBeginsAnew) {
   EXPECT_EQ(branch_from_checkpoint(log, now, 260).cycle, 500U);
   loop->restart();
   drive(*loop, log, 300);
-  const auto report = log.branch(now, {});
-  ASSERT_TRUE(report) << report.error().message;
+  const auto report = test::good(log.branch(now, {}));
   EXPECT_EQ(report->cycle, 300U) << "of the run that was started anew";
   EXPECT_FALSE(report->first_difference);
 }
@@ -180,13 +177,11 @@ TEST(RunLog, GoesOnWhereTheStartIsForgottenAndSaysSoOfWhatIs) {
   branch_from_checkpoint(log, now, 260);
   drive(*loop, log, 400);
   EXPECT_FALSE(log.since({})) << "the start is forgotten";
-  const auto report = log.branch(now, {});
-  ASSERT_TRUE(report) << report.error().message;
+  const auto report = test::good(log.branch(now, {}));
   EXPECT_FALSE(report->first_difference);
   EXPECT_EQ(report->cycle, 1200U);
-  const auto too_early = log.branch({.at = 1.0, .duration = 1.0, .drives_both = true}, {});
-  ASSERT_FALSE(too_early);
-  EXPECT_THAT(too_early.error().message, testing::HasSubstr("ask for a moment after"));
+  EXPECT_THAT(test::refusal_of(log.branch({.at = 1.0, .duration = 1.0, .drives_both = true}, {})),
+              testing::HasSubstr("ask for a moment after"));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/results.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::live {
@@ -86,8 +87,7 @@ TEST_P(Futures, BeginWhereTheCarIsAndGoOnAsItDoes) {
   futures.assume(scenario_of(GetParam().settings));
   for (const double more : {8.0, 5.0, 14.0}) {
     theirs.drive(more);
-    const auto asked = ask(futures, {});
-    ASSERT_TRUE(asked) << asked.error().message;
+    const auto asked = test::good(ask(futures, {}));
     const auto& [answer, was] = *asked;
     ASSERT_TRUE(answer.stand_in);
     EXPECT_NEAR(answer.stand_in->compared, more == 8.0 ? 8.0 : 10.0, 0.2);
@@ -112,15 +112,11 @@ TEST(ServedFutures, TellWhatAChangeWouldDo) {
   ServedFutures futures(theirs.log);
   futures.assume(scenario_of({}));
   theirs.drive(20.0);
-  const auto slower = ask(futures, {{"tracking_mpc.speed_limit_mps", "12"}});
-  ASSERT_TRUE(slower) << slower.error().message;
+  const auto slower = test::good(ask(futures, {{"tracking_mpc.speed_limit_mps", "12"}}));
   EXPECT_LT(slower->answer.branched.mean_speed, slower->answer.recorded.mean_speed - 2.0);
-  const auto earlier = ask(futures, {}, 12.0);
-  ASSERT_TRUE(earlier) << earlier.error().message;
+  const auto earlier = test::good(ask(futures, {}, 12.0));
   EXPECT_NEAR(earlier->answer.at, 12.0, 0.1);
-  const auto unknown = ask(futures, {{"nothing", "1"}});
-  ASSERT_FALSE(unknown);
-  EXPECT_THAT(unknown.error().message, HasSubstr("nothing"));
+  EXPECT_THAT(test::refusal_of(ask(futures, {{"nothing", "1"}})), HasSubstr("nothing"));
 }
 
 TEST(ServedFutures, SayHowFarOurCarIsFromTheirs) {
@@ -128,8 +124,7 @@ TEST(ServedFutures, SayHowFarOurCarIsFromTheirs) {
   ServedFutures futures(theirs.log);
   futures.assume(scenario_of({}));
   theirs.drive(25.0);
-  const auto asked = ask(futures, {});
-  ASSERT_TRUE(asked) << asked.error().message;
+  const auto asked = test::good(ask(futures, {}));
   EXPECT_EQ(asked->answer.stand_in->plant, "udacity");
   EXPECT_GT(asked->answer.stand_in->apart, 0.2) << "a car with less grip is another one";
 }

@@ -15,6 +15,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/wire/simulate.hpp"
+#include "support/results.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::live {
@@ -44,10 +45,9 @@ TEST(ServedRun, AnswersOneSimulatorAfterTheOtherAndReportsOnAll) {
   while (port == 0) std::this_thread::yield();
   std::uint64_t answers = 0;
   for (int car = 0; car < 2; ++car) {
-    const auto done = wire::simulate(
+    const auto done = test::good(wire::simulate(
         {.url = "ws://127.0.0.1:" + std::to_string(port.load()) + "/socket.io/?EIO=4&transport=websocket"},
-        scenario, {}, stop);
-    ASSERT_TRUE(done) << done.error().message;
+        scenario, {}, stop));
     answers += done->answers;
   }
   stop = true;
@@ -105,8 +105,7 @@ TEST(ServedRun, SaysWhyThereIsNoLimitWithoutARoad) {
   ServedRun served(server, scenario, std::move(*run::make_controller(scenario)), std::nullopt);
   EXPECT_NE(served.description().limit.why_not.find("--track"), std::string::npos);
   const std::atomic<bool> stop{true};
-  const auto summary = served.run(nullptr, {}, {}, stop);
-  ASSERT_TRUE(summary);
+  const auto summary = test::good(served.run(nullptr, {}, {}, stop));
   EXPECT_EQ(summary->answers, 0U);
 }
 

@@ -11,6 +11,7 @@
 
 #include "chicane/live/run_log.hpp"
 #include "chicane/protocol/library.hpp"
+#include "support/results.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::live {
@@ -30,9 +31,8 @@ Json answer_of(WhatIf& what_if) {
 }
 
 TEST(WhatIf, ReadsWhatIsAsked) {
-  const auto question = read_question(
-      R"({"at_s":12.5,"for_s":20,"laps":1,"log":2,"settings":{"latency_ms":60,"fault.half_grip":"+5*0.3"}})");
-  ASSERT_TRUE(question);
+  const auto question = test::good(read_question(
+      R"({"at_s":12.5,"for_s":20,"laps":1,"log":2,"settings":{"latency_ms":60,"fault.half_grip":"+5*0.3"}})"));
   EXPECT_EQ(question->log, 2U);
   EXPECT_EQ(question->options.at, 12.5);
   EXPECT_EQ(question->options.duration, 20.0);
@@ -40,8 +40,7 @@ TEST(WhatIf, ReadsWhatIsAsked) {
   EXPECT_TRUE(question->options.drives_both);
   EXPECT_THAT(question->options.settings,
               testing::UnorderedElementsAre(Pair("latency_ms", "60"), Pair("fault.half_grip", "+5*0.3")));
-  const auto now = read_question("{}");
-  ASSERT_TRUE(now);
+  const auto now = test::good(read_question("{}"));
   EXPECT_GT(now->options.at, 1e6) << "from now on";
   EXPECT_EQ(now->options.duration, WhatIfQuestion::kLongest);
 }
@@ -57,9 +56,7 @@ TEST(WhatIf, RefusesWhatIsNoQuestionInWords) {
            {R"({"settings":[1]})", "settings"},
            {R"({"settings":{"a":[]}})", "a: expected a number, a text, true or false"},
            {R"({"settings":{")" + std::string(100, 'k') + R"(":1}})", "expected a setting"}}) {
-    const auto question = read_question(text);
-    ASSERT_FALSE(question) << text;
-    EXPECT_THAT(question.error().message, HasSubstr(expected));
+    EXPECT_THAT(test::refusal_of(read_question(text)), HasSubstr(expected));
   }
   std::string many = R"({"settings":{)";
   for (int i = 0; i < 100; ++i) many += (i > 0 ? ",\"" : "\"") + std::to_string(i) + "\":1";
@@ -82,8 +79,8 @@ TEST(WhatIf, AnswersTheNewestQuestionWithBothFutures) {
   });
   EXPECT_EQ(Json::parse(what_if.answer())["state"], "none");
   ASSERT_TRUE(what_if.ask(R"({"at_s":0})"));
-  const auto asked = what_if.ask(R"({"at_s":8,"for_s":10,"settings":{"tracking_mpc.speed_limit_mps":9}})");
-  ASSERT_TRUE(asked);
+  const auto asked =
+      test::good(what_if.ask(R"({"at_s":8,"for_s":10,"settings":{"tracking_mpc.speed_limit_mps":9}})"));
   EXPECT_EQ(*asked, "2");
   const Json answer = answer_of(what_if);
   EXPECT_EQ(answer["id"], 2);

@@ -9,6 +9,7 @@
 
 #include "chicane/protocol/ros_messages.hpp"
 #include "protocol/cdr_reader.hpp"
+#include "support/results.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -30,8 +31,7 @@ OdometryMessage odometry() {
 std::string big_endian_bool_and_header() { return std::string("\0\0\0\0\1", 5); }
 
 TEST(CarMessages, AreReadAsTheyWereWritten) {
-  const auto seen = decode<OdometryMessage>(encode(odometry()));
-  ASSERT_TRUE(seen);
+  const auto seen = test::good(decode<OdometryMessage>(encode(odometry())));
   EXPECT_EQ(seen->stamp, kStamp);
   EXPECT_EQ(seen->child_frame, "ego_racecar/base_link");
   EXPECT_NEAR(seen->pose.psi, 0.75, 1e-15);
@@ -40,27 +40,23 @@ TEST(CarMessages, AreReadAsTheyWereWritten) {
 
   const DriveMessage drive{
       .stamp = kStamp, .frame = "car", .steer = 0.25, .speed = 4.5, .acceleration = -1.5};
-  const auto read = decode<DriveMessage>(encode(drive));
-  ASSERT_TRUE(read);
+  const auto read = test::good(decode<DriveMessage>(encode(drive)));
   EXPECT_EQ(read->stamp, kStamp);
   EXPECT_EQ(read->steer, 0.25);
   EXPECT_EQ(read->speed, 4.5);
   EXPECT_EQ(read->acceleration, -1.5);
 
-  const auto imu =
-      decode<ImuMessage>(encode(ImuMessage{.stamp = kStamp, .yaw_rate = 0.5, .ax = 1.0, .ay = 2.0}));
-  ASSERT_TRUE(imu);
+  const auto imu = test::good(
+      decode<ImuMessage>(encode(ImuMessage{.stamp = kStamp, .yaw_rate = 0.5, .ax = 1.0, .ay = 2.0})));
   EXPECT_EQ(imu->yaw_rate, 0.5);
   EXPECT_EQ(imu->ay, 2.0);
 
-  const auto path = decode<PathMessage>(encode(path_along(0, "map", kLine)));
-  ASSERT_TRUE(path);
+  const auto path = test::good(decode<PathMessage>(encode(path_along(0, "map", kLine))));
   ASSERT_EQ(path->poses.size(), 2U);
   EXPECT_EQ(path->poses[1].pose.y, 4.0);
 
-  const auto pose =
-      decode<PoseMessage>(encode(PoseMessage{.frame = "map", .pose = {.x = 1, .y = 2, .psi = -3}}));
-  ASSERT_TRUE(pose);
+  const auto pose = test::good(
+      decode<PoseMessage>(encode(PoseMessage{.frame = "map", .pose = {.x = 1, .y = 2, .psi = -3}})));
   EXPECT_NEAR(pose->pose.psi, -3.0, 1e-15);
 
   EXPECT_EQ(decode<BoolMessage>(encode(BoolMessage{true}))->data, true);
@@ -106,8 +102,7 @@ TEST(CarMessages, AScanHasItsAnglesAndRanges) {
 TEST(CarMessages, TransformsAndTimesAreReadAsTheyWereWritten) {
   const std::string bytes =
       encode(TransformsMessage{{{kStamp, "map", "odom", {.x = 1.0, .y = -2.0, .psi = 0.5}}}});
-  const auto message = decode<TransformsMessage>(bytes);
-  ASSERT_TRUE(message);
+  const auto message = test::good(decode<TransformsMessage>(bytes));
   const std::vector<TransformMessage>& transforms = message->transforms;
   ASSERT_EQ(transforms.size(), 1U);
   EXPECT_EQ(transforms[0].stamp, kStamp);
@@ -128,8 +123,7 @@ TEST(CarMessages, AStopIsReadAsItWasWrittenAndRefusedWhenItIsUnsound) {
     message.stop.points[static_cast<std::size_t>(i)] = {
         .time = 0.1 * i, .distance = 1.0 * i, .speed = 2.0 - i, .command = {.steer = 0.1, .throttle = -0.5}};
   }
-  const auto read = decode<StopMessage>(encode(message));
-  ASSERT_TRUE(read);
+  const auto read = test::good(decode<StopMessage>(encode(message)));
   EXPECT_EQ(read->stop.size, 3);
   EXPECT_EQ(read->stop.points[2].distance, 2.0);
   EXPECT_EQ(read->stop.points[2].command.throttle, -0.5);

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "chicane/protocol/yaml_codec.hpp"
+#include "support/results.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -19,14 +20,12 @@ std::string refusal(std::string_view text) {
 }
 
 TEST(FaultText, NamesAFaultItsTimeAndPerhapsMore) {
-  const auto all = parse_fault("half_grip@12+5*0.25");
-  ASSERT_TRUE(all) << all.error().message;
+  const auto all = test::good(parse_fault("half_grip@12+5*0.25"));
   EXPECT_EQ(all->fault, sim::fault_named("half_grip"));
   EXPECT_EQ(all->at, 12.0);
   EXPECT_EQ(all->duration, 5.0);
   EXPECT_EQ(all->strength, 0.25);
-  const auto least = parse_fault("link_lost@0.5");
-  ASSERT_TRUE(least);
+  const auto least = test::good(parse_fault("link_lost@0.5"));
   EXPECT_EQ(least->duration, sim::kind_of(*sim::fault_named("link_lost")).duration);
 }
 
@@ -42,11 +41,10 @@ TEST(FaultText, SaysWhatIsWrongAndWhatWasMeant) {
 }
 
 TEST(FaultYaml, IsAListInAScenarioAndComesBackTheSame) {
-  const auto document = parse_document(
+  const auto document = test::good(parse_document(
       "laps: 2\nfaults:\n  - {name: half_grip, at_s: 12, for_s: 5, strength: 0.3}\n  - name: link_lost\n    "
       "at_s: 20.1\n",
-      "wet.yaml");
-  ASSERT_TRUE(document) << document.error().message;
+      "wet.yaml"));
   scenario::Scenario scenario;
   const std::array layers{*document};
   ASSERT_TRUE(apply_layers(layers, scenario));
@@ -55,8 +53,7 @@ TEST(FaultYaml, IsAListInAScenarioAndComesBackTheSame) {
   EXPECT_EQ(scenario.faults[1].at, 20.1);
 
   const std::string text = write_document(scenario, "test", true);
-  const auto again = parse_document(text, "again.yaml");
-  ASSERT_TRUE(again) << again.error().message;
+  const auto again = test::good(parse_document(text, "again.yaml"));
   ASSERT_TRUE(again->faults);
   ASSERT_EQ(again->faults->size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -86,11 +83,9 @@ TEST(FaultYaml, RefusesWithFileLineAndKey) {
 }
 
 TEST(FaultControls, AreSwitchedWithDurationAndStrength) {
-  const auto plain = read_switch("half_grip", "true");
-  ASSERT_TRUE(plain);
+  const auto plain = test::good(read_switch("half_grip", "true"));
   EXPECT_EQ(plain->duration, sim::default_event(plain->fault, 0.0).duration);
-  const auto chosen = read_switch("half_grip", "+7.5*0.25");
-  ASSERT_TRUE(chosen) << chosen.error().message;
+  const auto chosen = test::good(read_switch("half_grip", "+7.5*0.25"));
   EXPECT_EQ(chosen->duration, 7.5);
   EXPECT_EQ(chosen->strength, 0.25);
   EXPECT_EQ(read_switch("half_grip", "*0.25")->duration, plain->duration);

@@ -17,6 +17,7 @@
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/road/track.hpp"
+#include "support/results.hpp"
 #include "support/stadium.hpp"
 
 namespace chicane::protocol {
@@ -49,17 +50,14 @@ class ForeignTrack : public ::testing::TestWithParam<Kind> {};
 TEST_P(ForeignTrack, HasTheLengthTheWidthAndTheDirectionOfTheRoad) {
   const Kind& kind = GetParam();
   const std::string file = kData + "tracks/" + kind.file;
-  const Result<std::string> text = read_file(file);
-  ASSERT_TRUE(text) << text.error().message;
-  const Result<TrackFile> content = parse_track(*text, file, kind.options);
-  ASSERT_TRUE(content) << content.error().message;
+  const Result<std::string> text = test::good(read_file(file));
+  const Result<TrackFile> content = test::good(parse_track(*text, file, kind.options));
   if (kind.said.empty()) {
     EXPECT_THAT(content->warnings, ::testing::IsEmpty());
   } else {
     EXPECT_THAT(content->warnings, Contains(AllOf(::testing::StartsWith(file), HasSubstr(kind.said))));
   }
-  const Result<road::Track> track = make_track(*content);
-  ASSERT_TRUE(track) << track.error().message;
+  const Result<road::Track> track = test::good(make_track(*content));
   EXPECT_TRUE(track->centre().is_closed());
   EXPECT_NEAR(track->length(), kind.length, kind.length_tolerance);
   EXPECT_GT(kind.is_left ? turned(*track) : -turned(*track), 6.0);
@@ -169,10 +167,8 @@ TEST(ForeignTracks, DrawnCircuitsWithLongStraightsAreWithinTheirNoise) {
   for (const Vec2& point : test::stadium(40.0, 9, 300.0))
     text += fmt::format("[{:.6f}, {:.6f}], ", 8.0 + point.x() / kEast, 47.0 + point.y() / kNorth);
   text.resize(text.size() - 2);
-  const auto content = parse_track(text + "]}", "drawn.geojson", {.is_closed = true});
-  ASSERT_TRUE(content) << content.error().message;
-  const auto track = make_track(*content);
-  ASSERT_TRUE(track) << track.error().message;
+  const auto content = test::good(parse_track(text + "]}", "drawn.geojson", {.is_closed = true}));
+  const auto track = test::good(make_track(*content));
   EXPECT_NEAR(track->length(), 600.0 + kTwoPi * 40.0, 0.005 * 851.0);
   EXPECT_LT(road::point_fit(*track).most, 2.0 * content->options.smoothing_sigma + 0.01);
 }
@@ -211,15 +207,13 @@ std::string open_drive(const std::vector<std::array<double, 5>>& pieces, const s
 }
 
 TEST(OpenDrive, KeepsItsLengthAndItsArcs) {
-  const auto straight = make_track(*parse_track(open_drive({{0, 0, 0, 500, 0}}), "f.xodr"));
-  ASSERT_TRUE(straight) << straight.error().message;
+  const auto straight = test::good(make_track(*parse_track(open_drive({{0, 0, 0, 500, 0}}), "f.xodr")));
   EXPECT_FALSE(straight->centre().is_closed());
   EXPECT_NEAR(straight->length(), 500.0, 0.01);
   const double half = kPi * 40.0;
   const std::string loop = open_drive(
       {{0, 0, 0, 100, 0}, {100, 0, 0, half, 0.025}, {100, 80, kPi, 100, 0}, {0, 80, kPi, half, 0.025}});
-  const auto track = make_track(*parse_track(loop, "f.xodr"));
-  ASSERT_TRUE(track) << track.error().message;
+  const auto track = test::good(make_track(*parse_track(loop, "f.xodr")));
   double sharpest = 0.0;
   for (double s = 0.0; s < track->length(); s += 0.5)
     sharpest = std::max(sharpest, track->centre().at(s).curvature);
@@ -251,20 +245,18 @@ TEST(ForeignTracks, ReadsConesThatAreLinksOfOneModel) {
           "0</pose><visual><geometry><mesh><uri>cone_{3}.dae</uri></mesh>"
           "</geometry></visual></link>",
           i, radius * std::cos(kPi * i / 12), radius * std::sin(kPi * i / 12), colour);
-  const auto links = parse_track(cones + "</model></sdf>", "f", {});
-  ASSERT_TRUE(links) << links.error().message;
+  const auto links = test::good(parse_track(cones + "</model></sdf>", "f", {}));
   EXPECT_NEAR(make_track(*links)->length(), 37.0 * kPi, 1.5);
 }
 
 TEST(ForeignTracks, SaysThatARoadStatesAnotherLength) {
-  const auto longer = parse_track(
+  const auto longer = test::good(parse_track(
       "<OpenDRIVE><road id='1' length='200'><planView><geometry s='0' x='0' y='0' hdg='0' "
       "length='50'><line/></geometry></planView>"
       "<lanes><laneSection s='0'><right><lane id='-1' type='driving'><width sOffset='0' a='6' b='0' c='0' "
       "d='0'/></lane></right>"
       "</laneSection></lanes></road></OpenDRIVE>",
-      "f", {});
-  ASSERT_TRUE(longer) << longer.error().message;
+      "f", {}));
   EXPECT_THAT(longer->warnings,
               Contains(HasSubstr("length: road 1 states 200.0 m, and its planView of 50.0 m is taken")));
 }
@@ -309,10 +301,8 @@ TEST(OccupancyMaps, BecomeRoadsWithTheDrawnLengthAndWidth) {
   ASSERT_EQ(all.size(), 10U);
   for (const Map& map : all) {
     const std::string file = kData + "maps/" + map.name + ".yaml";
-    const auto content = parse_track(read_file(file).value(), file, {.scale = 0.1});
-    ASSERT_TRUE(content) << content.error().message;
-    const auto track = make_track(*content);
-    ASSERT_TRUE(track) << track.error().message;
+    const auto content = test::good(parse_track(read_file(file).value(), file, {.scale = 0.1}));
+    const auto track = test::good(make_track(*content));
     EXPECT_TRUE(track->centre().is_closed());
     // Smoothing rounds bends by up to a cell, and the corners of square corridors.
     const bool is_square = map.name == "corridors";
@@ -334,9 +324,8 @@ TEST(OccupancyMaps, BecomeRoadsWithTheDrawnLengthAndWidth) {
 TEST(OccupancyMaps, TakeDirectionAndStartFromTheOptions) {
   const std::string file = kData + "maps/ring.yaml";
   const std::string text = read_file(file).value();
-  const auto right = make_track(
-      *parse_track(text, file, {.scale = 0.1, .direction = Direction::kRight, .start = Vec2{7.0, 4.5}}));
-  ASSERT_TRUE(right) << right.error().message;
+  const auto right = test::good(make_track(
+      *parse_track(text, file, {.scale = 0.1, .direction = Direction::kRight, .start = Vec2{7.0, 4.5}})));
   EXPECT_LT(turned(*right), -6.0);
   EXPECT_NEAR((right->centre().at(0.0).position - Vec2{7.2, 4.5}).norm(), 0.0, 0.5);
   EXPECT_THAT(parse_track(text, file, {.least_width = 3.0}).error().message, HasSubstr("m wide at ("));

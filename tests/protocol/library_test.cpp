@@ -13,6 +13,7 @@
 #include "chicane/model/vehicle.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "support/folder.hpp"
+#include "support/results.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -60,9 +61,8 @@ TEST_F(Library, RefusesToRaceACarWhoseGripIsNotKnown) {
   EXPECT_THAT(error, HasSubstr("mine.yaml:3: friction_low: got 0"));
   EXPECT_THAT(error, HasSubstr("--set friction_low=NUMBER"));
   EXPECT_EQ(error.find('\n'), std::string::npos);
-  const auto stated =
-      compose({.scenario_file = {}, .settings = {{"car", car}, {"preset", "race"}, {"friction_low", "0.7"}}});
-  ASSERT_TRUE(stated) << stated.error().message;
+  const auto stated = test::good(compose(
+      {.scenario_file = {}, .settings = {{"car", car}, {"preset", "race"}, {"friction_low", "0.7"}}}));
   EXPECT_EQ(stated->assumed_vehicle().friction, 0.7);
   EXPECT_EQ(stated->vehicle.friction, 1.1);
   ASSERT_EQ(stated->notices.size(), 1U);
@@ -72,9 +72,8 @@ TEST_F(Library, RefusesToRaceACarWhoseGripIsNotKnown) {
 TEST_F(Library, TheLeastFrictionIsOfARaceAlone) {
   for (const auto& [preset, low, assumed] :
        {std::tuple{"default", "0.7", 1.2}, {"race", "inf", 1.2}, {"race", "3", 1.2}, {"race", "0.7", 0.7}}) {
-    const auto scenario = compose(
-        {.scenario_file = {}, .settings = {{"car", "road-car"}, {"preset", preset}, {"friction_low", low}}});
-    ASSERT_TRUE(scenario) << scenario.error().message;
+    const auto scenario = test::good(compose(
+        {.scenario_file = {}, .settings = {{"car", "road-car"}, {"preset", preset}, {"friction_low", low}}}));
     EXPECT_EQ(scenario->assumed_vehicle().friction, assumed) << preset << ' ' << low;
     EXPECT_EQ(scenario->notices.size(), assumed < 1.2 ? 1U : 0U) << preset << ' ' << low;
   }
@@ -85,8 +84,7 @@ TEST_F(Library, EveryShippedPresetLoadsAndSaysWhatItIs) {
   for (const Entry& entry : entries(Shelf::kPreset)) {
     names.push_back(entry.name);
     EXPECT_GT(entry.description.size(), 20u) << entry.name;
-    const Result<Scenario> scenario = compose({"", {{"preset", entry.name}}});
-    ASSERT_TRUE(scenario) << scenario.error().message;
+    const Result<Scenario> scenario = test::good(compose({"", {{"preset", entry.name}}}));
     EXPECT_EQ(scenario->preset, entry.name);
   }
   for (const char* promised :
@@ -104,15 +102,13 @@ TEST_F(Library, EveryShippedScenarioLoads) {
 }
 
 TEST_F(Library, PresetDefaultSaysWhatTheCodeSays) {
-  const Result<Scenario> scenario = compose({"", {{"preset", "default"}}});
-  ASSERT_TRUE(scenario) << scenario.error().message;
+  const Result<Scenario> scenario = test::good(compose({"", {{"preset", "default"}}}));
   EXPECT_THAT(differences(*scenario, Scenario{}, ""), ::testing::IsEmpty());
 }
 
 TEST_F(Library, CarFilesSayWhatTheCodeSays) {
   for (const model::VehicleParams& car : {model::udacity_params(), model::road_car_params()}) {
-    const Result<Scenario> scenario = compose({"", {{"car", car.name}}});
-    ASSERT_TRUE(scenario) << scenario.error().message;
+    const Result<Scenario> scenario = test::good(compose({"", {{"car", car.name}}}));
     EXPECT_EQ(scenario->plant, car.name);
     Scenario expected;
     expected.vehicle = car;
@@ -122,8 +118,7 @@ TEST_F(Library, CarFilesSayWhatTheCodeSays) {
 
 TEST_F(Library, LaterLayersWin) {
   const std::string file = write("run.yaml", "preset: sixty-mph\nlaps: 5\ncubic_mpc.horizon_steps: 9\n");
-  Result<Scenario> scenario = compose({file, {{"cubic_mpc.horizon_steps", "11"}, {"seed", "4"}}});
-  ASSERT_TRUE(scenario) << scenario.error().message;
+  Result<Scenario> scenario = test::good(compose({file, {{"cubic_mpc.horizon_steps", "11"}, {"seed", "4"}}}));
   EXPECT_EQ(scenario->preset, "sixty-mph");
   EXPECT_EQ(scenario->controller, "cubic-mpc");
   EXPECT_EQ(scenario->laps, 5);
@@ -138,8 +133,7 @@ TEST_F(Library, LaterLayersWin) {
 
 TEST_F(Library, APresetMayBuildOnAnother) {
   const std::string file = write("mine.yaml", "preset: sixty-mph\ncubic_mpc.horizon_steps: 8\n");
-  const Result<Scenario> scenario = compose({"", {{"preset", file}}});
-  ASSERT_TRUE(scenario) << scenario.error().message;
+  const Result<Scenario> scenario = test::good(compose({"", {{"preset", file}}}));
   EXPECT_EQ(std::get<controller::CubicMpcOptions>(scenario->controllers).horizon_steps, 8);
   EXPECT_EQ(std::get<controller::CubicMpcOptions>(scenario->controllers).latency_handling,
             controller::LatencyHandling::kPositionOnly);
@@ -190,8 +184,7 @@ TEST_F(Library, ACarFileHoldsOnlyACar) {
 TEST_F(Library, FilesNamedInAScenarioAreFoundBesideIt) {
   write("tracks/mine.csv", "# a track\n");
   const std::string file = write("run.yaml", "track: tracks/mine.csv\n");
-  const Result<Scenario> scenario = compose({file, {}});
-  ASSERT_TRUE(scenario) << scenario.error().message;
+  const Result<Scenario> scenario = test::good(compose({file, {}}));
   EXPECT_EQ(scenario->track, (folder_ / "tracks/mine.csv").string());
 }
 

@@ -11,6 +11,7 @@
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/track_codec.hpp"
+#include "support/results.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -68,8 +69,7 @@ TEST(Origin, AnImportedRoadSaysWhatItWasReadFromAndWhatWasAssumed) {
   for (const Case& each : {Case{"three_laps.gpx", "GPX"}, Case{"course.geojson", "GeoJSON"},
                            Case{"cones.csv", "cones"}, Case{"course.xodr", "OpenDRIVE"}}) {
     const std::string file = std::string(CHICANE_SOURCE_DIR "/tests/data/tracks/") + each.file;
-    const auto scenario = compose({.scenario_file = {}, .settings = {{"track", file}}});
-    ASSERT_TRUE(scenario) << scenario.error().message;
+    const auto scenario = test::good(compose({.scenario_file = {}, .settings = {{"track", file}}}));
     EXPECT_EQ(origin_of(*scenario).road_kind, each.kind) << file;
   }
   const std::string gpx = CHICANE_SOURCE_DIR "/tests/data/tracks/three_laps.gpx";
@@ -79,9 +79,8 @@ TEST(Origin, AnImportedRoadSaysWhatItWasReadFromAndWhatWasAssumed) {
 }
 
 TEST(Origin, ANoteOfARoadIsNoSetting) {
-  const Result<TrackFile> content =
-      parse_track("# note: track_scale=2\n# note: x_m, y_m\nx_m,y_m\n0,0\n9,0\n9,9\n0,9\n", "a.csv");
-  ASSERT_TRUE(content) << content.error().message;
+  const Result<TrackFile> content = test::good(
+      parse_track("# note: track_scale=2\n# note: x_m, y_m\nx_m,y_m\n0,0\n9,0\n9,9\n0,9\n", "a.csv"));
   EXPECT_EQ(content->points.size(), 4U);
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "protocol/cdr_reader.hpp"
+#include "support/results.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -13,16 +14,15 @@ constexpr ServiceCall kCall{.client = 0x1122334455667788, .sequence = 7};
 
 TEST(ParameterMessages, RequestsAreReadAsTheyWereWritten) {
   const auto names =
-      decode<NamesRequest>(encode(NamesRequest{.call = kCall, .names = {"latency_ms", "laps"}}));
-  ASSERT_TRUE(names);
+      test::good(decode<NamesRequest>(encode(NamesRequest{.call = kCall, .names = {"latency_ms", "laps"}})));
   EXPECT_EQ(names->call.client, kCall.client);
   EXPECT_EQ(names->call.sequence, 7);
   EXPECT_THAT(names->names, testing::ElementsAre("latency_ms", "laps"));
 
-  const auto set = decode<SetRequest>(encode(SetRequest{
+  const auto set = test::good(decode<SetRequest>(encode(SetRequest{
       .call = kCall,
-      .parameters = {{"latency_ms", 50.0}, {"laps", 3.0}, {"controller", std::string("pid")}, {"x", true}}}));
-  ASSERT_TRUE(set);
+      .parameters = {
+          {"latency_ms", 50.0}, {"laps", 3.0}, {"controller", std::string("pid")}, {"x", true}}})));
   ASSERT_EQ(set->parameters.size(), 4U);
   EXPECT_EQ(std::get<double>(set->parameters[0].value), 50.0);
   EXPECT_EQ(std::get<double>(set->parameters[1].value), 3.0);  // an integer on the wire
@@ -31,15 +31,14 @@ TEST(ParameterMessages, RequestsAreReadAsTheyWereWritten) {
 }
 
 TEST(ParameterMessages, RepliesAreReadAsTheyWereWritten) {
-  const auto list = decode<ListReply>(encode(ListReply{kCall, {"a", "b"}}));
-  ASSERT_TRUE(list);
+  const auto list = test::good(decode<ListReply>(encode(ListReply{kCall, {"a", "b"}})));
   EXPECT_THAT(list->names, testing::ElementsAre("a", "b"));
-  const auto set = decode<SetReply>(encode(SetReply{kCall, {{true, ""}, {false, "out of range"}}}));
-  ASSERT_TRUE(set);
+  const auto set =
+      test::good(decode<SetReply>(encode(SetReply{kCall, {{true, ""}, {false, "out of range"}}})));
   EXPECT_TRUE(set->outcomes[0].is_successful);
   EXPECT_EQ(set->outcomes[1].reason, "out of range");
-  const auto get = decode<GetReply>(encode(GetReply{kCall, {{"latency_ms", 20.0}, {"unknown", {}}}}));
-  ASSERT_TRUE(get);
+  const auto get =
+      test::good(decode<GetReply>(encode(GetReply{kCall, {{"latency_ms", 20.0}, {"unknown", {}}}})));
   EXPECT_EQ(std::get<double>(get->values[0].value), 20.0);
   EXPECT_TRUE(std::holds_alternative<std::monostate>(get->values[1].value));
 }

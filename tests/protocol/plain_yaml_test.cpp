@@ -7,6 +7,7 @@
 #include <string>
 
 #include "chicane/protocol/library.hpp"
+#include "support/results.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -33,8 +34,7 @@ TEST(PlainYaml, ReadsAllShippedPresetsAndCarsAsTheWholeParserDoes) {
   int read = 0;
   for (const Shelf shelf : {Shelf::kPreset, Shelf::kCar}) {
     for (const Entry& entry : entries(shelf)) {
-      const auto text = read_file(entry.file);
-      ASSERT_TRUE(text) << text.error().message;
+      const auto text = test::good(read_file(entry.file));
       expect_same(*text, entry.file);
       ++read;
     }
@@ -54,9 +54,8 @@ TEST(PlainYaml, RefusesWhatOnlyTheWholeParserUnderstandsWithItsLine) {
   for (const std::string text :
        {"a: 1\nb: [1, 2]", "a: 1\n- b", "a: 1\nb: \"c\"", "a: 1\n\tb: 2", "a: 1\nb", "a: 1\n  b: 2",
         "a: 1\nb: {c: 1}", "a: 1\nb: &x 1", "a: 1\nb: |", "a: 1\n--- ", "a: 1\nb: c: 2"}) {
-    const auto tree = parse_plain_yaml(text, "file.yaml");
-    ASSERT_FALSE(tree) << text;
-    EXPECT_THAT(tree.error().message, testing::StartsWith("file.yaml:2: ")) << text;
+    EXPECT_THAT(test::refusal_of(parse_plain_yaml(text, "file.yaml")), testing::StartsWith("file.yaml:2: "))
+        << text;
   }
 }
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "chicane/base/random.hpp"
+#include "support/results.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -134,8 +135,7 @@ TEST(YamlCodec, ReadsNestedDottedRosAndJson) {
                            "{\"cubic_mpc\": {\"horizon_steps\": 20}}",
                            "\xef\xbb\xbf"
                            "cubic_mpc:\r\n  horizon_steps: 20\r\n"}) {
-    const Result<Scenario> scenario = load(text, "f");
-    ASSERT_TRUE(scenario) << scenario.error().message;
+    const Result<Scenario> scenario = test::good(load(text, "f"));
     EXPECT_EQ(std::get<controller::CubicMpcOptions>(scenario->controllers).horizon_steps, 20) << text;
   }
 }
@@ -146,9 +146,7 @@ TEST(YamlCodec, NothingIsAppliedWhenAnythingIsWrong) {
   document.assignments.push_back({find("laps"), 7.0, 1});
   document.assignments.push_back({find("latency_ms"), 900.0, 2});
   Scenario scenario;
-  const Result<void> applied = apply_layers({&document, 1}, scenario);
-  ASSERT_FALSE(applied);
-  EXPECT_THAT(applied.error().message, HasSubstr("f:2: latency_ms"));
+  EXPECT_THAT(test::refusal_of(apply_layers({&document, 1}, scenario)), HasSubstr("f:2: latency_ms"));
   EXPECT_EQ(scenario.laps, Scenario{}.laps);
 }
 
@@ -231,10 +229,9 @@ TEST(YamlCodec, WritesOnlyWhatDiffers) {
 }
 
 TEST(YamlCodec, TheModelFollowsFromThePlantAndWhatIsSetOfItStays) {
-  const Result<Scenario> scenario = load(
+  const Result<Scenario> scenario = test::good(load(
       "plant: double-track\nvehicle: {friction: 0.9}\nplant_params: {mass_kg: 800, drive_force_n: 4000}\n",
-      "f");
-  ASSERT_TRUE(scenario) << scenario.error().message;
+      "f"));
   model::VehicleParams expected = sim::model_of(scenario->plant_params, model::udacity_params());
   EXPECT_EQ(expected.mass, 800.0);
   expected.friction = 0.9;
@@ -260,8 +257,7 @@ TEST(YamlCodec, WritesAPresetThatBuildsOnAnother) {
   EXPECT_EQ(write_preset(changed, base, "Mine"),
             "# Mine\npreset: \"sixty-mph\"\ntrack: \"lakeside\"\ncar: \"udacity\"\nlatency_ms: 50\n"
             "cubic_mpc:\n  horizon_steps: 10\n");
-  const Result<Document> read = parse_document(write_preset(changed, base, "Mine"), "mine.yaml");
-  ASSERT_TRUE(read) << read.error().message;
+  const Result<Document> read = test::good(parse_document(write_preset(changed, base, "Mine"), "mine.yaml"));
   EXPECT_EQ(read->preset, "sixty-mph");
   EXPECT_EQ(read->assignments.size(), 4U);
 }

@@ -12,6 +12,7 @@
 #include "chicane/recording/recorder.hpp"
 #include "chicane/recording/replay.hpp"
 #include "chicane/telemetry/mcap.hpp"
+#include "support/results.hpp"
 #include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 
@@ -100,8 +101,7 @@ class BranchTest : public testing::Test {
 
 TEST_F(BranchTest, WithoutAChangeIsTheSameRunToTheLastBit) {
   record(*short_run(), file_.path(), 200);
-  const auto report = branch(file_, branched_, {.at = 4.0});
-  ASSERT_TRUE(report) << report.error().message;
+  const auto report = test::good(branch(file_, branched_, {.at = 4.0}));
   EXPECT_FALSE(report->first_difference);
   EXPECT_EQ(report->cycle, 100U);
   EXPECT_EQ(report->steps_before, 100U);
@@ -126,17 +126,15 @@ TEST_F(BranchTest, WithoutAChangeIsTheSameRunToTheLastBit) {
 
 TEST_F(BranchTest, WithAChangeGoesOnOtherwiseAndCanBeVerified) {
   record(*short_run(), file_.path(), 200);
-  const auto report = branch(
-      file_, branched_, {.at = 5.0, .settings = {{"tracking_mpc.speed_limit_mps", "6"}}, .duration = 12.0});
-  ASSERT_TRUE(report) << report.error().message;
+  const auto report = test::good(branch(
+      file_, branched_, {.at = 5.0, .settings = {{"tracking_mpc.speed_limit_mps", "6"}}, .duration = 12.0}));
   EXPECT_FALSE(report->first_difference);
   EXPECT_NEAR(report->branched.duration, 12.0, 0.05);
   EXPECT_LT(report->recorded.duration, 3.0) << "to the end of the recording";
   EXPECT_LT(report->branched.mean_speed, report->recorded.mean_speed);
   const auto was = steps_of(file_.path()), is = steps_of(branched_);
   EXPECT_EQ(is.size(), 125U + 301U);
-  const auto verified = verify_recording(branched_);
-  ASSERT_TRUE(verified) << verified.error().message;
+  const auto verified = test::good(verify_recording(branched_));
   EXPECT_TRUE(verified->is_verified()) << verified->first_difference.value_or(0);
 }
 
@@ -146,8 +144,7 @@ TEST_F(BranchTest, OfARunWhoseDeadlinesWereSpentStartsFromTheSameBits) {
   for (const std::string& step : steps_of(file_.path()))
     late += protocol::decode_step(step)->deadline_spent_at > 0;
   EXPECT_GT(late, 0U) << "too fast a machine for this test";
-  const auto report = branch(file_, branched_, {.at = 6.0});
-  ASSERT_TRUE(report) << report.error().message;
+  const auto report = test::good(branch(file_, branched_, {.at = 6.0}));
   EXPECT_FALSE(report->first_difference);
 }
 
@@ -175,13 +172,12 @@ TEST_F(BranchTest, OfARunWithFaultsHasTheSameFaultsAndTakesAnother) {
     }
     ASSERT_TRUE((*recording).finish());
   }
-  const auto same = branch(file_, branched_, {.at = 3.0});
-  ASSERT_TRUE(same) << same.error().message;
+  const auto same = test::good(branch(file_, branched_, {.at = 3.0}));
   EXPECT_FALSE(same->first_difference);
   EXPECT_EQ(same->branched.max_lateral_error, same->recorded.max_lateral_error);
   std::filesystem::remove(branched_);
-  const auto other = branch(file_, branched_, {.at = 3.0, .settings = {{"fault.link_lost", "true"}}});
-  ASSERT_TRUE(other) << other.error().message;
+  const auto other =
+      test::good(branch(file_, branched_, {.at = 3.0, .settings = {{"fault.link_lost", "true"}}}));
   EXPECT_NE(other->branched.mean_speed, other->recorded.mean_speed);
 }
 
@@ -200,8 +196,7 @@ TEST_F(BranchTest, FollowsARunThatStartedAnew) {
     }
     ASSERT_TRUE((*recording).finish());
   }
-  const auto report = branch(file_, branched_, {.at = 3.0});
-  ASSERT_TRUE(report) << report.error().message;
+  const auto report = test::good(branch(file_, branched_, {.at = 3.0}));
   EXPECT_FALSE(report->first_difference);
   EXPECT_EQ(report->cycle, 25U);
   EXPECT_EQ(report->steps_before, 75U);
@@ -218,8 +213,7 @@ TEST_F(BranchTest, SaysWhenTheRecordingDoesNotComeOutTheSame) {
     ++cycle;
   }
   ASSERT_TRUE((*recording).finish());
-  const auto report = branch(file_, branched_, {.at = 1.0});
-  ASSERT_TRUE(report) << report.error().message;
+  const auto report = test::good(branch(file_, branched_, {.at = 1.0}));
   EXPECT_EQ(report->first_difference, 0U);
 }
 
@@ -244,9 +238,8 @@ TEST_F(BranchTest, DrivesBothFuturesOnWhereTheRecordingEnds) {
     distances[step.is_branch].push_back(step.distance);
     speeds[step.is_branch].push_back(step.frame.measurement.speed);
   }};
-  const auto report =
-      branch_recording({.log = file_.path(), .at = 4.0, .more_laps = 1, .drives_both = true}, hooks);
-  ASSERT_TRUE(report) << report.error().message;
+  const auto report = test::good(
+      branch_recording({.log = file_.path(), .at = 4.0, .more_laps = 1, .drives_both = true}, hooks));
   EXPECT_FALSE(report->first_difference);
   EXPECT_DOUBLE_EQ(report->known_until, 199 * 0.04);
   EXPECT_EQ(speeds[false], speeds[true]) << "nothing was changed: the same, to the last bit";
@@ -263,13 +256,12 @@ TEST_F(BranchTest, DrivesBothFuturesOnWhereTheRecordingEnds) {
 
 TEST_F(BranchTest, BeginsWhereTheRecordingEndsAndTellsTheDifference) {
   record(*short_run(), file_.path(), 200);
-  const auto report = branch_recording({.log = file_.path(),
-                                        .at = 1e9,
-                                        .settings = {{"tracking_mpc.speed_limit_mps", "8"}},
-                                        .duration = 10.0,
-                                        .drives_both = true},
-                                       {});
-  ASSERT_TRUE(report) << report.error().message;
+  const auto report = test::good(branch_recording({.log = file_.path(),
+                                                   .at = 1e9,
+                                                   .settings = {{"tracking_mpc.speed_limit_mps", "8"}},
+                                                   .duration = 10.0,
+                                                   .drives_both = true},
+                                                  {}));
   EXPECT_EQ(report->cycle, 200U);
   EXPECT_NEAR(report->recorded.duration, 10.0, 0.05);
   EXPECT_NEAR(report->branched.duration, 10.0, 0.05);
@@ -279,9 +271,8 @@ TEST_F(BranchTest, BeginsWhereTheRecordingEndsAndTellsTheDifference) {
 TEST_F(BranchTest, EndsWhenNobodyWantsItAnyMore) {
   record(*short_run(), file_.path(), 50);
   const BranchHooks hooks{.go_on = [](double time) { return time < 1.0; }};
-  const auto report = branch_recording({.log = file_.path(), .at = 0.5, .duration = 100.0}, hooks);
-  ASSERT_FALSE(report);
-  EXPECT_THAT(report.error().message, HasSubstr("given up"));
+  EXPECT_THAT(test::refusal_of(branch_recording({.log = file_.path(), .at = 0.5, .duration = 100.0}, hooks)),
+              HasSubstr("given up"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "chicane/recording/detail/ros_message.hpp"
 #include "recording/recorded_run.hpp"
+#include "support/results.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {
@@ -19,8 +20,7 @@ using testing::HasSubstr;
 TEST(DrivenRun, HoldsWhatWasRecorded) {
   const TemporaryFile file;
   const std::vector<telemetry::Frame> frames = record_run(file.path(), "oval", "1");
-  const auto run = read_run(file.path());
-  ASSERT_TRUE(run) << run.error().message;
+  const auto run = test::good(read_run(file.path()));
   EXPECT_EQ(run->track, "oval");
   EXPECT_GT(run->left.size(), 100U);
   EXPECT_EQ(run->left.size(), run->right.size());
@@ -47,10 +47,9 @@ TEST(DrivenRun, SaysWhatIsNoRecording) {
 }
 
 TEST(RosReader, ReadsNestedMessagesArraysAndTexts) {
-  const auto reader = RosReader::create(
+  const auto reader = test::good(RosReader::create(
       "# a comment\nuint8 KIND=3\nbool flag\nfloat64 x # with unit\na_msgs/Point[] points\nstring name\n"
-      "float64[2] pair\n================\nMSG: a_msgs/Point\nint32 i\nfloat64 y\n");
-  ASSERT_TRUE(reader) << reader.error().message;
+      "float64[2] pair\n================\nMSG: a_msgs/Point\nint32 i\nfloat64 y\n"));
   std::string bytes{"\0\1\0\0", 4};
   const auto add = [&](auto value, std::size_t padding) {
     bytes.append(padding, '\0');
@@ -67,8 +66,7 @@ TEST(RosReader, ReadsNestedMessagesArraysAndTexts) {
   bytes.append("hi\0", 3);
   add(1.0, 1);
   add(2.0, 0);
-  const auto content = reader->read(bytes);
-  ASSERT_TRUE(content) << content.error().message;
+  const auto content = test::good(reader->read(bytes));
   EXPECT_EQ(content->number("flag"), 1.0);
   EXPECT_EQ(content->number("x"), 2.5);
   EXPECT_THAT(content->list("points.i"), testing::ElementsAre(-1.0, 5.0));
@@ -81,14 +79,10 @@ TEST(RosReader, ReadsNestedMessagesArraysAndTexts) {
 }
 
 TEST(RosReader, RefusesDefinitionsWithHolesAndCountsBeyondReason) {
-  const auto hole = RosReader::create("b_msgs/Missing[] all\n");
-  ASSERT_FALSE(hole);
-  EXPECT_THAT(hole.error().message, HasSubstr("b_msgs/Missing"));
-  const auto reader = RosReader::create("float64[] x\n");
-  ASSERT_TRUE(reader);
+  EXPECT_THAT(test::refusal_of(RosReader::create("b_msgs/Missing[] all\n")), HasSubstr("b_msgs/Missing"));
+  const auto reader = test::good(RosReader::create("float64[] x\n"));
   EXPECT_FALSE(reader->read(std::string("\0\1\0\0\xff\xff\xff\xff", 8)));
-  const auto endless = RosReader::create("c_msgs/A a\n===\nMSG: c_msgs/A\nc_msgs/A a\n");
-  ASSERT_TRUE(endless);
+  const auto endless = test::good(RosReader::create("c_msgs/A a\n===\nMSG: c_msgs/A\nc_msgs/A a\n"));
   EXPECT_FALSE(endless->read(std::string("\0\1\0\0", 4))) << "a message within itself ends somewhere";
 }
 

@@ -10,6 +10,7 @@
 #include "chicane/recording/replay.hpp"
 #include "chicane/telemetry/mcap.hpp"
 #include "recording/recorded_run.hpp"
+#include "support/results.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {
@@ -32,8 +33,7 @@ std::string step(double time, std::int32_t rung) {
 
 /// Ten seconds of two topics, one of them not drawn; `is_closed`: as it should be.
 void write_log(const std::string& path, bool is_closed = true) {
-  auto writer = telemetry::McapWriter::create(path, "test");
-  ASSERT_TRUE(writer);
+  auto writer = test::good(telemetry::McapWriter::create(path, "test"));
   ASSERT_TRUE((*writer)->add_metadata("run", {{"track", "lakeside"}}));
   const std::uint16_t frame = (*writer)->add_channel("/chicane/frame", "chicane_msgs/msg/Frame", kStep);
   const std::uint16_t other = (*writer)->add_channel("/odom", "nav_msgs/msg/Odometry", "bool a\n");
@@ -107,20 +107,17 @@ TEST_F(ReportTest, IndexedCopyHoldsEverything) {
 
 TEST_F(ReportTest, IndexedCopyGivesARecordingThatWasNotClosedAnEnd) {
   write_log(log_.path(), false);
-  const auto before = telemetry::read_mcap(log_.path(), {});
-  ASSERT_TRUE(before);
+  const auto before = test::good(telemetry::read_mcap(log_.path(), {}));
   EXPECT_FALSE(before->is_complete);
   ASSERT_TRUE(indexed_copy(log_.path(), copy_));
-  const auto after = telemetry::read_mcap(copy_, {});
-  ASSERT_TRUE(after);
+  const auto after = test::good(telemetry::read_mcap(copy_, {}));
   EXPECT_TRUE(after->is_complete);
   EXPECT_EQ(after->messages, before->messages);
 }
 
 TEST_F(ReportTest, IsOnePageThatAsksForNothing) {
   write_log(log_.path());
-  const auto written = write("run.mcap");
-  ASSERT_TRUE(written) << written.error().message;
+  const auto written = test::good(write("run.mcap"));
   EXPECT_EQ(written->rate, 20.0);
   EXPECT_NEAR(static_cast<double>(written->bytes), static_cast<double>(page().size()), 300.0);
   const json document = data();
@@ -141,8 +138,7 @@ TEST_F(ReportTest, IsOnePageThatAsksForNothing) {
 
 TEST_F(ReportTest, OfThreeLapsIsSmallAndHasTheirTimes) {
   record_run(log_.path(), "lakeside", "3");  // about 87 s
-  const auto written = write("run.mcap");
-  ASSERT_TRUE(written) << written.error().message;
+  const auto written = test::good(write("run.mcap"));
   // The page's own script and style come to less than 100 kB more: together at most 800 kB.
   EXPECT_LE(written->bytes, 700'000U);
   const json document = data();
@@ -167,8 +163,7 @@ TEST_F(ReportTest, NamesCannotBreakOutOfTheScript) {
 
 TEST_F(ReportTest, DocumentsAreInThePageAsTheyAre) {
   const std::string text = R"({"title":"a & </script><script>alert(1)</script><!--"})";
-  const auto bytes = write_document(page_, text, {.script = "script", .style = "style"});
-  ASSERT_TRUE(bytes) << bytes.error().message;
+  const auto bytes = test::good(write_document(page_, text, {.script = "script", .style = "style"}));
   EXPECT_EQ(*bytes, page().size());
   EXPECT_EQ(data(), json::parse(text));
   EXPECT_EQ(page().find("alert(1)</script>"), std::string::npos);
@@ -177,21 +172,18 @@ TEST_F(ReportTest, DocumentsAreInThePageAsTheyAre) {
 
 TEST_F(ReportTest, KeepsLessWhereThereIsMuchAndRefusesTooMuch) {
   write_log(log_.path());
-  const auto less = write("run.mcap", 15'000);
-  ASSERT_TRUE(less) << less.error().message;
+  const auto less = test::good(write("run.mcap", 15'000));
   EXPECT_EQ(less->rate, 10.0);
-  const auto none = write("run.mcap", 1'000);
-  ASSERT_FALSE(none);
-  EXPECT_THAT(none.error().message, HasSubstr("at one control step a second, expected shorter or fewer"));
+  EXPECT_THAT(test::refusal_of(write("run.mcap", 1'000)),
+              HasSubstr("at one control step a second, expected shorter or fewer"));
 }
 
 TEST_F(ReportTest, SaysWhatIsMissing) {
   const auto unreadable = write("run.mcap");
   ASSERT_FALSE(unreadable);
   EXPECT_EQ(unreadable.error().code, ErrorCode::kIo);
-  const auto without = write_report({.output = page_, .logs = {}, .bundle = {}});
-  ASSERT_FALSE(without);
-  EXPECT_THAT(without.error().message, HasSubstr("has no dashboard"));
+  EXPECT_THAT(test::refusal_of(write_report({.output = page_, .logs = {}, .bundle = {}})),
+              HasSubstr("has no dashboard"));
   write_log(log_.path());
   page_ = "/no/such/folder/page.html";
   EXPECT_FALSE(write("run.mcap"));

@@ -16,6 +16,7 @@
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/telemetry/mcap.hpp"
 #include "support/own_controller.hpp"
+#include "support/results.hpp"
 #include "support/roads.hpp"
 #include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
@@ -63,8 +64,7 @@ TEST_P(RecordedController, ComesOutTheSameToTheLastBit) {
     const RecorderReport recorded = record(*loop, file.path());
     EXPECT_GT(recorded.frames, 100U);
     EXPECT_EQ(recorded.left_out, 0U);
-    const Result<ReplayReport> replayed = verify_recording(file.path());
-    ASSERT_TRUE(replayed) << replayed.error().message;
+    const Result<ReplayReport> replayed = test::good(verify_recording(file.path()));
     EXPECT_TRUE(replayed->is_verified()) << car << " " << replayed->first_difference.value_or(0);
     EXPECT_EQ(replayed->steps, recorded.frames);
     EXPECT_TRUE(replayed->is_complete);
@@ -86,11 +86,10 @@ TEST(Replay, IsByTheControllerAndOnTheTrackOfOnesOwn) {
   parts.track = [](const scenario::Scenario&) -> Result<road::Track> {
     return test::circle_road(80.0, 50, 5.0, 5.0);
   };
-  const auto loop = run::ClosedLoop::create(test::scenario_of({{"laps", "0"}, {"time_limit_s", "8"}}), parts);
-  ASSERT_TRUE(loop) << loop.error().message;
+  const auto loop =
+      test::good(run::ClosedLoop::create(test::scenario_of({{"laps", "0"}, {"time_limit_s", "8"}}), parts));
   EXPECT_EQ(record(**loop, file.path()).frames, 200U);
-  const Result<ReplayReport> replayed = verify_recording(file.path(), parts);
-  ASSERT_TRUE(replayed) << replayed.error().message;
+  const Result<ReplayReport> replayed = test::good(verify_recording(file.path(), parts));
   EXPECT_TRUE(replayed->is_verified()) << replayed->first_difference.value_or(0);
   EXPECT_FALSE(verify_recording(file.path())->is_verified());
 }
@@ -103,8 +102,7 @@ TEST(Recorder, HasARunThatIdentifiesItsCar) {
       {.fault = *sim::fault_named("steering_offset"), .at = 0.0, .duration = 60.0, .strength = 2.0});
   const RecorderReport recorded = record(*loop, file.path());
   EXPECT_GT(loop->summary().learned.offset.value, degrees_to_radians(1.0));
-  const Result<ReplayReport> replayed = verify_recording(file.path());
-  ASSERT_TRUE(replayed) << replayed.error().message;
+  const Result<ReplayReport> replayed = test::good(verify_recording(file.path()));
   EXPECT_EQ(replayed->identical, recorded.frames);
   EXPECT_EQ(replayed->different, 0U);
 }
@@ -121,8 +119,7 @@ TEST(Recorder, HasARaceWithALearnedRoadAndGrip) {
                                  {"laps", "4"},
                                  {"time_limit_s", "45"}});
     const RecorderReport recorded = record(*loop, file.path());
-    const Result<ReplayReport> replayed = verify_recording(file.path());
-    ASSERT_TRUE(replayed) << replayed.error().message;
+    const Result<ReplayReport> replayed = test::good(verify_recording(file.path()));
     EXPECT_EQ(replayed->identical, recorded.frames) << road;
     EXPECT_EQ(replayed->different, 0U) << road;
   }
@@ -166,8 +163,7 @@ TEST(Replay, ARecordingWithoutStepsIsRefusedInWords) {
 /// Writes the recording anew, with the step messages as `change` leaves them; it may return false: left out.
 template <class Change>
 void rewrite(const std::string& from, const std::string& to, Change change) {
-  const auto writer = telemetry::McapWriter::create(to, "test");
-  ASSERT_TRUE(writer);
+  const auto writer = test::good(telemetry::McapWriter::create(to, "test"));
   const std::uint16_t channel = (*writer)->add_channel("/chicane/step", "chicane_msgs/msg/Step", "");
   const auto read = telemetry::read_mcap(
       from, {.on_message =
@@ -227,8 +223,7 @@ TEST(Replay, RefusesARecordingOfOthersInWords) {
 TEST(Recorder, HoldsEveryTopicAndTimesThatNeverGoBackWhenTheRunStartsAnew) {
   const TemporaryFile file;
   const auto loop = short_run({{"controller", "pid"}});
-  auto recorder = Recorder::create(recording(*loop, file.path()));
-  ASSERT_TRUE(recorder);
+  auto recorder = test::good(Recorder::create(recording(*loop, file.path())));
   for (int run = 0; run < 2; ++run) {
     for (int cycle = 0; cycle < 30;) {
       if (!loop->advance()) continue;
@@ -255,8 +250,7 @@ TEST(Recorder, HoldsEveryTopicAndTimesThatNeverGoBackWhenTheRunStartsAnew) {
     EXPECT_EQ(counts[std::string(topic.name)], topic.cadence == kFrame ? 60 : is_rare ? 0 : 1) << topic.name;
   }
   EXPECT_EQ(counts["/chicane/step"], 60);
-  const Result<ReplayReport> replayed = verify_recording(file.path());
-  ASSERT_TRUE(replayed);
+  const Result<ReplayReport> replayed = test::good(verify_recording(file.path()));
   EXPECT_TRUE(replayed->is_verified());
 }
 
@@ -268,22 +262,19 @@ TEST(Recorder, RecordsFaultsSoThatTheyComeOutTheSame) {
         sim::default_event(*sim::fault_named(name), 0.5 + static_cast<double>(scenario.faults.size())));
   }
   const auto loop = test::loop_of(scenario);
-  auto recorder = Recorder::create(recording(*loop, file.path()));
-  ASSERT_TRUE(recorder);
+  auto recorder = test::good(Recorder::create(recording(*loop, file.path())));
   while (loop->time() < 4.0) {
     if (loop->advance()) (*recorder)->record(loop->frame());
   }
   ASSERT_TRUE((*recorder)->finish());
-  const Result<ReplayReport> replayed = verify_recording(file.path());
-  ASSERT_TRUE(replayed) << replayed.error().message;
+  const Result<ReplayReport> replayed = test::good(verify_recording(file.path()));
   EXPECT_TRUE(replayed->is_verified()) << replayed->different << " differ";
 }
 
 TEST(Recorder, WritesEachLapOnce) {
   const TemporaryFile file;
   const auto loop = short_run({{"controller", "pid"}});
-  auto recorder = Recorder::create(recording(*loop, file.path()));
-  ASSERT_TRUE(recorder);
+  auto recorder = test::good(Recorder::create(recording(*loop, file.path())));
   while (!loop->advance()) {
   }
   telemetry::Frame frame = loop->frame();
@@ -318,14 +309,12 @@ TEST(Recorder, LeavesFramesOutRatherThanLetTheRunWait) {
   const auto loop = short_run({{"controller", "pid"}});
   RecorderOptions options = recording(*loop, file.path());
   options.may_wait = false;
-  auto recorder = Recorder::create(std::move(options));
-  ASSERT_TRUE(recorder);
+  auto recorder = test::good(Recorder::create(std::move(options)));
   while (!loop->advance()) {
   }
   constexpr std::uint64_t kFrames = 5000;
   for (std::uint64_t i = 0; i < kFrames; ++i) (*recorder)->record(loop->frame());
-  const Result<RecorderReport> report = (*recorder)->finish();
-  ASSERT_TRUE(report);
+  const Result<RecorderReport> report = test::good((*recorder)->finish());
   EXPECT_EQ(report->frames + report->left_out, kFrames);
 }
 

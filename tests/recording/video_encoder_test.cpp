@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/recording/video_encoder.hpp"
+#include "support/results.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -66,8 +67,7 @@ TEST(VideoEncoder, SaysWhichPackageHasFfmpegWhereItIsMissing) {
 
 TEST(VideoEncoder, GivesEveryByteToTheProgram) {
   const OtherPath path("for last; do :; done; cat > \"${last#file:}\"\n");
-  auto encoder = VideoEncoder::start({.output = path.file("a.gif"), .width = 4, .height = 2});
-  ASSERT_TRUE(encoder) << encoder.error().message;
+  auto encoder = test::good(VideoEncoder::start({.output = path.file("a.gif"), .width = 4, .height = 2}));
   const std::vector<std::uint8_t> picture(24, 'x');
   for (int i = 0; i < 1000; ++i) ASSERT_TRUE(encoder->add(picture));
   ASSERT_TRUE(encoder->finish());
@@ -76,8 +76,7 @@ TEST(VideoEncoder, GivesEveryByteToTheProgram) {
 
 TEST(VideoEncoder, AProgramThatFailsLeavesNoFile) {
   const OtherPath path("for last; do :; done; echo half > \"${last#file:}\"; exit 1\n");
-  auto encoder = VideoEncoder::start({.output = path.file("a.gif")});
-  ASSERT_TRUE(encoder);
+  auto encoder = test::good(VideoEncoder::start({.output = path.file("a.gif")}));
   const std::vector<std::uint8_t> picture(1 << 16, 'x');
   Result<void> added;
   for (int i = 0; i < 1000 && added; ++i) added = encoder->add(picture);
@@ -89,8 +88,7 @@ TEST(VideoEncoder, AProgramThatFailsLeavesNoFile) {
 TEST(VideoEncoder, WhatIsNotFinishedIsRemoved) {
   const OtherPath path("for last; do :; done; cat > \"${last#file:}\"\n");
   {
-    auto encoder = VideoEncoder::start({.output = path.file("a.gif")});
-    ASSERT_TRUE(encoder);
+    auto encoder = test::good(VideoEncoder::start({.output = path.file("a.gif")}));
     const std::vector<std::uint8_t> picture(100, 'x');
     ASSERT_TRUE(encoder->add(picture));
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "chicane/base/math.hpp"
+#include "support/results.hpp"
 
 namespace chicane::survey {
 namespace {
@@ -25,8 +26,7 @@ Cones ring() {
 }
 
 TEST(ConeLine, IsBetweenTheTwoSidesWithBlueOnTheLeft) {
-  const auto road = line_between(ring());
-  ASSERT_TRUE(road) << road.error().message;
+  const auto road = test::good(line_between(ring()));
   EXPECT_TRUE(road->is_closed);
   EXPECT_TRUE(road->gaps.empty());
   EXPECT_NEAR(road->median_width, 4.0, 0.2);
@@ -41,8 +41,7 @@ TEST(ConeLine, IsBetweenTheTwoSidesWithBlueOnTheLeft) {
 TEST(ConeLine, OtherColoursGoTheOtherWayRound) {
   Cones cones = ring();
   std::swap(cones.left, cones.right);
-  const auto road = line_between(cones);
-  ASSERT_TRUE(road) << road.error().message;
+  const auto road = test::good(line_between(cones));
   const Vec2 along = road->points[1].position - road->points[0].position;
   EXPECT_LT(road->points[0].position.x() * along.y() - road->points[0].position.y() * along.x(), 0.0);
 }
@@ -67,8 +66,7 @@ TEST(ConeLine, RefusesASkidpad) {
 TEST(ConeLine, MissingConesAreNamedAndBridged) {
   Cones cones = ring();
   cones.left.erase(cones.left.begin() + 7, cones.left.begin() + 9);
-  const auto road = line_between(cones);
-  ASSERT_TRUE(road) << road.error().message;
+  const auto road = test::good(line_between(cones));
   ASSERT_EQ(road->gaps.size(), 1U);
   EXPECT_TRUE(road->gaps[0].is_left);
   EXPECT_NEAR(road->gaps[0].length, 2.0 * 18.0 * std::sin(0.5 * kTwoPi / 10.0), 1e-9);
@@ -80,8 +78,7 @@ TEST(ConeLine, OrangeConesBelongToTheNearerSide) {
   cones.either = {cones.left[3], cones.right[3]};
   cones.left.erase(cones.left.begin() + 3);
   cones.right.erase(cones.right.begin() + 3);
-  const auto road = line_between(cones);
-  ASSERT_TRUE(road) << road.error().message;
+  const auto road = test::good(line_between(cones));
   EXPECT_TRUE(road->gaps.empty());
 }
 
@@ -91,8 +88,7 @@ TEST(ConeLine, AStraightCourseIsOpen) {
     cones.left.push_back({5.0 * i, 1.5});
     cones.right.push_back({5.0 * i, -1.5});
   }
-  const auto road = line_between(cones);
-  ASSERT_TRUE(road) << road.error().message;
+  const auto road = test::good(line_between(cones));
   EXPECT_FALSE(road->is_closed);
   EXPECT_NEAR(road->points.front().position.y(), 0.0, 0.1);
   EXPECT_LT(road->points.front().position.x(), road->points.back().position.x()) << "blue is left";

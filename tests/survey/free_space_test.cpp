@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chicane/base/math.hpp"
+#include "support/results.hpp"
 
 namespace chicane::survey {
 namespace {
@@ -61,8 +62,7 @@ void expect_ring(const FreeLoop& loop, double width, double tolerance) {
 TEST(FreeSpace, TheLoopIsInTheMiddleOfTheRing) {
   // Edges are known to a cell.
   for (const double width : {1.0, 2.4}) {
-    const auto loop = find_loop(ring(width), {});
-    ASSERT_TRUE(loop) << loop.error().message;
+    const auto loop = test::good(find_loop(ring(width), {}));
     expect_ring(*loop, width, 0.05);
     EXPECT_NEAR(loop->median_width, width - 0.05, 0.06) << "between the tips of the cells";
   }
@@ -105,16 +105,14 @@ TEST(FreeSpace, TheRoadWidensAsItNarrowsAlongABay) {
 }
 
 TEST(FreeSpace, CoarseAndFineCellsAndATurnedMapGiveTheSameRoad) {
-  const auto coarse = find_loop(ring(2.0, 0.1), {});
-  ASSERT_TRUE(coarse) << coarse.error().message;
+  const auto coarse = test::good(find_loop(ring(2.0, 0.1), {}));
   expect_ring(*coarse, 2.0, 0.1);
   FreeSpace turned = ring(2.0, 0.05);
   turned.yaw = 0.7;
   turned.origin = turned.origin - (turned.to_world(turned.to_cells({0.0, 0.0})) - Vec2{0.0, 0.0});
   const Vec2 middle = turned.to_world({0.5 * turned.width, 0.5 * turned.height});
   turned.origin -= middle;
-  const auto other = find_loop(turned, {});
-  ASSERT_TRUE(other) << other.error().message;
+  const auto other = test::good(find_loop(turned, {}));
   expect_ring(*other, 2.0, 0.05);
 }
 
@@ -122,8 +120,7 @@ TEST(FreeSpace, SmallSpotsOnTheRoadAreNoiseAndSaidSo) {
   FreeSpace space = ring(2.0);
   paint(space, {3.9, -0.1}, {4.0, 0.0}, Cell::kWall);
   paint(space, {-4.1, 0.2}, {-4.0, 0.3}, Cell::kUnknown);
-  const auto loop = find_loop(space, {});
-  ASSERT_TRUE(loop) << loop.error().message;
+  const auto loop = test::good(find_loop(space, {}));
   EXPECT_EQ(loop->spots, 2);
   expect_ring(*loop, 2.0, 0.05);
 }

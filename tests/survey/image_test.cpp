@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/survey/image.hpp"
+#include "support/results.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,20 +14,17 @@ namespace {
 constexpr std::string_view kText = "P2\n# made by hand\n3 2 255\n0 205 254\n254 254 0\n";
 
 TEST(Image, ReadsTextBinaryAndPngAlike) {
-  const auto text = read_image(kText, "m.pgm");
-  ASSERT_TRUE(text) << text.error().message;
+  const auto text = test::good(read_image(kText, "m.pgm"));
   using namespace std::string_view_literals;
-  const auto binary = read_image("P5 3 2 255\n\0\xcd\xfe\xfe\xfe\0"sv, "m.pgm");
-  ASSERT_TRUE(binary) << binary.error().message;
+  const auto binary = test::good(read_image("P5 3 2 255\n\0\xcd\xfe\xfe\xfe\0"sv, "m.pgm"));
   EXPECT_EQ(text->values, binary->values);
   // The same six values as an 8-bit grey PNG, by Python's zlib.
-  const auto png = read_image(
-      "\211\120\116\107\015\012\032\012\000\000\000\015\111\110\104\122\000\000\000\003"
-      "\000\000\000\002\010\000\000\000\000\270\037\071\306\000\000\000\020\111\104\101"
-      "\124\170\234\143\140\070\373\217\341\337\077\006\000\016\302\003\310\016\266\251"
-      "\064\000\000\000\000\111\105\116\104\256\102\140\202"sv,
-      "m.png");
-  ASSERT_TRUE(png) << png.error().message;
+  const auto png =
+      test::good(read_image("\211\120\116\107\015\012\032\012\000\000\000\015\111\110\104\122\000\000\000\003"
+                            "\000\000\000\002\010\000\000\000\000\270\037\071\306\000\000\000\020\111\104\101"
+                            "\124\170\234\143\140\070\373\217\341\337\077\006\000\016\302\003\310\016\266\251"
+                            "\064\000\000\000\000\111\105\116\104\256\102\140\202"sv,
+                            "m.png"));
   EXPECT_EQ(png->values, text->values);
 }
 

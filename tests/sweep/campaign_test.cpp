@@ -15,6 +15,7 @@
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/trial.hpp"
 #include "support/folder.hpp"
+#include "support/results.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -70,11 +71,9 @@ TEST_F(CampaignTest, TriesFaultsAndPairsForEachDuration) {
   Campaign other = campaign_;
   other.seed = 2;
   EXPECT_NE(plan.hash(), plan_of(other).hash()) << "other moments";
-  const auto done = drive("a.jsonl");
-  ASSERT_TRUE(done) << done.error().message;
+  const auto done = test::good(drive("a.jsonl"));
   EXPECT_TRUE(done->is_complete());
-  const auto groups = groups_of("a.jsonl");
-  ASSERT_TRUE(groups) << groups.error().message;
+  const auto groups = test::good(groups_of("a.jsonl"));
   ASSERT_EQ(groups->size(), 12U);
   for (const CampaignGroup& group : *groups) {
     ASSERT_EQ(group.trials.size(), 2U);
@@ -88,25 +87,20 @@ TEST_F(CampaignTest, TriesFaultsAndPairsForEachDuration) {
 TEST_F(CampaignTest, WritesTheSameFileWhenItIsStoppedAndGoesOn) {
   campaign_.presets = {"pid"};
   ASSERT_TRUE(drive("whole.jsonl"));
-  const auto part = drive("parts.jsonl", 3, 1);
-  ASSERT_TRUE(part);
+  const auto part = test::good(drive("parts.jsonl", 3, 1));
   EXPECT_FALSE(part->is_complete());
   std::ofstream(path("parts.jsonl"), std::ios::app) << "{\"run\":4,\"sett";  // a process that was killed
-  const auto rest = drive("parts.jsonl", 1000, 1);
-  ASSERT_TRUE(rest) << rest.error().message;
+  const auto rest = test::good(drive("parts.jsonl", 1000, 1));
   EXPECT_TRUE(rest->is_complete());
   EXPECT_EQ(rest->found, part->driven);
   EXPECT_EQ(content("whole.jsonl"), content("parts.jsonl"));
   campaign_.seed = 7;
-  const auto other = drive("parts.jsonl");
-  ASSERT_FALSE(other) << "results of another campaign are completed";
-  EXPECT_THAT(other.error().message, HasSubstr("the plan"));
+  EXPECT_THAT(test::refusal_of(drive("parts.jsonl")), HasSubstr("the plan"));
 }
 
 TEST_F(CampaignTest, TellsTheRunThatRepeatsATrial) {
   ASSERT_TRUE(drive("a.jsonl"));
-  const auto groups = groups_of("a.jsonl");
-  ASSERT_TRUE(groups);
+  const auto groups = test::good(groups_of("a.jsonl"));
   int repeated = 0;
   run::Roads roads;
   const std::atomic<bool> stop{false};
@@ -135,8 +129,7 @@ TEST_F(CampaignTest, TellsWhereTheCarLeavesTheRoadWithoutAnyFault) {
   campaign_.settings.emplace_back("pid.lateral_acceleration_limit_mps2", "11");
   campaign_.settings.emplace_back("pid.proportional_gain", "0.03");
   ASSERT_TRUE(drive("a.jsonl"));
-  const auto groups = groups_of("a.jsonl");
-  ASSERT_TRUE(groups);
+  const auto groups = test::good(groups_of("a.jsonl"));
   ASSERT_EQ(groups->size(), 1U);
   int anyway = 0;
   for (const CampaignTrial& trial : (*groups)[0].trials) anyway += trial.is_off_anyway ? 1 : 0;
@@ -151,12 +144,10 @@ TEST_F(CampaignTest, GoesOnPastAPlaceThatCannotBeDriven) {
   campaign_.presets = {"default"};
   campaign_.has_pairs = false;
   campaign_.durations = {1.0};
-  const auto done = drive("a.jsonl");
-  ASSERT_TRUE(done);
+  const auto done = test::good(drive("a.jsonl"));
   EXPECT_TRUE(done->is_complete());
   EXPECT_EQ(done->failed, 2U);
-  const auto groups = groups_of("a.jsonl");
-  ASSERT_TRUE(groups);
+  const auto groups = test::good(groups_of("a.jsonl"));
   EXPECT_THAT((*groups)[0].error, HasSubstr("nowhere"));
   EXPECT_EQ((*groups)[2].trials.size(), 2U);
 }

@@ -10,6 +10,7 @@
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/sweep/sweep.hpp"
+#include "support/results.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -42,8 +43,7 @@ protocol::Json run(double top, double lap, bool is_clean = true) {
 }
 
 TEST(Claim, HoldsWhenAllItsConditionsDo) {
-  const auto claims = parse_claims(kClaims, "c.yaml");
-  ASSERT_TRUE(claims) << claims.error().message;
+  const auto claims = test::good(parse_claims(kClaims, "c.yaml"));
   ASSERT_EQ(claims->size(), 2U);
   const Claim& claim = claims->front();
   EXPECT_TRUE(claim.is_tried());
@@ -61,7 +61,7 @@ TEST(Claim, HoldsWhenAllItsConditionsDo) {
 }
 
 TEST(Claim, AnOptimumIsComparedWithEveryCleanPointOfItsGrid) {
-  const auto claims = parse_claims(R"(
+  const auto claims = test::good(parse_claims(R"(
 claims:
   - id: A9
     says: 20 steps are best
@@ -70,8 +70,7 @@ claims:
     true_when: ["own.lap_time_s < each.lap_time_s * 1.02"]
     shows: [lap_time_s]
 )",
-                                   "c.yaml");
-  ASSERT_TRUE(claims) << claims.error().message;
+                                              "c.yaml"));
   const Claim& claim = claims->front();
   ASSERT_EQ(claim.cases.size(), 5U);
   EXPECT_EQ(claim.grid_size, 4U);
@@ -130,9 +129,8 @@ TEST(Claim, AllStatementsAreThere) {
   for (const auto& entry : std::filesystem::directory_iterator(CHICANE_SOURCE_DIR "/studies/claims")) {
     const std::string file = entry.path().string();
     if (entry.is_directory()) continue;
-    const auto claims = parse_claims(protocol::read_file(file).value(), file,
-                                     protocol::read_file(quotations_file(file)).value_or(""));
-    ASSERT_TRUE(claims) << claims.error().message;
+    const auto claims = test::good(parse_claims(protocol::read_file(file).value(), file,
+                                                protocol::read_file(quotations_file(file)).value_or("")));
     for (const Claim& claim : *claims) {
       if (!claim.quotes.empty()) ++quoted;
       EXPECT_TRUE(ids.insert(claim.id).second) << claim.id;

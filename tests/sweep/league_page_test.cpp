@@ -11,6 +11,7 @@
 #include "chicane/sweep/league.hpp"
 #include "chicane/sweep/sweep.hpp"
 #include "support/folder.hpp"
+#include "support/results.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -124,8 +125,7 @@ TEST_F(LeagueFiles, TablesForOtherProgramsHaveARowForEachRun) {
 TEST_F(LeagueFiles, TheFileBesideKnowsWhatIsDone) {
   static_cast<void>(driven(clean_run()));
   const auto trials = league_.external_trials();
-  const auto again = BesideFile::open(path("b.jsonl"), league_);
-  ASSERT_TRUE(again);
+  const auto again = test::good(BesideFile::open(path("b.jsonl"), league_));
   EXPECT_TRUE(again->has_bound("oval", "udacity"));
   EXPECT_FALSE(again->has_bound("oval", "road-car"));
   EXPECT_TRUE(again->has_trial(trials[0]));
@@ -144,14 +144,12 @@ TEST_F(LeagueFiles, TrialsStayWhenAnotherProgramsCommandChanges) {
   const std::string before = league_.externals[0].command;
   league_.externals[0].command = "./another {port}";
   {
-    const auto changed = BesideFile::open(path("b.jsonl"), league_);
-    ASSERT_TRUE(changed);
+    const auto changed = test::good(BesideFile::open(path("b.jsonl"), league_));
     EXPECT_FALSE(changed->has_trial(league_.external_trials()[0]));
     EXPECT_TRUE(changed->has_trial(league_.external_trials()[2]));
     EXPECT_TRUE(changed->has_bound("oval", "udacity"));
   }
-  const auto results = read_results(league_, path("r.jsonl"), path("b.jsonl"));
-  ASSERT_TRUE(results);
+  const auto results = test::good(read_results(league_, path("r.jsonl"), path("b.jsonl")));
   EXPECT_EQ(results->cells[2].why, "not driven yet") << "the trial was of another command";
   EXPECT_TRUE(results->cells[4].is_clean);
   league_.externals[0].command = before;
@@ -174,8 +172,7 @@ TEST_F(LeagueFiles, MissingRunsAreCounted) {
   std::atomic<bool> stop{false};
   options.on_progress = [&](const Progress&) { stop = true; };
   ASSERT_TRUE(drive_plan(league_.plan, {}, options, stop));
-  const auto results = read_results(league_, path("r.jsonl"), path("none.jsonl"));
-  ASSERT_TRUE(results);
+  const auto results = test::good(read_results(league_, path("r.jsonl"), path("none.jsonl")));
   EXPECT_EQ(results->missing, 1U);
   EXPECT_EQ(results->cells[1].why, "not driven yet");
   EXPECT_THAT(league_markdown(league_, *results), HasSubstr("1 of them not driven yet"));

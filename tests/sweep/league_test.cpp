@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sweep/league.hpp"
+#include "support/results.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -30,8 +31,7 @@ std::string league_fault(const std::string& text) {
 }
 
 TEST(League, IsAPlanOfEntriesTracksCarsAndDisturbances) {
-  const auto league = parse_league(kLeague, "l.yaml");
-  ASSERT_TRUE(league) << league.error().message;
+  const auto league = test::good(parse_league(kLeague, "l.yaml"));
   EXPECT_EQ(league->plan.size(), 2U * 2U * 1U * 3U);
   EXPECT_THAT(league->plan.at(1), ElementsAre(Pair("entry", "mine"), Pair("track", "lakeside"),
                                               Pair("car", "udacity"), Pair("disturbance", "late")));
@@ -44,8 +44,7 @@ TEST(League, IsAPlanOfEntriesTracksCarsAndDisturbances) {
 }
 
 TEST(League, ProgramsAreTriedWhereTheySay) {
-  const auto league = parse_league(kLeague, "l.yaml");
-  ASSERT_TRUE(league);
+  const auto league = test::good(parse_league(kLeague, "l.yaml"));
   const auto trials = league->external_trials();
   ASSERT_EQ(trials.size(), 3U) << "one track, one car, three disturbances";
   EXPECT_EQ(trials[0].entry, "theirs");
@@ -56,8 +55,7 @@ TEST(League, ProgramsAreTriedWhereTheySay) {
 }
 
 TEST(League, ACommandWithoutAPlaceForLatencyIsNotTriedWithIt) {
-  auto league = parse_league(kLeague, "l.yaml");
-  ASSERT_TRUE(league);
+  auto league = test::good(parse_league(kLeague, "l.yaml"));
   add_external(*league, "{chicane} serve");
   const auto trials = league->external_trials();
   ASSERT_EQ(trials.size(), 3U + 6U);
@@ -68,8 +66,7 @@ TEST(League, ACommandWithoutAPlaceForLatencyIsNotTriedWithIt) {
 }
 
 TEST(League, ARosControllerIsTheOneWithAPlaceForTheDomain) {
-  auto league = parse_league(kLeague, "l.yaml");
-  ASSERT_TRUE(league);
+  auto league = test::good(parse_league(kLeague, "l.yaml"));
   add_external(*league, "./follow {domain}");
   const auto trials = league->external_trials();
   ASSERT_GT(trials.size(), 4U);
@@ -101,8 +98,7 @@ teams: 1
 }
 
 TEST(League, TheShippedOneIsReadAndHasAProgram) {
-  const auto league = read_league(CHICANE_SOURCE_DIR "/studies/leagues/shipped.yaml");
-  ASSERT_TRUE(league) << league.error().message;
+  const auto league = test::good(read_league(CHICANE_SOURCE_DIR "/studies/leagues/shipped.yaml"));
   EXPECT_EQ(league->tracks.size(), 6U);
   EXPECT_EQ(league->cars.size(), 2U);
   EXPECT_EQ(league->plan.size(), 10U * 6U * 2U * 4U);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sweep/plan_codec.hpp"
+#include "support/results.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,13 +28,11 @@ std::string fault_of(const std::string& text) {
 
 TEST(Plan, TakesTheTracksOfAFolder) {
   const std::string folder = CHICANE_SOURCE_DIR "/data/tracks";
-  const auto plan = parse_plan("axes: [{track: [oval, " + folder + "/*.csv]}]", "p");
-  ASSERT_TRUE(plan) << plan.error().message;
+  const auto plan = test::good(parse_plan("axes: [{track: [oval, " + folder + "/*.csv]}]", "p"));
   EXPECT_GE(plan->size(), 7U);
   EXPECT_EQ(plan->at(1)[0].second, folder + "/crossover.csv");
-  const auto none = parse_plan("axes: [{track: [nowhere/*.csv]}]", "p");
-  ASSERT_FALSE(none);
-  EXPECT_THAT(none.error().message, testing::HasSubstr("nowhere/*.csv"));
+  EXPECT_THAT(test::refusal_of(parse_plan("axes: [{track: [nowhere/*.csv]}]", "p")),
+              testing::HasSubstr("nowhere/*.csv"));
 }
 
 TEST(PlanCodec, TheLastAxisTurnsFastest) {
@@ -143,8 +142,7 @@ more: 1
 TEST(PlanCodec, ShippedPlansAreRight) {
   int plans = 0;
   for (const auto& entry : std::filesystem::directory_iterator(CHICANE_SOURCE_DIR "/studies/plans")) {
-    const Result<Plan> plan = read_plan(entry.path().string());
-    ASSERT_TRUE(plan) << plan.error().message;
+    const Result<Plan> plan = test::good(read_plan(entry.path().string()));
     EXPECT_GT(plan->size(), 1U);
     ++plans;
   }

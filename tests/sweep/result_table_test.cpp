@@ -11,6 +11,7 @@
 
 #include "chicane/sweep/plan_codec.hpp"
 #include "chicane/sweep/result_file.hpp"
+#include "support/results.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -47,8 +48,7 @@ TEST_F(ComparisonTest, FlagsWhatIsWorse) {
   add(3, "b", "off", kClean);
   add(4, "c", "on", R"("completed":false,"off_track_events":0,"lap_times_s":[12])");
   add(5, "c", "off", kClean);
-  const auto comparison = compared();
-  ASSERT_TRUE(comparison) << comparison.error().message;
+  const auto comparison = test::good(compared());
   EXPECT_EQ(comparison->pairs, 3U);
   EXPECT_EQ(comparison->worse, 3U);
   EXPECT_THAT(
@@ -64,8 +64,7 @@ TEST_F(ComparisonTest, FlagsNothingWhereTheOtherOneIsNotCleanEither) {
   add(3, "b", "off", kClean);
   add(4, "c", "on", R"("completed":true,"off_track_events":0,"lap_times_s":[12,10,11.2])");
   add(5, "c", "off", kClean);
-  const auto comparison = compared();
-  ASSERT_TRUE(comparison);
+  const auto comparison = test::good(compared());
   EXPECT_EQ(comparison->pairs, 2U);
   EXPECT_EQ(comparison->worse, 0U);
   EXPECT_EQ(comparison->missing, 1U);
@@ -74,9 +73,7 @@ TEST_F(ComparisonTest, FlagsNothingWhereTheOtherOneIsNotCleanEither) {
 
 TEST_F(ComparisonTest, NamesTheAxesWhereTheKeyIsNone) {
   add(1, "a", "off", kClean);
-  const auto comparison = compared("guard.mod");
-  ASSERT_FALSE(comparison);
-  EXPECT_THAT(comparison.error().message, HasSubstr("track, guard.mode"));
+  EXPECT_THAT(test::refusal_of(compared("guard.mod")), HasSubstr("track, guard.mode"));
 }
 
 TEST(ResultTable, ShowsPeopleTitlesAndGivesProgramsKeys) {

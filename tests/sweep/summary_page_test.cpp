@@ -12,6 +12,7 @@
 #include "chicane/sweep/plan_codec.hpp"
 #include "chicane/sweep/result_file.hpp"
 #include "support/folder.hpp"
+#include "support/results.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -49,8 +50,7 @@ keep: [completed, off_track_events]
 };
 
 TEST_F(SummaryPage, HasAMapOfNumbersForEachText) {
-  const auto summary = summary_document({path("r.jsonl")});
-  ASSERT_TRUE(summary) << summary.error().message;
+  const auto summary = test::good(summary_document({path("r.jsonl")}));
   const auto sections = nlohmann::json::parse(summary->text)["sections"];
   EXPECT_EQ(sections[1]["title"], "Along each axis");
   const auto by_latency = sections[1]["parts"][1];
@@ -73,8 +73,7 @@ TEST_F(SummaryPage, HasAMapOfNumbersForEachText) {
 
 TEST_F(SummaryPage, MapsInLettersStandBetweenTheirLines) {
   std::ofstream(path("page.md")) << "above\n<!-- sweep: by hand -->\nolder\n<!-- end of sweep -->\nbelow\n";
-  const auto written = write_maps({path("r.jsonl")}, path("page.md"));
-  ASSERT_TRUE(written) << written.error().message;
+  const auto written = test::good(write_maps({path("r.jsonl")}, path("page.md")));
   const std::string page = content("page.md");
   EXPECT_TRUE(page.starts_with("above\n<!-- sweep: by hand -->\n18 runs, all with `laps=1`."));
   EXPECT_TRUE(page.ends_with("<!-- end of sweep -->\nbelow\n"));
@@ -91,9 +90,7 @@ TEST_F(SummaryPage, MapsInLettersStandBetweenTheirLines) {
 
 TEST_F(SummaryPage, APageWithoutItsSecondLineIsLeftAsItIs) {
   std::ofstream(path("page.md")) << "<!-- sweep: by hand -->\nmine\n";
-  const auto written = write_maps({path("r.jsonl")}, path("page.md"));
-  ASSERT_FALSE(written);
-  EXPECT_THAT(written.error().message, HasSubstr("end of sweep"));
+  EXPECT_THAT(test::refusal_of(write_maps({path("r.jsonl")}, path("page.md"))), HasSubstr("end of sweep"));
   EXPECT_THAT(content("page.md"), HasSubstr("mine"));
 }
 

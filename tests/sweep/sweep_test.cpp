@@ -21,6 +21,7 @@
 #include "chicane/sweep/trial.hpp"
 #include "chicane/version.hpp"
 #include "support/folder.hpp"
+#include "support/results.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -63,16 +64,14 @@ TEST(Column, CountsTheStepsOfEachReasonOfTheGuard) {
 }
 
 TEST_F(Sweep, WritesALineForEachRunWithItsSettingsAndResults) {
-  const auto done = run("a.jsonl");
-  ASSERT_TRUE(done) << done.error().message;
+  const auto done = test::good(run("a.jsonl"));
   EXPECT_TRUE(done->is_complete());
   EXPECT_EQ(done->driven, 12U);
   std::ifstream stream(path("a.jsonl"));
   std::string line;
   std::getline(stream, line);
   EXPECT_EQ(nlohmann::json::parse(line)["guard"]["version"], safety::kGuardVersion);
-  const auto header = parse_header(line, "a");
-  ASSERT_TRUE(header);
+  const auto header = test::good(parse_header(line, "a"));
   EXPECT_EQ(header->runs, 12U);
   EXPECT_EQ(header->keys, (std::vector<std::string>{"seed", "latency_ms"}));
   std::getline(stream, line);
@@ -116,8 +115,7 @@ TEST_F(Sweep, GoesOnAfterItWasKilledInTheMiddleOfALine) {
   const std::string expected = merged({"a.jsonl"});
   for (const std::size_t size : {std::size_t{0}, std::size_t{10}, whole.size() / 2, whole.size() - 1}) {
     std::ofstream(path("a.jsonl"), std::ios::trunc) << whole.substr(0, size);
-    const auto again = run("a.jsonl");
-    ASSERT_TRUE(again) << again.error().message;
+    const auto again = test::good(run("a.jsonl"));
     EXPECT_EQ(again->found + again->driven, 12U);
     EXPECT_GT(again->driven, 0U);
     EXPECT_EQ(merged({"a.jsonl"}), expected);
@@ -130,8 +128,7 @@ TEST_F(Sweep, StopsWithWhatIsDoneAndGoesOnLater) {
   options.on_progress = [&](const Progress& progress) {
     if (progress.driven == 5) stop_ = true;
   };
-  const auto stopped = drive_plan(plan_, {}, options, stop_);
-  ASSERT_TRUE(stopped);
+  const auto stopped = test::good(drive_plan(plan_, {}, options, stop_));
   EXPECT_EQ(stopped->driven, 5U);
   EXPECT_FALSE(stopped->is_complete());
   EXPECT_THAT(merged({"a.jsonl"}), HasSubstr("7 of 12 runs are missing: 5-11"));
@@ -167,8 +164,7 @@ TEST_F(Sweep, ARunThatCannotBeDrivenSaysWhyAndStopsNothing) {
           "{track: [lakeside, nowhere]}]",
           "p")
           .value();
-  const auto done = run("a.jsonl", {}, 2);
-  ASSERT_TRUE(done);
+  const auto done = test::good(run("a.jsonl", {}, 2));
   EXPECT_EQ(done->failed, 2U);
   EXPECT_THAT(done->why, HasSubstr("track: got \"nowhere\", expected"));
   EXPECT_THAT(merged({"a.jsonl"}), HasSubstr("\"error\":\"track: got \\\"nowhere\\\", expected"));
@@ -247,8 +243,7 @@ TEST_F(Sweep, TwoResultsOfOneRunAreSaid) {
 }
 
 TEST_F(Sweep, AFileHasOneWriter) {
-  const auto first = ResultFile::open(path("a.jsonl"), plan_, {});
-  ASSERT_TRUE(first);
+  const auto first = test::good(ResultFile::open(path("a.jsonl"), plan_, {}));
   EXPECT_THAT(run("a.jsonl").error().message, HasSubstr("another process writes it"));
 }
 
@@ -278,8 +273,7 @@ TEST(SweepOutcome, ColumnsAreFoundByTheirNames) {
 TEST_F(Sweep, ThePageSumsUpAxesAndPairsAndHasTheCommandOfEachRun) {
   ASSERT_TRUE(run("a", {0, 2, "--shard"}));
   ASSERT_TRUE(run("b", {1, 2, "--shard"}));
-  const auto summary = summary_document({path("a"), path("b")});
-  ASSERT_TRUE(summary) << summary.error().message;
+  const auto summary = test::good(summary_document({path("a"), path("b")}));
   EXPECT_EQ(summary->runs, 12U);
   for (
       const char* words :
@@ -349,19 +343,16 @@ TEST_F(Sweep, SearchesTheLargestValueThatIsClean) {
   plan_ = parse_plan(kSearching, "plan.yaml").value();
   ASSERT_EQ(plan_.size(), 2U);
   run::Roads roads;
-  const auto found = find_largest(*plan_.search, plan_.settings_of(0), roads, stop_);
-  ASSERT_TRUE(found) << found.error().message;
+  const auto found = test::good(find_largest(*plan_.search, plan_.settings_of(0), roads, stop_));
   const RunOutcome& best = **found;
   EXPECT_TRUE(telemetry::completed_on_road(best.run));
   EXPECT_GT(best.search_value, 12.0);
   EXPECT_LT(best.search_value, 60.0) << "PID takes no more than 60 m/s: 80 is passed over";
   Settings faster = plan_.settings_of(0);
   faster.emplace_back("speed_mps", number_text(best.search_value * 1.5, 4));
-  const auto too_fast = drive(faster, roads, stop_);
-  ASSERT_TRUE(too_fast);
+  const auto too_fast = test::good(drive(faster, roads, stop_));
   EXPECT_FALSE(telemetry::completed_on_road(**too_fast)) << "a rung of the ladder above";
-  const auto wet = find_largest(*plan_.search, plan_.settings_of(1), roads, stop_);
-  ASSERT_TRUE(wet);
+  const auto wet = test::good(find_largest(*plan_.search, plan_.settings_of(1), roads, stop_));
   EXPECT_LT((*wet)->search_value, best.search_value);
 }
 
@@ -373,8 +364,7 @@ TEST_F(Sweep, ASearchIsALineWithValueTrialsAndColumns) {
   std::ifstream stream(path("one.jsonl"));
   std::string line;
   std::getline(stream, line);
-  const auto header = parse_header(line, "a");
-  ASSERT_TRUE(header);
+  const auto header = test::good(parse_header(line, "a"));
   EXPECT_EQ(header->search_key, "speed_mps");
   EXPECT_EQ(header->columns.front(), "search_value");
   EXPECT_EQ(header->cases.at("grip").at("wet").front().second, "0.5");
@@ -384,8 +374,7 @@ TEST_F(Sweep, ASearchIsALineWithValueTrialsAndColumns) {
   EXPECT_GT(first["search_value"], 12.0);
   EXPECT_GT(first["search_trials"], 2);
   EXPECT_EQ(first["off_track_events"], 0);
-  const auto summary = summary_document({path("one.jsonl")});
-  ASSERT_TRUE(summary);
+  const auto summary = test::good(summary_document({path("one.jsonl")}));
   EXPECT_THAT(summary->text, HasSubstr("largest clean value"));
   EXPECT_THAT(summary->text, HasSubstr("friction_scale=0.5"));
 }

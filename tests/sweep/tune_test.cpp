@@ -11,6 +11,7 @@
 
 #include "chicane/protocol/library.hpp"
 #include "support/folder.hpp"
+#include "support/results.hpp"
 
 namespace chicane::sweep {
 namespace {
@@ -46,8 +47,7 @@ TEST(Tune, FindsTheSameForTheSameSeedOnAnyNumberOfThreads) {
   ASSERT_TRUE(first) << first.error().message;
   EXPECT_EQ(first->evaluations, 4);
   one.jobs = 3;
-  const auto again = tune(one, stop);
-  ASSERT_TRUE(again);
+  const auto again = test::good(tune(one, stop));
   EXPECT_EQ(again->values, first->values);
   EXPECT_EQ(again->found.margin, first->found.margin);
   EXPECT_TRUE(first->by_hand.lap_time > 0.0);
@@ -69,8 +69,7 @@ TEST(Tune, ASearchThatWasEndedGoesOnWithItsLogAndFindsTheSame) {
   ASSERT_TRUE(tune(parts, stop));
   std::ofstream(parts.log, std::ios::app) << R"({"values":{"pure_purs)";  // a process was killed there
   parts.evaluations = 6;
-  const auto found = tune(parts, stop);
-  ASSERT_TRUE(found) << found.error().message;
+  const auto found = test::good(tune(parts, stop));
   EXPECT_EQ(found->values, expected->values);
   EXPECT_EQ(found->found.margin, expected->found.margin);
   EXPECT_EQ(found->runs, expected->runs);
