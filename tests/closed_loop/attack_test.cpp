@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "support/results.hpp"
 #include "support/runs.hpp"
 #include "support/slow_tests.hpp"
 
@@ -18,11 +19,9 @@ namespace {
 /// The program's adversaries do attack: without a guard they leave the road.
 TEST(Attack, LeavesTheRoadWithoutAGuard) {
   run::Roads roads;
-  const auto scenario = scenario_of({.settings = {{"guard.mode", "off"}}});
-  ASSERT_TRUE(scenario);
+  const auto scenario = test::good(scenario_of({.settings = {{"guard.mode", "off"}}}));
   for (const char* name : {"lock", "random_hold", "hold", "swerve", "brake", "false_plan", "everything"}) {
-    const auto outcome = drive_adversary(*scenario, roads, *adversary_named(name), 2, 40.0);
-    ASSERT_TRUE(outcome);
+    const auto outcome = test::good(drive_adversary(*scenario, roads, *adversary_named(name), 2, 40.0));
     EXPECT_LT(outcome->least_edge, 0.0) << name;
   }
 }
@@ -50,11 +49,9 @@ TEST(Attack, DoesNotLeadOffTheRoad) {
                              {"return_slowly", "road-car", "lakeside", 8.0},
                              {"straight_on", "bmw-320i", "speedway", 46.0},
                              {"stop_on_road", "bmw-320i", "speedway", 10.0}}) {
-    const auto scenario = scenario_of({.car = trial.car, .track = trial.track});
-    ASSERT_TRUE(scenario);
+    const auto scenario = test::good(scenario_of({.car = trial.car, .track = trial.track}));
     const auto outcome =
-        drive_adversary(*scenario, roads, *adversary_named(trial.adversary), 0, trial.seconds);
-    ASSERT_TRUE(outcome);
+        test::good(drive_adversary(*scenario, roads, *adversary_named(trial.adversary), 0, trial.seconds));
     EXPECT_GE(outcome->least_edge, trial.least) << trial.adversary << " with " << trial.car;
     EXPECT_LE(outcome->fastest, 1.06 * scenario->vehicle.valid_speed)
         << trial.adversary << " with " << trial.car;

@@ -15,6 +15,7 @@
 #include "chicane/scenario/scenario.hpp"
 #include "closed_loop/drive.hpp"
 #include "sim/plant_experiment.hpp"
+#include "support/results.hpp"
 
 namespace chicane::run {
 namespace {
@@ -132,10 +133,8 @@ TEST(Cars, ThatCannotTurnSoTightlyAreRefusedWithPlaceAndRadius) {
 }
 
 TEST(Cars, ThatAreTooWideAreRefusedWithPlaceAndWidth) {
-  const auto loop =
-      ClosedLoop::create(test::scenario_of({{"car", "f1tenth"}, {"track", "oval"}, {"track_scale", "0.02"}}));
-  ASSERT_FALSE(loop);
-  EXPECT_THAT(loop.error().message,
+  EXPECT_THAT(test::refusal_of(ClosedLoop::create(
+                  test::scenario_of({{"car", "f1tenth"}, {"track", "oval"}, {"track_scale", "0.02"}}))),
               testing::HasSubstr("track: oval is not for the car f1tenth: the road is 0.22 m wide"));
 }
 

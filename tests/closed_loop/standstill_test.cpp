@@ -5,8 +5,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
@@ -26,9 +24,7 @@ struct Start {
 
 /// `lakeside` with the car `offset` to the left of its line, for `seconds`.
 Start drive_from(const std::string& preset, double offset, const std::string& seconds = "8") {
-  std::ostringstream text;
-  text << std::ifstream(CHICANE_SOURCE_DIR "/data/tracks/lakeside.csv").rdbuf();
-  std::string track = text.str();
+  std::string track = test::content_of(CHICANE_SOURCE_DIR "/data/tracks/lakeside.csv");
   const std::string shipped = "start_d_m=-0.76";
   const std::size_t at = track.find(shipped);
   EXPECT_NE(at, std::string::npos);

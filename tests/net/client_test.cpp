@@ -10,6 +10,7 @@
 
 #include "chicane/net/server.hpp"
 #include "net/raw_socket.hpp"
+#include "support/results.hpp"
 
 namespace chicane::net {
 namespace {
@@ -87,9 +88,8 @@ TEST(Client, SendsTheOriginalRequestByteForByte) {
       request = socket.until("\r\n\r\n");
       socket.send("HTTP/1.1 503 Service Unavailable\r\n\r\nbusy with another car\n");
     });
-    const auto client = Client::connect(server.url(), 5s);
-    ASSERT_FALSE(client);
-    EXPECT_THAT(client.error().message, HasSubstr("503 Service Unavailable: busy with another car"));
+    EXPECT_THAT(test::refusal_of(Client::connect(server.url(), 5s)),
+                HasSubstr("503 Service Unavailable: busy with another car"));
     std::string expected = test::unity_handshake(server.port());
     const std::string key = key_of(request);
     EXPECT_EQ(key.size(), 24U);
@@ -131,8 +131,7 @@ TEST(Client, TalksToTheServerOfTheOriginalControllers) {
         "x");  // two frames in one segment
     socket.rest();
   });
-  auto client = Client::connect(server.url(), 5s);
-  ASSERT_TRUE(client) << client.error().message;
+  auto client = test::good(Client::connect(server.url(), 5s));
   ASSERT_TRUE((*client)->send_text("2"));
   EXPECT_EQ((*client)->receive(5s).value().value(), "42[]\n");
   EXPECT_EQ((*client)->receive(5s).value().value(), "x");
@@ -147,15 +146,12 @@ TEST(Client, SaysWhyItCannotConnect) {
   EXPECT_FALSE(Client::connect("ws://127.0.0.1:1/", 1s));
   for (const char* url : {"http://localhost", "ws://", "ws://:80/", "ws://host:0/", "ws://host:99999/",
                           "ws://host:12x/", "ws://a b/"}) {
-    const auto parsed = parse_url(url);
-    ASSERT_FALSE(parsed) << url;
-    EXPECT_THAT(parsed.error().message, HasSubstr(std::string("got '") + url)) << url;
+    EXPECT_THAT(test::refusal_of(parse_url(url)), HasSubstr(std::string("got '") + url)) << url;
   }
 }
 
 TEST(Client, ReadsUrls) {
-  const auto url = parse_url("ws://[::1]:4567/socket.io/?EIO=4");
-  ASSERT_TRUE(url);
+  const auto url = test::good(parse_url("ws://[::1]:4567/socket.io/?EIO=4"));
   EXPECT_EQ(url->host, "::1");
   EXPECT_EQ(url->port, 4567);
   EXPECT_EQ(url->target, "/socket.io/?EIO=4");
@@ -175,12 +171,11 @@ class ClientAndServer : public testing::Test {
                                   if (bytes != "silence") server_->send(id, std::string(bytes), binary);
                                 },
                             .on_close = [](ConnectionId, int, std::string_view) {}};
-    auto created =
-        Server::create({.port = 0, .max_message = 300'000, .idle_timeout = 200ms}, std::move(handlers), {});
-    ASSERT_TRUE(created);
+    auto created = test::good(
+        Server::create({.port = 0, .max_message = 300'000, .idle_timeout = 200ms}, std::move(handlers), {}));
     owner_ = std::move(*created);
-    auto connected = Client::connect("ws://127.0.0.1:" + std::to_string(owner_->port()) + "/any/path", 5s);
-    ASSERT_TRUE(connected) << connected.error().message;
+    auto connected =
+        test::good(Client::connect("ws://127.0.0.1:" + std::to_string(owner_->port()) + "/any/path", 5s));
     client_ = std::move(*connected);
   }
 

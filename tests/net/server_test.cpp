@@ -8,6 +8,7 @@
 
 #include "net/raw_socket.hpp"
 #include "net/recorder.hpp"
+#include "support/results.hpp"
 
 namespace chicane::net {
 namespace {
@@ -83,8 +84,7 @@ TEST(Server, ClosesWithCodeAndReasonAfterWhatWaits) {
   recorder.server().send(id, std::string("last words"), false);
   recorder.server().close(id, 1013, "come back later");
   EXPECT_EQ(socket.frame()->payload, "last words");
-  const auto frame = socket.frame();
-  ASSERT_TRUE(frame);
+  const auto frame = test::good(socket.frame());
   EXPECT_EQ(frame->opcode, 8);
   EXPECT_EQ(frame->payload, std::string("\x03\xf5") + "come back later");
   socket.send(RawSocket::masked("\x03\xf5", 8));
@@ -211,8 +211,7 @@ TEST(Server, ClosesWith1009WhenAMessageIsTooLarge) {
   Recorder recorder({.max_message = 1000});
   RawSocket socket = upgraded(recorder.port());
   socket.send(RawSocket::masked(std::string(1001, 'x')));
-  const auto frame = socket.frame();
-  ASSERT_TRUE(frame);
+  const auto frame = test::good(socket.frame());
   EXPECT_EQ(frame->opcode, 8);
   EXPECT_EQ(frame->payload.substr(0, 2), "\x03\xf1");
   socket.close();
@@ -283,9 +282,8 @@ TEST(Server, WhatIsSentToManyCountsOnce) {
 }
 
 TEST(Server, NeedsATokenToListenForOtherMachines) {
-  const auto server = Server::create({.address = "0.0.0.0", .port = 0}, {}, {});
-  ASSERT_FALSE(server);
-  EXPECT_THAT(server.error().message, StartsWith("address: got 0.0.0.0 without a token"));
+  EXPECT_THAT(test::refusal_of(Server::create({.address = "0.0.0.0", .port = 0}, {}, {})),
+              StartsWith("address: got 0.0.0.0 without a token"));
 }
 
 TEST(Server, ALinkWithTheTokenBecomesACookieAndThePageItself) {
@@ -375,8 +373,7 @@ TEST(Server, SaysGoodbyeWhenItEnds) {
   RawSocket socket = upgraded(recorder->port());
   static_cast<void>(recorder->opened(1));
   recorder.reset();
-  const auto frame = socket.frame();
-  ASSERT_TRUE(frame);
+  const auto frame = test::good(socket.frame());
   EXPECT_EQ(frame->opcode, 8);
   EXPECT_EQ(frame->payload.substr(0, 2), "\x03\xe9");  // 1001 going away
 }
@@ -397,8 +394,7 @@ TEST(Server, WaitsForAPeerThatIsBehindBeforeItEnds) {
     ASSERT_TRUE(frame) << i;
     EXPECT_EQ(frame->payload.size(), message.size()) << i;
   }
-  const auto last = socket.frame();
-  ASSERT_TRUE(last);
+  const auto last = test::good(socket.frame());
   EXPECT_EQ(last->opcode, 8);
   socket.send(RawSocket::masked("\x03\xe9", 8));
   socket.close();

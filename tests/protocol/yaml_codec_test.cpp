@@ -5,10 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "chicane/base/random.hpp"
+#include "support/folder.hpp"
 #include "support/results.hpp"
 
 namespace chicane::protocol {
@@ -19,13 +18,6 @@ using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
 const fs::path kBroken = fs::path(CHICANE_SOURCE_DIR) / "tests/protocol/fixtures/broken";
-
-std::string read(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
 
 Result<Scenario> load(std::string_view text, const std::string& file) {
   const Result<Document> document = parse_document(text, file);
@@ -111,7 +103,7 @@ TEST(YamlCodec, EveryBrokenFileIsRefusedWithFileLineAndKey) {
   for (const Broken& broken : kFiles) {
     const fs::path file = kBroken / (std::string(broken.name) + ".yaml");
     ASSERT_TRUE(fs::exists(file)) << file;
-    const Result<Scenario> scenario = load(read(file), "broken.yaml");
+    const Result<Scenario> scenario = load(test::content_of(file), "broken.yaml");
     ASSERT_FALSE(scenario) << broken.name;
     EXPECT_THAT(scenario.error().message, ::testing::StartsWith("broken.yaml:")) << broken.name;
     for (const char* expected : broken.expected)

@@ -10,6 +10,7 @@
 #include "chicane/recording/replay.hpp"
 #include "chicane/telemetry/mcap.hpp"
 #include "recording/recorded_run.hpp"
+#include "support/folder.hpp"
 #include "support/results.hpp"
 #include "telemetry/sample_mcap.hpp"
 
@@ -55,11 +56,7 @@ class ReportTest : public testing::Test {
     std::filesystem::remove(copy_);
     std::filesystem::remove(page_);
   }
-  [[nodiscard]] std::string page() const {
-    std::ostringstream text;
-    text << std::ifstream(page_).rdbuf();
-    return text.str();
-  }
+  [[nodiscard]] std::string page() const { return test::content_of(page_); }
   /// The JSON that the page gets.
   [[nodiscard]] json data() const {
     const std::string start = "<script type=\"application/json\" id=\"chicane-report\">";

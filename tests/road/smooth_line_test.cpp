@@ -10,6 +10,7 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
+#include "support/results.hpp"
 #include "support/stadium.hpp"
 
 namespace chicane::road {
@@ -29,8 +30,7 @@ std::vector<Vec2> circle(int count, double sigma) {
 TEST(SmoothLine, KeepsAStraightLineExactlyAndSpacesItEvenly) {
   std::vector<Vec2> points;
   for (const double x : {0.0, 3.0, 11.0, 20.0, 44.0, 60.0}) points.emplace_back(x, 0.5 * x);
-  const Result<SmoothLine> line = smooth_line(points, false, 2.0, 0.1);
-  ASSERT_TRUE(line) << line.error().message;
+  const Result<SmoothLine> line = test::good(smooth_line(points, false, 2.0, 0.1));
   EXPECT_NEAR(line->length, 60.0 * std::hypot(1.0, 0.5), 1e-6);
   EXPECT_LE(line->spacing, 2.0);
   for (std::size_t i = 0; i < line->knots.size(); ++i) {
@@ -43,8 +43,7 @@ TEST(SmoothLine, KeepsAStraightLineExactlyAndSpacesItEvenly) {
 }
 
 TEST(SmoothLine, TakesNoiseOffAClosedLineAndSaysHowMuch) {
-  const Result<SmoothLine> line = smooth_line(circle(300, 0.1), true, 2.0, 0.1);
-  ASSERT_TRUE(line) << line.error().message;
+  const Result<SmoothLine> line = test::good(smooth_line(circle(300, 0.1), true, 2.0, 0.1));
   EXPECT_NEAR(line->length, kTwoPi * 50.0, 1.0);
   double worst = 0.0;
   for (const Vec2& knot : line->knots) worst = std::max(worst, std::fabs(knot.norm() - 50.0));
@@ -54,8 +53,7 @@ TEST(SmoothLine, TakesNoiseOffAClosedLineAndSaysHowMuch) {
 }
 
 TEST(SmoothLine, SaysWhereEachGivenPointIsAlongIt) {
-  const Result<SmoothLine> line = smooth_line(circle(100, 0.0), true, 1.0, 0.0);
-  ASSERT_TRUE(line) << line.error().message;
+  const Result<SmoothLine> line = test::good(smooth_line(circle(100, 0.0), true, 1.0, 0.0));
   ASSERT_EQ(line->parameter.size(), 100u);
   for (std::size_t i = 1; i < 100; ++i)
     EXPECT_NEAR(line->parameter[i] - line->parameter[i - 1], kTwoPi * 50.0 / 100.0, 0.02) << i;
@@ -71,8 +69,7 @@ double from_stadium(const Vec2& place, double radius, double straight) {
 TEST(SmoothLine, KeepsStraightsAndArcsOfUnevenPoints) {
   for (const double sigma : {0.1, 1.0}) {
     const std::vector<Vec2> points = test::stadium(40.0, 9, 300.0);
-    const Result<SmoothLine> line = smooth_line(points, true, 2.0, sigma);
-    ASSERT_TRUE(line) << line.error().message;
+    const Result<SmoothLine> line = test::good(smooth_line(points, true, 2.0, sigma));
     EXPECT_NEAR(line->length, 600.0 + kTwoPi * 40.0, 3.0);
     EXPECT_LE(line->max_deviation, 2.0 * sigma + 0.01);
     double worst = 0.0;

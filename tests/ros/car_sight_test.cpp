@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/car_topics.hpp"
+#include "support/results.hpp"
 #include "support/roads.hpp"
 
 #include <gtest/gtest.h>
@@ -19,9 +20,8 @@ scenario::Scenario scenario() {
 
 TEST(CarSight, MovesOdometryFromTheRearAxleToTheCentreOfMass) {
   CarSight sight(scenario(), nullptr, true);
-  const auto seen = sight.measure(
-      {.pose = {.x = 10.0, .y = 20.0, .psi = 1.5707963267948966}, .vx = 3.0, .yaw_rate = 2.0}, 1.0);
-  ASSERT_TRUE(seen);
+  const auto seen = test::good(sight.measure(
+      {.pose = {.x = 10.0, .y = 20.0, .psi = 1.5707963267948966}, .vx = 3.0, .yaw_rate = 2.0}, 1.0));
   EXPECT_NEAR(seen->x, 10.0, 1e-12);
   EXPECT_NEAR(seen->y, 21.5, 1e-12);
   EXPECT_NEAR(seen->speed, std::sqrt(9.0 + 9.0), 1e-12);  // 1.5 m ahead of it a yaw rate moves it sideways
@@ -52,8 +52,7 @@ TEST(CarSight, SeesWaypointsOfAPathThatIsALap) {
   ASSERT_TRUE(sight.use_path(test::circle_points(100.0, 100)));
   EXPECT_TRUE(sight.has_road());
   // On the last stretch of the lap: the waypoints go on over its beginning.
-  const auto seen = sight.measure({.pose = {.x = 100.0, .y = -8.0, .psi = 1.57}}, 0.0);
-  ASSERT_TRUE(seen);
+  const auto seen = test::good(sight.measure({.pose = {.x = 100.0, .y = -8.0, .psi = 1.57}}, 0.0));
   ASSERT_EQ(seen->waypoint_count, 6);
   EXPECT_GT(seen->waypoints[5].y(), 20.0);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/car_topics.hpp"
+#include "support/results.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,13 +18,11 @@ TEST(FrameTree, ComposesAndInvertsAlongChainsOfParents) {
   frames.put({.frame = "map", .child_frame = "odom", .pose = {.x = 10.0, .y = 0.0, .psi = kQuarter}});
   frames.put({.frame = "odom", .child_frame = "base", .pose = {.x = 2.0, .y = 1.0, .psi = 0.0}});
   frames.put({.frame = "map", .child_frame = "camera", .pose = {.x = 0.0, .y = 5.0, .psi = 0.0}});
-  const auto base = frames.find("map", "base");
-  ASSERT_TRUE(base);
+  const auto base = test::good(frames.find("map", "base"));
   EXPECT_NEAR(base->x, 9.0, 1e-12);
   EXPECT_NEAR(base->y, 2.0, 1e-12);
   EXPECT_NEAR(base->psi, kQuarter, 1e-12);
-  const auto back = frames.find("base", "map");
-  ASSERT_TRUE(back);
+  const auto back = test::good(frames.find("base", "map"));
   const model::Pose round = composed(*base, *back);
   EXPECT_NEAR(round.x, 0.0, 1e-12);
   EXPECT_NEAR(round.y, 0.0, 1e-12);

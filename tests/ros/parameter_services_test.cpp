@@ -8,6 +8,7 @@
 #include <map>
 
 #include "chicane/protocol/car_messages.hpp"
+#include "support/results.hpp"
 
 namespace chicane::ros {
 namespace {
@@ -38,8 +39,7 @@ class ParameterServicesTest : public testing::Test {
  protected:
   static constexpr int kDomain = 73;
   void SetUp() override {
-    auto node = Participant::create({.domain = kDomain});
-    ASSERT_TRUE(node) << node.error().message;
+    auto node = test::good(Participant::create({.domain = kDomain}));
     node_ = std::move(*node);
     auto services =
         ParameterServices::create(*node_, store_, [](const std::function<void()>& task) { task(); });
@@ -68,23 +68,20 @@ class ParameterServicesTest : public testing::Test {
 };
 
 TEST_F(ParameterServicesTest, ListsByPrefix) {
-  const auto reply = protocol::decode<protocol::ListReply>(
-      ask("list_parameters", "ListParameters", encode(protocol::NamesRequest{.names = {"pid"}})));
-  ASSERT_TRUE(reply);
+  const auto reply = test::good(protocol::decode<protocol::ListReply>(
+      ask("list_parameters", "ListParameters", encode(protocol::NamesRequest{.names = {"pid"}}))));
   EXPECT_THAT(reply->names, testing::ElementsAre("pid.gain"));
 }
 
 TEST_F(ParameterServicesTest, SetsAndGets) {
-  const auto set = protocol::decode<protocol::SetReply>(
+  const auto set = test::good(protocol::decode<protocol::SetReply>(
       ask("set_parameters", "SetParameters",
-          encode(protocol::SetRequest{.parameters = {{"latency_ms", 30.0}, {"latency", 30.0}}})));
-  ASSERT_TRUE(set);
+          encode(protocol::SetRequest{.parameters = {{"latency_ms", 30.0}, {"latency", 30.0}}}))));
   ASSERT_EQ(set->outcomes.size(), 2U);
   EXPECT_TRUE(set->outcomes[0].is_successful);
   EXPECT_EQ(set->outcomes[1].reason, "unknown key");
-  const auto get = protocol::decode<protocol::GetReply>(ask(
-      "get_parameters", "GetParameters", encode(protocol::NamesRequest{.names = {"latency_ms", "none"}})));
-  ASSERT_TRUE(get);
+  const auto get = test::good(protocol::decode<protocol::GetReply>(ask(
+      "get_parameters", "GetParameters", encode(protocol::NamesRequest{.names = {"latency_ms", "none"}}))));
   EXPECT_EQ(std::get<double>(get->values[0].value), 30.0);
   EXPECT_TRUE(std::holds_alternative<std::monostate>(get->values[1].value));
 }

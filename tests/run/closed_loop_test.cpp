@@ -12,6 +12,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/run_steps.hpp"
 #include "chicane/sim/plant_registry.hpp"
+#include "support/results.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {
@@ -79,8 +80,7 @@ TEST(Factories, OfAPlantAndATrackTakeThePlaceOfTheNamedOnes) {
     other.track = "oval";
     return make_track(other);
   };
-  const auto own = ClosedLoop::create(scenario, parts);
-  ASSERT_TRUE(own) << own.error().message;
+  const auto own = test::good(ClosedLoop::create(scenario, parts));
   EXPECT_EQ(plants, 1);
   EXPECT_EQ((*own)->track().name(), "oval");
   const auto named = ClosedLoop::create(scenario);
@@ -92,9 +92,7 @@ TEST(Factories, OfAPlantAndATrackTakeThePlaceOfTheNamedOnes) {
   parts.plant = [](const scenario::Scenario&) -> Result<std::unique_ptr<sim::Plant>> {
     return fail(ErrorCode::kInvalidArgument, "no plant today");
   };
-  const auto none = ClosedLoop::create(scenario, parts);
-  ASSERT_FALSE(none);
-  EXPECT_EQ(none.error().message, "no plant today");
+  EXPECT_EQ(test::refusal_of(ClosedLoop::create(scenario, parts)), "no plant today");
 }
 
 TEST(ClosedLoop, LookedAtBeforeEachStepDrivesTheSame) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "chicane/protocol/library.hpp"
+#include "support/results.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {
@@ -31,8 +32,7 @@ std::vector<FaultTrial> trials_over_lap(const FlyingLap& lap, const char* fault,
 }
 
 TEST(FaultCampaign, FindsTheFlyingLap) {
-  const auto lap = drive_undisturbed(on_oval(), 0.0);
-  ASSERT_TRUE(lap);
+  const auto lap = test::good(drive_undisturbed(on_oval(), 0.0));
   EXPECT_GT(lap->begins, 10.0);
   EXPECT_GT(lap->time, 10.0);
   EXPECT_LT(lap->time, lap->begins) << "the first lap is from standstill";
@@ -40,8 +40,7 @@ TEST(FaultCampaign, FindsTheFlyingLap) {
 
 TEST(FaultCampaign, TakesAnOpenRoadFromItsStartToItsEnd) {
   const auto stage = test::scenario_of({{"track", "stage"}});
-  const auto lap = drive_undisturbed(stage, 0.0);
-  ASSERT_TRUE(lap) << lap.error().message;
+  const auto lap = test::good(drive_undisturbed(stage, 0.0));
   EXPECT_EQ(lap->begins, 0.0);
   EXPECT_GT(lap->time, 30.0);
 }
@@ -49,16 +48,13 @@ TEST(FaultCampaign, TakesAnOpenRoadFromItsStartToItsEnd) {
 /// What goes before the fault is driven once for all trials; nobody can tell.
 TEST(FaultCampaign, EachTrialIsAsIfDrivenAlone) {
   const scenario::Scenario scenario = on_oval();
-  const auto lap = drive_undisturbed(scenario, 0.0);
-  ASSERT_TRUE(lap);
+  const auto lap = test::good(drive_undisturbed(scenario, 0.0));
   auto trials = trials_over_lap(*lap, "gps_noise", 1.0, 7.3);
   const auto more = trials_over_lap(*lap, "link_lost", kLasting, 5.1);
   trials.insert(trials.end(), more.begin(), more.end());
-  const auto together = drive_trials(scenario, *lap, trials, 2);
-  ASSERT_TRUE(together);
+  const auto together = test::good(drive_trials(scenario, *lap, trials, 2));
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    const auto alone = drive_trials(scenario, *lap, {trials[i]}, 1);
-    ASSERT_TRUE(alone);
+    const auto alone = test::good(drive_trials(scenario, *lap, {trials[i]}, 1));
     EXPECT_EQ((*together)[i].least_edge, (*alone)[0].least_edge) << i;
     EXPECT_NEAR((*together)[i].at, lap->begins + trials[i].onset, 1e-3);
     EXPECT_EQ((*together)[i].end_speed, (*alone)[0].end_speed) << i;

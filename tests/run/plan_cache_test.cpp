@@ -21,6 +21,7 @@
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/library.hpp"
 #include "support/folder.hpp"
+#include "support/results.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {
@@ -147,15 +148,13 @@ TEST_F(PlanCacheTest, OfAScenarioOneIsKnownOnceItWasFound) {
   const auto scenario = test::scenario_of({{"car", "udacity"}});
   EXPECT_FALSE(known_limit(scenario, ring()));
   const lap_time::PlantLimit found = limit_of(scenario, ring(), {.wants_witness = false}).value();
-  const auto known = known_limit(scenario, ring());
-  ASSERT_TRUE(known);
+  const auto known = test::good(known_limit(scenario, ring()));
   EXPECT_EQ(to_bytes(*known), to_bytes(found));
 
   const auto small = test::scenario_of({{"car", "f1tenth"}});
   EXPECT_FALSE(known_limit(small, ring()));
-  const auto refused = limit_of(small, ring(), {});
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().message, "limit: got the model car f1tenth, expected one in full size");
+  EXPECT_EQ(test::refusal_of(limit_of(small, ring(), {})),
+            "limit: got the model car f1tenth, expected one in full size");
 }
 
 TEST_F(PlanCacheTest, ThatACarGetsRoundIsKeptAndThatItDoesNotIsComputedAnew) {

@@ -10,6 +10,7 @@
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"
+#include "support/results.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {
@@ -71,8 +72,7 @@ scenario::Scenario calm() {
 
 TEST(LapsWithout, LeaveOutWhatTheScenarioDoesNotHave) {
   scenario::Scenario scenario = calm();
-  const auto laps = laps_without(scenario);
-  ASSERT_TRUE(laps) << laps.error().message;
+  const auto laps = test::good(laps_without(scenario));
   EXPECT_THAT(causes(*laps), ElementsAre("latency", "grip reserve", "guard"));
   scenario.latency = 0.0;
   scenario.guard.mode = safety::GuardMode::kOff;
@@ -82,8 +82,7 @@ TEST(LapsWithout, LeaveOutWhatTheScenarioDoesNotHave) {
 
 TEST(LapsWithout, AreThoseOfTheScenarioThatLacksTheCause) {
   const scenario::Scenario scenario = calm();
-  const auto laps = laps_without(scenario);
-  ASSERT_TRUE(laps) << laps.error().message;
+  const auto laps = test::good(laps_without(scenario));
   scenario::Scenario instant = scenario;
   instant.latency = 0.0;
   const telemetry::RunSummary run = test::drive(instant);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "chicane/sim/fault.hpp"
+#include "support/results.hpp"
 
 namespace chicane::run {
 namespace {
@@ -49,8 +50,7 @@ TEST(Setting, OfEachFieldThatIsNoTextReadsAsSetTakesIt) {
 }
 
 TEST(Setting, WritesItsFieldAndNoOther) {
-  const Result<Setting> setting = read("latency_ms", "33.3");
-  ASSERT_TRUE(setting);
+  const Result<Setting> setting = test::good(read("latency_ms", "33.3"));
   scenario::Scenario written;
   write(written, std::get<FieldValue>(setting->action));
   for (const protocol::Parameter& row : protocol::list()) {
@@ -62,14 +62,12 @@ TEST(Setting, WritesItsFieldAndNoOther) {
 
 TEST(Setting, OfAFieldIsMadeFromItsValueAndReadsBackTheSame) {
   scenario::Scenario scenario;
-  const auto setting = set_field(scenario, *protocol::find("latency_ms"), 33.3);
-  ASSERT_TRUE(setting);
+  const auto setting = test::good(set_field(scenario, *protocol::find("latency_ms"), 33.3));
   EXPECT_EQ(setting->change.name.view(), "latency_ms");
   EXPECT_EQ(setting->change.value.view(), "33.3");
   EXPECT_EQ(std::get<double>(std::get<FieldValue>(setting->action).value), scenario.latency);
   EXPECT_EQ(std::get<double>(action<FieldValue>("latency_ms", "33.3").value), scenario.latency);
-  const auto text = set_field(scenario, *protocol::find("track"), std::string("oval"));
-  ASSERT_TRUE(text);
+  const auto text = test::good(set_field(scenario, *protocol::find("track"), std::string("oval")));
   EXPECT_TRUE(std::holds_alternative<std::monostate>(text->action));
   EXPECT_EQ(scenario.track, "oval");
   EXPECT_EQ(set_field(scenario, *protocol::find("latency_ms"), 900.0).error().message,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chicane/base/random.hpp"
+#include "support/results.hpp"
 
 namespace chicane::sim {
 namespace {
@@ -61,8 +62,7 @@ double range_by_geometry(const OccupancyGrid& grid, const std::vector<int>& wall
 TEST(MapScanner, AgreesWithGeometryWithinOneCentimetreAtAThousandPoses) {
   Random random(11);
   const OccupancyGrid grid = room_with_posts(random);
-  auto scanner = MapScanner::create(grid);
-  ASSERT_TRUE(scanner) << scanner.error().message;
+  auto scanner = test::good(MapScanner::create(grid));
   std::vector<float> ranges(1080);
   std::vector<int> walls;
   for (int i = 0; i < grid.width * grid.height; ++i)
@@ -97,8 +97,7 @@ TEST(MapScanner, SeesAlongTheAxesAndFromOutside) {
   OccupancyGrid grid{
       .width = 10, .height = 3, .resolution = 0.5, .origin = {}, .is_wall = std::vector<bool>(30)};
   grid.is_wall[1 * 10 + 8] = true;  // 4.0 to 4.5 m, 0.5 to 1.0 m
-  auto scanner = MapScanner::create(grid, {.beams = 3, .field_of_view = kHalfTurn});
-  ASSERT_TRUE(scanner);
+  auto scanner = test::good(MapScanner::create(grid, {.beams = 3, .field_of_view = kHalfTurn}));
   std::vector<float> ranges(3);
   scanner->scan({.x = 1.0, .y = 0.75, .psi = 0.0}, ranges);
   EXPECT_FLOAT_EQ(ranges[1], 3.0F);

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "chicane/sweep/league.hpp"
@@ -87,8 +86,7 @@ TEST_F(LeagueFiles, ResultsJoinOurRunsThoseOfTheProgramAndTheLimits) {
 
 TEST_F(LeagueFiles, WhatAClockHasToldIsNotInTheResults) {
   static_cast<void>(driven(clean_run()));
-  std::ifstream stream(path("r.jsonl"));
-  const std::string results{std::istreambuf_iterator<char>(stream), {}};
+  const std::string results = content("r.jsonl");
   EXPECT_THAT(results, Not(HasSubstr("time_us")));
   EXPECT_THAT(results, Not(HasSubstr("theirs")));
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "sample_mcap.hpp"
+#include "support/results.hpp"
 
 namespace chicane::telemetry {
 namespace {
@@ -46,8 +47,7 @@ TEST(McapReader, LeavesADamagedChunkOutAndGoesOn) {
   ASSERT_GT(place, ends[1]);
   damaged[place] = static_cast<char>(damaged[place] ^ 1);
   file.replace(damaged);
-  const auto report = read_and_compare(file.path());
-  ASSERT_TRUE(report);
+  const auto report = test::good(read_and_compare(file.path()));
   EXPECT_EQ(report->chunks, 4U);
   EXPECT_EQ(report->messages, 16U);
   EXPECT_EQ(report->damaged, 1U);
@@ -91,9 +91,8 @@ TEST(McapReader, SaysThatItCannotReadChunksOfOtherCompressions) {
   std::string bytes = std::string(mcap::kMagic) + static_cast<char>(mcap::Opcode::kChunk);
   mcap::Fields(bytes).number(std::uint64_t{content.size()});
   file.replace(bytes + content);
-  const auto report = read_mcap(file.path(), {});
-  ASSERT_FALSE(report);
-  EXPECT_THAT(report.error().message, HasSubstr("got the compression \"lz4\", expected "));
+  EXPECT_THAT(test::refusal_of(read_mcap(file.path(), {})),
+              HasSubstr("got the compression \"lz4\", expected "));
 }
 
 TEST(McapReader, ReadsCompressedChunksAndPassesNoDamagedOneAsGood) {
@@ -101,8 +100,7 @@ TEST(McapReader, ReadsCompressedChunksAndPassesNoDamagedOneAsGood) {
   const TemporaryFile file;
   const std::string message(10'000, 'x');
   {
-    const auto writer = McapWriter::create(file.path(), "test", true);
-    ASSERT_TRUE(writer) << writer.error().message;
+    const auto writer = test::good(McapWriter::create(file.path(), "test", true));
     const std::uint16_t channel = (*writer)->add_channel("/a", "std_msgs/msg/String", "string data\n");
     for (std::uint64_t i = 0; i < 3; ++i) {
       ASSERT_TRUE((*writer)->write(channel, i, i, message));
@@ -112,8 +110,7 @@ TEST(McapReader, ReadsCompressedChunksAndPassesNoDamagedOneAsGood) {
   }
   const std::string bytes = file.bytes();
   EXPECT_LT(bytes.size(), message.size());
-  const auto intact = read_mcap(file.path(), {});
-  ASSERT_TRUE(intact) << intact.error().message;
+  const auto intact = test::good(read_mcap(file.path(), {}));
   EXPECT_EQ(intact->messages, 3U);
   EXPECT_TRUE(intact->is_compressed);
   EXPECT_TRUE(intact->is_complete);
@@ -178,8 +175,7 @@ TEST(McapReader, SchemasAndChannelsMayBeRepeatedInEveryChunk) {
     bytes += record(mcap::Opcode::kSchema, schema) + record(mcap::Opcode::kChannel, channel);
   const TemporaryFile file;
   file.replace(bytes);
-  const auto report = read_mcap(file.path(), {});
-  ASSERT_TRUE(report) << report.error().message;
+  const auto report = test::good(read_mcap(file.path(), {}));
   EXPECT_EQ(report->damaged, 0U);
 }
 

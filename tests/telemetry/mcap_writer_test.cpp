@@ -10,6 +10,7 @@
 #include <csignal>
 
 #include "sample_mcap.hpp"
+#include "support/results.hpp"
 
 namespace chicane::telemetry {
 namespace {
@@ -57,8 +58,7 @@ TEST(McapWriter, WritesWhatTheReaderReads) {
 
 TEST(McapWriter, EndsAChunkThatIsLargeWithoutBeingAsked) {
   const TemporaryFile file;
-  const auto writer = McapWriter::create(file.path(), "test");
-  ASSERT_TRUE(writer);
+  const auto writer = test::good(McapWriter::create(file.path(), "test"));
   const std::uint16_t channel = (*writer)->add_channel("/a", "t", "");
   const std::string half(600U << 10U, 'x');
   ASSERT_TRUE((*writer)->write(channel, 0, 0, half));
@@ -128,8 +128,7 @@ TEST(McapWriter, TakesBackWhatFitsOnlyInPartAndGoesOnWhenThereIsRoom) {
       limit(RLIM_INFINITY);
       return is_right && failures > 0 && (*writer)->close();
     });
-    const auto report = read_mcap(file.path(), {});
-    ASSERT_TRUE(report) << report.error().message;
+    const auto report = test::good(read_mcap(file.path(), {}));
     EXPECT_EQ(report->messages, 4U) << room;
     EXPECT_EQ(report->damaged, 0U) << room;
     EXPECT_TRUE(report->is_complete) << room;
