@@ -46,33 +46,6 @@ double last_gap(const std::string& bytes) {
   return reader.number();
 }
 
-TEST(RosMessages, ALimitHasItsCornersAndTheLapsThatExplainTheGap) {
-  protocol::Run run = samples::run();
-  lap_time::Limit limit = *run.limit.found;
-  limit.times.corners = {9.0, 16.0};
-  run.limit.found = std::make_shared<const lap_time::Limit>(limit);
-  run.limit.without = {{.cause = "latency", .lap_time = 27.5, .corners = {10.25, 17.25}}, {.cause = "guard"}};
-  const std::string bytes = encode("/chicane/limit", samples::frame(), run);
-  CdrReader reader{bytes};
-  reader.get<std::uint8_t>();
-  for (int i = 0; i < 4; ++i) reader.number();
-  for (int column = 0; column < 8; ++column)
-    for (std::uint32_t rest = reader.get<std::uint32_t>(); rest > 0; --rest) reader.number();
-  reader.text();
-  reader.get<std::uint32_t>();
-  ASSERT_EQ(reader.get<std::uint32_t>(), 2U);
-  for (const double corner : {9.0, 16.0}) EXPECT_EQ(reader.number(), corner);
-  ASSERT_EQ(reader.get<std::uint32_t>(), 2U);
-  for (const char* cause : {"latency", "guard"}) EXPECT_EQ(reader.text(), cause);
-  ASSERT_EQ(reader.get<std::uint32_t>(), 2U);
-  EXPECT_EQ(reader.number(), 27.5);
-  EXPECT_TRUE(std::isnan(reader.number()));
-  ASSERT_EQ(reader.get<std::uint32_t>(), 4U) << "corners of each lap, not-a-number where there is none";
-  for (const double corner : {10.25, 17.25}) EXPECT_EQ(reader.number(), corner);
-  for (int i = 0; i < 2; ++i) EXPECT_TRUE(std::isnan(reader.number()));
-  EXPECT_TRUE(reader.is_at_end());
-}
-
 TEST(RosMessages, ALimitThatIsNotKnownSaysWhyAndLapsHaveNoGap) {
   protocol::Run run = samples::run();
   run.limit = {.why_not = "the road is open", .first_lap = 4};
@@ -192,7 +165,7 @@ TEST(RosMessages, SchemasHoldEveryTypeTheyReferToOnce) {
   EXPECT_EQ(ros_schema("no_msgs/msg/Such"), "");
 }
 
-/// The same bytes are decoded by web/src/protocol/fixtures.test.ts. CHICANE_WRITE_FIXTURES=1 renews them
+/// The dashboard's tests decode the same bytes and compare their values. CHICANE_WRITE_FIXTURES=1 renews them
 /// after a wanted change: cmake --build --preset release --target renew_fixtures
 TEST(RosMessages, BytesEqualTheFixturesTheBrowserReads) {
   const std::filesystem::path folder =

@@ -124,11 +124,12 @@ inline Run run() {
   run.track_fit = {.rms = 0.0625, .most = 0.1875};
   run.guard = {.mode = "observe", .road = "waypoints", .version = 7};
   lap_time::Limit limit;
-  limit.times = {.lap = 25.0, .sectors = {8.0, 9.5, 7.5}};
+  limit.times = {.lap = 25.0, .sectors = {8.0, 9.5, 7.5}, .corners = {9.0, 16.0}};
   limit.line = {{.s = 258.0, .d = 0.5, .position = {1.0, 2.0}, .speed = 40.0, .lateral_acceleration = -3.0},
                 {.s = 260.0, .time = 0.0625, .d = 0.75, .position = {3.0, 2.25}, .speed = 40.5}};
   limit.line[1].longitudinal_acceleration = 4.5;
   run.limit = {.found = std::make_shared<const lap_time::Limit>(limit)};
+  run.limit.without = {{.cause = "latency", .lap_time = 27.5, .corners = {10.25, 17.25}}, {.cause = "guard"}};
   return run;
 }
 

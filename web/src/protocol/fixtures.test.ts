@@ -5,7 +5,7 @@ import { describe, expect, it } from 'vitest';
 import { decoder } from './decoder';
 import { TOPIC_NAMES } from './topics';
 
-// Written by tests/protocol/ros_messages_test.cpp, which compares them byte for byte.
+// Written by tests/protocol/ros_messages_test.cpp; the numbers are those of tests/protocol/viewer_samples.hpp.
 const folder = new URL('../../../tests/protocol/fixtures/ros/', import.meta.url);
 const topics = JSON.parse(readFileSync(new URL('topics.json', folder), 'utf8')) as {
   topic: string;
@@ -13,6 +13,15 @@ const topics = JSON.parse(readFileSync(new URL('topics.json', folder), 'utf8')) 
   file: string;
   schema: string;
 }[];
+
+/** As JSON with a field a line: numbers beyond it as texts, lists of numbers as one text. */
+function readable(message: unknown): string {
+  const plain = (_: string, value: unknown): unknown => {
+    if (ArrayBuffer.isView(value)) return [...(value as Float64Array)].join(' ');
+    return typeof value === 'bigint' || Number.isNaN(value) ? String(value) : value;
+  };
+  return `${JSON.stringify(message, plain, 1)}\n`;
+}
 
 describe('messages of the C++ side', () => {
   it('include every topic this page subscribes to', () => {
@@ -25,5 +34,11 @@ describe('messages of the C++ side', () => {
     const bytes = readFileSync(new URL(file, folder));
     const reference = new MessageReader(parse(schema, { ros2: true }));
     expect(decoder(schema)(bytes)).toEqual(reference.readMessage(bytes));
+  });
+
+  // Beside the bytes, for people and for other decoders; renewed with them, and to be read before it is kept.
+  it.each(topics)('$topic carries the values that stand beside its bytes', async ({ schema, file }) => {
+    const message = decoder(schema)(readFileSync(new URL(file, folder)));
+    await expect(readable(message)).toMatchFileSnapshot(new URL(file.replace(/bin$/, 'json'), folder).pathname);
   });
 });
