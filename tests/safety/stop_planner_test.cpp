@@ -265,6 +265,18 @@ TEST(StopPlanner, BrakesNoHarderThanTheBendLetsItStayStable) {
 }
 
 /// What the air brakes takes nothing of the tyres: a car of much drag brakes as hard beside it.
+TEST(StopPlanner, BrakesInBendsThatNoCarFollows) {
+  const StopPlanner planner(kCars[1]);
+  const auto braking = [&](double speed, double side) {
+    return -planner.slowing(circle(60.0, side), start_at(20.0, speed), {.share = 1.0, .stability = 0.0});
+  };
+  for (const double side : {1.0, -1.0}) {
+    EXPECT_LT(braking(24.0, side), 3.0);  // the rear axle holds the car in the bend with all that it has
+    EXPECT_GT(braking(32.0, side), 5.0);
+    EXPECT_EQ(braking(32.0, side), braking(32.0, -side));
+  }
+}
+
 TEST(StopPlanner, CountsDragNotAsForceOfTheTyres) {
   model::VehicleParams light = kCars[1];
   model::VehicleParams draggy = light;
