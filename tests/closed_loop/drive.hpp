@@ -23,7 +23,7 @@ inline telemetry::RunSummary drive(const Settings& settings) {
   return test::drive(test::scenario_of(settings));
 }
 
-/// The same of a run that has to end completed and without leaving the road.
+/// Result of a run that has to end completed and without leaving the road.
 inline telemetry::RunSummary drive_cleanly(const Settings& settings) {
   const telemetry::RunSummary run = drive(settings);
   std::string what;

@@ -43,7 +43,7 @@ TEST(Latency, CostsTheDefaultControllerHardlyAnyTime) {
         drive_cleanly({{"preset", "default"},
                        {"track", "lakeside"},
                        {"laps", "2"},
-                       {"guard.mode", "off"},  // with three commands in a second it has to slow down
+                       {"guard.mode", "off"},  // the guard slows a car with three commands in a second
                        {"latency_ms", latency_ms},
                        {"control_period_ms", period_ms}});
     return run.laps.size() == 2U ? run.laps[1].lap_time : 1e9;

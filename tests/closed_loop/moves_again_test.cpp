@@ -237,8 +237,8 @@ struct FaultRun {
 };
 
 struct Standing {
-  double time = 0.0;     ///< for which the car stands on its road after its fault, longest [s]
-  std::string why{};     ///< its last reason and place
+  double time = 0.0;     ///< longest time that the car stands on its road after its fault [s]
+  std::string why{};     ///< reason and place at the end of it
   bool can_turn = true;  ///< can_turn()
 };
 

@@ -189,8 +189,8 @@ class Guard {
     double tried = 0.0;             ///< way driven to see whether the car was put elsewhere, by the model [m]
     double held_speed = 0.0;        ///< of a car that should move, when it began not to [m/s]
     double led_at = 0.0;            ///< it is led, last [s]
-    model::Pose led_from{};         ///< where it was then
-    double led_heading = 0.0;       ///< when it was judged by its turning last [rad]
+    model::Pose led_from{};         ///< pose of the car at led_at
+    double led_heading = 0.0;       ///< heading when its turning was judged last [rad]
     double led_asked = 0.0;         ///< turning by its wheels' angle since [rad]
     double stays_until = 0.0;       ///< its wheels turned it otherwise than asked [s]
     Since answered;                 ///< the controller, last
