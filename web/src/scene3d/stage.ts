@@ -51,8 +51,9 @@ export interface View {
 
 const NO_LINE: Line = { x: [], y: [] };
 
-/** Where things are in the picture [CSS pixels]. */
+/** Where things are in the last picture [CSS pixels]. */
 export interface Geometry {
+  readonly picture: { readonly camera: CameraName | null; readonly aspect: number };
   readonly corners: readonly (readonly [number, number])[]; // of the car's box
   readonly plan: readonly (readonly [number, number])[];
   readonly horizon: number;
@@ -402,7 +403,7 @@ export class Stage {
     this.#landscape.follow(shot.position[0], shot.position[1]);
   }
 
-  /** Where the car's box and the plan are in the picture, and the horizon [CSS pixels]; null without a car. */
+  /** Where the car's box and the plan are in the last picture, and the horizon; null without a car. */
   geometry(): Geometry | null {
     const { clientWidth: width, clientHeight: height } = this.#canvas;
     if (!this.#car || width === 0) return null;
@@ -416,7 +417,8 @@ export class Stage {
     const { position } = this.#camera;
     this.#camera.getWorldDirection(point);
     const horizon = at(position.x + 1e6 * point.x, position.y + 1e6 * point.y, 0)[1];
-    return { corners, plan: points, horizon };
+    const picture = { camera: this.#wasCamera, aspect: this.#camera.aspect };
+    return { picture, corners, plan: points, horizon };
   }
 
   dispose(): void {

@@ -91,6 +91,7 @@ class Painter {
   #lastPaint = 0;
   #shown: readonly unknown[] = [];
   #seen: Camera | null = null; // of the last picture
+  #picture = { camera: camera.value, aspect: NaN }; // the last one
   #drawn: { readonly car: Scene['car']; readonly plan: readonly Point[] } = { car: null, plan: [] };
   #worldKey: readonly unknown[] = [];
   readonly #world = new CachedPicture();
@@ -146,6 +147,7 @@ class Painter {
     this.#shown = shownNow;
     this.#drawn = { car, plan: pointsOf(plan) };
     this.#seen = seen;
+    this.#picture = { camera: camera.value, aspect: box.width / box.height };
     this.#drawWorld(context, scene, seen, still, ratio);
     drawMoving(context, scene, seen, ratio);
     if (mark) drawCursor(context, mark, seen, ratio);
@@ -183,9 +185,9 @@ class Painter {
     return this.#seen && unproject(this.#seen, at);
   }
 
-  /** Where the car's box and the plan are in the picture [CSS pixels]; null without a car. */
-  geometry(): { corners: number[][]; plan: number[][] } | null {
-    const [seen, { car, plan }] = [this.#seen, this.#drawn];
+  /** Where the car's box and the plan are in the last picture [CSS pixels]; null without a car. */
+  geometry() {
+    const [seen, picture, { car, plan }] = [this.#seen, this.#picture, this.#drawn];
     if (!seen || !car) return null;
     const at = (point: Point): number[] => {
       const { x, y } = project(seen, point);
@@ -196,7 +198,7 @@ class Painter {
     const corners = [front, rear].flatMap((x) =>
       [-halfWidth, halfWidth].map((y) => at({ x: car.x + x * cos - y * sin, y: car.y + x * sin + y * cos })),
     );
-    return { corners, plan: plan.map(at) };
+    return { picture, corners, plan: plan.map(at) };
   }
 
   #camera(car: Scene['car'], plan: readonly Point[], now: number, width: number, height: number): Camera {
