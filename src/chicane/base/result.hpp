@@ -8,7 +8,7 @@
 namespace chicane {
 
 /// Kinds of failures in the world outside the program.
-enum class ErrorCode { kInvalidArgument, kParse, kUnsupportedVersion, kNotFound, kIo };
+enum class ErrorCode { kInvalidArgument, kParse, kNotFound, kIo };
 
 /// A message that can be understood without the source: "scenarios/wet.yaml:14: car.mass_kg: got -900,
 /// expected > 0".

@@ -58,16 +58,6 @@ namespace chicane {
   return is_allowed && continues(1) && continues(2) && continues(3) ? 4 : 0;
 }
 
-/// Whether all of `text` is UTF-8.
-[[nodiscard]] constexpr bool is_utf8(std::string_view text) noexcept {
-  while (!text.empty()) {
-    const std::size_t length = utf8_length(text);
-    if (length == 0) return false;
-    text.remove_prefix(length);
-  }
-  return true;
-}
-
 /// Severity of a state of the program. The numbers equal ROS 2's diagnostic_msgs/DiagnosticStatus.
 enum class Severity : std::uint8_t { kOk = 0, kWarning = 1, kError = 2 };
 

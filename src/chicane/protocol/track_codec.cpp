@@ -48,7 +48,6 @@ const TrackFormat* foreign_format_of(std::string_view text) noexcept {
 
 bool is_foreign_track(std::string_view text) noexcept { return foreign_format_of(text) != nullptr; }
 
-std::span<const TrackFormat> track_formats() noexcept { return kFormats; }
 std::span<const std::string_view> track_extensions() noexcept { return kExtensions; }
 
 const TrackFormat* track_format_of(std::string_view file) noexcept {

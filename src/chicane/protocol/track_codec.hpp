@@ -60,11 +60,9 @@ struct TrackFormat {
   bool (*recognises)(std::string_view text) noexcept = nullptr;
 };
 
-/// All of them. Where a name fits two files, the format that comes first wins.
-[[nodiscard]] std::span<const TrackFormat> track_formats() noexcept;
-/// Their extensions, in the same order.
+/// Extensions of all formats.
 [[nodiscard]] std::span<const std::string_view> track_extensions() noexcept;
-/// The format of a file by its name; null when there is none.
+/// The format of a file by its name; null when there is none. Where a name fits two, the first one wins.
 [[nodiscard]] const TrackFormat* track_format_of(std::string_view file) noexcept;
 
 /// Whether a format of other programs recognises the text.

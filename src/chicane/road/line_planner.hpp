@@ -50,7 +50,7 @@ class Instalments {
 /// sweep back.
 ///
 /// All memory is reserved at construction. The work comes in instalments of about 10 ns; a whole smoothing is
-/// work_for() of them.
+/// 33 of them for each knot.
 class LineSmoother {
  public:
   explicit LineSmoother(int capacity);
