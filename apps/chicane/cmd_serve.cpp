@@ -4,9 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "chicane/live/pages.hpp"

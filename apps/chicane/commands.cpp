@@ -3,8 +3,6 @@
 
 #include <cstdio>
 
-#include "option_row.hpp"
-
 namespace chicane::apps {
 namespace {
 

@@ -16,10 +16,7 @@
 #include <exception>
 #include <filesystem>
 #include <memory>
-#include <string>
-#include <string_view>
 #include <variant>
-#include <vector>
 
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/protocol/data_folders.hpp"

@@ -14,9 +14,6 @@
 #include <cmath>
 #include <filesystem>
 #include <mutex>
-#include <string>
-#include <string_view>
-#include <utility>
 
 #include "chicane/base/file.hpp"
 #include "chicane/base/math.hpp"
@@ -24,7 +21,6 @@
 #include "chicane/live/pages.hpp"
 #include "chicane/net/http_response.hpp"
 #include "chicane/recording/html_report.hpp"
-#include "chicane/recording/replay.hpp"
 #include "chicane/run/make.hpp"
 
 namespace chicane::apps {

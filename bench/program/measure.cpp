@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <vector>
 
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"

@@ -5,7 +5,6 @@
 #include <array>
 #include <atomic>
 #include <cstdlib>
-#include <string>
 #include <utility>
 
 namespace chicane {

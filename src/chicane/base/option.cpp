@@ -2,8 +2,6 @@
 // Reading, writing and checking of options by their rows.
 #include "chicane/base/option.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "chicane/base/text.hpp"

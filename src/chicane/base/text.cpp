@@ -2,7 +2,6 @@
 // Numbers and words to text and back, the same in every locale.
 #include "chicane/base/text.hpp"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>

@@ -6,11 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <string>
 #include <string_view>
 #include <variant>
 
@@ -19,7 +16,6 @@
 #include "chicane/base/vec2.hpp"
 #include "chicane/identify/detail/window_fit.hpp"
 #include "chicane/model/prediction.hpp"
-#include "chicane/model/vehicle.hpp"
 
 namespace chicane::identify {
 namespace {

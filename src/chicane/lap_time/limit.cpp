@@ -4,14 +4,11 @@
 #include "chicane/lap_time/limit.hpp"
 
 #include <algorithm>
-#include <limits>
-#include <memory>
 
 #include "chicane/base/math.hpp"
 #include "chicane/lap_time/detail/limit_model.hpp"
 #include "chicane/lap_time/detail/plan_model.hpp"
 #include "chicane/lap_time/detail/plan_search.hpp"
-#include "chicane/road/track.hpp"
 #include "chicane/sim/plant_registry.hpp"
 
 namespace chicane::lap_time {

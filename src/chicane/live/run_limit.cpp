@@ -2,10 +2,7 @@
 // Limit of the current run: searched during the run, again after a change of grip or mass.
 #include "chicane/live/run_limit.hpp"
 
-#include <chrono>
-#include <string>
 #include <thread>
-#include <utility>
 
 #include "chicane/run/plan_cache.hpp"
 

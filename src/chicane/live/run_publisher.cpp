@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "chicane/protocol/schema_json.hpp"
 #include "chicane/run/racing.hpp"
 
 namespace chicane::live {

@@ -6,19 +6,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <cstddef>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/schema.hpp"
-#include "chicane/telemetry/frame.hpp"
 #include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::live {

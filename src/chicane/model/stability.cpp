@@ -3,12 +3,6 @@
 // beyond their peak.
 #include "chicane/model/stability.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "chicane/base/math.hpp"
-
 namespace chicane::model {
 namespace {
 

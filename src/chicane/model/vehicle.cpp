@@ -3,8 +3,6 @@
 #include "chicane/model/vehicle.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace chicane::model {
 

@@ -2,8 +2,6 @@
 // The only file that includes Boost.Beast.
 #include "chicane/net/server.hpp"
 
-#include <utility>  // before Asio: Boost 1.74 lacks this include
-
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -18,14 +16,12 @@
 #include <algorithm>
 #include <array>
 #include <list>
-#include <optional>
 #include <thread>
 #include <unordered_map>
 
 #include <fmt/format.h>
 
 #include "chicane/net/detail/connections.hpp"
-#include "chicane/net/http_response.hpp"
 
 namespace chicane::net {
 namespace {

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <string_view>
 #include <variant>
 
 #include "chicane/base/instruction_set.hpp"

@@ -11,7 +11,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <optional>
 #include <span>
 
@@ -19,7 +18,6 @@
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/schema_json.hpp"
 #include "chicane/protocol/track_codec.hpp"
-#include "chicane/protocol/yaml_codec.hpp"
 
 namespace chicane::protocol {
 namespace {

@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <span>
-#include <string_view>
 #include <utility>
 #include <variant>
 

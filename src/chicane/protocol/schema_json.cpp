@@ -7,14 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <string>
 #include <variant>
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
-#include "chicane/protocol/library.hpp"
-#include "chicane/protocol/schema.hpp"
 
 namespace chicane::protocol {
 namespace {

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "chicane/base/math.hpp"
 #include "chicane/recording/detail/ros_message.hpp"

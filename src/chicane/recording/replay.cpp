@@ -10,15 +10,10 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <cstdint>
 #include <filesystem>
 #include <limits>
-#include <map>
 #include <memory>
-#include <optional>
-#include <string>
 #include <utility>
-#include <variant>
 
 #include "chicane/base/file.hpp"
 #include "chicane/base/instruction_set.hpp"
@@ -28,10 +23,8 @@
 #include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/run/control_cycle.hpp"
-#include "chicane/run/make.hpp"
 #include "chicane/run/racing.hpp"
 #include "chicane/run/setting.hpp"
-#include "chicane/telemetry/mcap.hpp"
 
 namespace chicane::recording {
 namespace {

@@ -9,7 +9,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <utility>
 #include <variant>
 
 #include "chicane/base/math.hpp"

@@ -2,7 +2,6 @@
 // The guard's road: line and edges, from a track or from the waypoints seen so far.
 #include "chicane/road/known_road.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>

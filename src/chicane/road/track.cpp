@@ -2,13 +2,8 @@
 // Tracks: checks raw points, smooths their line, finds crossings and corners, and samples the widths.
 #include "chicane/road/track.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <vector>
 
 #include "chicane/base/text.hpp"
 #include "chicane/base/vec2.hpp"

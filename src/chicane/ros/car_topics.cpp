@@ -8,12 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 
 #include "chicane/base/math.hpp"
-#include "chicane/protocol/car_messages.hpp"
-#include "chicane/ros/dds.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/sim/world.hpp"
 

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <string>
-#include <string_view>
 #include <utility>
 
 #include "chicane/protocol/car_messages.hpp"

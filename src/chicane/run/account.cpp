@@ -11,7 +11,6 @@
 #include "chicane/base/text.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/run/simulated_car.hpp"
-#include "chicane/telemetry/metrics.hpp"
 
 namespace chicane::run {
 namespace {

@@ -5,12 +5,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <string_view>
-#include <utility>
 
 #include "chicane/protocol/schema.hpp"
 #include "chicane/run/racing.hpp"
-#include "chicane/run/simulated_car.hpp"
 
 namespace chicane::run {
 

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <utility>
 
-#include "chicane/road/track.hpp"
 #include "chicane/run/make.hpp"
 
 namespace chicane::run {

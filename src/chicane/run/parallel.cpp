@@ -6,11 +6,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <filesystem>
 #include <optional>
 #include <thread>
-#include <vector>
 
 #include "chicane/base/text.hpp"
 

@@ -5,15 +5,12 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "chicane/base/text.hpp"
 #include "chicane/controller/registry.hpp"
-#include "chicane/lap_time/limit.hpp"
 #include "chicane/lap_time/racing_plan.hpp"
 #include "chicane/model/stability.hpp"
 #include "chicane/model/vehicle.hpp"

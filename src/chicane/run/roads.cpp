@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "chicane/run/control_cycle.hpp"
-#include "chicane/run/racing.hpp"
 
 namespace chicane::run {
 

@@ -4,7 +4,6 @@
 #include "chicane/run/run_steps.hpp"
 
 #include <chrono>
-#include <optional>
 #include <thread>
 
 namespace chicane::run {

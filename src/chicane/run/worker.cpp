@@ -3,8 +3,6 @@
 
 #include <sys/resource.h>
 
-#include <utility>
-
 namespace chicane::run {
 
 Worker::Worker(std::function<void()> work, Period period)

@@ -3,13 +3,11 @@
 #include "chicane/sim/sensor.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 
 #include "chicane/base/math.hpp"
-#include "chicane/base/random.hpp"
 
 namespace chicane::sim {
 namespace {

@@ -12,7 +12,6 @@
 
 #include "chicane/base/random.hpp"
 #include "chicane/base/text.hpp"
-#include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/fault_campaign.hpp"
 #include "chicane/sweep/plan_codec.hpp"

@@ -13,7 +13,6 @@
 #include <sstream>
 
 #include "chicane/base/text.hpp"
-#include "chicane/protocol/json.hpp"
 #include "chicane/protocol/yaml_tree.hpp"
 #include "chicane/sweep/plan_codec.hpp"
 #include "chicane/sweep/trial.hpp"

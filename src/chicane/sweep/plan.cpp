@@ -10,7 +10,6 @@
 #include <bit>
 #include <cmath>
 #include <set>
-#include <utility>
 
 #include "chicane/base/compiler.hpp"
 #include "chicane/base/math.hpp"

@@ -7,13 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <optional>
 #include <set>
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/schema.hpp"
-#include "chicane/protocol/yaml_codec.hpp"
-#include "chicane/sweep/plan.hpp"
 #include "chicane/sweep/trial.hpp"
 
 namespace chicane::sweep::detail {

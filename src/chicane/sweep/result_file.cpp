@@ -17,7 +17,6 @@
 #include "chicane/base/file.hpp"
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/text.hpp"
-#include "chicane/protocol/json.hpp"
 #include "chicane/sweep/trial.hpp"
 
 namespace chicane::sweep {

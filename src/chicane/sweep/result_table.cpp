@@ -15,7 +15,6 @@
 
 #include "chicane/base/file.hpp"
 #include "chicane/base/text.hpp"
-#include "chicane/protocol/json.hpp"
 #include "chicane/sweep/result_file.hpp"
 
 namespace chicane::sweep {

@@ -8,14 +8,12 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <optional>
 
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/run/closed_loop.hpp"
-#include "chicane/run/parallel.hpp"
 #include "chicane/sweep/plan_codec.hpp"
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/trial.hpp"

@@ -6,27 +6,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
 #include <set>
-#include <string>
 #include <type_traits>
 #include <utility>
 
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/math.hpp"
-#include "chicane/base/result.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/json.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/protocol/yaml_codec.hpp"
 #include "chicane/run/parallel.hpp"
-#include "chicane/scenario/scenario.hpp"
-#include "chicane/sweep/plan.hpp"
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/sweep.hpp"
 #include "chicane/sweep/trial.hpp"

@@ -3,11 +3,9 @@
 #include "chicane/telemetry/frame.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "chicane/base/math.hpp"
-#include "chicane/base/text.hpp"
 #include "chicane/safety/supervisor.hpp"
 
 namespace chicane::telemetry {

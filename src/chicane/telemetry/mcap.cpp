@@ -11,9 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <system_error>
-#include <utility>
 
 #include "chicane/base/compiler.hpp"
 

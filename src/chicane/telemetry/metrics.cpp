@@ -2,11 +2,8 @@
 // Metrics of a run, collected step by step: extremes, laps, times, and the settings and faults of each lap.
 #include "chicane/telemetry/metrics.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
-#include <string_view>
 #include <utility>
 
 namespace chicane::telemetry {

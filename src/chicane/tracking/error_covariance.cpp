@@ -2,7 +2,6 @@
 #include "chicane/tracking/error_covariance.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "chicane/base/math.hpp"
 

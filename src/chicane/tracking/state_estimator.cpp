@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/tracking/state_estimator.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "chicane/base/math.hpp"
 #include "chicane/model/actuator.hpp"
-#include "chicane/model/vehicle.hpp"
 
 namespace chicane::tracking {
 

@@ -2,9 +2,6 @@
 // Memory of a run for late viewers: frames, laps and changes in bounded memory.
 #include "chicane/wire/run_memory.hpp"
 
-#include <algorithm>
-#include <utility>
-
 namespace chicane::wire {
 namespace {
 

@@ -14,8 +14,6 @@
 #include <fmt/format.h>
 
 #include "chicane/protocol/schema.hpp"
-#include "chicane/protocol/udacity_codec.hpp"
-#include "chicane/run/external_drive.hpp"
 
 namespace chicane::wire {
 namespace {

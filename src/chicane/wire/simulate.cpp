@@ -12,16 +12,12 @@
 #include <csignal>
 #include <future>
 #include <memory>
-#include <optional>
 #include <thread>
-#include <utility>
 #include <variant>
 
 #include "chicane/base/math.hpp"
 #include "chicane/net/client.hpp"
-#include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/run/simulated_car.hpp"
-#include "chicane/wire/endpoint.hpp"
 
 namespace chicane::wire {
 namespace {

@@ -5,9 +5,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
-#include <map>
 #include <memory>
-#include <string>
 #include <utility>
 
 #include "chicane/base/math.hpp"

@@ -2,17 +2,11 @@
 // Road at the nodes of a plan, first guess of speeds, and the check that a car's lock fits the road.
 #include "chicane/lap_time/detail/plan_model.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstdio>
 #include <string>
 #include <utility>
-#include <vector>
-
-#include "chicane/base/math.hpp"
-#include "chicane/lap_time/detail/collocation.hpp"
 
 namespace chicane::lap_time {
 namespace {
