@@ -14,7 +14,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -24,6 +23,7 @@
 #include "chicane/protocol/json_report.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/recording/html_report.hpp"
+#include "chicane/recording/replay.hpp"
 #include "chicane/run/parallel.hpp"
 #include "chicane/sweep/league.hpp"
 #include "chicane/sweep/sweep.hpp"
@@ -46,25 +46,6 @@ constexpr std::chrono::milliseconds kPollPeriod{100};  // period of reading the 
 // DDS domains of ROS 2 programs, by process number. DDS has 0 to 232; people use the low ones.
 constexpr int kRosDomain = 110, kRosDomains = 80;
 
-/// A temporary folder for the output of a simulator; deleted with this object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "chicane-league-XXXXXX").string();
-    if (::mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 std::string last_line(const std::string& text) {
   const std::size_t end = text.find_last_not_of("\r\n");
   if (end == std::string::npos) return "it has said nothing";
@@ -79,15 +60,12 @@ std::string last_line(const std::string& text) {
 Result<telemetry::RunSummary> drive_ros_program(const ExternalTrial& trial, int domain,
                                                 const std::string& own, double patience,
                                                 const std::atomic<bool>& stop) {
-  const TemporaryFolder folder;
-  if (folder.path().empty()) return fail(ErrorCode::kIo, "no folder for temporary files");
-  const std::string out = (folder.path() / "out").string(), err = (folder.path() / "err").string();
-  const std::string done = (folder.path() / "done").string();
+  const recording::TemporaryFile out(".json"), err(".txt"), done(".done");
   std::string simulator = fmt::format("{} ros --simulate --json --domain {}", own, domain);
   for (const auto& [key, text] : trial.settings)
     simulator += fmt::format(" --set {}", sweep::shell_word(key + "=" + text));
-  simulator += fmt::format(" > {} 2> {}; : > {}", sweep::shell_word(out), sweep::shell_word(err),
-                           sweep::shell_word(done));
+  simulator += fmt::format(" > {} 2> {}; : > {}", sweep::shell_word(out.path()),
+                           sweep::shell_word(err.path()), sweep::shell_word(done.path()));
 
   wire::SparseLog log({});
   wire::ServerProcess simulating(simulator, log);
@@ -98,9 +76,9 @@ Result<telemetry::RunSummary> drive_ros_program(const ExternalTrial& trial, int 
   bool has_command = false;
   while (!stop) {
     std::this_thread::sleep_for(kPollPeriod);
-    const std::string output = protocol::read_file(err).value_or("");
-    if (fs::exists(done)) {
-      auto run = protocol::read_run(protocol::read_file(out).value_or(""));
+    const std::string output = protocol::read_file(err.path()).value_or("");
+    if (std::filesystem::exists(done.path())) {
+      auto run = protocol::read_run(protocol::read_file(out.path()).value_or(""));
       return run ? std::move(run) : fail(ErrorCode::kIo, "the simulator has no result: " + last_line(output));
     }
     has_command = has_command || output.find("first command on") != std::string::npos;
