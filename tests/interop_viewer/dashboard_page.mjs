@@ -42,7 +42,7 @@ export const EVERY_SIZE = Boolean(process.env.CHICANE_EVERY_SIZE);
 const REPAINT_MS = 250;
 
 /** An init script: the page draws once in `interval` [ms], and not while `isHeld`. */
-export function repaintSeldom(interval) {
+function repaintSeldom(interval) {
   const due = new Map();
   let last = 0;
   globalThis.requestAnimationFrame = (draw) => {
@@ -91,14 +91,14 @@ export class DashboardPage {
   /**
    * Opens the page in a mode and waits until it says that it is live, or in another `state`; the browser keeps nothing
    * of tests before. What the browser complains of is kept in `complaints`. The page draws four times a second without
-   * moving parts, or with `fluent` as often as the browser repaints and with all that moves.
+   * moving parts, or with `fluent` as often as the browser repaints and with all that moves. It runs `script` first.
    */
-  static async open(browser, url, { mode = 'watch', state = 'Live', fluent = false, ...options } = {}) {
+  static async open(browser, url, { mode = 'watch', state = 'Live', fluent = false, script, ...options } = {}) {
     const shape = { ...LAPTOP, ...options };
     const { viewport, colorScheme, ...kept } = shape;
-    const key = JSON.stringify([fluent, kept]);
+    const key = JSON.stringify([fluent, `${script}`, kept]);
     const shelf = left.get(browser) ?? left.set(browser, new Map()).get(browser);
-    const dashboard = shelf.get(key) ?? (await DashboardPage.#fresh(browser, shape, fluent));
+    const dashboard = shelf.get(key) ?? (await DashboardPage.#fresh(browser, shape, fluent, script));
     shelf.delete(key);
     await dashboard.page.setViewportSize(viewport);
     await dashboard.page.emulateMedia({ colorScheme, reducedMotion: fluent ? null : 'reduce' });
@@ -118,11 +118,12 @@ export class DashboardPage {
     return dashboard;
   }
 
-  static async #fresh(browser, shape, fluent) {
+  static async #fresh(browser, shape, fluent, script) {
     const context = await browser.newContext(shape);
     context.setDefaultTimeout(PATIENCE);
     const page = await context.newPage();
     if (!fluent) await page.addInitScript(repaintSeldom, REPAINT_MS);
+    if (script) await page.addInitScript(script);
     const complaints = [];
     page.on('console', (message) => {
       if (['error', 'warning'].includes(message.type())) complaints.push(message.text());

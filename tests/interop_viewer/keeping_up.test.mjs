@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The dashboard keeps up with sixty frames a second. What that costs is measured by performance.mjs, not asserted here.
+// The dashboard keeps up with sixty frames a second. What that costs is measured by measure.mjs, not asserted here.
 import assert from 'node:assert/strict';
 import { it } from 'node:test';
 import { atLeast, DashboardPage, EVERY_SIZE } from './dashboard_page.mjs';
@@ -10,21 +10,11 @@ const FRAMES = 200;
 
 const here = browserAndDrive(SIXTY_A_SECOND);
 
-let page;
-async function firstPage() {
-  const made = await (await here.browser.newContext({ viewport: { width: 1366, height: 768 } })).newPage();
-  await made.addInitScript(() => location.protocol === 'http:' && localStorage.setItem('chicane.camera', '"track"'));
-  await made.addInitScript(notePaints);
-  return made;
-}
-
 for (const mode of EVERY_SIZE ? ['watch', 'understand'] : ['understand']) {
   it(`paints the newest of many frames, in bounded memory: ${mode}`, async () => {
-    page ??= await firstPage();
-    await page.goto('about:blank');
-    await page.goto(`${here.drive.url}#${mode}`);
-    await page.getByText('Live', { exact: true }).waitFor();
-    const dashboard = new DashboardPage(page, []);
+    const options = { mode, fluent: true, script: notePaints };
+    const dashboard = await DashboardPage.open(here.browser, here.drive.url, options);
+    const { page } = dashboard;
     const paints = () => page.evaluate(() => [...globalThis.paints.keys()]);
     const read = await meter(page);
     await dashboard.until(paints, ({ length }) => length > 60, 'first pictures'); // code is compiled
@@ -44,6 +34,7 @@ for (const mode of EVERY_SIZE ? ['watch', 'understand'] : ['understand']) {
     );
     const growth = ((await read()).heap - heap) / 1e6;
     other.close();
+    await dashboard.close();
     assert.ok(growth < 3, `${growth} MB more after ${FRAMES} frames`); // what is kept has its memory from the start
   });
 }

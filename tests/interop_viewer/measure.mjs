@@ -11,9 +11,8 @@ import { argv } from 'node:process';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { launch } from './browser.mjs';
 import { startDrive } from './chicane_drive.mjs';
-import { DashboardPage } from './dashboard_page.mjs';
-import { pageCost, quantile } from './page_cost.mjs';
-import { SIXTY_A_SECOND } from './paints.mjs';
+import { above, DashboardPage } from './dashboard_page.mjs';
+import { arrivals, meter, notePaints, SIXTY_A_SECOND } from './paints.mjs';
 
 const LAPS = Number(argv[2] ?? 1000);
 const MINUTES = Number(argv[3] ?? 60);
@@ -21,6 +20,8 @@ const PARTS = argv.slice(4);
 const isWanted = (part) => PARTS.length === 0 || PARTS.includes(part);
 
 const row = (what, value, aim = '') => console.log(`| ${what} | ${value} | ${aim} |`);
+const quantile = (values, share) =>
+  [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))];
 const ms = (value) => (value >= 1000 ? `${(value / 1000).toFixed(2)} s` : `${value.toFixed(0)} ms`);
 
 /** Processor time of a program [s], all of its threads. */
@@ -68,6 +69,30 @@ const hasPicture = () => {
 const hasLap = (lap) =>
   Number.parseInt(document.querySelector('[data-testid="lap-rows"] tbody tr:last-child th')?.textContent ?? '', 10) >=
   lap;
+
+/** What a page costs that shows the run at `url` for so many seconds. `meanwhile` is awaited beside. */
+async function pageCost(browser, url, mode, seconds, meanwhile = async () => undefined) {
+  const dashboard = await DashboardPage.open(browser, url, { mode, fluent: true, script: notePaints });
+  const { page } = dashboard;
+  await dashboard.until(dashboard.speed, above(5), 'a car that drives');
+  const read = await meter(page);
+  await sleep(3000); // the history fills, code is compiled
+  const other = await arrivals(url);
+  const [begin, first] = [performance.now(), await read()];
+  await Promise.all([sleep(seconds * 1000), meanwhile()]);
+  const elapsed = (performance.now() - begin) / 1000;
+  const paints = new Map(await page.evaluate(() => [...globalThis.paints]));
+  const arrived = other.times.size;
+  const last = await read();
+  other.close();
+  await page.context().close();
+  const ages = [...other.times].flatMap(([stamp, time]) => (paints.has(stamp) ? [paints.get(stamp) - time] : []));
+  return {
+    framesPerSecond: arrived / elapsed,
+    mainThread: (last.busy - first.busy) / elapsed, // of one core
+    p95: quantile(ages, 0.95), // from message to screen [ms]
+  };
+}
 
 async function several(times, measure) {
   const values = [];

@@ -4,8 +4,7 @@ import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import { launch } from './browser.mjs';
 import { startDrive } from './chicane_drive.mjs';
-import { above, DashboardPage, EVERY_SIZE, repaintSeldom } from './dashboard_page.mjs';
-import { PATIENCE } from './patience.mjs';
+import { above, DashboardPage, EVERY_SIZE, PHONE } from './dashboard_page.mjs';
 
 let drive;
 before(async () => {
@@ -25,62 +24,23 @@ const countDrawing = () => {
   }
 };
 
-/** Pages that tests have left, by browser, drawing and size: a context of its own costs more than all the rest. */
-const left = new WeakMap();
-
-/**
- * The page with nothing in its storage but `storage`. It draws seven times a second, or with `fluent` as often as the
- * browser repaints.
- */
-async function open(browser, { storage = {}, fluent = false, ...options } = {}) {
-  const shelf = left.get(browser) ?? left.set(browser, new Map()).get(browser);
-  const key = JSON.stringify([fluent, options]);
-  const opened = shelf.get(key) ?? (await fresh(browser, { fluent, ...options }));
-  shelf.delete(key);
-  const { page, complaints } = opened;
-  await page.goto(`${drive.url}nothing`); // of the same origin, whose storage this is
-  await page.evaluate((entries) => {
-    localStorage.clear();
-    for (const [name, value] of entries) localStorage.setItem(name, JSON.stringify(value));
-  }, Object.entries(storage));
-  complaints.length = 0;
-  await page.goto(drive.url);
-  await page.getByText('Live', { exact: true }).waitFor();
-  const leave = async () => {
-    await page.goto('about:blank');
-    await page.emulateMedia({ colorScheme: 'light', reducedMotion: null });
-    shelf.set(key, opened);
-  };
-  return { page, complaints, leave };
+/** The page, 820 pixels wide unless `options` say otherwise; with all that moves. */
+async function open(browser, options) {
+  const shape = { viewport: { width: 820, height: 560 }, script: countDrawing, ...options };
+  const dashboard = await DashboardPage.open(browser, drive.url, shape);
+  await dashboard.page.emulateMedia({ reducedMotion: null });
+  return dashboard;
 }
 
-async function fresh(browser, { script, fluent, ...options }) {
-  const context = await browser.newContext({ viewport: { width: 820, height: 560 }, colorScheme: 'light', ...options });
-  context.setDefaultTimeout(PATIENCE);
-  const page = await context.newPage();
-  const complaints = [];
-  page.on('console', (message) => {
-    // What drivers say of a canvas that is read back for a picture without a graphics card; and that there is no page
-    // of the name that open() asks for, and so no icon of it.
-    if (/\/(nothing|favicon\.ico)$/.test(message.location().url)) return;
-    if (['error', 'warning'].includes(message.type()) && !message.text().includes('GL Driver Message'))
-      complaints.push(message.text());
-  });
-  page.on('pageerror', (error) => complaints.push(String(error)));
-  if (!fluent) await page.addInitScript(repaintSeldom, 150);
-  if (script) await page.addInitScript(script);
-  await page.addInitScript(countDrawing);
-  return { page, complaints };
-}
+/** What drivers say of a canvas that is read back for a picture without a graphics card. */
+const isOfDriver = (complaint) => complaint.includes('GL Driver Message');
 
-const in3d = { 'chicane.camera': 'chase' };
 const ready = (page) => page.locator('.map.has-3d canvas.map-3d').waitFor();
 const button = (page, name) => page.getByRole('button', { name, exact: true });
 const camera = (page) => page.getByLabel('Camera', { exact: true });
-const choose = (page, label) => camera(page).selectOption({ label });
 
 /** Waits until nothing is drawn any more; how often it was until then. */
-const atRest = (page) => new DashboardPage(page).settled(() => page.evaluate(() => globalThis.drawn));
+const atRest = (dashboard) => dashboard.settled(() => dashboard.page.evaluate(() => globalThis.drawn));
 
 /** A small copy of the 3D picture, from the moment it is drawn: how many colours it has, and the copy itself. */
 const picture = (page) =>
@@ -99,8 +59,6 @@ const picture = (page) =>
     return best;
   });
 
-const accessibilityFindings = (page, ...which) => new DashboardPage(page).accessibilityFindings(...which);
-
 describe('the 3D picture', () => {
   let browser;
   before(async () => {
@@ -109,21 +67,21 @@ describe('the 3D picture', () => {
   after(() => browser.close());
 
   // One page for several tests: to load the picture anew costs more than what they look at.
+  let dashboard;
   let page;
-  let complaints;
-  let leave;
 
   it('is drawn when chosen, from every camera, and chosen again after a reload', async () => {
-    ({ page, complaints, leave } = await open(browser));
+    dashboard = await open(browser);
+    ({ page } = dashboard);
     // Without a graphics card the track comes first.
     assert.equal(await camera(page).inputValue(), 'track');
     assert.equal(await page.locator('canvas.map-3d').count(), 0);
-    await choose(page, 'Chase');
+    await dashboard.camera('Chase');
     await ready(page);
     const seen = new Set();
     for (const name of ['Chase', 'Top', 'Cockpit', 'Free']) {
-      await choose(page, name);
-      const { text } = await new DashboardPage(page).until(
+      await dashboard.camera(name);
+      const { text } = await dashboard.until(
         () => picture(page),
         (now) => now.colours >= 30 && !seen.has(now.text),
         `a picture from another camera: ${name}`,
@@ -133,11 +91,11 @@ describe('the 3D picture', () => {
     await page.reload();
     await ready(page);
     assert.equal(await camera(page).inputValue(), 'free');
-    assert.deepEqual(complaints, []);
+    dashboard.hadNothingToComplainOf(isOfDriver);
   });
 
   it('obeys the keyboard: cameras, map, and turning the free camera', async () => {
-    await choose(page, 'Chase');
+    await dashboard.camera('Chase');
     await page.evaluate(() => document.activeElement.blur());
     for (const name of ['Chase', 'Top', 'Cockpit', 'Free']) {
       await page.waitForFunction(
@@ -146,36 +104,36 @@ describe('the 3D picture', () => {
       );
       await page.keyboard.press('c');
     }
-    await choose(page, 'Free');
+    await dashboard.camera('Free');
     await button(page, 'Pause').click();
     await page.getByText('Paused', { exact: true }).waitFor();
-    await atRest(page);
+    await atRest(dashboard);
     const before = await picture(page);
     await page.locator('canvas.map-3d').focus();
     for (let i = 0; i < 6; ++i) await page.keyboard.press('ArrowLeft');
-    await new DashboardPage(page).until(
+    await dashboard.until(
       () => picture(page),
       ({ text }) => text !== before.text,
       'another view',
     );
-    await choose(page, 'Map');
+    await dashboard.camera('Map');
     await page.locator('.map:not(.has-3d)').waitFor();
-    await choose(page, 'Free');
+    await dashboard.camera('Free');
     await ready(page);
     await button(page, 'Resume').click();
-    assert.deepEqual(complaints, []);
+    dashboard.hadNothingToComplainOf(isOfDriver);
   });
 
   it('rests while nothing moves, and goes on after a reset', async () => {
     await button(page, 'Pause').click();
     await page.getByText('Paused', { exact: true }).waitFor();
-    const still = await atRest(page);
+    const still = await atRest(dashboard);
     await page.locator('body').press('r');
     await button(page, 'Resume').click();
     await page.getByText('Live', { exact: true }).waitFor();
     await page.waitForFunction((before) => globalThis.drawn > before, still);
     assert.ok((await picture(page)).colours >= 30);
-    assert.deepEqual(complaints, []);
+    dashboard.hadNothingToComplainOf(isOfDriver);
   });
 
   it('gives way to the map when the browser takes the context, and comes back when asked', async () => {
@@ -184,48 +142,39 @@ describe('the 3D picture', () => {
     );
     await page.getByText('The browser stopped the 3D picture').waitFor();
     assert.ok((await page.locator('canvas.map-2d').boundingBox()).width > 300, 'the map fills the place');
-    await choose(page, 'Chase');
+    await dashboard.camera('Chase');
     await ready(page);
     assert.ok((await picture(page)).colours >= 30);
-    complaints.length = 0; // of the context that was taken
+    dashboard.complaints.length = 0; // of the context that was taken
   });
 
   // Each load of the picture takes four seconds of processor time: still and on a phone with CHICANE_EVERY_SIZE=1.
   it('has nothing that axe objects to, in the light, in the dark, still, and on a phone', async () => {
-    const storage = { ...in3d, 'chicane.camera': 'free' };
-    const isGood = async (page, name, ...which) => {
-      await ready(page);
-      assert.ok((await picture(page)).colours >= 30, name);
-      assert.deepEqual(await accessibilityFindings(page, ...which), [], name);
-      const { width, content } = await page.evaluate(() => ({
-        width: innerWidth,
-        content: document.documentElement.scrollWidth,
-      }));
-      assert.ok(content <= width, `${name}: ${content} px of content on ${width} px`);
+    const isGood = async (shown, name, ...which) => {
+      await ready(shown.page);
+      assert.ok((await picture(shown.page)).colours >= 30, name);
+      assert.deepEqual(await shown.accessibilityFindings(...which), [], name);
+      assert.ok((await shown.overflow()).across <= 0, `${name}: wider than the window`);
     };
-    await choose(page, 'Free');
-    await isGood(page, 'in the light');
+    await dashboard.camera('Free');
+    await isGood(dashboard, 'in the light');
     await page.emulateMedia({ colorScheme: 'dark' });
-    await isGood(page, 'in the dark', '.stage', ['color-contrast']);
-    if (!EVERY_SIZE) return assert.deepEqual(complaints, []);
+    await isGood(dashboard, 'in the dark', '.stage', ['color-contrast']);
+    if (!EVERY_SIZE) return dashboard.hadNothingToComplainOf(isOfDriver);
     await page.emulateMedia({ reducedMotion: 'reduce' });
     await page.reload();
-    await isGood(page, 'for readers who want little motion');
-    await leave();
-    const phone = await open(browser, {
-      storage,
-      ...{ viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true },
-    });
-    await isGood(phone.page, 'on a phone');
-    await phone.leave();
-    assert.deepEqual([...complaints, ...phone.complaints], []);
+    await isGood(dashboard, 'for readers who want little motion');
+    await dashboard.close(isOfDriver);
+    const phone = await open(browser, PHONE);
+    await phone.camera('Free');
+    await isGood(phone, 'on a phone');
+    await phone.close(isOfDriver);
   });
 
   it('comes without the page standing still for it', async (test) => {
-    const smooth = await open(browser, { storage: { 'chicane.camera': 'track' }, fluent: true });
+    const smooth = await open(browser, { fluent: true });
     const { page: moving } = smooth;
-    const dashboard = new DashboardPage(moving, smooth.complaints);
-    await dashboard.until(() => dashboard.colours('canvas.map-2d'), above(20), 'the map');
+    await smooth.until(() => smooth.colours('canvas.map-2d'), above(20), 'the map');
     await moving.evaluate(() => {
       let last = performance.now();
       globalThis.longest = 0;
@@ -236,7 +185,7 @@ describe('the 3D picture', () => {
       }, 10);
     });
     const begin = performance.now();
-    await choose(moving, 'Chase');
+    await smooth.camera('Chase');
     await ready(moving);
     const took = performance.now() - begin;
     assert.ok((await picture(moving)).colours >= 30, 'there is something to see as soon as the map has made room');
@@ -249,8 +198,7 @@ describe('the 3D picture', () => {
     // Measured: 200 to 550 ms; 4600 to 8400, nearly all of the wait, with a blurred sky and awaited shaders. A share of
     // the wait holds on a busy machine too.
     assert.ok(longest < Math.max(1000, took / 2), `${longest} ms without an answer, of ${took} ms`);
-    assert.deepEqual(smooth.complaints, []);
-    await smooth.leave();
+    await smooth.close(isOfDriver);
   });
 
   it('works where the browser keeps nothing', { skip: !EVERY_SIZE && 'with CHICANE_EVERY_SIZE=1' }, async () => {
@@ -260,28 +208,25 @@ describe('the 3D picture', () => {
           throw new DOMException('denied', 'SecurityError');
         },
       });
-    const opened = await fresh(browser, { script });
-    await opened.page.goto(drive.url);
-    await opened.page.getByText('Live', { exact: true }).waitFor();
-    await choose(opened.page, 'Chase');
+    const opened = await open(browser, { script });
+    await opened.camera('Chase');
     await ready(opened.page);
     assert.ok((await picture(opened.page)).colours >= 30);
-    assert.deepEqual(opened.complaints, []);
-    await opened.page.context().close();
+    await opened.close(isOfDriver);
   });
 });
 
 it('is replaced by the map, with a note, where there is no WebGL', async (test) => {
   const browser = await launch('--disable-3d-apis');
   test.after(() => browser.close());
-  const { page, complaints } = await open(browser);
+  const dashboard = await open(browser);
+  const { page } = dashboard;
   await page.getByText('This browser offers no WebGL 2').waitFor();
-  const dashboard = new DashboardPage(page);
   await dashboard.until(() => dashboard.colours('canvas.map-2d'), above(20), 'the map shows road and car');
-  assert.deepEqual(await accessibilityFindings(page), []);
-  await choose(page, 'Chase'); // in vain, and says so again
+  assert.deepEqual(await dashboard.accessibilityFindings(), []);
+  await dashboard.camera('Chase'); // in vain, and says so again
   await page.getByText('This browser offers no WebGL 2').waitFor();
-  await choose(page, 'Map');
+  await dashboard.camera('Map');
   await page.getByText('This browser offers no WebGL 2').waitFor({ state: 'detached' });
-  assert.deepEqual(complaints, []);
+  dashboard.hadNothingToComplainOf(isOfDriver);
 });
