@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: MIT
 // `chicane check` from outside: it judges what `chicane drive` judges.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <string>
-#include <vector>
-
 #include "apps/program_outcome.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
 
 namespace chicane {
 namespace {
 
-namespace fs = std::filesystem;
 using ::testing::EndsWith;
-using ::testing::HasSubstr;
 
 /// Words of both outputs.
 test::Outcome chicane(const std::string& arguments) { return test::chicane_program(arguments + " 2>&1"); }

@@ -1,35 +1,27 @@
 // SPDX-License-Identifier: MIT
 // The program as a user meets it: words in, text and exit codes out.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <csignal>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "apps/program_outcome.hpp"
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/version.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::test {
 namespace {
 
-using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
 TEST(Cli, SaysItsVersion) {
   const Outcome version = chicane_program("--version");
   EXPECT_EQ(version.code, 0);
-  EXPECT_THAT(version.out, testing::StartsWith("chicane " CHICANE_VERSION "\n"));
+  EXPECT_THAT(version.out, StartsWith("chicane " CHICANE_VERSION "\n"));
   const std::string left_out = instruction_sets_left_out();
   if (left_out.empty()) {
     EXPECT_EQ(version.out, "chicane " CHICANE_VERSION "\n");

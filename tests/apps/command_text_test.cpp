@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The manual page and the shells' completion name what the program's own help names.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <regex>
-#include <set>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "apps/program_outcome.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {
 
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 using ::testing::UnorderedElementsAre;
 

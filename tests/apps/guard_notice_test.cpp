@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "experiment.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "apps/program_outcome.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::apps {
 namespace {
 
 using safety::GuardMode;
 using ::testing::Eq;
-using ::testing::StartsWith;
 
 /// Text of a short run on stderr.
 std::string said_by_drive(const std::string& options) {

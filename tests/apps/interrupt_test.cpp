@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "program.hpp"
+#include "support/chicane_test.hpp"
 
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

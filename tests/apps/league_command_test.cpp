@@ -1,25 +1,15 @@
 // SPDX-License-Identifier: MIT
 // A league from outside, with programs that it starts and ends itself.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <string>
 
 #include "apps/program_outcome.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
 
 namespace chicane {
 namespace {
-
-namespace fs = std::filesystem;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 class LeagueCommand : public testing::Test, protected test::Folder {
  protected:
@@ -105,7 +95,7 @@ TEST_F(LeagueCommand, RefusesTheResultsOfAnotherLeagueAndLeavesThem) {
 TEST_F(LeagueCommand, SaysAtOnceThatAPageCannotBeWritten) {
   EXPECT_EQ(league("  ours: {preset: pid}\n", "-o /nowhere/l.html"), 3);
   EXPECT_THAT(said_.err, HasSubstr("/nowhere/l.html: cannot be written: No such file or directory"));
-  EXPECT_THAT(said_.err, testing::Not(HasSubstr("1 of 1 runs"))) << "before anything is driven";
+  EXPECT_THAT(said_.err, Not(HasSubstr("1 of 1 runs"))) << "before anything is driven";
 }
 
 }  // namespace

@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "option_row.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "commands.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::apps {
 namespace {

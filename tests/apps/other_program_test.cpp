@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Commands that are programs of their own, chicane-bench, chicane-ros and chicane-lab, are started wherever
 // the program stands. Seen with a copy of the program.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <regex>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "apps/program_outcome.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {
-
-namespace fs = std::filesystem;
-using ::testing::HasSubstr;
 
 class OtherProgram : public ::testing::Test {
  protected:

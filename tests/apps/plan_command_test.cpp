@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Planning as a user meets it: progress, signals, budgets and the cache.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "apps/program_outcome.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using Json = nlohmann::json;
 
 TEST(PlanCommand, CtrlCEndsPlanningAtOnce) {

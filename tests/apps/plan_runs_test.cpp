@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Commands that drive many runs by a plan: what they keep, and how they go on.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "apps/program_outcome.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::test {
 namespace {
 
-namespace fs = std::filesystem;
-using ::testing::HasSubstr;
 using OrderedJson = nlohmann::ordered_json;  // lines begin with their run
 
 class PlanRuns : public testing::Test {

@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
+#include "support/chicane_test.hpp"
 
 /// The program as a user meets it: words in, text and exit codes out.
 namespace chicane::test {
-
-namespace fs = std::filesystem;
 
 inline std::string read(const fs::path& file) {
   std::ostringstream text;

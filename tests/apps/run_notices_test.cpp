@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "progress.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "apps/program_outcome.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::apps {
 namespace {
 
 using controller::GuardReason;
 using controller::Rung;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
 
 constexpr double kPeriod = 0.04;  // [s]
 
@@ -148,7 +139,7 @@ TEST(PlanLine, SaysHowFarItIsAndWhatIsLeft) {
 TEST(RunNotices, ComeWhenItHappensAndBesideTheResults) {
   const test::Outcome lost = test::chicane_program(
       "drive --fast --json --laps 1 --set time_limit_s=20 --set guard.blind_time_s=1 --fault link_lost@8+9");
-  EXPECT_THAT(lost.out, testing::StartsWith("{"));
+  EXPECT_THAT(lost.out, StartsWith("{"));
   EXPECT_THAT(lost.out, Not(HasSubstr("The guard stops")));
   EXPECT_THAT(lost.err, HasSubstr("position, yaw or speed has not been measured for too long"));
   EXPECT_THAT(lost.err,

@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: MIT
 // A film from outside, with a shell script in ffmpeg's place: the package is optional.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <string>
-
 #include "apps/program_outcome.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
 
 namespace chicane {
 namespace {
-
-namespace fs = std::filesystem;
-using ::testing::HasSubstr;
 
 class VideoCommand : public testing::Test, protected test::Folder {
  protected:

@@ -1,34 +1,27 @@
 // SPDX-License-Identifier: MIT
 // Files that the program writes as a whole: replaced or left, and one sentence when they cannot be written.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "program_outcome.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {
 
+using fs::path;
 using test::chicane_program;
 using test::shell;
-using test::fs::path;
-using ::testing::HasSubstr;
 
 /// Results of 40 runs, and what is written of them.
 class Writers : public ::testing::Test {
  protected:
   Writers() {
-    test::fs::create_directories(folder_);
+    fs::create_directories(folder_);
     std::ofstream(file("plan.yaml")) << "settings: {preset: pid, laps: 0, time_limit_s: 0.2}\n"
                                         "axes: [{seed: {from: 1, to: 20, step: 1}}, {speed_mph: [20, 30]}]\n";
     const auto driven = chicane_program("sweep '" + file("plan.yaml") + "' -o '" + results() + "'");
     EXPECT_EQ(driven.code, 0) << driven.err;
   }
-  ~Writers() override { test::fs::remove_all(folder_); }
+  ~Writers() override { fs::remove_all(folder_); }
   Writers(const Writers&) = delete;
   Writers& operator=(const Writers&) = delete;
 
@@ -55,7 +48,7 @@ TEST_F(Writers, LeaveAFileThatTheyCannotReplace) {
     EXPECT_THAT(outcome.err, HasSubstr(old + ": cannot be written: File too large")) << words;
     EXPECT_EQ(test::read(old), content) << words;
   }
-  for (const auto& each : test::fs::directory_iterator(folder_))
+  for (const auto& each : fs::directory_iterator(folder_))
     EXPECT_NE(each.path().extension(), ".part") << each.path();
 }
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/math.hpp"
 
-#include <gtest/gtest.h>
-
 #include "chicane/base/random.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/deadline.hpp"
-
-#include <gtest/gtest.h>
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/deadline.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <vector>
-
 #include "chicane/base/random.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/file.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
 
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <thread>
 
 namespace chicane {
 namespace {
-
-namespace fs = std::filesystem;
 
 class Files : public testing::Test, protected test::Folder {
  protected:

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/instruction_set.hpp"
-
-#include <gtest/gtest.h>
-
-#include <array>
-#include <string>
-#include <string_view>
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/jet.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <tuple>
-
 #include "chicane/base/pack.hpp"
 #include "chicane/base/random.hpp"
+#include "support/chicane_test.hpp"
 
 namespace models {  // as users write them: nothing of chicane is in scope
 

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/jet.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <tuple>
-
 #include "chicane/base/random.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

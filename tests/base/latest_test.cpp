@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/latest.hpp"
+#include "support/chicane_test.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cstdint>
 #include <thread>
 
 namespace chicane {

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/math.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
 
 #include "chicane/base/pack.hpp"
 #include "chicane/base/random.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

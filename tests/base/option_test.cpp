@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/option.hpp"
-
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <limits>
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/pack.hpp"
 
-#include <gtest/gtest.h>
-
 #include <bit>
-#include <cmath>
-#include <cstring>
-#include <limits>
 
 #include "base/pack_cases.hpp"
 #include "chicane/base/random.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/random.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: MIT
 // A program that was built with AVX-512 alone, as `./run.sh` builds it on a processor that has it.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdlib>
 
 #include "chicane/base/instruction_set.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {
 
 using enum InstructionSet;
-using ::testing::HasSubstr;
 
 TEST(RestrictedSets, AreNamed) {
   EXPECT_EQ(built_instruction_sets(), "avx512");

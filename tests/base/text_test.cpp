@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/base/text.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
 #include <bit>
 #include <charconv>
-#include <cstdint>
-#include <limits>
-#include <string_view>
 
 #include "chicane/base/random.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 // chicane-bench: what it reports, never how fast.
-#include <gtest/gtest.h>
 
 #include <atomic>
-#include <cmath>
-#include <vector>
 
 #include "program/report.hpp"
 #include "program/solves.hpp"
 #ifdef CHICANE_HAVE_IPOPT
 #include "references/ipopt_reference.hpp"
+#include "support/chicane_test.hpp"
 #endif
 
 namespace chicane::bench {

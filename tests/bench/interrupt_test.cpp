@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Ctrl-C while `chicane bench` measures.
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
+#include "support/chicane_test.hpp"
 
 namespace chicane::bench {
 namespace {
-
-namespace fs = std::filesystem;
 
 TEST(ChicaneBench, EndsWithTheResultsSoFarWhenInterrupted) {
   const fs::path folder = fs::path(::testing::TempDir()) / ("chicane_bench_" + std::to_string(::getpid()));

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: MIT
 // More than ten thousand seeded problems, most of them unpleasant, against Ipopt: every answer is explained.
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <string>
 
 #include "problems/families.hpp"
 #include "problems/optimality.hpp"
 #include "problems/reference.hpp"
 #include "references/ipopt_reference.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A million solves that ask nothing of the operating system: no memory, no lock, no system call.
 #include <dlfcn.h>
-#include <gtest/gtest.h>
 #include <linux/seccomp.h>
 #include <pthread.h>
 #include <sys/prctl.h>
@@ -10,15 +9,13 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cstdint>
-#include <memory>
 #include <mutex>
-#include <vector>
 
 #include "problems/corridor_problem.hpp"
 #include "problems/described_problem.hpp"
 #include "problems/families.hpp"
 #include "support/alloc_guard.hpp"
+#include "support/chicane_test.hpp"
 
 namespace {
 

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/controller/cubic_mpc.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "chicane/base/math.hpp"
 #include "controller/sample_road.hpp"
+#include "support/chicane_test.hpp"
 #include "support/guarded.hpp"
 
 namespace chicane::controller {

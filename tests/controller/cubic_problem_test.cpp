@@ -1,23 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/controller/cubic_problem.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <memory>
-#include <sstream>
-#include <string>
-#include <tuple>
-#include <vector>
-
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/jet.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/controller/cubic_solver.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 #include "controller/dense_cubic_problem.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::controller {
 namespace {

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/controller/cubic_problem.hpp"
 
-#include <gtest/gtest.h>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <tuple>
-
 #include "chicane/base/math.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::controller {
 namespace {

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/controller/explain.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <memory>
-#include <numeric>
-
 #include "chicane/controller/baselines.hpp"
 #include "chicane/controller/cubic_mpc.hpp"
 #include "chicane/controller/tracking_mpc.hpp"
 #include "chicane/road/line_planner.hpp"
 #include "controller/sample_road.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::controller {
 namespace {

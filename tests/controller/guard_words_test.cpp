@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/controller/guard_words.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cstddef>
 #include <regex>
-#include <set>
-#include <string>
-#include <string_view>
 
 #include "chicane/solver/solution.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::controller {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/controller/tracking_guess.hpp"
 
-#include <gtest/gtest.h>
-
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::controller {
 namespace {

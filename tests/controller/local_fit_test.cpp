@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/controller/cubic_problem.hpp"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/QR>
-#include <cmath>
-#include <limits>
-#include <vector>
 
 #include "chicane/base/random.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::controller {
 namespace {

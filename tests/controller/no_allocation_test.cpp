@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <memory>
-#include <vector>
 
 #include "chicane/controller/baselines.hpp"
 #include "chicane/controller/cubic_mpc.hpp"
 #include "chicane/controller/tracking_mpc.hpp"
 #include "controller/sample_road.hpp"
 #include "support/alloc_guard.hpp"
+#include "support/chicane_test.hpp"
 #include "support/guarded.hpp"
 
 namespace chicane::controller {

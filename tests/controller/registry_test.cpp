@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/controller/registry.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "support/chicane_test.hpp"
 
 #include <cctype>
-#include <set>
 
 namespace chicane::controller {
 namespace {
@@ -70,14 +67,13 @@ TEST(ControllerList, KnowsAnEntryByItsNameAndItsOptionsByTheirGroup) {
   EXPECT_EQ(kind->group, "from_scratch");
   EXPECT_EQ(kind->meaning, "holds the wheel");
   EXPECT_EQ(List::find("from_scratch"), nullptr);
-  EXPECT_THAT(List::kNames, ::testing::ElementsAre("pid", "from-scratch"));
+  EXPECT_THAT(List::kNames, ElementsAre("pid", "from-scratch"));
 }
 
 TEST(ControllerList, MakesAControllerWithItsOwnOptions) {
   List::Options options;
   std::get<ScratchOptions>(options).steady_steer = 0.05;
-  const auto scratch = List::make("from-scratch", options, kCar);
-  ASSERT_TRUE(scratch) << scratch.error().message;
+  const auto scratch = test::good(List::make("from-scratch", options, kCar));
   EXPECT_EQ(steer_of(**scratch), 0.05);
 }
 
@@ -129,8 +125,7 @@ TEST(Registry, EveryControllerRefusesEachOptionBeyondItsRowsRange) {
         row.write(&std::get<typename Entry::Options>(options), row.unit.to_si(beyond));
         const auto made = Registry::make(Entry::kName, options, kCar);
         ASSERT_FALSE(made) << row.name;
-        EXPECT_THAT(made.error().message,
-                    ::testing::StartsWith(option_key(kOptionGroup<Entry>, row) + ": got "));
+        EXPECT_THAT(made.error().message, StartsWith(option_key(kOptionGroup<Entry>, row) + ": got "));
       }
     }
   });

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/controller/tracking_guess.hpp"
 
-#include <gtest/gtest.h>
-#include <cmath>
-#include <limits>
-#include <numeric>
-#include <vector>
-
 #include "chicane/base/math.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::controller {
 namespace {

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/controller/tracking_mpc.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "controller/sample_road.hpp"
+#include "support/chicane_test.hpp"
 #include "support/guarded.hpp"
 
 namespace chicane::controller {

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The kept corpora of the fuzzers through the same functions, whole and mutilated, with any compiler.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "chicane/base/random.hpp"
 #include "fuzz/targets.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::fuzz {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::vector<std::string> corpus(std::string_view target) {
   std::vector<fs::path> files;

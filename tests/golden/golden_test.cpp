@@ -4,16 +4,12 @@
 // clang, on every machine. A hash that changes says that the driving changed: look at the laps
 // (tools/check_figures --page docs/measured/numbers.md) before renewing it with what this test prints.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema_json.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

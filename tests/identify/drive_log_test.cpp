@@ -1,26 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/identify/drive_log.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <sstream>
-#include <string>
 
 #include "chicane/base/random.hpp"
 #include "chicane/protocol/car_messages.hpp"
 #include "chicane/telemetry/mcap.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::identify {
 namespace {
-
-using testing::HasSubstr;
 
 /// A circle to the left with 10 m radius at 5 m/s, 0.27 rad of steering, 20 samples a second.
 struct Row {

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/identify/detail/car_motion.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "chicane/base/math.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/sim/double_track.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::identify {
 namespace {

@@ -1,16 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/identify/identification.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-
-#include "chicane/protocol/library.hpp"
-#include "chicane/run/closed_loop.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::identify {
@@ -224,7 +215,7 @@ TEST(Identification, NeedsTenSecondsOfDriving) {
     log.commands.push_back({0.05 * i, 0.0, 0.1});
   }
   EXPECT_THAT(test::refusal_of(identify({log}, guess(), {.hold_out = 0.0})),
-              testing::HasSubstr("expected at least 10 s"));
+              HasSubstr("expected at least 10 s"));
 }
 
 }  // namespace

@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "chicane/base/math.hpp"
 #include "chicane/lap_time/detail/plan_search.hpp"
 #include "chicane/lap_time/limit.hpp"
 #include "chicane/sim/plant_registry.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::lap_time {

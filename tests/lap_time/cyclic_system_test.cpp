@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/lap_time/detail/cyclic_system.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <vector>
+#include "support/chicane_test.hpp"
 
 namespace chicane::lap_time {
 namespace {

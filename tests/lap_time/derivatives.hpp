@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "chicane/lap_time/detail/collocation.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::lap_time {
 

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/lap_time/limit.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "chicane/base/math.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::lap_time {

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <vector>
 
 #include "chicane/base/math.hpp"
 #include "chicane/lap_time/detail/limit_model.hpp"
 #include "chicane/lap_time/detail/plant_models.hpp"
 #include "lap_time/derivatives.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::lap_time {

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/lap_time/racing_plan.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "chicane/base/math.hpp"
 #include "chicane/lap_time/detail/plant_models.hpp"
 #include "chicane/lap_time/limit.hpp"
 #include "lap_time/derivatives.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::lap_time {
@@ -80,12 +72,10 @@ TEST(RacingPlan, BrakesNoHarderThanASlowSteeringCanCatch) {
   van.height = 0.75;
   van.brake_share_front = 0.64;
   const RacingPlanOptions options{.margin = 0.25, .grip_share = 0.93, .time_step = 0.12};
-  const auto quick = plan_racing_line(bean(), van, options);
-  ASSERT_TRUE(quick) << quick.error().message;
+  const auto quick = test::good(plan_racing_line(bean(), van, options));
   EXPECT_GT(most_excess_of_braking(*quick, van), 1.5);
   van.steer_rate_limit = 0.4;
-  const auto slow = plan_racing_line(bean(), van, options);
-  ASSERT_TRUE(slow) << slow.error().message;
+  const auto slow = test::good(plan_racing_line(bean(), van, options));
   EXPECT_LT(most_excess_of_braking(*slow, van), 1.0);
 }
 
@@ -215,8 +205,7 @@ TEST(RacingPlan, EntersAnOpenRoadAsItLeavesIt) {
   }
   for (int i = 1; i < 15; ++i) points.push_back({{230.0, 40.0 + 10.0 * i}, 4.0, 4.0});
   const road::Track track = road::Track::create("open", points, false).value();
-  const auto plan = plan_racing_line(track, model::road_car_params());
-  ASSERT_TRUE(plan) << plan.error().message;
+  const auto plan = test::good(plan_racing_line(track, model::road_car_params()));
   const road::RacingLinePoint &first = plan->points.front(), &last = plan->points.back();
   EXPECT_NEAR(last.s, track.length(), 1e-9);
   EXPECT_EQ(first.vx, last.vx);

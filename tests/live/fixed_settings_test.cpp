@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "chicane/live/live_settings.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "live/settings_of_a_run.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::live {
 namespace {
@@ -17,7 +12,6 @@ using protocol::foxglove::ParameterValue;
 using test::another_value;
 using test::Live;
 using test::scenario_of;
-using testing::HasSubstr;
 
 TEST(FixedSettings, KeepTheGuardAndItsModelOutOfReach) {
   EXPECT_EQ(Live().refusal({"guard.mode", std::string("off")}),

@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Settings that change while a run goes on: what the car and its controller make of them.
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "chicane/protocol/library.hpp"
-#include "chicane/run/closed_loop.hpp"
 #include "chicane/run/run_steps.hpp"
 #include "support/alloc_guard.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/live_run.hpp"
 
-#include <gtest/gtest.h>
-
-#include <memory>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "chicane/live/run_publisher.hpp"
-#include "chicane/protocol/library.hpp"
 #include "chicane/recording/replay.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 

@@ -1,24 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/live_settings.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <filesystem>
-#include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "chicane/protocol/library.hpp"
 #include "live/settings_of_a_run.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
-#include "support/results.hpp"
 
 namespace chicane::live {
 namespace {
@@ -28,7 +16,6 @@ using protocol::foxglove::ParameterValue;
 using test::another_value;
 using test::Live;
 using test::scenario_of;
-using testing::HasSubstr;
 
 TEST(LiveSettings, OfferEveryTunableOfTheSchemaAndTheControlsOfTheRun) {
   Live live;
@@ -227,7 +214,7 @@ TEST(LiveSettings, ChooseFromTheLibraryByNameAndOpenNoOtherFile) {
       const std::string said = live.refusal({key, value});
       EXPECT_THAT(said, HasSubstr(std::string(key) + ": got \"")) << value;
       EXPECT_THAT(said, HasSubstr("expected one of ")) << value;
-      EXPECT_THAT(said, testing::Not(HasSubstr("secret word")));
+      EXPECT_THAT(said, Not(HasSubstr("secret word")));
     }
   }
   EXPECT_TRUE(live.started.empty());

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/pages.hpp"
 
-#include <gtest/gtest.h>
-
-#include <utility>
-
 #include "chicane/live/what_if.hpp"
 #include "chicane/wire/endpoint.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::live {
 namespace {
@@ -14,8 +11,7 @@ namespace {
 TEST(Pages, OfALiveRunSaySo) {
   wire::Router router(nullptr, nullptr);
   const net::ServerHandlers handlers = router.handlers(live_pages());
-  const auto mode = handlers.on_get("/mode.json");
-  ASSERT_TRUE(mode);
+  const auto mode = test::good(handlers.on_get("/mode.json"));
   EXPECT_EQ(mode->content_type, "application/json");
   EXPECT_EQ(mode->bytes, "{\"mode\":\"live\"}\n");
   EXPECT_FALSE(handlers.on_get("/log/0.mcap"));

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Sessions with an external simulator, recorded as received and computed again.
-#include <gtest/gtest.h>
 
-#include "chicane/protocol/library.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/recording/replay.hpp"
-#include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/wire/serve.hpp"
 #include "net/raw_socket.hpp"
 #include "protocol/hostile_telemetry.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 

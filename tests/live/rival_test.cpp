@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/what_if.hpp"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
-#include <cmath>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <thread>
 
-#include "chicane/protocol/library.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::live {
@@ -22,8 +18,7 @@ class Race : public testing::Test {
   void SetUp() override { log.begin(scenario); }
   /// A race that has begun.
   void race(const std::string& question) {
-    const auto asked = rival.ask(question, scenario);
-    ASSERT_TRUE(asked) << asked.error().message;
+    const auto asked = test::good(rival.ask(question, scenario));
     while (!is_asked) std::this_thread::yield();
     is_asked = false;
     loop->restart();

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/run_limit.hpp"
 
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <cmath>
-#include <memory>
 #include <mutex>
 #include <thread>
-#include <vector>
 
 #include "chicane/base/math.hpp"
-#include "chicane/protocol/library.hpp"
 #include "chicane/run/make.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 #include "support/runs.hpp"
 
@@ -51,8 +44,7 @@ TEST(RunLimit, IsFoundBesideTheRunAndItsLapsAreSetBesideIt) {
   EXPECT_EQ(run.why_no_limit, "");
   EXPECT_DOUBLE_EQ(run.laps[0].gap_to_limit.value_or(0.0), 20.0 / run.limit->lap - 1.0);
   EXPECT_DOUBLE_EQ(run.laps[0].sector_gaps[2], 20.0 / 3.0 / run.limit->sectors[2] - 1.0);
-  const auto news = limit.news();
-  ASSERT_NE(news, nullptr);
+  const auto news = test::good(limit.news());
   EXPECT_EQ(news->found->times.lap, run.limit->lap);
   EXPECT_EQ(limit.news(), nullptr);  // once
 }

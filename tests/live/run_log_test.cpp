@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/run_log.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <memory>
-#include <string>
 #include <thread>
-#include <utility>
-#include <vector>
 
-#include "chicane/protocol/library.hpp"
-#include "chicane/run/closed_loop.hpp"
 #include "support/alloc_guard.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::live {
 namespace {
 
 using recording::BranchReport;
-using testing::HasSubstr;
 
 std::unique_ptr<run::ClosedLoop> loop_on(const std::string& track) {
   return test::loop_of(
@@ -181,7 +170,7 @@ TEST(RunLog, GoesOnWhereTheStartIsForgottenAndSaysSoOfWhatIs) {
   EXPECT_FALSE(report->first_difference);
   EXPECT_EQ(report->cycle, 1200U);
   EXPECT_THAT(test::refusal_of(log.branch({.at = 1.0, .duration = 1.0, .drives_both = true}, {})),
-              testing::HasSubstr("ask for a moment after"));
+              HasSubstr("ask for a moment after"));
 }
 
 }  // namespace

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/run_publisher.hpp"
 
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "chicane/protocol/schema_json.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::live {
 namespace {

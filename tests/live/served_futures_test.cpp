@@ -1,25 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/served_run.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "chicane/protocol/library.hpp"
-#include "chicane/run/closed_loop.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::live {
 namespace {
 
 using test::Settings;
-using testing::HasSubstr;
 
 scenario::Scenario scenario_of(Settings settings) {
   settings.insert(settings.begin(), {{"track", "oval"}, {"laps", "0"}});

@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/served_run.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <atomic>
-#include <memory>
 #include <mutex>
-#include <optional>
-#include <string>
 #include <thread>
-#include <vector>
 
-#include "chicane/protocol/library.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/wire/simulate.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::live {

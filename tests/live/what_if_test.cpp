@@ -1,25 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/live/what_if.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <thread>
 
 #include "chicane/live/run_log.hpp"
-#include "chicane/protocol/library.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::live {
 namespace {
 
-using Json = nlohmann::json;
-using testing::HasSubstr;
 using testing::Pair;
+using Json = nlohmann::json;
 
 /// The answer once it is there.
 Json answer_of(WhatIf& what_if) {

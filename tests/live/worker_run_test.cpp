@@ -2,13 +2,10 @@
 #include "chicane/live/worker_run.hpp"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
-#include "chicane/protocol/library.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::live {

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/model/stability.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "chicane/model/prediction.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::model {
 namespace {

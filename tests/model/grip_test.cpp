@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/model/vehicle.hpp"
 
-#include <gtest/gtest.h>
-
 #include "chicane/model/prediction.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::model {
 namespace {

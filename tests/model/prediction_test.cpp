@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/model/prediction.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-
 #include "chicane/base/random.hpp"
 #include "chicane/model/wheel_forces.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::model {
 namespace {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/model/vehicle.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "support/chicane_test.hpp"
 
 namespace chicane::model {
 namespace {

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/model/stability.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "chicane/base/jet.hpp"
 #include "chicane/model/prediction.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::model {
 namespace {

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/model/wheel_forces.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "chicane/base/jet.hpp"
 #include "chicane/base/math.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::model {
 namespace {

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/model/vehicle.hpp"
 
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <functional>
-#include <limits>
-
 #include "chicane/base/random.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::model {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(Vehicle, ShippedCarsAreValidAndNamed) {
   EXPECT_EQ(udacity_params().name, "udacity");

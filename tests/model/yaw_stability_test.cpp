@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/model/stability.hpp"
-
-#include <gtest/gtest.h>
-
-#include <limits>
+#include "support/chicane_test.hpp"
 
 namespace chicane::model {
 namespace {

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The table of docs/reference/security.md: every combination of address, token, Host, Origin, path and proof.
 #include "chicane/net/detail/connections.hpp"
-
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
+#include "support/chicane_test.hpp"
 
 namespace chicane::net {
 namespace {

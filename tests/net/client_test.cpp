@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/net/client.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <boost/uuid/detail/sha1.hpp>
-#include <functional>
 #include <thread>
 
 #include "chicane/net/server.hpp"
 #include "net/raw_socket.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::net {
 namespace {
 
 using test::RawSocket;
-using testing::HasSubstr;
 using namespace std::chrono_literals;
 
 /// Accepts one connection and lets `script` play the server, as uWebSockets or something worse.

@@ -1,18 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/net/http_response.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdio>
-#include <filesystem>
+#include "support/chicane_test.hpp"
 
 namespace chicane::net {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 /// A file with `content` that is gone after the test.
 class File {

@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <chrono>
 #include <condition_variable>
-#include <cstdint>
-#include <functional>
-#include <memory>
 #include <mutex>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "chicane/net/server.hpp"
 #include "net/raw_socket.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::test {
 
@@ -87,7 +76,7 @@ class Recorder {
 inline RawSocket upgraded(std::uint16_t port, int receive_buffer = 0) {
   RawSocket socket(port, receive_buffer);
   socket.send(unity_handshake(port));
-  EXPECT_THAT(socket.until("\r\n\r\n"), testing::StartsWith("HTTP/1.1 101"));
+  EXPECT_THAT(socket.until("\r\n\r\n"), StartsWith("HTTP/1.1 101"));
   return socket;
 }
 

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/net/server.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <future>
 
 #include "net/raw_socket.hpp"
 #include "net/recorder.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::net {
 namespace {
@@ -17,9 +14,6 @@ using test::RawSocket;
 using test::Recorder;
 using test::unity_handshake;
 using test::upgraded;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 using namespace std::chrono_literals;
 
 std::string get(std::uint16_t port, const std::string& target, const std::string& extra = {},
@@ -57,7 +51,7 @@ TEST(Server, NeverNegotiatesCompressionAndReturnsTheChosenSubprotocol) {
   const std::string head = socket.until("\r\n\r\n");
   EXPECT_THAT(head, HasSubstr("Sec-WebSocket-Protocol: b\r\n"));
   EXPECT_THAT(head, Not(HasSubstr("Extensions")));
-  EXPECT_THAT(recorder.upgrade().subprotocols, testing::ElementsAre("a", "b"));
+  EXPECT_THAT(recorder.upgrade().subprotocols, ElementsAre("a", "b"));
 }
 
 TEST(Server, CarriesMessagesBothWaysInOrder) {
@@ -65,7 +59,7 @@ TEST(Server, CarriesMessagesBothWaysInOrder) {
   RawSocket socket = upgraded(recorder.port());
   const ConnectionId id = recorder.opened(1).at(0);
   socket.send(RawSocket::masked("one") + RawSocket::masked("two"));
-  EXPECT_THAT(recorder.messages(2), testing::ElementsAre("one", "two"));
+  EXPECT_THAT(recorder.messages(2), ElementsAre("one", "two"));
   recorder.server().send(id, std::string("first"), false);
   recorder.server().send(id, std::string("\x00\x01", 2), true);
   const auto first = socket.frame();
@@ -89,7 +83,7 @@ TEST(Server, ClosesWithCodeAndReasonAfterWhatWaits) {
   EXPECT_EQ(frame->payload, std::string("\x03\xf5") + "come back later");
   socket.send(RawSocket::masked("\x03\xf5", 8));
   socket.close();
-  EXPECT_THAT(recorder.closed(1), testing::ElementsAre("come back later"));
+  EXPECT_THAT(recorder.closed(1), ElementsAre("come back later"));
 }
 
 TEST(Server, RefusesAnUpgradeInWords) {
@@ -333,14 +327,14 @@ TEST(Server, EndsAReliableConnectionThatDoesNotRead) {
   const RawSocket stuck = upgraded(recorder.port(), 4096);
   const ConnectionId id = recorder.opened(1).at(0);
   for (int i = 0; i < 500; ++i) recorder.server().send(id, std::string(20'000, 'x'), false);
-  EXPECT_THAT(recorder.closed(1), testing::ElementsAre("does not read what it is sent"));
+  EXPECT_THAT(recorder.closed(1), ElementsAre("does not read what it is sent"));
 }
 
 TEST(Server, PingsASilentPeerAndEndsOneThatDoesNotAnswer) {
   Recorder recorder({.idle_timeout = 200ms});
   RawSocket silent = upgraded(recorder.port());
   EXPECT_EQ(silent.frame()->opcode, 9);
-  EXPECT_THAT(recorder.closed(1), testing::ElementsAre("silent for 200 ms"));
+  EXPECT_THAT(recorder.closed(1), ElementsAre("silent for 200 ms"));
 }
 
 TEST(Server, NoticesACloseAndAPlainEnd) {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/net/http_response.hpp"
-
-#include <gtest/gtest.h>
-
-#include <set>
+#include "support/chicane_test.hpp"
 
 namespace chicane::net {
 namespace {

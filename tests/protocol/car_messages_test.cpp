@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/car_messages.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "chicane/protocol/ros_messages.hpp"
 #include "protocol/cdr_reader.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {

@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/track_codec.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <clocale>
-#include <cmath>
-#include <filesystem>
 
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/csv_text.hpp"
+#include "support/chicane_test.hpp"
 #include "support/comma_locale.hpp"
 
 namespace chicane::protocol {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 const std::string kSource = CHICANE_SOURCE_DIR;
 
@@ -61,7 +53,7 @@ TEST(CsvTrack, MatchesNamesNotPositions) {
           .value();
   EXPECT_EQ(file.points[1].position, (Vec2{9.0, 2.0}));
   EXPECT_EQ(file.points[1].left, 4.8);
-  EXPECT_THAT(file.warnings, ::testing::Contains("a.csv:1: note: unknown column, ignored"));
+  EXPECT_THAT(file.warnings, Contains("a.csv:1: note: unknown column, ignored"));
 }
 
 TEST(CsvTrack, NamesAllUnknownColumnsInOneWarning) {
@@ -203,9 +195,9 @@ TEST(CsvTrack, TellsOpenFromClosedAndCanBeForced) {
   const std::string straight = "x,y\n0,0\n10,0\n20,1\n30,2\n40,2\n";
   const TrackFile open = parse_track(straight, "a.csv").value();
   EXPECT_FALSE(open.is_closed);
-  EXPECT_THAT(open.warnings,
-              ::testing::Contains(
-                  HasSubstr("a.csv:6: row: 40.0 m from the last point to the first: read as an open road")));
+  EXPECT_THAT(
+      open.warnings,
+      Contains(HasSubstr("a.csv:6: row: 40.0 m from the last point to the first: read as an open road")));
   EXPECT_TRUE(parse_track(straight, "a.csv", {.is_closed = true})->is_closed);
   EXPECT_FALSE(parse_track(ring("x,y\n", ","), "a.csv", {.is_closed = false})->is_closed);
   EXPECT_FALSE(parse_track(ring("# closed=false\nx,y\n", ","), "a.csv")->is_closed);
@@ -276,7 +268,7 @@ TEST_P(BrokenTrack, IsRefusedWithFileAndLine) {
   const Result<road::Track> track = read_track(file);
   ASSERT_FALSE(track);
   EXPECT_EQ(track.error().code, ErrorCode::kParse);
-  EXPECT_THAT(track.error().message, ::testing::StartsWith(file + GetParam().message));
+  EXPECT_THAT(track.error().message, StartsWith(file + GetParam().message));
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/data_folders.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <filesystem>
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {
-
-using ::testing::ElementsAre;
 
 std::vector<std::string> folders_of(const DataOrigins& origins) { return data_folders(origins, "tracks"); }
 

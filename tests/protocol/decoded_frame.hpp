@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <map>
-#include <string>
-#include <vector>
-
 #include "chicane/protocol/ros_messages.hpp"
 #include "protocol/cdr_reader.hpp"
 #include "protocol/message_definition.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::test {
 

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/schema_json.hpp"
 
-#include <gmock/gmock.h>
-
-#include <array>
-
 #include "chicane/protocol/yaml_codec.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {
-
-using ::testing::HasSubstr;
 
 std::string refusal(std::string_view text) {
   const auto event = parse_fault(text);

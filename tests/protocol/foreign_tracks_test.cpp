@@ -2,30 +2,17 @@
 #include "chicane/protocol/track_codec.hpp"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <fstream>
-#include <map>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "chicane/base/math.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/road/track.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "support/stadium.hpp"
 
 namespace chicane::protocol {
 namespace {
 
 using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::HasSubstr;
 using Direction = TrackReadOptions::Direction;
 
 const std::string kData = std::string(CHICANE_SOURCE_DIR) + "/tests/data/";
@@ -53,9 +40,9 @@ TEST_P(ForeignTrack, HasTheLengthTheWidthAndTheDirectionOfTheRoad) {
   const Result<std::string> text = test::good(read_file(file));
   const Result<TrackFile> content = test::good(parse_track(*text, file, kind.options));
   if (kind.said.empty()) {
-    EXPECT_THAT(content->warnings, ::testing::IsEmpty());
+    EXPECT_THAT(content->warnings, IsEmpty());
   } else {
-    EXPECT_THAT(content->warnings, Contains(AllOf(::testing::StartsWith(file), HasSubstr(kind.said))));
+    EXPECT_THAT(content->warnings, Contains(AllOf(StartsWith(file), HasSubstr(kind.said))));
   }
   const Result<road::Track> track = test::good(make_track(*content));
   EXPECT_TRUE(track->centre().is_closed());
@@ -154,8 +141,7 @@ TEST(ForeignTracks, RefusesInWordsWhatIsNoRoad) {
   for (const auto& [name, words] : expected) {
     const auto track = read_track(kData + "tracks/" + name);
     ASSERT_FALSE(track) << name;
-    EXPECT_THAT(track.error().message,
-                AllOf(::testing::StartsWith(kData + "tracks/" + name), HasSubstr(words)));
+    EXPECT_THAT(track.error().message, AllOf(StartsWith(kData + "tracks/" + name), HasSubstr(words)));
     EXPECT_EQ(track.error().code, ErrorCode::kParse);
   }
 }

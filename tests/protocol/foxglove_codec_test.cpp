@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/foxglove_codec.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "support/chicane_test.hpp"
 
 #include <nlohmann/json.hpp>
 
 namespace chicane::protocol::foxglove {
 namespace {
 
-using testing::HasSubstr;
 using namespace std::string_literals;
 
 template <class Message>

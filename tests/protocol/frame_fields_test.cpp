@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/frame_fields.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
 #include <cctype>
-#include <cmath>
-#include <limits>
 #include <span>
-#include <string>
 #include <variant>
-#include <vector>
 
 #include "protocol/decoded_frame.hpp"
 #include "protocol/viewer_samples.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {

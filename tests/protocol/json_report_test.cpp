@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/json_report.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include <sstream>
-#include <string>
 
 #include "chicane/base/instruction_set.hpp"
 #include "chicane/base/math.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {
 
-using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
 telemetry::RunSummary example() {
@@ -181,8 +176,7 @@ TEST(JsonReport, TheTableSaysHowItEnded) {
 }
 
 TEST(JsonReport, IsReadAsItWasWritten) {
-  const auto read = read_run(to_json(example()));
-  ASSERT_TRUE(read) << read.error().message;
+  const auto read = test::good(read_run(to_json(example())));
   EXPECT_EQ(read->track, "lakeside");
   EXPECT_TRUE(read->completed);
   EXPECT_EQ(read->laps_completed, 1);

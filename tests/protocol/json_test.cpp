@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/json.hpp"
-
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <string>
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {

@@ -1,26 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/library.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <tuple>
 
 #include "chicane/model/vehicle.hpp"
 #include "chicane/protocol/schema.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
-#include "support/results.hpp"
 
 namespace chicane::protocol {
 namespace {
 
 using scenario::Scenario;
-using ::testing::HasSubstr;
-namespace fs = std::filesystem;
 
 class Library : public testing::Test, protected test::Folder {
  protected:
@@ -89,7 +80,7 @@ TEST_F(Library, EveryShippedPresetLoadsAndSaysWhatItIs) {
   }
   for (const char* promised :
        {"default", "delay-in-model", "fast-short-step", "measured-latency", "pid", "sixty-mph", "weighted"}) {
-    EXPECT_THAT(names, ::testing::Contains(promised));
+    EXPECT_THAT(names, Contains(promised));
   }
 }
 
@@ -103,7 +94,7 @@ TEST_F(Library, EveryShippedScenarioLoads) {
 
 TEST_F(Library, PresetDefaultSaysWhatTheCodeSays) {
   const Result<Scenario> scenario = test::good(compose({"", {{"preset", "default"}}}));
-  EXPECT_THAT(differences(*scenario, Scenario{}, ""), ::testing::IsEmpty());
+  EXPECT_THAT(differences(*scenario, Scenario{}, ""), IsEmpty());
 }
 
 TEST_F(Library, CarFilesSayWhatTheCodeSays) {
@@ -112,7 +103,7 @@ TEST_F(Library, CarFilesSayWhatTheCodeSays) {
     EXPECT_EQ(scenario->plant, car.name);
     Scenario expected;
     expected.vehicle = car;
-    EXPECT_THAT(differences(*scenario, expected, "vehicle."), ::testing::IsEmpty());
+    EXPECT_THAT(differences(*scenario, expected, "vehicle."), IsEmpty());
   }
 }
 
@@ -204,8 +195,6 @@ TEST_F(Library, AFolderIsNotAFile) {
   EXPECT_THAT(error.message, HasSubstr("got a folder, expected a file"));
   EXPECT_FALSE(compose({(folder_ / "presets").string(), {}}));
 }
-
-namespace fs = std::filesystem;
 
 std::string all_of(const scenario::Scenario& scenario) {
   std::string text;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Built with a copy of protocol/frame_fields.cpp that has one row more (one_more_field.cmake), in front of
 // the library's own: what a new signal touches is this table, and nothing else.
-#include <gtest/gtest.h>
 
 #include "protocol/decoded_frame.hpp"
 #include "protocol/typescript.hpp"
 #include "protocol/viewer_samples.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::test {
 namespace {

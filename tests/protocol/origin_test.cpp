@@ -1,26 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/origin.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-
 #include "chicane/base/text.hpp"
 #include "chicane/protocol/library.hpp"
 #include "chicane/protocol/track_codec.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {
-
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-namespace fs = std::filesystem;
 
 TEST(Origin, ReadsTheBandsThatIdentifyWrites) {
   const auto found = identified_in("vehicle:\n  mass_kg: 3.4  # " + band_remark(3.2, 3.6) +

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/car_messages.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "protocol/cdr_reader.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -17,7 +14,7 @@ TEST(ParameterMessages, RequestsAreReadAsTheyWereWritten) {
       test::good(decode<NamesRequest>(encode(NamesRequest{.call = kCall, .names = {"latency_ms", "laps"}})));
   EXPECT_EQ(names->call.client, kCall.client);
   EXPECT_EQ(names->call.sequence, 7);
-  EXPECT_THAT(names->names, testing::ElementsAre("latency_ms", "laps"));
+  EXPECT_THAT(names->names, ElementsAre("latency_ms", "laps"));
 
   const auto set = test::good(decode<SetRequest>(encode(SetRequest{
       .call = kCall,
@@ -32,7 +29,7 @@ TEST(ParameterMessages, RequestsAreReadAsTheyWereWritten) {
 
 TEST(ParameterMessages, RepliesAreReadAsTheyWereWritten) {
   const auto list = test::good(decode<ListReply>(encode(ListReply{kCall, {"a", "b"}})));
-  EXPECT_THAT(list->names, testing::ElementsAre("a", "b"));
+  EXPECT_THAT(list->names, ElementsAre("a", "b"));
   const auto set =
       test::good(decode<SetReply>(encode(SetReply{kCall, {{true, ""}, {false, "out of range"}}})));
   EXPECT_TRUE(set->outcomes[0].is_successful);

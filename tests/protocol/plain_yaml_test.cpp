@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/yaml_tree.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "chicane/protocol/library.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -54,8 +49,7 @@ TEST(PlainYaml, RefusesWhatOnlyTheWholeParserUnderstandsWithItsLine) {
   for (const std::string text :
        {"a: 1\nb: [1, 2]", "a: 1\n- b", "a: 1\nb: \"c\"", "a: 1\n\tb: 2", "a: 1\nb", "a: 1\n  b: 2",
         "a: 1\nb: {c: 1}", "a: 1\nb: &x 1", "a: 1\nb: |", "a: 1\n--- ", "a: 1\nb: c: 2"}) {
-    EXPECT_THAT(test::refusal_of(parse_plain_yaml(text, "file.yaml")), testing::StartsWith("file.yaml:2: "))
-        << text;
+    EXPECT_THAT(test::refusal_of(parse_plain_yaml(text, "file.yaml")), StartsWith("file.yaml:2: ")) << text;
   }
 }
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/json.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {

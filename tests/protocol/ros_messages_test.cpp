@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/ros_messages.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <sstream>
 
 #include "protocol/cdr_reader.hpp"
 #include "protocol/viewer_samples.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::protocol {

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/schema_json.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
+#include "support/chicane_test.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/schema.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <clocale>
-#include <cmath>
-#include <limits>
-#include <set>
 
 #include "chicane/base/random.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {
 
 using scenario::Scenario;
-using ::testing::HasSubstr;
 
 std::string error_of(std::string_view key, std::string_view text) {
   Scenario scenario;
@@ -216,7 +209,7 @@ TEST(Schema, SuggestsWhatWasMeant) {
   EXPECT_THAT(error_of("latency", "1"), HasSubstr("did you mean latency_ms?"));
   EXPECT_THAT(error_of("cubic_mpc.horizon_step", "1"), HasSubstr("did you mean cubic_mpc.horizon_steps?"));
   EXPECT_THAT(error_of("steer_limit_deg", "1"), HasSubstr("did you mean vehicle.steer_limit_deg?"));
-  EXPECT_THAT(error_of("xyzzy", "1"), ::testing::Not(HasSubstr("did you mean")));
+  EXPECT_THAT(error_of("xyzzy", "1"), Not(HasSubstr("did you mean")));
 }
 
 TEST(Schema, ALongOrBinaryKeyOrValueIsCutInTheMessage) {

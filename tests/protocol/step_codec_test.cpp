@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/step_codec.hpp"
 
-#include <gtest/gtest.h>
-
 #include <bit>
-#include <cmath>
 
 #include "chicane/protocol/ros_messages.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {
@@ -25,8 +23,7 @@ TEST(StepCodec, KeepsEveryBit) {
   frame.deadline_spent_at = 9;
   frame.begins = true;
   frame.has_measurement = false;
-  const auto step = decode_step(encode_step(frame));
-  ASSERT_TRUE(step);
+  const auto step = test::good(decode_step(encode_step(frame)));
   EXPECT_EQ(step->cycle, 7U);
   EXPECT_EQ(std::bit_cast<std::uint64_t>(step->measurement.x), 0x7ff8000000000123ULL);
   EXPECT_TRUE(std::signbit(step->measurement.waypoints[1].x()));

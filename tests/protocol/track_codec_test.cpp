@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/track_codec.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-
 #include "chicane/protocol/library.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(TrackCodec, FindsTheFormatByTheEndOfTheName) {
   for (const std::string_view extension : track_extensions()) {

@@ -1,15 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/typescript.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <stdexcept>
-#include <string>
-#include <tuple>
+#include "support/chicane_test.hpp"
 
 namespace chicane::test {
 namespace {

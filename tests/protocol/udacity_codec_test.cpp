@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/udacity_codec.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <array>
 #include <clocale>
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "chicane/base/math.hpp"
 #include "protocol/hostile_telemetry.hpp"
+#include "support/chicane_test.hpp"
 #include "support/comma_locale.hpp"
 
 namespace chicane::protocol {
@@ -21,7 +16,6 @@ using test::Hostile;
 using test::hostile_messages;
 using test::kRealTelemetry;
 using test::with;
-using testing::HasSubstr;
 
 constexpr double kFullLock = degrees_to_radians(25.0);
 

@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/detail/foreign_roads.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {
 
-using ::testing::HasSubstr;
-
 TEST(XmlDocument, HasElementsAndNumbersWithTheirLines) {
-  const auto xml = parse_xml(
-      "<?xml version='1.0'?>\n<a:road id='7' length=' 12.5 '>\n <x>3</x>\n <x>4</x>\n</a:road>", "f.xml");
-  ASSERT_TRUE(xml) << xml.error().message;
+  const auto xml = test::good(parse_xml(
+      "<?xml version='1.0'?>\n<a:road id='7' length=' 12.5 '>\n <x>3</x>\n <x>4</x>\n</a:road>", "f.xml"));
   const pugi::xml_node road = xml->root();
   EXPECT_STREQ(road.name(), "road") << "without the prefix of its namespace";
   EXPECT_EQ(xml->line_of(road), 2);

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/protocol/yaml_codec.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-
 #include "chicane/base/random.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
-#include "support/results.hpp"
 
 namespace chicane::protocol {
 namespace {
 
 using scenario::Scenario;
-using ::testing::HasSubstr;
-namespace fs = std::filesystem;
 
 const fs::path kBroken = fs::path(CHICANE_SOURCE_DIR) / "tests/protocol/fixtures/broken";
 
@@ -105,7 +98,7 @@ TEST(YamlCodec, EveryBrokenFileIsRefusedWithFileLineAndKey) {
     ASSERT_TRUE(fs::exists(file)) << file;
     const Result<Scenario> scenario = load(test::content_of(file), "broken.yaml");
     ASSERT_FALSE(scenario) << broken.name;
-    EXPECT_THAT(scenario.error().message, ::testing::StartsWith("broken.yaml:")) << broken.name;
+    EXPECT_THAT(scenario.error().message, StartsWith("broken.yaml:")) << broken.name;
     for (const char* expected : broken.expected)
       EXPECT_THAT(scenario.error().message, HasSubstr(expected)) << broken.name;
   }

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/recording/replay.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
 #include "chicane/recording/recorder.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
-#include "support/results.hpp"
 
 namespace chicane::recording {
 namespace {
@@ -38,21 +32,20 @@ TEST_F(BagMetadata, CountsTheMessagesOfARecordingInTheLayoutOfRosbag2) {
   ASSERT_TRUE(write_bag_metadata(options.path));
   const std::string text = content("metadata.yaml");
   // As rosbag2_storage writes it (metadata_io.cpp, version 5).
+  EXPECT_THAT(text, StartsWith("rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: mcap\n"
+                               "  duration:\n    nanoseconds: "));
   EXPECT_THAT(text,
-              testing::StartsWith("rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: mcap\n"
-                                  "  duration:\n    nanoseconds: "));
-  EXPECT_THAT(text, testing::HasSubstr(
-                        "    - topic_metadata:\n        name: /odom\n        type: nav_msgs/msg/Odometry\n"
+              HasSubstr("    - topic_metadata:\n        name: /odom\n        type: nav_msgs/msg/Odometry\n"
                         "        serialization_format: cdr\n        offered_qos_profiles: \"\"\n"
                         "      message_count: 10\n"));
-  EXPECT_THAT(text, testing::HasSubstr("  relative_file_paths:\n    - \"run.mcap\"\n"));
-  EXPECT_THAT(text, testing::HasSubstr("  duration:\n    nanoseconds: 360000000\n"));
+  EXPECT_THAT(text, HasSubstr("  relative_file_paths:\n    - \"run.mcap\"\n"));
+  EXPECT_THAT(text, HasSubstr("  duration:\n    nanoseconds: 360000000\n"));
 }
 
 TEST_F(BagMetadata, AFolderIsTheBagOfOneRecording) {
   std::ofstream(path("metadata.yaml"))
       << "rosbag2_bagfile_information:\n  relative_file_paths:\n    - \"other.mcap\"\n";
-  EXPECT_THAT(test::refusal_of(can_be_bag(path("run.mcap"))), testing::HasSubstr("another recording"));
+  EXPECT_THAT(test::refusal_of(can_be_bag(path("run.mcap"))), HasSubstr("another recording"));
   EXPECT_TRUE(can_be_bag(path("other.mcap")));
 }
 

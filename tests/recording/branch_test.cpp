@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/recording/shadow_run.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <map>
-#include <utility>
-
-#include "chicane/protocol/library.hpp"
 #include "chicane/protocol/step_codec.hpp"
 #include "chicane/recording/recorder.hpp"
 #include "chicane/recording/replay.hpp"
 #include "chicane/telemetry/mcap.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 
@@ -20,7 +13,6 @@ namespace chicane::recording {
 namespace {
 
 using telemetry::TemporaryFile;
-using testing::HasSubstr;
 
 /// Step messages of a recording, in order: every bit of what was measured, sent and decided.
 std::vector<std::string> steps_of(const std::string& file) {

@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/recording/lap_picture.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "chicane/recording/detail/ros_message.hpp"
 #include "recording/recorded_run.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {
 namespace {
 
 using telemetry::TemporaryFile;
-using testing::HasSubstr;
 
 TEST(DrivenRun, HoldsWhatWasRecorded) {
   const TemporaryFile file;
@@ -69,10 +63,10 @@ TEST(RosReader, ReadsNestedMessagesArraysAndTexts) {
   const auto content = test::good(reader->read(bytes));
   EXPECT_EQ(content->number("flag"), 1.0);
   EXPECT_EQ(content->number("x"), 2.5);
-  EXPECT_THAT(content->list("points.i"), testing::ElementsAre(-1.0, 5.0));
-  EXPECT_THAT(content->list("points.y"), testing::ElementsAre(7.0, 8.0));
+  EXPECT_THAT(content->list("points.i"), ElementsAre(-1.0, 5.0));
+  EXPECT_THAT(content->list("points.y"), ElementsAre(7.0, 8.0));
   EXPECT_EQ(content->text("name"), "hi");
-  EXPECT_THAT(content->list("pair"), testing::ElementsAre(1.0, 2.0));
+  EXPECT_THAT(content->list("pair"), ElementsAre(1.0, 2.0));
   EXPECT_EQ(content->number("nothing", -7.0), -7.0);
   for (std::size_t size = 0; size < bytes.size(); ++size)
     EXPECT_FALSE(reader->read(std::string_view(bytes).substr(0, size))) << size;

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/recording/html_report.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "chicane/recording/replay.hpp"
 #include "chicane/telemetry/mcap.hpp"
 #include "recording/recorded_run.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
-#include "support/results.hpp"
 #include "telemetry/sample_mcap.hpp"
 
 namespace chicane::recording {
@@ -19,7 +15,6 @@ namespace {
 
 using nlohmann::json;
 using telemetry::TemporaryFile;
-using testing::HasSubstr;
 
 constexpr std::uint64_t kSecond = 1'000'000'000;
 
@@ -125,11 +120,11 @@ TEST_F(ReportTest, IsOnePageThatAsksForNothing) {
   const std::vector<double> times = run["frames"]["time_s"];
   EXPECT_NEAR(static_cast<double>(times.size()), 190.0, 15.0);
   // Where something changes, every step is kept.
-  for (const double time : {4.04, 4.08}) EXPECT_THAT(times, testing::Contains(time));
+  for (const double time : {4.04, 4.08}) EXPECT_THAT(times, Contains(time));
   EXPECT_THAT(page(), HasSubstr(base64("script")));
   EXPECT_THAT(page(), HasSubstr("default-src 'none'"));
   for (const char* outside : {"http:", "https:", "src=", "<link rel=\"stylesheet\""}) {
-    EXPECT_THAT(page(), testing::Not(HasSubstr(outside)));
+    EXPECT_THAT(page(), Not(HasSubstr(outside)));
   }
 }
 

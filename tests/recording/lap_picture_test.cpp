@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/recording/lap_picture.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "chicane/recording/detail/canvas.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::recording {
 namespace {
@@ -115,8 +111,7 @@ TEST(LapPicture, TellsTheTimeLostToTheGhostAtTheSamePlace) {
   const DrivenRun run = straight_run();
   LapPicture picture(run, drive(20.0, 5.0), drive(25.0, 70.0), {.width = 320, .height = 180});
   EXPECT_NEAR(picture.duration(), 10.0, 1e-9);
-  const auto lost = picture.lost_to_ghost(5.0);
-  ASSERT_TRUE(lost);
+  const auto lost = test::good(picture.lost_to_ghost(5.0));
   EXPECT_NEAR(*lost, 1.0, 1e-9) << "100 m take 5 s and 4 s";
   EXPECT_FALSE(LapPicture(run, drive(20.0, 0.0), {}, {}).lost_to_ghost(5.0));
   EXPECT_FALSE(LapPicture(run, drive(25.0, 0.0), drive(20.0, 0.0), {}).lost_to_ghost(9.9))

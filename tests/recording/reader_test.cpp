@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/recording/replay.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <fstream>
-#include <memory>
-
-#include "chicane/protocol/library.hpp"
 #include "chicane/recording/recorder.hpp"
-#include "chicane/run/closed_loop.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 
@@ -17,7 +10,6 @@ namespace chicane::recording {
 namespace {
 
 using telemetry::TemporaryFile;
-using ::testing::HasSubstr;
 
 /// Two seconds of the given run with a change of a setting after the first.
 std::size_t record(const std::string& path, const std::string& controller = "pid") {

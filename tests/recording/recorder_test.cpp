@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/recording/recorder.hpp"
 
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 
-#include <array>
 #include <csignal>
-#include <filesystem>
-#include <map>
-#include <string>
 
 #include "chicane/base/math.hpp"
-#include "chicane/protocol/library.hpp"
 #include "chicane/recording/replay.hpp"
-#include "chicane/run/closed_loop.hpp"
 #include "chicane/telemetry/mcap.hpp"
+#include "support/chicane_test.hpp"
 #include "support/own_controller.hpp"
-#include "support/results.hpp"
 #include "support/roads.hpp"
 #include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"

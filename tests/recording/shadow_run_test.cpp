@@ -1,15 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/recording/shadow_run.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "chicane/protocol/library.hpp"
+#include "support/chicane_test.hpp"
 #include "support/own_controller.hpp"
 #include "support/runs.hpp"
 

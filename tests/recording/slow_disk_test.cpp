@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: MIT
 // What a recording does to a run when the disk stalls or is full: nothing.
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <array>
-#include <chrono>
 #include <condition_variable>
-#include <filesystem>
 #include <mutex>
-#include <string>
 #include <thread>
-#include <vector>
 
-#include "chicane/protocol/library.hpp"
 #include "chicane/recording/recorder.hpp"
-#include "chicane/run/closed_loop.hpp"
 #include "chicane/telemetry/mcap.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 #include "telemetry/sample_mcap.hpp"
 
@@ -113,7 +105,7 @@ TEST_F(SlowDisk, ThatIsFullHoldsNobodyUpAndIsNamedAtTheEnd) {
   const Result<RecorderReport> report = recorder_->finish();
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().code, ErrorCode::kIo);
-  EXPECT_THAT(report.error().message, testing::HasSubstr("No space left on device"));
+  EXPECT_THAT(report.error().message, HasSubstr("No space left on device"));
 }
 
 TEST_F(SlowDisk, ThatIsFullForAWhileIsNamedAtOnceAndGoesOnWhenThereIsRoom) {
@@ -125,14 +117,14 @@ TEST_F(SlowDisk, ThatIsFullForAWhileIsNamedAtOnceAndGoesOnWhenThereIsRoom) {
   redirect(path_, disk, full);
   drive(20);
   ASSERT_EQ(said(1).size(), 1U);
-  EXPECT_THAT(said(1)[0], testing::HasSubstr("No space left on device; trying again, steps until then"));
+  EXPECT_THAT(said(1)[0], HasSubstr("No space left on device; trying again, steps until then"));
   recorder_->record(telemetry::Change{.cycle = 40, .time = 1.6, .name = "latency_ms", .value = "50"});
   drive(1000);
   redirect("/dev/full", full, disk);
   ::close(full);
   const std::vector<std::string> told = said(2);
   ASSERT_EQ(told.size(), 2U);
-  EXPECT_THAT(told[1], testing::HasSubstr(": can be written again; "));
+  EXPECT_THAT(told[1], HasSubstr(": can be written again; "));
   drive(20);
   const Result<RecorderReport> report = recorder_->finish();
   ::close(disk);
@@ -169,7 +161,7 @@ TEST_F(SlowDisk, LosesFramesBeforeItLosesAChange) {
   ASSERT_TRUE(recorder_->finish());
   reader.join();
   ::close(ends[0]);
-  EXPECT_THAT(bytes, testing::HasSubstr("latency_ms"));
+  EXPECT_THAT(bytes, HasSubstr("latency_ms"));
 }
 
 }  // namespace

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/recording/replay.hpp"
-
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <string>
+#include "support/chicane_test.hpp"
 
 namespace chicane::recording {
 namespace {

@@ -1,22 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/recording/video_encoder.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-
 namespace chicane::recording {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::Contains;
-using testing::HasSubstr;
 
 /// A path on which a program of ours stands in ffmpeg's place; the old path comes back.
 class OtherPath {

@@ -1,28 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Built with copies of three lists that have one line more (additions.cmake), in front of the library's own:
 // what a new plant, fault or track format touches is its list, and nothing else.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 
 #include "chicane/base/math.hpp"
-#include "chicane/protocol/library.hpp"
 #include "chicane/protocol/schema.hpp"
 #include "chicane/protocol/schema_json.hpp"
 #include "chicane/protocol/track_codec.hpp"
-#include "chicane/run/closed_loop.hpp"
 #include "chicane/sim/plant_registry.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 
 namespace chicane {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(OneMorePlant, IsAChoiceOfTheSchemaAndInItsMessages) {
   scenario::Scenario scenario;
@@ -41,8 +30,7 @@ TEST(OneMorePlant, IsDriven) {
 }
 
 TEST(OneMoreFault, IsReadWrittenListedAndSwitched) {
-  const auto event = protocol::parse_fault("fast_speedometer@1+2*3");
-  ASSERT_TRUE(event) << event.error().message;
+  const auto event = test::good(protocol::parse_fault("fast_speedometer@1+2*3"));
   EXPECT_EQ(protocol::write_fault(*event), "{name: fast_speedometer, at_s: 1, for_s: 2, strength: 3}");
   EXPECT_FALSE(protocol::parse_fault("fast_speedometer@1*5"));
   const auto index = static_cast<std::size_t>(event->fault);

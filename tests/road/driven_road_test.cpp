@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/road/racing_road.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <vector>
-
 #include "road/sample_loop.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::road {
 namespace {

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/road/known_road.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "road/sample_loop.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::road {
 namespace {

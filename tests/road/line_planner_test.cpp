@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/road/line_planner.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "road/sample_loop.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::road {
 namespace {

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/road/line_planner.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
+#include "support/chicane_test.hpp"
 
 namespace chicane::road {
 namespace {

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/road/path.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "support/alloc_guard.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::road {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/road/track.hpp"
 
-#include <gtest/gtest.h>
-
 #include "chicane/base/math.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::road {

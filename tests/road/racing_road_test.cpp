@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/road/racing_road.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "chicane/base/math.hpp"
 #include "chicane/road/known_road.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::road {
 namespace {

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/road/reference_line.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "road/sample_loop.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::road {
 namespace {

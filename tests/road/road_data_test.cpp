@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/road/racing_road.hpp"
 
-#include <gtest/gtest.h>
-#include <cmath>
-#include <vector>
-
 #include "chicane/base/math.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::road {

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/road/road.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "chicane/base/math.hpp"
 #include "road/sample_loop.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::road {
 namespace {

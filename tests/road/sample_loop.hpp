@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "chicane/base/math.hpp"
 #include "chicane/model/state.hpp"
 #include "chicane/road/road.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::road {
 

@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/road/smooth_line.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "support/stadium.hpp"
 
 namespace chicane::road {

@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "chicane/protocol/track_codec.hpp"
 #include "chicane/road/track.hpp"
+#include "support/chicane_test.hpp"
 
 // The shipped tracks, and the public ones of tools/fetch_circuits.sh where they are.
 namespace chicane::road {

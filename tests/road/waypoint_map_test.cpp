@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/road/waypoint_map.hpp"
 
-#include <gtest/gtest.h>
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "road/sample_loop.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::road {

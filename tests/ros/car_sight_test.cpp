@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/car_topics.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
 
 namespace chicane::ros {
 namespace {

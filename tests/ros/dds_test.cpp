@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/dds.hpp"
 
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <string>
-
 #include "chicane/protocol/car_messages.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::ros {
 namespace {

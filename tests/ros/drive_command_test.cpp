@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/car_topics.hpp"
 
-#include <gtest/gtest.h>
-
 #include "chicane/ros/nodes.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::ros {
 namespace {

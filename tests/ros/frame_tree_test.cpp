@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/car_topics.hpp"
-#include "support/results.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <string>
+#include "support/chicane_test.hpp"
 
 namespace chicane::ros {
 namespace {

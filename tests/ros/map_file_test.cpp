@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/nodes.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
 
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-#include <string>
-#include <string_view>
 
 namespace chicane::ros {
 namespace {
@@ -36,8 +31,7 @@ constexpr std::string_view kMap =
 
 TEST_F(MapFile, PutsTheLowestRowFirstAndTakesUnknownCellsAsFree) {
   write("m.pgm", std::string(kText));
-  const auto map = read_map(write("map.yaml", std::string(kMap)));
-  ASSERT_TRUE(map) << map.error().message;
+  const auto map = test::good(read_map(write("map.yaml", std::string(kMap))));
   EXPECT_EQ(map->width, 3);
   EXPECT_EQ(map->height, 2);
   EXPECT_EQ(map->resolution, 0.05);

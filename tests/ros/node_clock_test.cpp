@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/node_clock.hpp"
-
-#include <gtest/gtest.h>
-#include <chrono>
-#include <string>
+#include "support/chicane_test.hpp"
 
 namespace chicane::ros {
 namespace {

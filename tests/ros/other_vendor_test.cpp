@@ -3,15 +3,9 @@
 // laps are compared by fast_relay.cpp.
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <string>
-#include <vector>
 
 #include "chicane/protocol/car_messages.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::protocol {
 namespace {

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/run_publisher.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <map>
-
 #include "chicane/protocol/car_messages.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::ros {
 namespace {
@@ -70,7 +64,7 @@ class ParameterServicesTest : public testing::Test {
 TEST_F(ParameterServicesTest, ListsByPrefix) {
   const auto reply = test::good(protocol::decode<protocol::ListReply>(
       ask("list_parameters", "ListParameters", encode(protocol::NamesRequest{.names = {"pid"}}))));
-  EXPECT_THAT(reply->names, testing::ElementsAre("pid.gain"));
+  EXPECT_THAT(reply->names, ElementsAre("pid.gain"));
 }
 
 TEST_F(ParameterServicesTest, SetsAndGets) {

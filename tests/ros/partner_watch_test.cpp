@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/ros/car_topics.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "support/chicane_test.hpp"
 
 namespace chicane::ros {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 WantedPartner odometry() {
   return {.topic = "/odom",

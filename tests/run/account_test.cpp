@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/account.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <vector>
-
 #include "chicane/base/math.hpp"
 #include "chicane/sim/plant_registry.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::run {
@@ -103,8 +98,7 @@ TEST_F(AccountTest, TellsEachLapOnceAndNumbersThemOverAllCars) {
       seen.last_lap_was_clean = true;
       account.add_sighting(seen);
       account.add_sighting(seen);
-      const auto lap = account.take_lap();
-      ASSERT_TRUE(lap);
+      const auto lap = test::good(account.take_lap());
       EXPECT_EQ(lap->lap, 2 * car + seen.lap);
       EXPECT_EQ(lap->lap_time, 10.0 * seen.lap);
       EXPECT_FALSE(account.take_lap());

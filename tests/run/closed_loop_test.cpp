@@ -1,18 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "chicane/run/closed_loop.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <string>
-#include <vector>
-
-#include "chicane/protocol/library.hpp"
 #include "chicane/run/run_steps.hpp"
 #include "chicane/sim/plant_registry.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {

@@ -1,15 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/control_cycle.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <string_view>
-
-#include "chicane/protocol/library.hpp"
-#include "chicane/run/closed_loop.hpp"
+#include "support/chicane_test.hpp"
 #include "support/own_controller.hpp"
 #include "support/runs.hpp"
 

@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/external_drive.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "chicane/run/make.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::run {
 namespace {
@@ -81,8 +73,7 @@ TEST_F(ExternalDriveTest, TrustsNothingLearnedAfterALongGap) {
 TEST_F(ExternalDriveTest, CountsByTheClockOfASlowSimulatorAndSaysSoOnce) {
   std::vector<std::string> said;
   hooks_.on_clock = [&](std::string_view sentence) { said.emplace_back(sentence); };
-  auto controller = make_controller(scenario_);
-  ASSERT_TRUE(controller);
+  auto controller = test::good(make_controller(scenario_));
   ExternalDrive drive({.scenario = scenario_, .clock = {.is_estimated = true}}, std::move(*controller),
                       hooks_);
   const auto start = ExternalDrive::Clock::now();

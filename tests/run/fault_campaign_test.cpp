@@ -1,15 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/fault_campaign.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string_view>
-#include <vector>
-
-#include "chicane/protocol/library.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/lane_change.hpp"
 
-#include <gtest/gtest.h>
-#include <cmath>
-#include <memory>
-#include <string>
-#include <string_view>
-
-#include "chicane/protocol/library.hpp"
+#include "support/chicane_test.hpp"
 #include "support/own_controller.hpp"
 #include "support/runs.hpp"
 

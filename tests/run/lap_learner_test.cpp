@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/account.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "chicane/base/math.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::run {
 namespace {

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/racing.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <memory>
 #include <thread>
-#include <vector>
 
-#include "chicane/protocol/library.hpp"
-#include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/run/setting.hpp"
+#include "support/chicane_test.hpp"
 #include "support/own_controller.hpp"
 #include "support/roads.hpp"
 #include "support/runs.hpp"
@@ -59,8 +51,7 @@ TEST(LapPlanner, PlansInVirtualTimeAsLateAsAPlanTakes) {
   LapPlanner planner(LapPlanner::Clock::kVirtual);
   for (double time = 3.0; time < 3.0 + LapPlanner::kPlanningTime; time += 0.04)
     EXPECT_EQ(planner.follow(learner, race, nullptr, time), nullptr) << time;
-  const auto lap = planner.follow(learner, race, nullptr, 3.0 + LapPlanner::kPlanningTime);
-  ASSERT_NE(lap, nullptr);
+  const auto lap = test::good(planner.follow(learner, race, nullptr, 3.0 + LapPlanner::kPlanningTime));
   EXPECT_TRUE(lap->is_learned());
   EXPECT_NEAR(lap->line().length(), kTwoPi * 70.0, kTwoPi * 4.0);
   EXPECT_EQ(planner.follow(learner, race, nullptr, 20.0), nullptr) << "once";
@@ -90,8 +81,7 @@ TEST(LapPlanner, PlansTheSameBesideARun) {
   const std::vector<Vec2> points = circle(70.0);
   Learner learner(points);
   LapPlanner planner(LapPlanner::Clock::kReal);
-  const auto lap = wait_for_lap(planner, learner);
-  ASSERT_NE(lap, nullptr);
+  const auto lap = test::good(wait_for_lap(planner, learner));
   const auto again = plan_wanted_lap(race_by_waypoints(), nullptr, learner.wants_lap()).value();
   for (double s = 0.0; s < lap->line().length(); s += 7.0) {
     EXPECT_EQ(lap->line().at(s).position, again->line().at(s).position);
@@ -134,8 +124,7 @@ TEST(LapPlanner, TellsOfALapThatSlides) {
   const road::Track oval = make_track(race).value();
   LapPlanner planner(LapPlanner::Clock::kVirtual);
   static_cast<void>(planner.follow(learner, race, &oval, 0.0));
-  const auto lap = planner.follow(learner, race, &oval, 10.0);
-  ASSERT_NE(lap, nullptr);
+  const auto lap = test::good(planner.follow(learner, race, &oval, 10.0));
   EXPECT_TRUE(lap->terms().slides);
   EXPECT_GT(lap->slips().rear, 1.0);
   const telemetry::Change change = LapPlanner::lap_change(*lap, 7, 1.0);

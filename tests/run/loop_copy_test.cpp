@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Copies of a run: ClosedLoop::copy(), and copy() of all that it is made of.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "chicane/controller/controller.hpp"
-#include "chicane/protocol/library.hpp"
-#include "chicane/run/closed_loop.hpp"
+#include "support/chicane_test.hpp"
 #include "support/own_controller.hpp"
 #include "support/runs.hpp"
 

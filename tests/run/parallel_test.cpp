@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/parallel.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "support/chicane_test.hpp"
 
 #include <atomic>
-#include <map>
-#include <vector>
 
 namespace chicane::run {
 namespace {
@@ -58,8 +54,7 @@ TEST(Shard, PartsCoverAllRunsOnce) {
 }
 
 TEST(Shard, IsReadAndNamesItsFile) {
-  const auto shard = parse_shard("3/7");
-  ASSERT_TRUE(shard);
+  const auto shard = test::good(parse_shard("3/7"));
   EXPECT_EQ(shard->index, 2U);
   EXPECT_EQ(shard->count, 7U);
   EXPECT_EQ(shard->file_of("out/results.jsonl"), "out/results.3-of-7.jsonl");
@@ -86,7 +81,7 @@ TEST(Shard, IsReadFromSlurmArraysAndMpiRanks) {
 }
 
 TEST(Shard, RefusesArraysWithHolesAndNumbersThatMakeNoSense) {
-  EXPECT_THAT(shard_in(array("7", "3", "1", "7", "1")).error().message, testing::HasSubstr("without holes"));
+  EXPECT_THAT(shard_in(array("7", "3", "1", "7", "1")).error().message, HasSubstr("without holes"));
   EXPECT_FALSE(shard_in(array("7", "", "1", "7", "1")));
   EXPECT_FALSE(shard_in({{"OMPI_COMM_WORLD_RANK", "4"}, {"OMPI_COMM_WORLD_SIZE", "4"}}));
   EXPECT_FALSE(shard_in({{"PMI_RANK", "x"}, {"PMI_SIZE", "4"}}));

@@ -1,27 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/plan_cache.hpp"
 
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <chrono>
-#include <cmath>
 #include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "chicane/base/math.hpp"
-#include "chicane/protocol/library.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
-#include "support/results.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {
@@ -197,8 +185,6 @@ TEST(Planning, EndsWithTheProcessesFlag) {
   EXPECT_TRUE(must_stop_planning());
   flag = false;
 }
-
-namespace fs = std::filesystem;
 
 class DiskCacheTest : public testing::Test, protected test::Folder {
  protected:

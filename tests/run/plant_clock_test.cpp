@@ -1,22 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/plant_clock.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <string>
-#include <utility>
-
 #include "chicane/base/random.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::run {
 namespace {
-
-using testing::HasSubstr;
 
 /// A car that starts along x and goes on at 20 m/s, its program's messages and a virtual clock of the wall.
 class PlantClockTest : public testing::Test {

@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/racing.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
-#include "chicane/protocol/library.hpp"
-#include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {
@@ -54,8 +46,6 @@ TEST(PlanLap, SaysWhyThereIsNone) {
   ASSERT_FALSE(lap);
   EXPECT_NE(lap.error().message.find("the road is"), std::string::npos) << lap.error().message;
 }
-
-using testing::ElementsAre;
 
 std::vector<std::string> causes(const std::vector<lap_time::LapWithout>& laps) {
   std::vector<std::string> names;

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/roads.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <random>
-#include <vector>
 
 #include "chicane/base/math.hpp"
-#include "chicane/protocol/library.hpp"
-#include "chicane/run/closed_loop.hpp"
 #include "chicane/run/make.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 #include "support/runs.hpp"
 
@@ -100,8 +95,7 @@ TEST(TrackFit, TakesWaypointsOnTheRoadAndCloseToIt) {
 
 TEST(TrackFit, SaysHowFarAnotherRoadIs) {
   const road::Track track = round_road();
-  const auto distance = distance_to_other_road(track, shown(60.0, 63.0));
-  ASSERT_TRUE(distance);
+  const auto distance = test::good(distance_to_other_road(track, shown(60.0, 63.0)));
   EXPECT_NEAR(*distance, 63.0, 0.5);  // the first waypoint is the farthest
   EXPECT_TRUE(distance_to_other_road(track, shown(60.0 - 4.0 - kBesideRoad - 0.5)));
 }

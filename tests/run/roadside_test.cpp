@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/account.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <vector>
-
 #include "chicane/base/math.hpp"
 #include "support/alloc_guard.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::run {
@@ -109,8 +104,7 @@ TEST(Roadside, TimesLapsOnARoadThatNobodyKnows) {
   Telemetry car(roadside);
   while (car.driven_for() < 2.2 * kLapTime) car.next();
   EXPECT_EQ(car.next().lap, 2);
-  const auto lap = roadside.take_lap();
-  ASSERT_TRUE(lap);
+  const auto lap = test::good(roadside.take_lap());
   EXPECT_NEAR(lap->lap_time, kLapTime, 1e-3 * kLapTime);
   EXPECT_FALSE(std::isfinite(lap->min_edge_distance));
   const telemetry::RunSummary run = roadside.summary();

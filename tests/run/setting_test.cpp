@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/setting.hpp"
 
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "chicane/sim/fault.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::run {
 namespace {

@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/simulated_car.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
+#include "support/chicane_test.hpp"
 
 namespace chicane::run {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 model::Command ahead() { return {.steer = 0.0, .throttle = 0.5}; }
 

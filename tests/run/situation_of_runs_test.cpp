@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
-#include "chicane/protocol/library.hpp"
-#include "chicane/run/closed_loop.hpp"
 #include "chicane/sim/fault.hpp"
 #include "chicane/telemetry/frame.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/parallel.hpp"
 
-#include <gtest/gtest.h>
-
-#include <memory>
-#include <string>
 #include <thread>
 
 #include "chicane/telemetry/metrics.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::run {
 namespace {

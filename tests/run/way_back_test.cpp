@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/way_back.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-
-#include "chicane/protocol/library.hpp"
-#include "chicane/run/closed_loop.hpp"
 #include "chicane/run/parallel.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 #include "support/slow_tests.hpp"
 
@@ -81,8 +74,7 @@ TEST(WayBack, IsFoundFromWhereItWasMissed) {
     const scenario::Scenario scenario = scenario_of(each.track, each.car);
     const auto starts = start_poses(make_track(scenario).value(), 120, 1);
     Roads roads;
-    const auto outcome = drive_back(scenario, starts[each.start - 1], roads);
-    ASSERT_TRUE(outcome);
+    const auto outcome = test::good(drive_back(scenario, starts[each.start - 1], roads));
     EXPECT_TRUE(outcome->has_come_back()) << each.track << " " << each.car << " " << each.start;
     EXPECT_LT(outcome->farthest, 95.0);  // measured: 91.3 m from the edge, of a car that rolls back fast
   }

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/run/worker.hpp"
-
-#include <gtest/gtest.h>
+#include "support/chicane_test.hpp"
 
 #include <atomic>
-#include <chrono>
 #include <future>
 #include <thread>
 

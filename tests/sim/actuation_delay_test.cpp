@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sim/sensor.hpp"
-
-#include <gtest/gtest.h>
+#include "support/chicane_test.hpp"
 
 namespace chicane::sim {
 namespace {

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sim/double_track.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-
 #include "chicane/base/math.hpp"
 #include "sim/plant_experiment.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::sim {
 namespace {

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sim/fault.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <set>
-#include <vector>
-
 #include "chicane/base/math.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::sim {
 namespace {

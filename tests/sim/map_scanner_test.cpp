@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sim/range_scanner.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "chicane/base/random.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::sim {
 namespace {

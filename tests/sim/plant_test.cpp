@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sim/plant.hpp"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string>
-
 #include "chicane/base/random.hpp"
 #include "chicane/base/text.hpp"
 #include "chicane/model/vehicle.hpp"
 #include "chicane/sim/plant_registry.hpp"
 #include "chicane/sim/udacity_car.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::sim {
 namespace {
-
-using ::testing::HasSubstr;
 
 class EveryPlant : public ::testing::TestWithParam<std::string_view> {
  protected:

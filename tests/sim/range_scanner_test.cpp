@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sim/range_scanner.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "chicane/base/random.hpp"
 #include "chicane/protocol/track_codec.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::sim {

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sim/sensor.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "chicane/sim/plant_registry.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::sim {
 namespace {

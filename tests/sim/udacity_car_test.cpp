@@ -3,12 +3,9 @@
 // with its source in docs/measured/plants.md.
 #include "chicane/sim/udacity_car.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "chicane/base/math.hpp"
 #include "sim/plant_experiment.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::sim {
 namespace {

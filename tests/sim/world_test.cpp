@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sim/world.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "chicane/base/math.hpp"
 #include "chicane/sim/plant_registry.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 
 namespace chicane::sim {

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <memory>
 
 #include "chicane/solver/ocp_solver.hpp"
 #include "problems/described_problem.hpp"
 #include "support/alloc_guard.hpp"
+#include "support/chicane_test.hpp"
 
 namespace {
 

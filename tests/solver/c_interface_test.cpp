@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/solver/c_interface.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "chicane/solver/iteration_log.hpp"
 #include "support/alloc_guard.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::solver {
 namespace {

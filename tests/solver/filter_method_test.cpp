@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/solver/detail/filter_method.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <memory>
-
 #include "chicane/solver/ocp_solver.hpp"
 #include "families/cart_pole.hpp"
 #include "families/measure_family.hpp"
 #include "families/reactor.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::bench {
 namespace {

@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <fstream>
-#include <memory>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "chicane/solver/ocp_solver.hpp"
 #include "problems/described_problem.hpp"
 #include "problems/optimality.hpp"
+#include "support/chicane_test.hpp"
 #include "support/slow_tests.hpp"
 
 namespace chicane {

@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/solver/hard_constraints.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <string_view>
-#include <tuple>
-
 #include "chicane/solver/describe.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 #include "families/goddard_rocket.hpp"
 #include "families/hard.hpp"
 #include "families/measure_family.hpp"
 #include "support/alloc_guard.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::bench {
 namespace {

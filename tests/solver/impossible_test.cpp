@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "families/impossible.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <memory>
-
 #include "chicane/solver/ocp_solver.hpp"
 #include "families/measure_family.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::bench {
 namespace {

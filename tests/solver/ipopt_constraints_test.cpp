@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Optima with soft corridors and with hard constraints, beside Ipopt's.
-#include <gtest/gtest.h>
-
-#include <memory>
 
 #include "chicane/solver/ocp_solver.hpp"
 #include "families/hard.hpp"
@@ -12,6 +9,7 @@
 #include "problems/ipopt_problem.hpp"
 #include "problems/optimality.hpp"
 #include "solver/ipopt_families.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "chicane/solver/ocp_solver.hpp"
 #include "problems/described_problem.hpp"
 #include "problems/optimality.hpp"
+#include "support/chicane_test.hpp"
 
 /// Problems and starts for comparisons with Ipopt.
 namespace chicane::test {

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Optima beside Ipopt's. ipopt_constraints_test.cpp has problems with more constraints, among the slow tests.
-#include <gtest/gtest.h>
-
-#include <memory>
 
 #include "chicane/solver/ocp_solver.hpp"
 #include "problems/described_problem.hpp"
@@ -11,6 +8,7 @@
 
 #ifdef CHICANE_HAVE_IPOPT
 #include "problems/ipopt_problem.hpp"
+#include "support/chicane_test.hpp"
 #endif
 
 namespace chicane {

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Problems of more variables in a stage than are unrolled.
-#include <gtest/gtest.h>
-
-#include <memory>
 
 #include "chicane/solver/ocp_solver.hpp"
 #include "families/long_chain.hpp"
 #include "families/measure_family.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::bench {
 namespace {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <memory>
 
 #include "chicane/solver/detail/small_qp.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 #include "problems/optimality.hpp"
+#include "support/chicane_test.hpp"
 #include "support/linear_problem.hpp"
 
 namespace chicane {

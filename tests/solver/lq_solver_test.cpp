@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/solver/detail/lq_solver.hpp"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <cstring>
-#include <limits>
-#include <memory>
-#include <vector>
 
 #include "chicane/base/random.hpp"
 #include "solver/lq_cases.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/solver/ocp_solver.hpp"
 
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <limits>
-#include <memory>
-
 #include "problems/described_problem.hpp"
 #include "problems/optimality.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Random problems, most of them unpleasant; bench/solver_fuzz.cpp has more of them.
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <memory>
 
 #include "chicane/base/random.hpp"
 #include "chicane/solver/ocp_solver.hpp"
 #include "fuzz/classify.hpp"
 #include "fuzz/random_case.hpp"
 #include "fuzz/random_problem.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/solver/detail/roll_out.hpp"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <memory>
-
 #include "chicane/base/pack.hpp"
 #include "chicane/base/random.hpp"
 #include "problems/described_problem.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

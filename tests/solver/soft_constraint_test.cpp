@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/solver/detail/soft_constraint.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <memory>
-
 #include "chicane/solver/ocp_solver.hpp"
 #include "problems/corridor_problem.hpp"
 #include "problems/optimality.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

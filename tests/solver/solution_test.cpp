@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/solver/solution.hpp"
-
-#include <gtest/gtest.h>
-
-#include <array>
-#include <string_view>
+#include "support/chicane_test.hpp"
 
 namespace chicane::solver {
 namespace {

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/solver/sparse_row.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cstddef>
-#include <memory>
-#include <tuple>
 #include <type_traits>
-#include <vector>
 
 #include "chicane/solver/ocp_solver.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::solver {
 namespace {

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <memory>
 
 #include "chicane/solver/ocp_solver.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::solver {
 namespace {

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
-#include <memory>
 
 #include "chicane/base/jet.hpp"
 #include "chicane/solver/describe.hpp"
@@ -10,6 +7,7 @@
 #include "problems/described_problem.hpp"
 #include "problems/optimality.hpp"
 #include "problems/racing_problem.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

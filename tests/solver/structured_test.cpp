@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
 
 #include "chicane/base/pack.hpp"
 #include "chicane/solver/problem.hpp"
 #include "problems/described_problem.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/solver/warm_start.hpp"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-
 #include "problems/described_problem.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane {
 namespace {

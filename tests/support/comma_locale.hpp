@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gtest/gtest.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #include <clocale>
-#include <cstdlib>
-#include <string>
+
+#include "support/chicane_test.hpp"
 
 namespace chicane::test {
 

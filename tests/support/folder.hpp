@@ -2,14 +2,9 @@
 
 #pragma once
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
+#include "support/chicane_test.hpp"
 
 namespace chicane::test {
 

@@ -2,16 +2,9 @@
 
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <memory>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "chicane/protocol/library.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::test {
 
@@ -25,9 +18,7 @@ inline scenario::Scenario scenario_of(const Settings& settings = {}) {
 }
 
 inline std::unique_ptr<run::ClosedLoop> loop_of(const scenario::Scenario& scenario) {
-  Result<std::unique_ptr<run::ClosedLoop>> loop = run::ClosedLoop::create(scenario);
-  if (!loop) throw std::runtime_error(loop.error().message);
-  return std::move(*loop);
+  return *good(run::ClosedLoop::create(scenario));
 }
 
 /// What `chicane drive --fast` reports.

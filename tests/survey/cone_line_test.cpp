@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/survey/sampled_line.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "chicane/base/math.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::survey {
 namespace {
-
-using ::testing::HasSubstr;
 
 /// Cones of a ring of radius 20 m, 4 m wide, driven counter-clockwise: the blue ones are inside.
 Cones ring() {

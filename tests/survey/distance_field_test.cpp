@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/survey/image.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "chicane/base/random.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::survey {
 namespace {

@@ -1,23 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/survey/free_space.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <vector>
-
 #include "chicane/base/math.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::survey {
 namespace {
 
 using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// A square of unknown cells, 12 m wide, with a ring of free ones of radius 4 m round its middle between
 /// walls.

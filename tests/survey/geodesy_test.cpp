@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/survey/sampled_line.hpp"
-
-#include <gtest/gtest.h>
-
-#include <vector>
+#include "support/chicane_test.hpp"
 
 namespace chicane::survey {
 namespace {

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/survey/image.hpp"
-#include "support/results.hpp"
-
-#include <gtest/gtest.h>
-
-#include <string>
-#include <string_view>
+#include "support/chicane_test.hpp"
 
 namespace chicane::survey {
 namespace {

@@ -1,28 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sweep/campaign.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "chicane/protocol/json.hpp"
 #include "chicane/run/fault_campaign.hpp"
 #include "chicane/sweep/result_file.hpp"
 #include "chicane/sweep/trial.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
-#include "support/results.hpp"
 
 namespace chicane::sweep {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 class CampaignTest : public testing::Test, protected test::Folder {
  protected:

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sweep/claim.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <set>
-
 #include "chicane/protocol/library.hpp"
 #include "chicane/sweep/sweep.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::sweep {
 namespace {
-
-using testing::HasSubstr;
 
 constexpr const char* kClaims = R"(
 settings: {preset: weighted}

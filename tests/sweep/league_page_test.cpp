@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: MIT
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "chicane/sweep/league.hpp"
 #include "chicane/sweep/sweep.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
-#include "support/results.hpp"
 
 namespace chicane::sweep {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::Not;
 
 /// A league that takes a second: nobody has to complete a lap.
 class LeagueFiles : public testing::Test, protected test::Folder {

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sweep/league.hpp"
-#include "support/results.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "support/chicane_test.hpp"
 
 namespace chicane::sweep {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::Pair;
 
 constexpr const char* kLeague = R"(

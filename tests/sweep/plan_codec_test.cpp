@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sweep/plan_codec.hpp"
-#include "support/results.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <set>
+#include "support/chicane_test.hpp"
 
 namespace chicane::sweep {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::Pair;
 
 Plan plan_of(const std::string& text) {
@@ -32,7 +24,7 @@ TEST(Plan, TakesTheTracksOfAFolder) {
   EXPECT_GE(plan->size(), 7U);
   EXPECT_EQ(plan->at(1)[0].second, folder + "/crossover.csv");
   EXPECT_THAT(test::refusal_of(parse_plan("axes: [{track: [nowhere/*.csv]}]", "p")),
-              testing::HasSubstr("nowhere/*.csv"));
+              HasSubstr("nowhere/*.csv"));
 }
 
 TEST(PlanCodec, TheLastAxisTurnsFastest) {

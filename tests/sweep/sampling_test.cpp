@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sweep/plan.hpp"
-
-#include <gtest/gtest.h>
-
-#include <set>
-#include <vector>
+#include "support/chicane_test.hpp"
 
 namespace chicane::sweep {
 namespace {

@@ -1,25 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sweep/result_table.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "chicane/sweep/plan_codec.hpp"
 #include "chicane/sweep/result_file.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
-#include "support/results.hpp"
 
 namespace chicane::sweep {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::Not;
 
 /// Results that are written by hand: a run is clean where speed times latency stays below 5000.
 class SummaryPage : public testing::Test, protected test::Folder {

@@ -2,15 +2,11 @@
 #include "chicane/sweep/sweep.hpp"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -20,14 +16,11 @@
 #include "chicane/sweep/result_table.hpp"
 #include "chicane/sweep/trial.hpp"
 #include "chicane/version.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
-#include "support/results.hpp"
 
 namespace chicane::sweep {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
 
 constexpr const char* kPlan = R"(
 settings: {laps: 0, time_limit_s: 2, preset: pid, sensor.position_noise_m: 0.05}

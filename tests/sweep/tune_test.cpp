@@ -1,24 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/sweep/tune.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
 #include "chicane/protocol/library.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
-#include "support/results.hpp"
 
 namespace chicane::sweep {
 namespace {
-
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
 
 TuneTask task() {
   return {.settings = {{"preset", "pure-pursuit"}, {"track", "oval"}},

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/telemetry/metrics.hpp"
-
-#include <gtest/gtest.h>
-
-#include <string>
+#include "support/chicane_test.hpp"
 
 namespace chicane::telemetry {
 namespace {

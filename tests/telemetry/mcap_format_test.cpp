@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/telemetry/mcap.hpp"
-
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <string>
+#include "support/chicane_test.hpp"
 
 namespace chicane::telemetry::mcap {
 namespace {

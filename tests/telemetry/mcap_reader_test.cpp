@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/telemetry/mcap.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "sample_mcap.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::telemetry {
 namespace {
-
-using ::testing::HasSubstr;
 
 /// Reads and holds every message against the one that was written.
 Result<McapReport> read_and_compare(const std::string& path) {

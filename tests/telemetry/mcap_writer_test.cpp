@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/telemetry/mcap.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 
-#include <array>
 #include <csignal>
 
 #include "sample_mcap.hpp"
-#include "support/results.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::telemetry {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(McapWriter, ComputesTheCrcOfTheStandard) {
   EXPECT_EQ(mcap::crc32("123456789"), 0xcbf43926U);  // the check value of CRC-32/ISO-HDLC

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/telemetry/metrics.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "support/alloc_guard.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::telemetry {
 namespace {

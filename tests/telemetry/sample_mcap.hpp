@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "chicane/telemetry/mcap.hpp"
+#include "support/chicane_test.hpp"
 #include "support/folder.hpp"
 
 namespace chicane::telemetry {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/telemetry/frame.hpp"
-
-#include <gtest/gtest.h>
-
-#include <array>
+#include "support/chicane_test.hpp"
 
 namespace chicane::telemetry {
 namespace {

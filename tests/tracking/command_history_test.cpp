@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/tracking/state_estimator.hpp"
-
-#include <gtest/gtest.h>
+#include "support/chicane_test.hpp"
 
 namespace chicane::tracking {
 namespace {

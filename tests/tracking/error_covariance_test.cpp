@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/tracking/error_covariance.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "chicane/base/random.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::tracking {
 namespace {

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/tracking/state_estimator.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "chicane/base/math.hpp"
 #include "chicane/base/random.hpp"
 #include "chicane/model/vehicle.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::tracking {
 namespace {

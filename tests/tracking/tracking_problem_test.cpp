@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/tracking/tracking_problem.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <tuple>
-
 #include "chicane/base/random.hpp"
 #include "chicane/model/prediction.hpp"
 #include "chicane/solver/problem.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::tracking {
 namespace {

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <cstring>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
 
 #include "chicane/wire/viewer.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::wire {
 

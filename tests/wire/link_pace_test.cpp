@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/wire/run_memory.hpp"
+#include "support/chicane_test.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <deque>
 
 namespace chicane::wire {

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/wire/run_memory.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
+#include "support/chicane_test.hpp"
 
 namespace chicane::wire {
 namespace {

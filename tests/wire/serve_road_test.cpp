@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What serve makes of the road that it was told.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
 
 #include "protocol/hostile_telemetry.hpp"
+#include "support/chicane_test.hpp"
 #include "support/roads.hpp"
 #include "wire/served.hpp"
 

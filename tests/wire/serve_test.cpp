@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/wire/serve.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "net/raw_socket.hpp"
 #include "protocol/hostile_telemetry.hpp"
+#include "support/chicane_test.hpp"
 #include "wire/served.hpp"
 
 namespace chicane::wire {
@@ -23,8 +19,6 @@ using test::RawSocket;
 using test::Served;
 using test::steer_of;
 using testing::AnyOf;
-using testing::HasSubstr;
-using testing::StartsWith;
 using namespace std::chrono_literals;
 
 /// What the controller answers to a telemetry of the real simulator.
@@ -229,8 +223,7 @@ TEST(Serve, ASecondSimulatorTakesOverWhenTheFirstIsQuiet) {
   RawSocket second = served.connect();
   driven(second);
   EXPECT_EQ(served.controller.resets(), 2);
-  const auto goodbye = first.frame();
-  ASSERT_TRUE(goodbye);
+  const auto goodbye = test::good(first.frame());
   EXPECT_EQ(goodbye->opcode, 8);
   EXPECT_THAT(goodbye->payload, HasSubstr("another simulator took over"));
 }
@@ -272,8 +265,7 @@ TEST(Serve, AfterADisconnectionTheNextSimulatorIsServedAfresh) {
 TEST(Serve, AStockClientThatStaysSilentIsGreeted) {
   Served served(&ServeOptions::open_after, 10ms);
   RawSocket stock = served.connect();
-  const auto open = stock.frame();
-  ASSERT_TRUE(open);
+  const auto open = test::good(stock.frame());
   EXPECT_THAT(open->payload, StartsWith("0{\"sid\":"));
   EXPECT_EQ(json::parse(open->payload.substr(1))["pingInterval"], 25000);
   stock.send(RawSocket::masked("40"));
@@ -307,8 +299,7 @@ TEST(Serve, AFloodWithoutWaitingIsEndedInWords) {
   Served served(&ServeOptions::latency, 1h);
   RawSocket client = served.connect();
   for (int i = 0; i < 20; ++i) client.send(RawSocket::masked(kRealTelemetry));
-  const auto frame = client.frame();
-  ASSERT_TRUE(frame);
+  const auto frame = test::good(client.frame());
   EXPECT_EQ(frame->opcode, 8);
   EXPECT_THAT(frame->payload, HasSubstr("unanswered"));
 }

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <cmath>
 #include <condition_variable>
-#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
 #include <type_traits>
 
 #include "chicane/wire/serve.hpp"
 #include "net/raw_socket.hpp"
 #include "support/borrowed.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::test {
 
@@ -118,7 +111,7 @@ class Served {
   [[nodiscard]] RawSocket connect() const {
     RawSocket socket(port());
     socket.send(unity_handshake(port()));
-    EXPECT_THAT(socket.until("\r\n\r\n"), testing::StartsWith("HTTP/1.1 101"));
+    EXPECT_THAT(socket.until("\r\n\r\n"), StartsWith("HTTP/1.1 101"));
     return socket;
   }
 

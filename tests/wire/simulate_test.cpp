@@ -1,27 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/wire/simulate.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <memory>
 #include <mutex>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "chicane/net/server.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/sim/world.hpp"
 #include "chicane/wire/serve.hpp"
+#include "support/chicane_test.hpp"
 
 namespace chicane::wire {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
 using namespace std::chrono_literals;
 
 const std::string kStraight =
@@ -277,7 +268,7 @@ TEST(Simulate, WarnsOfAnOpenPacketAndAnswersAPing) {
   });
   const Outcome outcome = run({.url = server.url()}, short_run(0.3));
   EXPECT_THAT(outcome.log, HasSubstr("open packet"));
-  EXPECT_THAT(server.messages(), testing::Contains("3"));
+  EXPECT_THAT(server.messages(), Contains("3"));
 }
 
 TEST(Simulate, SaysThatNobodyAnswers) {
@@ -307,8 +298,7 @@ TEST(Simulate, EndsWithTheResultsSoFarWhenStopped) {
 
 TEST(ServeAndSimulate, DriveTheLakesideTogetherOverRealSockets) {
   scenario::Scenario scenario = short_run(4.0);
-  auto controller = run::make_controller(scenario);
-  ASSERT_TRUE(controller) << controller.error().message;
+  auto controller = test::good(run::make_controller(scenario));
   ServeOptions options;
   options.server.port = 0;
   std::string log;

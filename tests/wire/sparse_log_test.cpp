@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/wire/endpoint.hpp"
-
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
+#include "support/chicane_test.hpp"
 
 namespace chicane::wire {
 namespace {

@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: MIT
 // A controller that vanishes at speed: our controller and our car at both ends of the messages, in simulated
 // time.
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <memory>
-#include <string>
-#include <tuple>
 #include <variant>
 
-#include "chicane/protocol/library.hpp"
 #include "chicane/protocol/udacity_codec.hpp"
 #include "chicane/run/control_cycle.hpp"
 #include "chicane/run/make.hpp"
 #include "chicane/sim/sensor.hpp"
 #include "chicane/sim/world.hpp"
 #include "chicane/wire/simulate.hpp"
+#include "support/chicane_test.hpp"
 #include "support/runs.hpp"
 #include "support/slow_tests.hpp"
 

@@ -10,8 +10,6 @@
 namespace chicane::wire {
 namespace {
 
-using testing::HasSubstr;
-
 /// Times of the messages of a subscription that were sent since the last look [s].
 std::vector<double> times_of(FakeServer& server, net::ConnectionId to, std::uint32_t subscription) {
   std::vector<double> found;

@@ -5,8 +5,6 @@
 namespace chicane::wire {
 namespace {
 
-using testing::HasSubstr;
-
 TEST_F(Viewer, ThatMayWatchOnlyChangesNothing) {
   Store store;
   ViewerOptions options;

@@ -6,8 +6,6 @@
 namespace chicane::wire {
 namespace {
 
-using testing::HasSubstr;
-
 TEST_F(Viewer, IsGreetedWithWhatThereIs) {
   start({});
   const auto greeting = server.take();
