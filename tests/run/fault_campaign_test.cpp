@@ -2,6 +2,7 @@
 #include "chicane/run/fault_campaign.hpp"
 
 #include "support/chicane_test.hpp"
+#include "support/own_controller.hpp"
 #include "support/runs.hpp"
 
 namespace chicane::run {
@@ -62,6 +63,12 @@ TEST(FaultCampaign, EndsEarlyWithWhatItHas) {
   ASSERT_TRUE(outcomes);
   EXPECT_TRUE(std::isfinite((*outcomes)[1].least_edge));
   EXPECT_FALSE(std::isfinite((*outcomes)[2].least_edge));
+}
+
+TEST(FaultCampaign, NeedsAControllerThatCanBeCopied) {
+  EXPECT_EQ(test::refusal_of(
+                drive_trials(on_oval(), {.begins = 1.0}, {FaultTrial{}}, 1, {}, test::make_own_controller)),
+            "trials need a controller and a plant with copy()");
 }
 
 /// Where the stop is driven by wheel speed and steering alone, the car comes as far as the guard was told

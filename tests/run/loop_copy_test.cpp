@@ -2,6 +2,7 @@
 // Copies of a run: ClosedLoop::copy(), and copy() of all that it is made of.
 
 #include "chicane/controller/controller.hpp"
+#include "chicane/run/run_steps.hpp"
 #include "support/chicane_test.hpp"
 #include "support/own_controller.hpp"
 #include "support/runs.hpp"
@@ -93,6 +94,29 @@ TEST(Copy, KeepsFaultsThatAct) {
   const auto copy = run->copy();
   EXPECT_NE(copy->frame().active_faults, 0U);
   expect_same(future_of(*copy, 5.0), future_of(*run, 5.0));
+}
+
+/// A lap that is wanted, and not there yet, comes at the same time.
+TEST(Copy, OfStepsGetsTheSamePlan) {
+  const auto run = loop_of({{"preset", "race"}, {"guard.road", "waypoints"}, {"track", "oval"}});
+  std::vector<double> changes;
+  const RunHooks hooks{.on_change = [&](const telemetry::Change& change) { changes.push_back(change.time); }};
+  RunSteps steps(*run, hooks);
+  double wanted = 0.0;
+  while (run->time() < wanted + 0.5 * LapPlanner::kPlanningTime || wanted == 0.0) {
+    steps.advance();
+    if (wanted == 0.0 && run->controller().wants_lap().is_wanted) wanted = run->time();
+  }
+  ASSERT_THAT(changes, IsEmpty());
+  const auto copy = run->copy();
+  RunSteps copied(*copy, steps);
+  const auto drive_to_plan = [&](RunSteps& each, std::size_t count) {
+    while (changes.size() < count && each.loop().time() < wanted + 60.0) each.advance();
+  };
+  drive_to_plan(steps, 1);
+  drive_to_plan(copied, 2);
+  ASSERT_EQ(changes.size(), 2U);
+  EXPECT_EQ(changes[0], changes[1]);
 }
 
 TEST(Copy, IsNoneOfAControllerThatCannotBeCopied) {

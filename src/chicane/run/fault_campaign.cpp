@@ -1,25 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Trials of faults in a flying lap: the lap is driven once, and each trial branches off in a process of its
-// own.
+// Trials of faults in a flying lap: the lap is driven once, and each trial goes on from a copy of the run.
 #include "chicane/run/fault_campaign.hpp"
 
 #include <fmt/format.h>
-#include <sys/mman.h>
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <csignal>
-#include <deque>
+#include <mutex>
 #include <numeric>
 
 #include "chicane/base/math.hpp"
 #include "chicane/run/closed_loop.hpp"
+#include "chicane/run/parallel.hpp"
 #include "chicane/run/run_steps.hpp"
 
 namespace chicane::run {
@@ -61,44 +53,6 @@ FaultOutcome drive_on(RunSteps& steps, const FaultTrial& trial, double at) {
   }
   outcome.until = loop.time();
   return outcome;
-}
-
-/// Memory that processes share with those that fork from them; all zero at first.
-class SharedOutcomes {
- public:
-  struct Slot {
-    bool is_there;
-    FaultOutcome outcome;
-  };
-  explicit SharedOutcomes(std::size_t count)
-      : bytes_{std::max<std::size_t>(count, 1) * sizeof(Slot)},
-        memory_{mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)} {}
-  ~SharedOutcomes() {
-    if (is_there()) munmap(memory_, bytes_);
-  }
-  SharedOutcomes(const SharedOutcomes&) = delete;
-  SharedOutcomes& operator=(const SharedOutcomes&) = delete;
-
-  [[nodiscard]] bool is_there() const noexcept { return memory_ != MAP_FAILED; }
-  [[nodiscard]] Slot& operator[](std::size_t i) const noexcept { return static_cast<Slot*>(memory_)[i]; }
-
- private:
-  std::size_t bytes_;
-  void* memory_;
-};
-
-/// Ends this process with its parent: open files and their locks are released.
-void end_with_parent() noexcept {
-#ifdef __linux__
-  static_cast<void>(prctl(PR_SET_PDEATHSIG, SIGKILL));
-#endif
-}
-
-/// Waits for the end of a process of ours.
-void wait_for(pid_t process) noexcept {
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
 }
 
 }  // namespace
@@ -148,54 +102,34 @@ Result<std::vector<FaultOutcome>> drive_trials(const scenario::Scenario& scenari
   if (!loop) return fail(loop.error());
   const RunHooks hooks;
   RunSteps steps(**loop, hooks);
-  const SharedOutcomes found(trials.size());
-  if (!found.is_there()) return fail(ErrorCode::kIo, "no memory for the outcomes of the trials");
   std::vector<std::size_t> order(trials.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return trials[a].onset < trials[b].onset; });
+  std::vector<FaultOutcome> found;
+  for (const FaultTrial& trial : trials) found.push_back({.trial = trial});
 
-  struct Running {
-    pid_t process;
-    std::size_t trial;
-  };
-  std::deque<Running> running;
-  std::string trouble;
+  std::mutex mutex;  // guards the run without faults, and all below
+  std::size_t begun = 0;
   std::size_t done = 0;
-  bool goes_on = true;
-  const auto finish_oldest = [&] {
-    const Running oldest = running.front();
-    running.pop_front();
-    wait_for(oldest.process);
-    if (!found[oldest.trial].is_there && trouble.empty())
-      trouble = fmt::format("the trial at {} s broke off", lap.begins + trials[oldest.trial].onset);
-    if (on_done && !on_done(++done)) goes_on = false;
-  };
-  for (const std::size_t i : order) {
-    if (static_cast<int>(running.size()) >= std::max(jobs, 1)) finish_oldest();
-    if (!goes_on || !trouble.empty()) break;
+  bool can_copy = true;
+  for_each_run(trials.size(), jobs, [&](std::uint64_t, Roads&) {
+    std::unique_lock lock(mutex);
+    const std::size_t i = order[begun++];
     const double at = onset_of(lap, trials[i]);
     drive_up_to(steps, at);
-    const pid_t process = fork();
-    if (process < 0) {
-      trouble = "no process for a trial";
-      break;
-    }
-    if (process == 0) {
-      end_with_parent();
-      found[i].outcome = drive_on(steps, trials[i], at);
-      found[i].is_there = true;
-      _exit(0);  // nothing of the parent's is flushed or torn down
-    }
-    running.push_back({process, i});
-  }
-  while (!running.empty()) finish_oldest();
-  if (!trouble.empty()) return fail(ErrorCode::kIo, trouble);
-  std::vector<FaultOutcome> all;
-  all.reserve(trials.size());
-  for (std::size_t i = 0; i < trials.size(); ++i)
-    all.push_back(found[i].is_there ? found[i].outcome : FaultOutcome{.trial = trials[i]});
-  return all;
+    const std::unique_ptr<ClosedLoop> branch = (*loop)->copy();
+    if (branch == nullptr) return can_copy = false;
+    RunSteps branch_steps(*branch, steps);
+    lock.unlock();
+    const FaultOutcome outcome = drive_on(branch_steps, trials[i], at);
+    lock.lock();
+    found[i] = outcome;
+    ++done;
+    return !on_done || on_done(done);
+  });
+  if (!can_copy) return fail(ErrorCode::kInvalidArgument, "trials need a controller and a plant with copy()");
+  return found;
 }
 
 }  // namespace chicane::run

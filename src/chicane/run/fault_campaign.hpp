@@ -64,10 +64,10 @@ struct FlyingLap {
                                                   double wait = kLongestWait, const Factories& make = {});
 /// Drives trials of `scenario` without its own faults, each from the start of a run. Deterministic; no trial
 /// depends on others. The time before a fault is driven once for all: from its onset on a trial is a copy of
-/// the process (fork), at most `jobs` of them at a time, and a trial that crashes is an error that names it.
-/// The outcomes are in the order of the trials, whatever the number of processes. `on_done` gets, in this
-/// process, how many are done; false ends early, with the outcomes so far (a trial that was not driven has an
-/// infinite least_edge). Pre: no other thread of this process holds a lock.
+/// the run, on at most `jobs` threads. The outcomes are in the order of the trials, whatever the number of
+/// threads. `on_done` gets how many are done, from one thread at a time; false ends early, with the outcomes
+/// so far (a trial that was not driven has an infinite least_edge). kInvalidArgument where the run cannot be
+/// copied (ClosedLoop::copy()).
 [[nodiscard]] Result<std::vector<FaultOutcome>> drive_trials(
     const scenario::Scenario& scenario, const FlyingLap& lap, const std::vector<FaultTrial>& trials, int jobs,
     const std::function<bool(std::size_t)>& on_done = {}, const Factories& make = {});

@@ -72,6 +72,13 @@ class LapPlanner {
   static constexpr double kPlanningTime = 5.0;  ///< time of a plan in virtual time [s]
 
   explicit LapPlanner(Clock clock) noexcept : clock_{clock} {}
+  /// For a copy of the run. Pre: kVirtual.
+  LapPlanner(const LapPlanner& other)
+      : clock_{other.clock_},
+        wanted_since_{other.wanted_since_},
+        ready_since_{other.ready_since_},
+        has_answered_{other.has_answered_},
+        lap_{other.lap_} {}
 
   /// A lap is taken up where the car is about to drive so near to it [m]; the longer it is ready, the farther
   /// [m/s]. A car at the limit of its tyres has nothing left to come to another line with.

@@ -18,6 +18,9 @@ class RunSteps {
   /// `clock`: whether laps are planned during the run. `loop` and `hooks` outlive this.
   RunSteps(ClosedLoop& loop, const RunHooks& hooks, LapPlanner::Clock clock = LapPlanner::Clock::kVirtual)
       : loop_{loop}, hooks_{hooks}, planner_{clock} {}
+  /// Steps of a copy of the loop of `other`, whose clock is kVirtual: both plan the same laps.
+  RunSteps(ClosedLoop& copy, const RunSteps& other)
+      : loop_{copy}, hooks_{other.hooks_}, planner_{other.planner_} {}
 
   /// One physics step, preceded by a control step when one is due: true when there was one. `budget` [s]
   /// bounds the control step; 0: no bound.

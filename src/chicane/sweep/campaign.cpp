@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Campaigns of faults: groups of trials as runs of a plan, each trial in a process of its own.
+// Campaigns of faults: groups of trials as runs of a plan.
 #include "chicane/sweep/campaign.hpp"
 
 #include <fmt/format.h>

@@ -67,8 +67,8 @@ struct CampaignGroup {
                                    const CampaignTrial& trial);
 
 /// Rule that drives a group of trials as a run of the campaign's plan, for drive_plan() with one thread:
-/// trials are processes, at most `jobs` at a time (run::drive_trials()). What comes before the faults is
-/// driven once for the trials of several groups. A line depends on the campaign and its number alone.
+/// trials have `jobs` threads (run::drive_trials()). What comes before the faults is driven once for the
+/// trials of several groups. A line depends on the campaign and its number alone.
 [[nodiscard]] RunRule rule_of(const Campaign& campaign, int jobs, const std::atomic<bool>& stop);
 
 /// The group of a line of the results; kParse for another line.
