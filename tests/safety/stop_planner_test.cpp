@@ -264,19 +264,23 @@ TEST(StopPlanner, BrakesNoHarderThanTheBendLetsItStayStable) {
   EXPECT_GT(braking(150.0, 33.0), 0.0);
 }
 
-/// What the air brakes takes nothing of the tyres: a car of much drag brakes as hard beside it.
+/// `turns`: the yaw rate over that of the bend. One that turns faster slides with its rear axle.
 TEST(StopPlanner, BrakesInBendsThatNoCarFollows) {
   const StopPlanner planner(kCars[1]);
-  const auto braking = [&](double speed, double side) {
-    return -planner.slowing(circle(60.0, side), start_at(20.0, speed), {.share = 1.0, .stability = 0.0});
+  const auto braking = [&](double speed, double side, double turns = 0.0) {
+    StopStart start = start_at(20.0, speed);
+    start.body.r = side * turns * speed / 60.0;
+    return -planner.slowing(circle(60.0, side), start, {.share = 1.0, .stability = 0.0});
   };
   for (const double side : {1.0, -1.0}) {
     EXPECT_LT(braking(24.0, side), 3.0);  // the rear axle holds the car in the bend with all that it has
-    EXPECT_GT(braking(32.0, side), 5.0);
+    EXPECT_GT(braking(32.0, side, 1.0), 5.0);
+    EXPECT_LT(braking(32.0, side, 1.5), 3.0);
     EXPECT_EQ(braking(32.0, side), braking(32.0, -side));
   }
 }
 
+/// What the air brakes takes nothing of the tyres: a car of much drag brakes as hard beside it.
 TEST(StopPlanner, CountsDragNotAsForceOfTheTyres) {
   model::VehicleParams light = kCars[1];
   model::VehicleParams draggy = light;

@@ -199,8 +199,7 @@ double StopPlanner::stable_share(const model::BodyMotion<double>& m, double dece
                                  double stability) const noexcept {
   if (!(stability > 0.0)) return 1.0;
   const double most = 1.0 / stability;
-  double high = 1.0;
-  double at_high = instability(m, deceleration);
+  double high = 1.0, at_high = instability(m, deceleration);
   if (at_high <= most) return 1.0;
   double low = kLeastBraking;
   double at_low = instability(m, low * deceleration);
@@ -216,12 +215,14 @@ double StopPlanner::stable_share(const model::BodyMotion<double>& m, double dece
   return low;
 }
 
-/// The acceleration sideways [m/s²] that braking leaves where the bend asks for `asked`: all of it up to the
-/// force of the rear axle, and half of that force where no car follows the bend (eq. 4a).
-double StopPlanner::left_sideways(double asked, double v) const noexcept {
+/// The acceleration sideways [m/s²] that braking leaves where the bend asks for `bend` and the yaw rate for
+/// `turning`: the larger, up to the force of the rear axle. Of a bend that no car follows the brakes take up to
+/// half of that force, but nothing of what turns the car faster than the bend (eq. 4a).
+double StopPlanner::left_sideways(double bend, double turning, double v) const noexcept {
   const double most = kGripShare * friction_ * model_.load(v);
-  const double beyond = std::clamp((asked / most - 1.0) / kBeyond, 0.0, 1.0);
-  return std::min(asked, (1.0 - (1.0 - kKept) * beyond) * most);
+  const double beyond = std::clamp((bend / most - 1.0) / kBeyond, 0.0, 1.0);
+  const double given_up = bend - std::min(bend, (1.0 - (1.0 - kKept) * beyond) * most);
+  return std::min(std::max(bend, turning) - given_up, most);
 }
 
 /// Share of a deceleration that leaves the rear axle, unloaded by it, the force that holds the car sideways:
@@ -237,8 +238,7 @@ double StopPlanner::braking_share(double sideways, double deceleration, double v
     return kGripShare * grip * ellipse * load >= sideways;
   };
   if (holds(deceleration)) return 1.0;
-  double low = kLeastBraking;
-  double high = 1.0;
+  double low = kLeastBraking, high = 1.0;
   for (int i = 0; i < 6; ++i) {
     const double middle = 0.5 * (low + high);
     (holds(middle * deceleration) ? low : high) = middle;
@@ -283,8 +283,9 @@ double StopPlanner::slowing(const road::KnownRoad& road, const StopStart& at, co
   const double v = std::max(at.body.vx, 1.0);
   const double bend = std::max({std::fabs(curvatures.ahead), std::fabs(curvatures.wanted),
                                 std::fabs(road.line().demand(at.s).curvature)});
+  const double by_tyres = 1.0 - car.steer_helper;
   const double sideways =
-      left_sideways((1.0 - car.steer_helper) * std::max(bend * v * v, std::fabs(at.body.r) * v), v);
+      left_sideways(by_tyres * (bend * v * v), by_tyres * (std::fabs(at.body.r) * v), v);
   const double raced = raced_slowing(road, at);
   const double useful = longitudinal_acceleration(car, lowest_throttle(car, v), v);
   const double asked = useful * braking.share;

@@ -137,7 +137,7 @@ class StopPlanner {
                                     double stability) const noexcept;
   [[nodiscard]] double raced_slowing(const road::KnownRoad& road, const StopStart& at) const noexcept;
   [[nodiscard]] double foreseen(const road::KnownRoad& road, const StopStart& at, double most) const noexcept;
-  [[nodiscard]] double left_sideways(double asked, double v) const noexcept;
+  [[nodiscard]] double left_sideways(double bend, double turning, double v) const noexcept;
   [[nodiscard]] double braking_share(double sideways, double deceleration, double v) const noexcept;
   template <class Law>
   [[nodiscard]] DoubtCheck in_doubt(const road::KnownRoad& road, const StopStart& start, const Doubt& doubt,
