@@ -371,6 +371,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const bool may_leave = run_.has_stood_astray && !waits && result.answer != Answer::kDrive;
   if (is_on_road && fit == Fit::kNone && !may_leave) {
     const double turned_to = steer;
+    if (stands && !waits && !stays(steer)) report_.reason = controller::GuardReason::kFacesEdge;
     if (!creeps || !drive_backup(*start, result)) return false;
     steer = turned_to;
     filter_.withdraw_stop();  // a receiver that plays the stop from now on would turn the wheels back
