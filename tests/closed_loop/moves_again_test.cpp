@@ -253,7 +253,7 @@ bool can_turn(const ClosedLoop& loop) {
     sim::World world(*plant, loop.track());
     world.reset({.x = loop.car().x, .y = loop.car().y, .psi = loop.car().psi}, 0.0);
     while (world.time() < 60.0 && world.state().edge_distance > 0.0) {
-      if (std::fabs(world.state().heading_error) < 0.2) return true;
+      if (std::fabs(world.state().heading_error) < 0.02) return true;
       const double v = plant->state().vx;
       const bool turns =
           world.time() < 5.0 && std::fabs(plant->state().steer - lock) > 0.02 * car.steer_limit;
