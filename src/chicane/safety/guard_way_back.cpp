@@ -171,17 +171,20 @@ model::Command creep(double steer, double vx, const model::VehicleParams& car) n
   return {steer, throttle_for(car, kCreepDrive * std::max(kCreep - vx, 0.0), vx)};
 }
 
-/// The least distance to the edge of a car that creeps from `at` on with its wheels turned, until it is along
-/// the road or as far from the edge as before (docs/guard.md, eq. 6c). It comes to rest on this arc wherever
-/// it is stopped.
+/// The least distance to the edge of a car that creeps from `at` on with its wheels turned, the short way or
+/// the long way round, until it is along the road or farther from the edge than before (docs/guard.md, eq. 6c).
+/// It comes to rest on this arc wherever it is stopped.
 double creeping_edge(const StopPlanner& planner, const road::KnownRoad& road, StopStart at, double steer,
                      const model::VehicleParams& car) noexcept {
   at.body.steer = steer;
   const double edge = planner.edge(road, at), ends = at.time + kLongestCreep;
-  double least = edge;
+  const double off = std::copysign(1.0, steer) * angle_difference(at.e, 0.0);
+  double least = edge, to_turn = off < 0.0 ? -off : kTwoPi - off;
   do {
+    const double before = at.e;
     at = planner.advance(road, at, creep(steer, at.body.vx, car), kCreepStep, least);
-  } while (at.time < ends && at.e * steer < 0.0 && !(planner.edge(road, at) > edge));
+    to_turn -= std::copysign(1.0, steer) * angle_difference(at.e, before);
+  } while (at.time < ends && to_turn > 0.0 && !(planner.edge(road, at) > edge));
   return least;
 }
 
@@ -351,11 +354,14 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const auto stays = [&](double angle) {
     return creeping_edge(filter_.planner(), road_, *start, angle, vehicle) > kept;
   };
-  // In a bend a gentle way to the line leads over the edge beside it, where more lock does not.
+  // A gentle way to the line may lead over the edge beside it where more lock does not, or the long way round.
   double& steer = result.command.steer;
-  if (creeps && is_on_road && !stays(steer))
-    steer = start->e * car.steer < 0.0 && stays(car.steer) ? car.steer
-                                                           : std::copysign(vehicle.steer_limit, -start->e);
+  if (creeps && is_on_road && !stays(steer)) {
+    const double lock = std::copysign(vehicle.steer_limit, -start->e);
+    const std::array ways{car.steer, lock, -lock};
+    const auto* const way = std::find_if(ways.begin(), ways.end(), stays);
+    steer = way == ways.end() ? lock : *way;
+  }
   // Who drives before the wheels have turned uses the room that turning takes.
   const bool has_turned = std::fabs(steer - car.steer) < kTurnedWheels * vehicle.steer_limit;
   const bool waits = stands && is_on_road && !(turns_as_asked(act, car) && has_turned);
