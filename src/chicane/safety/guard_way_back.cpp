@@ -153,8 +153,8 @@ constexpr double kTrialPedal = 0.3;
 constexpr double kCreep = 1.0;             // [m/s] of a car that turns at the edge
 constexpr double kStillCreeps = 1.2;       // times kCreep: leaves room for the drive to overshoot it
 constexpr double kCreepDrive = 2.5;        // [1/s] of its drive: turned wheels resist
-constexpr double kCreepStep = 0.1;         // [s] of creeping that are simulated at once
-constexpr double kLongestCreep = 6.0;      // [s]
+constexpr double kCreepStep = 0.2;         // [s] of creeping that are simulated at once
+constexpr double kLongestCreep = 25.0;     // [s] half a turn at full lock
 constexpr double kKeptShare = 0.25;        // of the margin that creeping leaves at least
 constexpr double kCreepNearer = 5e-3;      // [m] by which a car that has less may come nearer
 constexpr double kSeenTurn = 0.06;         // [rad] of turning after which a car that is led is judged by it
@@ -358,9 +358,9 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   double& steer = result.command.steer;
   if (creeps && is_on_road && !stays(steer)) {
     const double lock = std::copysign(vehicle.steer_limit, -start->e);
-    const std::array ways{car.steer, lock, -lock};
+    const std::array ways{run_.creeps ? car.steer : lock, lock, -lock};
     const auto* const way = std::find_if(ways.begin(), ways.end(), stays);
-    steer = way == ways.end() ? lock : *way;
+    result.command = creep(way == ways.end() ? lock : *way, car.vx, vehicle);
   }
   // Who drives before the wheels have turned uses the room that turning takes.
   const bool has_turned = std::fabs(steer - car.steer) < kTurnedWheels * vehicle.steer_limit;
