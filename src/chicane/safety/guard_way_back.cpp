@@ -163,7 +163,8 @@ constexpr double kTurnedWheels = 0.1;      // share of full lock that wheels may
 constexpr double kLongestAskPause = 60.0;  // [s] between two trials
 constexpr double kMostAside = 1.0;         // [m] by which a place may have jumped across the road
 constexpr double kChord = 0.7;             // [m] by which waypoints cut a bend
-constexpr double kAlongWaypoints = 0.35;   // [rad] off the line of waypoints that bends between them
+constexpr double kAlongWaypoints = 0.35;   // [rad] off the line of waypoints that bends between them, or off
+                                           // the course that the car has by its estimate
 constexpr double kNoAnswerTime = 1.0;      // [s] after which a controller without an answer begins anew
 
 /// The command of a car that creeps.
@@ -172,8 +173,8 @@ model::Command creep(double steer, double vx, const model::VehicleParams& car) n
 }
 
 /// The least distance to the edge of a car that creeps from `at` on with its wheels turned, the short way or
-/// the long way round, until it is along the road or farther from the edge than before (docs/guard.md, eq. 6c).
-/// It comes to rest on this arc wherever it is stopped.
+/// the long way round, until it is along the road or farther from the edge than before (docs/guard.md,
+/// eq. 6c). It comes to rest on this arc wherever it is stopped.
 double creeping_edge(const StopPlanner& planner, const road::KnownRoad& road, StopStart at, double steer,
                      const model::VehicleParams& car) noexcept {
   at.body.steer = steer;
@@ -227,8 +228,10 @@ bool Guard::agrees_with_road(const model::Measurement& measured) const noexcept 
     // Of a car that counts as off its road, a place on it is the likelier one.
     const bool is_back =
         run_.is_astray && filter_.planner().edge(road_, {.s = at.s, .d = at.d, .e = e}) > 0.0;
-    return at.distance < kFarFromRoad && std::fabs(e) < kAlongWaypoints &&
-           (std::fabs(at.d - d_) < kMostAside || is_back);
+    const double expected = angle_difference(estimator_.state().psi, line.at(s_).heading);
+    const bool is_along = std::fabs(e) < kAlongWaypoints || std::fabs(e - expected) < kAlongWaypoints;
+    const bool is_beside = std::fabs(at.d - d_) < kMostAside + monitor_.place_drift();
+    return at.distance < kFarFromRoad && is_along && (is_beside || is_back);
   }
   const auto size = static_cast<std::size_t>(std::max(measured.waypoint_count, 0));
   for (std::size_t i = 0; i + 1 < size; ++i) {
@@ -354,7 +357,7 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const auto stays = [&](double angle) {
     return creeping_edge(filter_.planner(), road_, *start, angle, vehicle) > kept;
   };
-  // A gentle way to the line may lead over the edge beside it where more lock does not, or the long way round.
+  // A gentle way to the line may lead over the edge where more lock does not, or the long way round.
   double& steer = result.command.steer;
   if (creeps && is_on_road && !stays(steer)) {
     const double lock = std::copysign(vehicle.steer_limit, -start->e);
@@ -378,7 +381,11 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   if (is_on_road && fit == Fit::kNone && !may_leave) {
     const double turned_to = steer;
     if (stands && !waits && !stays(steer)) report_.reason = controller::GuardReason::kFacesEdge;
-    if (!creeps || !drive_backup(*start, result)) return false;
+    if (!creeps) return false;
+    if (!drive_backup(*start, result)) {
+      if (!stands) return false;
+      take_over({turned_to, 0.0}, Rung::kReturnToRoad, result);
+    }
     steer = turned_to;
     filter_.withdraw_stop();  // a receiver that plays the stop from now on would turn the wheels back
     return true;
