@@ -154,7 +154,7 @@ constexpr double kCreep = 1.0;             // [m/s] of a car that turns at the e
 constexpr double kStillCreeps = 1.2;       // times kCreep: leaves room for the drive to overshoot it
 constexpr double kCreepDrive = 2.5;        // [1/s] of its drive: turned wheels resist
 constexpr double kCreepStep = 0.2;         // [s] of creeping that are simulated at once
-constexpr double kLongestCreep = 25.0;     // [s] half a turn at full lock
+constexpr double kLongestCreep = 40.0;     // [s] a turn at full lock
 constexpr double kKeptShare = 0.25;        // of the margin that creeping leaves at least
 constexpr double kCreepNearer = 5e-3;      // [m] by which a car that has less may come nearer
 constexpr double kSeenTurn = 0.06;         // [rad] of turning after which a car that is led is judged by it
@@ -172,21 +172,21 @@ model::Command creep(double steer, double vx, const model::VehicleParams& car) n
   return {steer, throttle_for(car, kCreepDrive * std::max(kCreep - vx, 0.0), vx)};
 }
 
-/// The least distance to the edge of a car that creeps from `at` on with its wheels turned, the short way or
-/// the long way round, until it is along the road or farther from the edge than before (docs/guard.md,
-/// eq. 6c). It comes to rest on this arc wherever it is stopped.
+/// The least distance to the edge of a car that creeps from `at` on with its wheels turned, until it is along
+/// the road or as far from the edge as before (docs/guard.md, eq. 6c). It comes to rest on this arc wherever
+/// it is stopped. `goes_round`: it turns the long way, and has to get there.
 double creeping_edge(const StopPlanner& planner, const road::KnownRoad& road, StopStart at, double steer,
-                     const model::VehicleParams& car) noexcept {
+                     const model::VehicleParams& car, bool goes_round = false) noexcept {
   at.body.steer = steer;
   const double edge = planner.edge(road, at), ends = at.time + kLongestCreep;
   const double off = std::copysign(1.0, steer) * angle_difference(at.e, 0.0);
-  double least = edge, to_turn = off < 0.0 ? -off : kTwoPi - off;
+  double least = edge, to_turn = off < 0.0 ? -off : goes_round ? kTwoPi - off : 0.0;
   do {
     const double before = at.e;
     at = planner.advance(road, at, creep(steer, at.body.vx, car), kCreepStep, least);
     to_turn -= std::copysign(1.0, steer) * angle_difference(at.e, before);
-  } while (at.time < ends && to_turn > 0.0 && !(planner.edge(road, at) > edge));
-  return least;
+  } while (at.time < ends && to_turn > 0.0 && (goes_round || !(planner.edge(road, at) > edge)));
+  return goes_round && to_turn > 0.0 ? -kFarFromRoad : least;
 }
 
 }  // namespace
@@ -355,15 +355,19 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const double least = run_.creeps ? kCreepNearer : kKeptShare * options_.margin;
   const double kept = std::min(edge, least) - kCreepNearer;
   const auto stays = [&](double angle) {
-    return creeping_edge(filter_.planner(), road_, *start, angle, vehicle) > kept;
+    return creeping_edge(filter_.planner(), road_, *start, angle, vehicle, run_.goes_round) > kept;
   };
-  // A gentle way to the line may lead over the edge where more lock does not, or the long way round.
   double& steer = result.command.steer;
-  if (creeps && is_on_road && !stays(steer)) {
+  run_.goes_round = run_.goes_round && creeps && is_on_road && stays(car.steer);
+  if (run_.goes_round) {
+    result.command = creep(car.steer, car.vx, vehicle);
+  } else if (creeps && is_on_road && !stays(steer)) {
+    // A gentle way to the line may lead over the edge where more lock does not, or the long way round.
     const double lock = std::copysign(vehicle.steer_limit, -start->e);
-    const std::array ways{run_.creeps ? car.steer : lock, lock, -lock};
-    const auto* const way = std::find_if(ways.begin(), ways.end(), stays);
-    result.command = creep(way == ways.end() ? lock : *way, car.vx, vehicle);
+    const bool goes_on = run_.creeps && stays(car.steer);
+    run_.goes_round = !goes_on && !stays(lock);
+    run_.goes_round = run_.goes_round && stays(-lock);
+    result.command = creep(goes_on ? car.steer : run_.goes_round ? -lock : lock, car.vx, vehicle);
   }
   // Who drives before the wheels have turned uses the room that turning takes.
   const bool has_turned = std::fabs(steer - car.steer) < kTurnedWheels * vehicle.steer_limit;
