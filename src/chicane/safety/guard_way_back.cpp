@@ -154,7 +154,8 @@ constexpr double kCreep = 1.0;             // [m/s] of a car that turns at the e
 constexpr double kStillCreeps = 1.2;       // times kCreep: leaves room for the drive to overshoot it
 constexpr double kCreepDrive = 2.5;        // [1/s] of its drive: turned wheels resist
 constexpr double kCreepStep = 0.2;         // [s] of creeping that are simulated at once
-constexpr double kLongestCreep = 40.0;     // [s] a turn at full lock
+constexpr double kLongestCreep = 6.0;      // [s]
+constexpr double kLongestRound = 40.0;     // [s] a turn at full lock
 constexpr double kKeptShare = 0.25;        // of the margin that creeping leaves at least
 constexpr double kCreepNearer = 5e-3;      // [m] by which a car that has less may come nearer
 constexpr double kSeenTurn = 0.06;         // [rad] of turning after which a car that is led is judged by it
@@ -178,7 +179,8 @@ model::Command creep(double steer, double vx, const model::VehicleParams& car) n
 double creeping_edge(const StopPlanner& planner, const road::KnownRoad& road, StopStart at, double steer,
                      const model::VehicleParams& car, bool goes_round = false) noexcept {
   at.body.steer = steer;
-  const double edge = planner.edge(road, at), ends = at.time + kLongestCreep;
+  const double edge = planner.edge(road, at);
+  const double ends = at.time + (goes_round ? kLongestRound : kLongestCreep);
   const double off = std::copysign(1.0, steer) * angle_difference(at.e, 0.0);
   double least = edge, to_turn = off < 0.0 ? -off : goes_round ? kTwoPi - off : 0.0;
   do {
