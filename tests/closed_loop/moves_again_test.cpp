@@ -242,18 +242,20 @@ struct Standing {
   bool can_turn = true;  ///< can_turn()
 };
 
-/// Whether the standing car of `loop` gets along its road with all tyres inside, at walking pace with its
-/// wheels at full lock to either side: by the plant itself, so that no model of a turning circle is assumed.
+/// Whether the standing car of `loop` gets along its road with all tyres inside the kerbs, at walking pace
+/// with its wheels at full lock to either side: by the plant itself, so that no model of a turning circle is
+/// assumed.
 bool can_turn(const ClosedLoop& loop) {
   const scenario::Scenario& scenario = loop.scenario();
   const model::VehicleParams& car = scenario.vehicle;
   const double pace = std::sqrt(car.scale);  // [m/s]
+  const double inside = std::min(loop.track().kerb_width(), loop.frame().edge_distance);
   for (const double lock : {-car.steer_limit, car.steer_limit}) {
     const auto plant = std::move(*make_plant(scenario));
     sim::World world(*plant, loop.track());
     world.reset({.x = loop.car().x, .y = loop.car().y, .psi = loop.car().psi}, 0.0);
-    while (world.time() < 60.0 && world.state().edge_distance > 0.0) {
-      if (std::fabs(world.state().heading_error) < 0.2) return true;
+    while (world.time() < 60.0 && world.state().edge_distance > inside - 1e-6) {
+      if (std::fabs(world.state().heading_error) < 0.02) return true;
       const double v = plant->state().vx;
       const bool turns =
           world.time() < 5.0 && std::fabs(plant->state().steer - lock) > 0.02 * car.steer_limit;

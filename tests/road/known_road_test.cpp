@@ -40,6 +40,44 @@ TEST(KnownRoad, KnowsATracksEdgesFromTheBeginning) {
   }
 }
 
+/// Across the smooth line, which cuts bends, the edges are where the track has them.
+TEST(KnownRoad, HasTheEdgesOfBendsThatItsLineCuts) {
+  constexpr double kStraight = 60.0, kRadius = 14.0, kWidth = 4.0;
+  for (const double side : {1.0, -1.0}) {
+    road::RoadData data;
+    data.is_closed = true;
+    data.length = 2.0 * (kStraight + kPi * kRadius);
+    const int count = static_cast<int>(data.length);
+    for (int i = 0; i <= count; ++i) {
+      const double s = data.length * i / count, half = 0.5 * data.length;
+      const double on = s < half ? s : s - half, turned = s < half ? 0.0 : kPi;
+      const double angle = std::clamp((on - kStraight) / kRadius, 0.0, kPi);
+      Vec2 at = {std::min(on, kStraight) + kRadius * std::sin(angle), kRadius * (1.0 - std::cos(angle))};
+      if (s >= half) at = Vec2{kStraight, 2.0 * kRadius} - at;
+      data.points.push_back({.s = s,
+                             .position = {at.x(), side * at.y()},
+                             .heading = side * (angle + turned),
+                             .curvature = angle > 0.0 ? side / kRadius : 0.0,
+                             .left = kWidth,
+                             .right = kWidth});
+    }
+    const KnownRoad road(data, model::udacity_params());
+    ASSERT_TRUE(road.line().is_closed());
+    double worst = 0.0;
+    for (double s = 0.0; s < road.line().length(); s += 1.0) {
+      const CurvePoint at = road.line().at(s);
+      const Vec2 left{-at.tangent.y(), at.tangent.x()};
+      for (const double way : {road.edges(s).left, -road.edges(s).right}) {
+        const Vec2 edge = at.position + way * left;
+        const double x = std::clamp(edge.x(), 0.0, kStraight);
+        const double off = (edge - Vec2{x, side * kRadius}).norm();
+        worst = std::max(worst, std::fabs(std::fabs(off - kRadius) - kWidth));
+      }
+    }
+    EXPECT_LT(worst, 0.03);
+  }
+}
+
 TEST(KnownRoad, KeepsAnOpenTracksOwnLine) {
   road::RoadData data;
   data.length = 100.0;

@@ -115,7 +115,7 @@ TEST(ResetWatch, AsksACarThatRestsWhereItIsMeasured) {
       now.speed = 0.0;
       watch.see(now, 0.0);
     }
-    EXPECT_EQ(watch.rests(), answers) << "a place that did not answer is not tried again";
+    EXPECT_TRUE(watch.rests()) << "it may be asked again";
   }
 }
 

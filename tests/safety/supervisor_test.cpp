@@ -55,7 +55,8 @@ TEST(Supervisor, HasEachConditionWithItsTimeInTheOrderOfSeverity) {
                   {nullptr, kTooFastForSilence, 0.0, ConditionEnd::kByAnswer},
                   {nullptr, kOtherSteering, 0.0, ConditionEnd::kByMotion},
                   {nullptr, kWeakBrakes, 0.0, ConditionEnd::kByMotion},
-                  {nullptr, kStuck, 0.0, ConditionEnd::kByMotion}};
+                  {nullptr, kStuck, 0.0, ConditionEnd::kByMotion},
+                  {nullptr, kFacesEdge, 0.0, ConditionEnd::kByPerson}};
   ASSERT_EQ(kConditions.size(), std::size(expected));
   for (std::size_t i = 0; i < kConditions.size(); ++i) {
     EXPECT_EQ(kConditions[i].finding, expected[i].finding) << i;

@@ -33,6 +33,23 @@ TEST(WayBackLaw, TurnsTowardsTheLineFromBothSidesAndFromAnyDirection) {
   EXPECT_NEAR(back_from(0.0, 0.0, 2.0).steer, 0.0, 1e-9);
 }
 
+/// A car on its line in a bend stays on it; one across the bend does not turn with it.
+TEST(WayBackLaw, HasTheAngleOfTheBend) {
+  const model::VehicleParams vehicle = model::udacity_params();
+  for (const double curvature : {-0.05, 0.05}) {
+    road::ReferenceLine line = straight();
+    const auto steer = [&](double yaw) {
+      return way_back(line, {.s = 50.0}, {.x = 50.0, .psi = yaw, .vx = 2.0}, vehicle).steer;
+    };
+    const double across = 0.1;
+    const double straight_on = steer(across);
+    for (road::ReferenceLine::Sample& each : line.samples()) each.curve.curvature = curvature;
+    EXPECT_NEAR(std::tan(steer(0.0)), vehicle.wheelbase() * curvature, 1e-12);
+    EXPECT_NEAR(std::tan(steer(across) - straight_on), vehicle.wheelbase() * curvature * std::cos(across),
+                1e-12);
+  }
+}
+
 TEST(WayBackLaw, GoesAtWalkingPace) {
   EXPECT_GT(back_from(5.0, 0.0, 0.0).throttle, 0.0);
   EXPECT_LT(back_from(5.0, 0.0, 6.0).throttle, 0.0);

@@ -39,7 +39,8 @@
   ROW(kLate, "late", kError, "the measurements are of an earlier moment")                                        \
   ROW(kOtherSteering, "other_steering", kWarning, "the wheels turn otherwise than they are asked to")            \
   ROW(kWeakBrakes, "weak_brakes", kWarning, "the brakes give less than they are asked for")                      \
-  ROW(kStuck, "stuck", kWarning, "the car stands although its road goes on")
+  ROW(kStuck, "stuck", kWarning, "the car stands although its road goes on")                                     \
+  ROW(kFacesEdge, "faces_edge", kError, "the car faces the edge of its road, nearer than it can turn")
 // clang-format on
 
 namespace chicane::controller {

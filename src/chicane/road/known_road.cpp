@@ -16,6 +16,9 @@ constexpr double kWaypointSpacing = 10.0;  // [m]
 constexpr double kMostToNext = 25.0;       // [m] from the last waypoint to the next
 constexpr RoadOptions kSeen{
     .half_width = 0.0, .smoothing_width = 1.0, .remember_waypoints = true, .speed = {}};
+constexpr int kEdgeSteps = 5;         // iterations that find an edge across another line
+constexpr double kFootToFoot = 12.0;  // [m] along the centre from one of their feet to the next
+constexpr double kEdgeFound = 0.01;   // [m] their last step; where it is larger the first one counts
 
 }  // namespace
 
@@ -57,13 +60,26 @@ void KnownRoad::smooth(const road::RoadData& data, const model::VehicleParams& v
   }
   if (!planned->line().is_closed()) return;
   const ReferenceLine centre = line_;
+  const auto beside = [&](const CurvePoint& here, const ReferenceLine::Projection& foot, double side) {
+    const Vec2 across = side * Vec2{-here.tangent.y(), here.tangent.x()};
+    const auto left_over = [&](const ReferenceLine::Projection& at) {
+      const Edges widths = this->edges(at.s);
+      return (side > 0.0 ? widths.left : widths.right) - side * at.d;
+    };
+    const double first = left_over(foot);
+    double room = first, step = first;
+    for (int i = 0; i < kEdgeSteps; ++i) {
+      step = left_over(centre.project(here.position + room * across, foot.s, kFootToFoot));
+      room += step;
+    }
+    return std::fabs(step) < kEdgeFound ? room : first;
+  };
   std::vector<Edges> edges;
   edges.reserve(planned->line().samples().size());
   for (const ReferenceLine::Sample& sample : planned->line().samples()) {
     const ReferenceLine::Projection place =
         centre.project_along(sample.curve.position, sample.curve.heading, 2.0 * vehicle.width);
-    const Edges here = this->edges(place.s);
-    edges.push_back({here.left - place.d, here.right + place.d});
+    edges.push_back({beside(sample.curve, place, 1.0), beside(sample.curve, place, -1.0)});
   }
   line_ = planned->line();
   edges_ = std::move(edges);

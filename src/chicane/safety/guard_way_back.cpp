@@ -153,8 +153,9 @@ constexpr double kTrialPedal = 0.3;
 constexpr double kCreep = 1.0;             // [m/s] of a car that turns at the edge
 constexpr double kStillCreeps = 1.2;       // times kCreep: leaves room for the drive to overshoot it
 constexpr double kCreepDrive = 2.5;        // [1/s] of its drive: turned wheels resist
-constexpr double kCreepStep = 0.1;         // [s] of creeping that are simulated at once
+constexpr double kCreepStep = 0.2;         // [s] of creeping that are simulated at once
 constexpr double kLongestCreep = 6.0;      // [s]
+constexpr double kLongestRound = 40.0;     // [s] a turn at full lock
 constexpr double kKeptShare = 0.25;        // of the margin that creeping leaves at least
 constexpr double kCreepNearer = 5e-3;      // [m] by which a car that has less may come nearer
 constexpr double kSeenTurn = 0.06;         // [rad] of turning after which a car that is led is judged by it
@@ -163,7 +164,8 @@ constexpr double kTurnedWheels = 0.1;      // share of full lock that wheels may
 constexpr double kLongestAskPause = 60.0;  // [s] between two trials
 constexpr double kMostAside = 1.0;         // [m] by which a place may have jumped across the road
 constexpr double kChord = 0.7;             // [m] by which waypoints cut a bend
-constexpr double kAlongWaypoints = 0.35;   // [rad] off the line of waypoints that bends between them
+constexpr double kAlongWaypoints = 0.35;   // [rad] off the line of waypoints that bends between them, or off
+                                           // the course that the car has by its estimate
 constexpr double kNoAnswerTime = 1.0;      // [s] after which a controller without an answer begins anew
 
 /// The command of a car that creeps.
@@ -173,16 +175,20 @@ model::Command creep(double steer, double vx, const model::VehicleParams& car) n
 
 /// The least distance to the edge of a car that creeps from `at` on with its wheels turned, until it is along
 /// the road or as far from the edge as before (docs/guard.md, eq. 6c). It comes to rest on this arc wherever
-/// it is stopped.
+/// it is stopped. `goes_round`: it turns the long way, and has to get there.
 double creeping_edge(const StopPlanner& planner, const road::KnownRoad& road, StopStart at, double steer,
-                     const model::VehicleParams& car) noexcept {
+                     const model::VehicleParams& car, bool goes_round = false) noexcept {
   at.body.steer = steer;
-  const double edge = planner.edge(road, at), ends = at.time + kLongestCreep;
-  double least = edge;
+  const double edge = planner.edge(road, at);
+  const double ends = at.time + (goes_round ? kLongestRound : kLongestCreep);
+  const double off = std::copysign(1.0, steer) * angle_difference(at.e, 0.0);
+  double least = edge, to_turn = off < 0.0 ? -off : goes_round ? kTwoPi - off : 0.0;
   do {
+    const double before = at.e;
     at = planner.advance(road, at, creep(steer, at.body.vx, car), kCreepStep, least);
-  } while (at.time < ends && at.e * steer < 0.0 && !(planner.edge(road, at) > edge));
-  return least;
+    to_turn -= std::copysign(1.0, steer) * angle_difference(at.e, before);
+  } while (at.time < ends && to_turn > 0.0 && (goes_round || !(planner.edge(road, at) > edge)));
+  return goes_round && to_turn > 0.0 ? -kFarFromRoad : least;
 }
 
 }  // namespace
@@ -224,8 +230,10 @@ bool Guard::agrees_with_road(const model::Measurement& measured) const noexcept 
     // Of a car that counts as off its road, a place on it is the likelier one.
     const bool is_back =
         run_.is_astray && filter_.planner().edge(road_, {.s = at.s, .d = at.d, .e = e}) > 0.0;
-    return at.distance < kFarFromRoad && std::fabs(e) < kAlongWaypoints &&
-           (std::fabs(at.d - d_) < kMostAside || is_back);
+    const double expected = angle_difference(estimator_.state().psi, line.at(s_).heading);
+    const bool is_along = std::fabs(e) < kAlongWaypoints || std::fabs(e - expected) < kAlongWaypoints;
+    const bool is_beside = std::fabs(at.d - d_) < kMostAside + monitor_.place_drift();
+    return at.distance < kFarFromRoad && is_along && (is_beside || is_back);
   }
   const auto size = static_cast<std::size_t>(std::max(measured.waypoint_count, 0));
   for (std::size_t i = 0; i + 1 < size; ++i) {
@@ -349,13 +357,20 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const double least = run_.creeps ? kCreepNearer : kKeptShare * options_.margin;
   const double kept = std::min(edge, least) - kCreepNearer;
   const auto stays = [&](double angle) {
-    return creeping_edge(filter_.planner(), road_, *start, angle, vehicle) > kept;
+    return creeping_edge(filter_.planner(), road_, *start, angle, vehicle, run_.goes_round) > kept;
   };
-  // In a bend a gentle way to the line leads over the edge beside it, where more lock does not.
   double& steer = result.command.steer;
-  if (creeps && is_on_road && !stays(steer))
-    steer = start->e * car.steer < 0.0 && stays(car.steer) ? car.steer
-                                                           : std::copysign(vehicle.steer_limit, -start->e);
+  run_.goes_round = run_.goes_round && creeps && is_on_road && stays(car.steer);
+  if (run_.goes_round) {
+    result.command = creep(car.steer, car.vx, vehicle);
+  } else if (creeps && is_on_road && !stays(steer)) {
+    // A gentle way to the line may lead over the edge where more lock does not, or the long way round.
+    const double lock = std::copysign(vehicle.steer_limit, -start->e);
+    const bool goes_on = run_.creeps && stays(car.steer);
+    run_.goes_round = !goes_on && !stays(lock);
+    run_.goes_round = run_.goes_round && stays(-lock);
+    result.command = creep(goes_on ? car.steer : run_.goes_round ? -lock : lock, car.vx, vehicle);
+  }
   // Who drives before the wheels have turned uses the room that turning takes.
   const bool has_turned = std::fabs(steer - car.steer) < kTurnedWheels * vehicle.steer_limit;
   const bool waits = stands && is_on_road && !(turns_as_asked(act, car) && has_turned);
@@ -371,7 +386,12 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const bool may_leave = run_.has_stood_astray && !waits && result.answer != Answer::kDrive;
   if (is_on_road && fit == Fit::kNone && !may_leave) {
     const double turned_to = steer;
-    if (!creeps || !drive_backup(*start, result)) return false;
+    if (stands && !waits && !stays(steer)) report_.reason = controller::GuardReason::kFacesEdge;
+    if (!creeps) return false;
+    if (!drive_backup(*start, result)) {
+      if (!stands) return false;
+      take_over({turned_to, 0.0}, Rung::kReturnToRoad, result);
+    }
     steer = turned_to;
     filter_.withdraw_stop();  // a receiver that plays the stop from now on would turn the wheels back
     return true;

@@ -49,6 +49,8 @@ class MeasurementMonitor {
                                                 const model::State* expected) noexcept;
   /// A car that was measured calmly drives on as it did: SensorWatch::is_sure().
   [[nodiscard]] bool is_sure() const noexcept { return watch_.is_sure(); }
+  /// What the expected place may be wrong by, beyond kJump, after a way without measurements [m].
+  [[nodiscard]] double place_drift() const noexcept { return place_drift_; }
   /// Of the last check().
   [[nodiscard]] const Findings& findings() const noexcept { return findings_; }
 
@@ -88,7 +90,7 @@ class MeasurementMonitor {
   Signals stuck_;             ///< signals that repeat, of a sensor that is stuck
   double thawed_ = 0.0;       ///< last time at which nothing was frozen [s]
   double same_since_ = 0.0;   ///< [s]
-  double place_drift_ = 0.0;  ///< what the expected place may be wrong by, beyond kJump [m]
+  double place_drift_ = 0.0;  ///< place_drift() [m]
   double other_drift_ = 0.0;  ///< and the expected speed [m/s]
   std::array<Sample, kSamples> samples_{};
   int sample_count_ = 0;
@@ -113,16 +115,15 @@ class ResetWatch {
   /// Takes in a measurement as it came. `pedal`: acts now, [-1, 1].
   void see(const model::Measurement& now, double pedal) noexcept;
 
-  /// The measurements have agreed with each other for kRest, of a car that stands, and not just where it did
-  /// not answer.
-  [[nodiscard]] bool rests() const noexcept;
+  /// The measurements have agreed with each other for kRest, of a car that stands.
+  [[nodiscard]] bool rests() const noexcept { return last_.time - rests_since_.time > kRest; }
   static constexpr double kRest = 1.0;       ///< [s]
   static constexpr double kRestWay = 1.0;    ///< [m] by which a place may differ meanwhile
   static constexpr double kRestTurn = 0.05;  ///< [rad] and a heading
   /// The car is to answer where it is measured now.
   void ask() noexcept;
   /// It did not.
-  void give_up() noexcept;
+  void give_up() noexcept { is_waiting_ = false; }
   /// The place of the last see() has moved farther than the car can.
   [[nodiscard]] bool has_jumped() const noexcept { return has_jumped_; }
 
@@ -135,11 +136,9 @@ class ResetWatch {
   [[nodiscard]] bool jumps(const model::Measurement& now) const noexcept;
 
   model::Measurement last_;
-  model::Measurement origin_;    ///< where the car seems to have been put
-  model::Measurement asked_at_;  ///< where it was asked to answer
+  model::Measurement origin_;  ///< where the car seems to have been put
   bool has_last_ = false;
   model::Measurement rests_since_;
-  model::Measurement silent_{.time = -kLongest};  ///< where it was, if it did not
   bool has_jumped_ = false;
   bool is_waiting_ = false;
   bool has_answered_ = false;

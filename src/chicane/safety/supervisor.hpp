@@ -16,7 +16,8 @@ enum class ConditionEnd {
   kByTrial,   ///< also when the car stands and answers its pedal where it is measured (ResetWatch), or by a
               ///< person who takes over or resets the run
   kByAnswer,  ///< with the next answer of the controller that can be sent
-  kByMotion   ///< when the car moves, wheels and brakes as usual
+  kByMotion,  ///< when the car moves, wheels and brakes as usual
+  kByPerson   ///< when a person turns the car round or resets the run
 };
 
 /// What the car is stopped for, held back for, or found with.
@@ -33,7 +34,7 @@ struct Condition {
 /// a measurement 0.12 s, three at the simulator's 25 Hz. What is frozen has repeated for 0.3 m of driving
 /// before it is found. Whether a speed is wrong or the model is shows in the next measurement
 /// (docs/guard.md, eq. 10a).
-inline constexpr std::array<Condition, 13> kConditions{{
+inline constexpr std::array<Condition, 14> kConditions{{
     {&Findings::late, controller::GuardReason::kLate, 0.12, ConditionEnd::kByItself},
     {&Findings::unmeasured, controller::GuardReason::kNotMeasured, 0.12, ConditionEnd::kByItself},
     {&Findings::frozen, controller::GuardReason::kFrozen, 0.0, ConditionEnd::kByItself},
@@ -47,6 +48,7 @@ inline constexpr std::array<Condition, 13> kConditions{{
     {nullptr, controller::GuardReason::kOtherSteering, 0.0, ConditionEnd::kByMotion},
     {nullptr, controller::GuardReason::kWeakBrakes, 0.0, ConditionEnd::kByMotion},
     {nullptr, controller::GuardReason::kStuck, 0.0, ConditionEnd::kByMotion},
+    {nullptr, controller::GuardReason::kFacesEdge, 0.0, ConditionEnd::kByPerson},
 }};
 
 /// The row of a reason; null for GuardReason::kNone.

@@ -197,6 +197,8 @@ std::string_view end_of(GuardReason reason) noexcept {
       return "with the next answer that can be sent";
     case safety::ConditionEnd::kByMotion:
       return "when the car moves";
+    case safety::ConditionEnd::kByPerson:
+      return "when a person has turned the car";
   }
   return "";
 }

@@ -12,8 +12,9 @@
 namespace chicane::tracking {
 
 /// What leads a slow car back to a line, from anywhere beside it and in any direction: walking pace, on a
-/// course that is at 45° to the line kApproach beside it, and along it on it. A car whose wheels turn slowly
-/// waits for them. `place`: where the car is along the line.
+/// course that is at 45° to the line kApproach beside it, and along it on it. The wheels have the angle of
+/// the bend, and more by the error of the course. A car whose wheels turn slowly waits for them. `place`:
+/// where the car is along the line.
 [[nodiscard]] inline model::Command way_back(const road::ReferenceLine& line,
                                              const road::ReferenceLine::Projection& place,
                                              const model::State& car,
@@ -24,9 +25,12 @@ namespace chicane::tracking {
   constexpr double kMostDrive = 1.0;     // [m/s²]
   constexpr double kFullLock = 0.5;      // [rad] off its course the wheel is turned as far as it goes
   constexpr double kWheelOff = 0.5;      // [rad] the wheel is from its command, and the car stands
-  const double course = line.at(place.s).heading - atan(place.d / kApproach);
+  const road::CurvePoint at = line.at(place.s);
+  const double course = at.heading - atan(place.d / kApproach);
   const double turn = std::clamp(angle_difference(course, car.psi) / kFullLock, -1.0, 1.0);
-  const double steer = turn * vehicle.steer_limit;
+  const double bend = atan(vehicle.wheelbase() * at.curvature * cos(angle_difference(car.psi, at.heading)));
+  const double lock = vehicle.steer_limit;
+  const double steer = std::clamp(turn * lock + bend, -lock, lock);
   const double pace = kWalkingPace * std::max(1.0 - std::fabs(steer - car.steer) / kWheelOff, 0.0);
   const double acceleration = std::clamp(pace - car.vx, kMostBraking, kMostDrive);
   if (!(acceleration > 0.0)) return {steer, throttle_to_rest(vehicle, acceleration, car.vx)};
