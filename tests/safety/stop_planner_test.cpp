@@ -72,12 +72,10 @@ TEST(StopPlanner, PlanIsWhatAReceiverCanDrive) {
 }
 
 TEST(StopPlanner, IsTheSameInAMirror) {
-  const road::KnownRoad left = circle(60.0);
-  const road::KnownRoad right = circle(60.0, -1.0);
+  const road::KnownRoad left = circle(60.0), right = circle(60.0, -1.0);
   for (const model::VehicleParams& car : kCars) {
     const StopPlanner planner(car);
-    StopPlan one;
-    StopPlan other;
+    StopPlan one, other;
     const StopCheck a =
         planner.plan(left, start_at(20.0, 18.0, 1.0, -0.05), {.braking = {.share = 0.8}}, one);
     const StopCheck b =
@@ -268,8 +266,7 @@ TEST(StopPlanner, BrakesNoHarderThanTheBendLetsItStayStable) {
 TEST(StopPlanner, BrakesInBendsThatNoCarFollows) {
   const StopPlanner planner(kCars[1]);
   const auto braking = [&](double speed, double side, double turns = 0.0) {
-    StopStart start = start_at(20.0, speed);
-    start.body.r = side * turns * speed / 60.0;
+    const StopStart start{.s = 20.0, .body = {.vx = speed, .r = side * turns * speed / 60.0}};
     return -planner.slowing(circle(60.0, side), start, {.share = 1.0, .stability = 0.0});
   };
   for (const double side : {1.0, -1.0}) {

@@ -394,8 +394,7 @@ bool Guard::drive_backup(const StopStart& start, controller::StepResult& result)
 void Guard::show_backup(const StopStart& start, controller::Plan& plan) const noexcept {
   const road::ReferenceLine& line = road_.line();
   StopStart at = start;
-  double edge = 0.0;
-  double driven = 0.0;
+  double edge = 0.0, driven = 0.0;
   while (plan.size < kShown) {
     const double speed = hypot(at.body.vx, at.body.vy);
     const model::Command command = played(filter_.stop(), driven, speed, model_.vehicle());

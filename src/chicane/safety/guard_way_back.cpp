@@ -16,6 +16,8 @@ namespace chicane::safety {
 namespace {
 
 constexpr double kFarFromRoad = 20.0;    // [m] beside its line there is no stop along the road
+constexpr double kByWheels = 8.0;        // [m/s] above which StopCar has wheels
+constexpr double kMostInFlight = 1.0;    // [s] from an estimate to the command, for these
 constexpr double kTraction = 0.9;        // of the grip of a driven axle: beyond it no prediction holds
 constexpr double kLeastTraction = 0.04;  // square of what is left of an axle that slides
 
@@ -96,7 +98,8 @@ void Guard::take_up_line() noexcept {
   if (road_.line().is_empty()) filter_.forget();
 }
 
-/// Where the car will be on the known road when the command acts; none when car or road are lost.
+/// Where the car will be on the known road when the command acts; none when car or road are lost. A fast car
+/// with real tyres is simulated with its four wheels from the estimate on, as its stop is.
 std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   const road::ReferenceLine& line = road_.line();
   run_.is_far = false;
@@ -110,23 +113,29 @@ std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
     car.vx = std::max(car.vx, estimator_.rolling_speed(act_time, sent_));
   act_speed_ = car.vx;
   most_drive_ = traction(model_, {car.vx, car.vy, car.r, car.steer, 0.0});
-  const Vec2 position{car.x, car.y};
+  double time = act_time, acceleration = at.acceleration;
+  if (filter_.planner().has_wheels() && car.vx > kByWheels && time - estimator_.time() < kMostInFlight) {
+    time = estimator_.time();
+    car = estimator_.state();
+    acceleration = estimator_.acceleration();
+  }
   const double* last = run_.has_place ? &s_ : nullptr;
   const road::ReferenceLine::Projection place =
-      line.find(position, car.psi, 2.0 * model_.vehicle().width, last, 0.5 * kFarFromRoad);
+      line.find({car.x, car.y}, car.psi, 2.0 * model_.vehicle().width, last, 0.5 * kFarFromRoad);
+  const double e = angle_difference(car.psi, line.at(place.s).heading);
+  const model::BodyMotion<double> body{car.vx, car.vy, car.r, car.steer, acceleration};
+  StopStart start{time, place.s, place.d, e, body, acceleration, car.vx * car.r};
   run_.has_place = place.distance < kFarFromRoad;
   run_.is_far = !run_.has_place;
   if (run_.is_far) return std::nullopt;
-  s_ = place.s;
-  d_ = place.d;
-  const double e = angle_difference(car.psi, line.at(place.s).heading);
-  return StopStart{.time = act_time,
-                   .s = place.s,
-                   .d = place.d,
-                   .e = e,
-                   .body = {car.vx, car.vy, car.r, car.steer, at.acceleration},
-                   .load_along = at.acceleration,
-                   .load_across = car.vx * car.r};
+  for (double until = time, edge = 0.0; time < act_time - 1e-9; time = until) {
+    until = sent_.next_change(time + 1e-9, act_time);
+    start = filter_.planner().advance(road_, start, sent_.at(time + 1e-9), until - time, edge);
+  }
+  start.time = act_time;
+  s_ = start.s;
+  d_ = start.d;
+  return start;
 }
 
 namespace {

@@ -93,13 +93,8 @@ constexpr Law kRaceOn[] = {{kHard, 1.0, 0.4, 0.6, 2.0},
                            {kHard, 2.0, 0.4, 0.6, 0.5}};
 
 Policy policy_of(const Law& law, double time, double hold) noexcept {
-  Policy policy{.braking = law.braking,
-                .bandwidth = law.bandwidth,
-                .grip_share = law.grip_share,
-                .room = law.room,
-                .hold = hold};
-  if (law.races_on > 0.0) policy.until = time + law.races_on;
-  return policy;
+  const double until = law.races_on > 0.0 ? time + law.races_on : Policy{}.until;
+  return {until, law.braking, law.bandwidth, law.grip_share, law.room, hold};
 }
 
 /// Size of the region around a planned lap in which it may be driven on.

@@ -201,8 +201,7 @@ double StopPlanner::stable_share(const model::BodyMotion<double>& m, double dece
   const double most = 1.0 / stability;
   double high = 1.0, at_high = instability(m, deceleration);
   if (at_high <= most) return 1.0;
-  double low = kLeastBraking;
-  double at_low = instability(m, low * deceleration);
+  double low = kLeastBraking, at_low = instability(m, low * deceleration);
   if (at_low >= most) return low;
   // It rises nearly in a line with the deceleration, but for where the rear axle begins to slide.
   for (int i = 0; i < kTurns; ++i) {
@@ -216,8 +215,8 @@ double StopPlanner::stable_share(const model::BodyMotion<double>& m, double dece
 }
 
 /// The acceleration sideways [m/s²] that braking leaves where the bend asks for `bend` and the yaw rate for
-/// `turning`: the larger, up to the force of the rear axle. Of a bend that no car follows the brakes take up to
-/// half of that force, but nothing of what turns the car faster than the bend (eq. 4a).
+/// `turning`: the larger, up to the force of the rear axle. Of a bend that no car follows the brakes take up
+/// to half of that force, but nothing of what turns the car faster than the bend (eq. 4a).
 double StopPlanner::left_sideways(double bend, double turning, double v) const noexcept {
   const double most = kGripShare * friction_ * model_.load(v);
   const double beyond = std::clamp((bend / most - 1.0) / kBeyond, 0.0, 1.0);
@@ -284,8 +283,7 @@ double StopPlanner::slowing(const road::KnownRoad& road, const StopStart& at, co
   const double bend = std::max({std::fabs(curvatures.ahead), std::fabs(curvatures.wanted),
                                 std::fabs(road.line().demand(at.s).curvature)});
   const double by_tyres = 1.0 - car.steer_helper;
-  const double sideways =
-      left_sideways(by_tyres * (bend * v * v), by_tyres * (std::fabs(at.body.r) * v), v);
+  const double sideways = left_sideways(by_tyres * (bend * v * v), by_tyres * (std::fabs(at.body.r) * v), v);
   const double raced = raced_slowing(road, at);
   const double useful = longitudinal_acceleration(car, lowest_throttle(car, v), v);
   const double asked = useful * braking.share;
