@@ -7,10 +7,8 @@
 #include <cmath>
 
 #include "chicane/base/math.hpp"
-#include "chicane/controller/controller.hpp"
 #include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/explain.hpp"
-#include "chicane/road/path.hpp"
 
 namespace chicane::controller {
 namespace {

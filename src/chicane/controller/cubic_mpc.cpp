@@ -11,7 +11,6 @@
 #include "chicane/base/math.hpp"
 #include "chicane/base/owned.hpp"
 #include "chicane/base/text.hpp"
-#include "chicane/controller/controller.hpp"
 #include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/cubic_problem.hpp"
 #include "chicane/controller/cubic_solver.hpp"

@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chicane/base/compiler.hpp"
-#include "chicane/base/math.hpp"
-
 namespace chicane::controller {
 namespace {
 

@@ -2,17 +2,14 @@
 // The controller `tracking-mpc`: the control step from measurement to command.
 #include "chicane/controller/tracking_mpc.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/owned.hpp"
-#include "chicane/controller/controller.hpp"
 #include "chicane/controller/controller_list.hpp"
 #include "chicane/controller/explain.hpp"
 #include "chicane/controller/tracking_guess.hpp"
-#include "chicane/model/vehicle.hpp"
 #include "chicane/road/racing_road.hpp"
 #include "chicane/tracking/state_estimator.hpp"
 #include "chicane/tracking/tracking_solver.hpp"

@@ -8,7 +8,6 @@
 
 #include "chicane/base/math.hpp"
 #include "chicane/model/prediction.hpp"
-#include "chicane/model/vehicle.hpp"
 
 namespace chicane::safety {
 namespace {

@@ -2,8 +2,6 @@
 #include "chicane/safety/guard.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "chicane/base/math.hpp"

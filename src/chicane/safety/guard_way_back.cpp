@@ -3,8 +3,6 @@
 // stands, rolls back, is off its road or was put elsewhere (docs/safety.md, "The way back").
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <string_view>
 #include <utility>
 

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/safety/stop_car.hpp"
 
-#include <array>
 #include <cstddef>
 
 #include "chicane/base/math.hpp"
-#include "chicane/base/pack.hpp"
-#include "chicane/model/vehicle.hpp"
-#include "chicane/model/wheel_forces.hpp"
 
 namespace chicane::safety {
 namespace {

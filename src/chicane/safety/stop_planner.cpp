@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/safety/stop_planner.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "chicane/base/math.hpp"
 #include "chicane/base/pack.hpp"
 #include "chicane/model/stability.hpp"
-#include "chicane/safety/stop_car.hpp"
-#include "chicane/safety/stop_player.hpp"
 
 namespace chicane::safety {
 namespace {

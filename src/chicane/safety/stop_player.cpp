@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "chicane/safety/stop_player.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace chicane::safety {
