@@ -228,6 +228,8 @@ export const REASON = {
   WEAK_BRAKES: 12,
   /** the car stands although its road goes on */
   STUCK: 13,
+  /** the car faces the edge of its road, nearer than it can turn */
+  FACES_EDGE: 14,
 } as const;
 
 /** Frame.speed_limiter */
@@ -523,6 +525,10 @@ export const REASON_WORDS: Words = {
   [REASON.STUCK]: {
     severity: 'warning',
     text: 'the car stands although its road goes on',
+  },
+  [REASON.FACES_EDGE]: {
+    severity: 'bad',
+    text: 'the car faces the edge of its road, nearer than it can turn',
   },
 };
 
