@@ -203,8 +203,19 @@ bool ResetWatch::jumps(const model::Measurement& now) const noexcept {
 
 void ResetWatch::ask() noexcept {
   is_waiting_ = true;
-  origin_ = last_;
+  origin_ = asked_at_ = last_;
   driven_ = asked_ = 0.0;
+}
+
+void ResetWatch::give_up() noexcept {
+  is_waiting_ = false;
+  silent_ = asked_at_;
+}
+
+bool ResetWatch::rests() const noexcept {
+  const double away = hypot(last_.x - silent_.x, last_.y - silent_.y);
+  const bool stayed = away < kDisagreement && last_.time - silent_.time < kLongest;
+  return last_.time - rests_since_.time > kRest && !stayed;
 }
 
 void ResetWatch::see(const model::Measurement& now, double pedal) noexcept {

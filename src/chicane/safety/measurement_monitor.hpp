@@ -115,15 +115,16 @@ class ResetWatch {
   /// Takes in a measurement as it came. `pedal`: acts now, [-1, 1].
   void see(const model::Measurement& now, double pedal) noexcept;
 
-  /// The measurements have agreed with each other for kRest, of a car that stands.
-  [[nodiscard]] bool rests() const noexcept { return last_.time - rests_since_.time > kRest; }
+  /// The measurements have agreed with each other for kRest, of a car that stands, and not just at a place
+  /// that stayed the same while it was to answer.
+  [[nodiscard]] bool rests() const noexcept;
   static constexpr double kRest = 1.0;       ///< [s]
   static constexpr double kRestWay = 1.0;    ///< [m] by which a place may differ meanwhile
   static constexpr double kRestTurn = 0.05;  ///< [rad] and a heading
   /// The car is to answer where it is measured now.
   void ask() noexcept;
   /// It did not.
-  void give_up() noexcept { is_waiting_ = false; }
+  void give_up() noexcept;
   /// The place of the last see() has moved farther than the car can.
   [[nodiscard]] bool has_jumped() const noexcept { return has_jumped_; }
 
@@ -136,9 +137,11 @@ class ResetWatch {
   [[nodiscard]] bool jumps(const model::Measurement& now) const noexcept;
 
   model::Measurement last_;
-  model::Measurement origin_;  ///< where the car seems to have been put
+  model::Measurement origin_;    ///< where the car seems to have been put
+  model::Measurement asked_at_;  ///< where it was asked to answer
   bool has_last_ = false;
   model::Measurement rests_since_;
+  model::Measurement silent_{.time = -kLongest};  ///< where it was, if it did not
   bool has_jumped_ = false;
   bool is_waiting_ = false;
   bool has_answered_ = false;
