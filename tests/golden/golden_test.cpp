@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(
         Golden{"faults",
                {{"time_limit_s", "10"}},
                0x11a7db064952389a,
-               0x73b51a6c04adff0b,
+               0x5af8115718b55d12,
                {"gps_noise@3", "frozen_sensor@6"}},
         Golden{
             "model_car", {{"car", "f1tenth"}, {"time_limit_s", "6"}}, 0x4131fcf0c35031a8, 0x9fca7825a5a7d92a},
