@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(
         Golden{"race", {{"preset", "race"}, {"time_limit_s", "6"}}, 0x1add3ecf2b3039e8, 0x72021bc15fa958be},
         Golden{"faults",
                {{"time_limit_s", "10"}},
-               0x11a7db064952389a,
+               0xc1838157236eb84e,
                0x5af8115718b55d12,
                {"gps_noise@3", "frozen_sensor@6"}},
         Golden{
