@@ -72,7 +72,7 @@ class LapPlanner {
   static constexpr double kPlanningTime = 5.0;  ///< time of a plan in virtual time [s]
 
   explicit LapPlanner(Clock clock) noexcept : clock_{clock} {}
-  /// For a copy of the run. Pre: kVirtual.
+  /// Planner of a copy of the run. Pre: kVirtual.
   LapPlanner(const LapPlanner& other)
       : clock_{other.clock_},
         wanted_since_{other.wanted_since_},

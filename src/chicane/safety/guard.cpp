@@ -282,7 +282,7 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   if (may_send && !run_.is_astray && !(run_.is_idle && is_kept)) {
     // One accepted command does not move a car that stands.
     if (!run_.is_idle && !stands()) {
-      run_.is_led = run_.creeps = false;
+      run_.is_led = run_.creeps = run_.goes_round = false;
       run_.refused.at = seen.time;
     }
     return accept(seen, result);

@@ -180,7 +180,7 @@ class Guard {
     bool has_stood_astray = false;  ///< since it is astray; from then on it may leave the road to turn
     bool is_led = false;            ///< it stood while commands were refused, and is led back to the line
     bool creeps = false;            ///< it has begun an arc beside the edge
-    bool goes_round = false;        ///< that arc turns it the long way round
+    bool goes_round = false;        ///< direction of that arc: the long way round
     bool is_idle = false;           ///< its controller does not drive a car that stands, or is led
     bool rests = false;             ///< it came to rest, and has not been asked to drive since
     bool is_by_hand = false;        ///< a person drove in the last cycle

@@ -96,8 +96,8 @@ void Guard::take_up_line() noexcept {
   if (road_.line().is_empty()) filter_.forget();
 }
 
-/// Where the car will be on the known road when the command acts; none when car or road are lost. A fast car
-/// with real tyres is simulated with its four wheels from the estimate on, as its stop is.
+/// Place of the car on the known road when the command acts; none when car or road are lost. A fast car with
+/// real tyres is simulated with its four wheels from the estimate on, as its stop is.
 std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   const road::ReferenceLine& line = road_.line();
   run_.is_far = false;
@@ -363,19 +363,18 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   run_.creeps &= creeps && is_on_road;
   const double least = run_.creeps ? kCreepNearer : kKeptShare * options_.margin;
   const double kept = std::min(edge, least) - kCreepNearer;
-  const auto stays = [&](double angle) {
-    return creeping_edge(filter_.planner(), road_, *start, angle, vehicle, run_.goes_round) > kept;
+  const auto stays = [&](double angle, bool goes_round = false) {
+    return creeping_edge(filter_.planner(), road_, *start, angle, vehicle, goes_round) > kept;
   };
   double& steer = result.command.steer;
-  run_.goes_round = run_.goes_round && creeps && is_on_road && stays(car.steer);
+  run_.goes_round = run_.goes_round && creeps && is_on_road && stays(car.steer, true);
   if (run_.goes_round) {
     result.command = creep(car.steer, car.vx, vehicle);
   } else if (creeps && is_on_road && !stays(steer)) {
     // A gentle way to the line may lead over the edge where more lock does not, or the long way round.
     const double lock = std::copysign(vehicle.steer_limit, -start->e);
     const bool goes_on = run_.creeps && stays(car.steer);
-    run_.goes_round = !goes_on && !stays(lock);
-    run_.goes_round = run_.goes_round && stays(-lock);
+    run_.goes_round = !goes_on && !stays(lock) && stays(-lock, true);
     result.command = creep(goes_on ? car.steer : run_.goes_round ? -lock : lock, car.vx, vehicle);
   }
   // Who drives before the wheels have turned uses the room that turning takes.
@@ -383,7 +382,8 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const bool waits = stands && is_on_road && !(turns_as_asked(act, car) && has_turned);
   if (stands && result.command.throttle > 0.0) result.command = creep(steer, car.vx, vehicle);
   Fit fit = start && !waits ? verify(*start, cycle, result.command, true) : Fit::kNone;
-  if (fit == Fit::kNone && creeps && is_on_road && !waits && has_turned && stays(car.steer)) {
+  if (fit == Fit::kNone && creeps && is_on_road && !waits && has_turned &&
+      stays(car.steer, run_.goes_round)) {
     result.command = creep(steer, car.vx, vehicle);
     fit = Fit::kSeen;
     run_.creeps = true;
@@ -393,12 +393,11 @@ bool Guard::lead_back(double act, const Cycle& cycle, controller::StepResult& re
   const bool may_leave = run_.has_stood_astray && !waits && result.answer != Answer::kDrive;
   if (is_on_road && fit == Fit::kNone && !may_leave) {
     const double turned_to = steer;
-    if (stands && !waits && !stays(steer)) report_.reason = controller::GuardReason::kFacesEdge;
-    if (!creeps) return false;
-    if (!drive_backup(*start, result)) {
-      if (!stands) return false;
-      take_over({turned_to, 0.0}, Rung::kReturnToRoad, result);
-    }
+    if (stands && !waits && !stays(steer, run_.goes_round))
+      report_.reason = controller::GuardReason::kFacesEdge;
+    const bool has_stop = creeps && drive_backup(*start, result);
+    if (!has_stop && !stands) return false;
+    if (!has_stop) take_over({turned_to, 0.0}, Rung::kReturnToRoad, result);
     steer = turned_to;
     filter_.withdraw_stop();  // a receiver that plays the stop from now on would turn the wheels back
     return true;

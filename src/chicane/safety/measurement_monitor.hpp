@@ -49,7 +49,7 @@ class MeasurementMonitor {
                                                 const model::State* expected) noexcept;
   /// A car that was measured calmly drives on as it did: SensorWatch::is_sure().
   [[nodiscard]] bool is_sure() const noexcept { return watch_.is_sure(); }
-  /// What the expected place may be wrong by, beyond kJump, after a way without measurements [m].
+  /// Error beyond kJump that the expected place may have after a way without measurements [m].
   [[nodiscard]] double place_drift() const noexcept { return place_drift_; }
   /// Of the last check().
   [[nodiscard]] const Findings& findings() const noexcept { return findings_; }
@@ -115,8 +115,8 @@ class ResetWatch {
   /// Takes in a measurement as it came. `pedal`: acts now, [-1, 1].
   void see(const model::Measurement& now, double pedal) noexcept;
 
-  /// The measurements have agreed with each other for kRest, of a car that stands, and not just at a place
-  /// that stayed the same while it was to answer.
+  /// The measurements of a car that stands have agreed with each other for kRest. Not where the place just
+  /// stayed the same while the car was to answer.
   [[nodiscard]] bool rests() const noexcept;
   static constexpr double kRest = 1.0;       ///< [s]
   static constexpr double kRestWay = 1.0;    ///< [m] by which a place may differ meanwhile

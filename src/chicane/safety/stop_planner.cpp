@@ -210,8 +210,8 @@ double StopPlanner::stable_share(const model::BodyMotion<double>& m, double dece
 }
 
 /// The acceleration sideways [m/s²] that braking leaves where the bend asks for `bend` and the yaw rate for
-/// `turning`: the larger, up to the force of the rear axle. Of a bend that no car follows the brakes take up
-/// to half of that force, but nothing of what turns the car faster than the bend (eq. 4a).
+/// `turning`: the larger, up to the force of the rear axle. In a bend that no car follows the brakes take
+/// half of that force at most, but nothing of what turns the car faster than the bend (eq. 4a).
 double StopPlanner::left_sideways(double bend, double turning, double v) const noexcept {
   const double most = kGripShare * friction_ * model_.load(v);
   const double beyond = std::clamp((bend / most - 1.0) / kBeyond, 0.0, 1.0);

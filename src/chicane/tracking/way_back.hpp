@@ -13,8 +13,8 @@ namespace chicane::tracking {
 
 /// What leads a slow car back to a line, from anywhere beside it and in any direction: walking pace, on a
 /// course that is at 45° to the line kApproach beside it, and along it on it. The wheels have the angle of
-/// the bend, and more by the error of the course. A car whose wheels turn slowly waits for them. `place`:
-/// where the car is along the line.
+/// the bend, and more by the error of the course. A car whose wheels turn slowly waits for them. `place`: the
+/// car's projection on the line.
 [[nodiscard]] inline model::Command way_back(const road::ReferenceLine& line,
                                              const road::ReferenceLine::Projection& place,
                                              const model::State& car,
