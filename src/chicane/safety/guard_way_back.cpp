@@ -13,9 +13,8 @@
 namespace chicane::safety {
 namespace {
 
+// The first is where StopPlanner gives a stop up; the others are of eq. 14, and chosen.
 constexpr double kFarFromRoad = 20.0;    // [m] beside its line there is no stop along the road
-constexpr double kByWheels = 8.0;        // [m/s] above which StopCar has wheels
-constexpr double kMostInFlight = 1.0;    // [s] from an estimate to the command, for these
 constexpr double kTraction = 0.9;        // of the grip of a driven axle: beyond it no prediction holds
 constexpr double kLeastTraction = 0.04;  // square of what is left of an axle that slides
 
@@ -112,7 +111,8 @@ std::optional<StopStart> Guard::place_on_road(double act_time) noexcept {
   act_speed_ = car.vx;
   most_drive_ = traction(model_, {car.vx, car.vy, car.r, car.steer, 0.0});
   double time = act_time, acceleration = at.acceleration;
-  if (filter_.planner().has_wheels() && car.vx > kByWheels && time - estimator_.time() < kMostInFlight) {
+  const bool is_recent = time - estimator_.time() < tracking::StateEstimator::kLongestGap;
+  if (filter_.planner().has_wheels() && car.vx > StopCar::kByWheels && is_recent) {
     time = estimator_.time();
     car = estimator_.state();
     acceleration = estimator_.acceleration();
@@ -141,6 +141,17 @@ namespace {
 using controller::Answer;
 using controller::Rung;
 
+// Origins (chosen: by trial, see Guard):
+// - Derived: kLedBackSpeed (twice the pace of tracking::way_back), kAcross (its course of 45°),
+//   kTrialSpeed, kCreep (ResetWatch's speed of a standing car), kLongestRound (2π times udacity's radius of
+//   6.4 m at kCreep), kLongestAskPause (ResetWatch::kLongest), kChord, kAlongWaypoints (waypoints 10 m
+//   apart in a bend of 18 m).
+// - Chosen, docs/guard.md: kCreepDrive, kLongestCreep, kKeptShare, kCreepNearer (eq. 6c), kSeenTurn,
+//   kLeastTurned.
+// - Chosen, docs/safety.md: kLost, kAlong, kReleaseTime, kStillTime, kTrialWay, kTrialRoom, kMostAside,
+//   kNoAnswerTime.
+// - Chosen, for what their lines say: kAtRest, kRestTime, kRefusedTime, kDrives, kGain,
+//   kMostAgainstRolling, kTrialPedal, kStillCreeps, kCreepStep, kTurnedWheels.
 constexpr double kAtRest = 0.05;       // [m/s]
 constexpr double kRestTime = 0.3;      // [s] below it after which a car is at rest
 constexpr double kLedBackSpeed = 6.0;  // [m/s] below which a car that is off the road is led back
@@ -277,7 +288,8 @@ void Guard::watch_answer(const model::Measurement& seen, bool has_answer) noexce
 }
 
 /// By the estimate the car stands, but it is measured elsewhere: at walking pace, within half a car's length,
-/// it shows whether it answers there. False where it is not tried.
+/// it shows whether it answers there. False where it is not tried: ResetWatch does not wait (run_.still
+/// begins anew in each cycle then), or has waited too shortly.
 bool Guard::try_reset(const std::optional<StopStart>& start, const Cycle& cycle, double time,
                       controller::StepResult& result) noexcept {
   if (monitor_.findings().late || !(run_.still.lasts(time) > kStillTime)) return false;

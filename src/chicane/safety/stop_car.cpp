@@ -113,7 +113,7 @@ StopCar::Step StopCar::step(double dt) const noexcept {
 StopMotion StopCar::advance(const StopMotion& from, double steer_command, double acceleration_command,
                             const Step& step) const noexcept {
   const model::BodyMotion<double>& m = from.body;
-  if (!has_wheels_ || !(m.vx > kSlowest)) {
+  if (!has_wheels_ || !(m.vx > kByWheels)) {
     StopMotion to{.body = model_.advance(m, steer_command, acceleration_command, step.dt, step.lags)};
     to.load_along = to.body.acceleration;
     to.load_across = to.body.vx * to.body.r;

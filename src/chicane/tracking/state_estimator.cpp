@@ -36,7 +36,6 @@ double CommandHistory::next_change(double time, double limit) const noexcept {
 namespace {
 
 constexpr double kMaxStep = 0.01;       // [s] integration step of the estimator
-constexpr double kLongestGap = 1.0;     // [s] after a longer silence the estimate restarts
 constexpr double kLostPosition = 3.0;   // [m] a measurement further from the prediction restarts it
 constexpr double kAtRest = 0.3;         // [m/s] slower than that there is no direction
 constexpr double kMostlyAlong = 0.5;    // of the way, along the heading or against it
@@ -122,7 +121,8 @@ void DirectionWatch::see(const model::Measurement& now) noexcept {
   const double dx = now.x - x_;
   const double dy = now.y - y_;
   const double way = now.speed * elapsed;
-  if (!has_last_ || elapsed > kLongestGap || hypot(dx, dy) > kMostDisplaced * way + kUncertain) {
+  if (!has_last_ || elapsed > StateEstimator::kLongestGap ||
+      hypot(dx, dy) > kMostDisplaced * way + kUncertain) {
     path_ = along_ = 0.0;  // it begins, or was put elsewhere
   } else {
     path_ += way;

@@ -88,6 +88,9 @@ struct Disturbance {
 /// measurement corrects it. Yaw rate and sideslip, which telemetry does not contain, are estimated here.
 class StateEstimator {
  public:
+  /// Longest prediction [s]. After a longer silence the estimate restarts.
+  static constexpr double kLongestGap = 1.0;
+
   explicit StateEstimator(const model::PredictionModel& model) noexcept : model_{model} {}
   void reset() noexcept {
     is_started_ = false;
