@@ -13,9 +13,10 @@ using controller::Answer;
 using controller::GuardReason;
 using controller::Rung;
 
+// Chosen: 6.4 s are drawn.
 constexpr int kShown = 64;          // points of a backup that is drawn
 constexpr double kShownStep = 0.1;  // [s]
-// Braking of a car that is too fast for a silence: gentle, and stable without feedback.
+// Braking of a car that is too fast for a silence: kGentle of the family, gentle and stable without feedback.
 constexpr Braking kHeldBack{0.8, 1.6, 0.7};
 
 bool is_finite(const model::Command& command) noexcept {
@@ -114,6 +115,8 @@ model::Command Guard::step(const model::Measurement& measured, Deadline deadline
   model::Measurement now = measured;
   now.delay = std::max(now.delay + learned_.answer().delay, 0.0);
   const bool is_off = options_.mode == GuardMode::kOff;
+  // A guard that is on learns from what the monitor leaves, in watch_actuators(); any other from what its
+  // controller gets.
   if (options_.mode != GuardMode::kOn) learned_.see(now, commanded_);
   // What was in doubt while a person drove says nothing of where the person has driven to.
   const bool is_handed_back = std::exchange(run_.is_by_hand, cycle.manual.has_value()) && !cycle.manual;
@@ -273,10 +276,12 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
   if (!verdict.must_stop && actuators_.has_weak_brakes()) report_.reason = GuardReason::kWeakBrakes;
   if (!has_answer && !verdict.must_stop) report_.reason = GuardReason::kNoAnswer;
 
+  // Without a road, or an estimate, there is nothing to check against: the answer is sent.
   bool may_send = has_answer && !verdict.must_stop;
   if (may_send && start) may_send = filter(*start, cycle, result);
   if (options_.mode == GuardMode::kObserve)
     return has_answer ? accept(seen, result) : fall_back(seen, result);
+  // A controller that leaves a refused or led car standing does not get it back: the car is led on.
   run_.is_idle = has_answer && idles(result);
   const bool is_kept = run_.refused.lasts(seen.time) > kStuckTime || run_.is_led;
   if (may_send && !run_.is_astray && !(run_.is_idle && is_kept)) {
@@ -301,7 +306,7 @@ void Guard::choose(const model::Measurement& seen, const Cycle& cycle,
 bool Guard::filter(const StopStart& start, const Cycle& cycle, controller::StepResult& result) noexcept {
   const Fit fit = verify(start, cycle, result.command);
   if (fit == Fit::kOpen) return true;
-  report_.reason = GuardReason::kTooFastForSilence;
+  report_.reason = GuardReason::kTooFastForSilence;  // unless nothing can be sent, below
   if (fit == Fit::kSeen && (options_.mode == GuardMode::kObserve || slow_down(start, cycle, result)))
     return true;
   report_.reason = GuardReason::kNoWayToStop;

@@ -32,15 +32,29 @@ namespace chicane::safety {
 [[nodiscard]] road::KnownRoad known_road(const GuardOptions& options, const road::RoadData* road,
                                          const model::VehicleParams& vehicle);
 
-/// The guard around a controller, the same for all of them (docs/safety.md):
+/// The guard around a controller, the same for all of them (docs/safety.md). A cycle, step():
 ///
-///     measurement → MeasurementMonitor → controller → Supervisor → is there still a way to stop? →
-///     CommandGate
+///     1 learned     what was learned of steering and delay is driven with           take_up_actuators
+///     2 look        what of the measurement is plausible; road, actuators and       MeasurementMonitor
+///                   estimate take it in; a car that was put elsewhere begins anew   ResetWatch
+///     3 controller  its answer; it begins anew after a second without one           watch_answer
+///     4 choose      the command, the first of these that applies:
+///         off, or a person drives: the answer, or the Fallback; nothing is checked  accept, fall_back
+///         no finding lasts (Supervisor), the car is on its road, and the answer
+///         leaves a way to stop (PredictiveFilter), or it is not known where the
+///         car is: the answer                                                        filter, accept
+///         the car stands and is measured elsewhere: half a car length of driving    try_reset
+///         it is off its road, or stands refused: walking pace back to the line      lead_back
+///         the stored way to stop; the Fallback where no place on a road is known    drive_backup
+///     5 limits      a stuck car's pedals are released; range, rate, no reverse      free_stuck_car, limited
+///     6 send        the command for the actuators as they answer; CommandGate       send
 ///
-/// With each answer that is sent there is a plan to standstill on the known road at hand, stop(). An answer
-/// that would leave none is not sent, and while the supervisor wants the car stopped, the stop is driven in
-/// its place. Without a known road the Fallback takes the stop's place. What was chosen, and why, is in the
-/// its report().
+/// GuardMode::kObserve does the same up to the filter, and sends the answer. Away from a planned lap each
+/// answer that passed the filter comes with a way to stop, stop(). What was chosen, and why, is in report().
+///
+/// Numbers have their unit in brackets. Where they come from stands beside them or above their list: an
+/// equation of docs/guard.md, a derivation, a measurement, or *chosen*: by trial, no derivation gives it, and
+/// the runs of docs/measured/safety.md are its check.
 ///
 /// A person's command (Cycle::manual) is not checked: the person drives. Whatever is measured and whatever
 /// the controller does, what is sent is finite and inside the vehicle's range and rate limits. No allocation
@@ -88,6 +102,7 @@ class Guard {
   [[nodiscard]] const controller::Controller& controller() const noexcept { return *controller_; }
 
  private:
+  // Chosen. A stop ends at 0.3 m/s (StopPlanner), so that a stopped car stands; a trial takes about 2 s.
   static constexpr double kStandingSpeed = 0.5;    ///< [m/s]
   static constexpr double kStuckTime = 3.0;        ///< [s] a car that should move may stand
   static constexpr double kAskPause = 4.0;         ///< [s] after the first trial of a car in doubt
@@ -145,17 +160,18 @@ class Guard {
   GuardOptions options_;
   MeasurementMonitor monitor_;
   ResetWatch reset_watch_;
-  ActuatorWatch actuators_;  ///< by how the wheels turn by what was learned
+  // How the actuators answer: in the long run, beyond that at this moment, and both together.
+  ActuatorWatch actuators_;  ///< finds a difference from what was learned within a second
   ActuatorEstimator learned_;
-  ActuatorAnswer answer_;  ///< that commands are sent for: what was learned, and what is watched beyond it
+  ActuatorAnswer answer_;  ///< that commands are sent for
   Supervisor supervisor_;
   Fallback fallback_;
   CommandGate gate_;
   road::KnownRoad road_;
   tracking::StateEstimator estimator_;
   tracking::DirectionWatch direction_;  ///< by what is measured, plausible or not
-  tracking::CommandHistory commanded_;  ///< the commands to the actuators
-  tracking::CommandHistory sent_;       ///< their effect on wheels and pedals
+  tracking::CommandHistory commanded_;  ///< commands as the actuators got them
+  tracking::CommandHistory sent_;  ///< their effect by answer_: angles of the wheels, which models follow
   GuardReport report_;
   StopPlan stop_;  ///< the stop at hand, for actuators that answer otherwise
   PredictiveFilter filter_;
@@ -202,8 +218,8 @@ class Guard {
     Since released;                 ///< its brake, or began to be stuck
   };
   Run run_;
-  double act_speed_ = 0.0;   ///< estimated where the command acts [m/s]
-  double most_drive_ = 0.0;  ///< acceleration that the tyres can give then [m/s²]
+  double act_speed_ = 0.0;  ///< estimated where the command acts, by place_on_road(); infinite: unknown [m/s]
+  double most_drive_ = 0.0;  ///< acceleration that the tyres can give then (eq. 14) [m/s²]
   double sent_from_ = 0.0;   ///< from which the command of this cycle acts [s]
 };
 

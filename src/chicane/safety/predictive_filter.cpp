@@ -12,6 +12,17 @@
 namespace chicane::safety {
 namespace {
 
+// Origins (chosen: by trial, see Guard):
+// - Derived: kDeviations (95 % of a normal distribution), kWalkingPace (pace of tracking::way_back), kCrawl
+//   (Guard::kStandingSpeed), kUnfit (farther than any edge).
+// - Measured: kLateness (docs/guard.md, "Late commands": the original answers after 160 ms at most, 100 are
+//   configured), kMostLoss (eq. 5d: f1tenth loses 0.3 m), kFirstHold (after a check of one cycle a led car
+//   comes over the edge, cycle by cycle).
+// - Chosen, docs/guard.md: kLongestHold, kTurnReserve, kLedShare, kMostSlip, kMostSlipOfSlides (eq. 6, 6a),
+//   kRecovery ("Open loop"), kDrivenOpen ("Driven"), kKeptLoss (eq. 5d), kMemory (eq. 5c), kDwell,
+//   kCalmSlip ("Given back").
+// - Chosen: kAssumedCycle (above each answer of the original), kShortestHold (just below Policy::hold),
+//   kNearer (what a stop may lose by its steps).
 constexpr double kAssumedCycle = 0.25;  // [s] between commands where that is not known: after the first one
 constexpr double kLateness = 0.06;      // [s] by which the next command may come late, before a stop begins
 constexpr double kShortestHold = 0.09;  // [s] a command is held where the next one comes at once
@@ -32,7 +43,8 @@ constexpr double kMostSlip = 1.2;       // over the slip at the peak: beyond it 
 constexpr double kMostSlipOfSlides = 1.6;  // the same on a lap that slides
 constexpr double kDwell = 0.5;     // [s] after a stop was driven, in which only a calm car is given back
 constexpr double kCalmSlip = 0.5;  // of a calm car
-// Deviations from a planned lap that its controller takes back, measured in laps of `race`.
+// Deviations from a planned lap that its controller takes back, measured in laps of `race`; the factors are
+// chosen.
 constexpr double kLapOffset = 0.5;   // [m]
 constexpr double kLapAcross = 2.5;   // [m/s]
 constexpr double kLapFaster = 1.0;   // [m/s]
@@ -40,12 +52,13 @@ constexpr double kSlidingLap = 2.0;  // times as much on a lap that slides
 constexpr double kWideLap = 4.0;     // times as much where no law is stored
 constexpr double kUnfit = 200.0;     // [m] worse than any candidate that fits
 
-// Braking of a stop: gentle, hard, hard with less and less static stability left (eq. 5).
+// Braking of a stop: gentle, hard, hard with less and less static stability left (eq. 5). Chosen: below 1 the
+// car diverges without feedback.
 constexpr Braking kGentle{0.8, 1.6, 0.7}, kHard{1.0, 1.6, 0.7}, kBarelyStable{1.0, 1.1}, kHeld{1.0, 0.7},
     kUnstable{1.0, 0.0};
 
 /// One law of the family, in the order in which they are tried: the calm ones, those with the feedback for a
-/// car that crosses its road, those for a planned lap.
+/// car that crosses its road, those for a planned lap. Chosen: no single law stops all cars (docs/guard.md).
 struct Law {
   Braking braking;
   double bandwidth = 1.0;  // [rad/s]
@@ -81,8 +94,8 @@ constexpr Law kLaws[] = {{kGentle},
                          {kHard, 3.0, 0.8, 0.6, 3.0}};
 constexpr int kLawCount = static_cast<int>(std::size(kLaws));
 constexpr int kOffLap = 13;     // of them on a road without a planned lap
-constexpr int kSlowWheels = 5;  // of them for a car whose wheels turn slowly: more feedback makes it weave
-constexpr int kInTurn = 3;      // of them in a cycle near a planned lap
+constexpr int kSlowWheels = 5;  // of them there for cars with four wheels: more feedback makes them weave
+constexpr int kInTurn = 3;      // of them in a cycle near a planned lap: all of them took 22 ms
 constexpr int kCalm = 2;        // of them for a car that is given back
 constexpr int kDriven = 5;      // of them to replace a driven stop that holds no more
 // Laws by which the guard itself stays on a planned lap.
@@ -131,7 +144,8 @@ void PredictiveFilter::begin_cycle(double interval, double longest) noexcept {
   hold_ = std::clamp(longest, Policy{}.hold, kLongestHold);
 }
 
-/// Mean squares that fade. A jump counts by a tenth.
+/// Mean squares that fade (eq. 5c). What exceeds four deviations counts by a tenth, a long gap as a tenth of
+/// kMemory: chosen, so that one jump does not stop the car.
 void PredictiveFilter::note_residual(const Doubt& residual, double time) noexcept {
   const double share = std::clamp((time - std::exchange(residual_at_, time)) / kMemory, 0.0, 0.1);
   const auto take_in = [share](double& root, double value) {
@@ -161,6 +175,7 @@ PredictiveFilter::Candidate PredictiveFilter::judge(const road::KnownRoad& road,
   if (!goal.is_driven) {
     const Doubt doubt{kDeviations * residual_.beside, kDeviations * residual_.course,
                       kDeviations * residual_.yaw_rate, kDeviations * residual_.speed};
+    // A place that is uncertain by more than the margin would leave no stop at all.
     const double least_in_doubt = std::min(0.0, goal.margin - doubt.beside);
     if (!planner_.plan_in_doubt(road, from, policy, doubt, least_in_doubt).stands) return candidate;
   }
@@ -231,8 +246,9 @@ bool PredictiveFilter::holds_as_usual(const Request& request, double longest, Gu
   return holds;
 }
 
-/// The next command may come late: a stop that begins after that time comes before one that begins at once,
-/// and none begins sooner than the latest of the last commands came.
+/// The command is held, in this order, (1) as usual, at once and late, where lateness varies; (2) until a
+/// late next command, at least the latest of the last ones; (3) until one in time, off a planned lap. On a
+/// lap (4) the lap itself is the way on. A led car that begins to move has (2) alone.
 Fit PredictiveFilter::verify(const Request& request, GuardReport& report) noexcept {
   const double cycle = request.interval > 0.0 ? request.interval : kAssumedCycle;
   const double longest = std::max(cycle, request.longest);
@@ -314,7 +330,8 @@ bool PredictiveFilter::drive(const road::KnownRoad& road, const StopStart& start
     for (const Law& law : kRaceOn)
       if (consider(road, start, policy_of(law, start.time, hold_), goal, best, report)) return true;
   }
-  // A stop verified with a margin is driven to its end; a fresh policy replaces it where it holds no more.
+  // A stop verified with a margin is driven to its end; a fresh policy replaces it where it holds no more. Of
+  // those that do not hold the least bad one is stored. Off the road by more than 0.5 m (chosen) none holds.
   const Goal goal{.margin = std::min(terms_.margin, std::max(planner_.edge(road, start) - kNearer, -0.5)),
                   .open_time = std::min(kDrivenOpen, terms_.open_time),
                   .is_driven = true};

@@ -63,15 +63,16 @@ class PredictiveFilter {
     double longest = 0.0;     ///< interval lately [s]
     model::Command acting{};  ///< command that acts before `command` does
   };
-  /// Whether a verified stop exists where `request` leads; the stop is stored. The stored one stays when
-  /// none exists. Writes stop_edge and stop_distance.
+  /// Whether the command may be sent: a verified stop exists where it leads, and is stored, or the car stays
+  /// near its planned lap, where no law may hold (docs/guard.md, "The condition for sending"). The stored
+  /// stop stays when none exists. Writes stop_edge and stop_distance.
   [[nodiscard]] Fit verify(const Request& request, GuardReport& report) noexcept;
 
   /// Stores the way to standstill from `start` on: the stored policy, or a verified one where the stored one
   /// holds no more. `is_open`: the car is not measured, `start` comes from the model. `is_measured`: nothing
   /// is in doubt but the controller's command; then the car may stay on a planned lap for a while, where a
-  /// verified stop follows, and what the policy loses of its edge is added to the margin (eq. 5d). False:
-  /// there is none.
+  /// verified stop follows, and what the policy loses of its edge is added to the margin (eq. 5d). Where no
+  /// policy holds, the one that comes least far off the road is stored. False: there is none at all.
   [[nodiscard]] bool drive(const road::KnownRoad& road, const StopStart& start, bool is_open,
                            bool is_measured, GuardReport& report) noexcept;
 

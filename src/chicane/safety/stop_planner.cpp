@@ -11,6 +11,17 @@
 namespace chicane::safety {
 namespace {
 
+// Origins (chosen: by trial, see Guard):
+// - Derived: kDamping (5 % of overshoot), kLapDamping (none), kHorizon (braking from 60 m/s at 9 m/s²),
+//   kSpeedTime (the receiver's), kSlipShift (a central difference far below any peak), kMostOffset (Guard's
+//   kFarFromRoad), kGravity.
+// - Measured: kFrictionDoubt (eq. 5b), kStiffnessDoubt (of the size that `identify` leaves: 1.3 and 1.8 %,
+//   docs/identification.md).
+// - Chosen, docs/guard.md: kPreview, kYawBandwidth, kMostPerMetre (eq. 3), kGripShare (eq. 4: a reserve of
+//   15 %), kBeyond, kKept (eq. 4a), kForeseenUse (eq. 5), kYawRateDoubt, kHeadingDoubt, kDoubtWithWheels
+//   (eq. 5b), kSlow (eq. 3b), kMostSlide, kSlideGrows ("A spin is no stop").
+// - Chosen: kStanding (below Guard's), kLeastBraking (a car in a bend has to stop, too), kStride (two
+//   cars), kTurns, kLeastShrink, kLeastTurning (divisors above 0).
 constexpr double kStanding = 0.3;  // [m/s] slower than that the car counts as standing
 constexpr double kSlow = 3.0;      // [m/s] below which its turning is corrected
 constexpr double kDamping = 0.7;

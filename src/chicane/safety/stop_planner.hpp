@@ -34,7 +34,7 @@ struct StopCheck {
   StopStart end{};          ///< where the simulation ended
 };
 
-/// How hard a stop may brake.
+/// How hard a stop may brake (docs/guard.md, eq. 5). Chosen; `foreseen` is off at 1e9.
 struct Braking {
   double share = 0.8;      ///< of the useful braking, (0, 1]
   double stability = 1.6;  ///< least static stability that it leaves (model/stability.hpp)
@@ -42,7 +42,7 @@ struct Braking {
 };
 
 /// A way to standstill with the feedback that holds it: along the planned lap until `until`, then braking by
-/// the law, equation (3) with these constants.
+/// the law, equation (3) with these constants. Chosen: the calmest law of the family (docs/guard.md).
 struct Policy {
   double until = -std::numeric_limits<double>::infinity();  ///< [s], clock of the run
   Braking braking{};
@@ -117,6 +117,7 @@ class StopPlanner {
   [[nodiscard]] double edge(const road::KnownRoad& road, const StopStart& at) const noexcept;
 
  private:
+  // Chosen: a plan has a point for each Policy::hold, and 128 of them: 12.8 s.
   static constexpr double kStep = 0.05;     ///< [s] of the simulation
   static constexpr int kStepsPerPoint = 2;  ///< of the simulation, in the plan
   /// Steps of the simulation in which a command is held.

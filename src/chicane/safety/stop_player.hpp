@@ -56,6 +56,7 @@ struct StopPlan {
 /// No allocation after construction; one thread.
 class StopPlayer {
  public:
+  // Chosen: six cycles of the simulator's 25 Hz, and at least three of any other.
   static constexpr double kPatience = 0.25;        ///< [s] without a stop plan
   static constexpr double kPatienceInPeriods = 3;  ///< where the control period is long
 
