@@ -12,6 +12,13 @@
 namespace chicane::safety {
 namespace {
 
+// Origins (chosen: by trial, see Guard):
+// - Derived: kLongestSilence, kFarAside, kPerfectSensor (as of tracking::GripEstimator), kSure (99.7 % of a
+//   normal distribution).
+// - Measured: kMostApart (docs/identification.md: twice the usual).
+// - Chosen, docs/identification.md: kMostUse, kCalmFor, kAverage, kAverageSliding.
+// - Chosen, for what their lines say: kSlowest, kCounted, kKeptBehind, kFar, kCorrelated, kMostCorrelation,
+//   kShown, kMostDeviation.
 constexpr double kSlowest = 5.0;          // [m/s] slower, the wheels turn the car too little
 constexpr double kLongestSilence = 0.25;  // [s] between measurements; then the estimators settle first
 constexpr double kMostUse = 0.5;          // share of peak slip or peak force: beyond it no model is exact
@@ -31,7 +38,8 @@ constexpr double kShown = 1.0;  // [s] of driving until the estimate is reported
 constexpr double kMostDeviation = 0.1;  // share of the usual deviation: a less certain estimate is not used
 
 // Of delay [s], gain, offset [rad] and grip: by how much an estimator differs, what is assumed to be usual
-// (standard deviation), the step in which the car is driven with, and the range.
+// (standard deviation), the step in which the car is driven with, and the range. Chosen;
+// docs/identification.md has what is usual.
 struct Row {
   double change, usual, step, least, most;
 };

@@ -24,6 +24,9 @@ namespace chicane::safety {
 /// One thread; allocates nothing.
 class ActuatorEstimator {
  public:
+  // Origins (chosen: by trial, see Guard):
+  // - Derived: kMostDelay (three deviations of what is usual). Chosen: kMemory (docs/identification.md),
+  //   kEnough.
   static constexpr double kMemory = 10.0;    ///< time constant of forgetting [s]
   static constexpr double kEnough = 5.0;     ///< remembered driving until delay and gain are driven with [s]
   static constexpr double kMostDelay = 0.3;  ///< [s]

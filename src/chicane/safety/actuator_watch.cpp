@@ -10,6 +10,15 @@
 namespace chicane::safety {
 namespace {
 
+// Origins (chosen: by trial, see Guard):
+// - Derived: kSpacing (just below the cycle of a sensor of 100 Hz), kAngleNoise (kBand), kLongestStep (six
+//   cycles of 25 Hz), kFullSize (as in sensor_watch.cpp).
+// - Measured: kLateCommand (docs/guard.md, "Late commands").
+// - Chosen, docs/guard.md: kShort, kLong, kMostUse, kSpareUse, kMostSideslip, kSlides, kCalmFor,
+//   kDiffersFor, kDeviations, kMemory, kGainPrior, kOffsetPrior, kUsualGain, kBraked (eq. 12, 13), kWeakFor
+//   (docs/safety.md).
+// - Chosen: kMostOffset (twice the ±7° of the attacks), kUsualOffset (above kBand); for what their lines
+//   say: kLearned, kLeastLearned, kBrakingTime, kLeastShare, kStrong, kParts.
 constexpr double kFullSize = 4.5;       // [m] length of a car in full size
 constexpr double kShort = 0.12;         // [s] over which the car's motion is averaged
 constexpr double kLong = 0.4;           // [s] the same for noisy sensors, and of braking

@@ -49,6 +49,10 @@ struct ActuatorAnswer {
 /// kSlowest, with grip to spare. No allocation; one thread.
 class ActuatorWatch {
  public:
+  // Origins (chosen: by trial, see Guard):
+  // - Chosen, docs/guard.md: kBand, kBandShare, kSlipShare, kSlipShareUsed (eq. 12), kWeak, kUsualFor (eq.
+  //   13).
+  // - Derived: kSlowest (Guard's kLedBackSpeed: a slower car may be led).
   static constexpr double kBand = 0.01;          ///< [rad] by which an angle may differ
   static constexpr double kBandShare = 0.1;      ///< and of the angle
   static constexpr double kSlipShare = 0.2;      ///< share of the slip of the axle that slips more

@@ -10,8 +10,11 @@
 namespace chicane::safety {
 namespace {
 
-/// Cycle length assumed when the clock is not plausible [s].
-constexpr double kAssumedCycle = 0.1;
+// Origins (chosen: by trial, see Guard):
+// - Derived: kFarthestStep (kFastest for kPlanAge).
+// - Chosen: kFastest (twice what indy reaches), kTrustedBraking (docs/guard.md, eq. 16), kAssumedCycle
+//   (Policy::hold).
+constexpr double kAssumedCycle = 0.1;    // [s] when the clock is not plausible
 constexpr double kFarthestStep = 100.0;  // [m] between two points of a plan; more is no plan
 constexpr double kFastest = 200.0;       // [m/s]
 constexpr double kTrustedBraking = 0.5;  // share of the braking asked for that a blind car counts on

@@ -24,6 +24,9 @@ namespace chicane::safety {
 /// Everything returned is finite and inside the vehicle's range, whatever came in. No allocation; one thread.
 class Fallback {
  public:
+  // Origins (chosen: by trial, see Guard):
+  // - Derived: kFadeSpeed (just above the 2.2 m/s below which udacity's brake pedal is its reverse gear).
+  // - Chosen, docs/how_it_works.md (rungs): kPlanAge, kHoldAge, kGentleBraking.
   static constexpr double kPlanAge = 0.5;        ///< [s]
   static constexpr double kHoldAge = 1.5;        ///< [s]
   static constexpr double kGentleBraking = 0.4;  ///< share of VehicleParams::brake_throttle_limit

@@ -211,8 +211,8 @@ class Guard {
     double led_asked = 0.0;         ///< turning by its wheels' angle since [rad]
     double stays_until = 0.0;       ///< its wheels turned it otherwise than asked [s]
     Since answered;                 ///< the controller, last
-    Since still;                    ///< a car that is measured elsewhere stands by the estimate
-    Since refused;                  ///< commands of a standing car
+    Since still;                    ///< ResetWatch waits, and the car stands by the estimate
+    Since refused;                  ///< the car stands or is led, and no answer has moved it
     Since moved;                    ///< faster than at rest, last
     Since stuck;                    ///< a car that should move does not
     Since released;                 ///< its brake, or began to be stuck

@@ -144,14 +144,14 @@ using controller::Rung;
 // Origins (chosen: by trial, see Guard):
 // - Derived: kLedBackSpeed (twice the pace of tracking::way_back), kAcross (its course of 45°),
 //   kTrialSpeed, kCreep (ResetWatch's speed of a standing car), kLongestRound (2π times udacity's radius of
-//   6.4 m at kCreep), kLongestAskPause (ResetWatch::kLongest), kChord, kAlongWaypoints (waypoints 10 m
-//   apart in a bend of 18 m).
+//   6.4 m at kCreep), kLongestAskPause (ResetWatch::kLongest).
 // - Chosen, docs/guard.md: kCreepDrive, kLongestCreep, kKeptShare, kCreepNearer (eq. 6c), kSeenTurn,
 //   kLeastTurned.
 // - Chosen, docs/safety.md: kLost, kAlong, kReleaseTime, kStillTime, kTrialWay, kTrialRoom, kMostAside,
 //   kNoAnswerTime.
-// - Chosen, for what their lines say: kAtRest, kRestTime, kRefusedTime, kDrives, kGain,
-//   kMostAgainstRolling, kTrialPedal, kStillCreeps, kCreepStep, kTurnedWheels.
+// - Chosen: kChord, kAlongWaypoints (waypoints 10 m apart in a bend of 18 m); for what their lines say:
+//   kAtRest, kRestTime, kRefusedTime, kDrives, kGain, kMostAgainstRolling, kTrialPedal, kStillCreeps,
+//   kCreepStep, kTurnedWheels.
 constexpr double kAtRest = 0.05;       // [m/s]
 constexpr double kRestTime = 0.3;      // [s] below it after which a car is at rest
 constexpr double kLedBackSpeed = 6.0;  // [m/s] below which a car that is off the road is led back

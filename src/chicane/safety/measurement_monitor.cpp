@@ -12,6 +12,10 @@ namespace chicane::safety {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+// Origins (chosen: by trial, see Guard):
+// - Derived: kJumpBack (ResetWatch::kJump).
+// - Chosen, docs/guard.md: kMismatch, kMismatchShare (eq. 8), kLongFrozen ("Frozen").
+// - Chosen: kLongestGap (a dozen cycles), kBlindSpeedDrift (half of what cars brake).
 constexpr double kLongestGap = 0.5;       // [s] between measurements that say anything of each other
 constexpr double kMismatch = 2.0;         // [m] between displacement and integrated speed
 constexpr double kMismatchShare = 0.3;    // and of the larger one
@@ -189,6 +193,8 @@ bool MeasurementMonitor::contradicts_displacement(const model::Measurement& now,
 
 namespace {
 
+// Origins (chosen: by trial, see Guard):
+// - Chosen, for what their lines say: kSpeedError, kMemory, kStill.
 constexpr double kSpeedError = 1.5;  // times the measured speed that a car may move between two measurements
 constexpr double kMemory = 0.5;      // [s] for which the car answers to a pedal
 constexpr double kStill = 0.05;      // [m/s] of a car that stands or turns round

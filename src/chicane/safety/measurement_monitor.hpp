@@ -28,13 +28,19 @@ struct Findings {
 /// when it jumps back, too; it is never accepted because it lasts. No allocation; one thread.
 class MeasurementMonitor {
  public:
+  // Origins (chosen: by trial, see Guard):
+  // - Derived: kJump (StateEstimator restarts there), kAcceleration (above indy's grip of 28 m/s² at 80
+  //   m/s), kYawAcceleration (both axles of udacity against each other), kSamples and kSampleSpacing (the
+  //   second of eq. 8).
+  // - Chosen, docs/guard.md: kKnownDrift, kBlindDrift, kSpeedJump, kHeadingJump (eq. 7), kUnmoved, kMoving
+  //   ("Frozen").
   static constexpr double kJump = 3.0;          ///< [m] from where the car is expected
   static constexpr double kKnownDrift = 0.012;  ///< of the distance driven since, with yaw and speed measured
   static constexpr double kBlindDrift = 0.15;   ///< and without
   static constexpr double kSpeedJump = 3.0;     ///< [m/s] from what is expected
   static constexpr double kAcceleration = 40.0;     ///< [m/s²] that no car here exceeds
   static constexpr double kHeadingJump = 0.35;      ///< [rad]
-  static constexpr double kYawAcceleration = 12.0;  ///< [rad/s²] that no car here exceeds
+  static constexpr double kYawAcceleration = 12.0;  ///< [rad/s²] by which a turn may be unexpected
   static constexpr double kUnmoved = 0.3;           ///< [m] driven by its speed, and not by its place
   static constexpr double kMoving = 3.0;            ///< [m/s] a speed that shows that its sensor works
 
@@ -104,6 +110,9 @@ class MeasurementMonitor {
 /// that jumps to standstill asks for it by itself; any other has to have rested. No allocation; one thread.
 class ResetWatch {
  public:
+  // Origins (chosen: by trial, see Guard):
+  // - Chosen, docs/safety.md ("A trial"): kJump, kStandingSpeed, kWay, kLongest, kRest.
+  // - Chosen, for what their lines say: kDisagreement, kDisagreementShare, kRestWay, kRestTurn.
   static constexpr double kJump = 1.0;               ///< [m] between two measurements, beyond what was driven
   static constexpr double kStandingSpeed = 1.0;      ///< [m/s] of a car that was put elsewhere
   static constexpr double kWay = 0.5;                ///< [m] after which the answer counts

@@ -98,7 +98,8 @@ constexpr int kSlowWheels = 5;  // of them there for cars with four wheels: more
 constexpr int kInTurn = 3;      // of them in a cycle near a planned lap: all of them took 22 ms
 constexpr int kCalm = 2;        // of them for a car that is given back
 constexpr int kDriven = 5;      // of them to replace a driven stop that holds no more
-// Laws by which the guard itself stays on a planned lap.
+// Laws by which the guard itself stays on a planned lap, and kCalm and kDriven: chosen, so that a cycle stays
+// short.
 constexpr Law kRaceOn[] = {{kHard, 1.0, 0.4, 0.6, 2.0},
                            {kHard, 3.0, 0.8, 0.6, 2.0},
                            {kHard, 1.0, 0.4, 0.6, 1.0},

@@ -10,6 +10,18 @@
 namespace chicane::safety {
 namespace {
 
+// Origins (chosen: by trial, see Guard):
+// - Derived: kDeviations (one in two million of a normal distribution), kDrift (MeasurementMonitor's
+//   kKnownDrift), kMostCalm (twice kCalmTime), kWalking (Guard's kLedBackSpeed), kFullSize (about the mean
+//   of such cars).
+// - Measured: kPlaceStep, kHeadingStep, kSpeedStep: calm cars differ by 0.10 m, 0.061 rad, 1.2 m/s at most;
+//   kSum, kSumWay, kSumShare, kSumDeviations: these cars reach 0.46 of (11) at most (five presets on
+//   lakeside and hairpins, also with latency_jitter_ms=60, perfect sensors). kLateCommand: docs/guard.md,
+//   "Late commands".
+// - Chosen, docs/guard.md: kWindows, kMostSlip, kCrab, kTurned, kTurnedShare (eq. 11), kLearned, kLatest,
+//   kMostLag, kRetry ("Late measurements").
+// - Chosen, for what their lines say: kBlindDrift, kMostDrift, kSpeedDrift, kHeadingDrift,
+//   kMostHeadingDrift, kUnrest, kTried, kSilence, kStill, kMoving, kLongestStep.
 constexpr double kFullSize = 4.5;      // [m] length of a car
 constexpr double kPlaceStep = 0.25;    // [m] a calm car in full size is not farther from where it is expected
 constexpr double kHeadingStep = 0.06;  // [rad] the same of its heading

@@ -24,6 +24,8 @@ struct SensorDoubts {
 /// where the car must be; never because it lasts. No allocation; one thread.
 class SensorWatch {
  public:
+  // Origins (chosen: by trial, see Guard):
+  // - Chosen, docs/guard.md ("Signals that disagree"): kCalmTime, kAgreeing.
   static constexpr double kCalmTime = 2.0;  ///< [s]
   static constexpr double kAgreeing = 1.0;  ///< [s]
 

@@ -8,6 +8,11 @@
 namespace chicane::safety {
 namespace {
 
+// Origins (chosen: by trial, see Guard):
+// - Derived: kLoadLag (bmw-320i's; other plants have 9 to 80 ms), kLocks (those of the plant:
+//   sim/double_track.hpp), kMostAlong (a planned lap uses no more, docs/racing.md), kLeastSquare,
+//   kShortestLag (divisors above 0).
+// - Chosen: kRelaxation (docs/guard.md, eq. 3a), kLeastLoad (a wheel that is nearly in the air).
 constexpr double kLoadLag = 0.06;          // [s] of the loads behind the accelerations: springs and dampers
 constexpr double kLeastLoad = 0.05;        // share of a wheel's load at rest
 constexpr double kMostAlong = 0.95;        // share of a tyre's peak, for a wheel that does not lock

@@ -12,13 +12,13 @@ namespace chicane::safety {
 namespace {
 
 // Origins (chosen: by trial, see Guard):
-// - Derived: kDamping (5 % of overshoot), kLapDamping (none), kHorizon (braking from 60 m/s at 9 m/s²),
-//   kSpeedTime (the receiver's), kSlipShift (a central difference far below any peak), kMostOffset (Guard's
-//   kFarFromRoad), kGravity.
+// - Derived: kDamping (5 % of overshoot), kLapDamping (none), kSpeedTime (the receiver's), kSlipShift (a
+//   central difference far below any peak), kMostOffset (Guard's kFarFromRoad), kGravity.
 // - Measured: kFrictionDoubt (eq. 5b), kStiffnessDoubt (of the size that `identify` leaves: 1.3 and 1.8 %,
-//   docs/identification.md).
+//   docs/identification.md), kYawRateDoubt, kHeadingDoubt (two deviations of the residuals of `default` on
+//   lakeside, seven cars: 0.006 rad/s and 0.0017 rad at most).
 // - Chosen, docs/guard.md: kPreview, kYawBandwidth, kMostPerMetre (eq. 3), kGripShare (eq. 4: a reserve of
-//   15 %), kBeyond, kKept (eq. 4a), kForeseenUse (eq. 5), kYawRateDoubt, kHeadingDoubt, kDoubtWithWheels
+//   15 %), kBeyond, kKept (eq. 4a), kForeseenUse, kHorizon (eq. 5: braking from 60 m/s), kDoubtWithWheels
 //   (eq. 5b), kSlow (eq. 3b), kMostSlide, kSlideGrows ("A spin is no stop").
 // - Chosen: kStanding (below Guard's), kLeastBraking (a car in a bend has to stop, too), kStride (two
 //   cars), kTurns, kLeastShrink, kLeastTurning (divisors above 0).
@@ -91,8 +91,9 @@ DoubtCheck StopPlanner::in_doubt(const road::KnownRoad& road, const StopStart& s
   const double reach = steer_reach(kStep);
   const StopCar::Step step = car_.step(kStep);
   const double end = end_of(road, start);
-  const double seen =
-      time > 0.0 && !road.line().is_closed() ? road.line().length() : end;  // nobody corrects it later
+  const double seen = time > 0.0 && !road.line().is_closed()
+                          ? road.line().length()
+                          : end;  // open loop (6b): nobody corrects it later
   const double most_slide = std::max(kMostSlide, slide(start.body) + kSlideGrows);
   struct Car {
     const StopCar& car;
