@@ -91,9 +91,8 @@ DoubtCheck StopPlanner::in_doubt(const road::KnownRoad& road, const StopStart& s
   const double reach = steer_reach(kStep);
   const StopCar::Step step = car_.step(kStep);
   const double end = end_of(road, start);
-  const double seen = time > 0.0 && !road.line().is_closed()
-                          ? road.line().length()
-                          : end;  // open loop (6b): nobody corrects it later
+  // Open loop nobody sees what comes behind the line: (6b).
+  const double seen = time > 0.0 && !road.line().is_closed() ? road.line().length() : end;
   const double most_slide = std::max(kMostSlide, slide(start.body) + kSlideGrows);
   struct Car {
     const StopCar& car;
