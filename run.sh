@@ -64,11 +64,10 @@ extra=()
 case " $* " in
   *' -h '* | *' --help '*) ;;
   ' bench '*) target=chicane_bench extra=("${bench_packages[@]}") ;;
-  ' tune '*) target=chicane_lab extra=("${lab_packages[@]}" "${tune_packages[@]}") ;;
-  ' campaign '* | ' claims '* | ' identify '* | ' import '* | ' lane-change '* | ' league '* | ' merge '* | ' recover '* | ' report '* | ' sweep '*)
-    target=chicane_lab extra=("${lab_packages[@]}") ;;
-  ' video '*) target=chicane_lab extra=("${lab_packages[@]}" ffmpeg) ;;
   ' ros '*) target=chicane_ros_app extra=("${ros_packages[@]}") ;;
+  ' tune '*) extra=("${tune_packages[@]}") ;;&
+  ' video '*) extra=(ffmpeg) ;;&
+  *) if is_of_lab "$root" "${1:-}"; then target=chicane_lab extra+=("${lab_packages[@]}"); fi ;;
 esac
 mapfile -t node < <(node_packages)
 install_packages "${run_packages[@]}" "${extra[@]}" "${node[@]}"

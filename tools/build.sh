@@ -23,6 +23,9 @@ is_configured() {
 # cached ROOT NAME: the value of an option of build/release; nothing when it has none.
 cached() { sed -n "s/^$2:[A-Z]*=//p" "$1/build/release/CMakeCache.txt"; }
 
+# is_of_lab ROOT COMMAND: chicane-lab does it, by its row in the table of commands.
+is_of_lab() { grep -qzE "\{\"$2\",[^}]*in_lab" "$1/apps/chicane/commands.hpp"; }
+
 # build_release ROOT TARGET [NAME=VALUE...]: prints nothing when there is nothing to do; all output goes to stderr.
 build_release() {
   local root=$1 target=$2 build=$1/build/release fresh=() quiet=()

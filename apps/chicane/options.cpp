@@ -149,6 +149,14 @@ Done refuse(std::string_view name, std::string_view fault) {
 
 }  // namespace
 
+Rows options_of(const Command& command, Options& options) {
+  Rows rows = command.rows == nullptr ? Rows{} : command.rows(options);
+  if (command.is_planning)
+    rows.push_back({"--no-cache", "", "Compute plans and limits again, and keep none in the cache folder",
+                    Off{&options.uses_cache}});
+  return rows;
+}
+
 std::variant<Options, Done> parse_command_line(int count, const char* const* words) {
   if (count < 2) return fmt::print(stderr, "{}", kFirstSteps), Done{kUsage};
   const std::string_view first = words[1];

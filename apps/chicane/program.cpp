@@ -77,6 +77,11 @@ ExitCode parse_and_run(int count, const char* const* given, ExitCode (*run)(cons
 
 }  // namespace
 
+ExitCode report(const Error& error) {
+  print_sentence(stderr, error.message);
+  return error.code == ErrorCode::kIo ? kEnvironment : kUsage;
+}
+
 int program(int count, const char* const* words, ExitCode (*run)(const Options&)) noexcept {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too long is a failed write
   try {

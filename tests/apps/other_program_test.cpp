@@ -90,26 +90,25 @@ TEST_F(OtherProgram, IsStartedWhereverItStandsWithTheWordsGiven) {
   }
 }
 
-/// The quoted words of a file's lines that begin with `begin`, with `quote` around each.
-std::set<std::string> quoted_words(const std::string& file, const std::string& begin, char quote) {
+std::set<std::string> words_of(const std::string& text, const std::string& word) {
+  const std::regex pattern(word);
   std::set<std::string> words;
-  std::ifstream in(std::string(CHICANE_SOURCE_DIR) + file);
-  for (std::string line; std::getline(in, line);) {
-    if (!line.starts_with(begin)) continue;
-    const std::regex word(std::string(1, quote) + R"( ?([a-z-]+) ?)" + quote);
-    for (std::sregex_iterator at(line.begin(), line.end(), word), end; at != end; ++at)
-      words.insert((*at)[1]);
-  }
+  for (std::sregex_iterator at(text.begin(), text.end(), pattern), end; at != end; ++at)
+    words.insert((*at)[1]);
   return words;
 }
 
+/// The page of the command line has a row for each command, and names those of chicane-lab.
 TEST(Lab, IsBuiltByRunShForEachOfItsCommands) {
-  std::set<std::string> commands = quoted_words("/apps/chicane/lab/main.cpp", "    {\"", '"');
-  commands.erase("replay");  // of recordings it needs no other program
-  EXPECT_EQ(commands.size(), 12U);
-  std::set<std::string> built = quoted_words("/run.sh", "  ' campaign '", '\'');
-  built.insert({"tune", "video"});  // which need a package more
-  EXPECT_EQ(built, commands);
+  const std::string page = test::shell("cat docs/reference/cli.md").out;
+  const std::size_t begin = page.find("`chicane-lab` does the work of") + 13;
+  const std::set<std::string> named =
+      words_of(page.substr(begin, page.find("An installation", begin) - begin), "`([a-z-]+)`");
+  EXPECT_EQ(named.size(), 12U);
+  std::string asked = ". tools/build.sh";
+  for (const std::string& command : words_of(page, "\\| `chicane ([a-z-]+)"))
+    asked += "; is_of_lab . " + command + " && echo " + command;
+  EXPECT_EQ(words_of(test::shell("bash -c '" + asked + "; true'").out, "([a-z-]+)\n"), named);
 }
 
 }  // namespace

@@ -35,6 +35,12 @@
 namespace chicane::apps {
 namespace {
 
+/// Converts a log of another program to the recording `output`: positions, speeds and commands of the car.
+/// --track gives the road for laps and progress; without it a lap ends where the car has been before. Values
+/// that the log lacks are NaN. One sentence on stderr sums up the findings. kParse for a file that is neither
+/// a ROS 2 bag with odometry nor a CSV table of a car.
+Result<void> convert_foreign_log(const std::string& file, const Options& options, const std::string& output);
+
 /// The results of a sweep are lines of JSON, recordings are MCAP.
 bool are_results(const std::vector<std::string>& files) {
   return std::all_of(files.begin(), files.end(), [](const std::string& file) {
@@ -248,8 +254,6 @@ std::string summary_of(const identify::DriveLog& log, const road::Track* track, 
                      log.samples.back().time - log.samples.front().time, frames, laps, missing);
 }
 
-}  // namespace
-
 Result<void> convert_foreign_log(const std::string& file, const Options& options, const std::string& output) {
   const auto log = identify::read_plain_log(file, {.columns = {},
                                                    .odom_topic = options.identify.odom_topic,
@@ -290,5 +294,9 @@ Result<void> convert_foreign_log(const std::string& file, const Options& options
   fmt::print(stderr, "{}\n", summary_of(*log, track, laps, frames));
   return {};
 }
+
+}  // namespace
+
+ExitCode replay_any_logs(const Options& options) { return replay_logs(options, convert_foreign_log); }
 
 }  // namespace chicane::apps
