@@ -5,6 +5,7 @@
 #include <string>
 
 #include "chicane/base/text.hpp"
+#include "chicane/protocol/track_codec.hpp"
 #include "chicane/run/fault_campaign.hpp"
 #include "chicane/run/parallel.hpp"
 #include "commands.hpp"
@@ -59,8 +60,7 @@ Rows limit_rows(Options& o) {
 Rows import_rows(Options& o) {
   Options::Import& import = o.import_;
   return {
-      {"file", "FILE", "Map (.yaml with its image), table, cones, JSON, GPX, KML, OSM or OpenDRIVE",
-       &import.file, kRequired},
+      {"file", "FILE", std::string(protocol::kRoadFiles), &import.file, kRequired},
       {"-o,--output", "NAME.csv", "Write the road into this file; an older one is replaced", &o.output_file},
       {"--preview", "FILE.html", "Draw what was recognised into this page; an older one is replaced",
        &import.preview},

@@ -102,6 +102,9 @@ inline constexpr TrackFormat kCsvTrack{".csv", &parse_csv_track};
 /// All of them; the first that recognises a text reads it.
 [[nodiscard]] std::span<const TrackFormat> foreign_tracks() noexcept;
 
+/// What roads are read from, for the help.
+inline constexpr std::string_view kRoadFiles =
+    "Map (.yaml with its image), table, cones, JSON, GPX, KML, OSM or OpenDRIVE";
 /// Kind of a road's file, by its content: "occupancy map", "GPX", "cones", "table of points".
 [[nodiscard]] std::string_view road_kind(std::string_view text) noexcept;
 
