@@ -87,6 +87,17 @@ if(NOT CMAKE_CROSSCOMPILING)
   endfunction()
 endif()
 
+# chicane_command_test(NAME "label;slow" SECONDS COMMAND word... [PROPERTIES name value...]): a test that is a command. It knows
+# by CHICANE_SLOW_TESTS whether to try more, and is skipped where it ends with 77.
+function(chicane_command_test name labels limit)
+  cmake_parse_arguments(PARSE_ARGV 3 T "" "" "COMMAND;PROPERTIES")
+  add_test(NAME ${name} COMMAND ${T_COMMAND})
+  set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT ${limit} SKIP_RETURN_CODE 77 ${T_PROPERTIES})
+  if(CHICANE_SLOW_TESTS)
+    set_property(TEST ${name} APPEND PROPERTY ENVIRONMENT CHICANE_SLOW_TESTS=1)
+  endif()
+endfunction()
+
 function(chicane_test_options target)
   # Without forced inlining, which would take the compiler minutes, GCC takes the empty second argument of a chain of jets for a value.
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Og> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)

@@ -36,7 +36,7 @@ const IN_STRIP = new Set([
 ]);
 
 /** Every size, theme and colour is looked at: a campaign (./test.sh --all). */
-export const EVERY_SIZE = Boolean(process.env.CHICANE_EVERY_SIZE);
+export const EVERY_SIZE = Boolean(process.env.CHICANE_SLOW_TESTS);
 
 /** Between two repaints of a page [ms]: drawing costs much without a graphics card. */
 const REPAINT_MS = 250;
@@ -314,7 +314,7 @@ export class DashboardPage {
 
   /**
    * What axe objects to; `part`: a selector of the only part that is looked at; `rules`: only these, or 'all'. Without
-   * it, the rule of contrast is used with CHICANE_EVERY_SIZE=1 alone: it takes two thirds of the time, and
+   * it, the rule of contrast is used with CHICANE_SLOW_TESTS alone: it takes two thirds of the time, and
    * views.test.mjs uses it at every view.
    */
   async accessibilityFindings(part, rules) {

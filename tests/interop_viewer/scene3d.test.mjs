@@ -148,7 +148,7 @@ describe('the 3D picture', () => {
     dashboard.complaints.length = 0; // of the context that was taken
   });
 
-  // Each load of the picture takes four seconds of processor time: still and on a phone with CHICANE_EVERY_SIZE=1.
+  // Each load of the picture takes four seconds of processor time: still and on a phone with CHICANE_SLOW_TESTS.
   it('has nothing that axe objects to, in the light, in the dark, still, and on a phone', async () => {
     const isGood = async (shown, name, ...which) => {
       await ready(shown.page);
@@ -201,7 +201,7 @@ describe('the 3D picture', () => {
     await smooth.close(isOfDriver);
   });
 
-  it('works where the browser keeps nothing', { skip: !EVERY_SIZE && 'with CHICANE_EVERY_SIZE=1' }, async () => {
+  it('works where the browser keeps nothing', { skip: !EVERY_SIZE && 'with CHICANE_SLOW_TESTS' }, async () => {
     const script = () =>
       Object.defineProperty(window, 'localStorage', {
         get: () => {

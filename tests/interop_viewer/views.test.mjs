@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Every view on a phone or a laptop, which leave the least room: nothing that axe objects to, nothing cut off, covered
 // or printed over, and nothing on the browser's console. On the phone, in the light, those that are soon reached; on
-// the laptop, in the dark, the others and the modes; with CHICANE_EVERY_SIZE=1 all, in both themes, at every size.
+// the laptop, in the dark, the others and the modes; with CHICANE_SLOW_TESTS all, in both themes, at every size.
 import assert from 'node:assert/strict';
 import { after, before, it } from 'node:test';
 import { EVERY_SIZE, MODES } from './dashboard_page.mjs';

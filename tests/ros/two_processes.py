@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`chicane ros` and `chicane ros --simulate` as two processes on loopback, in a DDS domain of their own.
 
-    two_processes.py CHICANE "" PARTNER          a lap like that of `drive`; kill -9 of the controller, then of the
+    two_processes.py CHICANE --kill PARTNER      a lap like that of `drive`; kill -9 of the controller, then of the
                                                  simulator
     two_processes.py CHICANE --laps PARTNER      three laps on two tracks, with both meanings of a drive message
     two_processes.py CHICANE --pace              both in simulated time, by /clock at half the pace
@@ -282,9 +282,9 @@ def misfits(chicane, folder):
 
 
 def main():
-    chicane, mode = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else ""
+    chicane, mode = sys.argv[1:3]
     with tempfile.TemporaryDirectory() as folder:
-        {"": a_lap_and_two_kills, "--laps": laps, "--misfit": misfits, "--own": own_program, "--pace": laps_in_simulated_time, "--vendors": vendors}[mode](chicane, folder)
+        {"--kill": a_lap_and_two_kills, "--laps": laps, "--misfit": misfits, "--own": own_program, "--pace": laps_in_simulated_time, "--vendors": vendors}[mode](chicane, folder)
 
 
 main()

@@ -17,10 +17,10 @@ import { McapLog } from './mcap_log';
 import { BytesReadable } from './readable';
 
 // Recorded runs of the program, as the page shows each of their frames: presets, cars and faults, by hand and off the
-// road, as live and as a recording. CHICANE is the program's path; with CHICANE_EVERY_RUN=1 all presets drive all cars
+// road, as live and as a recording. CHICANE is the program's path; with CHICANE_SLOW_TESTS all presets drive all cars
 // with all faults, with CHICANE_EVERY_RUN=3/20 the third twentieth of these.
 
-const { CHICANE: program, CHICANE_EVERY_RUN: everyRun } = process.env;
+const { CHICANE: program, CHICANE_EVERY_RUN: everyRun = process.env.CHICANE_SLOW_TESTS } = process.env;
 const isWhole = everyRun !== undefined;
 const [part = 1, parts = 1] = (everyRun?.match(/\d+/g) ?? []).map(Number);
 const folder = mkdtempSync(join(tmpdir(), `chicane-contradictions-${process.pid}-`));
