@@ -2,21 +2,8 @@
 # says what they hold; tests/package and tools/check_package.sh check them.
 #
 # A package is a group of install components. `deb_NAME` adds to the component NAME what Debian has in a form of its own (compressed,
-# elsewhere); `plain` is what only an installation without a package manager has. To add a package: one line chicane_package() below, and
-# its name in CHICANE_PACKAGES.
-if(CHICANE_SOLVER_ONLY)
-  set(CHICANE_PACKAGES libchicane-solver-dev)
-elseif(TARGET chicane_app)
-  set(CHICANE_PACKAGES chicane libchicane-dev chicane-doc)
-  if(CHICANE_HAVE_ROS)
-    list(APPEND CHICANE_PACKAGES chicane-ros)
-  endif()
-  if(TARGET chicane_python)
-    list(APPEND CHICANE_PACKAGES python3-chicane)
-  endif()
-else()
-  set(CHICANE_PACKAGES libchicane-dev chicane-doc)
-endif()
+# elsewhere); `plain` is what only an installation without a package manager has. To add a package: one call of chicane_package() below.
+get_property(programs GLOBAL PROPERTY CHICANE_PROGRAMS)
 set(CHICANE_PACKAGE_MAINTAINER "The chicane authors <authors@chicane.invalid>" CACHE STRING "Who answers for the packages: NAME <ADDRESS>")
 set(CHICANE_PACKAGE_REVISION 1 CACHE STRING "Number of the packaging of one version, behind the dash of the package's version")
 set(debian_dir ${PROJECT_SOURCE_DIR}/cmake/debian)
@@ -25,16 +12,7 @@ set(deb_version ${PROJECT_VERSION}-${CHICANE_PACKAGE_REVISION})
 
 # What `cpack` needs built, without tests and examples.
 add_custom_target(chicane_installed)
-add_dependencies(chicane_installed ${modules})
-if(TARGET chicane_app)
-  add_dependencies(chicane_installed chicane_app)
-  if(TARGET chicane_identify)
-    add_dependencies(chicane_installed chicane_lab)
-  endif()
-endif()
-if(CHICANE_HAVE_ROS AND TARGET chicane_ros_app)
-  add_dependencies(chicane_installed chicane_ros_app)
-endif()
+add_dependencies(chicane_installed ${modules} ${programs})
 if(TARGET chicane_python)
   add_dependencies(chicane_installed chicane_python)
 endif()
@@ -76,14 +54,17 @@ function(package_file name file folder)
   install(FILES ${package_dir}/${name}/${file} DESTINATION ${folder} COMPONENT deb_${name} EXCLUDE_FROM_ALL)
 endfunction()
 
-# chicane_package(NAME COMPONENTS one two SECTION science SUMMARY "..." TEXT "..." [ARCH all] [SHLIBDEPS]
+# chicane_package(NAME COMPONENTS one two SECTION science SUMMARY "..." TEXT "..." [OF target...] [ARCH all] [SHLIBDEPS]
 #                 [DEPENDS "a, b"] [CONFLICTS ...] [SUGGESTS ...] [SCRIPTS postinst prerm])
-# TEXT has lines of at most 79 characters; a line with nothing but a dot begins a paragraph.
+# No package where a target is missing that it is OF. TEXT has lines of at most 79 characters; a line with nothing but a dot begins a
+# paragraph.
 function(chicane_package name)
-  cmake_parse_arguments(P "SHLIBDEPS" "SECTION;SUMMARY;TEXT;ARCH;DEPENDS;CONFLICTS;SUGGESTS" "COMPONENTS;SCRIPTS" ${ARGN})
-  if(NOT name IN_LIST CHICANE_PACKAGES)
-    return()
-  endif()
+  cmake_parse_arguments(P "SHLIBDEPS" "SECTION;SUMMARY;TEXT;ARCH;DEPENDS;CONFLICTS;SUGGESTS" "OF;COMPONENTS;SCRIPTS" ${ARGN})
+  foreach(target IN LISTS P_OF)
+    if(NOT TARGET ${target})
+      return()
+    endif()
+  endforeach()
   foreach(component IN LISTS P_COMPONENTS ITEMS deb_${name})
     string(TOUPPER ${component} upper)
     set(CPACK_COMPONENT_${upper}_GROUP ${name} PARENT_SCOPE)
@@ -142,35 +123,37 @@ if(TARGET chicane_python)
   install(TARGETS chicane_python LIBRARY DESTINATION ${python_folder} COMPONENT python EXCLUDE_FROM_ALL)
 endif()
 
-chicane_package(chicane COMPONENTS program SECTION science SHLIBDEPS SUGGESTS "chicane-doc, chicane-ros, libchicane-dev, python3-chicane"
+chicane_package(chicane OF chicane_app COMPONENTS program SECTION science SHLIBDEPS SUGGESTS "chicane-doc, chicane-ros, libchicane-dev, python3-chicane"
   SUMMARY "drives a car round a track by model predictive control"
   TEXT "Controller, simulator, recorder and dashboard in one program, with cars, tracks
 and presets. A guard keeps a verified stop at hand.
 .
 The program serves its dashboard to a browser, drives external simulators by
 WebSocket, compares controllers, and finds the limit of a car.")
-chicane_package(chicane-ros COMPONENTS ros SECTION science SHLIBDEPS DEPENDS "chicane (= ${deb_version})" SUGGESTS chicane-doc
+chicane_package(chicane-ros OF chicane_app chicane_ros COMPONENTS ros SECTION science SHLIBDEPS DEPENDS "chicane (= ${deb_version})" SUGGESTS chicane-doc
   SUMMARY "model predictive control of cars - ROS 2 node without ROS"
   TEXT "The command chicane ros: the controller as a ROS 2 node, or the simulator for
 one, by DDS alone. It needs no ROS installation.")
-chicane_package(python3-chicane COMPONENTS python SECTION python SHLIBDEPS SCRIPTS postinst prerm
+chicane_package(python3-chicane OF chicane_app chicane_python COMPONENTS python SECTION python SHLIBDEPS SCRIPTS postinst prerm
   DEPENDS "chicane (= ${deb_version}), python3 (>= ${python_version}~), python3 (<< ${python_next}~), python3-numpy" SUGGESTS chicane-doc
   SUMMARY "model predictive control of cars - Python module"
   TEXT "The module chicane: drives and measures cars, reads recordings, runs sweeps,
 controllers and environments for learning written in Python, and optimal
 control problems.")
-chicane_package(libchicane-dev COMPONENTS dev SECTION libdevel DEPENDS "${dev_depends}" CONFLICTS libchicane-solver-dev
+chicane_package(libchicane-dev OF chicane_protocol COMPONENTS dev SECTION libdevel DEPENDS "${dev_depends}" CONFLICTS libchicane-solver-dev
   SUGGESTS chicane-doc
   SUMMARY "model predictive control of cars - C++ library"
   TEXT "Headers, archives, CMake package and pkg-config files of the modules that the
 program chicane consists of: solver for optimal control problems, models and
 plants of cars, controllers, guard, recording.")
-chicane_package(libchicane-solver-dev COMPONENTS dev SECTION libdevel DEPENDS "${dev_depends}" CONFLICTS libchicane-dev
-  SUMMARY "solver for optimal control problems - C++ library"
-  TEXT "Headers, archives, CMake package and pkg-config files of the solver of chicane
+if(CHICANE_SOLVER_ONLY)
+  chicane_package(libchicane-solver-dev COMPONENTS dev SECTION libdevel DEPENDS "${dev_depends}" CONFLICTS libchicane-dev
+    SUMMARY "solver for optimal control problems - C++ library"
+    TEXT "Headers, archives, CMake package and pkg-config files of the solver of chicane
 and what it stands on. It allocates no memory while it solves, and keeps
 deadlines.")
-chicane_package(chicane-doc COMPONENTS doc SECTION doc ARCH all
+endif()
+chicane_package(chicane-doc OF chicane_protocol COMPONENTS doc SECTION doc ARCH all
   SUMMARY "model predictive control of cars - documentation and examples"
   TEXT "Tutorials, reference and explanations of the program chicane and its library as
 Markdown pages, and example programs in C++ and Python.")
@@ -189,19 +172,15 @@ if(TARGET chicane_app)
 
   # The tarball brings along the libraries that not every system has; the C library is the system's.
   set(private_libraries lib/chicane)
-  set_target_properties(chicane_app PROPERTIES INSTALL_RPATH "$ORIGIN/../${private_libraries}")
-  target_link_options(chicane_app PRIVATE -Wl,--disable-new-dtags)  # an RPATH, which holds for the libraries of libraries, too
-  set(program_files ${program_file})
-  if(TARGET chicane_identify)
-    list(APPEND program_files $<TARGET_FILE:chicane_lab>)
-    set_target_properties(chicane_lab PROPERTIES INSTALL_RPATH "$ORIGIN/../../${private_libraries}")
-    target_link_options(chicane_lab PRIVATE -Wl,--disable-new-dtags)
-  endif()
+  set(up ..)
+  foreach(program IN LISTS programs)
+    set_target_properties(${program} PROPERTIES INSTALL_RPATH "$ORIGIN/${up}/${private_libraries}")
+    target_link_options(${program} PRIVATE -Wl,--disable-new-dtags)  # an RPATH, which holds for the libraries of libraries, too
+    list(APPEND program_files $<TARGET_FILE:${program}>)
+    set(up ../..)  # all but the first one are in libexec/chicane
+  endforeach()
   # Debian's libddsc has a path of its own, which keeps the loader from ours for what it needs: the program names it, too.
-  if(CHICANE_HAVE_ROS)
-    list(APPEND program_files $<TARGET_FILE:chicane_ros_app>)
-    set_target_properties(chicane_ros_app PROPERTIES INSTALL_RPATH "$ORIGIN/../../${private_libraries}")
-    target_link_options(chicane_ros_app PRIVATE -Wl,--disable-new-dtags)
+  if(TARGET chicane_ros)
     foreach(library IN ITEMS ssl iceoryx_binding_c)
       find_library(CHICANE_${library}_OF_DDSC ${library})
       mark_as_advanced(CHICANE_${library}_OF_DDSC)

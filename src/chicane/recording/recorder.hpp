@@ -36,7 +36,7 @@ struct RecorderOptions {
   std::string path;
   protocol::Run run;
   scenario::Scenario scenario;
-  bool is_compressed = false;  ///< Zstandard: kInvalidArgument if the program lacks it
+  bool is_compressed = false;  ///< by Zstandard
   double step_budget = 0.0;    ///< deadline of each control step [s]; 0 = none
   /// Whether a full buffer stops the run, as in virtual time; otherwise the newest frames are left out and
   /// counted.

@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <unistd.h>
+#include <zstd.h>
 
 #include <algorithm>
 #include <array>
@@ -14,10 +15,6 @@
 #include <system_error>
 
 #include "chicane/base/compiler.hpp"
-
-#ifdef CHICANE_HAVE_ZSTD
-#include <zstd.h>
-#endif
 
 namespace chicane::telemetry::mcap {
 namespace {
@@ -70,6 +67,27 @@ std::string pairs(const std::map<std::string, std::string>& entries) {
   return bytes;
 }
 
+/// Zstandard at the fastest level.
+std::string compressed_bytes(std::string_view bytes) {
+  constexpr int kFastest = 1;
+  std::string compressed(ZSTD_compressBound(bytes.size()), '\0');
+  const std::size_t size =
+      ZSTD_compress(compressed.data(), compressed.size(), bytes.data(), bytes.size(), kFastest);
+  CHICANE_ASSERT(ZSTD_isError(size) == 0);  // the bound is enough for any input
+  compressed.resize(size);
+  return compressed;
+}
+
+/// None if the bytes are damaged, or do not yield `size` bytes.
+std::optional<std::string> plain_bytes(std::string_view bytes, std::uint64_t size) {
+  constexpr std::uint64_t kMost = 256U << 20U;  // the size is read from the file and not to be trusted
+  if (size > kMost) return std::nullopt;
+  std::string plain(static_cast<std::size_t>(size), '\0');
+  if (ZSTD_decompress(plain.data(), plain.size(), bytes.data(), bytes.size()) != plain.size())
+    return std::nullopt;
+  return plain;
+}
+
 Error io_error(const std::string& path, const char* what) {
   return {ErrorCode::kIo, path + ": " + what + ": " + std::strerror(errno)};
 }
@@ -78,11 +96,6 @@ Error io_error(const std::string& path, const char* what) {
 
 Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::string& path, std::string_view library,
                                                        bool is_compressed) {
-  if (is_compressed && !zstd::is_available()) {
-    return fail(ErrorCode::kInvalidArgument, path +
-                                                 ": got a compressed recording to write, expected a program "
-                                                 "built with libzstd (Debian: libzstd-dev)");
-  }
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644);
   if (file < 0) return fail(io_error(path, "cannot make the recording"));
   std::unique_ptr<McapWriter> writer(new McapWriter(path, file, is_compressed));
@@ -187,7 +200,7 @@ Result<void> McapWriter::write(std::uint16_t channel, std::uint64_t log_time, st
 std::string McapWriter::chunk_records(std::string& index) const {
   std::string content;
   Fields(content).number(chunk_start_).number(chunk_end_).number(std::uint64_t{chunk_.size()});
-  const std::string stored = compression_.empty() ? chunk_ : zstd::compress(chunk_);
+  const std::string stored = compression_.empty() ? chunk_ : compressed_bytes(chunk_);
   Fields(content).number(mcap::crc32(chunk_)).text(compression_).number(std::uint64_t{stored.size()});
   std::string bytes = record(Opcode::kChunk, content + stored);
   const std::uint64_t chunk_length = bytes.size();
@@ -338,15 +351,12 @@ class Reader {
     const auto crc = fields.number<std::uint32_t>();
     const std::string_view compression = fields.text();
     std::string_view records = fields.take(fields.number<std::uint64_t>());
-    if (compression == "lz4" || (compression == "zstd" && !zstd::is_available())) {
-      return fail(ErrorCode::kParse,
-                  path_ + ": chunk: got the compression \"" + std::string(compression) + "\", expected " +
-                      (zstd::is_available() ? "zstd or none" : "none (built without libzstd)"));
-    }
+    if (compression == "lz4")
+      return fail(ErrorCode::kParse, path_ + ": chunk: got the compression \"lz4\", expected zstd or none");
     std::optional<std::string> plain;
     if (compression == "zstd") {
       report_.is_compressed = true;
-      plain = zstd::decompress(records, size);
+      plain = plain_bytes(records, size);
       if (plain) records = *plain;
     }
     const bool is_unreadable = compression == "zstd" && !plain;
@@ -459,38 +469,3 @@ Result<McapReport> read_mcap(const std::string& path, const McapVisitor& visitor
 }
 
 }  // namespace chicane::telemetry
-
-namespace chicane::telemetry::zstd {
-
-#ifdef CHICANE_HAVE_ZSTD
-
-bool is_available() noexcept { return true; }
-
-std::string compress(std::string_view bytes) {
-  constexpr int kFastest = 1;
-  std::string compressed(ZSTD_compressBound(bytes.size()), '\0');
-  const std::size_t size =
-      ZSTD_compress(compressed.data(), compressed.size(), bytes.data(), bytes.size(), kFastest);
-  CHICANE_ASSERT(ZSTD_isError(size) == 0);  // the bound is enough for any input
-  compressed.resize(size);
-  return compressed;
-}
-
-std::optional<std::string> decompress(std::string_view bytes, std::uint64_t size) {
-  constexpr std::uint64_t kMost = 256U << 20U;  // the size is read from the file and not to be trusted
-  if (size > kMost) return std::nullopt;
-  std::string plain(static_cast<std::size_t>(size), '\0');
-  if (ZSTD_decompress(plain.data(), plain.size(), bytes.data(), bytes.size()) != plain.size())
-    return std::nullopt;
-  return plain;
-}
-
-#else
-
-bool is_available() noexcept { return false; }
-std::string compress(std::string_view bytes) { return std::string(bytes); }
-std::optional<std::string> decompress(std::string_view, std::uint64_t) { return std::nullopt; }
-
-#endif
-
-}  // namespace chicane::telemetry::zstd

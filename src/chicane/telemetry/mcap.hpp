@@ -113,7 +113,7 @@ namespace chicane::telemetry {
 class McapWriter {
  public:
   /// Creates a file. kIo if it exists already or cannot be made: a recording is never overwritten.
-  /// `is_compressed`: chunks by Zstandard; kInvalidArgument if this program was built without it.
+  /// `is_compressed`: chunks by Zstandard.
   [[nodiscard]] static Result<std::unique_ptr<McapWriter>> create(const std::string& path,
                                                                   std::string_view library,
                                                                   bool is_compressed = false);
@@ -206,18 +206,7 @@ struct McapReport {
 /// schemas and channels; those beyond count as damaged.
 ///
 /// kIo when it cannot be read; kParse when it is no MCAP file, or is compressed by other means than
-/// Zstandard, or by that when this program was built without it.
+/// Zstandard.
 [[nodiscard]] Result<McapReport> read_mcap(const std::string& path, const McapVisitor& visitor);
 
 }  // namespace chicane::telemetry
-
-/// Zstandard, where the program was built with libzstd.
-namespace chicane::telemetry::zstd {
-
-[[nodiscard]] bool is_available() noexcept;
-/// Compresses at the fastest level. Pre: is_available().
-[[nodiscard]] std::string compress(std::string_view bytes);
-/// Decompresses. None if the bytes are damaged, or do not yield `size` bytes. Pre: is_available().
-[[nodiscard]] std::optional<std::string> decompress(std::string_view bytes, std::uint64_t size);
-
-}  // namespace chicane::telemetry::zstd
